@@ -60,10 +60,6 @@ def test_empty_rows_below_are_cropped_and_that_is_said():
     assert picture.model.mu == 0.4
 
 
-def test_nothing_is_said_when_nothing_is_cropped():
-    assert model_from_labels(np.ones((2, 2), np.uint32)).notices == ()
-
-
 def test_an_empty_image_has_no_blocks():
     picture = model_from_labels(np.zeros((4, 5), np.uint32))
     assert (picture.model.blocks, picture.model.interfaces) == ((), ())
@@ -83,13 +79,6 @@ def test_what_is_no_label_image_is_refused(labels):
 def test_what_is_no_friction_is_refused(mu):
     with pytest.raises(InputError, match="E302"):
         model_from_labels(np.ones((2, 2), np.uint32), mu)
-
-
-def test_labels_of_other_integer_types_are_read():
-    labels = np.ones((4, 2))
-    assert told(model_from_labels(labels.astype(np.int64)).model) == told(
-        model_from_labels(labels.astype(np.uint8)).model
-    )
 
 
 @given(labels=pictures, order=st.permutations(range(1, 5)), with_wedge=st.booleans())
@@ -133,24 +122,3 @@ def test_points_known_before_change_nothing(labels, first):
     assert told_exactly(model_with(model, wall, new, points=points)) == anew
     others = PointContacts.of(find_interfaces(labels))
     assert told_exactly(model_with(model, wall, new, points=others)) == anew
-
-
-def test_points_known_before_are_believed():
-    labels = np.kron([[1, 0], [0, 2]], np.ones((4, 4))).astype(np.uint32)
-    model = model_from_labels(labels).model
-    stone = PosedStone(Stone(3, np.ones((4, 4), bool)), 0.0, 1.0, np.ones((4, 4), bool), (2.0, 2.0))
-    for points, closed in (
-        (None, (1,)),
-        (PointContacts.of(model.interfaces), (1,)),
-        (PointContacts(model.interfaces, ()), ()),
-    ):
-        grown = model_with(model, labels, Placement(stone, 4, 0), points=points)
-        assert grown.added.closed == closed
-
-
-def test_a_placement_knows_area_and_centroid_of_its_pixels():
-    labels = np.zeros((30, 40), np.uint32)
-    mask = np.array([[1, 1, 0], [1, 1, 1]], bool)
-    posed = PosedStone(Stone(5, mask), 0.0, 1.0, mask, (0.0, 0.0))
-    model = model_with(RigidBlockModel((), ()), labels, Placement(posed, 20, 30))
-    assert model.blocks == (Block(5, 5.0, (30 + 6.5 / 5, 8 + 4.5 / 5)),)

@@ -6,14 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from drystone.contacts.interfaces import PointContacts, find_interfaces, interfaces_in
-from drystone.io.read_stones import read_stones
+from drystone.contacts.interfaces import PointContacts, find_interfaces
 from drystone.kernels.patches import painted_patch
-from drystone.planner.settings import method_settings
-from drystone.search.plan_wall import plan_wall
 from drystone.statics.model import GROUND
 from tests.naive import contacts as naive
-from tests.naive.statics import diagonal_touches, pixel_edges
 from tests.statics.walls import coursed, irregular
 from tests.strategies import label_images, repeatable
 
@@ -46,57 +42,6 @@ def test_the_normal_points_into_the_larger_id_on_all_four_sides():
     assert normals == {(5, 2): (0, 1), (5, 3): (1, 0), (5, 4): (0, -1), (6, 5): (1, 0)}
 
 
-def test_an_l_shaped_run_is_split_at_its_corner():
-    labels = np.ones((30, 40), np.uint32)
-    labels[:20, 10:] = 2
-    assert [told(i) for i in between(labels, 2, 1)] == [
-        (2, 1, [(10, 30), (10, 10)], (1.0, 0.0)),
-        (2, 1, [(10, 10), (40, 10)], (0.0, 1.0)),
-    ]
-
-
-@pytest.mark.parametrize("leg", [2, 3, 5])
-def test_a_short_leg_is_an_interface_of_its_own(leg):
-    labels = np.zeros((20, 40), np.uint32)
-    labels[10:, :30] = 1
-    labels[:10] = 2
-    labels[: 10 + leg, 30:] = 2
-    assert [told(i) for i in between(labels, 2, 1)] == [
-        (2, 1, [(0, 10), (30, 10)], (0.0, 1.0)),
-        (2, 1, [(30, 10), (30, 10 - leg)], (1.0, 0.0)),
-    ]
-
-
-@pytest.mark.parametrize("at_the_end", [True, False])
-@pytest.mark.parametrize("downwards", [True, False])
-@pytest.mark.parametrize("length", [4, 10, 30])
-def test_a_hook_of_one_pixel_does_not_tilt_the_normal(length, downwards, at_the_end):
-    labels = np.ones((20, length + 4), np.uint32)
-    labels[:10, 2:-2] = 2
-    labels[:10, :2], labels[:10, -2:] = 0, 0
-    beyond = np.s_[-2:] if at_the_end else np.s_[:2]
-    if downwards:  # the upper stone hangs over the end of the lower one
-        labels[:11, beyond] = 2
-        labels[11:, beyond] = 0
-    else:  # the lower stone rises beside the end of the upper one
-        labels[9, beyond] = 1
-    (run,) = between(labels, 2, 1)
-    assert run.normal == (0.0, 1.0)
-    assert [tuple(p) for p in run.points] == [(2, 10), (length + 2, 10)]
-
-
-@pytest.mark.parametrize(("rise", "tread"), [(1, 1), (1, 2), (1, 3), (2, 3), (1, 6)])
-def test_a_regular_staircase_has_the_normal_of_its_slope(rise, tread):
-    count = 36
-    cols = np.arange(count)
-    top = 4 + (cols * rise + (tread - 1) // 2) // tread
-    rows = np.arange(50)[:, None]
-    labels = np.where(rows >= 50 - top, 1, 2).astype(np.uint32)
-    (run,) = between(labels, 2, 1)
-    angle = math.degrees(math.atan2(-run.normal[0], run.normal[1]))
-    assert angle == pytest.approx(math.degrees(math.atan2(rise, tread)), abs=0.5)
-
-
 @given(
     angle_deg=st.floats(-180, 180),
     offset=st.floats(-1, 1),
@@ -117,25 +62,6 @@ def test_a_tilted_joint_is_one_run_with_a_bounded_error_of_its_normal(angle_deg,
     assert np.abs(away @ normal - offset).max() <= 0.5**0.5 + 1e-9
 
 
-def test_separate_patches_of_one_pair_stay_separate():
-    labels = picture("2222222222", "22..22..22", "1111111111")
-    assert [i.points[:, 0].tolist() for i in between(labels, 2, 1)] == [[0, 2], [4, 6], [8, 10]]
-
-
-def test_a_stone_inside_another_has_four_sides():
-    labels = np.ones((12, 12), np.uint32)
-    labels[3:9, 3:9] = 2
-    sides = between(labels, 2, 1)
-    assert sorted(i.normal for i in sides) == [(-1, 0), (0, -1), (0, 1), (1, 0)]
-    assert {i.length for i in sides} == {6}
-
-
-def test_a_pixel_in_a_hole_keeps_all_its_edges():
-    labels = np.ones((3, 3), np.uint32)
-    labels[1, 1] = 2
-    assert len(between(labels, 2, 1)) == 2
-
-
 def test_stones_that_touch_at_a_corner_have_a_contact_at_a_point():
     labels = np.zeros((20, 20), np.uint32)
     labels[:10, :10], labels[10:, 10:] = 1, 2
@@ -144,56 +70,12 @@ def test_stones_that_touch_at_a_corner_have_a_contact_at_a_point():
     assert told(contact) == (2, 1, [(10, 10)], (0.0, -1.0))
 
 
-def test_a_corner_on_a_slope_has_the_normal_of_the_slope():
-    row, col = np.mgrid[:20, :20]
-    labels = np.where(row > col, 1, 0).astype(np.uint32)  # falls to the right at 45 degrees
-    labels[:10, 10:] = 2
-    labels[9, 10:], labels[:10, 10] = 2, 2
-    contacts = between(labels, 2, 1)
-    assert [len(i.points) for i in contacts] == [1]
-    assert contacts[0].normal == pytest.approx((0.5**0.5, 0.5**0.5))
-
-
-def test_a_crossing_of_joints_is_no_contact_of_opposite_stones():
-    labels = np.kron(np.array([[1, 2], [3, 4]]), np.ones((5, 5))).astype(np.uint32)
-    assert between(labels, 4, 1) == []
-    assert between(labels, 3, 2) == []
-
-
-def test_ids_above_16_bit_survive():
-    labels = np.array([[4_294_967_295], [70_000]], np.uint32)
-    assert [(i.block, i.other) for i in find_interfaces(labels)] == [
-        (70_000, 0),
-        (4_294_967_295, 70_000),
-    ]
-
-
-def test_an_empty_image_has_no_interfaces():
-    assert find_interfaces(np.zeros((4, 4), np.uint32)) == ()
-
-
 pictures = arrays(
     np.uint32,
     st.tuples(st.integers(1, 12), st.integers(1, 12)),
     elements=st.integers(0, 5),
     fill=st.integers(0, 5),
 )
-
-
-@given(labels=pictures)
-@repeatable()
-def test_every_pair_that_touches_has_an_interface_and_no_other(labels):
-    touching = set(pixel_edges(labels)) | {touch[:2] for touch in diagonal_touches(labels)}
-    assert {(i.block, i.other) for i in find_interfaces(labels)} == touching
-
-
-@given(labels=pictures)
-@repeatable()
-def test_normals_are_unit_vectors_and_order_is_fixed(labels):
-    found = find_interfaces(labels)
-    for interface in found:
-        assert math.hypot(*interface.normal) == pytest.approx(1, abs=1e-12)
-    assert [told(i) for i in found] == [told(i) for i in find_interfaces(labels.copy())]
 
 
 def assert_equals_naive(labels):
@@ -214,69 +96,6 @@ def test_interfaces_equal_their_naive_twin(labels):
 def test_interfaces_of_tilted_joints_equal_their_naive_twin(seed):
     assert_equals_naive(irregular(seed, 20, 90, 60))
     assert_equals_naive(coursed(seed, 4, 120, gap_px=seed))
-
-
-def test_interfaces_of_a_planned_wall_equal_their_naive_twin(data_dir):
-    stones = read_stones(data_dir / "almeida" / "IR.png")
-    settings = method_settings("paper").updated({"search": {"budget": 1}})
-    labels = plan_wall(stones, 560, 160, scale=0.25, seed=1, settings=settings).wall.labels
-    assert len(np.unique(labels)) > 15
-    assert_equals_naive(labels)
-
-
-def added(built, found, labels, group):
-    """Interfaces after a group of blocks of `labels` was built, and whether they closed any in."""
-    parts = []
-    for block in group:
-        rows, cols = np.nonzero(labels == block)
-        top, left = int(rows.min()), int(cols.min())
-        mask = labels[top : rows.max() + 1, left : cols.max() + 1] == block
-        parts.append((block, top, left, mask))
-    patch, _ = painted_patch(built, parts)
-    closed = PointContacts.of(found).closed_in(patch)
-    assert list(closed) == sorted(closed)
-    kept = [interface for place, interface in enumerate(found) if place not in closed]
-    built[np.isin(labels, group)] = labels[np.isin(labels, group)]
-    return (*kept, *interfaces_in(patch))
-
-
-@given(
-    labels=pictures | label_images(),
-    order=st.permutations(range(1, 6)),
-    together=st.integers(1, 3),
-)
-@repeatable(150)
-def test_block_after_block_gives_the_interfaces_of_the_whole(labels, order, together):
-    """Blocks come in groups, as a stone and its wedges do."""
-    built, found = np.zeros_like(labels), ()
-    there = np.unique(labels[labels > 0]).tolist()
-    present = [there[i - 1] for i in order if i <= len(there)] + there[5:]
-    for first in range(0, len(present), together):
-        found = added(built, found, labels, present[first : first + together])
-    assert (built == labels).all()
-    assert sorted(map(told, found)) == sorted(map(told, find_interfaces(labels)))
-
-
-@pytest.mark.parametrize("order", [(1, 4, 2, 3), (1, 4, 3, 2), (2, 3, 4, 1), (2, 3, 1, 4)])
-def test_a_contact_at_a_point_disappears_when_the_pixels_beside_it_fill(order):
-    labels = np.kron([[1, 2], [3, 4]], np.ones((5, 5))).astype(np.uint32)
-    built, found, points = np.zeros_like(labels), (), []
-    for block in order:
-        found = added(built, found, labels, [block])
-        points.append(sum(len(i.points) == 1 for i in found))
-    assert points == [0, 1, 0, 0]
-
-
-@pytest.mark.parametrize(
-    ("row", "col", "closes"),
-    [(4, 6, True), (6, 5, True), (3, 6, False), (7, 5, False), (4, 7, False), (6, 4, False)],
-)
-def test_only_what_fills_a_pixel_beside_a_contact_at_a_point_closes_it_in(row, col, closes):
-    labels = np.kron([[1, 0], [0, 2]], np.ones((6, 6))).astype(np.uint32)
-    found = find_interfaces(labels)
-    patch, _ = painted_patch(labels, [(9, row, col, np.ones((2, 1), bool))])
-    closed = PointContacts.of(found).closed_in(patch)
-    assert [found[k].points.tolist() for k in closed] == [[[6.0, 6.0]]] * closes
 
 
 @given(seed=st.integers(0, 2**32), row=st.integers(0, 21), col=st.integers(0, 17))

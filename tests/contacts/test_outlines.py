@@ -45,19 +45,6 @@ def test_areas_of_published_stones_are_those_of_their_pixels(name, data_dir):
         assert area(outlines[stone.id]) == pytest.approx(stone.area_px, rel=1e-3)
 
 
-def test_an_outline_stays_with_the_contour_of_find_contours(data_dir):
-    stones = read_stones(data_dir / "almeida" / "IR.png")
-    labels = image_of(stones)
-    outlines = outlines_of_labels(labels)
-    for stone in list(stones)[:12]:
-        mask = np.pad(labels == stone.id, 1).astype(float)
-        row, col = max(measure.find_contours(mask, 0.5), key=len).T
-        contour = shapely.points(np.column_stack([col - 0.5, labels.shape[0] - (row - 0.5)]))
-        away = shapely.distance(contour, shapely.LineString(outlines[stone.id]))
-        assert away.max() < 1.3  # .75 from the fitted lines, and what restores the area
-        assert away.mean() < 0.3
-
-
 def test_a_tilted_joint_is_one_edge_with_its_slope():
     row, col = np.mgrid[:60, :80]
     slope = np.tan(np.radians(7))
@@ -155,7 +142,3 @@ def test_gaps_up_to_the_tolerance_are_contacts():
         assert len(among) == contacts
     assert [(i.block, i.length) for i in model.interfaces] == [(1, 4.0)]
     assert model.blocks[0].centroid == (2, 2)
-
-
-def test_no_outlines_make_an_empty_model():
-    assert model_from_outlines(outlines_of_labels(np.zeros((3, 3), int))).blocks == ()

@@ -1,7 +1,7 @@
 import numpy as np
 from hypothesis import given
 
-from drystone.contacts.pieces import notice_of_pieces, pieces_apart
+from drystone.contacts.blocks import notice_of_pieces, pieces_apart
 from tests.naive import contacts as naive
 from tests.strategies import dust_labels, label_images, repeatable
 

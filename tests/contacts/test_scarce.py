@@ -10,11 +10,6 @@ from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.contacts.scarce import Scarce, scarce_contacts
 
 
-def test_stones_on_two_others_are_not_named() -> None:
-    wall = np.kron([[0, 3, 3, 0], [1, 1, 2, 2]], np.ones((4, 4), int))
-    assert scarce_contacts(model_from_labels(wall).model, wall) == ()
-
-
 def test_a_stone_that_floats_and_one_that_touches_at_a_corner() -> None:
     wall = np.zeros((34, 60), int)
     wall[20:34, 0:30], wall[20:34, 30:60] = 1, 2
@@ -30,13 +25,6 @@ def test_the_ground_is_a_neighbour_too() -> None:
     wall[6:12, 0:10], wall[0:9, 20:28] = 1, 2
     found = scarce_contacts(model_from_labels(wall).model, wall)
     assert [(one.block, one.nearest, one.gap) for one in found] == [(2, 0, 3.0)]
-
-
-def test_alone_in_the_world() -> None:
-    disc = np.hypot(*np.mgrid[-9:10, -9:10]) < 0.9
-    found = scarce_contacts(model_from_labels(disc.astype(int)).model, disc.astype(int))
-    # One px on the ground is an interface of two ends: it stands.
-    assert found == ()
 
 
 def test_polygons() -> None:

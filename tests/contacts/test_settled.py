@@ -14,18 +14,12 @@ from drystone.contacts.settled import (
     model_of_outlines,
     model_with_outlines,
 )
-from drystone.errors import InputError
 from drystone.kernels.polygons import area_and_centroid
 from drystone.kernels.raster import turn
-from drystone.statics.incremental import SIMPLEX, incremental_analysis
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.lp.highs import WARM
-from drystone.statics.lp.program import units_of
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitStatus
 from drystone_lab.pixels import tilted_wall
-from tests.naive import meetings as naive
-from tests.statics.growth import assert_same
 
 MU = 0.58
 
@@ -71,10 +65,6 @@ def test_a_block_tilts_about_its_toe_whatever_the_gap(gap):
     """min(mu, b / h)."""
     assert alphas(model_of(box(0, gap, 20, 40))) == pytest.approx((0.5, 0.5), abs=1e-8)
     assert alphas(model_of(box(0, gap, 40, 20))) == pytest.approx((MU, MU), abs=1e-8)
-
-
-def test_a_block_out_of_reach_falls():
-    assert statuses(model_of(box(0, 0.11, 20, 40))) == (LimitStatus.UNSTABLE,) * 2
 
 
 WALLS = {
@@ -125,29 +115,6 @@ def test_settled_walls_are_as_strong_as_those_without_gaps(seed):
         assert alphas(model_of(*placed)) == pytest.approx(alphas(others), abs=1e-3)
 
 
-@pytest.mark.parametrize("seed", [0, 1, 3])
-def test_settled_walls_are_as_strong_as_with_a_contact_wherever_stones_are_near(seed):
-    placed = settled_wall(seed, 0.003, 2e-5)
-    twin = naive.model(placed, MU, 0.1, step=1.0)
-    assert twin.contact_count > 3 * model_of(*placed).contact_count
-    assert alphas(model_of(*placed)) == pytest.approx(alphas(twin), abs=1e-3)
-
-
-def test_gaps_that_open_count_as_far_as_they_are_within_the_tolerance():
-    """A brick that leans by .5 degrees on a brick, with the load where only part of it touches."""
-    base = box(0, 0.0, 100, 20)
-    for angle in (0.02, 0.1, 0.5):
-        leaning = turn(box(0, 0, 30, 100), angle) + np.array([20.0, 20.01])
-        found, twin = model_of(base, leaning), naive.model([base, leaning], MU, 0.1, step=0.05)
-        # Towards the side where it touches they agree; on the other one reach is a little less.
-        both, bound = lateral_resistance(found), lateral_resistance(twin)
-        if angle < 0.3:
-            assert both.left.alpha == pytest.approx(bound.left.alpha, abs=1e-3)
-            assert both.right.alpha == pytest.approx(bound.right.alpha, abs=0.02)
-            assert both.right.alpha <= bound.right.alpha + 1e-6
-        assert both.left.status == bound.left.status
-
-
 def test_blocks_and_interfaces_do_not_depend_on_how_they_are_added():
     placed = settled_wall(2, 0.01, 1e-5)
     whole = model_of(*placed)
@@ -171,25 +138,3 @@ def test_ids_need_not_ascend():
     model = model_of_outlines(placed)
     assert [(i.block, i.other) for i in model.interfaces] == [(7, 0), (3, 7)]
     assert model.interfaces[1].normal == (0.0, 1.0)
-
-
-@pytest.mark.parametrize("seed", [1, 4])
-def test_a_wall_that_grows_has_the_load_multipliers_of_the_whole_one(seed):
-    placed = list(enumerate(settled_wall(seed, 0.01, 1e-5), start=1))
-    empty = RigidBlockModel((), (), MU)
-    analysis = incremental_analysis(empty, units_of(model_of_outlines(PlacedPolygons.of(placed))))
-    for count in range(len(placed)):
-        around = PlacedPolygons.of(placed[:count])
-        taller = model_with_outlines(analysis.model, placed[count : count + 1], around, 0.1)
-        candidate = analysis.resistance_with(taller)
-        assert_same(candidate, taller, {SIMPLEX, WARM})
-        analysis = analysis.extended(taller)
-    whole = model_of_outlines(PlacedPolygons.of(placed))
-    found = analysis.result.resistance
-    assert (found.left.alpha, found.right.alpha) == pytest.approx(alphas(whole), abs=1e-9)
-
-
-def test_nothing_and_bad_friction():
-    assert model_of_outlines(PlacedPolygons.of([])).blocks == ()
-    with pytest.raises(InputError, match="friction"):
-        model_of_outlines(PlacedPolygons.of([]), mu=-1.0)

@@ -2,12 +2,12 @@ import numpy as np
 import pytest
 
 from drystone.contacts.blocks import model_from_labels
-from drystone.contacts.given import model_from_json, polygons_from_json
+from drystone.contacts.given import model_from_json
 from drystone.errors import InputError
 from drystone.statics.joints import loose_blocks, slippery, with_head_friction
-from drystone.statics.limit import lateral_resistance, limit_load
+from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Interface
-from tests.statics.walls import brick_model, irregular
+from tests.statics.walls import brick_model, limit_load
 
 PAIR = [[0, 0, 2, 1], [0, 1, 2, 1]]
 
@@ -18,19 +18,6 @@ def test_head_joints_without_friction_weaken_a_bond_and_only_them():
     for before, after in zip(model.interfaces, slippery.interfaces, strict=True):
         assert after.mu == (0.0 if abs(before.normal[0]) == 1.0 else None)
     assert lateral_resistance(slippery).value < lateral_resistance(model).value - 1e-3
-
-
-def test_a_joint_at_less_than_45_degrees_is_no_head_joint():
-    for interface in with_head_friction(
-        model_from_labels(irregular(3, 12, 90, 50)).model, 0.1
-    ).interfaces:
-        steep = abs(interface.normal[0]) > abs(interface.normal[1])
-        assert (interface.mu == 0.1) == steep
-
-
-def test_head_friction_from_a_file():
-    data = {"blocks_xywh": [[0, 0, 1, 1], [1, 0, 1, 1]], "mu": 0.5, "mu_head": 0}
-    assert [i.mu for i in model_from_json(data).interfaces] == [None, None, 0.0]
 
 
 def test_friction_of_a_pair_from_a_file():
@@ -65,41 +52,6 @@ def test_a_guide_from_a_file():
     assert limit_load(model_from_json({"blocks": [tall]}), "left").alpha == pytest.approx(0.58)
 
 
-def test_polygons_of_a_file():
-    polygons = polygons_from_json({"blocks_xywh": PAIR})
-    assert list(polygons) == [1, 2]
-    assert polygons[2].tolist() == [[0, 1], [2, 1], [2, 2], [0, 2], [0, 1]]
-
-
-@pytest.mark.parametrize(
-    "extra",
-    [
-        {"mu_head": "none"},
-        {"friction": 3},
-        {"friction": [{"between": [1, 9], "mu": 0.3}]},
-        {"friction": [{"between": [1, 1], "mu": 0.3}]},
-        {"friction": [7]},
-        {"friction": [{"between": [[1], 0], "mu": 0.3}]},
-        {"friction": [{"between": [1, 2], "mu": True}]},
-        {"mu": True},
-        {"interfaces": [{"between": [0, 1], "points": [[0, 0]], "normal": [0, 1]}]},
-        {"interfaces": [{"between": [1, 0], "points": [], "normal": [0, 1]}]},
-        {"interfaces": [{"between": [1, 0], "points": [[0, 0]], "normal": [0, 0]}]},
-        {"interfaces": [{"between": [1, 0], "points": [[0, 0]]}]},
-    ],
-)
-def test_what_is_no_joint_is_refused(extra):
-    with pytest.raises(InputError, match="E303"):
-        model_from_json({"blocks_xywh": PAIR, **extra})
-
-
-@pytest.mark.parametrize("held", [["up"], [["x"]], "x, y", 3])
-def test_what_cannot_be_held_is_refused(held):
-    block = {"id": 1, "polygon": [[0, 0], [1, 0], [1, 4]], "held": held}
-    with pytest.raises(InputError, match="held"):
-        model_from_json({"blocks": [block]})
-
-
 def test_weights_that_no_solver_tells_from_rounding_are_refused():
     heavy = [{"id": i, "polygon": [[x, 0], [x + 1, 0], [x + 1, 1]]} for i, x in ((1, 0), (2, 5))]
     heavy[1]["density"] = 1e7
@@ -107,11 +59,6 @@ def test_weights_that_no_solver_tells_from_rounding_are_refused():
         model_from_json({"blocks": heavy})
     heavy[1]["fixed"] = True
     assert len(model_from_json({"blocks": heavy}).blocks) == 2
-
-
-def test_what_is_too_small_to_have_an_area_is_refused():
-    with pytest.raises(InputError, match="E303"):
-        model_from_json({"blocks_xywh": [[0, 0, 1e-200, 1e-200]]})
 
 
 def test_blocks_that_nothing_carries():

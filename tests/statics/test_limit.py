@@ -1,4 +1,3 @@
-import math
 import subprocess
 import sys
 from dataclasses import replace
@@ -11,15 +10,14 @@ from hypothesis import strategies as st
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
 from drystone.statics.incremental import SIMPLEX, incremental_analysis
-from drystone.statics.limit import lateral_resistance, limit_load
+from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, point_load, weight
 from drystone.statics.lp import clarabel, extremes, highs
 from drystone.statics.lp.highs import HighsSession
 from drystone.statics.lp.program import units_of
-from drystone.statics.model import GROUND, NO_SLIP, RigidBlockModel
+from drystone.statics.model import NO_SLIP, RigidBlockModel
 from drystone.statics.result import LimitStatus
-from tests.naive.statics import limit_alphas
-from tests.statics.walls import brick_model, coursed, irregular, stacked
+from tests.statics.walls import coursed, irregular, limit_load, stacked
 from tests.strategies import repeatable
 
 
@@ -42,10 +40,6 @@ def test_one_block_of_pixels_slides_or_overturns(width, height, mu, expected):
     assert alphas(labels, mu) == pytest.approx((expected, expected), abs=1e-9)
 
 
-def test_two_blocks_of_pixels_overturn_together():
-    assert alphas(stacked((20, 20, 0), (20, 20, 0)), mu=0.65) == pytest.approx((0.5, 0.5))
-
-
 def test_four_blocks_at_a_crossing_of_joints_have_the_strength_of_their_columns():
     labels = np.kron([[1, 2], [3, 4]], np.ones((20, 20))).astype(np.uint32)
     rectangles = [[x, y, 20, 20] for y in (0, 20) for x in (0, 20)]
@@ -60,16 +54,6 @@ def test_a_course_across_a_narrow_gap_slides_at_the_friction():
     labels[20:, :20], labels[20:, 21:] = 1, 2
     labels[:20, :21] = 3
     assert alphas(labels, mu=0.3) == pytest.approx((0.3, 0.3))
-
-
-def test_a_stone_bridging_two_pillars_is_stable():
-    labels = np.zeros((60, 100), np.uint32)
-    labels[20:, :20], labels[20:, 80:] = 1, 2
-    labels[:20] = 3
-    both = lateral_resistance(model_from_labels(labels).model)
-    assert both.stable
-    assert both.left.alpha == pytest.approx(both.right.alpha)
-    assert 0.4 < both.right.alpha < 0.58
 
 
 def test_left_means_towards_minus_x():
@@ -95,12 +79,6 @@ def test_what_balances_carries_nothing_on_one_side():
     assert statuses(both) == (LimitStatus.OPTIMAL, LimitStatus.OPTIMAL)
     assert (both.left.alpha, both.right.alpha) == pytest.approx((0.75, 0.0), abs=1e-9)
     assert both.right.alpha >= 0
-
-
-def test_a_floating_block_is_unstable():
-    labels = np.zeros((9, 9), np.uint32)
-    labels[6:, :3], labels[:3, 5:] = 1, 2
-    assert not lateral_resistance(model_from_labels(labels).model).stable
 
 
 def test_no_blocks_no_bound():
@@ -132,131 +110,6 @@ def test_without_friction_there_is_no_ratio_to_it():
     assert both.value is None
 
 
-@pytest.mark.parametrize(("direction", "sign"), [("left", -1), ("right", 1)])
-def test_a_tall_block_rocks_about_its_toe(direction, sign):
-    model = model_from_labels(stacked((20, 40, 0))).model
-    velocity = limit_load(model, direction, mechanism=True).mechanism.velocity[0]
-    assert math.hypot(velocity[0], velocity[1]) == pytest.approx(1)
-    assert sign * velocity[0] > 0
-    toe = 20.0 if sign > 0 else 0.0
-    arm = np.array([toe, 0.0]) - model.blocks[0].centroid
-    at_toe = velocity[:2] + velocity[2] * np.array([-arm[1], arm[0]])
-    assert at_toe == pytest.approx([0, 0], abs=1e-9)
-    assert sign * velocity[2] < 0  # counter-clockwise is positive
-
-
-@pytest.mark.parametrize(("direction", "sign"), [("left", -1), ("right", 1)])
-def test_a_flat_block_slides_and_dilates(direction, sign):
-    model = model_from_labels(stacked((40, 20, 0))).model
-    velocity = limit_load(model, direction, mechanism=True).mechanism.velocity[0]
-    expected = np.array([sign, 0.58, 0]) / math.hypot(1, 0.58)  # associated flow
-    assert velocity == pytest.approx(expected, abs=1e-9)
-
-
-def test_no_mechanism_unless_asked_for():
-    both = lateral_resistance(model_from_labels(stacked((20, 40, 0))).model)
-    assert both.left.mechanism is None
-    assert both.right.mechanism is None
-
-
-def assert_certified(model, result, sign):
-    """The mechanism is admissible, and its work balance gives the same alpha: both are exact."""
-    velocity = dict(zip(result.mechanism.block_ids, result.mechanism.velocity, strict=True))
-    velocity[GROUND] = np.zeros(3)
-    centroid = {block.id: block.centroid for block in model.blocks} | {GROUND: (0.0, 0.0)}
-
-    def at(block, point):
-        arm = point - centroid[block]
-        vx, vy, turning = velocity[block]
-        return np.array([vx - turning * arm[1], vy + turning * arm[0]])
-
-    for interface in model.interfaces:
-        nx, ny = interface.normal
-        for point in interface.points:
-            apart = at(interface.block, point) - at(interface.other, point)
-            opening, slip = apart @ (nx, ny), abs(apart @ (ny, -nx))
-            assert opening >= model.mu * slip - 1e-7
-    moved = np.array([velocity[block.id] for block in model.blocks])
-    weight = np.array([block.weight for block in model.blocks])
-    pushed = sign * float(weight @ moved[:, 0])
-    assert pushed > 0
-    assert float(weight @ moved[:, 1]) / pushed == pytest.approx(result.alpha, abs=1e-6)
-    assert np.hypot(moved[:, 0], moved[:, 1]).max() == pytest.approx(1)
-
-
-def assert_equals_twin(model):
-    both = lateral_resistance(model, mechanism=True)
-    expected = limit_alphas(model)
-    if expected is None:
-        assert statuses(both) == (LimitStatus.UNSTABLE, LimitStatus.UNSTABLE)
-        return
-    assert statuses(both) == (LimitStatus.OPTIMAL, LimitStatus.OPTIMAL)
-    assert (both.left.alpha, both.right.alpha) == pytest.approx(expected, abs=1e-6)
-    assert both.value == pytest.approx(min(expected) / model.mu, abs=1e-5)
-    assert_certified(model, both.left, -1.0)
-    assert_certified(model, both.right, 1.0)
-
-
-@given(
-    seed=st.integers(0, 10**6),
-    courses=st.integers(1, 5),
-    length_px=st.integers(20, 90),
-    gap_px=st.integers(0, 3),
-    mu=st.sampled_from([0.3, 0.58, 0.9]),
-)
-@repeatable(40)
-def test_coursed_walls_equal_their_twin(seed, courses, length_px, gap_px, mu):
-    assert_equals_twin(model_from_labels(coursed(seed, courses, length_px, gap_px), mu).model)
-
-
-@given(
-    courses=st.integers(1, 6),
-    bricks=st.integers(1, 4),
-    height=st.sampled_from([0.5, 1.0, 3.0]),
-    mu=st.sampled_from([0.3, 0.58, 0.9]),
-)
-@repeatable(25)
-def test_brick_walls_equal_their_twin(courses, bricks, height, mu):
-    assert_equals_twin(brick_model(courses, bricks, height, mu))
-
-
-@given(seed=st.integers(0, 10**6), count=st.integers(2, 14))
-@repeatable(25)
-def test_irregular_walls_equal_their_twin(seed, count):
-    assert_equals_twin(model_from_labels(irregular(seed, count, 90, 50)).model)
-
-
-@pytest.mark.parametrize("factor", [1e-3, 40.0, 1e4])
-def test_the_unit_of_length_does_not_matter(factor):
-    rows = [[0, 0, 3, 2], [3, 0, 2, 2], [1, 2, 3, 1], [0.5, 3, 3, 4]]
-    scaled = [[factor * number for number in row] for row in rows]
-    one, other = (lateral_resistance(model_from_json({"blocks_xywh": r})) for r in (rows, scaled))
-    assert one.left.alpha == pytest.approx(other.left.alpha, abs=1e-9)
-    assert one.right.alpha == pytest.approx(other.right.alpha, abs=1e-9)
-
-
-def test_equal_calls_give_equal_bits():
-    model = model_from_labels(coursed(3, 5, 120)).model
-    one, other = (
-        lateral_resistance(model, mechanism=True),
-        lateral_resistance(model, mechanism=True),
-    )
-    assert (one.left.alpha, one.right.alpha) == (other.left.alpha, other.right.alpha)
-    assert (one.left.mechanism.velocity == other.left.mechanism.velocity).all()
-
-
-@pytest.mark.parametrize("labels", [coursed(5, 4, 90), stacked((20, 20, 0), (20, 20, 12))])
-def test_what_the_first_algorithm_gives_up_on_is_tried_with_another(labels, monkeypatch):
-    model = model_from_labels(labels).model
-    expected = lateral_resistance(model)
-    give_up_after(1, monkeypatch, "simplex")
-    again = lateral_resistance(model)
-    assert statuses(again) == statuses(expected)
-    assert again.left.solver != expected.left.solver
-    if expected.stable:
-        assert again.value == pytest.approx(expected.value, abs=1e-7)
-
-
 def give_up_after(iterations, monkeypatch, *algorithms):
     options = dict(highs._OPTIONS)
     for algorithm in algorithms:
@@ -267,7 +120,9 @@ def give_up_after(iterations, monkeypatch, *algorithms):
 def test_what_all_algorithms_give_up_on_is_failed_and_no_number(monkeypatch):
     model = model_from_labels(coursed(5, 4, 90)).model
     give_up_after(1, monkeypatch, "simplex", "ipm")
-    monkeypatch.setattr(clarabel, "_SETTINGS", {**clarabel._SETTINGS, "max_iter": 1})
+    settings = clarabel._settings(1e-12)
+    settings.max_iter = 1
+    monkeypatch.setattr(clarabel, "_settings", lambda _: settings)
     both = lateral_resistance(model, mechanism=True)
     assert statuses(both) == (LimitStatus.FAILED, LimitStatus.FAILED)
     assert (both.value, both.left.alpha, both.left.mechanism) == (None, None, None)
@@ -317,20 +172,19 @@ def test_a_wrong_optimal_answer_is_found_out_and_asked_again(wrong, monkeypatch)
 SOLVERS = ("highs", "highs-ipm", "clarabel")
 
 
-@pytest.mark.parametrize("order", [("highs-ipm", "highs"), ("highs", "highs-ipm")])
-def test_no_solver_keeps_another_from_working_in_a_process(order):
+def test_no_solver_keeps_another_from_working_in_a_process():
     """HiGHS refuses another number of threads than that of the first call of a process."""
     script = (
         "from drystone.contacts.given import model_from_json\n"
         "from drystone.statics.limit import lateral_resistance\n"
         "model = model_from_json({'blocks_xywh': [[0, 0, 1, 2]], 'mu': 0.7})\n"
-        f"for solver in {order!r}:\n"
+        "for solver in ('highs-ipm', 'highs', 'highs-ipm'):\n"
         "    print(lateral_resistance(model, solver=solver).left.status.value)\n"
     )
     ran = subprocess.run(  # noqa: S603 - our own code
         [sys.executable, "-c", script], check=True, stdout=subprocess.PIPE, text=True
     )
-    assert ran.stdout.split() == ["optimal", "optimal"]
+    assert ran.stdout.split() == ["optimal"] * 3
 
 
 @given(seed=st.integers(0, 10**6), count=st.integers(2, 25), coursing=st.booleans())
@@ -348,46 +202,6 @@ def test_solvers_agree_and_every_answer_is_certified(seed, count, coursing):
                 assert result.certificate.gap <= 1e-8
             else:
                 assert result.certificate.fall_work > 1e-6
-
-
-def test_the_forces_are_in_equilibrium_with_the_load():
-    model = model_from_labels(coursed(7, 4, 90)).model
-    result = limit_load(model, "right", mechanism=True)
-    pushed = {block.id: np.array([result.alpha, -1.0]) * block.weight for block in model.blocks}
-    pushed[GROUND] = np.zeros(2)
-    at = 0
-    for interface in model.interfaces:
-        nx, ny = interface.normal
-        for normal, along in result.forces[at : at + len(interface.points)]:
-            assert abs(along) <= model.mu * normal + 1e-9
-            force = normal * np.array([nx, ny]) + along * np.array([ny, -nx])
-            pushed[interface.block] = pushed[interface.block] + force
-            pushed[interface.other] = pushed[interface.other] - force
-        at += len(interface.points)
-    assert at == len(result.forces)
-    for block in model.blocks:
-        assert pushed[block.id] == pytest.approx([0, 0], abs=1e-7)
-
-
-@pytest.mark.parametrize("solver", SOLVERS)
-def test_what_falls_comes_with_its_fall(solver):
-    """The upper stone of an overhanging pair turns about the edge of the lower one."""
-    model = model_from_labels(stacked((20, 20, 0), (20, 20, 12)), 0.9).model
-    result = limit_load(model, "right", mechanism=True, solver=solver)
-    assert result.status is LimitStatus.UNSTABLE
-    assert result.certificate.holds
-    velocity = dict(zip(result.mechanism.block_ids, result.mechanism.velocity, strict=True))
-    assert velocity[2][1] < 0  # down
-    assert velocity[2][2] < 0  # clockwise
-
-
-def test_friction_of_an_interface_counts_before_that_of_the_model():
-    model = model_from_labels(stacked((40, 10, 0), (40, 10, 0)), 0.9).model
-    slippery = tuple(replace(i, mu=0.2) if i.other == 1 else i for i in model.interfaces)
-    result = limit_load(replace(model, interfaces=slippery), "right", mechanism=True)
-    assert result.alpha == pytest.approx(0.2)
-    velocity = dict(zip(result.mechanism.block_ids, result.mechanism.velocity, strict=True))
-    assert velocity[1] == pytest.approx(np.zeros(3), abs=1e-9)
 
 
 @pytest.mark.parametrize(("held", "alpha"), [((), 0.25), (("turn",), 0.58), (("x", "turn"), None)])
@@ -411,18 +225,6 @@ def test_many_blocks_are_solved_by_the_interior_point_method(monkeypatch):
     assert found.left.solver == "Clarabel"
     assert found.value == pytest.approx(expected.value, abs=1e-9)
     assert lateral_resistance(model, mechanism=True).left.solver == "HiGHS simplex"
-
-
-def test_a_few_blocks_are_asked_of_one_solver(monkeypatch):
-    made = []
-
-    def counted(*given):
-        made.append(given)
-        return HighsSession(*given)
-
-    monkeypatch.setattr(extremes, "HighsSession", counted)
-    assert lateral_resistance(model_from_labels(stacked((20, 20, 0))).model).stable
-    assert len(made) == 1
 
 
 @pytest.mark.parametrize("solver", ["auto", "highs", "highs-ipm", "clarabel"])
@@ -457,7 +259,7 @@ def test_a_wall_stands_where_nothing_limits_the_load():
     assert lateral_resistance(RigidBlockModel((), ())).stable
 
 
-@pytest.mark.parametrize("mu", [1e5, 1e7, 1e9, 1e300])
+@pytest.mark.parametrize("mu", [1e5, 1e300])
 def test_friction_at_which_nothing_slides_has_one_answer(mu):
     """That of the greatest friction which counts; whole walls, and walls that grow."""
     for labels in (irregular(3, 40, 160, 120), coursed(3, 8, 200, 2)):

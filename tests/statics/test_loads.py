@@ -8,7 +8,7 @@ from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
 from drystone.errors import InputError
 from drystone.statics.failing.mechanism import describe_mechanism
-from drystone.statics.limit import lateral_resistance, limit_load, load_range
+from drystone.statics.limit import lateral_resistance, load_range
 from drystone.statics.loads import (
     Loads,
     gravity_factor,
@@ -20,7 +20,7 @@ from drystone.statics.loads import (
 )
 from drystone.statics.model import GROUND, Block, RigidBlockModel
 from drystone.statics.result import LimitStatus
-from tests.statics.walls import coursed, stacked
+from tests.statics.walls import coursed, limit_load, stacked
 
 
 def tower(mu=0.9):
@@ -43,14 +43,6 @@ def test_what_a_tilted_base_leaves_is_the_rest_of_the_angle(angle_deg):
     assert left.alpha == pytest.approx(0.25 * math.cos(angle) + math.sin(angle))
     beyond = limit_load(block, "right", tilting_table(block, 14.1))
     assert beyond.status is LimitStatus.UNSTABLE  # atan .25 = 14.04 degrees
-
-
-def test_the_angle_at_which_a_wall_falls_is_that_of_its_load_multiplier():
-    model = model_from_labels(coursed(3, 4, 90)).model
-    alpha = limit_load(model, "right").alpha
-    angle = math.degrees(math.atan(alpha))
-    assert limit_load(model, "right", tilting_table(model, angle - 1e-6)).success
-    assert not limit_load(model, "right", tilting_table(model, angle + 1e-6)).success
 
 
 def test_a_load_that_grows_with_height_overturns_sooner():

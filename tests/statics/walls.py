@@ -3,13 +3,17 @@
 import math
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from drystone.contacts.given import model_from_json
-from drystone.statics.model import RigidBlockModel
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.loads import Loads
+from drystone.statics.model import Direction, RigidBlockModel
+from drystone.statics.result import LimitResult
 
 Labels = NDArray[np.uint32]
 
@@ -109,3 +113,11 @@ def irregular(seed: int, count: int, width_px: int, height_px: int) -> Labels:
     row, col = np.mgrid[:height_px, :width_px]
     distance = (row[..., None] - points[:, 0]) ** 2 + (col[..., None] - points[:, 1]) ** 2
     return (distance.argmin(axis=-1) + 1).astype(np.uint32)
+
+
+def limit_load(
+    model: RigidBlockModel, direction: Direction, loads: Loads | None = None, **how: Any
+) -> LimitResult:
+    """One direction of the resistance of a wall."""
+    both = lateral_resistance(model, loads, **how)
+    return both.left if direction == "left" else both.right

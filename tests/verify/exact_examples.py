@@ -14,15 +14,11 @@ from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone.model.wedge_shape import WedgeSettings
-from drystone.planner.assemble import Frame
-from drystone.planner.events import Stopped
-from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
-from drystone.search.plan_result import finish
 from drystone.settle.placing import settled_placement, settled_wedge
 from drystone.settle.rest import placed_outline
 from tests.planner.scenes import stones_of_masks
-from tests.verify.examples import L_STONE, SLAB, WEDGE, Example, stone_set
+from tests.verify.examples import L_STONE, SLAB, WALL_PX, WEDGE, Example, plan_of, stone_set
 
 GAP_PX = 0.01
 """Between all that touches."""
@@ -33,7 +29,6 @@ SETTINGS = PlannerSettings(
     two_sided=True,
     wedge=WedgeSettings(height=0.4, area=0.2),
 )
-WALL_PX = (84.0, 30.0)
 
 
 def exact_example(scale: float = 1.0, px_per_m: float | None = None, *, count: int = 5) -> Example:
@@ -51,7 +46,7 @@ def exact_example(scale: float = 1.0, px_per_m: float | None = None, *, count: i
         (300, -90.0, 74.0, GAP_PX),
     )[:count]:
         wall = with_stone(wall, stones, (stone_id, angle_deg), (left, bottom))
-    return plan_of(wall, stones)
+    return plan_of(wall, stones, SETTINGS, {})
 
 
 def hanging_example() -> Example:
@@ -61,7 +56,7 @@ def hanging_example() -> Example:
     wall = Wall.empty(Site.from_source(*WALL_PX), exact=True)
     for stone_id, left, bottom in ((1, 0.0, GAP_PX), (2, 50.02, GAP_PX), (3, 30.01, 9.0)):
         wall = with_stone(wall, stones, (stone_id, 0.0), (left, bottom))
-    return plan_of(wall, stones)
+    return plan_of(wall, stones, SETTINGS, {})
 
 
 def with_stone(
@@ -90,21 +85,6 @@ def wedge_px() -> Points:
     """The wedge between the lower pillar and the slab, 8 px wide and nearly 4 px high."""
     low, high = 16 + 2 * GAP_PX, 20 + GAP_PX
     return on_grid(np.array([[42.0, low], [50.0, low], [50.0, high], [42.0, high]]))
-
-
-def plan_of(wall: Wall, stones: StoneSet) -> Example:
-    """Return the plan of a wall of outlines, with what the planner finds true of it."""
-    planner = Planner(stones, wall.site, settings=SETTINGS)
-    planner.restore(wall, {})
-    provenance = {
-        "version": "0.1.0",
-        "method": "custom",
-        "seed": 1,
-        "settings": SETTINGS.as_dict(),
-    }
-    stopped = Stopped("stones", "all stones that fit are placed")
-    made = finish(planner, Frame(*WALL_PX, wall.site), stopped, provenance, 0.0)
-    return Example(made.plan, stones, wall)
 
 
 def block_model(made: Example) -> Any:

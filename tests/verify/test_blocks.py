@@ -13,9 +13,9 @@ from tests.verify.examples import SLAB, WEDGE, Example, example
 from tests.verify.tampering import moved, step_of
 
 
-@pytest.fixture(scope="module", params=[None, 200.0], ids=["px", "m"])
-def true(request: pytest.FixtureRequest) -> Example:
-    return exact_example(0.5, request.param)
+@pytest.fixture(scope="module")
+def true() -> Example:
+    return exact_example(0.5, 200.0)
 
 
 def found(made: Example, blocks: Any) -> list[Problem]:

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from drystone.kernels.polygons import Points
 from drystone.model.outlines import Outlines
 from drystone.model.site import Site
-from drystone.verify.buried import lies_under, swept_upwards
+from drystone.verify.pieces import lies_under, swept_upwards
 from tests.polygons import simple_polygons
 from tests.strategies import repeatable
 
@@ -59,23 +59,9 @@ def test_block_is_buried_by_what_is_wide_enough_above_it(earlier: Points, expect
     assert lies_under(block, placed(box(0, -5, 10, -0.01), earlier), 1.0) is expected
 
 
-def test_slivers_of_two_neighbours_are_two_slivers() -> None:
-    block = box(0, 0, 10, 10)
-    both = placed(box(-9, 12, 0.8, 16), box(9.2, 12, 20, 16))
-    assert not lies_under(block, both, 1.0)
-
-
 def test_hook_over_what_is_there_can_be_lowered_and_under_it_cannot() -> None:
     arch = np.array([[0, 0], [2, 0], [2, 6], [8, 6], [8, 0], [10, 0], [10, 8], [0, 8]], float)
     assert not lies_under(arch, placed(box(3, 0, 7, 5.9)), 0.5)
     clamp = np.array([[0, 0], [10, 0], [10, 2], [2, 2], [2, 6], [10, 6], [10, 8], [0, 8]], float)
     assert lies_under(clamp, placed(box(3, 2.1, 20, 5.9)), 0.5)
     assert not lies_under(clamp, placed(), 0.5)
-
-
-def test_lip_over_the_edge_of_a_block_is_a_sliver_however_large_its_stone_is() -> None:
-    block = box(0, 0, 10, 10)
-    for lip, expected in ((0.9, False), (1.1, True)):
-        corners = [[-5, -5], [5, -5], [5, -0.1], [-0.1, -0.1], [-0.1, 12], [lip, 12], [lip, 14]]
-        held = np.array([*corners, [-5, 14]], float)
-        assert lies_under(block, placed(held), 1.0) is expected

@@ -18,7 +18,7 @@ from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
 from drystone.settle.rest import placed_outline
 from drystone.verify.check import check_plan
-from drystone.verify.pixels import check_outline, rim_px
+from drystone.verify.pieces import check_outline, rim_px
 from tests.naive import outline as naive
 from tests.planner.scenes import greedy, stones_of_masks
 from tests.strategies import blobs, holed, masks, repeatable
@@ -139,12 +139,12 @@ def test_frames_are_laid_as_if_they_were_filled() -> None:
 
 
 def test_rings_among_discs_and_bricks_do_not_overlap() -> None:
-    shapes = [ring(22, 9)] * 8 + [ring(6.9, 0)] * 8 + [np.ones((20, 35), bool)] * 8
+    shapes = [ring(22, 9)] * 5 + [ring(6.9, 0)] * 5 + [np.ones((20, 35), bool)] * 5
     stones = stones_of_masks(dict(enumerate(shapes, 1)))
     result = planned(stones, 180, 90)
     placed = {step.stone for step in result.plan.stone_steps}
     assert len(placed) > 10
-    assert placed & set(range(1, 9))
+    assert placed & {1, 2, 3, 4, 5}
     assert deepest_by_pixels(result) < 0.5
     report = check_plan(result.plan, stones, wall_labels=result.wall.labels)
     assert report.problems == ()

@@ -7,7 +7,7 @@ from drystone.kernels.polygons import Points, no_polygons
 from drystone.model.plan import WedgeStep
 from drystone.settle.wedge import WedgeLimits
 from drystone.statics.model import RigidBlockModel
-from drystone.verify.wedges import check_settled_wedge
+from drystone.verify.pieces import check_settled_wedge
 
 STEP = WedgeStep(3, 9, 7, (), None, None)
 LIMITS = WedgeLimits(least_thickness=1.0, greatest_height=6.0, greatest_area=30.0)

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from drystone.contacts.interfaces import PointContacts, find_interfaces, interfaces_in
-from drystone.contacts.pieces import notice_of_pieces
 from drystone.errors import InputError, LabelImageError, Notice
-from drystone.kernels.label_runs import label_runs
+from drystone.kernels.label_runs import label_runs, runs_in_pieces
 from drystone.kernels.patches import Part, painted_patch
 from drystone.model.placement import Placement, Wedge
 from drystone.model.wall import Labels
@@ -16,26 +15,21 @@ from drystone.statics.model import Block, RigidBlockModel
 LARGEST_MU = 1e300
 """A coefficient of friction from which forces do not overflow."""
 
+NAMED = 5
+"""A notice names this many stones."""
+
 
 @dataclass(frozen=True, eq=False)
 class ImageModel:
-    """The rigid blocks of a label image.
+    """The rigid blocks of a label image."""
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Lengths in px; y = 0 at the lowest stone pixel's lower edge.
-    ground_row : int
-        The ground is the upper edge of this image row, or the image's lower edge; y of the wall
-        frame is `ground_row` minus the row coordinate.
-    notices : tuple of Notice
-        W301 when empty rows below the stones were left out, W304 when pixels of a stone lie
-        apart from it.
-    """
-
-    model: RigidBlockModel
+    model: RigidBlockModel  # lengths in px; y = 0 at the lowest stone pixel's lower edge
     ground_row: int
+    """The ground is the upper edge of this image row, or the image's lower edge; y of the wall
+    frame is `ground_row` minus the row coordinate."""
     notices: tuple[Notice, ...] = ()
+    """W301 when empty rows below the stones were left out, W304 when pixels of a stone lie apart
+    from it."""
 
 
 def model_from_labels(labels: Labels, mu: float = 0.58) -> ImageModel:
@@ -95,26 +89,10 @@ def model_with(
 ) -> RigidBlockModel:
     """Return the model of a wall with one more stone and its wedges.
 
-    Only what is around them is looked at, however large the wall is.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Of the wall without them.
-    labels : (h, w) uint32 array
-        The wall without them, as large as the site; its lower edge is the ground.
-    placement : Placement
-        The stone.
-    wedges : tuple of Wedge
-        The wedges under it.
-    points : PointContacts, optional
-        Of `model`, for whoever asks for many candidates; otherwise they are looked for here.
-
-    Returns
-    -------
-    RigidBlockModel
-        With the blocks and interfaces of :func:`model_from_labels`, in the order of
-        construction.
+    Only what is around them is looked at, however large the wall is.  `labels` are the wall without
+    them; the lower edge is the ground.  `points` belong to `model`: whoever asks for many
+    candidates finds them once.  Blocks and interfaces are those of :func:`model_from_labels`, in
+    the order of construction.
     """
     parts = [(placement.stone_id, placement.row, placement.col, placement.posed.mask)]
     parts += [(wedge.id, wedge.row, wedge.col, wedge.mask) for wedge in wedges]
@@ -137,6 +115,42 @@ def check_mu(mu: float) -> None:
             where="mu",
             cure="Give a number >= 0; dry stone has about 0.58.",
         )
+
+
+def pieces_apart(labels: Labels) -> tuple[tuple[int, int], ...]:
+    """Return (id, pixels apart from its largest piece) of each id that is not in one piece.
+
+    Pixels that touch at a corner are in one piece.
+    """
+    runs = label_runs(labels)
+    ids, place = np.unique(runs.labels, return_inverse=True)
+    piece = runs_in_pieces(runs)
+    sizes = np.bincount(piece, runs.lengths)
+    block = np.zeros(len(sizes), np.intp)
+    block[piece] = place
+    largest = np.zeros(len(ids))
+    np.maximum.at(largest, block, sizes)
+    apart = np.bincount(block, sizes, len(ids)) - largest
+    return tuple((int(ids[k]), int(apart[k])) for k in np.flatnonzero(apart).tolist())
+
+
+def notice_of_pieces(labels: Labels) -> tuple[Notice, ...]:
+    """Say in a notice (W304) which stones have pixels that lie apart; none when none have."""
+    apart = pieces_apart(labels)
+    if not apart:
+        return ()
+    told = [f"{px} pixel{'s' * (px > 1)} of stone {block}" for block, px in apart[:NAMED]]
+    if len(apart) > NAMED:
+        told.append(f"pixels of {len(apart) - NAMED} more")
+    one = len(apart) == 1
+    verb, them = "lies" if one and apart[0][1] == 1 else "lie", "it" if one else "them"
+    return (
+        Notice(
+            "W304",
+            f"{', '.join(told)} {verb} apart from {them}; all pixels of an id are one rigid block.",
+            "Give every piece an id of its own, or clean the picture.",
+        ),
+    )
 
 
 def _check_labels(labels: Labels) -> None:

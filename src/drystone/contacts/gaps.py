@@ -1,5 +1,6 @@
 """Pictures of real walls have gaps between the stones: close them for the contacts, or settle."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Literal
 
@@ -12,49 +13,36 @@ from drystone.contacts.blocks import ImageModel, model_from_labels
 from drystone.kernels.raster import Mask
 from drystone.kernels.runs import narrow_gaps
 from drystone.model.wall import Labels
-from drystone.statics.model import GROUND, Interface
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import GROUND, Interface, RigidBlockModel
+from drystone.statics.result import LateralResistance
 
 TIE_BREAK = (-1e-4, -3e-5)
 """Added to (row, col): of two stones at one distance the upper or left one is the nearer."""
 
 
 def close_gaps(labels: Labels, reach_px: float) -> Labels:
-    """Give the pixels of narrow gaps to the stones beside them.
+    """Give the pixels of narrow gaps, up to `reach_px` wide, to the stones beside them.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        0 where nothing is, otherwise the id of a stone; row 0 at the top; the ground is below
-        the lowest stone pixel.
-    reach_px : float
-        Widest gap that is closed, >= 0.
+    The ground is below the lowest stone pixel.  Every stone pixel stays as before.  A pixel of a
+    gap belongs to the stone nearest to it, so that stones meet in the middle; a gap above the
+    ground belongs to the stone above.
 
-    Returns
-    -------
-    (h, w) integer array
-        Every stone pixel as before.  A pixel of a gap belongs to the stone nearest to it, so
-        that stones meet in the middle; a gap above the ground belongs to the stone above.
-
-    Notes
-    -----
-    An empty pixel lies in a gap when two stones, or a stone and the ground, bound it on both
-    sides in its row or column.  The width of the gap is that run, or h v / sqrt(h^2 + v^2) when
-    both are bounded, which is the width of a straight tilted gap.  It goes to the nearest of the
-    stones that bound it.  What gaps that are closed
-    leave open between them, no wider than the reach, as where joints meet, is closed as well.
-    Stones that are further apart than the reach are not brought into contact; nor does a stone
-    grow where only air is beyond.
-
-    Examples
-    --------
-    >>> close_gaps(np.array([[1, 0, 0, 2, 0, 0, 0, 3, 0]]), 2)
-    array([[1, 1, 2, 2, 0, 0, 0, 3, 0]])
+    An empty pixel lies in a gap when two stones, or a stone and the ground, bound it on both sides
+    in its row or column.  The width of the gap is that run, or h v / sqrt(h^2 + v^2) when both are
+    bounded, which is the width of a straight tilted gap.  It goes to the nearest of the stones that
+    bound it.  What gaps that are closed leave open between them, no wider than the reach, as where
+    joints meet, is closed as well. Stones that are further apart than the reach are not brought
+    into contact; nor does a stone grow where only air is beyond.
     """
     filled = np.flatnonzero((labels > 0).any(axis=1))
     if not filled.size or reach_px < 1:
         return labels.copy()
     height = int(filled[-1]) + 1
-    cells, ground = _with_ground(labels[:height])
+    # A row of ground, with an id of its own, lies below.
+    ground = int(labels.max()) + 1
+    below = np.full((1, labels.shape[1]), ground)
+    cells = np.vstack([labels[:height].astype(np.int64), below])
     gap, nearest = narrow_gaps(cells, ground, reach_px)
     grown = np.where(gap, nearest, cells)
     # By what grew beside them: a stone itself would bulge into a joint that meets it.
@@ -70,25 +58,9 @@ def close_gaps(labels: Labels, reach_px: float) -> Labels:
 def model_with_closed_gaps(labels: Labels, reach_px: float, mu: float = 0.58) -> ImageModel:
     """Make the rigid block model of a label image, with contacts across narrow gaps.
 
-    Parameters
-    ----------
-    labels, reach_px
-        As for :func:`close_gaps`.
-    mu : float
-        Coefficient of friction.
-
-    Returns
-    -------
-    ImageModel
-        Weights and centroids are those of the pixels of the stones; contact points lie in the
-        middle of the gaps.  Between stones a contact may reach into the gaps beside it, as far as
-        these are closed.
-
-    Examples
-    --------
-    >>> wall = np.kron([[1], [0], [2]], np.ones((2, 8), int))
-    >>> [len(model_with_closed_gaps(wall, reach).model.interfaces) for reach in (1, 2)]
-    [1, 2]
+    Weights and centroids are those of the pixels of the stones; contact points lie in the middle of
+    the gaps.  Between stones a contact may reach into the gaps beside it, as far as these are
+    closed.
     """
     picture = model_from_labels(labels, mu)
     closed = model_from_labels(close_gaps(labels, reach_px), mu)
@@ -111,25 +83,8 @@ def settle_gaps(
 ) -> tuple[Labels, dict[int, tuple[int, int]]]:
     """Lower stones by whole pixels until they rest on others; nothing turns or overlaps.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        As for :func:`close_gaps`.
-    push : {"left", "right"}, optional
-        Also move stones to this side until they touch the next stone, if there is one.
-
-    Returns
-    -------
-    settled : (h, w) integer array
-        The same stones.
-    moved : dict of int to (int, int)
-        By id of the stones that moved: px to the right and px down.
-
-    Examples
-    --------
-    >>> settled, moved = settle_gaps(np.array([[1, 1, 0], [0, 0, 0], [0, 2, 2]]))
-    >>> settled[1].tolist(), moved
-    ([1, 1, 0], {1: (0, 1)})
+    `push` also moves stones to a side until they touch the next stone, if there is one.  Returned
+    are the labels, and by id of the stones that moved how many px to the right and down.
     """
     filled = np.flatnonzero((labels > 0).any(axis=1))
     settled = labels.copy()
@@ -154,13 +109,6 @@ def settle_gaps(
                 moved[block] = (moved[block][0] + aside, moved[block][1] + down)
                 moving = True
     return settled, {block: way for block, way in moved.items() if way != (0, 0)}
-
-
-def _with_ground(labels: Labels) -> tuple[NDArray[np.int64], int]:
-    """Add a row of ground, with an id of its own, below."""
-    ground = int(labels.max()) + 1
-    below = np.full((1, labels.shape[1]), ground)
-    return np.vstack([labels.astype(np.int64), below]), ground
 
 
 def _holes_between(cells: NDArray[np.int64], gap: Mask, reach_px: float) -> Mask:
@@ -257,3 +205,39 @@ def _room_aside(wall: Labels, block: int, push: Literal["left", "right"]) -> int
         if others[rows[inside], ahead[inside]].any():
             return step * way
     return 0
+
+
+def gap_spread(
+    labels: Labels,
+    reach_px: float | None,
+    mu: float = 0.58,
+    analyse: Callable[[RigidBlockModel], LateralResistance] = lateral_resistance,
+) -> str:
+    """Say F_LR with gaps closed at a reach, and in brackets at half and twice of it, or settled.
+
+    `reach_px` is above 0; None settles stones, and compares with stones pushed to either side.
+    The sentence has no full stop.
+    """
+    if reach_px is None:
+        models = {
+            "stones settled": model_from_labels(settle_gaps(labels)[0], mu),
+            "stones pushed left": model_from_labels(settle_gaps(labels, "left")[0], mu),
+            "stones pushed right": model_from_labels(settle_gaps(labels, "right")[0], mu),
+        }
+    else:
+        models = {
+            f"gaps up to {reach:g} px closed": model_with_closed_gaps(labels, reach, mu)
+            for reach in (reach_px, reach_px / 2.0, 2.0 * reach_px)
+        }
+    chosen, *others = (
+        f"{_in_words(analyse(picture.model))} with {name}" for name, picture in models.items()
+    )
+    return f"F_LR {chosen} ({', '.join(others)})"
+
+
+def _in_words(both: LateralResistance) -> str:
+    if both.value is not None:
+        return f"{both.value:.3f}".removeprefix("0")
+    unknown = next((r.status for r in (both.left, both.right) if r.alpha is None), None)
+    # Without friction F_LR, which is over mu, is not defined.
+    return "not defined" if unknown is None else str(unknown)

@@ -1,6 +1,6 @@
 """Block models given as rectangles or polygons (DESIGN §2): a dict in, a model out."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from math import inf, sqrt
 from typing import Any
@@ -8,20 +8,16 @@ from typing import Any
 import numpy as np
 import shapely
 
-from drystone.contacts.given_parts import (
-    LARGEST,
-    bad,
-    read_friction,
-    read_interfaces,
-    read_list,
-    read_mu,
-    read_numbers,
-)
-from drystone.contacts.touching import Points, touching_interfaces
+from drystone.contacts.blocks import check_mu
+from drystone.contacts.touching import touching_interfaces
 from drystone.errors import InputError
+from drystone.kernels.polygons import Points
 from drystone.model.overlap import overlap_depth
 from drystone.statics.joints import with_head_friction, with_pair_friction
 from drystone.statics.model import FREEDOMS, GROUND, Block, Interface, RigidBlockModel
+
+LARGEST = 1e50
+"""Of numbers: moments, products of three of them, must not overflow."""
 
 LARGEST_RATIO = 1e6
 """Of weights; errors of an answer are relative to the mean weight, up to 1e-8 of it."""
@@ -84,12 +80,19 @@ def model_from_json(data: Mapping[str, Any]) -> RigidBlockModel:
         raise bad("two blocks have the same id.", "blocks", "Give every block its own id.")
     corners = {block.id: polygon for block, polygon in given}
     blocks = tuple(_measured(block, polygon) for block, polygon in given)
-    _check_weights(blocks)
+    weights = [block.weight for block in blocks if not block.fixed]
+    if weights and max(weights) > LARGEST_RATIO * min(weights):
+        raise bad(
+            f"the heaviest block weighs more than {LARGEST_RATIO:g} times the lightest.",
+            "blocks",
+            "What has no weight of its own is a load: see --dead. What does not move is fixed.",
+        )
     if "interfaces" in data:
         interfaces = read_interfaces(read_list(data, "interfaces"), ids)
     else:
         sizes = {block.id: sqrt(block.area) for block in blocks}
-        interfaces = _all_interfaces(corners, sizes)
+        found = [*_on_ground(corners, sizes), *_among_blocks(corners, sizes)]
+        interfaces = tuple(sorted(found, key=lambda face: (face.block, face.other)))
     model = RigidBlockModel(blocks, interfaces, read_mu(data, "mu", 0.58))
     if "mu_head" in data:
         model = with_head_friction(model, read_mu(data, "mu_head", 0.0))
@@ -98,30 +101,8 @@ def model_from_json(data: Mapping[str, Any]) -> RigidBlockModel:
     return model
 
 
-def _check_weights(blocks: tuple[Block, ...]) -> None:
-    """Refuse weights that no solver can tell from rounding beside the others."""
-    weights = [block.weight for block in blocks if not block.fixed]
-    if weights and max(weights) > LARGEST_RATIO * min(weights):
-        raise bad(
-            f"the heaviest block weighs more than {LARGEST_RATIO:g} times the lightest.",
-            "blocks",
-            "What has no weight of its own is a load: see --dead. What does not move is fixed.",
-        )
-
-
 def polygons_from_json(data: Mapping[str, Any]) -> dict[int, Points]:
-    """Return the closed, counter-clockwise polygons of a block model file, by id.
-
-    Parameters
-    ----------
-    data : mapping
-        As for :func:`model_from_json`.
-
-    Raises
-    ------
-    InputError
-        E303 for what is no block.
-    """
+    """Return the closed, counter-clockwise polygons of a block model file, by id; E303 as above."""
     return {block.id: polygon for block, polygon in _given_blocks(data)}
 
 
@@ -235,12 +216,6 @@ def _measured(block: Block, polygon: Points) -> Block:
     return replace(block, area=area, centroid=(cx, cy))
 
 
-def _all_interfaces(corners: dict[int, Points], sizes: dict[int, float]) -> tuple[Interface, ...]:
-    """Find the interfaces of all polygons, sorted by ids; of two the larger id is `block`."""
-    found = [*_on_ground(corners, sizes), *_among_blocks(corners, sizes)]
-    return tuple(sorted(found, key=lambda interface: (interface.block, interface.other)))
-
-
 def _on_ground(corners: dict[int, Points], sizes: dict[int, float]) -> list[Interface]:
     found = []
     for block, polygon in corners.items():
@@ -281,3 +256,90 @@ def _among_blocks(corners: dict[int, Points], sizes: dict[int, float]) -> list[I
 
 def _too_deep(what: str) -> InputError:
     return InputError("E304", what, where="block model", cure="Move them apart.")
+
+
+def bad(what: str, where: str, cure: str) -> InputError:
+    """Return the error (E303) for what is no block model."""
+    return InputError("E303", what, where=where, cure=cure)
+
+
+def read_list(data: Mapping[str, Any], key: str) -> Sequence[Any]:
+    """Return a list of the file."""
+    value = data[key]
+    if not isinstance(value, list | tuple):
+        raise bad(f"'{key}' is not a list.", "block model", f"Give a list of {key}.")
+    return value
+
+
+def read_numbers(value: Any, shape: tuple[int, ...], where: str) -> Points:
+    """Read finite numbers; -1 in `shape` stands for any length."""
+    try:
+        array = np.array(value, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        array = np.empty(0)
+    fits = array.ndim == len(shape) and all(
+        n in (m, -1) for n, m in zip(shape, array.shape, strict=True)
+    )
+    if not fits or not np.isfinite(array).all():
+        raise bad(f"{value!r} is not made of finite numbers as it should be.", where, "Correct it.")
+    if np.abs(array).max(initial=0.0) > LARGEST:
+        raise bad(f"{value!r} holds a number above {LARGEST:g}.", where, "Use another unit.")
+    return array
+
+
+def read_mu(data: Mapping[str, Any], key: str, default: float) -> float:
+    """Read a coefficient of friction."""
+    mu = data.get(key, default)
+    if not isinstance(mu, int | float) or isinstance(mu, bool):
+        raise bad(f"{key} is {mu!r}.", key, "Give a number.")
+    try:
+        mu = float(mu)
+    except OverflowError:  # a whole number of hundreds of digits
+        mu = inf
+    check_mu(mu)
+    return mu
+
+
+def read_friction(entries: Sequence[Any], ids: Collection[int]) -> dict[tuple[int, int], float]:
+    """Read the friction of pairs of blocks."""
+    friction = {}
+    for place, entry in enumerate(entries):
+        where = f"friction, entry {place + 1}"
+        pair = _between(entry, ids, where)
+        friction[pair] = read_mu(entry, "mu", 0.58)
+    return friction
+
+
+def read_interfaces(entries: Sequence[Any], ids: Collection[int]) -> tuple[Interface, ...]:
+    """Read where blocks touch."""
+    found = []
+    for place, entry in enumerate(entries):
+        where = f"interfaces, entry {place + 1}"
+        block, other = _between(entry, ids, where)
+        if block == GROUND:
+            raise bad("the ground is its first block.", where, "Name it second.")
+        points = read_numbers(entry.get("points"), (-1, 2), where)
+        normal = read_numbers(entry.get("normal"), (2,), where)
+        length = float(np.hypot(*normal))
+        if len(points) == 0 or length == 0:
+            raise bad("it has no points or no normal.", where, "Give both.")
+        mu = read_mu(entry, "mu", 0.0) if "mu" in entry else None
+        x, y = (normal / length).tolist()
+        if len(points) > 2:  # others go by the first and the last one as its ends
+            points = points[np.argsort(points @ (y, -x), kind="stable")]
+        found.append(Interface(block, other, points, (x, y), mu))
+    return tuple(found)
+
+
+def _between(entry: Any, ids: Collection[int], where: str) -> tuple[int, int]:
+    pair = entry.get("between") if isinstance(entry, Mapping) else None
+    known = [GROUND, *ids]
+    if (
+        not isinstance(pair, list | tuple)
+        or len(pair) != 2
+        or not all(isinstance(one, int) and one in known for one in pair)
+    ):
+        raise bad(f"it is between {pair!r}.", where, 'Give "between": two ids; 0 is the ground.')
+    if pair[0] == pair[1]:
+        raise bad(f"it is between {pair[0]} and itself.", where, "Name two blocks.")
+    return pair[0], pair[1]

@@ -15,55 +15,24 @@ from drystone.statics.model import Interface
 def find_interfaces(labels: Labels) -> tuple[Interface, ...]:
     """Find all interfaces of a label image that stands on its lowest row (Pic-to-Ri, §4.2).
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        0 where nothing is, otherwise the id of a stone; row 0 at the top; the ground is below
-        the last row.
+    There is one for each straight run of boundary between two stones, or a stone and the ground;
+    then one for each contact at a point.  Points are pixel corners, in px, in the wall frame.  Of
+    two stones the larger id is `block`.  They are sorted by ids and place.
 
-    Returns
-    -------
-    tuple of Interface
-        One for each straight run of boundary between two stones, or a stone and the ground; then
-        one for each contact at a point.  Points are pixel corners, in px, in the wall frame.  Of
-        two stones the larger id is `block`.  Sorted by ids and place.
-
-    Notes
-    -----
     A run is a connected chain of pixel edges, split where it bends by more than sqrt 2 px.  Its
     contact points are its two ends; its normal is that of the line fitted to the midpoints of its
-    edges.  A single edge that turns off at the end of a straight piece is a step of the grid and
-    is left out.  Stones that touch only at a pixel corner, across two empty pixels, have an
-    interface of one point.
-
-    Examples
-    --------
-    >>> wall = np.ones((40, 20), np.uint32)
-    >>> find_interfaces(wall)[0].points.tolist()
-    [[0.0, 0.0], [20.0, 0.0]]
+    edges.  A single edge that turns off at the end of a straight piece is a step of the grid and is
+    left out.  Stones that touch only at a pixel corner, across two empty pixels, have an interface
+    of one point.
     """
     return interfaces_in(whole_patch(labels))
 
 
 def interfaces_in(patch: Patch) -> tuple[Interface, ...]:
-    """Find the interfaces in a piece of a label image of which one side is fresh.
+    """Find the interfaces around new blocks that one of these takes part in.
 
-    Parameters
-    ----------
-    patch : Patch
-        From :func:`drystone.kernels.patches.painted_patch`: around a stone and its wedges.
-
-    Returns
-    -------
-    tuple of Interface
-        Those of :func:`find_interfaces` for the image with the new blocks that one of these takes
-        part in.
-
-    Notes
-    -----
-    Adding block after block this way gives the interfaces of the whole image, except that a
-    contact at a point disappears when a later block fills a pixel beside it: see
-    :class:`PointContacts`.
+    Adding block after block this way gives the interfaces of the whole image, except that a contact
+    at a point disappears when a later block fills a pixel beside it: see :class:`PointContacts`.
     """
     found = contacts_in(patch)
     high, low, normals = found.high.tolist(), found.low.tolist(), found.normals.tolist()
@@ -76,18 +45,11 @@ def interfaces_in(patch: Patch) -> tuple[Interface, ...]:
 
 @dataclass(frozen=True, eq=False)
 class PointContacts:
-    """Where a wall has contacts at a point, which one more stone may close in.
-
-    Parameters
-    ----------
-    interfaces : tuple of Interface
-        Of the wall.
-    places : tuple of (int, int, int)
-        x and y of each contact at a point, px, and its position in `interfaces`; sorted.
-    """
+    """Where a wall has contacts at a point, which one more stone may close in."""
 
     interfaces: tuple[Interface, ...]
     places: tuple[tuple[int, int, int], ...]
+    """X and y of each contact at a point, px, and its position in `interfaces`; sorted."""
 
     @classmethod
     def of(cls, interfaces: tuple[Interface, ...]) -> "PointContacts":
@@ -108,11 +70,6 @@ class PointContacts:
 
         Where stones fill the pixels beside a contact at a point the joints with them carry the
         load; a corner exactly above a corner, as at the crossing of two joints, carries nothing.
-
-        Parameters
-        ----------
-        patch : Patch
-            Around the new blocks, with them.
         """
         left, top = patch.origin
         height, width = patch.cells.shape

@@ -6,19 +6,18 @@ from itertools import pairwise
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from scipy import ndimage
 
 from drystone.contacts.settled import PlacedPolygons, model_of_outlines
 from drystone.kernels.boundary import boundary_of
+from drystone.kernels.polygons import Points
 from drystone.kernels.segments import REACH_PX, Line, fitted_lines, meeting_point, with_area
 from drystone.model.overlap import common_parts
 from drystone.model.wall import Labels
 from drystone.statics.model import RigidBlockModel
 
-Points = NDArray[np.float64]
 Node = tuple[int, int]
-Piece = tuple[Node, ...]
+RingPiece = tuple[Node, ...]
 """Pixel corners (x, y) from one junction to the next, or around a stone that has none."""
 Fit = tuple[list[int], list[Line]]
 
@@ -38,34 +37,17 @@ SAME_SHARE = 0.88
 def outlines_of_labels(
     labels: Labels, *, tolerance_px: float = OUTLINE_TOLERANCE_PX
 ) -> dict[int, Points]:
-    """Find the outlines of all stones of a label image.
+    """Find the outlines of all stones of a label image, (n, 2) by id.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        0 where nothing is, otherwise the id of a stone; row 0 at the top; the ground is below
-        the last row.
-    tolerance_px : float
-        How far the contour may stay away from the line that is fitted to it, above 0.
+    Corners are in the wall frame, px, counter-clockwise and closed: the first one is repeated at
+    the end.  The ground, y = 0, is the image's lower edge.  The contour may stay away from the line
+    that is fitted to it by `tolerance_px`.
 
-    Returns
-    -------
-    dict of int to (n, 2) float array
-        By id: corners in the wall frame, px, counter-clockwise, closed: the first one is
-        repeated at the end.  y = 0 at the image's lower edge.
-
-    Notes
-    -----
-    The contour (the midpoints of pixel edges) is cut where three or more stones, ground and
-    nothing meet, and every piece is simplified once, for both its sides, into fitted lines.
-    Then its corners move a little so that the area beside it is that of the pixels.  A stone
-    that has no such outline, as some of a few pixels, keeps its pixel edges.  Holes are
-    filled, with whatever lies in them; of an id in several pieces the largest is taken.
-
-    Examples
-    --------
-    >>> outlines_of_labels(np.full((20, 30), 7))[7].tolist()
-    [[0.0, 0.0], [30.0, 0.0], [30.0, 20.0], [0.0, 20.0], [0.0, 0.0]]
+    The contour (the midpoints of pixel edges) is cut where three or more stones, ground and nothing
+    meet, and every piece is simplified once, for both its sides, into fitted lines. Then its
+    corners move a little so that the area beside it is that of the pixels.  A stone that has no
+    such outline, as some of a few pixels, keeps its pixel edges.  Holes are filled, with whatever
+    lies in them; of an id in several pieces the largest is taken.
     """
     rings = _rings(labels)
     junctions = _junctions(labels)
@@ -94,37 +76,17 @@ def model_from_outlines(
     contact_tolerance_px: float = 0.1,
     setback: float = 0.0,
 ) -> RigidBlockModel:
-    """Make the rigid block model of stones with given outlines.
+    """Make the rigid block model of stones with given outlines, (n, 2), closed, counter-clockwise.
 
-    Parameters
-    ----------
-    outlines : mapping of int to (n, 2) float array
-        By id: closed, counter-clockwise.
-    mu : float
-        Coefficient of friction.
-    contact_tolerance_px : float
-        Gap or overlap up to which edges and corners touch, same unit as the outlines, above 0.
-    setback : float
-        See :func:`drystone.kernels.meetings.meetings`.
-
-    Returns
-    -------
-    RigidBlockModel
-        Blocks and interfaces by ids; of two the larger id is `block`.  Weights and centroids are
-        those of the outlines.  Overlaps are not looked for: whoever makes outlines checks them.
-
-    Examples
-    --------
-    >>> labels = np.kron([[2, 2], [1, 0]], np.ones((10, 10), int))
-    >>> model = model_from_outlines(outlines_of_labels(labels))
-    >>> [(i.block, i.other, i.length) for i in model.interfaces]
-    [(1, 0, 10.0), (2, 1, 10.0)]
+    Blocks and interfaces are sorted by ids; of two the larger id is `block`.  Edges and corners
+    touch up to a gap or overlap of `contact_tolerance_px`, in the unit of the outlines.  Overlaps
+    are not looked for: whoever makes outlines checks them.
     """
     blocks = ((block, outlines[block][:-1]) for block in sorted(outlines))
     return model_of_outlines(PlacedPolygons.of(blocks), mu, contact_tolerance_px, setback)
 
 
-def _rings(labels: Labels) -> dict[int, Piece]:
+def _rings(labels: Labels) -> dict[int, RingPiece]:
     """Return the pixel corners around the largest piece of each id, counter-clockwise."""
     ids, place = np.unique(labels, return_inverse=True)
     if len(ids) and ids[0] > 0:
@@ -152,7 +114,7 @@ def _junctions(labels: Labels) -> set[Node]:
     return set(zip(col.tolist(), (labels.shape[0] - row).tolist(), strict=True))
 
 
-def _pieces(ring: Piece, junctions: set[Node]) -> list[Piece]:
+def _pieces(ring: RingPiece, junctions: set[Node]) -> list[RingPiece]:
     """Cut a closed ring at its junctions."""
     at = [i for i, node in enumerate(ring[:-1]) if node in junctions]
     if not at:  # it begins at its furthest point, which is a corner if it has any
@@ -163,13 +125,15 @@ def _pieces(ring: Piece, junctions: set[Node]) -> list[Piece]:
     return [turned[first : last + 1] for first, last in pairwise(cuts)]
 
 
-def _key(piece: Piece) -> Piece:
+def _key(piece: RingPiece) -> RingPiece:
     """Return the piece in the sense that both its sides know it by."""
     return min(piece, piece[::-1])
 
 
 def _assembled(
-    rings: Mapping[int, Piece], pieces: Mapping[int, list[Piece]], fits: Mapping[Piece, Fit]
+    rings: Mapping[int, RingPiece],
+    pieces: Mapping[int, list[RingPiece]],
+    fits: Mapping[RingPiece, Fit],
 ) -> dict[int, Points]:
     """Join pieces to outlines; those without a fit keep their pixel edges."""
     users = Counter(_key(piece) for mine in pieces.values() for piece in mine)
@@ -189,7 +153,7 @@ def _assembled(
     return outlines
 
 
-def _drawn(pieces: Iterable[Piece], fits: Mapping[Piece, Fit]) -> dict[Piece, Points]:
+def _drawn(pieces: Iterable[RingPiece], fits: Mapping[RingPiece, Fit]) -> dict[RingPiece, Points]:
     """Simplify every piece once."""
     meeting = defaultdict(list)
     pinned = set()
@@ -225,7 +189,7 @@ def _joined(lines: list[Points]) -> Points:
     return np.asarray(corners[np.concatenate([apart, [True]])])
 
 
-def _is_sound(outline: Points, ring: Piece, tolerance_px: float) -> bool:
+def _is_sound(outline: Points, ring: RingPiece, tolerance_px: float) -> bool:
     """Tell whether an outline does not cross itself and follows its pixel edges everywhere."""
     if len(outline) < 4:
         return False

@@ -18,49 +18,21 @@ ENOUGH = 2
 
 @dataclass(frozen=True)
 class Scarce:
-    """A block that touches too little.
-
-    Parameters
-    ----------
-    block : int
-        Its id.
-    contacts : int
-        Contact points that it has, 0 or 1.
-    nearest : int or None
-        What it would touch next, GROUND (0) for the ground; None when there is nothing else.
-    gap : float
-        How wide the gap to it is, px of the image or unit of the polygons.
-    """
+    """A block that touches too little."""
 
     block: int
-    contacts: int
+    contacts: int  # contact points that it has, 0 or 1
     nearest: int | None
-    gap: float
+    """What it would touch next, GROUND (0) for the ground; None when there is nothing else."""
+    gap: float  # how wide the gap to it is, px of the image or unit of the polygons
 
 
 def scarce_contacts(
     model: RigidBlockModel, shapes: Labels | Mapping[int, Points]
 ) -> tuple[Scarce, ...]:
-    """Find the free blocks that have fewer than two contact points.
+    """Find the free blocks that have fewer than two contact points, in the order of the model.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Of the wall.
-    shapes : (h, w) integer array, or mapping of int to (n, 2) float array
-        What it was made from: label image, row 0 at the top, or polygons by id.
-
-    Returns
-    -------
-    tuple of Scarce
-        In the order of the blocks.
-
-    Examples
-    --------
-    >>> from drystone.contacts.blocks import model_from_labels
-    >>> wall = np.kron([[0, 1], [0, 0], [2, 2]], np.ones((2, 4), int))
-    >>> scarce_contacts(model_from_labels(wall).model, wall)
-    (Scarce(block=1, contacts=0, nearest=2, gap=2.0),)
+    `shapes` is what it was made from: the label image, row 0 at the top, or polygons (n, 2) by id.
     """
     touching: dict[int, set[int]] = {block.id: set() for block in model.blocks if not block.fixed}
     points = dict.fromkeys(touching, 0)

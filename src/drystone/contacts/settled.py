@@ -7,36 +7,20 @@ block of the two.
 
 from collections.abc import Iterable, Sequence
 from itertools import chain
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from drystone.contacts.blocks import check_mu
 from drystone.kernels.meetings import Meetings, meetings
 from drystone.kernels.polygons import Points, Polygons, area_and_centroid, no_polygons
+from drystone.model.outlines import Outlined, Outlines
 from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
 
 SETBACK = 0.01
 """Contacts stay away from the ends of faces by so much of the size of the smaller stone."""
 
-Outlined = tuple[int, Points]
-"""Id and corners of a block, in the wall frame: counter-clockwise, not closed."""
-
-
-class Placed(Protocol):
-    """Blocks with outlines, as :class:`drystone.model.outlines.Outlines` has them."""
-
-    @property
-    def ids(self) -> tuple[int, ...]:
-        """In the order of construction."""
-        ...
-
-    @property
-    def polygons(self) -> Polygons:
-        """Outlines of the same blocks; the ground is y = 0."""
-        ...
-
 
 class PlacedPolygons(NamedTuple):
-    """Blocks of which the outlines are all that is known."""
+    """Blocks, in the order of construction, of which the outlines are all that is known."""
 
     ids: tuple[int, ...]
     polygons: Polygons
@@ -52,40 +36,14 @@ class PlacedPolygons(NamedTuple):
 def model_with_outlines(
     model: RigidBlockModel,
     blocks: Sequence[Outlined],
-    around: Placed,
+    around: Outlines | PlacedPolygons,
     tolerance: float,
     setback: float = SETBACK,
 ) -> RigidBlockModel:
-    """Return the model of a wall with one more stone and its wedges.
+    """Return the model of a wall with one more stone and its wedges, `blocks`, that stone first.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Of the wall without them, in the same unit.
-    blocks : sequence of (int, (n, 2) float array)
-        The stone, then its wedges.
-    around : Placed
-        The blocks of the wall.
-    tolerance : float
-        Gap or overlap up to which blocks touch, above 0.
-    setback : float
-        See :func:`drystone.kernels.meetings.meetings`.
-
-    Returns
-    -------
-    RigidBlockModel
-        Weights and centroids are those of the outlines.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> brick = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]])
-    >>> wall = PlacedPolygons.of([(7, brick + [0.0, 0.01])])
-    >>> model = model_with_outlines(
-    ...     model_of_outlines(wall), [(3, brick + [2.0, 2.02])], wall, 0.1
-    ... )
-    >>> [(i.block, i.other, round(i.length, 6)) for i in model.interfaces]
-    [(7, 0, 3.8), (3, 7, 1.8)]
+    Blocks touch up to a gap or overlap of `tolerance`.  For `setback` see
+    :func:`drystone.kernels.meetings.meetings`.
     """
     new: list[Block] = []
     found: list[Interface] = []
@@ -101,30 +59,15 @@ def model_with_outlines(
 
 
 def model_of_outlines(
-    placed: Placed, mu: float = 0.58, tolerance: float = 0.1, setback: float = SETBACK
+    placed: Outlines | PlacedPolygons,
+    mu: float = 0.58,
+    tolerance: float = 0.1,
+    setback: float = SETBACK,
 ) -> RigidBlockModel:
-    """Make the rigid block model of a wall of settled stones.
+    """Make the rigid block model of a wall of settled stones; mu below 0 is an InputError (E302).
 
-    Parameters
-    ----------
-    placed : Placed
-        All blocks.
-    mu : float
-        Coefficient of friction.
-    tolerance : float
-        Gap or overlap up to which blocks touch, in the unit of the outlines, above 0.
-    setback : float
-        See :func:`drystone.kernels.meetings.meetings`; 0 for contacts up to the ends of faces.
-
-    Returns
-    -------
-    RigidBlockModel
-        With the blocks and interfaces that :func:`model_with_outlines` adds one after the other.
-
-    Raises
-    ------
-    InputError
-        E302 when mu is not a number >= 0.
+    It has the blocks and interfaces that :func:`model_with_outlines` adds one after the other.  A
+    `setback` of 0 leaves contacts up to the ends of faces.
     """
     check_mu(mu)
     ids, polygons = placed.ids, placed.polygons

@@ -1,39 +1,21 @@
 """Interfaces between polygons: common pieces of edges, and corners that stand on an edge (§4.1)."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from drystone.kernels.polygons import Points
 from drystone.statics.model import Interface
-
-Points = NDArray[np.float64]
 
 
 def touching_interfaces(
     block: int, polygon: Points, other: int, neighbour: Points, tolerance: float
 ) -> list[Interface]:
-    """Find where two polygons touch.
+    """Find where two polygons touch; normals point into `block`.
 
-    Parameters
-    ----------
-    block, other : int
-        Their ids; normals point into `block`.
-    polygon, neighbour : (n, 2) float array
-        Corners, counter-clockwise, closed: the first one is repeated at the end.  A line that
-        is not closed counts as well; its inside is to the left.
-    tolerance : float
-        Gap or overlap up to which edges touch, same unit.
-
-    Returns
-    -------
-    list of Interface
-        Straight pieces in the order of the edges of `polygon`, then contacts at a point.  A
-        corner that touches only a corner has no normal and is no contact.
-
-    Examples
-    --------
-    >>> square = np.array([[0.0, 0], [2, 0], [2, 2], [0, 2], [0, 0]])
-    >>> touching_interfaces(2, square + [1, 2], 1, square, 1e-6)[0].points.tolist()
-    [[1.0, 2.0], [2.0, 2.0]]
+    `polygon` and `neighbour` are (n, 2), counter-clockwise and closed: the first corner is repeated
+    at the end.  A line that is not closed counts as well; its inside is to the left.  Gaps and
+    overlaps up to the tolerance touch.  Straight pieces come in the order of the edges of
+    `polygon`, then contacts at a point.  A corner that touches only a corner has no normal and is
+    not a contact.
     """
     found = [
         Interface(block, other, ends, normal)

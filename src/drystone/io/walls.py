@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.contacts.given import polygons_from_json
-from drystone.contacts.given_parts import read_mu
+from drystone.contacts.given import polygons_from_json, read_mu
 from drystone.errors import InputError, Notice, UsageError
 from drystone.io.file_bytes import file_bytes
 from drystone.io.file_errors import listed

@@ -22,7 +22,6 @@ from math import isnan
 from typing import NamedTuple
 
 import numpy as np
-from highspy import HighsBasis
 
 from drystone.kernels import simplex
 from drystone.kernels.certificate import Figures, figures
@@ -37,7 +36,6 @@ from drystone.statics.lp.highs import (
     HighsSession,
     WarmBasis,
     WarmSession,
-    read_basis,
 )
 from drystone.statics.lp.program import EquilibriumProgram, Units, assemble
 from drystone.statics.model import GROUND, Addition, Direction, RigidBlockModel
@@ -59,18 +57,12 @@ MANY_BLOCKS_AT_ONCE = 100
 
 @dataclass(frozen=True, eq=False)
 class IncrementalResult:
-    """Resistance of a wall with one more stone.
-
-    Parameters
-    ----------
-    resistance : LateralResistance
-        As :func:`drystone.statics.limit.lateral_resistance` gives it, to the last digits.
-    solved_cold : bool
-        True when a warm answer had no certificate, so that all was solved again from the start.
-    """
+    """Resistance of a wall with one more stone."""
 
     resistance: LateralResistance
+    """As :func:`drystone.statics.limit.lateral_resistance` gives it, to the last digits."""
     solved_cold: bool = False
+    """True when a warm answer had no certificate, so that all was solved again from the start."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,13 +71,6 @@ class IncrementalAnalysis(ABC):
 
     Answers depend on the wall and on how it has grown, and not on what else was asked, in which
     order, or in which thread.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        The wall.
-    result : IncrementalResult
-        Its resistance.
     """
 
     model: RigidBlockModel
@@ -94,12 +79,8 @@ class IncrementalAnalysis(ABC):
     def resistance_with(self, model: RigidBlockModel) -> IncrementalResult:
         """Return the resistance of the wall with one more stone, a candidate; nothing changes.
 
-        Parameters
-        ----------
-        model : RigidBlockModel
-            Made from :attr:`model` by :meth:`RigidBlockModel.with_added`, as
-            :func:`drystone.contacts.blocks.model_with` does.  Any other model is answered too,
-            without the gain in time.
+        The model is made from :attr:`model` by :meth:`RigidBlockModel.with_added`.  Any other model
+        is answered too, without the gain in time.
         """
         return self.result if model is self.model else self._result_with(model)
 
@@ -116,43 +97,43 @@ class IncrementalAnalysis(ABC):
     @abstractmethod
     def _extended_to(self, model: RigidBlockModel) -> "IncrementalAnalysis": ...
 
-    def _added(self, model: RigidBlockModel, program: ConeProgram) -> Added | None:
+
+@dataclass(frozen=True, eq=False)
+class ConeAnalysis(IncrementalAnalysis):
+    """A wall of loose stones, whose program grows in arrays; all else is for HiGHS."""
+
+    program: ConeProgram
+
+    def _result_with(self, model: RigidBlockModel) -> IncrementalResult:
+        grown = self._grown(model)
+        if grown is None:
+            return self.in_highs().resistance_with(model)
+        return _result_between(model, self._bounds(model, grown[1]))
+
+    def _grown(self, model: RigidBlockModel) -> tuple[Addition, Added] | None:
         """Return what is new; None when it is not for the cone program."""
         addition = model.added
         if addition is None or addition.base is not self.model or not model.blocks:
             return None
-        return program.columns_of(addition, model.mu)
+        added = self.program.columns_of(addition, model.mu)
+        return None if added is None else (addition, added)
+
+    @abstractmethod
+    def in_highs(self) -> "HighsAnalysis":
+        """Return the analysis that answers what is not for the cone program."""
+
+    @abstractmethod
+    def _bounds(self, model: RigidBlockModel, added: Added) -> "Iterator[Bound | None]":
+        """Find the greatest alpha, then the least."""
 
 
 def incremental_analysis(
     model: RigidBlockModel, units: Units, most: int = MANY_BLOCKS
 ) -> IncrementalAnalysis:
-    """Begin with a wall, which may be empty.
+    """Begin with a wall, which may be empty; of more than `most` blocks without the simplex kernel.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        What is built.
-    units : Units
-        Of the equations, for as long as the wall grows: those of a typical stone.  Certificates
-        are relative to their weight; alpha does not depend on them.
-    most : int
-        Walls of more blocks are not for the simplex kernel.
-
-    Examples
-    --------
-    A stone on a stone, half as wide as high; the pile is as stable as a block of twice its height.
-
-    >>> from drystone.contacts.given import model_from_json
-    >>> from drystone.statics.lp.program import units_of
-    >>> pile = model_from_json({"blocks_xywh": [[0, 0, 1, 2], [0, 2, 1, 2]], "mu": 0.58})
-    >>> first = RigidBlockModel(pile.blocks[:1], pile.interfaces[:1], pile.mu)
-    >>> wall = incremental_analysis(first, units_of(first))
-    >>> round(wall.result.resistance.right.alpha, 6)
-    0.5
-    >>> taller = wall.model.with_added(pile.blocks[1:], pile.interfaces[1:])
-    >>> round(wall.resistance_with(taller).resistance.right.alpha, 6)
-    0.25
+    The units, those of a typical stone, are kept as long as the wall grows.  Certificates are
+    relative to their weight; alpha does not depend on them.
     """
     if not simplex.AVAILABLE:
         return HighsAnalysis.of(model, units)
@@ -174,24 +155,9 @@ def incremental_analysis(
 
 
 @dataclass(frozen=True, eq=False)
-class SimplexAnalysis(IncrementalAnalysis):
-    """What the inner loop of a planner asks: loose stones, by :mod:`drystone.kernels.simplex`.
+class SimplexAnalysis(ConeAnalysis):
+    """What the inner loop of a planner asks: loose stones, by :mod:`drystone.kernels.simplex`."""
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        The wall: loose blocks.
-    result : IncrementalResult
-        Its resistance.
-    program : ConeProgram
-        Its equations.
-    greatest, least : Optimum
-        Its program, solved for both ends of the range of alpha.
-    most : int
-        Walls of more blocks are left to others.
-    """
-
-    program: ConeProgram
     greatest: Optimum
     least: Optimum
     most: int = MANY_BLOCKS
@@ -204,22 +170,19 @@ class SimplexAnalysis(IncrementalAnalysis):
         greatest, least = Optimum.of_nothing(1), Optimum.of_nothing(-1)
         return cls(model, result, ConeProgram.empty(units), greatest, least, most)
 
-    def _result_with(self, model: RigidBlockModel) -> IncrementalResult:
-        added = self._added(model, self.program)
-        if added is None:
-            return self._by_highs().resistance_with(model)
-        ends = (self.greatest, self.least)
-        return _result_between(model, (self._bound(optimum, added)[1] for optimum in ends))
+    def in_highs(self) -> "HighsAnalysis":
+        """Begin anew: HiGHS has not followed this wall."""
+        return HighsAnalysis.of(RigidBlockModel((), (), self.model.mu), self.program.units)
 
     def _extended_to(self, model: RigidBlockModel) -> IncrementalAnalysis:
-        added = self._added(model, self.program)
-        if added is None:
-            return self._by_highs().extended(model)
-        assert model.added is not None  # noqa: S101 - or nothing would be added
+        grown = self._grown(model)
+        if grown is None:
+            return self.in_highs().extended(model)
+        addition, added = grown
         greatest, upper = self._bound(self.greatest, added)
         least, lower = self._bound(self.least, added)
         result = _result_between(model, (upper, lower))
-        program = self.program.appended(model.added, added)
+        program = self.program.appended(addition, added)
         model = model.forgetting()  # or every model would keep all those before it
         certified = upper is not None and lower is not None
         optimal = greatest.status == simplex.OPTIMAL and least.status == simplex.OPTIMAL
@@ -241,35 +204,21 @@ class SimplexAnalysis(IncrementalAnalysis):
             return answer, None
         return answer, _bound_of(self.program, added, answer, optimum.sign, SIMPLEX)
 
-    def _by_highs(self) -> "HighsAnalysis":
-        nothing = RigidBlockModel((), (), self.model.mu)
-        return HighsAnalysis.of(nothing, self.program.units)
+    def _bounds(self, model: RigidBlockModel, added: Added) -> "Iterator[Bound | None]":  # noqa: ARG002
+        for optimum in (self.greatest, self.least):
+            yield self._bound(optimum, added)[1]
 
 
 @dataclass(frozen=True, eq=False)
-class LocalAnalysis(IncrementalAnalysis):
+class LocalAnalysis(ConeAnalysis):
     """Many loose stones: what a stone changes near it first, then the whole wall.
 
     See :mod:`drystone.statics.local_update` for the small programs.  An answer of theirs counts
     only with a certificate of the whole wall; without one HiGHS solves the whole program.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        The wall.
-    result : IncrementalResult
-        Its resistance.
-    by_highs : HighsAnalysis
-        The same wall in HiGHS.
-    program : ConeProgram
-        Its equations, the columns in the same order.
-    greatest, least : PrimalDual
-        Both ends of the range of alpha.
     """
 
-    by_highs: "HighsAnalysis"
-    program: ConeProgram
-    greatest: PrimalDual
+    by_highs: "HighsAnalysis"  # the same wall in HiGHS, the columns in the same order
+    greatest: PrimalDual  # both ends of the range of alpha
     least: PrimalDual
 
     @classmethod
@@ -294,26 +243,22 @@ class LocalAnalysis(IncrementalAnalysis):
         if not least.status is greatest.status is LimitStatus.OPTIMAL:
             return replace(by_highs, result=result)
         ends = (_primal_dual(greatest, 1), _primal_dual(least, -1))
-        return cls(by_highs.model, result, by_highs, program, *ends)
+        return cls(by_highs.model, result, program, by_highs, *ends)
 
-    def _result_with(self, model: RigidBlockModel) -> IncrementalResult:
-        added = self._added(model, self.program)
-        if added is None:
-            return self.by_highs.resistance_with(model)
-        return _result_between(model, self._bounds(model, added))
+    def in_highs(self) -> "HighsAnalysis":
+        """Return the same wall in HiGHS."""
+        return self.by_highs
 
     def _extended_to(self, model: RigidBlockModel) -> IncrementalAnalysis:
-        added = self._added(model, self.program)
-        by_highs = self.by_highs.extended(model)
-        if added is None:
+        grown, by_highs = self._grown(model), self.by_highs.extended(model)
+        if grown is None:
             return by_highs
         assert isinstance(by_highs, HighsAnalysis)  # noqa: S101 - it goes on as what it is
-        assert model.added is not None  # noqa: S101 - or nothing would be added
+        addition, added = grown
         result = _result_between(model, self._bounds(model, added))
-        return self._of(by_highs, result, self.program.appended(model.added, added))
+        return self._of(by_highs, result, self.program.appended(addition, added))
 
     def _bounds(self, model: RigidBlockModel, added: Added) -> "Iterator[Bound | None]":
-        """Find the greatest alpha, then the least."""
         whole = None
         ends = (self.greatest, self.least)
         for end, opposite in (ends, ends[::-1]):
@@ -351,24 +296,12 @@ class HighsAnalysis(IncrementalAnalysis):
     """Any model: the primal simplex method of HiGHS from the bases of the wall.
 
     A solver is used for one model only, so that answers do not depend on what was asked before.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        The wall.
-    result : IncrementalResult
-        Its resistance.
-    units : Units
-        Of its equations.
-    bases : WarmBases
-        Optimal ones; where there is none, the last ones.
-    extremes : (Extreme, Extreme) or None
-        The least and the greatest alpha; None without free blocks.
     """
 
     units: Units
-    bases: WarmBases
+    bases: WarmBases  # optimal ones; where there is none, the last ones
     extremes: tuple[Extreme, Extreme] | None = None
+    """The least and the greatest alpha; None without free blocks."""
 
     @classmethod
     def of(cls, model: RigidBlockModel, units: Units) -> "HighsAnalysis":
@@ -387,7 +320,7 @@ class HighsAnalysis(IncrementalAnalysis):
         if not program.block_ids:
             return cls(model, IncrementalResult(lateral_resistance(model)), units, starts)
         least, greatest, lower, upper = _both_extremes(program, starts)
-        bases = WarmBases(read_basis(lower) or starts.least, read_basis(upper) or starts.greatest)
+        bases = WarmBases(lower or starts.least, upper or starts.greatest)
         result = _highs_result(model, program, least, greatest)
         return cls(model, result, units, bases, (least, greatest))
 
@@ -402,13 +335,7 @@ class HighsAnalysis(IncrementalAnalysis):
         return self._of(model, self.units, *self.prepared(model))
 
     def prepared(self, model: RigidBlockModel) -> tuple[EquilibriumProgram, WarmBases]:
-        """Return the program of another model, and bases to start from.
-
-        Parameters
-        ----------
-        model : RigidBlockModel
-            Where it is made from :attr:`model`, its bases are those of the wall.
-        """
+        """Return the program of another model, and bases to start from, if it grew from this."""
         program = assemble(model, units=self.units)
         added, bases = model.added, self.bases
         if added is None or added.base is not self.model:
@@ -423,15 +350,7 @@ class HighsAnalysis(IncrementalAnalysis):
 
 
 def highs_bound(program: EquilibriumProgram, starts: WarmBases, sign: int) -> "Bound | None":
-    """Find one end of the range of alpha; None without a certificate, or where it has no end.
-
-    Parameters
-    ----------
-    program, starts
-        See :meth:`HighsAnalysis.prepared`.
-    sign : int
-        1 for the greatest alpha, -1 for the least.
-    """
+    """Find the greatest (sign 1) or least (-1) alpha; None without a certificate."""
     start = starts.greatest if sign > 0 else starts.least
     extreme = _warm_extreme(program, WarmSession(program), start, sign)
     solution, certificate = extreme.solution, extreme.certificate
@@ -449,15 +368,15 @@ def highs_bound(program: EquilibriumProgram, starts: WarmBases, sign: int) -> "B
 
 def _both_extremes(
     program: EquilibriumProgram, starts: WarmBases
-) -> tuple[Extreme, Extreme, HighsBasis, HighsBasis]:
+) -> tuple[Extreme, Extreme, WarmBasis | None, WarmBasis | None]:
     """Find the least and the greatest alpha, each from its basis, and the bases they ended with."""
     session = WarmSession(program)
     greatest = _warm_extreme(program, session, starts.greatest, 1)
-    upper = session.highs.getBasis()
+    upper = session.basis()
     if greatest.status is LimitStatus.UNSTABLE:  # no alpha holds the blocks up
         return greatest, greatest, upper, upper
     least = _warm_extreme(program, session, starts.least, -1)
-    return least, greatest, session.highs.getBasis(), upper
+    return least, greatest, session.basis(), upper
 
 
 def _warm_extreme(
@@ -473,7 +392,7 @@ def _warm_extreme(
     optimal = extreme.solution.status is LimitStatus.OPTIMAL
     if not (extreme.status is LimitStatus.FAILED and optimal):
         return extreme
-    last = read_basis(session.highs.getBasis())
+    last = session.basis()
     if last is None:
         return extreme
     session.start_from(last)
@@ -493,30 +412,17 @@ def _by_interior_point(program: EquilibriumProgram, otherwise: WarmBases) -> War
     """Find bases near the optimum by crossover: hundreds of times quicker for many blocks."""
     session = HighsSession(program, "ipm")
     certified_extreme(program, session, 1.0)
-    greatest = read_basis(session.highs.getBasis())
+    greatest = session.basis()
     certified_extreme(program, session, -1.0)
-    least = read_basis(session.highs.getBasis())
-    return WarmBases(least or otherwise.least, greatest or otherwise.greatest)
+    return WarmBases(session.basis() or otherwise.least, greatest or otherwise.greatest)
 
 
 class Bound(NamedTuple):
-    """One end of the range of alpha, certified.
+    """One end of the range of alpha, certified."""
 
-    Parameters
-    ----------
-    alpha : float
-        Load multiplier; NaN when there is none at all.
-    certificate : Certificate
-        That it is the end, or that there is none.
-    fall : Certificate or None
-        That the blocks do not stand by themselves.
-    solver : str
-        Which one found it.
-    """
-
-    alpha: float
-    certificate: Certificate
-    fall: Certificate | None
+    alpha: float  # load multiplier; NaN when there is none at all
+    certificate: Certificate  # that it is the end, or that there is none
+    fall: Certificate | None  # that the blocks do not stand by themselves
     solver: str
 
 
@@ -548,40 +454,31 @@ def certified_bound(found: Figures, alpha: float, sign: int, solver: str) -> Bou
 
 
 def _result_between(model: RigidBlockModel, bounds: Iterable[Bound | None]) -> IncrementalResult:
-    """Return the resistance of a wall.
+    """Return the resistance of a wall from the greatest alpha and the least.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        The wall.
-    bounds : iterable of Bound or None
-        The greatest alpha, then the least, which is not looked at when the first says enough.
-        Without a certificate for one of them the wall is solved from the start.
+    The second is not looked at when the first says enough.  Without a certificate for one of them
+    the wall is solved from the start.
     """
     found = []
+    status = LimitStatus.OPTIMAL
     for bound in bounds:
         if bound is None:
             return IncrementalResult(lateral_resistance(model), solved_cold=True)
         if bound.fall is not None:
-            fall = bound._replace(certificate=bound.fall)
-            return _result(LimitStatus.UNSTABLE, fall, fall, model.mu)
+            status, found = LimitStatus.UNSTABLE, [bound._replace(certificate=bound.fall)] * 2
+            break
         found.append(bound)
-    greatest, least = found
-    return _result(LimitStatus.OPTIMAL, least, greatest, model.mu)
-
-
-def _result(status: LimitStatus, least: Bound, greatest: Bound, mu: float) -> IncrementalResult:
-    stands = status is LimitStatus.OPTIMAL
 
     def result(direction: Direction, bound: Bound, alpha: float) -> LimitResult:
         return LimitResult(
             status,
             direction,
-            max(0.0, alpha) if stands else None,
+            max(0.0, alpha) if status is LimitStatus.OPTIMAL else None,
             certificate=bound.certificate,
             message=MESSAGES[status],
             solver=bound.solver,
         )
 
+    greatest, least = found
     left, right = result("left", least, -least.alpha), result("right", greatest, greatest.alpha)
-    return IncrementalResult(LateralResistance(left, right, mu))
+    return IncrementalResult(LateralResistance(left, right, model.mu))

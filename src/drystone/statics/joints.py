@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 
-Pair = tuple[int, int]
+IdPair = tuple[int, int]
 
 
 def is_head_joint(interface: Interface) -> bool:
@@ -18,73 +18,33 @@ def with_head_friction(model: RigidBlockModel, mu: float) -> RigidBlockModel:
     """Give the head joints a coefficient of friction; 0 for open, dirty or wet ones.
 
     Joints that have one of their own keep it.
-
-    Examples
-    --------
-    >>> from drystone.contacts.given import model_from_json
-    >>> pair = model_from_json({"blocks_xywh": [[0, 0, 1, 1], [1, 0, 1, 1]]})
-    >>> [interface.mu for interface in with_head_friction(pair, 0.0).interfaces]
-    [None, None, 0.0]
     """
-    return replace(
-        model,
-        interfaces=tuple(
-            replace(interface, mu=mu)
-            if interface.mu is None and is_head_joint(interface)
-            else interface
-            for interface in model.interfaces
-        ),
+    heads = (
+        replace(face, mu=mu) if face.mu is None and is_head_joint(face) else face
+        for face in model.interfaces
     )
+    return replace(model, interfaces=tuple(heads))
 
 
-def with_pair_friction(model: RigidBlockModel, friction: Mapping[Pair, float]) -> RigidBlockModel:
-    """Give all interfaces of some pairs of blocks a coefficient of friction of their own.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Blocks and interfaces.
-    friction : mapping of (id, id) to float
-        In either order; GROUND is 0.
-    """
+def with_pair_friction(model: RigidBlockModel, friction: Mapping[IdPair, float]) -> RigidBlockModel:
+    """Give all interfaces of some pairs of ids, in either order, a friction of their own."""
     known = {frozenset(pair): mu for pair, mu in friction.items()}
-    return replace(
-        model,
-        interfaces=tuple(
-            replace(interface, mu=known.get(frozenset((interface.block, interface.other))))
-            if frozenset((interface.block, interface.other)) in known
-            else interface
-            for interface in model.interfaces
-        ),
+    faces = (
+        replace(face, mu=known.get(frozenset((face.block, face.other)), face.mu))
+        for face in model.interfaces
     )
+    return replace(model, interfaces=tuple(faces))
 
 
 def slippery(
     interfaces: Iterable[Interface], mu: float, steep: float | None = None, grip: float = 1.0
 ) -> tuple[Interface, ...]:
-    """Take the friction off upright faces, and some of it off the others.
+    """Take the friction off upright faces; the others keep the share `grip`, 0 to 1, of theirs.
 
-    Upright faces grip only what was pressed between them before, which weight alone does not do.
-
-    Parameters
-    ----------
-    interfaces : iterable of Interface
-        Of a model.
-    mu : float
-        Friction of those that have none of their own.
-    steep : float, optional
-        A face is upright when its normal goes up or down by less than this, 0 to 1.  Unless
-        given, when it stands within its friction angle of the vertical, and nearer to upright
-        than to level: there, and only there, can friction lift the block under the face.
-    grip : float
-        Share of the friction that the other faces keep, 0 to 1.
-
-    Examples
-    --------
-    >>> from drystone.contacts.given import model_from_json
-    >>> pair = model_from_json({"blocks_xywh": [[0, 0, 1, 1], [1, 0, 1, 1]], "mu": 0.5})
-    >>> [interface.mu for interface in slippery(pair.interfaces, pair.mu)]
-    [0.5, 0.5, 0.0]
+    Upright faces grip only what was pressed between them before, which weight alone does not do. A
+    face is upright when its normal goes up or down by less than `steep`, 0 to 1.  Unless given, it
+    is when it stands within its friction angle of the vertical, and nearer to upright than to
+    level: there, and only there, can friction lift the block under the face.
     """
     changed = []
     for interface in interfaces:

@@ -9,77 +9,23 @@ An answer counts only with a certificate that holds (:mod:`drystone.statics.lp.c
 does not, the program is solved again from the start and by other algorithms.
 """
 
-from dataclasses import replace
-
-import numpy as np
+from typing import get_args
 
 from drystone.statics.loads import Loads
 from drystone.statics.lp.certificate import of_fall
 from drystone.statics.lp.extremes import Extreme, Solver, extremes
 from drystone.statics.lp.highs import TOLERANCE
-from drystone.statics.lp.program import EquilibriumProgram, Floats, assemble
-from drystone.statics.lp.solution import Solution
+from drystone.statics.lp.program import EquilibriumProgram, assemble
 from drystone.statics.model import Direction, RigidBlockModel
-from drystone.statics.result import (
-    LateralResistance,
-    LimitResult,
-    LimitStatus,
-    LoadRange,
-    Mechanism,
-)
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus, LoadRange
+
+DIRECTIONS: tuple[Direction, ...] = get_args(Direction)
 
 MESSAGES = {
     LimitStatus.OPTIMAL: "The greatest load was found.",
     LimitStatus.UNSTABLE: "The blocks do not stand under dead load, their own weight.",
     LimitStatus.UNBOUNDED: "No load in this direction brings the blocks down.",
 }
-
-
-def limit_load(
-    model: RigidBlockModel,
-    direction: Direction,
-    loads: Loads | None = None,
-    *,
-    mechanism: bool = False,
-    solver: Solver = "auto",
-) -> LimitResult:
-    """Find the greatest load in one direction that the blocks carry (Eq. 23).
-
-    Maximise alpha subject to equilibrium of every free block under its weight w downwards and
-    alpha w sideways, both at its centroid, with n >= 0 and |t| <= mu n at every contact point.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Blocks and interfaces.
-    direction : {"left", "right"}
-        The live load points to -x for "left"; for other loads "left" is against the live load.
-    loads : Loads, optional
-        Dead and live loads; the tilting table unless given.
-    mechanism : bool
-        Also return how the blocks move at that load, and the forces between them.
-    solver : {"auto", "highs", "highs-ipm", "clarabel"}
-        "auto" chooses by the number of blocks and asks others when a certificate fails; any
-        other is asked alone.
-
-    Returns
-    -------
-    LimitResult
-        `status` "unstable" when the blocks do not stand under their own weight, even if some
-        push would hold them up; "unbounded" when nothing limits the load, as for a model without
-        free blocks; "failed" when no solver has an answer that can be certified.  Never raises
-        for a valid model.
-
-    Examples
-    --------
-    >>> from drystone.contacts.blocks import model_from_labels
-    >>> wall = model_from_labels(np.ones((40, 20), np.uint32)).model
-    >>> result = limit_load(wall, "right")
-    >>> round(result.alpha, 6), result.certificate.holds
-    (0.5, True)
-    """
-    both = lateral_resistance(model, loads, mechanism=mechanism, solver=solver)
-    return both.left if direction == "left" else both.right
 
 
 def lateral_resistance(
@@ -89,12 +35,40 @@ def lateral_resistance(
     mechanism: bool = False,
     solver: Solver = "auto",
 ) -> LateralResistance:
-    """Find the greatest loads in both directions (Eq. 28); see :func:`limit_load`.
+    """Find the greatest loads that the blocks carry in both directions (Eq. 23, Eq. 28).
+
+    Maximise alpha subject to equilibrium of every free block under its weight w downwards and
+    alpha w sideways, both at its centroid, with n >= 0 and |t| <= mu n at every contact point.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        Blocks and interfaces.
+    loads : Loads, optional
+        Dead and live loads; the tilting table unless given, where "left" is a live load to -x.
+        For others "left" is against the live load.
+    mechanism : bool
+        Also return how the blocks move at that load, and the forces between them.
+    solver : {"auto", "highs", "highs-ipm", "clarabel"}
+        "auto" chooses by the number of blocks and asks others when a certificate fails; any
+        other is asked alone.
 
     Returns
     -------
     LateralResistance
-        Its `value` is F_LR: the lesser alpha over mu.
+        Its `value` is F_LR: the lesser alpha over mu.  The `status` of a direction is "unstable"
+        when the blocks do not stand under their own weight, even if some push would hold them up;
+        "unbounded" when nothing limits the load, as for a model without free blocks; "failed"
+        when no solver has an answer that can be certified.  Never raises for a valid model.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from drystone.contacts.blocks import model_from_labels
+    >>> wall = model_from_labels(np.ones((40, 20), np.uint32)).model
+    >>> result = lateral_resistance(wall).right
+    >>> round(result.alpha, 6), result.certificate.holds
+    (0.5, True)
     """
     if all(block.fixed for block in model.blocks):
         return LateralResistance(_no_blocks("left"), _no_blocks("right"), model.mu)
@@ -104,42 +78,21 @@ def lateral_resistance(
 
 
 def load_range(
-    model: RigidBlockModel,
-    loads: Loads,
-    *,
-    mechanism: bool = False,
-    solver: Solver = "auto",
+    model: RigidBlockModel, loads: Loads, *, mechanism: bool = False, solver: Solver = "auto"
 ) -> LoadRange:
-    """Find all alpha for which the blocks carry dead + alpha live.
-
-    Parameters
-    ----------
-    model, loads, mechanism, solver
-        As for :func:`limit_load`.
-
-    Returns
-    -------
-    LoadRange
-        Its ends; alpha = 0 need not lie between them.
-
-    Examples
-    --------
-    How light may a block be, 1 wide and 2 high, that is pushed at mid-height with .3?
-
-    >>> from drystone.contacts.given import model_from_json
-    >>> from drystone.statics.loads import gravity_factor, point_load
-    >>> block = model_from_json({"blocks_xywh": [[0, 0, 1, 2]]})
-    >>> push = point_load(block, 1, (0, 1), (0.3, 0))
-    >>> carried = load_range(block, gravity_factor(block, push))
-    >>> round(carried.least.alpha, 6), str(carried.greatest.status)
-    (0.3, 'unbounded')
-    """
+    """Find all alpha for which the blocks carry dead + alpha live; 0 need not be one of them."""
     if all(block.fixed for block in model.blocks):
         return LoadRange(_no_blocks("left"), _no_blocks("right"))
     program = assemble(model, loads)
+
+    def end(direction: Direction, answer: Extreme) -> LimitResult:
+        alpha = answer.alpha if answer.status is LimitStatus.OPTIMAL else None
+        message = "No alpha holds the blocks up." if answer.status is LimitStatus.UNSTABLE else ""
+        wanted = program if mechanism else None
+        return _result(direction, answer, answer.status, wanted, alpha, message)
+
     least, greatest = extremes(model, program, solver, mechanism=mechanism)
-    ends = zip(("left", "right"), (least, greatest), strict=True)
-    return LoadRange(*(_range_end(d, answer, program, mechanism) for d, answer in ends))  # type: ignore[arg-type]
+    return LoadRange(end("left", least), end("right", greatest))
 
 
 def resistance_between(
@@ -150,18 +103,21 @@ def resistance_between(
     *,
     mechanism: bool = False,
 ) -> LateralResistance:
-    """Tell both directions from the two ends of the interval of alpha."""
+    """Return both directions from the two ends of the interval of alpha."""
+    wanted = program if mechanism else None
     fall = _fall(program, least, greatest)
-    return LateralResistance(
-        _direction("left", least, greatest, fall, program if mechanism else None),
-        _direction("right", greatest, least, fall, program if mechanism else None),
-        mu,
-    )
+    if fall is not None:
+        holds = fall.certificate is not None and fall.certificate.holds
+        status = LimitStatus.UNSTABLE if holds else LimitStatus.FAILED
+        left, right = (_result(d, fall, status, wanted) for d in DIRECTIONS)
+    else:
+        left = _direction("left", least, greatest, wanted)
+        right = _direction("right", greatest, least, wanted)
+    return LateralResistance(left, right, mu)
 
 
 def _no_blocks(direction: Direction) -> LimitResult:
-    said = "There are no free blocks."
-    return LimitResult(LimitStatus.UNBOUNDED, direction, message=said)
+    return LimitResult(LimitStatus.UNBOUNDED, direction, message="There are no free blocks.")
 
 
 def _fall(program: EquilibriumProgram, least: Extreme, greatest: Extreme) -> Extreme | None:
@@ -175,102 +131,48 @@ def _fall(program: EquilibriumProgram, least: Extreme, greatest: Extreme) -> Ext
 
 
 def _direction(
-    direction: Direction,
-    answer: Extreme,
-    other: Extreme,
-    fall: Extreme | None,
-    wanted: EquilibriumProgram | None,
+    direction: Direction, answer: Extreme, other: Extreme, wanted: EquilibriumProgram | None
 ) -> LimitResult:
-    """Tell one direction; mechanism and forces are made when the program is given.
-
-    Without the other extreme it is not known that the blocks stand by themselves.
-    """
-    if fall is not None and not (fall.certificate and fall.certificate.holds):
-        return _failed(direction, fall)
-    if fall is not None:
-        return LimitResult(
-            LimitStatus.UNSTABLE,
-            direction,
-            mechanism=_mechanism(wanted, fall.solution) if wanted else None,
-            certificate=fall.certificate,
-            message=MESSAGES[LimitStatus.UNSTABLE],
-            solver=fall.solution.solver,
-        )
-    if answer.status is LimitStatus.FAILED:
-        return _failed(direction, answer)
-    if other.status is LimitStatus.FAILED:
-        said = "The solver gave up in the other direction."
-        return LimitResult(LimitStatus.FAILED, direction, message=said)
+    """Without the other extreme it is not known that the blocks stand by themselves."""
+    if answer.status is not LimitStatus.FAILED and other.status is LimitStatus.FAILED:
+        message = "The solver gave up in the other direction."
+        return LimitResult(LimitStatus.FAILED, direction, message=message)
     sign = -1.0 if direction == "left" else 1.0
     alpha = max(0.0, sign * answer.alpha) if answer.status is LimitStatus.OPTIMAL else None
-    return _result(direction, answer, alpha, wanted)
-
-
-def _range_end(
-    direction: Direction, answer: Extreme, program: EquilibriumProgram, mechanism: bool
-) -> LimitResult:
-    """Tell one end of the range of alpha."""
-    if answer.status is LimitStatus.FAILED:
-        return _failed(direction, answer)
-    if answer.status is LimitStatus.UNSTABLE:
-        result = _result(direction, answer, None, program if mechanism else None)
-        return replace(result, message="No alpha holds the blocks up.")
-    alpha = answer.alpha if answer.status is LimitStatus.OPTIMAL else None
-    return _result(direction, answer, alpha, program if mechanism else None)
-
-
-def _failed(direction: Direction, answer: Extreme) -> LimitResult:
-    solution = answer.solution
-    claimed = solution.status is not LimitStatus.FAILED
-    doubt = ", but that could not be certified" if claimed else ""
-    said = f"The solver gave up: {solution.solver} says {solution.said}{doubt}."
-    return LimitResult(
-        LimitStatus.FAILED,
-        direction,
-        certificate=answer.certificate,
-        message=said,
-        solver=solution.solver,
-    )
+    return _result(direction, answer, answer.status, wanted, alpha)
 
 
 def _result(
-    direction: Direction, answer: Extreme, alpha: float | None, wanted: EquilibriumProgram | None
+    direction: Direction,
+    answer: Extreme,
+    status: LimitStatus,
+    wanted: EquilibriumProgram | None,
+    alpha: float | None = None,
+    message: str = "",
 ) -> LimitResult:
-    solution = answer.solution
-    optimal = answer.status is LimitStatus.OPTIMAL
+    """Mechanism and forces are made when the program is wanted.
+
+    At the least of cost * alpha the duals y satisfy y . live = cost and y . g <= 0 for every edge
+    g of a friction cone.  So -y opens or slides every contact (associated flow) and moves the
+    blocks with the live load.
+    """
+    solution, mechanism, forces = answer.solution, None, None
+    if status is LimitStatus.FAILED:
+        claimed = solution.status is not LimitStatus.FAILED
+        doubt = ", but that could not be certified" if claimed else ""
+        message = f"The solver gave up: {solution.solver} says {solution.said}{doubt}."
+    elif wanted is not None and solution.duals is not None:
+        mechanism = wanted.mechanism(-solution.duals)
+    if status is LimitStatus.OPTIMAL and wanted is not None:
+        assert solution.columns is not None  # noqa: S101 - an optimal solution has them
+        forces = wanted.forces(solution.columns[1:].reshape(-1, 2))
     return LimitResult(
-        answer.status,
+        status,
         direction,
         alpha,
-        _mechanism(wanted, solution) if wanted else None,
-        _forces(wanted, solution) if wanted and optimal else None,
+        mechanism,
+        forces,
         answer.certificate,
-        MESSAGES[answer.status],
+        message or MESSAGES[status],
         solution.solver,
     )
-
-
-def _mechanism(program: EquilibriumProgram, solution: Solution) -> Mechanism | None:
-    """Turn row duals into velocities (§4.1).
-
-    At the least of cost * alpha the duals y satisfy y . live = cost and y . g <= 0 for every
-    edge g of a friction cone.  So -y opens or slides every contact (associated flow) and moves
-    the blocks with the live load.
-    """
-    if solution.duals is None:
-        return None
-    velocity = np.zeros((len(program.rows), 3))
-    velocity[program.rows >= 0] = -solution.duals
-    velocity[:, 2] /= program.length
-    fastest = float(np.hypot(velocity[:, 0], velocity[:, 1]).max())
-    # Blocks that only turn about their centroids are told by their rate of turning.
-    largest = fastest or float(np.abs(velocity).max())
-    return Mechanism(program.block_ids, velocity / largest)
-
-
-def _forces(program: EquilibriumProgram, solution: Solution) -> Floats:
-    """Add up the two edges of the cone at every contact point: normal part, and part along mu t."""
-    assert solution.columns is not None  # noqa: S101 - asked for only when optimal
-    edges = program.weight * solution.columns[1:].reshape(-1, 2)
-    normal = edges.sum(axis=1)
-    return np.column_stack((normal, program.friction * (edges[:, 0] - edges[:, 1])))

@@ -4,14 +4,15 @@ The paper's tilting table is one of them.  Every case is made of forces at centr
 add up: ``Loads(weight(model) + point_load(model, 7, (3, 2), (0, -5)), live)``.
 """
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from math import cos, radians, sin
+from math import cos, isfinite, radians, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.errors import InputError
+from drystone.errors import InputError, UsageError
 from drystone.statics.model import Block, RigidBlockModel
 
 Floats = NDArray[np.float64]
@@ -19,19 +20,17 @@ Floats = NDArray[np.float64]
 LISTED = 8
 """So many blocks are named."""
 
+_NUMBER = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
+_POINT_LOAD = re.compile(rf"(\d+)@{_NUMBER},{_NUMBER}:{_NUMBER},{_NUMBER}")
+
 
 @dataclass(frozen=True, eq=False)
 class Loads:
     """What acts on the blocks: dead + alpha live.
 
-    Parameters
-    ----------
-    dead, live : (n, 3) float array
-        Horizontal force, vertical force (up) and moment (counter-clockwise) about the centroid of
-        each block of the model, in its order.  Units: weights of the model; moments times its
-        unit of length.  What acts on fixed blocks does not matter.
-    name : str
-        For people.
+    Both are (n, 3): horizontal force, vertical force (up) and moment (counter-clockwise) about the
+    centroid of each block of the model, in its order.  Units: weights of the model; moments times
+    its unit of length.  What acts on fixed blocks does not matter.
     """
 
     dead: Floats
@@ -40,25 +39,7 @@ class Loads:
 
 
 def weight(model: RigidBlockModel, angle_deg: float = 0.0) -> Floats:
-    """Return the weight of every block, turned with a base that is tilted.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Blocks.
-    angle_deg : float
-        Tilt of the base seen from the wall: gravity turns towards +x.
-
-    Returns
-    -------
-    (n, 3) float array
-
-    Examples
-    --------
-    >>> block = Block(1, 2.0, (0.5, 1.0))
-    >>> weight(RigidBlockModel((block,), ())).tolist()
-    [[0.0, -2.0, 0.0]]
-    """
+    """Return the weight of every block, (n, 3), turned towards +x with a base that is tilted."""
     angle = radians(angle_deg)
     weights = np.array([block.weight for block in model.blocks])
     return np.column_stack((sin(angle) * weights, -cos(angle) * weights, np.zeros(len(weights))))
@@ -78,13 +59,9 @@ def tilting_table(model: RigidBlockModel, angle_deg: float = 0.0) -> Loads:
 def growing_with_height(model: RigidBlockModel) -> Loads:
     """Weight, and a load towards +x that grows with the height above the ground.
 
-    Each block is pushed by alpha w y / y_mean, with y_mean the height of the common centre of
-    mass, so that alpha is the whole push over the whole weight, as for the tilting table.
-
-    Raises
-    ------
-    InputError
-        E307 when no free block lies above the ground.
+    Each block is pushed by alpha w y / y_mean, with y_mean the height of the common centre of mass,
+    so that alpha is the whole push over the whole weight, as for the tilting table.  Without a free
+    block above the ground it is an InputError (E307).
     """
     dead = weight(model)
     heights = np.array([block.centroid[1] for block in model.blocks])
@@ -105,33 +82,10 @@ def growing_with_height(model: RigidBlockModel) -> Loads:
 def point_load(
     model: RigidBlockModel, block: int, point: tuple[float, float], force: tuple[float, float]
 ) -> Floats:
-    """Return a force on one block at a point, to add to dead or live loads.
+    """Return a force on the block of an id at a point, (n, 3), to add to dead or live loads.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Blocks.
-    block : int
-        Id of the block that takes the force.
-    point : (float, float)
-        Where it acts, wall frame.
-    force : (float, float)
-        To the right and up, in weights of the model (area times density).
-
-    Returns
-    -------
-    (n, 3) float array
-
-    Raises
-    ------
-    InputError
-        E306 for a block that the model does not have.
-
-    Examples
-    --------
-    >>> model = RigidBlockModel((Block(1, 2.0, (0.5, 1.0)),), ())
-    >>> point_load(model, 1, (0.0, 1.0), (0.0, -3.0)).tolist()
-    [[0.0, -3.0, 1.5]]
+    The force is to the right and up, in weights of the model (area times density); the point is in
+    the wall frame.  A block that is not there is an InputError (E306).
     """
     row, found = _block(model, block)
     arm_x, arm_y = point[0] - found.centroid[0], point[1] - found.centroid[1]
@@ -153,29 +107,12 @@ def support_settlement(model: RigidBlockModel, block: int) -> tuple[RigidBlockMo
     """Let a fixed block give way downwards, and find what holds it (settlement of a support).
 
     The support becomes weightless and free to move up and down, and alpha times the weight of all
-    free blocks presses it up: a unit of alpha is that weight.  The least alpha is the reaction
-    below which the wall comes down with the settling support, and its mechanism is how; the
-    greatest is what lifts it.  (Kinematics of settlement as in limit analysis of masonry, with
-    the reaction of the moving support as the unknown.)
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        With the fixed block.
-    block : int
-        Its id.
-
-    Returns
-    -------
-    model : RigidBlockModel
-        With that block guided, free to move up and down only.  It no longer stands on the ground.
-    loads : Loads
-        For :func:`drystone.statics.limit.load_range`.
-
-    Raises
-    ------
-    InputError
-        E306 for a block that the model does not have, or that is not fixed.
+    free blocks presses it up: a unit of alpha is that weight.  The least alpha, of
+    :func:`drystone.statics.limit.load_range`, is the reaction below which the wall comes down with
+    the settling support, and its mechanism is how; the greatest is what lifts it.  (Kinematics of
+    settlement as in limit analysis of masonry, with the reaction of the moving support as the
+    unknown.)  The block no longer stands on the ground.  One that is not there or not fixed is an
+    InputError (E306).
     """
     row, found = _block(model, block)
     if not found.fixed:
@@ -223,3 +160,85 @@ def _listed(blocks: Iterable[Block]) -> str:
     ids = [str(block.id) for block in blocks]
     more = f" and {len(ids) - LISTED} more" if len(ids) > LISTED else ""
     return ", ".join(ids[:LISTED]) + more if ids else "there is none"
+
+
+@dataclass(frozen=True)
+class LoadCase:
+    """A load case by the words that ask for it, as `drystone analyse` has them."""
+
+    load: str  # what grows
+    tilt: float  # turns gravity towards the right, degrees
+    dead: Sequence[str]  # forces at points, as they are written
+    live: Sequence[str]
+    settle: int | None
+
+    def __post_init__(self) -> None:
+        unheard = ""
+        if self.is_range and self.tilt:
+            unheard = "--tilt goes with loads on a standing wall only."
+        elif self.settle is not None and self.load != "tilting":
+            unheard = "--settle is a load case of its own; leave --load out."
+        elif self.live and self.load != "points":
+            unheard = "--live goes with --load points only."
+        if unheard:
+            raise UsageError("E138", unheard, where="loads")
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether the case is the tilting table, and nothing else acts."""
+        return self.load == "tilting" and not (self.tilt or self.dead or self.settle is not None)
+
+    @property
+    def is_range(self) -> bool:
+        """Whether alpha = 0 means nothing in this case, so that a range is the answer."""
+        return self.settle is not None or self.load == "gravity"
+
+
+def load_case(case: LoadCase, model: RigidBlockModel) -> tuple[RigidBlockModel, Loads]:
+    """Return the loads of a case, and the model for them."""
+    if case.settle is not None:
+        model, loads = support_settlement(model, case.settle)
+    elif case.load == "height":
+        loads = growing_with_height(model)
+    elif case.load == "gravity":
+        loads = gravity_factor(model, weight(model) * 0.0)
+    elif case.load == "points":
+        loads = _points(model, case)
+    else:
+        loads = tilting_table(model)
+    if case.tilt:
+        turned = weight(model, case.tilt) - weight(model)
+        loads = replace(
+            loads, dead=loads.dead + turned, name=f"{loads.name}, tilted by {case.tilt:g}°"
+        )
+    for text in case.dead:
+        loads = replace(loads, dead=loads.dead + point_load(model, *_parsed(text, "--dead")))
+    if case.dead:
+        loads = replace(loads, name=f"{loads.name}, dead forces ({' '.join(case.dead)})")
+    return model, loads
+
+
+def _points(model: RigidBlockModel, case: LoadCase) -> Loads:
+    if not case.live:
+        raise UsageError(
+            "E138", "--load points needs forces.", cure="Add --live ID@X,Y:FX,FY once or more."
+        )
+    live = weight(model) * 0.0
+    for text in case.live:
+        live = live + point_load(model, *_parsed(text, "--live"))
+    return Loads(weight(model), live, f"point loads ({' '.join(case.live)})")
+
+
+def _parsed(text: str, option: str) -> tuple[int, tuple[float, float], tuple[float, float]]:
+    found = _POINT_LOAD.fullmatch(text)
+    if found is None:
+        raise UsageError(
+            "E138",
+            f"{text!r} is no force at a point.",
+            where=option,
+            cure="Write ID@X,Y:FX,FY, as in 7@120,85:0,-200.",
+        )
+    x, y, fx, fy = (float(part) for part in found.groups()[1:])
+    if not all(isfinite(number) for number in (x, y, fx, fy)):
+        raise UsageError("E138", f"{text!r} is not finite.", where=option)
+    return int(found.group(1)), (x, y), (fx, fy)

@@ -10,7 +10,6 @@ for the caller to certify them; what was not found, or not proved, is for anothe
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import highspy
@@ -20,7 +19,7 @@ from scipy.sparse import csc_array
 
 from drystone.kernels.simplex import OPTIMAL, UNSTABLE, Added, Cones, Optimum
 from drystone.statics.lp.cone_program import NONE_CLOSED, ConeProgram
-from drystone.statics.lp.highs import TOLERANCE, corrected, silent_highs
+from drystone.statics.lp.highs import corrected, loaded, solved
 from drystone.statics.lp.program import Floats
 
 REACH = 2.0
@@ -33,7 +32,6 @@ NO_WORK = 1e-11
 # unknowns are sought, from a basis with gaps.
 _DUAL, _DEVEX = 1, 1
 _HIGHS_OPTIONS: Mapping[str, Any] = {
-    "threads": 1,
     "solver": "simplex",
     "presolve": "off",
     "simplex_scale_strategy": 0,
@@ -41,8 +39,6 @@ _HIGHS_OPTIONS: Mapping[str, Any] = {
     "simplex_dual_edge_weight_strategy": _DEVEX,
     "dual_simplex_cost_perturbation_multiplier": 0.0,
     "simplex_initial_condition_check": False,
-    "primal_feasibility_tolerance": TOLERANCE,
-    "dual_feasibility_tolerance": TOLERANCE,
     "simplex_iteration_limit": 10_000,  # it may cycle; what it gives up on is asked of the whole
 }
 _BASIC = highspy.HighsBasisStatus.kBasic
@@ -50,24 +46,12 @@ _AT_ZERO = highspy.HighsBasisStatus.kLower
 
 
 class PrimalDual(NamedTuple):
-    """Forces and mechanism of one end of the range of alpha.
+    """Forces and mechanism of one end of the range of alpha."""
 
-    Parameters
-    ----------
-    sign : int
-        1 for the greatest alpha, -1 for the least.
-    alpha : float
-        Load multiplier; NaN when there is none.
-    forces : (N,) float array
-        One a column; empty when there is no alpha.
-    velocity : (3 n,) float array
-        The mechanism, with sign live . v = 1; a fall when there is no alpha.
-    """
-
-    sign: int
-    alpha: float
-    forces: Floats
-    velocity: Floats
+    sign: int  # 1 for the greatest alpha, -1 for the least
+    alpha: float  # load multiplier; NaN when there is none
+    forces: Floats  # (N,): one a column; empty when there is no alpha
+    velocity: Floats  # (3 n,): the mechanism, with sign live . v = 1; a fall when there is no alpha
 
 
 def local_update(
@@ -75,19 +59,8 @@ def local_update(
 ) -> PrimalDual | None:
     """Put together forces and a mechanism of a wall with one more stone.
 
-    Parameters
-    ----------
-    program : ConeProgram
-        Of the wall.
-    end, opposite : PrimalDual
-        The end to be found, of the wall without the stone, and the other one.
-    added : Added
-        The stone and its wedges.
-
-    Returns
-    -------
-    PrimalDual or None
-        None when the stone changes the mechanism, or when the strip is not enough.
+    `end` is the one to be found, of the wall without the stone.  None when the stone changes the
+    mechanism, or when the strip is not enough.
     """
     moved = _mechanism(program, end, added) if len(added.weights) else None
     if moved is None or np.isnan(moved.alpha):
@@ -99,7 +72,7 @@ def local_update(
         # Any alpha between the two ends is carried by a mixture of their forces.
         share = (moved.alpha - opposite.alpha) / (end.alpha - opposite.alpha)
         carried = share * end.forces + (1.0 - share) * opposite.forces
-    forces = _Strip.under(program, added).solved(moved.alpha, carried, end.forces > 0.0)
+    forces = _strip_forces(program, added, moved.alpha, carried, end.forces > 0.0)
     return None if forces is None else moved._replace(forces=forces)
 
 
@@ -108,32 +81,24 @@ def _mechanism(program: ConeProgram, end: PrimalDual, added: Added) -> PrimalDua
     alone, work = _on_supports(program, end, added)
     stone = Added(added.weights, alone, NONE_CLOSED)
     answer = Optimum.of_nothing(end.sign).solved_with(stone)
-    rest = np.zeros(len(end.velocity))
-    if answer.status == UNSTABLE:
-        velocity = np.concatenate((rest, answer.velocity))
-        return PrimalDual(end.sign, answer.alpha, answer.forces, velocity)
-    if answer.status == OPTIMAL and end.sign * (end.alpha - answer.alpha) > 0.0:
-        velocity = np.concatenate((rest, answer.velocity))
+    governs = answer.status == OPTIMAL and end.sign * (end.alpha - answer.alpha) > 0.0
+    if governs or answer.status == UNSTABLE:
+        velocity = np.concatenate((np.zeros(len(end.velocity)), answer.velocity))
         return PrimalDual(end.sign, answer.alpha, answer.forces, velocity)
     rhs = np.zeros(3 * len(added.weights))
     rhs[0::3] = -end.alpha * added.weights
     rhs[1::3] = added.weights
     found = least(work, _matrix(alone, len(added.weights)), rhs)
-    if found is None or abs(float((work * found.unknowns).sum())) > NO_WORK:
+    if found is None or abs(float((work * found[0]).sum())) > NO_WORK:
         return None
-    velocity = np.concatenate((end.velocity, -found.duals))
-    return PrimalDual(end.sign, end.alpha, found.unknowns, velocity)
+    velocity = np.concatenate((end.velocity, -found[1]))
+    return PrimalDual(end.sign, end.alpha, found[0], velocity)
 
 
 def _on_supports(program: ConeProgram, end: PrimalDual, added: Added) -> tuple[Cones, Floats]:
-    """Return the columns of a stone on supports that do not yield.
+    """Return the columns of a stone and its wedges on supports that do not yield.
 
-    Returns
-    -------
-    cones : Cones
-        Of the stone and its wedges alone.
-    work : (columns,) float array
-        Of each column on the velocities of the blocks of the wall.
+    With them comes the work of each column on the velocities of the blocks of the wall.
     """
     built, cones = len(program.weights), added.cones
     # Where the first body is of the wall, the two change places.
@@ -155,81 +120,53 @@ def _on_supports(program: ConeProgram, end: PrimalDual, added: Added) -> tuple[C
     return alone, work[new]
 
 
-@dataclass(frozen=True, eq=False)
-class _Strip:
-    """The blocks of a wall below a stone, and the stone.
+def _strip_forces(
+    program: ConeProgram, added: Added, alpha: float, carried: Floats, basic: NDArray[np.bool_]
+) -> Floats | None:
+    """Find forces that carry a stone down through the strip of the wall below it, or None.
 
-    Parameters
-    ----------
-    program : ConeProgram
-        Of the wall.
-    added : Added
-        The stone and its wedges.
-    place : (n + k,) int array
-        Place in the strip of each body of the wall and the stone; -1 outside.
+    `carried` (N,) are forces that carry the wall without the stone at this alpha, `basic` (N,) are
+    the columns to start with.  Returned are the forces of the wall's columns that are left, then
+    of the new ones.
     """
+    wall, place = program.cones, _places_in_strip(program, added)
+    first = place[wall.first]
+    second = np.where(wall.second < 0, -1, place[wall.second])
+    inside = (first >= 0) & ((second >= 0) | (wall.second < 0))
+    across = ((first >= 0) | (second >= 0)) & ~inside
+    inside[added.closed] = across[added.closed] = False
+    new_second = np.where(added.cones.second < 0, -1, place[added.cones.second])
+    cones = Cones(
+        np.concatenate((first[inside], place[added.cones.first])),
+        np.concatenate((second[inside], new_second)),
+        np.concatenate((wall.entries[:, inside], added.cones.entries), axis=1),
+    )
+    weights = np.concatenate((program.weights, added.weights))[place >= 0]
+    rhs = np.column_stack((-alpha * weights, weights, np.zeros(len(weights))))
+    for bodies, entries in ((first, wall.entries[:3]), (second, wall.entries[3:])):
+        at = across & (bodies >= 0)
+        np.subtract.at(rhs, bodies[at], (carried[at] * entries[:, at]).T)
+    starts = np.concatenate((basic[inside], np.zeros(len(added.cones.first), bool)))
+    found = least(np.zeros(len(starts)), _matrix(cones, len(rhs)), rhs.ravel(), starts)
+    if found is None:
+        return None
+    count = np.count_nonzero(inside)
+    forces = carried.copy()
+    forces[inside] = found[0][:count]
+    return np.concatenate((np.delete(forces, added.closed), found[0][count:]))
 
-    program: ConeProgram
-    added: Added
-    place: NDArray[np.int32]
 
-    @classmethod
-    def under(cls, program: ConeProgram, added: Added) -> "_Strip":
-        built, x = len(program.weights), program.centroid_x
-        touched = np.concatenate((added.cones.first, added.cones.second))
-        under = x[touched[(touched >= 0) & (touched < built)]]
-        inside = np.ones(built + len(added.weights), bool)
-        inside[:built] = False
-        if len(under):
-            reach = REACH * program.units.length
-            inside[:built] = (x >= under.min() - reach) & (x <= under.max() + reach)
-        place = np.where(inside, np.cumsum(inside) - 1, -1).astype(np.int32)
-        return cls(program, added, place)
-
-    def solved(self, alpha: float, carried: Floats, basic: NDArray[np.bool_]) -> Floats | None:
-        """Find forces that carry the stone down through the strip.
-
-        Parameters
-        ----------
-        alpha : float
-            Load multiplier.
-        carried : (N,) float array
-            Forces that carry the wall without the stone at this alpha.
-        basic : (N,) bool array
-            Columns to start with.
-
-        Returns
-        -------
-        (columns,) float array or None
-            Of the wall's columns that are left, then of the new ones.
-        """
-        wall, added, place = self.program.cones, self.added, self.place
-        first = place[wall.first]
-        second = np.where(wall.second < 0, -1, place[wall.second])
-        inside = (first >= 0) & ((second >= 0) | (wall.second < 0))
-        across = ((first >= 0) | (second >= 0)) & ~inside
-        inside[added.closed] = across[added.closed] = False
-        cones = Cones(
-            np.concatenate((first[inside], place[added.cones.first])),
-            np.concatenate(
-                (second[inside], np.where(added.cones.second < 0, -1, place[added.cones.second]))
-            ),
-            np.concatenate((wall.entries[:, inside], added.cones.entries), axis=1),
-        )
-        weights = np.concatenate((self.program.weights, added.weights))[place >= 0]
-        rhs = np.column_stack((-alpha * weights, weights, np.zeros(len(weights))))
-        for bodies, entries in ((first, wall.entries[:3]), (second, wall.entries[3:])):
-            at = across & (bodies >= 0)
-            np.subtract.at(rhs, bodies[at], (carried[at] * entries[:, at]).T)
-        starts = np.concatenate((basic[inside], np.zeros(len(added.cones.first), bool)))
-        matrix = _matrix(cones, len(rhs))
-        found = least(np.zeros(len(starts)), matrix, rhs.ravel(), starts)
-        if found is None:
-            return None
-        count = np.count_nonzero(inside)
-        forces = carried.copy()
-        forces[inside] = found.unknowns[:count]
-        return np.concatenate((np.delete(forces, added.closed), found.unknowns[count:]))
+def _places_in_strip(program: ConeProgram, added: Added) -> NDArray[np.int32]:
+    """Return the place of each body of the wall and the stone in the strip; -1 outside."""
+    built, x = len(program.weights), program.centroid_x
+    touched = np.concatenate((added.cones.first, added.cones.second))
+    under = x[touched[(touched >= 0) & (touched < built)]]
+    inside = np.ones(built + len(added.weights), bool)
+    inside[:built] = False
+    if len(under):
+        reach = REACH * program.units.length
+        inside[:built] = (x >= under.min() - reach) & (x <= under.max() + reach)
+    return np.where(inside, np.cumsum(inside) - 1, -1).astype(np.int32)
 
 
 def _matrix(cones: Cones, bodies: int) -> csc_array:
@@ -242,56 +179,24 @@ def _matrix(cones: Cones, bodies: int) -> csc_array:
     return csc_array(parts, shape=(3 * bodies, len(cones.first)))
 
 
-class Vertex(NamedTuple):
-    """An optimum.
-
-    Parameters
-    ----------
-    unknowns : (columns,) float array
-        x.
-    duals : (rows,) float array
-        y with c - y . A >= 0.
-    """
-
-    unknowns: Floats
-    duals: Floats
-
-
 def least(
     costs: Floats, matrix: csc_array, rhs: Floats, basic: NDArray[np.bool_] | None = None
-) -> Vertex | None:
-    """Minimise c . x with A x = b, x >= 0; None when there is no optimum, whatever the reason.
+) -> tuple[Floats, Floats] | None:
+    """Minimise c . x with A x = b, x >= 0; return x and y with c - y . A >= 0.
 
-    Parameters
-    ----------
-    costs : (columns,) float array
-        c.
-    matrix : csc_array
-        A.
-    rhs : (rows,) float array
-        b.
-    basic : (columns,) bool array, optional
-        Unknowns that are basic at the start, at most as many as there are rows; they need not
-        be independent.  HiGHS fills the gaps.
+    None when there is no optimum, whatever the reason.  `basic` unknowns are so at the start, at
+    most as many as there are rows; they need not be independent.  HiGHS fills the gaps.
     """
-    count, rows = len(costs), len(rhs)
-    by_column, minimise, offset = 1, 1, 0.0
-    highs = silent_highs(_HIGHS_OPTIONS)
-    highs.passModel(
-        count, rows, len(matrix.data), by_column, minimise, offset, costs, np.zeros(count),
-        np.full(count, highspy.kHighsInf), rhs, rhs, matrix.indptr, matrix.indices, matrix.data,
-        np.zeros(count, np.int32),
-    )  # fmt: skip
+    highs = loaded(_HIGHS_OPTIONS, matrix, (rhs, rhs), np.zeros(len(costs)), costs)
     if basic is not None:
         basis = highspy.HighsBasis()
         basis.col_status = [_BASIC if is_basic else _AT_ZERO for is_basic in basic.tolist()]
-        basis.row_status = [_AT_ZERO] * rows
+        basis.row_status = [_AT_ZERO] * len(rhs)
         basis.valid = True
         basis.alien = True
         highs.setBasis(basis)
-    highs.run()
-    if highs.getModelStatus() != highspy.HighsModelStatus.kOptimal:
+    unknowns = solved(highs)
+    if unknowns is None:
         return None
-    solution = highs.getSolution()
-    unknowns, duals = np.array(solution.col_value), np.array(solution.row_dual)
-    return Vertex(*corrected(highs, (costs, matrix, rhs), unknowns, duals))
+    duals = np.array(highs.getSolution().row_dual)
+    return corrected(highs, (costs, matrix, rhs), unknowns, duals)

@@ -23,30 +23,16 @@ FREEDOMS: tuple[Freedom, Freedom, Freedom] = ("x", "y", "turn")
 
 @dataclass(frozen=True)
 class Block:
-    """One rigid block.
+    """One rigid block."""
 
-    Parameters
-    ----------
-    id : int
-        Positive.
-    area : float
-        In squared lengths of the wall frame.
-    centroid : (float, float)
-        (x, y) in the wall frame, y up.
-    density : float
-        Weight of a unit of area.
-    fixed : bool
-        A fixed block is part of the ground: it does not move and its weight does not matter.
-    held : tuple of {"x", "y", "turn"}
-        What a guide keeps the block from doing; a beam that stays level is held in "turn".
-    """
-
-    id: int
-    area: float
-    centroid: tuple[float, float]
-    density: float = 1.0
+    id: int  # positive
+    area: float  # in squared lengths of the wall frame
+    centroid: tuple[float, float]  # (x, y) in the wall frame, y up
+    density: float = 1.0  # weight of a unit of area
     fixed: bool = False
+    """A fixed block is part of the ground: it does not move and its weight does not matter."""
     held: tuple[Freedom, ...] = ()
+    """What a guide keeps the block from doing; a beam that stays level is held in "turn"."""
 
     @property
     def weight(self) -> float:
@@ -56,28 +42,15 @@ class Block:
 
 @dataclass(frozen=True, eq=False)
 class Interface:
-    """A straight piece of boundary on which two blocks touch.
+    """A straight piece of boundary on which two blocks touch."""
 
-    Parameters
-    ----------
-    block : int
-        Id of the block that the normal points into.
-    other : int
-        Id of the block on the other side, or GROUND.
-    points : (n, 2) float array
-        Contact points in the wall frame: the two ends of the interface, one for a contact at a
-        point.
-    normal : (float, float)
-        Unit vector, from `other` into `block`.
-    mu : float, optional
-        Coefficient of friction here; None for that of the model.
-    """
-
-    block: int
-    other: int
+    block: int  # id of the block that the normal points into
+    other: int  # id of the block on the other side, or GROUND
     points: NDArray[np.float64]
-    normal: tuple[float, float]
-    mu: float | None = None
+    """(n, 2): contact points in the wall frame: the two ends of the interface, one for a contact at
+    a point."""
+    normal: tuple[float, float]  # unit vector, from `other` into `block`
+    mu: float | None = None  # coefficient of friction here; None for that of the model
 
     @cached_property
     def length(self) -> float:
@@ -87,24 +60,13 @@ class Interface:
 
 @dataclass(frozen=True, eq=False)
 class RigidBlockModel:
-    """Blocks and interfaces; immutable.
+    """Blocks and interfaces; immutable."""
 
-    Parameters
-    ----------
-    blocks : tuple of Block
-        With different ids.
-    interfaces : tuple of Interface
-        Between blocks, or between a block and the ground.
-    mu : float
-        Coefficient of friction of the interfaces that have none of their own.
-    added : Addition or None
-        How it was made from another model by :meth:`with_added`, for what grows along with it.
-    """
-
-    blocks: tuple[Block, ...]
-    interfaces: tuple[Interface, ...]
-    mu: float = 0.58
+    blocks: tuple[Block, ...]  # with different ids
+    interfaces: tuple[Interface, ...]  # between blocks, or between a block and the ground
+    mu: float = 0.58  # coefficient of friction of the interfaces that have none of their own
     added: "Addition | None" = field(default=None, init=False)
+    """How it was made from another model by :meth:`with_added`, for what grows along with it."""
 
     def __repr__(self) -> str:
         counts = f"{len(self.blocks)} blocks, {len(self.interfaces)} interfaces"
@@ -118,14 +80,8 @@ class RigidBlockModel:
     ) -> "RigidBlockModel":
         """Return the model with a stone and its wedges: new ones come last.
 
-        Parameters
-        ----------
-        blocks : tuple of Block
-            New ones.
-        interfaces : tuple of Interface
-            New ones, between any blocks.
-        closed : tuple of int
-            Ascending positions in `interfaces` of this model of those that are there no more.
+        `closed` are ascending positions in `interfaces` of this model of those that are there no
+        more.
         """
         kept = self.interfaces
         for position in reversed(closed):
@@ -144,26 +100,23 @@ class RigidBlockModel:
         return min(self.mu if interface.mu is None else interface.mu, NO_SLIP)
 
     @cached_property
+    def contact_interfaces(self) -> NDArray[np.int64]:
+        """Place of the interface of every contact point (m,)."""
+        counts = [len(interface.points) for interface in self.interfaces]
+        return np.repeat(np.arange(len(counts)), np.array(counts, np.int64))
+
+    @property
     def contact_count(self) -> int:
         """Number of contact points."""
-        return sum(len(interface.points) for interface in self.interfaces)
+        return len(self.contact_interfaces)
 
 
 @dataclass(frozen=True, eq=False)
 class Addition:
-    """What a stone and its wedges add to a model.
-
-    Parameters
-    ----------
-    base : RigidBlockModel
-        The model without them.
-    blocks, interfaces : tuple of Block, tuple of Interface
-        New ones.
-    closed : tuple of int
-        Ascending positions in ``base.interfaces`` of contacts at a point that were closed in.
-    """
+    """What a stone and its wedges add to a model."""
 
     base: RigidBlockModel
     blocks: tuple[Block, ...]
-    interfaces: tuple[Interface, ...]
+    interfaces: tuple[Interface, ...]  # new ones
     closed: tuple[int, ...] = ()
+    """Ascending positions in ``base.interfaces`` of contacts at a point that were closed in."""

@@ -27,57 +27,38 @@ class LimitStatus(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Mechanism:
-    """How the wall fails: the velocity of each block, up to a common factor.
+    """How the wall fails: the velocity of each block, up to a common factor."""
 
-    Parameters
-    ----------
-    block_ids : tuple of int
-        Free blocks in the order of the rows of `velocity`.
-    velocity : (n, 3) float array
-        Horizontal and vertical velocity of the centroid (wall frame) and rate of turning,
-        counter-clockwise, per block; the largest displacement of a centroid is 1.
-    """
-
-    block_ids: tuple[int, ...]
+    block_ids: tuple[int, ...]  # free blocks in the order of the rows of `velocity`
     velocity: Floats
+    """(n, 3): horizontal and vertical velocity of the centroid (wall frame) and rate of turning,
+    counter-clockwise, per block; the largest displacement of a centroid is 1."""
 
 
 @dataclass(frozen=True)
 class Certificate:
     """Proof of an answer: a state of forces bounds alpha on one side, a mechanism on the other.
 
-    Forces in equilibrium and within friction show that the wall carries `lower`.  A mechanism
-    that closes no contact and dilates as the associated flow rule says shows that it carries no
-    more than `upper`, its balance of work.  The wall falls by itself when its dead load does work
-    on such a mechanism.  All errors are in mean weights of a block and relative to the largest
+    Forces in equilibrium and within friction show that the wall carries `lower`.  A mechanism that
+    closes no contact and dilates as the associated flow rule says shows that it carries no more
+    than `upper`, its balance of work.  The wall falls by itself when its dead load does work on
+    such a mechanism.  All errors are in mean weights of a block and relative to the largest
     velocity.
-
-    Parameters
-    ----------
-    residual : float
-        Largest force or moment on a block that is not balanced.
-    violation : float
-        Largest force by which a contact point leaves its cone of friction.
-    inadmissible : float
-        Largest rate at which the mechanism closes a contact or slides without dilating.
-    lower, upper : float or None
-        Load multiplier of the forces and of the mechanism, signed along the live load (below 0
-        for the direction "left"); infinite when a growing state of
-        self-stress carries any load.
-    slack : float or None
-        How far alpha could lie beyond `upper` because the mechanism closes contacts by
-        `inadmissible`, with forces as large in sum as those found.  `holds` does not look at it.
-    fall_work : float or None
-        Work of the dead load on the mechanism, for walls that do not stand.
     """
 
-    residual: float = 0.0
-    violation: float = 0.0
+    residual: float = 0.0  # largest force or moment on a block that is not balanced
+    violation: float = 0.0  # largest force by which a contact point leaves its cone of friction
     inadmissible: float = 0.0
+    """Largest rate at which the mechanism closes a contact or slides without dilating."""
     lower: float | None = None
-    upper: float | None = None
+    """Load multiplier of the forces, signed along the live load (below 0 to the left); infinite
+    when a growing state of self-stress carries any load."""
+    upper: float | None = None  # that of the mechanism
     slack: float | None = None
+    """How far alpha could lie beyond `upper` because the mechanism closes contacts by
+    `inadmissible`, with forces as large in sum as those found.  `holds` does not look at it."""
     fall_work: float | None = None
+    """Work of the dead load on the mechanism, for walls that do not stand."""
 
     @property
     def gap(self) -> float | None:
@@ -143,16 +124,11 @@ class LimitResult:
 
 @dataclass(frozen=True, eq=False)
 class LoadRange:
-    """All alpha for which dead + alpha live can be carried: an interval.
-
-    Parameters
-    ----------
-    least, greatest : LimitResult
-        Its ends, `alpha` of either sign along the live load.  Both are "unstable" when there is
-        no such alpha.
-    """
+    """All alpha for which dead + alpha live can be carried: an interval."""
 
     least: LimitResult
+    """Its ends, `alpha` of either sign along the live load.  Both are "unstable" when there is no
+    such alpha."""
     greatest: LimitResult
 
 

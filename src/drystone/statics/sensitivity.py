@@ -1,13 +1,18 @@
-"""How much the load multiplier changes with friction, from one solution (envelope theorem)."""
+"""How the load multiplier changes with friction, which nobody knows exactly."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from drystone.statics.failing.kinematics import Floats, kinematics
+from drystone.statics.failing.bodies import Floats, kinematics
+from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, tilting_table
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult
+
+USUAL = (0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8)
+"""From smooth and wet to rough and dry stone."""
 
 NO_TOLERANCE = 0.0
 """Every velocity counts: small ones add little."""
@@ -15,15 +20,10 @@ NO_TOLERANCE = 0.0
 
 @dataclass(frozen=True, eq=False)
 class FrictionSensitivity:
-    """Derivatives of a load multiplier by coefficients of friction; never below 0 but by rounding.
-
-    Parameters
-    ----------
-    per_interface : (k,) float array
-        By the coefficient of each interface of the model alone, in its order.
-    """
+    """Derivatives of a load multiplier by friction; never below 0 but by rounding."""
 
     per_interface: Floats
+    """(k,): by the coefficient of each interface of the model alone, in its order."""
 
     @property
     def total(self) -> float:
@@ -41,59 +41,49 @@ def friction_sensitivity(
 ) -> FrictionSensitivity:
     """Find d alpha / d mu of an associative load multiplier, without another analysis.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        The wall.
-    result : LimitResult
-        Of this model and these loads, "optimal", with mechanism and forces.
-    loads : Loads, optional
-        Those of the analysis; the tilting table unless given.
+    The result is "optimal", with mechanism and forces, of the same loads, or else it is a
+    ValueError.  All is 0 for pure rocking; the total is 1 for all blocks sliding on the ground.
 
-    Returns
-    -------
-    FrictionSensitivity
-        0 in all for pure rocking, 1 in total for all blocks sliding on the ground.
-
-    Raises
-    ------
-    ValueError
-        When the result has no mechanism and forces: it is not optimal, or they were not asked
-        for.
-
-    Notes
-    -----
     Friction enters the program only in the edges of the cones, normal +- mu tangent.  By the
     envelope theorem the optimum changes by the work of the duals (the velocities of the blocks) on
     the change of these columns, weighed by the forces along them.  A contact point that slips at
-    u_t carries a force along one edge only, so its share is n |u_t|, and
-
-        d alpha / d mu = sum n |u_t| / power of the live load:
-
-    the power lost in sliding, for a coefficient of friction of 1, over that of a unit load.
+    u_t carries a force along one edge only, so its share is n |u_t|, and d alpha / d mu = sum n
+    |u_t| / power of the live load: the power lost in sliding, for a coefficient of friction of 1,
+    over that of a unit load.
 
     Where the optimum is degenerate, the derivative is one-sided.  When two mechanisms need the same
-    load, as where sliding gives way to rocking, alpha has a kink: the value told is that of the
+    load, as where sliding gives way to rocking, alpha has a kink: the value is that of the
     mechanism of `result`, the derivative to one side (or, for a mechanism that blends two, between
     both).  When several states of forces carry the load, as under several blocks that slide
     together, the shares of single interfaces depend on which one was found.
-
-    Examples
-    --------
-    >>> from drystone.contacts.given import model_from_json
-    >>> from drystone.statics.limit import limit_load
-    >>> flat = model_from_json({"blocks_xywh": [[0, 0, 4, 2]]})
-    >>> round(friction_sensitivity(flat, limit_load(flat, "right", mechanism=True)).total, 6)
-    1.0
     """
     if result.mechanism is None or result.forces is None:
         raise ValueError("the sensitivity needs an optimal result with mechanism and forces")
     motion = kinematics(model, result.mechanism, NO_TOLERANCE)
     lost = result.forces[:, 0] * np.abs(motion.relative[:, 1])
-    counts = [len(interface.points) for interface in model.interfaces]
-    which = np.repeat(np.arange(len(counts)), counts)
-    per_interface = np.bincount(which, lost, len(counts))
+    per_interface = np.bincount(model.contact_interfaces, lost, len(model.interfaces))
     live = (tilting_table(model) if loads is None else loads).live
     free = [not block.fixed for block in model.blocks]
     power = float((live * motion.velocity[:-1])[free].sum())
     return FrictionSensitivity(per_interface / abs(power))
+
+
+@dataclass(frozen=True)
+class AtFriction:
+    """What a wall carries at one coefficient of friction."""
+
+    mu: float  # of the interfaces that have none of their own
+    alpha_left: float | None
+    """Load multipliers; None unless there is an optimum, as for a wall that does not stand."""
+    alpha_right: float | None
+
+
+def friction_curve(
+    model: RigidBlockModel, loads: Loads | None = None, mus: Sequence[float] = USUAL
+) -> tuple[AtFriction, ...]:
+    """Analyse a wall at several coefficients of friction; interfaces with their own keep it."""
+    found = []
+    for mu in mus:
+        both = lateral_resistance(replace(model, mu=mu), loads)
+        found.append(AtFriction(mu, both.left.alpha, both.right.alpha))
+    return tuple(found)

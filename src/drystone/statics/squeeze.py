@@ -14,36 +14,14 @@ from drystone.statics.result import LimitStatus
 def held_by_upright_faces(
     model: RigidBlockModel, loads: Loads | None = None, *, solver: Solver = "auto"
 ) -> tuple[int, ...] | None:
-    """Name the blocks that fall when upright faces have no friction.
+    """Name the blocks that fall when upright faces have no friction, in the order of the model.
 
-    Equilibrium asks only whether forces exist.  Upright faces can be pressed together as hard
-    as it takes to hold what is between them, by nothing but themselves, and the analysis says
-    that the wall stands; in the world nothing may have pressed them.
+    Equilibrium asks only whether forces exist.  Upright faces can be pressed together as hard as it
+    takes to hold what is between them, by nothing but themselves, and the analysis says that the
+    wall stands; in the world nothing may have pressed them.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        A wall that stands under its dead load.
-    loads : Loads, optional
-        Those of the analysis; the tilting table unless given.
-    solver : {"auto", "highs", "highs-ipm", "clarabel"}
-        As for :func:`drystone.statics.limit.lateral_resistance`.
-
-    Returns
-    -------
-    tuple of int or None
-        In the order of the model; none when the wall stands without that friction.  Those that
-        move in the mechanism, then with these held fast those of the next one, until the rest
-        stands.  None when a solver gave up.
-
-    Examples
-    --------
-    A brick between two piers.
-
-    >>> from drystone.contacts.given import model_from_json
-    >>> piers = [[0, 0, 1, 4], [2, 0, 1, 4]]
-    >>> held_by_upright_faces(model_from_json({"blocks_xywh": [*piers, [1, 1.5, 1, 1]]}))
-    (3,)
+    Returned are the blocks that move in the mechanism, then with these held fast those of the next
+    one, until the rest stands; None when a solver gave up.
     """
     smooth = replace(model, interfaces=slippery(model.interfaces, model.mu))
     fallen: set[int] = set()

@@ -11,6 +11,7 @@ from drystone.errors import DrystoneError
 from drystone.kernels.polygons import Points
 from drystone.model.plan import Plan
 from drystone.model.steps import piece_name
+from drystone.statics.joints import IdPair
 from drystone.statics.model import Interface, RigidBlockModel
 from drystone.verify.replay import Replay
 from drystone.verify.report import Problem
@@ -25,25 +26,14 @@ SAME_WAY = 1e-3
 
 SAME_FRICTION = 1e-9
 
-Pair = tuple[int, int]
-"""Ids of two blocks that touch, the smaller one first."""
-
 
 def check_blocks(
     content: Any, plan: Plan, replay: Replay, model: RigidBlockModel | None
 ) -> list[Problem]:
-    """Compare a block model with the plan that it lies beside (E238).
+    """Compare a block model with the plan of outlines that it lies beside (E238).
 
-    Parameters
-    ----------
-    content : anything
-        Of blocks.json; words say why it has none.
-    plan : Plan
-        Says its unit of length.
-    replay : Replay
-        Of the plan, on outlines.
-    model : RigidBlockModel or None
-        Of the whole wall as it was built again, source px; None leaves contacts out.
+    `content` is that of blocks.json, or words that say why it has none.  `model` is that of the
+    whole wall as it was built again, source px; None leaves contacts out.
     """
     if not isinstance(content, Mapping):
         why = f": {content}" if isinstance(content, str) else "."
@@ -93,9 +83,9 @@ def _check_outlines(outlines: Mapping[int, Points], replay: Replay) -> list[Prob
     return problems
 
 
-def _by_pair(model: RigidBlockModel, px: float) -> dict[Pair, list[Interface]]:
+def _by_pair(model: RigidBlockModel, px: float) -> dict[IdPair, list[Interface]]:
     """Return the interfaces of each pair in source px, normals into the larger id."""
-    found: dict[Pair, list[Interface]] = {}
+    found: dict[IdPair, list[Interface]] = {}
     for face in model.interfaces:
         low, high = sorted((face.block, face.other))
         (x, y), sign = face.normal, 1.0 if face.block == high else -1.0

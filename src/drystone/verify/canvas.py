@@ -36,22 +36,15 @@ so this is for plans of other hands and of other arithmetic."""
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
-    """A stone or wedge where the plan puts it, whether it has room there or not.
-
-    Parameters
-    ----------
-    step : StoneStep or WedgeStep
-        Its step.
-    item : Placement or Wedge or None
-        What the step comes to; None when it cannot be in the wall at all, which is a problem.
-    corners : (n, 2) float array or None
-        Its outline in the wall frame, source px, when the stones of the plan are outlines.
-    """
+class PlanPiece:
+    """A stone or wedge where the plan puts it, whether it has room there or not."""
 
     step: Step
     item: Placement | Wedge | None
+    """What the step comes to; None when it cannot be in the wall at all, which is a problem."""
     corners: Points | None = None
+    """(n, 2): its outline in the wall frame, source px, when the stones of the plan are outlines.
+    """
 
     @property
     def id(self) -> int:
@@ -60,24 +53,10 @@ class Piece:
 
 
 class ExactCanvas:
-    """Stones and wedges are their outlines; no two may lie deep in each other.
-
-    Parameters
-    ----------
-    site : Site
-        Of the plan.
-    stones : StoneSet
-        That it was made from.
-    settings : SettleSettings
-        How far outlines may stay away from the contour of the pixels, and how far stones may
-        stand out of the wall.
-    """
+    """Stones and wedges are their outlines; no two may lie deep in each other."""
 
     def __init__(self, site: Site, stones: StoneSet, settings: SettleSettings) -> None:
-        self._site = site
-        self._stones = stones
-        self._outline_px = settings.outline_px
-        self._beyond_px = settings.beyond_px
+        self._site, self._stones, self._settings = site, stones, settings
         self._outlines = Outlines.empty(site)
         self._names: list[str] = []
         self._shapes: list[shapely.Geometry] = []
@@ -87,26 +66,22 @@ class ExactCanvas:
         """All pieces; a pixel belongs to the one that covers most of it (DESIGN 4.9)."""
         return self._outlines.shares.labels
 
-    def put(self, step: Step) -> tuple[Piece, list[Problem]]:
+    def put(self, step: Step) -> tuple[PlanPiece, list[Problem]]:
         """Return what a step places, and what stands in the way (E220, E221).
 
-        Raises
-        ------
-        PlanError
-            When the step places nothing: E201, there is no such stone; E222, there is no such
-            wedge.
+        PlanError when it places nothing: there is no such stone (E201) or no such wedge (E222).
         """
         site, settled = self._site, None
         if isinstance(step, WedgeStep):
             corners = wedge_corners(step, site)
         else:
-            settled = settled_stone(step, self._stones, site, self._outline_px)
+            settled = settled_stone(step, self._stones, site, self._settings.outline_px)
             corners = settled.corners
-        where = leaves(corners, site.extent_px, self._beyond_px)
+        where = leaves(corners, site.extent_px, self._settings.beyond_px)
         if where:
             # It is not drawn, as its image could be of any size.
             message = f"{piece_name(step)} leaves the site: {where}."
-            return Piece(step, None, corners), [Problem("E220", step.step, message)]
+            return PlanPiece(step, None, corners), [Problem("E220", step.step, message)]
         problems = self._overlaps(step, shape_of(corners))
         # With the pixels that it fills beside those before it.
         item: Placement | Wedge | None
@@ -122,7 +97,7 @@ class ExactCanvas:
             message = f"{piece_name(step)} fills no px of the wall."
             problems.append(Problem("E220", step.step, message))
         self._outlines = self._outlines.added([(piece_id(step), corners)], site.scale)
-        return Piece(step, item, corners), problems
+        return PlanPiece(step, item, corners), problems
 
     def _overlaps(self, step: Step, shape: shapely.Geometry) -> list[Problem]:
         """Name the pieces that this one lies in, too deep (E221); remember it."""
@@ -140,50 +115,33 @@ class ExactCanvas:
 
 
 class RasterCanvas:
-    """Stones and wedges are their pixels; no two may share one.
-
-    Parameters
-    ----------
-    site : Site
-        Of the plan.
-    stones : StoneSet
-        That it was made from.
-    """
+    """Stones and wedges are their pixels; no two may share one."""
 
     def __init__(self, site: Site, stones: StoneSet) -> None:
-        self._site = site
-        self._stones = stones
-        self._labels = np.zeros((site.height_px, site.width_px), np.uint32)
-
-    @property
-    def labels(self) -> Labels:
+        self._site, self._stones = site, stones
+        self.labels: Labels = np.zeros((site.height_px, site.width_px), np.uint32)
         """All pieces; where two overlap the first one is seen."""
-        return self._labels
 
-    def put(self, step: Step) -> tuple[Piece, list[Problem]]:
+    def put(self, step: Step) -> tuple[PlanPiece, list[Problem]]:
         """See :meth:`ExactCanvas.put`; E220 is raised of a wedge, too."""
         item: Placement | Wedge
         if isinstance(step, WedgeStep):
             item = place_wedge(step, self._site)
+            mask = item.mask
         else:
             item = place_stone(step, self._stones, self._site)
-        return Piece(step, item), self._painted(step, item)
-
-    def _painted(self, step: Step, item: Placement | Wedge) -> list[Problem]:
-        """Draw a piece where there is room; name what is outside (E220) or taken (E221)."""
-        rows, cols = item.window
-        mask = item.mask if isinstance(item, Wedge) else item.posed.mask
-        height, width = self._labels.shape
-        name = piece_name(step)
+            mask = item.posed.mask
+        piece, name, (rows, cols) = PlanPiece(step, item), piece_name(step), item.window
+        height, width = self.labels.shape
         outside = (-rows.start, rows.stop - height, -cols.start, cols.stop - width)
         if max(outside) > 0:
             where = ", ".join(f"{n} px {s}" for n, s in zip(outside, SIDES, strict=True) if n > 0)
-            return [Problem("E220", step.step, f"{name} leaves the site: {where}.")]
-        view = self._labels[rows, cols]
+            return piece, [Problem("E220", step.step, f"{name} leaves the site: {where}.")]
+        view = self.labels[rows, cols]
         taken = view[mask]
-        view[mask & (view == 0)] = item.id if isinstance(item, Wedge) else item.stone_id
+        view[mask & (view == 0)] = piece.id
         ids, counts = np.unique(taken[taken > 0], return_counts=True)
-        return [
+        return piece, [
             Problem("E221", step.step, f"{name} overlaps {other} by {count} working px.")
             for other, count in zip(ids.tolist(), counts.tolist(), strict=True)
         ]
@@ -199,11 +157,8 @@ def settled_stone(step: StoneStep, stones: StoneSet, site: Site, outline_px: flo
 def wedge_corners(step: WedgeStep, site: Site) -> Points:
     """Return the outline of a wedge step in source px.
 
-    Raises
-    ------
-    PlanError
-        E222 when its polygon crosses or touches itself, names a corner twice, has no area, or is
-        clockwise.
+    PlanError E222 when it crosses or touches itself, names a corner twice, has no area, or is
+    clockwise.
     """
     corners = source_points(step.polygon, site)
     polygon = shapely.Polygon(corners)
@@ -222,11 +177,6 @@ def leaves(corners: Points, extent_px: tuple[float, float], beyond_px: float = 0
     """Say where an outline is out of the wall by more than it may and `PENETRATION_PX`.
 
     Over the ends and the top it may stand out by `beyond_px`, into the ground by nothing.
-
-    Examples
-    --------
-    >>> leaves(np.array([[0.0, -0.3], [2.0, -0.02], [2.0, 5.0]]), (9.0, 4.5))
-    '0.5 px above the top, 0.3 px below the ground'
     """
     (left, bottom), (right, top) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
     width, height = extent_px
@@ -255,13 +205,7 @@ def place_stone(step: StoneStep, stones: StoneSet, site: Site) -> Placement:
 
 
 def place_wedge(step: WedgeStep, site: Site) -> Wedge:
-    """Return the pixels of a wedge step.
-
-    Raises
-    ------
-    PlanError
-        E220 when its polygon leaves the site, E222 when there is no pixel in it.
-    """
+    """Return the pixels of a wedge; PlanError E220 outside of the site, E222 without a pixel."""
     polygon = working_points(step.polygon, site)
     low, high = polygon.min(axis=0), polygon.max(axis=0)
     if (low < -0.5).any() or (high > (site.width_px + 0.5, site.height_px + 0.5)).any():

@@ -13,7 +13,6 @@ from drystone.model.wall import Labels, Wall
 from drystone.planner.dropping import wedge_limits
 from drystone.statics.model import RigidBlockModel
 from drystone.verify.blocks import check_blocks
-from drystone.verify.buried import is_buried
 from drystone.verify.claims import (
     Reference,
     check_choice,
@@ -26,11 +25,16 @@ from drystone.verify.claims import (
 )
 from drystone.verify.lengths import source_points
 from drystone.verify.outlines import real_outline
-from drystone.verify.pixels import check_outline
+from drystone.verify.pieces import (
+    check_outline,
+    check_polygon,
+    check_settled_wedge,
+    check_wedge,
+    is_buried,
+)
 from drystone.verify.replay import Replay, Stage, replay_plan
 from drystone.verify.report import CheckReport, Problem
-from drystone.verify.stability import Standing, check_stability, prefix_alphas
-from drystone.verify.wedges import check_polygon, check_settled_wedge, check_wedge
+from drystone.verify.stability import Stability, check_stability
 
 
 def check_plan(
@@ -38,40 +42,20 @@ def check_plan(
 ) -> CheckReport:
     """Build the wall of a plan again from the input stones and verify everything it claims.
 
-    Parameters
-    ----------
-    plan : Plan
-        To be checked.
-    stones : StoneSet
-        The stones that it was made from, read again.
-    wall_labels : (h, w) integer array, optional
-        Contents of wall.png; every stone's pixels must be those of its pose, which a mirrored
-        stone's are not.
-    blocks : anything, optional
-        Contents of blocks.json beside a plan of outlines; all that is exported is made of it.
-
-    Returns
-    -------
-    CheckReport
-        `ok` when nothing was found that does not hold.
-
-    Raises
-    ------
-    PlanError
-        E215 when the wall is too large or too small to be an image.
-
-    Notes
-    -----
     Verified are: the source; that each stone is used once and the others are listed; that stones
     and wedges are inside the site and overlap by no pixel at the working resolution; the source
-    centroids, clusters and turns of stones; the rules of wedging; that the wall stands after
-    every stone with its wedges, with the load multipliers claimed; all indices; the metrics; that
-    no stone is banned or out of a given order; the images and the block model beside the plan.
-    On exact geometry outlines are what is judged: that they are those of the pixels, how deep
-    they lie in each other and beyond the edges of the wall, and the limit analysis on their
-    contacts, with the tolerance of the plan.
-    Stones that cannot be lowered in from above, the deviation of pixel areas from the stones' own
-    and, on the raster, overlap of the real outlines are reported and are no failure.
+    centroids, clusters and turns of stones; the rules of wedging; that the wall stands after every
+    stone with its wedges, with the load multipliers claimed; all indices; the metrics; that no
+    stone is banned or out of a given order; the images and the block model beside the plan.
+    `wall_labels` are those of wall.png, `blocks` the contents of blocks.json.
+
+    On exact geometry outlines are what is judged: that they are those of the pixels, how deep they
+    lie in each other and beyond the edges of the wall, and the limit analysis on their contacts,
+    with the tolerance of the plan.  Stones that cannot be lowered in from above, the deviation of
+    pixel areas from the stones' own and, on the raster, overlap of the real outlines are reported
+    and are not a failure.
+
+    A wall that is too large or too small to be an image is a PlanError (E215).
     """
     replay = replay_plan(plan, stones)
     reference = Reference.of(stones, replay.settings, plan.working_scale)
@@ -99,7 +83,7 @@ def check_plan(
         buried=tuple(stage.stone.stone for stage in replay.stages if is_buried(stage)),
         area_error=area_error,
         area_error_at=area_error_at,
-        prefixes=prefix_alphas(replay.stages, standing.resistances),
+        prefixes=standing.prefixes,
         metrics=metrics,
         notes=tuple(_notes(plan, stones, replay, wall_labels, blocks)),
         geometry=replay.settings.geometry,
@@ -122,7 +106,7 @@ def _check_pieces(replay: Replay, reference: Reference) -> list[Problem]:
     return problems
 
 
-def _check_stages(replay: Replay, standing: Standing, reference: Reference) -> list[Problem]:
+def _check_stages(replay: Replay, standing: Stability, reference: Reference) -> list[Problem]:
     """Verify indices and wedges of every stage."""
     problems = []
     unit, wall = replay.site.units_per_px, replay.wall

@@ -40,27 +40,13 @@ _BY_STATICS = (
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """What claims are compared with.
-
-    Parameters
-    ----------
-    stones : StoneSet
-        The input.
-    settings : PlannerSettings
-        Of the plan.
-    book : PoseBook
-        At the plan's working resolution.
-    clusters : dict of int to int
-        Cluster of each stone.
-    stock : Stock
-        Sizes of the stones in their initial poses.
-    """
+    """What claims are compared with."""
 
     stones: StoneSet
     settings: PlannerSettings
-    book: PoseBook
-    clusters: dict[int, int]
-    stock: Stock
+    book: PoseBook  # at the plan's working resolution
+    clusters: dict[int, int]  # cluster of each stone
+    stock: Stock  # sizes of the stones in their initial poses
 
     @classmethod
     def of(cls, stones: StoneSet, settings: PlannerSettings, scale: float) -> "Reference":
@@ -147,19 +133,7 @@ def check_stone_claims(step: StoneStep, reference: Reference) -> list[Problem]:
 def check_indices(
     stage: Stage, resistance: LateralResistance, reference: Reference, units_per_px: float
 ) -> list[Problem]:
-    """Verify the indices of an action on the landscape before it (E232).
-
-    Parameters
-    ----------
-    stage : Stage
-        The action.
-    resistance : LateralResistance
-        Of the wall after it.
-    reference : Reference
-        Of the stones.
-    units_per_px : float
-        Plan's units in a working px.
-    """
+    """Verify the indices of an action on the landscape before it (E232)."""
     step = stage.stone
     group = stage.group
     claimed_height = step.course_height
@@ -182,17 +156,7 @@ def check_indices(
 
 
 def recompute_metrics(plan: Plan, replay: Replay, model: RigidBlockModel | None) -> PlanMetrics:
-    """Return the figures of merit of a rebuilt wall.
-
-    Parameters
-    ----------
-    plan : Plan
-        Gives the size of the wall.
-    replay : Replay
-        Not broken.
-    model : RigidBlockModel or None
-        Of the whole wall; None when nothing is placed.
-    """
+    """Return the figures of merit of a wall that was rebuilt whole; no model is no stone."""
     model = model or RigidBlockModel((), (), replay.settings.mu)
     source_px = plan.px_per_m or 1.0
     frame = Frame(plan.width * source_px, plan.height * source_px, replay.site)

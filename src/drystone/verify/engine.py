@@ -14,22 +14,10 @@ CONFIRMED = 0.85
 def check_engine(
     plan: Plan, built: BuildUp, tilts: tuple[TiltResult, TiltResult] | None
 ) -> list[Problem]:
-    """Verify that the engine does not contradict a plan.
+    """Verify that the engine does not contradict a plan, whose wall it built and may have tilted.
 
-    Parameters
-    ----------
-    plan : Plan
-        The plan.
-    built : BuildUp
-        Its wall in the engine, in the order of construction.
-    tilts : (TiltResult, TiltResult) or None
-        To the left and to the right; None when it was not tilted.
-
-    Returns
-    -------
-    list of Problem
-        E241: blocks fall in the wall as it is drawn; E242: tilted, the wall comes down below
-        `CONFIRMED` of a load multiplier that the plan claims.
+    E241: blocks fall in the wall as it is drawn.  E242: tilted, the wall comes down below
+    `CONFIRMED` of a load multiplier that the plan claims.
     """
     problems = []
     if built.first_fall is not None:

@@ -20,40 +20,23 @@ from drystone.verify.lengths import plan_settings, plan_site, source_points
 NO_AREA_PX = 1e-9
 """A polygon with an area below this, in square px, has none but for rounding."""
 
-Group = tuple[tuple[int, Points], ...]
+PolygonGroup = tuple[tuple[int, Points], ...]
 """A stone and its wedges, the stone first: ids and corners."""
 
 
-def plan_polygons(plan: Plan, stones: StoneSet) -> tuple[Group, ...]:
-    """Return every stone with its wedges where the plan puts them.
+def plan_polygons(plan: Plan, stones: StoneSet) -> tuple[PolygonGroup, ...]:
+    """Return every stone with its wedges where the plan puts them, in the order of placement.
 
-    A stone is its outline, also when the plan was made on the raster; what overlaps is not
-    pushed apart.
-
-    Parameters
-    ----------
-    plan : Plan
-        What to build.
-    stones : StoneSet
-        The stones that it was made from.
-
-    Returns
-    -------
-    tuple of tuple of (int, (n, 2) float array)
-        In the order of placement: ids and corners in the wall frame, source px,
-        counter-clockwise, not closed.  Steps that place nothing are left out: stones that are
-        not there (E212), ids that came before (E213), polygons without an area (E222).
-
-    Raises
-    ------
-    PlanError
-        E215: the wall is too large or too small to be an image.
+    Corners (n, 2) are in the wall frame, source px, counter-clockwise and not closed.  A stone is
+    its outline, also when the plan was made on the raster; what overlaps is not pushed apart. Steps
+    that place nothing are left out: stones that are not there (E212), ids that came before (E213),
+    polygons without an area (E222).  PlanError E215 as for the replay.
     """
     settings, _ = plan_settings(plan)
     exact = settings.geometry == "exact"
     outline_px = settings.settle.outline_px if exact else OUTLINE_TOLERANCE_PX
     site = plan_site(plan)
-    found: list[Group] = []
+    found: list[PolygonGroup] = []
     used: set[int] = set()
     for steps in grouped(plan.steps)[0]:
         group = []
@@ -70,21 +53,7 @@ def plan_polygons(plan: Plan, stones: StoneSet) -> tuple[Group, ...]:
 
 
 def common_areas(polygons: Mapping[int, Points], blocks: Sequence[int]) -> tuple[Points, ...]:
-    """Return what some blocks have in common with any others, as polygons.
-
-    Parameters
-    ----------
-    polygons : mapping of int to (n, 2) float array
-        All blocks.
-    blocks : sequence of int
-        Those that are asked for.
-
-    Examples
-    --------
-    >>> square = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
-    >>> [len(area) for area in common_areas({1: square, 2: square + [1, 1]}, [2])]
-    [4]
-    """
+    """Return what the given blocks have in common with any others, as polygons."""
     shapes = {block: shape_of(corners) for block, corners in polygons.items()}
     areas: list[shapely.Polygon] = []
     for block in blocks:

@@ -11,28 +11,18 @@ from drystone.model.steps import Fault, Step, grouped, id_fault
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Group, Labels, Wall
 from drystone.planner.settings import PlannerSettings
-from drystone.verify.canvas import ExactCanvas, Piece, RasterCanvas
+from drystone.verify.canvas import ExactCanvas, PlanPiece, RasterCanvas
 from drystone.verify.lengths import plan_settings, plan_site
 from drystone.verify.report import Problem
 
 
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """The wall before and after one stone and its wedges.
-
-    Parameters
-    ----------
-    stone : StoneStep
-        The step of the stone.
-    last : StoneStep or WedgeStep
-        The last step of the group, which claims the load multipliers.
-    before, after : Wall
-        The wall without and with the group.
-    """
+    """The wall before and after one stone and its wedges."""
 
     stone: StoneStep
-    last: StoneStep | WedgeStep
-    before: Wall
+    last: StoneStep | WedgeStep  # the last step of the group, which claims the load multipliers
+    before: Wall  # the wall without and with the group
     after: Wall
 
     @property
@@ -43,35 +33,19 @@ class Stage:
 
 @dataclass(frozen=True, eq=False)
 class Replay:
-    """A plan played again.
-
-    Parameters
-    ----------
-    settings : PlannerSettings
-        Of the plan; they say on which geometry it was made.
-    site : Site
-        Size and resolution of the wall.
-    pieces : tuple of Piece
-        Everything that could be derived, in order.
-    labels : (h, w) uint32 array
-        All of it drawn, row 0 at the top; where pixels of two pieces overlap the first one is
-        seen, where outlines do the one that covers most.
-    stages : tuple of Stage
-        The wall as it grows, up to the first group that cannot be built.
-    broken_at : int or None
-        First step of that group; None when the whole wall was built.
-    problems : tuple of Problem
-        E212, E213: ids; E214: order of steps; E217: settings; E220: outside the site; E221:
-        overlap; E222: a wedge whose polygon is none.
-    """
+    """A plan played again."""
 
     settings: PlannerSettings
     site: Site
-    pieces: tuple[Piece, ...]
+    pieces: tuple[PlanPiece, ...]  # everything that could be derived, in order
     labels: Labels
-    stages: tuple[Stage, ...]
-    broken_at: int | None
+    """(h, w): all of it drawn, row 0 at the top; where pixels of two pieces overlap the first one
+    is seen, where outlines do the one that covers most."""
+    stages: tuple[Stage, ...]  # the wall as it grows, up to the first group that cannot be built
+    broken_at: int | None  # first step of that group; None when the whole wall was built
     problems: tuple[Problem, ...]
+    """E212, E213: ids; E214: order of steps; E217: settings; E220: outside the site; E221: overlap;
+    E222: a wedge whose polygon is none."""
 
     @property
     def exact(self) -> bool:
@@ -88,21 +62,9 @@ def rebuild_wall(plan: Plan, stones: StoneSet) -> Wall:
     """Return the wall of a plan, derived from the input stones and the poses alone.
 
     On the raster each stone is turned, reduced and rasterised from its source pixels, with its
-    centroid where the plan puts it (to the nearest 1/64 working px); on exact geometry its
-    outline is.  Wedges come from their polygons.
-
-    Parameters
-    ----------
-    plan : Plan
-        What to build.
-    stones : StoneSet
-        The stones that it was made from.
-
-    Raises
-    ------
-    PlanError
-        The first problem of :class:`Replay`; E215 when the wall is too large or too small to be
-        an image.
+    centroid where the plan puts it (to the nearest 1/64 working px); on exact geometry its outline
+    is.  Wedges come from their polygons.  The first problem of :class:`Replay` is a PlanError, as
+    is a wall that is too large or too small to be an image (E215).
     """
     replay = replay_plan(plan, stones)
     if replay.problems:
@@ -117,13 +79,7 @@ def rebuild_wall(plan: Plan, stones: StoneSet) -> Wall:
 
 
 def replay_plan(plan: Plan, stones: StoneSet) -> Replay:
-    """Play a plan again and collect what stands in the way.
-
-    Raises
-    ------
-    PlanError
-        E215: the wall is too large or too small to be an image.
-    """
+    """Play a plan again and collect what stands in the way; PlanError (E215) as above."""
     settings, problems = plan_settings(plan)
     site = plan_site(plan)
     groups, disorder = grouped(plan.steps)
@@ -131,7 +87,7 @@ def replay_plan(plan: Plan, stones: StoneSet) -> Replay:
     exact = settings.geometry == "exact"
     canvas = ExactCanvas(site, stones, settings.settle) if exact else RasterCanvas(site, stones)
     wall, broken_at = Wall.empty(site, exact=exact), None
-    pieces: list[Piece] = []
+    pieces: list[PlanPiece] = []
     stages: list[Stage] = []
     used: set[int] = set()
     for steps in groups:
@@ -154,9 +110,9 @@ def replay_plan(plan: Plan, stones: StoneSet) -> Replay:
 
 def _derive(
     steps: Sequence[Step], canvas: ExactCanvas | RasterCanvas, stones: StoneSet, used: set[int]
-) -> tuple[list[Piece], list[Problem]]:
+) -> tuple[list[PlanPiece], list[Problem]]:
     """Turn the steps of a group into what they place; note their ids as used."""
-    pieces: list[Piece] = []
+    pieces: list[PlanPiece] = []
     problems = []
     largest = max((stone.id for stone in stones), default=0)
     for step in steps:

@@ -9,20 +9,10 @@ from drystone.model.plan import PlanMetrics
 
 @dataclass(frozen=True)
 class Problem:
-    """One claim of a plan that does not hold.
+    """One claim of a plan that does not hold."""
 
-    Parameters
-    ----------
-    code : str
-        Stable code, ``"E210"`` to ``"E242"``; documented in ``docs/errors.md``.
-    step : int or None
-        Number of the step concerned; None when it is the plan as a whole.
-    message : str
-        What is claimed and what was found.
-    """
-
-    code: str
-    step: int | None
+    code: str  # stable code, ``"E210"`` to ``"E242"``; documented in ``docs/errors.md``
+    step: int | None  # number of the step concerned; None when it is the plan as a whole
     message: str
 
     def __str__(self) -> str:
@@ -31,15 +21,7 @@ class Problem:
 
 
 def contradicted(name: str, claimed: float | None, found: float | None) -> str:
-    """Say that a plan claims another value than was found; None is written null, as in JSON.
-
-    Examples
-    --------
-    >>> contradicted("F_AH", 2.5, None)
-    'F_AH is 2.5 by the plan, but there is no such value.'
-    >>> contradicted("F_AH", None, 2.5)
-    'F_AH is null by the plan, 2.5 was found.'
-    """
+    """Say that a plan claims another value than was found; None is written null, as in JSON."""
     said = "null" if claimed is None else claimed
     if found is None:
         return f"{name} is {said} by the plan, but there is no such value."
@@ -48,60 +30,33 @@ def contradicted(name: str, claimed: float | None, found: float | None) -> str:
 
 @dataclass(frozen=True)
 class PrefixAlpha:
-    """What the wall carries after a stone and its wedges.
+    """What the wall carries after a stone and its wedges."""
 
-    Parameters
-    ----------
-    step : int
-        Last step of the stone and its wedges.
-    alpha_left, alpha_right : float or None
-        Load multipliers found; None where the wall does not stand.
-    """
-
-    step: int
+    step: int  # last step of the stone and its wedges
     alpha_left: float | None
-    alpha_right: float | None
+    alpha_right: float | None  # load multipliers found; None where the wall does not stand
 
 
 @dataclass(frozen=True)
 class CheckReport:
-    """Outcome of :func:`drystone.verify.check.check_plan`.
-
-    Parameters
-    ----------
-    problems : tuple of Problem
-        Every claim that does not hold; empty when the plan is what it says.
-    overlap_depth : float
-        How deep real outlines of two stones (on exact geometry also of wedges) lie in each other
-        at most, source px; see :func:`drystone.model.overlap.overlap_depth`.
-    overlap_depth_at : (int, int) or None
-        Ids of the two; None when no two outlines overlap.
-    buried : tuple of int
-        Ids of stones that cannot be lowered in from above; no failure.
-    area_error : float
-        Largest deviation of a stone's pixels in the wall from its own area, as a share of it.
-    area_error_at : int or None
-        Id of that stone; None for an empty plan.
-    prefixes : tuple of PrefixAlpha
-        Load multipliers after every stone, as far as the wall could be built.
-    metrics : PlanMetrics or None
-        Recomputed; None when the wall could not be built to its end.
-    notes : tuple of str
-        What was not or could not be checked, and what is worth knowing.
-    geometry : {"raster", "exact"}
-        What the plan was verified on: the pixels or the outlines of its stones.
-    """
+    """Outcome of :func:`drystone.verify.check.check_plan`."""
 
     problems: tuple[Problem, ...]
+    """Every claim that does not hold; empty when the plan is what it says."""
     overlap_depth: float
-    overlap_depth_at: tuple[int, int] | None
-    buried: tuple[int, ...]
+    """How deep real outlines of two stones (on exact geometry also of wedges) lie in each other at
+    most, source px; see :func:`drystone.model.overlap.overlap_depth`."""
+    overlap_depth_at: tuple[int, int] | None  # ids of the two; None when no two outlines overlap
+    buried: tuple[int, ...]  # ids of stones that cannot be lowered in from above; no failure
     area_error: float
-    area_error_at: int | None
+    """Largest deviation of a stone's pixels in the wall from its own area, as a share of it."""
+    area_error_at: int | None  # id of that stone; None for an empty plan
     prefixes: tuple[PrefixAlpha, ...]
-    metrics: PlanMetrics | None
+    """Load multipliers after every stone, as far as the wall could be built."""
+    metrics: PlanMetrics | None  # recomputed; None when the wall could not be built to its end
     notes: tuple[str, ...]
     geometry: Literal["raster", "exact"] = "raster"
+    """What the plan was verified on: the pixels or the outlines of its stones."""
 
     @property
     def ok(self) -> bool:

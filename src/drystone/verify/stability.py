@@ -21,42 +21,29 @@ ALPHA_TOLERANCE = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
-class Standing:
-    """What the walls on the way carry.
-
-    Parameters
-    ----------
-    resistances : tuple of LateralResistance or None
-        After each stage; None where the wall hangs in the air.
-    models : tuple of RigidBlockModel or None
-        Of the same walls.
-    problems : tuple of Problem
-        E230: it does not stand, or the solver gave up; E231: another load multiplier is claimed;
-        E237: a wall of outlines stands by friction that it should not need.
-    """
+class Stability:
+    """What the walls on the way carry."""
 
     resistances: tuple[LateralResistance | None, ...]
+    """After each stage; None where the wall hangs in the air."""
     models: tuple[RigidBlockModel | None, ...]
+    prefixes: tuple[PrefixAlpha, ...]
     problems: tuple[Problem, ...]
+    """E230: it does not stand, or the solver gave up; E231: another load multiplier is claimed;
+    E237: a wall of outlines stands by friction that it should not need."""
 
 
-def check_stability(stages: Sequence[Stage], settings: PlannerSettings) -> Standing:
-    """Analyse every prefix of the plan, from its image or its outlines alone.
-
-    Parameters
-    ----------
-    stages : sequence of Stage
-        A stone and its wedges are one stage: only the wall with all of them must stand.
-    settings : PlannerSettings
-        Of the plan: friction, and with outlines the contact tolerance.
-    """
+def check_stability(stages: Sequence[Stage], settings: PlannerSettings) -> Stability:
+    """Analyse every prefix of the plan; only the wall with all wedges of a stone must stand."""
     models = [wall_model(stage.after, settings) for stage in stages]
     found = [None if model is None else lateral_resistance(model) for model in models]
     problems: list[Problem] = []
-    for stage, resistance in zip(stages, found, strict=True):
-        judged = _judge(stage, resistance)
-        problems += judged or _not_sturdy(stage, settings)
-    return Standing(tuple(found), tuple(models), tuple(problems))
+    prefixes = []
+    for stage, both in zip(stages, found, strict=True):
+        alphas = (None, None) if both is None else (both.left.alpha, both.right.alpha)
+        prefixes.append(PrefixAlpha(stage.last.step, *alphas))
+        problems += _judge(stage, both) or _not_sturdy(stage, settings)
+    return Stability(tuple(found), tuple(models), tuple(prefixes), tuple(problems))
 
 
 def wall_model(wall: Wall, settings: PlannerSettings) -> RigidBlockModel | None:
@@ -69,23 +56,6 @@ def wall_model(wall: Wall, settings: PlannerSettings) -> RigidBlockModel | None:
     model = model_of_outlines(wall.outlines, settings.mu, settle.contact_px, settle.setback)
     grounded = any(interface.other == GROUND for interface in model.interfaces)
     return model if grounded else None
-
-
-def prefix_alphas(
-    stages: Sequence[Stage], resistances: Sequence[LateralResistance | None]
-) -> tuple[PrefixAlpha, ...]:
-    """Return the load multipliers found after every stage."""
-    return tuple(
-        PrefixAlpha(stage.last.step, *(alphas(resistance)))
-        for stage, resistance in zip(stages, resistances, strict=True)
-    )
-
-
-def alphas(resistance: LateralResistance | None) -> tuple[float | None, float | None]:
-    """Return both load multipliers; None where there is none."""
-    if resistance is None:
-        return None, None
-    return resistance.left.alpha, resistance.right.alpha
 
 
 def differs(claimed: float | None, found: float | None, tolerance: float) -> bool:
@@ -125,8 +95,10 @@ def _judge(stage: Stage, resistance: LateralResistance | None) -> list[Problem]:
     ]
     if problems:
         return problems
-    claims = zip(("alpha_left", "alpha_right"), (last.alpha_left, last.alpha_right),
-                 alphas(resistance), strict=True)  # fmt: skip
+    claims = (
+        ("alpha_left", last.alpha_left, resistance.left.alpha),
+        ("alpha_right", last.alpha_right, resistance.right.alpha),
+    )
     return [
         Problem("E231", last.step, contradicted(name, claimed, found))
         for name, claimed, found in claims

@@ -9,7 +9,7 @@ from drystone.drawing import mechanism_frames, save_mechanism_animation
 from drystone.drawing.pictures import animation
 from drystone.drawing.pictures.animation import FRAME_MS, LONGER_SIDE_PX
 from drystone.errors import PlanError
-from drystone.statics.limit import limit_load
+from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import Mechanism
 from tests.drawing import examples
 from tests.statics.walls import coursed, stacked
@@ -18,7 +18,7 @@ TALL = stacked((20, 40, 0))
 
 
 def rocking(labels=TALL):
-    return limit_load(model_from_labels(labels).model, "right", mechanism=True).mechanism
+    return lateral_resistance(model_from_labels(labels).model, mechanism=True).right.mechanism
 
 
 def arrays(frames):

@@ -7,7 +7,7 @@ from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
 from drystone.drawing import plot_forces
 from drystone.drawing.pictures.forces import LONGEST_SHARE, WIDEST_PT, resultants
-from drystone.statics.limit import limit_load
+from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from tests.drawing.pictures.test_contacts import dots, lines
 from tests.statics.walls import coursed, irregular, stacked
@@ -16,7 +16,7 @@ from tests.strategies import repeatable
 
 def solved(labels, direction="right"):
     model = model_from_labels(labels).model
-    return model, limit_load(model, direction, mechanism=True).forces
+    return model, getattr(lateral_resistance(model, mechanism=True), direction).forces
 
 
 def widths(ax, gid):
@@ -40,7 +40,7 @@ def test_resultants_hold_every_block_in_equilibrium(seed, count, coursing):
     """Forces at their points of action, not only at the contact points they come from."""
     labels = coursed(seed, 3, 60) if coursing else irregular(seed, count, 90, 50)
     model = model_from_labels(labels).model
-    result = limit_load(model, "right", mechanism=True)
+    result = lateral_resistance(model, mechanism=True).right
     if result.forces is None:
         return
     load = {b.id: b.weight * np.array([result.alpha, -1.0, 0.0]) for b in model.blocks}

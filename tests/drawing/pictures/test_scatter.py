@@ -10,10 +10,10 @@ from matplotlib.figure import Figure
 from drystone.contacts.blocks import model_from_labels
 from drystone.drawing.pictures.friction import plot_friction
 from drystone.drawing.pictures.scatter import plot_scatter
-from drystone.statics.friction_curve import AtFriction
 from drystone.statics.result import LimitStatus
 from drystone.statics.scatter.scatter import scatter
 from drystone.statics.scatter.shaking import ScatterSettings
+from drystone.statics.sensitivity import AtFriction
 from tests.statics.walls import coursed, stacked
 
 

@@ -6,10 +6,10 @@ from hypothesis import strategies as st
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
 from drystone.statics.failing.mechanism import describe_mechanism
-from drystone.statics.limit import lateral_resistance, limit_load
+from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND
 from drystone.statics.result import LimitStatus, Mechanism
-from tests.statics.walls import brick_model, coursed, irregular, stacked
+from tests.statics.walls import brick_model, coursed, irregular, limit_load, stacked
 from tests.strategies import repeatable
 
 
@@ -57,39 +57,6 @@ def test_a_flat_block_slides_although_the_flow_rule_lifts_it(direction, slip):
     assert (group.motion, group.toe, group.centre, group.on_bed) == ("sliding", None, None, True)
 
 
-def test_sliding_without_dilatancy_is_sliding_too():
-    model = model_from_labels(stacked((40, 20, 0))).model
-    assert moved(model, {1: (1, 0, 0)}).contact_kinds == ("sliding", "sliding")
-
-
-def test_an_upper_block_rocks_alone():
-    failure = of_labels(stacked((40, 20, 0), (10, 40, 15)))
-    assert failure.words == "Rocking of block 2 about its right toe, on 1."
-    assert failure.moving == (2,)
-    (group,) = failure.groups
-    assert (group.toe.point, group.against) == ((25.0, 20.0), (1,))
-
-
-def test_two_blocks_rock_together():
-    failure = of_labels(stacked((20, 20, 0), (20, 20, 0)), mu=0.65)
-    assert failure.words == "Rocking of blocks 1 and 2 about the right toe of 1."
-    assert [group.blocks for group in failure.groups] == [(1, 2)]
-    assert failure.groups[0].centroid == pytest.approx((10.0, 20.0))
-    assert failure.groups[0].centre == pytest.approx((20.0, 0.0), abs=1e-9)
-
-
-def test_three_courses_rock_together_and_the_upper_two_slide():
-    courses = stacked((20, 20, 0), (20, 20, 0), (20, 20, 0))
-    assert (
-        of_labels(courses, mu=0.9).words == "Rocking of blocks 1, 2 and 3 about the right toe of 1."
-    )
-    model = model_from_labels(stacked((40, 10, 0), (40, 10, 0), (40, 10, 0))).model
-    failure = moved(model, {1: (0, 0, 0), 2: (1, 0.58, 0), 3: (1, 0.58, 0)})
-    assert failure.words == "Sliding of blocks 2 and 3 on 1."
-    assert failure.moving == (2, 3)
-    assert failure.contact_kinds == ("closed",) * 2 + ("sliding",) * 2 + ("closed",) * 2
-
-
 def test_a_bridging_stone_is_carried_by_two_rocking_pillars():
     labels = np.zeros((60, 100), np.uint32)
     labels[20:, :20], labels[20:, 80:] = 1, 2
@@ -102,83 +69,82 @@ def test_a_bridging_stone_is_carried_by_two_rocking_pillars():
     assert failure.groups[0].against == (1, 2)
 
 
-def test_a_block_that_slides_on_a_rocking_one_is_told_by_what_it_slides_on():
-    """Its own centre of rotation is nowhere near."""
-    model = model_from_labels(stacked((10, 40, 0), (10, 10, 0))).model
-    turning = -0.1
-
-    def about_toe(x, y):
-        return -turning * y, turning * (x - 10), turning
-
-    lower, upper = about_toe(5, 20), about_toe(5, 45)
-    failure = moved(model, {1: lower, 2: (upper[0] + 1, upper[1] + 0.58, turning)})
-    assert failure.words == "Rocking of block 1 about its right toe; block 2 slides on 1."
+SLIP = 1 - 0.02 * 20
+"""Of the toe (10, 0) of a block 10 x 40, 5 right of and 20 below its centroid, that turns by -.02;
+it rises by mu times its slip."""
+BACK = (1 - 0.58**2) / (1 + 0.58**2)
+TOWER, STAIR = [[0, 0, 10, 40], [0, 40, 10, 10]], [[0, 0, 3, 1], [0, 1, 1, 1], [1, 1, 1, 1]]
 
 
-def test_a_turning_toe_that_slips_is_rocking_and_sliding():
-    model = model_from_labels(stacked((10, 40, 0))).model
-    # The toe (10, 0) is 5 right of and 20 below the centroid: it rises by mu times its slip.
-    slip = 1 - 0.02 * 20
-    failure = moved(model, {1: (1, 0.58 * slip + 0.02 * 5, -0.02)}, noun="stone")
-    assert failure.groups[0].motion == "mixed"
-    assert failure.contact_kinds == ("opening and sliding", "sliding")
-    assert failure.words == "Rocking and sliding of stone 1 on the ground."
+@pytest.mark.parametrize(
+    ("rows", "velocity", "words"),
+    [
+        (  # The upper one turns with the lower about its toe, and slides on it.
+            TOWER,
+            {1: (2.0, -0.5, -0.1), 2: (4.5 + 1, -0.5 + 0.58, -0.1)},
+            "Rocking of block 1 about its right toe; block 2 slides on 1.",
+        ),
+        (
+            TOWER[:1],
+            {1: (1, 0.58 * SLIP + 0.02 * 5, -0.02)},
+            "Rocking and sliding of block 1 on the ground.",
+        ),
+        (TOWER[:1], {1: (0.1, 1, 0)}, "Loosening of block 1."),
+        (  # It turns about the upper end of its joint with a block that stands still.
+            [[0, 0, 1, 4], [1, 0, 1, 2]],
+            {2: (0.1, -0.05 + 0.1, 0.1)},
+            "Rocking of block 2 about the point where it touches 1.",
+        ),
+        # A stone that leaves a still neighbour and slides on a still bed slides on the bed.
+        (STAIR, {3: (0.58, 1, 0)}, "Sliding of block 3 along 2."),
+        (STAIR, {3: (1, 0.58, 0)}, "Sliding of block 3 on 1."),
+        (  # Block 3 slides back on block 2, which slides away, and up along block 1.
+            [[0, 0, 1, 3], [1, 0, 2, 1], [1, 1, 1, 1]],
+            {2: (1, 0.58, 0), 3: (1 - BACK, 0.58 * (1 + BACK), 0)},
+            "Sliding of block 2 on the ground; block 3 slides on 2.",
+        ),
+        (
+            [[0, 0, 4, 1], [1, 1, 1, 2]],
+            {1: (1, 0.58, 0), 2: (1.1, 0.58 + 0.05, -0.1)},
+            "Sliding of block 1 on the ground; block 2 rocks about its right toe, on 1.",
+        ),
+    ],
+)
+def test_motions_in_words(rows, velocity, words):
+    assert moved(model_from_json({"blocks_xywh": rows}), velocity).words == words
 
 
-def test_a_block_that_leaves_all_others_upwards_comes_loose():
-    model = model_from_labels(stacked((10, 40, 0))).model
-    failure = moved(model, {1: (0.1, 1, 0)})
-    assert failure.contact_kinds == ("opening and sliding", "opening and sliding")
-    assert (failure.groups[0].motion, failure.words) == ("mixed", "Loosening of block 1.")
+FLOATING = np.zeros((9, 9), np.uint32)
+FLOATING[6:, :3], FLOATING[:3, 5:] = 1, 2
 
 
-def test_the_fall_of_an_overhanging_stone():
-    failure = of_labels(stacked((20, 20, 0), (20, 20, 12)), mu=0.9, noun="stone")
-    assert failure.words == "Falls by itself: stone 2 tips about its right toe, on 1."
+@pytest.mark.parametrize(
+    ("labels", "mu", "words"),
+    [
+        (
+            stacked((20, 20, 0), (20, 20, 12)),
+            0.9,
+            "Falls by itself: stone 2 tips about its right toe, on wedge 1.",
+        ),
+        (FLOATING, 0.58, "Falls by itself: stone 2 falls."),
+        (
+            stacked((20, 20, 0), (20, 20, 0)),
+            0.65,
+            "Rocking of stone 2 and wedge 1 about the right toe of wedge 1.",
+        ),
+    ],
+)
+def test_falls_and_wedges_in_words(labels, mu, words):
+    assert of_labels(labels, mu=mu, noun="stone", wedges={1}).words == words
 
 
-def test_the_fall_of_a_floating_stone():
-    labels = np.zeros((9, 9), np.uint32)
-    labels[6:, :3], labels[:3, 5:] = 1, 2
-    failure = of_labels(labels, noun="stone")
-    assert failure.words == "Falls by itself: stone 2 falls."
-    assert failure.groups[0].motion == "falling"
-
-
-def test_a_stone_that_hangs_on_a_corner_has_no_toe_side():
-    rows = [[0, 0, 1, 4], [1, 0, 1, 2]]
-    model = model_from_json({"blocks_xywh": rows})
-    # Block 2 turns about the upper end of its joint with the still block 1.
-    failure = moved(model, {2: (0.1, -0.05 + 0.1, 0.1)})
+@pytest.mark.parametrize("direction", ["left", "right"])
+def test_it_does_not_matter_which_block_the_normal_points_into(direction):
+    rows = [[2, 1, 1, 2], [0, 0, 6, 1]]  # the upper block has the lower id
+    failure = told(model_from_json({"blocks_xywh": rows}), direction)
+    assert failure.words == f"Rocking of block 1 about its {direction} toe, on 2."
     toe = failure.groups[0].toe
-    assert (toe.point, toe.side, toe.other) == ((1.0, 2.0), None, 1)
-    assert failure.words == "Rocking of block 2 about the point where it touches 1."
-
-
-def test_what_the_body_rocks_on_is_the_support_before_the_side():
-    """A stone that leaves a still neighbour and slides on a still bed slides on the bed."""
-    rows = [[0, 0, 3, 1], [0, 1, 1, 1], [1, 1, 1, 1]]
-    model = model_from_json({"blocks_xywh": rows})
-    failure = moved(model, {3: (0.58, 1, 0)})
-    assert failure.words == "Sliding of block 3 along 2."
-    assert moved(model, {3: (1, 0.58, 0)}).words == "Sliding of block 3 on 1."
-
-
-def test_a_bed_that_moves_comes_before_a_side_that_stands_still():
-    """Block 3 slides back on block 2, which slides away, and up along block 1."""
-    model = model_from_json({"blocks_xywh": [[0, 0, 1, 3], [1, 0, 2, 1], [1, 1, 1, 1]]})
-    back = (1 - 0.58**2) / (1 + 0.58**2)
-    failure = moved(model, {2: (1, 0.58, 0), 3: (1 - back, 0.58 * (1 + back), 0)})
-    assert failure.words == "Sliding of block 2 on the ground; block 3 slides on 2."
-
-
-def test_a_block_rocks_on_one_that_slides():
-    model = model_from_json({"blocks_xywh": [[0, 0, 4, 1], [1, 1, 1, 2]]})
-    failure = moved(model, {1: (1, 0.58, 0), 2: (1.1, 0.58 + 0.05, -0.1)})
-    assert failure.words == (
-        "Sliding of block 1 on the ground; block 2 rocks about its right toe, on 1."
-    )
-    assert failure.groups[1].toe.point == (2.0, 1.0)
+    assert (toe.point, toe.other) == ((3.0 if direction == "right" else 2.0, 1.0), 2)
 
 
 def test_a_bed_comes_before_a_moving_side_that_it_turns_on():
@@ -187,13 +153,6 @@ def test_a_bed_comes_before_a_moving_side_that_it_turns_on():
     failure = moved(model, {1: (0.6, 0.58, 0), 2: (0.8, 0.63, 0.1)})
     (group,) = [group for group in failure.groups if group.blocks == (2,)]
     assert (group.motion, group.against, group.on_bed) == ("mixed", (GROUND,), True)
-
-
-@pytest.mark.parametrize("direction", ["left", "right"])
-def test_it_does_not_matter_which_block_the_normal_points_into(direction):
-    rows = [[2, 1, 1, 2], [0, 0, 6, 1]]  # the upper block has the lower id
-    failure = told(model_from_json({"blocks_xywh": rows}), direction)
-    assert failure.words == f"Rocking of block 1 about its {direction} toe, on 2."
 
 
 def test_a_block_that_turns_about_its_centroid_moves():
@@ -216,13 +175,6 @@ def test_creeping_blocks_stand_still_and_slow_ones_are_left_out_of_the_words():
     assert failure.moving == (1, 2)
     assert failure.words == "Sliding of block 1 on the ground."
     assert moved(model, slides, tolerance=1e-6).moving == (1, 2, 3)
-
-
-def test_slow_blocks_are_not_joined_through_the_ground():
-    """Faster than the tolerance, but with contacts that open and slide by less than it."""
-    model = model_from_json({"blocks_xywh": [[0, 0, 1, 1], [5, 0, 1, 1], [9, 0, 1, 1]]})
-    failure = moved(model, {1: (1, 0.58, 0), 2: (1e-4, 1e-4, 0), 3: (1e-4, 1e-4, 0)})
-    assert [group.blocks for group in failure.groups] == [(1,), (2,), (3,)]
 
 
 def test_no_motion_no_groups():
@@ -253,11 +205,6 @@ def test_a_mechanism_of_another_wall_is_refused():
     model = model_from_labels(stacked((20, 40, 0))).model
     with pytest.raises(ValueError, match=r"lacks: \[7\]"):
         moved(model, {7: (0, 0, 0)})
-
-
-def test_wedges_are_called_wedges():
-    failure = of_labels(stacked((20, 20, 0), (20, 20, 0)), mu=0.65, noun="stone", wedges={1})
-    assert failure.words == "Rocking of stone 2 and wedge 1 about the right toe of wedge 1."
 
 
 def naive_contacts(model, mechanism):

@@ -1,7 +1,7 @@
 import pytest
 
 from drystone.statics.failing.bodies import MovingGroup, Toe
-from drystone.statics.failing.wording import Names, in_words
+from drystone.statics.failing.mechanism import Names, in_words
 from drystone.statics.model import GROUND
 
 STONES = Names("stone", frozenset({300, 301}))
@@ -31,17 +31,6 @@ def sliding(*blocks, on, on_bed=True, motion="sliding", turning=0.0):
 )
 def test_lists_of_stones(ids, words):
     assert STONES.listed(ids) == words
-
-
-def test_places():
-    assert STONES.place([7, 300, GROUND]) == "the ground, 7 and wedge 300"
-    assert STONES.place(range(1, 10)) == "1, 2, 3, 4, 5 ... and 4 more"
-
-
-def test_the_sentence_of_the_issue():
-    groups = [rocking(3, 7, 12, toe=3, on=5), sliding(9, on=(4,))]
-    expected = "Rocking of stones 3, 7 and 12 about the right toe of 3, on 5; stone 9 slides on 4."
-    assert in_words(groups, STONES) == expected
 
 
 def test_bodies_that_move_alike_share_a_clause():

@@ -158,23 +158,13 @@ def test_a_solver_that_gives_up_tells_no_fall(monkeypatch):
     assert fall(between_piers(1.0, 4.0, 1.0, 0.58)) is None
 
 
-def test_what_falls_is_the_same_in_any_unit_and_density():
-    rows = [[0, 0, 1, 4], [2, 0, 1, 4], [1, 1.5, 1, 1]]
-    for unit, density in ((1e-3, 1.0), (1.0, 2500.0), (1e3, 1e-3)):
-        blocks = [
-            {
-                "id": i,
-                "density": density,
-                "polygon": [
-                    [unit * x, unit * y], [unit * (x + w), unit * y],
-                    [unit * (x + w), unit * (y + h)], [unit * x, unit * (y + h)],
-                ],
-            }
-            for i, (x, y, w, h) in enumerate(rows, start=1)
-        ]  # fmt: skip
-        result = nonassociative_load(model_from_json({"blocks": blocks}), "right")
-        assert result.status is LimitStatus.UNSTABLE
-        assert moving(result) == [3]
+@pytest.mark.parametrize(("unit", "density"), [(1e-3, 2500.0), (1e3, 1e-3)])
+def test_what_falls_is_the_same_in_any_unit_and_density(unit, density):
+    rows = [[unit * v for v in row] for row in ([0, 0, 1, 4], [2, 0, 1, 4], [1, 1.5, 1, 1])]
+    model = model_from_json({"blocks_xywh": rows})
+    heavy = tuple(replace(block, density=density) for block in model.blocks)
+    result = nonassociative_load(replace(model, blocks=heavy), "right")
+    assert (result.status, moving(result)) == (LimitStatus.UNSTABLE, [3])
 
 
 def test_other_dead_loads_decide_what_falls():

@@ -11,7 +11,7 @@ from drystone.statics.lp.program import Units, assemble
 from drystone.statics.model import GROUND, Addition, RigidBlockModel
 from tests.naive import columns as naive
 from tests.statics.growth import empty, upwards, with_block
-from tests.statics.walls import coursed, irregular, stacked
+from tests.statics.walls import coursed, irregular
 
 UNITS = Units(13.0, 170.0)
 
@@ -62,19 +62,6 @@ def test_columns_of_contacts_that_closed_are_told_in_order():
     ends = np.cumsum([0] + [2 * len(i.points) for i in model.interfaces])
     assert added.closed.tolist() == [*range(ends[1], ends[2]), *range(ends[4], ends[5])]
     assert added.closed.dtype == np.int32
-
-
-def test_what_was_there_does_not_change():
-    model = model_from_labels(stacked((20, 20, 0), (10, 10, 4))).model
-    first = with_block(empty(), model.blocks[0], whole=model)
-    nothing = ConeProgram.empty(UNITS)
-    before = nothing.appended(first.added, nothing.columns_of(first.added, 0.58))
-    entries = before.cones.entries.copy()
-    second = with_block(first, model.blocks[1], whole=model).added
-    after = before.appended(second, before.columns_of(second, 0.58))
-    assert np.array_equal(before.cones.entries, entries)
-    assert (list(nothing.bodies), list(before.bodies)) == ([GROUND], [GROUND, 1])
-    assert list(after.bodies) == [GROUND, 1, 2]
 
 
 def test_what_is_not_for_the_kernel_is_left_to_others():

@@ -1,28 +1,15 @@
 """The linear program as arrays: its units, and its way through a file."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from drystone.contacts.blocks import model_from_labels
-from drystone.statics.limit import limit_load
 from drystone.statics.loads import growing_with_height
 from drystone.statics.lp.extremes import certified_extreme
 from drystone.statics.lp.highs import HighsSession
 from drystone.statics.lp.program import EquilibriumProgram, Units, assemble, units_of
 from drystone.statics.model import Block, RigidBlockModel
-from tests.statics.walls import coursed, irregular, stacked
-
-
-def varied(labels):
-    """A wall with fixed, guided and heavier blocks, and with other frictions here and there."""
-    model = model_from_labels(labels).model
-    changes = ({"fixed": True}, {"held": ("x", "turn")}, {"held": ("y",)}, {"density": 2.5}, {})
-    blocks = [replace(b, **changes[k % len(changes)]) for k, b in enumerate(model.blocks)]
-    frictions = (None, 0.3, 0.0)
-    interfaces = [replace(i, mu=frictions[k % 3]) for k, i in enumerate(model.interfaces)]
-    return RigidBlockModel(tuple(blocks), tuple(interfaces), 0.7)
+from tests.statics.walls import coursed, limit_load, stacked
 
 
 def test_units_are_those_of_a_mean_free_block():
@@ -42,33 +29,6 @@ def test_units_scale_forces_and_moments():
     matrix = program.matrix.toarray()
     assert matrix[:, 0] == pytest.approx([4.0, 0.0, 0.0])
     assert np.abs(matrix[2, 1:]) == pytest.approx([0.42, 1.58, 1.58, 0.42])
-
-
-@pytest.mark.parametrize("labels", [coursed(5, 4, 90, 3), irregular(6, 14, 90, 60)])
-def test_a_wall_that_grows_keeps_its_columns_and_rows(labels):
-    """A basis of the wall is one of the wall with a stone, whose columns and rows come last."""
-    model, units = varied(labels), Units(13.0, 170.0)
-    count = len(model.blocks) - 2
-    there = {0, *(block.id for block in model.blocks[:count])}
-    order = sorted(model.interfaces, key=lambda i: not {i.block, i.other} <= there)
-    first = tuple(i for i in order if {i.block, i.other} <= there)
-    wall = assemble(RigidBlockModel(model.blocks[:count], first, model.mu), units=units)
-    whole = assemble(replace(model, interfaces=tuple(order)), units=units)
-    rows, columns = len(wall.rhs), wall.column_count
-    matrix = whole.matrix.toarray()
-    assert np.array_equal(matrix[:rows, :columns], wall.matrix.toarray())
-    assert not matrix[rows:, 1:columns].any()
-    assert np.array_equal(whole.rhs[:rows], wall.rhs)
-    assert np.array_equal(whole.rows[: len(wall.rows)], wall.rows)
-
-
-def test_nothing_free_has_no_rows():
-    fixed = replace(model_from_labels(stacked((20, 20, 0))).model.blocks[0], fixed=True)
-    model = model_from_labels(stacked((20, 20, 0))).model
-    for blocks, interfaces in (((), ()), ((fixed,), model.interfaces)):
-        program = assemble(RigidBlockModel(blocks, interfaces), units=Units(1.0, 1.0))
-        assert program.matrix.shape == (0, 1 + 4 * len(interfaces))
-        assert program.block_ids == ()
 
 
 @pytest.mark.parametrize("growing", [False, True])

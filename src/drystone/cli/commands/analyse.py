@@ -24,8 +24,7 @@ from drystone.drawing.words.wall_size import scarcity, size_words
 from drystone.errors import ExitCode, Notice, UsageError
 from drystone.io.walls import GivenWall, read_wall, unsupported
 from drystone.statics.limit import lateral_resistance, load_range
-from drystone.statics.load_case import LoadCase, load_case
-from drystone.statics.loads import Loads
+from drystone.statics.loads import LoadCase, Loads, load_case
 from drystone.statics.lp.program import assemble
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitStatus

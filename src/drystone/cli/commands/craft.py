@@ -9,8 +9,8 @@ from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.numbers import finite, whole_from
 from drystone.cli.output import prepare_files, print_json
 from drystone.cli.reading import add_wall
+from drystone.contacts.blocks import notice_of_pieces
 from drystone.contacts.given import model_from_json, polygons_from_json
-from drystone.contacts.pieces import notice_of_pieces
 from drystone.craft import RULES, CraftReport, Finding, Limit, Masonry, look
 from drystone.craft.look import UNSEEN
 from drystone.errors import ExitCode, Notice, UsageError

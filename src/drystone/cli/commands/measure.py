@@ -11,9 +11,8 @@ from drystone.cli.numbers import not_negative, share
 from drystone.cli.output import prepare_files, print_json, print_table
 from drystone.cli.reading import add_wall
 from drystone.cli.scale import add_scale, option_of, refuse_outside, scale_with, wall_picture_px
-from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.blocks import model_from_labels, notice_of_pieces
 from drystone.contacts.given import model_from_json
-from drystone.contacts.pieces import notice_of_pieces
 from drystone.drawing.words.content import number
 from drystone.errors import ExitCode, UsageError
 from drystone.io.walls import GivenWall, read_wall, unsupported

@@ -10,7 +10,7 @@ from drystone.drawing.drawing import Area, Dots, Drawing, Lines
 from drystone.drawing.outlines import Loop, wall_regions
 from drystone.drawing.wall import pale_wall, size_of
 from drystone.model.wall import Labels
-from drystone.statics.failing.kinematics import ContactKind
+from drystone.statics.failing.bodies import ContactKind
 from drystone.statics.model import RigidBlockModel
 
 JOINT, NORMAL, POINT = "#0072b2", "#d55e00", "#8b0000"

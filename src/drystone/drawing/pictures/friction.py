@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from drystone.drawing.palette import CLUSTER_COLOURS, GREY
-from drystone.statics.friction_curve import AtFriction
+from drystone.statics.sensitivity import AtFriction
 
 LEFT, RIGHT = CLUSTER_COLOURS[0], CLUSTER_COLOURS[1]
 

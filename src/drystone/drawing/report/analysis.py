@@ -17,10 +17,10 @@ from drystone.drawing.report.viewer_data import view_of_wall
 from drystone.drawing.words import content
 from drystone.drawing.words.analysis import Card, ModelledWall, Shapes
 from drystone.kernels.polygons import area_and_centroid
-from drystone.statics.friction_curve import AtFriction, friction_curve
 from drystone.statics.loads import Loads
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult, LimitStatus
+from drystone.statics.sensitivity import AtFriction, friction_curve
 
 FRICTION = "friction.png"
 

@@ -27,8 +27,7 @@ from drystone.errors import Notice
 from drystone.kernels.polygons import Points
 from drystone.model.plan import StoneStep
 from drystone.model.wall import Labels
-from drystone.statics.failing.mechanism import Failure
-from drystone.statics.failing.wording import Noun
+from drystone.statics.failing.mechanism import Failure, Noun
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from drystone.drawing.words.content import number
 from drystone.errors import Notice
 from drystone.model.wall import Labels
-from drystone.statics.failing.mechanism import Failure, describe_mechanism
-from drystone.statics.failing.wording import Names, Noun
+from drystone.statics.failing.mechanism import Failure, Names, Noun, describe_mechanism
 from drystone.statics.flow.nonassociative import (
     NonassociativeResistance,
     NonassociativeResult,

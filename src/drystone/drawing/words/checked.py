@@ -10,7 +10,7 @@ from drystone.model.stone import StoneSet
 from drystone.physics.building import BlockMove, BuildUp
 from drystone.physics.scatter import TiltResult
 from drystone.verify.engine import check_engine
-from drystone.verify.outlines import Group
+from drystone.verify.outlines import PolygonGroup
 from drystone.verify.report import CheckReport, Problem
 
 PICTURE = "check.png"
@@ -142,7 +142,7 @@ class Checked:
     plan: Plan
     stones: StoneSet
     report: CheckReport
-    groups: Sequence[Group]
+    groups: Sequence[PolygonGroup]
     asked_physics: bool = False
     physics: PhysicsCard | None = None
 

@@ -6,8 +6,7 @@ from functools import partial
 from typing import Any
 
 from drystone.contacts.blocks import ImageModel, model_from_labels
-from drystone.contacts.gap_spread import closed_gap_spread
-from drystone.contacts.gaps import model_with_closed_gaps, settle_gaps
+from drystone.contacts.gaps import gap_spread, model_with_closed_gaps, settle_gaps
 from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.contacts.outlines import model_from_outlines, outlines_of_labels
 from drystone.contacts.settled import SETBACK
@@ -17,7 +16,7 @@ from drystone.io.walls import GivenWall
 from drystone.model.wall import Labels
 from drystone.statics.joints import with_head_friction
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.load_case import LoadCase, load_case
+from drystone.statics.loads import LoadCase, load_case
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
 
@@ -140,8 +139,8 @@ def _with_closed_gaps(
         done = f"{len(moved)} stones lowered by up to {farthest} px; "
     else:
         picture = model_with_closed_gaps(labels, reach, mu)
-    spread = closed_gap_spread(drawn, reach, mu, partial(_resistance, asked))
-    remarks = {"gaps": f"{done}{spread.words()}"}
+    spread = gap_spread(drawn, reach, mu, partial(_resistance, asked))
+    remarks = {"gaps": f"{done}{spread}"}
     return ModelledWall(picture.model, labels, "stone", wall.wedge_ids, picture.notices, remarks)
 
 

@@ -1,16 +1,24 @@
-"""Bodies of a mechanism: blocks that move as one, and how each body moves on the others."""
+"""Velocities at contacts and of bodies, blocks that move as one, from a mechanism."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from drystone.statics.failing.kinematics import Bools, Floats, Ints, Kinematics
+from drystone.statics.model import GROUND, Direction, RigidBlockModel
+from drystone.statics.result import Mechanism
 
-Motion = Literal["rocking", "sliding", "falling", "mixed"]
-Side = Literal["left", "right"]
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+ContactKind = Literal["closed", "opening", "sliding", "opening and sliding"]
+_KINDS: tuple[ContactKind, ...] = ("closed", "opening", "sliding", "opening and sliding")
+MotionKind = Literal["rocking", "sliding", "falling", "mixed"]
 
 _STILL = -1
 
@@ -18,65 +26,131 @@ BED = 0.1
 """A joint bears what is above it when its normal points up by at least this much."""
 
 
+@dataclass(frozen=True, eq=False)
+class Kinematics:
+    """A mechanism on the contacts of its model."""
+
+    ids: Ints
+    """(n + 1,): of every block, the ground last; what the mechanism does not name stands still."""
+    area: Floats  # (n + 1,)
+    centroid: Floats  # (n + 1, 2)
+    velocity: Floats  # (n + 1, 3)
+    blocks: Ints
+    """(m, 2): rows of the two blocks at every contact point, first the one that the normal points
+    into."""
+    point: Floats  # (m, 2): where, and the normal of its interface
+    normal: Floats  # (m, 2)
+    friction: Floats  # (m,): coefficient of friction
+    length: float  # characteristic length: root of the mean area of a block
+    tolerance: float  # share of the largest velocity below which one counts as none
+
+    @cached_property
+    def speed(self) -> Floats:
+        """Of every block: of its centroid, or of its turning at the characteristic length."""
+        centroid = np.hypot(self.velocity[:, 0], self.velocity[:, 1])
+        return np.maximum(centroid, self.length * np.abs(self.velocity[:, 2]))
+
+    @cached_property
+    def least(self) -> float:
+        """Velocity from which on one counts."""
+        return self.tolerance * float(self.speed.max())
+
+    @cached_property
+    def relative(self) -> Floats:
+        """Opening and sliding velocity at every contact point, sliding along (y, -x)."""
+        first, second = (self._at_contacts(side) for side in (0, 1))
+        apart = first - second
+        tangent = np.column_stack((self.normal[:, 1], -self.normal[:, 0]))
+        return np.column_stack(((apart * self.normal).sum(axis=1), (apart * tangent).sum(axis=1)))
+
+    @cached_property
+    def turning(self) -> Floats:
+        """Turning of the first block against the second at every contact, times `length`."""
+        first, second = self.velocity[self.blocks.T, 2]
+        return np.asarray(self.length * (first - second))
+
+    @cached_property
+    def slips(self) -> Bools:
+        """Whether the blocks slip along a contact point."""
+        return np.asarray(np.abs(self.relative[:, 1]) > self.least)
+
+    @cached_property
+    def opens(self) -> Bools:
+        """Whether a contact point opens by more than the dilatancy of its slip."""
+        dilatancy = self.friction * np.abs(self.relative[:, 1])
+        return np.asarray(self.relative[:, 0] - dilatancy > self.least)
+
+    @property
+    def kinds(self) -> tuple[ContactKind, ...]:
+        """Opening and slip in words."""
+        codes = self.opens.astype(int) + 2 * self.slips.astype(int)
+        return tuple(_KINDS[code] for code in codes.tolist())
+
+    def _at_contacts(self, side: int) -> Floats:
+        rows = self.blocks[:, side]
+        arm = self.point - self.centroid[rows]
+        along_x, along_y, turning = self.velocity[rows].T
+        return np.column_stack((along_x - turning * arm[:, 1], along_y + turning * arm[:, 0]))
+
+
+def kinematics(model: RigidBlockModel, mechanism: Mechanism, tolerance: float) -> Kinematics:
+    """Lay a mechanism over the contacts of its model; ValueError for a block that it lacks."""
+    place = {block.id: row for row, block in enumerate(model.blocks)} | {GROUND: len(model.blocks)}
+    missing = sorted(set(mechanism.block_ids) - place.keys())
+    if missing:
+        raise ValueError(f"the mechanism moves blocks that the model lacks: {missing}")
+    velocity = np.zeros((len(place), 3))
+    velocity[[place[block] for block in mechanism.block_ids]] = mechanism.velocity
+    area = np.array([block.area for block in model.blocks])
+    which = model.contact_interfaces
+    pairs = [(place[i.block], place[i.other]) for i in model.interfaces]
+    normals = np.array([i.normal for i in model.interfaces], float).reshape(-1, 2)
+    friction = np.array([model.friction(i) for i in model.interfaces], float)
+    return Kinematics(
+        ids=np.array([*(block.id for block in model.blocks), GROUND], np.int64),
+        area=np.append(area, 0.0),
+        centroid=np.array([*(block.centroid for block in model.blocks), (0.0, 0.0)]),
+        velocity=velocity,
+        blocks=np.array(pairs, np.int64).reshape(-1, 2)[which],
+        point=np.concatenate([np.empty((0, 2)), *(i.points for i in model.interfaces)]),
+        normal=normals[which],
+        friction=friction[which],
+        length=float(np.sqrt(area.mean())) if len(area) else 1.0,
+        tolerance=tolerance,
+    )
+
+
 @dataclass(frozen=True)
 class Toe:
-    """The end of a joint about which a body turns.
+    """The end of a joint about which a body turns."""
 
-    Parameters
-    ----------
-    point : (float, float)
-        Wall frame.
-    block, other : int
-        The two blocks that stay in touch there, `block` of the body; `other` may be GROUND.
-    side : {"left", "right"} or None
-        To which side the body tips over it; None when it hangs there rather than stands.
-    """
-
-    point: tuple[float, float]
-    block: int
-    other: int
-    side: Side | None
+    point: tuple[float, float]  # wall frame
+    block: int  # of the body
+    other: int  # stays in touch with it there; may be GROUND
+    side: Direction | None
+    """To which side the body tips over it; None when it hangs there rather than stands."""
 
 
 @dataclass(frozen=True)
 class MovingGroup:
-    """Blocks that move as one rigid body.
+    """Blocks that move as one rigid body."""
 
-    Parameters
-    ----------
-    blocks : tuple of int
-        Ids, ascending.
-    motion : {"rocking", "sliding", "falling", "mixed"}
-        "rocking": turns about a toe on what stands still, or on another body.  "sliding": slides
-        without turning on what stands still, or on another body.  "falling": goes down and
-        touches nothing any more.  "mixed": all else, as turning and sliding at once, or being
-        carried by several bodies.
-    velocity : (float, float, float)
-        To the right, up, and turning counter-clockwise, at the body's centroid.
-    centroid : (float, float)
-        Of the body.
-    area : float
-        Of the body.
-    speed : float
-        Of its fastest block, as share of that of the mechanism's fastest.
-    toe : Toe or None
-        What a rocking body turns about.
-    against : tuple of int
-        Blocks outside of the body on which it moves as `motion` says, ascending; GROUND among
-        them.
-    on_bed : bool
-        Whether it does so on joints that bear it; False for joints at its sides.
-    """
-
-    blocks: tuple[int, ...]
-    motion: Motion
+    blocks: tuple[int, ...]  # ids, ascending
+    motion: MotionKind
+    """"rocking": turns about a toe on what stands still, or on another body.  "sliding": slides
+    without turning on what stands still, or on another body.  "falling": goes down and touches
+    nothing any more.  "mixed": all else, as turning and sliding at once, or being carried by
+    several bodies."""
     velocity: tuple[float, float, float]
+    """To the right, up, and turning counter-clockwise, at the body's centroid."""
     centroid: tuple[float, float]
     area: float
-    speed: float
-    toe: Toe | None
+    speed: float  # of its fastest block, as share of that of the mechanism's fastest
+    toe: Toe | None  # what a rocking body turns about
     against: tuple[int, ...]
-    on_bed: bool
+    """Blocks outside of the body on which it moves as `motion` says, ascending; GROUND among them.
+    """
+    on_bed: bool  # whether it does so on joints that bear it; False for joints at its sides
 
     @property
     def centre(self) -> tuple[float, float] | None:
@@ -145,31 +219,15 @@ def _group(kin: Kinematics, body: Ints, number: int) -> MovingGroup:
 
 @dataclass(frozen=True, eq=False)
 class _Border:
-    """The contact points of a body with others.
-
-    Parameters
-    ----------
-    kin : Kinematics
-        The mechanism.
-    contact : (k,) int array
-        Which contact points.
-    inside, outside : (k,) int array
-        Rows of their blocks.
-    other : (k,) int array
-        The other body, -1 for what stands still.
-    turning : (k,) float array
-        Of the body against the other one, times the characteristic length.
-    bears : (k,) bool array
-        Whether the body stands on it.
-    """
+    """The contact points of a body with others."""
 
     kin: Kinematics
-    contact: Ints
-    inside: Ints
-    outside: Ints
-    other: Ints
-    turning: Floats
-    bears: Bools
+    contact: Ints  # (k,): which contact points
+    inside: Ints  # (k,): rows of their blocks
+    outside: Ints  # (k,)
+    other: Ints  # (k,): the other body, -1 for what stands still
+    turning: Floats  # (k,): of the body against the other one, times the characteristic length
+    bears: Bools  # (k,): whether the body stands on it
 
     @classmethod
     def of(cls, kin: Kinematics, body: Ints, number: int) -> "_Border":
@@ -188,7 +246,7 @@ class _Border:
             sign * kin.normal[contact, 1] > BED,
         )
 
-    def motion(self, *, down: bool, turning: bool) -> tuple[Motion, Ints]:
+    def motion(self, *, down: bool, turning: bool) -> tuple[MotionKind, Ints]:
         """Tell how the body moves, and at which of the contact points.
 
         A body that does not turn itself does not rock, though what touches it may.
@@ -222,7 +280,7 @@ class _Border:
         points = self.kin.point[self.contact[at]]
         k = at[np.lexsort((points[:, 0], points[:, 1]))[0]]
         x, y = self.kin.point[self.contact[k]].tolist()
-        side: Side | None = None
+        side: Direction | None = None
         if self.bears[k]:
             side = "left" if self.turning[k] > 0 else "right"
         block, other = (int(self.kin.ids[rows[k]]) for rows in (self.inside, self.outside))

@@ -1,6 +1,6 @@
 """Check forces and a motion against Coulomb's law without dilatancy, from the blocks themselves."""
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 
@@ -15,38 +15,25 @@ HOLDS = 1e-7
 
 @dataclass(frozen=True)
 class FlowCheck:
-    """How far an answer is from all conditions of the non-associative problem.
-
-    Parameters
-    ----------
-    equilibrium : float
-        Largest force or moment on a block that is not balanced, over the mean weight of a block
-        (and the root of the mean area).
-    friction : float
-        Largest tension, or tangential force above mu n, over the mean weight.
-    closing : float
-        Largest rate at which a contact closes, over the largest velocity.
-    held : float
-        Largest velocity of what is fixed or held, over the largest velocity.
-    dilatancy : float
-        Power of the normal forces, the sum of |n u_n|, over the power of the live load: contacts
-        open that carry a force, or dilate as they slide.
-    dissipation : float
-        Sum of |t u_t + mu n |u_t||, over the power of the live load: contacts that slide without
-        all their friction, or along with it.
-    """
+    """How far an answer is from all conditions of the non-associative problem."""
 
     equilibrium: float
-    friction: float
-    closing: float
-    held: float
+    """Largest force or moment on a block that is not balanced, over the mean weight of a block (and
+    the root of the mean area)."""
+    friction: float  # largest tension, or tangential force above mu n, over the mean weight
+    closing: float  # largest rate at which a contact closes, over the largest velocity
+    held: float  # largest velocity of what is fixed or held, over the largest velocity
     dilatancy: float
+    """Power of the normal forces, the sum of |n u_n|, over the power of the live load: contacts
+    open that carry a force, or dilate as they slide."""
     dissipation: float
+    """Sum of |t u_t + mu n |u_t||, over the power of the live load: contacts that slide without all
+    their friction, or along with it."""
 
     @property
     def largest(self) -> float:
         """The largest error."""
-        return max(self._errors)
+        return float(max(astuple(self)))
 
     @property
     def holds(self) -> bool:
@@ -54,18 +41,7 @@ class FlowCheck:
 
         The last two are errors of alpha.
         """
-        return all(error <= HOLDS for error in self._errors)
-
-    @property
-    def _errors(self) -> tuple[float, ...]:
-        return (
-            self.equilibrium,
-            self.friction,
-            self.closing,
-            self.held,
-            self.dilatancy,
-            self.dissipation,
-        )
+        return all(error <= HOLDS for error in astuple(self))
 
 
 def check_flow(
@@ -76,36 +52,11 @@ def check_flow(
     mechanism: Mechanism,
     forces: Floats,
 ) -> FlowCheck:
-    """Check forces and a mechanism.
+    """Check forces and a mechanism at alpha in a direction; at least one block is free.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        With at least one free block.
-    loads : Loads or None
-        None for the tilting table.
-    direction : {"left", "right"}
-        The load multiplier is alpha for "right" and -alpha for "left", and the live load must do
-        work of that sign.
-    alpha : float
-        Load multiplier in that direction.
-    mechanism : Mechanism
-        Velocities of the free blocks.
-    forces : (m, 2) float array
-        Normal and tangential force at every contact point on the block that the normal points
-        into; the tangent of a normal (x, y) is (y, -x).
-
-    Examples
-    --------
-    A cube of weight 1 slides on ground with mu = .3 under a load of .3.
-
-    >>> from drystone.contacts.given import model_from_json
-    >>> cube = model_from_json({"blocks_xywh": [[0, 0, 1, 1]], "mu": 0.3})
-    >>> slides = Mechanism((1,), np.array([[1.0, 0.0, 0.0]]))
-    >>> normal = np.array([0.5 - 0.15, 0.5 + 0.15]) if cube.interfaces[0].points[0, 0] == 0 else (
-    ...     np.array([0.5 + 0.15, 0.5 - 0.15]))
-    >>> check_flow(cube, None, "right", 0.3, slides, np.column_stack((normal, -0.3 * normal))).holds
-    True
+    The load multiplier is alpha for "right" and -alpha for "left", and the live load must do work
+    of that sign.  `forces` is (m, 2): normal and tangential force at every contact point on the
+    block that the normal points into; the tangent of a normal (x, y) is (y, -x).
     """
     loads = tilting_table(model) if loads is None else loads
     free = [block for block in model.blocks if not block.fixed]

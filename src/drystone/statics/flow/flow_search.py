@@ -1,26 +1,34 @@
 """Search for forces and motions of blocks with Coulomb friction and no dilatancy.
 
-The method is told in :mod:`drystone.statics.flow.nonassociative`.
+At a contact point with normal force n, tangential force t and relative velocity (u_n, u_t) of the
+block that the normal points into, the flow rule says
+
+    u_n >= 0,  n >= 0,  n u_n = 0;      |t| <= mu n,  t u_t = -mu n |u_t|:
+
+a contact that opens carries nothing, a closed one sticks, or slides along itself against
+friction of mu n.  For given forces these are linear conditions on the motion, and the other way
+round, so each half is a linear program.  `n = a + b` and `t = mu (a - b)` are written with the
+forces a, b along the two edges of the cone of friction, and slip as the rate r = mu u_t.
+
+The method stands in :mod:`drystone.statics.flow.nonassociative`.
 """
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
+import highspy
 import numpy as np
+from scipy.sparse import csc_array, vstack
 
-from drystone.statics.flow.flow_rule import (
-    NOTHING,
-    ContactRates,
-    ForcesOfMotion,
-    MotionsOfForces,
-    State,
-)
-from drystone.statics.lp.highs import HighsSession
-from drystone.statics.lp.program import EquilibriumProgram, Floats
+from drystone.statics.lp.highs import INFINITY, HighsSession, loaded, solved
+from drystone.statics.lp.program import EquilibriumProgram, Floats, Solution
 from drystone.statics.result import LimitStatus
 
 Pattern = Literal["even", "head joints", "bed joints", "mechanism", "rest", "random"]
+
+NOTHING = 1e-9
+"""Forces and velocities below this share of the largest one are taken as none."""
 
 RUNAWAY = 1e8
 """Slip rates above this, when the live load does work at a rate of 1, have left for infinity."""
@@ -28,26 +36,16 @@ RUNAWAY = 1e8
 
 @dataclass(frozen=True)
 class Start:
-    """Slip rates with which rounds begin, and how far each round goes.
-
-    Parameters
-    ----------
-    name : str
-        For people.
-    pattern : str
-        "even": the same rate at every contact point; "head joints" and "bed joints": by how
-        level or upright the normal is; "mechanism": those of the associative mechanism; "rest":
-        where that one does not slide; "random": powers of random numbers, few of them large.
-    factor : float
-        Largest rate over the largest one of the associative mechanism.
-    step : float
-        Part of the way to the slip rates of the last motion that a round goes, above 0 to 1.
-    """
+    """Slip rates with which rounds begin, and how far each round goes."""
 
     name: str
     pattern: Pattern
-    factor: float
+    """"even": the same rate at every contact point; "head joints" and "bed joints": by how level or
+    upright the normal is; "mechanism": those of the associative mechanism; "rest": where that one
+    does not slide; "random": powers of random numbers, few of them large."""
+    factor: float  # largest rate over the largest one of the associative mechanism
     step: float
+    """Part of the way to the slip rates of the last motion that a round goes, above 0 to 1."""
 
 
 STARTS = (
@@ -62,30 +60,14 @@ STARTS = (
 
 @dataclass(frozen=True)
 class NonassociativeSettings:
-    """How much is tried.
+    """How much is tried."""
 
-    Parameters
-    ----------
-    rounds : int
-        Most rounds from each start.
-    patience : int
-        Steps of descent in a row without a lower load, after which it ends.
-    starts : tuple of Start
-        All are tried, in this order.
-    random_starts : int
-        So many more, from random slip rates.
-    seed : int
-        Of the random slip rates.
-    let_go : bool
-        It is looked first whether the blocks can fall when they are let go.
-    """
-
-    rounds: int = 60
-    patience: int = 5
-    starts: tuple[Start, ...] = STARTS
-    random_starts: int = 6
-    seed: int = 0
-    let_go: bool = True
+    rounds: int = 60  # most rounds from each start
+    patience: int = 5  # steps of descent in a row without a lower load, after which it ends
+    starts: tuple[Start, ...] = STARTS  # all are tried, in this order
+    random_starts: int = 6  # so many more, from random slip rates
+    seed: int = 0  # of the random slip rates
+    let_go: bool = True  # it is looked first whether the blocks can fall when they are let go
 
     @property
     def all_starts(self) -> tuple[Start, ...]:
@@ -95,39 +77,135 @@ class NonassociativeSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
-    """What the rounds from one start came to.
+class FlowState:
+    """Forces and a motion, in the units of the program."""
 
-    Parameters
-    ----------
-    method : str
-        Name of the start.
-    rounds : int
-        How many there were.
-    state : State or None
-        Forces and a motion that go together, if any.
-    """
+    alpha: float  # load multiplier along the direction of the search
+    edges: Floats  # (m, 2): forces along the two edges of every cone of friction
+    velocity: Floats
+    """(rows,): one entry a row of the program; the live load does work at a rate of 1."""
 
-    method: str
-    rounds: int
-    state: State | None
+
+@dataclass(frozen=True, eq=False)
+class ContactRates:
+    """Relative velocities at the contact points as linear functions of the velocities of blocks."""
+
+    normal: csc_array  # (rows, m): its transpose times a velocity is the rate of opening u_n
+    slip: csc_array  # (rows, m): its transpose times a velocity is r = mu u_t
+
+    @classmethod
+    def of(cls, program: EquilibriumProgram) -> "ContactRates":
+        """Take them from the columns of a program."""
+        first, second = program.matrix[:, 1::2], program.matrix[:, 2::2]
+        return cls(csc_array(first + second) / 2.0, csc_array(first - second) / 2.0)
+
+
+class ForcesOfMotion:
+    """The least load multiplier, along the sign, with forces that go with a given motion."""
+
+    def __init__(self, program: EquilibriumProgram, rates: ContactRates, sign: float) -> None:
+        self._program, self._rates, self._sign = program, rates, sign
+        self._session = HighsSession(program)
+
+    def find(self, velocity: Floats) -> tuple[FlowState, Floats] | None:
+        """Return the state of least load, or None when no forces go with the motion.
+
+        Opening contacts are left without force, sliding ones with the edge that resists.  With it
+        comes how much alpha would fall for a unit of force on each edge (m, 2) ruled out so.
+        """
+        fastest = float(np.abs(velocity).max())
+        opens = self._rates.normal.T @ velocity > NOTHING * fastest
+        slip = self._rates.slip.T @ velocity
+        barred = np.column_stack(
+            (opens | (slip > NOTHING * fastest), opens | (slip < -NOTHING * fastest))
+        ).ravel()
+        columns = np.arange(1, 1 + len(barred), dtype=np.int32)
+        upper = np.where(barred, 0.0, INFINITY)
+        self._session.highs.changeColsBounds(len(columns), columns, np.zeros(len(columns)), upper)
+        costs = np.zeros(1 + len(barred))
+        costs[0] = self._sign
+        found = self._session.minimise(costs)
+        state = _state(found, self._sign, velocity)
+        if state is None:
+            return None
+        gain = found.duals @ self._program.matrix[:, 1:]
+        return state, np.where(barred & (gain > NOTHING), gain, 0.0).reshape(-1, 2)
+
+
+class MotionsOfForces:
+    """A motion that goes with given forces, along the live load (sign 1) or against it."""
+
+    def __init__(self, program: EquilibriumProgram, rates: ContactRates, sign: float) -> None:
+        self._rates = rates
+        live = sign * program.matrix[:, [0]]
+        matrix = csc_array(vstack((rates.normal.T, rates.slip.T, live.T)))
+        self._rows, self._columns = matrix.shape
+        self._points = (self._rows - 1) // 2
+        options = {"solver": "simplex", "presolve": "off"}
+        lower = np.full(self._columns, -INFINITY)
+        self._highs = loaded(options, matrix, self._open_bounds(), lower)
+
+    def _open_bounds(self) -> tuple[Floats, Floats]:
+        """No contact closes, the live load does work at a rate of 1."""
+        least = np.zeros(self._rows)
+        greatest = np.full(self._rows, INFINITY)
+        least[self._points : -1] = -INFINITY
+        least[-1] = greatest[-1] = 1.0
+        return least, greatest
+
+    @property
+    def exist(self) -> bool:
+        """False when no motion at all lets the load do work: that is proved."""
+        self._minimise(np.zeros(self._columns), *self._open_bounds())
+        return bool(self._highs.getModelStatus() != highspy.HighsModelStatus.kInfeasible)
+
+    def find(
+        self, edges: Floats, wanted: Floats | None = None, last: Floats | None = None
+    ) -> Floats | None:
+        """Return a velocity for each row of the program, or None.
+
+        With `wanted` edges and the `last` motion that went with these forces, the motion in
+        which those edges are least in the way: an edge can carry force where its contact is
+        closed and does not slide away from it.
+        """
+        points = self._points
+        least, greatest = self._open_bounds()
+        bears = edges > NOTHING * max(1.0, float(edges.max(initial=0.0)))
+        greatest[:points][bears.any(axis=1)] = 0.0
+        greatest[points:-1][bears[:, 0]] = 0.0
+        least[points:-1][bears[:, 1]] = 0.0
+        costs = np.zeros(self._columns)
+        if wanted is not None and last is not None:
+            opens = self._rates.normal.T @ last > NOTHING * float(np.abs(last).max())
+            way = np.where(opens, 0.0, np.sign(self._rates.slip.T @ last))
+            share = wanted.sum(axis=1)
+            least[points:-1][(share > 0) & (way > 0)] = 0.0
+            greatest[points:-1][(share > 0) & (way < 0)] = 0.0
+            costs = self._rates.normal @ (share * opens) + self._rates.slip @ (share * way)
+        return self._minimise(costs, least, greatest)
+
+    def _minimise(self, costs: Floats, least: Floats, greatest: Floats) -> Floats | None:
+        columns, rows = (np.arange(n, dtype=np.int32) for n in (self._columns, self._rows))
+        self._highs.changeColsCost(len(columns), columns, costs)
+        self._highs.changeRowsBounds(len(rows), rows, least, greatest)  # type: ignore[attr-defined]
+        return solved(self._highs)
+
+
+def _state(found: Solution, sign: float, velocity: Floats | None = None) -> FlowState | None:
+    """Return the forces of a solution with a motion, its duals unless given."""
+    if found.status is not LimitStatus.OPTIMAL or found.columns is None or found.duals is None:
+        return None
+    edges = np.maximum(found.columns[1:], 0.0).reshape(-1, 2)
+    motion = -found.duals if velocity is None else velocity
+    return FlowState(sign * float(found.columns[0]), edges, motion)
 
 
 class Search:
-    """All attempts at one direction of one program.
+    """All attempts at one direction of one program, whose blocks stand under their dead load.
 
-    Parameters
-    ----------
-    program : EquilibriumProgram
-        The equations; the blocks stand under their dead load.
-    sign : float
-        1 along the live load, -1 against it.
-    upright : (m,) float array
-        Vertical part of the unit normal at every contact point, 0 to 1: 1 in a bed joint.
-    settings : NonassociativeSettings
-        How much is tried.
-    look : callable
-        Called before every round and every step of descent; what it raises ends the search.
+    The sign is 1 along the live load, -1 against it.  `upright` (m,) is the vertical part of the
+    unit normal at every contact point, 0 to 1: 1 in a bed joint.  `look` is called before every
+    round and every step of descent; what it raises ends the search.
     """
 
     def __init__(
@@ -141,17 +219,18 @@ class Search:
         self._program, self._sign, self._upright = program, sign, upright
         self._settings = settings
         self._look = look
-        self._slip = ContactRates.of(program).slip
-        self._forces = ForcesOfMotion(program, sign)
-        self._motions = MotionsOfForces(program, sign)
+        rates = ContactRates.of(program)
+        self._slip = rates.slip
+        self._forces = ForcesOfMotion(program, rates, sign)
+        self._motions = MotionsOfForces(program, rates, sign)
 
     @property
     def moves(self) -> bool:
         """False when no motion that closes no contact goes along with the load."""
         return self._motions.exist
 
-    def attempts(self) -> Iterator[Found]:
-        """Yield what each start leads to."""
+    def attempts(self) -> Iterator[tuple[str, int, FlowState | None]]:
+        """Yield the name of each start, how many rounds it took, and to which state, if any."""
         first = self._round(HighsSession(self._program), np.zeros(len(self._upright)))
         # Without an associative mechanism, where no load is too great for one, all slip alike.
         mechanism = np.ones(len(self._upright))
@@ -160,7 +239,7 @@ class Search:
         rng = np.random.default_rng(self._settings.seed)
         for start in self._settings.all_starts:
             rounds, state = self._rounds(self._rates(start, mechanism, rng), start.step)
-            yield Found(start.name, rounds, state and self._descended(state))
+            yield start.name, rounds, state and self._descended(state)
 
     def _rates(self, start: Start, mechanism: Floats, rng: np.random.Generator) -> Floats:
         largest = float(mechanism.max(initial=0.0)) or 1.0
@@ -174,7 +253,7 @@ class Search:
         }
         return start.factor * largest * shares[start.pattern]
 
-    def _rounds(self, rates: Floats, step: float) -> tuple[int, State | None]:
+    def _rounds(self, rates: Floats, step: float) -> tuple[int, FlowState | None]:
         """Go on until a motion goes with the forces of a round."""
         session = HighsSession(self._program)
         for number in range(1, self._settings.rounds + 1):
@@ -183,36 +262,33 @@ class Search:
                 return number, None
             velocity = self._motions.find(state.edges)
             if velocity is not None:
-                return number, State(state.alpha, state.edges, velocity)
+                return number, FlowState(state.alpha, state.edges, velocity)
             rates = rates + step * (np.abs(self._slip.T @ state.velocity) - rates)
             if rates.max() > RUNAWAY:
                 return number, None
         return self._settings.rounds, None
 
-    def _round(self, session: HighsSession, rates: Floats) -> State | None:
+    def _round(self, session: HighsSession, rates: Floats) -> FlowState | None:
         """Maximise alpha - sum r n; None when the solver gives up."""
         self._look()
         costs = np.concatenate(([-self._sign], np.repeat(rates, 2)))
-        found = session.minimise(costs)
-        if found.status is not LimitStatus.OPTIMAL or found.columns is None or found.duals is None:
-            return None
-        edges = np.maximum(found.columns[1:], 0.0).reshape(-1, 2)
-        return State(self._sign * float(found.columns[0]), edges, -found.duals)
+        return _state(session.minimise(costs), self._sign)
 
-    def _descended(self, state: State) -> State:
+    def _descended(self, state: FlowState) -> FlowState:
         """Improve forces and motion in turn until alpha has not fallen for some steps."""
         stalled = 0
         while stalled < self._settings.patience:
             self._look()
-            better = self._forces.find(state.velocity)
-            if better is None or better.alpha > state.alpha + NOTHING:
+            found = self._forces.find(state.velocity)
+            if found is None or found[0].alpha > state.alpha + NOTHING:
                 return state
+            better, wanted = found
             stalled = stalled + 1 if better.alpha > state.alpha - NOTHING else 0
-            state = State(better.alpha, better.edges, state.velocity)
-            if not better.wanted.any():
+            state = better
+            if not wanted.any():
                 return state
-            velocity = self._motions.find(state.edges, better.wanted, state.velocity)
+            velocity = self._motions.find(state.edges, wanted, state.velocity)
             if velocity is None:
                 return state
-            state = State(state.alpha, state.edges, velocity)
+            state = FlowState(state.alpha, state.edges, velocity)
         return state

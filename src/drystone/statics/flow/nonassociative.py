@@ -1,7 +1,7 @@
 """Load multipliers for Coulomb friction without dilatancy (non-associative flow).
 
 The blocks fail at a load multiplier alpha when there are forces in equilibrium, within friction,
-and a motion with live . v = 1 that obeys the flow rule of :mod:`drystone.statics.flow.flow_rule`.
+and a motion with live . v = 1 that obeys the flow rule of :mod:`drystone.statics.flow.flow_search`.
 That is a mixed complementarity problem, and it has several solutions; the forces of each are
 admissible in the associative problem, so none lies above that one's alpha.
 
@@ -43,19 +43,18 @@ with the load.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from drystone.statics.flow.flow_check import FlowCheck, check_flow
-from drystone.statics.flow.flow_rule import State
-from drystone.statics.flow.flow_search import NonassociativeSettings, Search
+from drystone.statics.flow.flow_search import FlowState, NonassociativeSettings, Search
 from drystone.statics.flow.release import fall_of, with_inertia
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, tilting_table
-from drystone.statics.lp.program import EquilibriumProgram, Floats, assemble
+from drystone.statics.lp.program import EquilibriumProgram, assemble
 from drystone.statics.model import Direction, RigidBlockModel
-from drystone.statics.result import LimitResult, LimitStatus, Mechanism
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 
 STANDING = 1e-9
 """A load multiplier down to minus this is one of 0."""
@@ -64,79 +63,27 @@ IMMOVABLE = "No motion goes along with a load in this direction."
 
 
 @dataclass(frozen=True, eq=False)
-class NonassociativeResult:
-    """Outcome of one non-associative limit analysis.
+class NonassociativeResult(LimitResult):
+    """Outcome of one non-associative limit analysis; "optimal" only with a check that holds."""
 
-    Parameters
-    ----------
-    status : LimitStatus
-        OPTIMAL only for an answer whose check holds.
-    direction : {"left", "right"}
-        "right" for a load along the live load, "left" against.
-    alpha : float or None
-        Load multiplier; None unless the status is "optimal".
-    mechanism : Mechanism or None
-        How the blocks move, or start to fall.
-    forces : (m, 2) float array or None
-        Normal and tangential force at every contact point, in the order of the interfaces and
-        their points, on the block that the normal points into; the tangent of a normal (x, y) is
-        (y, -x).  In weights of the model.
-    rounds : int
-        Linear programs of the rounds, all starts together.
-    method : str
-        The start that found the answer.
-    check : FlowCheck or None
-        Of mechanism and forces.
-    answers : tuple of float
-        Load multipliers of all verified answers, the least first: which of them a wall fails at
-        depends on the forces that are locked in it.
-    message : str
-        For people.
-    """
-
-    status: LimitStatus
-    direction: Direction
-    alpha: float | None = None
-    mechanism: Mechanism | None = field(default=None, repr=False)
-    forces: Floats | None = field(default=None, repr=False)
-    rounds: int = 0
-    method: str = ""
+    rounds: int = 0  # linear programs of the rounds, all starts together
+    method: str = ""  # the start that found the answer
     check: FlowCheck | None = None
     answers: tuple[float, ...] = ()
-    message: str = ""
-
-    @property
-    def success(self) -> bool:
-        """True when the status is "optimal"."""
-        return self.status is LimitStatus.OPTIMAL
+    """Load multipliers of all verified answers, the least first: which of them a wall fails at
+    depends on the forces that are locked in it."""
 
 
 @dataclass(frozen=True, eq=False)
-class NonassociativeResistance:
-    """Both directions.
-
-    Parameters
-    ----------
-    left, right : NonassociativeResult
-        Against and along the live load.
-    mu : float
-        Coefficient of friction.
-    """
+class NonassociativeResistance(LateralResistance):
+    """Both directions; `value` is None unless both are optimal, and without friction."""
 
     left: NonassociativeResult
     right: NonassociativeResult
-    mu: float
-
-    @property
-    def value(self) -> float | None:
-        """min(alpha_left, alpha_right) / mu; None unless both are optimal, and without friction."""
-        if self.left.alpha is None or self.right.alpha is None or self.mu == 0:
-            return None
-        return min(self.left.alpha, self.right.alpha) / self.mu
 
     @property
     def carried(self) -> float | None:
-        """The same, and 0 where it was verified that the blocks can fall by themselves."""
+        """The value, and 0 where it was verified that the blocks can fall by themselves."""
         falls = LimitStatus.UNSTABLE in (self.left.status, self.right.status)
         return 0.0 if falls else self.value
 
@@ -150,40 +97,16 @@ def nonassociative_load(
 ) -> NonassociativeResult:
     """Find the least load at which the blocks can move by Coulomb's law without dilatancy.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Blocks and interfaces.
-    direction : {"left", "right"}
-        The live load points to -x for "left"; for other loads "left" is against the live load.
-    loads : Loads, optional
-        Dead and live loads; the tilting table unless given.
-    settings : NonassociativeSettings, optional
-        How much is tried.
-
-    Returns
-    -------
-    NonassociativeResult
-        "optimal" when forces and motion were found whose check holds: the least alpha of those
-        found, in bounded effort, an upper estimate of the least there is.  "unstable" when the
-        blocks do not stand under their dead load, or only without certainty: there are forces
-        with which they start to fall, or a motion that needs less than no load.  "unbounded"
-        when no motion goes along with the load.  "failed" when nothing was found.
-
-    Examples
-    --------
-    >>> from drystone.contacts.given import model_from_json
-    >>> wall = model_from_json({"blocks_xywh": [[0, 0, 1, 2]], "mu": 0.7})
-    >>> result = nonassociative_load(wall, "right")
-    >>> round(result.alpha, 6), result.check.holds
-    (0.5, True)
+    It is "optimal" when forces and motion were found whose check holds: the least alpha of those
+    found, in bounded effort, an upper estimate of the least there is.  "unstable" when the blocks
+    do not stand under their dead load, or only without certainty: there are forces with which they
+    start to fall, or a motion that needs less than no load.  "unbounded" when no motion goes along
+    with the load.  "failed" when nothing was found.
     """
     both = lateral_resistance(model, loads)
     associative = both.left if direction == "left" else both.right
-    chosen = settings or NonassociativeSettings()
-    return _released(model, loads, associative, chosen) or _nonassociative(
-        model, loads, associative, chosen
-    )
+    arguments = model, loads, associative, settings or NonassociativeSettings()
+    return _released(*arguments) or _nonassociative(*arguments)
 
 
 def nonassociative_resistance(
@@ -232,18 +155,16 @@ def _released(
     fall = fall_of(model, program, settings.rounds, look)
     if fall is None:
         return None
-    state = State(0.0, fall.edges, fall.acceleration)
+    state = FlowState(0.0, fall.edges, fall.acceleration)
     falling = with_inertia(model, program, loads or tilting_table(model), fall)
     answer = _answer(model, falling, "right", program, state, "let go")
-    if not answer.check.holds:
+    if not (answer.check and answer.check.holds):
         return None
-    return NonassociativeResult(
-        LimitStatus.UNSTABLE,
-        associative.direction,
-        mechanism=answer.mechanism,
-        forces=answer.forces,
-        method=answer.method,
-        check=answer.check,
+    return replace(
+        answer,
+        status=LimitStatus.UNSTABLE,
+        direction=associative.direction,
+        alpha=None,
         message="There are forces with which the blocks, let go, start to fall under their dead"
         " load alone; others, squeezed in before, would hold them.",
     )
@@ -268,18 +189,16 @@ def _nonassociative(
     program = assemble(model, loads)
     rounds, answers = 0, []
     sign = -1.0 if direction == "left" else 1.0
-    upright = np.repeat(  # the vertical part of the normal at every contact point
-        [abs(interface.normal[1]) for interface in model.interfaces],
-        [len(interface.points) for interface in model.interfaces],
-    )
+    upright = np.array([abs(interface.normal[1]) for interface in model.interfaces], float)
+    upright = upright[model.contact_interfaces]
     search = Search(program, sign, upright, settings, look)
     if associative.alpha is None and not search.moves:
         return NonassociativeResult(LimitStatus.UNBOUNDED, direction, message=IMMOVABLE)
-    for found in search.attempts():
-        rounds += found.rounds
-        if found.state is not None:
-            state = replace(found.state, alpha=_without_noise(found.state.alpha, associative.alpha))
-            answers.append(_answer(model, loads, direction, program, state, found.method))
+    for method, needed, found in search.attempts():
+        rounds += needed
+        if found is not None:
+            state = replace(found, alpha=_without_noise(found.alpha, associative.alpha))
+            answers.append(_answer(model, loads, direction, program, state, method))
     return _least_verified(direction, associative.alpha, rounds, answers)
 
 
@@ -292,69 +211,52 @@ def _without_noise(alpha: float, associative: float | None) -> float:
     return alpha if associative is None else min(alpha, associative)
 
 
-@dataclass(frozen=True, eq=False)
-class _Answer:
-    """A solution in the units of the model."""
-
-    alpha: float
-    mechanism: Mechanism
-    forces: Floats
-    check: FlowCheck
-    method: str
-
-
 def _answer(
     model: RigidBlockModel,
     loads: Loads | None,
     direction: Direction,
     program: EquilibriumProgram,
-    state: State,
+    state: FlowState,
     method: str,
-) -> _Answer:
-    velocity = np.zeros((len(program.rows), 3))
-    velocity[program.rows >= 0] = state.velocity
-    velocity[:, 2] /= program.length
-    fastest = float(np.hypot(velocity[:, 0], velocity[:, 1]).max())
-    # Blocks that only turn about their centroids are told by their rate of turning.
-    mechanism = Mechanism(program.block_ids, velocity / (fastest or float(np.abs(velocity).max())))
-    first, second = program.weight * state.edges.T
-    forces = np.column_stack((first + second, program.friction * (first - second)))
-    check = check_flow(model, loads, direction, state.alpha, mechanism, forces)
-    return _Answer(state.alpha, mechanism, forces, check, method)
+) -> NonassociativeResult:
+    """Check a state, in the units of the model."""
+    mechanism, forces = program.mechanism(state.velocity), program.forces(state.edges)
+    return NonassociativeResult(
+        LimitStatus.OPTIMAL,
+        direction,
+        state.alpha,
+        mechanism,
+        forces,
+        method=method,
+        check=check_flow(model, loads, direction, state.alpha, mechanism, forces),
+    )
 
 
 def _least_verified(
-    direction: Direction, associative: float | None, rounds: int, answers: list[_Answer]
+    direction: Direction,
+    associative: float | None,
+    rounds: int,
+    answers: list[NonassociativeResult],
 ) -> NonassociativeResult:
-    """Choose the least of the verified answers."""
-    verified = [answer for answer in answers if answer.check.holds]
+    """Choose the least of the verified answers; of equal ones the first."""
+    verified = [(a.alpha, a) for a in answers if a.alpha is not None and a.check and a.check.holds]
     if not verified:
-        said = f"The search did not converge in {rounds} rounds; " + (
+        message = f"The search did not converge in {rounds} rounds; " + (
             "with associated flow no load is too great."
             if associative is None
             else f"the load multiplier lies at or below the associative one, {associative:.5g}."
         )
-        return NonassociativeResult(LimitStatus.FAILED, direction, rounds=rounds, message=said)
-    # Of equal ones the first.
-    best = min(verified, key=lambda answer: round(answer.alpha, 9))
-    alphas = tuple(sorted(answer.alpha for answer in verified))
-    standing = best.alpha >= 0.0
-    said = (
-        f"The least of {len(verified)} verified answers, which reach up to {alphas[-1]:.4f}."
-        if standing
-        else "Without dilatancy the blocks can move this way under their dead load alone, and even"
-        f" against a load of {-best.alpha:.4f}, although other forces would hold them;"
-        f" {len(verified)} verified answers reach up to {alphas[-1]:.4f}."
+        return NonassociativeResult(LimitStatus.FAILED, direction, rounds=rounds, message=message)
+    least, best = min(verified, key=lambda one: round(one[0], 9))
+    alphas = tuple(sorted(alpha for alpha, _ in verified))
+    found = replace(best, rounds=rounds, answers=alphas)
+    count = f"{len(verified)} verified answers"
+    if least >= 0.0:
+        message = f"The least of {count}, which reach up to {alphas[-1]:.4f}."
+        return replace(found, message=message)
+    message = (
+        "Without dilatancy the blocks can move this way under their dead load alone, and even"
+        f" against a load of {-least:.4f}, although other forces would hold them;"
+        f" {count} reach up to {alphas[-1]:.4f}."
     )
-    return NonassociativeResult(
-        status=LimitStatus.OPTIMAL if standing else LimitStatus.UNSTABLE,
-        direction=direction,
-        alpha=best.alpha if standing else None,
-        mechanism=best.mechanism,
-        forces=best.forces,
-        rounds=rounds,
-        method=best.method,
-        check=best.check,
-        answers=alphas,
-        message=said,
-    )
+    return replace(found, status=LimitStatus.UNSTABLE, alpha=None, message=message)

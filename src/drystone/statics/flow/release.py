@@ -7,7 +7,7 @@ than rest.  At the moment when the blocks are let go, forces and an acceleration
 
     M a = dead + contact forces;  a_n >= 0, n >= 0, n a_n = 0;  |t| <= mu n, t a_t = -mu n |a_t|:
 
-the flow rule of :mod:`drystone.statics.flow.flow_rule`, with the rates at which contacts begin to
+the flow rule of :mod:`drystone.statics.flow.flow_search`, with the rates at which contacts begin to
 open and slide.  With a = 0 that is equilibrium, and with a != 0 the blocks fall: their weight does
 more work than friction takes.  A motion in equilibrium, dead load and friction in balance, would
 be too narrow a claim: it says that a block creeps under just that squeeze which it needs, and
@@ -32,14 +32,13 @@ of its area, which decides how fast it turns, and not which forces it can be hel
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import highspy
 import numpy as np
 from scipy.sparse import block_array, csc_array, diags_array
 
-from drystone.statics.flow.flow_rule import ContactRates
+from drystone.statics.flow.flow_search import ContactRates
 from drystone.statics.loads import Loads
 from drystone.statics.lp.clarabel import least_constraint
-from drystone.statics.lp.highs import TOLERANCE, silent_highs
+from drystone.statics.lp.highs import INFINITY, loaded, solved
 from drystone.statics.lp.program import EquilibriumProgram, Floats
 from drystone.statics.model import RigidBlockModel
 
@@ -56,21 +55,11 @@ CLEAR = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Fall:
-    """How blocks start to fall, in the units of the program; free fall has acceleration 1.
+    """How blocks start to fall, in the units of the program; free fall has acceleration 1."""
 
-    Parameters
-    ----------
-    acceleration : (rows,) float array
-        One entry a row of the program.
-    edges : (m, 2) float array
-        Forces along the two edges of every cone of friction.
-    inertia : (rows,) float array
-        Mass times acceleration: what the forces on the blocks sum up to.
-    """
-
-    acceleration: Floats
-    edges: Floats
-    inertia: Floats
+    acceleration: Floats  # (rows,): one entry a row of the program
+    edges: Floats  # (m, 2): forces along the two edges of every cone of friction
+    inertia: Floats  # (rows,): mass times acceleration: what the forces on the blocks sum up to
 
 
 def fall_of(
@@ -79,32 +68,10 @@ def fall_of(
     rounds: int,
     look: Callable[[], None] = lambda: None,
 ) -> Fall | None:
-    """Let blocks go, and find out how they start to fall.
+    """Let blocks go, and find how they start to fall; None when they come to rest.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        With at least one free block.
-    program : EquilibriumProgram
-        Of the model.
-    rounds : int
-        At most so many.
-    look : callable
-        Called before each of them; what it raises ends the search.
-
-    Returns
-    -------
-    Fall or None
-        None when they come to rest, and when the rounds lead to nothing.
-
-    Examples
-    --------
-    >>> from drystone.contacts.given import model_from_json
-    >>> from drystone.statics.lp.program import assemble
-    >>> piers = [[0, 0, 1, 4], [2, 0, 1, 4]]
-    >>> jammed = model_from_json({"blocks_xywh": [*piers, [1, 1.5, 1, 1]]})
-    >>> fall_of(jammed, assemble(jammed), 9).acceleration.round(6)[-2]
-    np.float64(-1.0)
+    At least one block is free.  `look` is called before each of so many rounds; what it raises
+    ends the search.
     """
     rows = masses(model, program)
     if not len(rows) or program.column_count == 1:
@@ -153,30 +120,16 @@ class _States:
     """Newton's law with what each contact does given: a linear program in a and the forces."""
 
     def __init__(self, program: EquilibriumProgram, rates: ContactRates, masses: Floats) -> None:
-        self._rates, self._masses, self._dead = rates, masses, -program.rhs
+        self._rates, self._masses = rates, masses
         rows, points = rates.normal.shape
         newton = [diags_array(masses), -program.matrix[:, 1:]]
         matrix = csc_array(block_array([newton, [rates.normal.T, None], [rates.slip.T, None]]))
         count, columns = matrix.shape
-        self._unbounded = np.full(points, highspy.kHighsInf)
         self._columns = np.arange(rows, columns, dtype=np.int32)
         self._contacts = np.arange(rows, count, dtype=np.int32)
-        free = np.full(columns, highspy.kHighsInf)
-        fixed = np.concatenate((self._dead, np.zeros(2 * points)))
-        by_column, minimise, offset = 1, 1, 0.0
-        self._highs = silent_highs(
-            {
-                "threads": 1,
-                "solver": "simplex",
-                "primal_feasibility_tolerance": TOLERANCE,
-                "dual_feasibility_tolerance": TOLERANCE,
-            }
-        )
-        self._highs.passModel(
-            columns, count, matrix.nnz, by_column, minimise, offset, np.zeros(columns), -free,
-            free, fixed, fixed, matrix.indptr.astype(np.int32), matrix.indices.astype(np.int32),
-            matrix.data, np.zeros(columns, np.int32),
-        )  # fmt: skip
+        fixed = np.concatenate((-program.rhs, np.zeros(2 * points)))
+        lower = np.full(columns, -INFINITY)
+        self._highs = loaded({"solver": "simplex"}, matrix, (fixed, fixed), lower)
 
     def exact(self, acceleration: Floats, multipliers: Floats) -> Fall | None:
         """Return the answer in which contacts do what they do in an inexact one, if any.
@@ -191,22 +144,18 @@ class _States:
         clear = CLEAR * float(np.abs(acceleration).max())
         forth, back = slip > clear, slip < -clear
         none = np.column_stack((~presses | forth, ~presses | back)).ravel()
-        upper = np.where(none, 0.0, highspy.kHighsInf)
+        upper = np.where(none, 0.0, INFINITY)
         least = np.concatenate(
-            (np.zeros(len(slip)), np.where(presses & ~back, 0.0, -self._unbounded))
+            (np.zeros(len(slip)), np.where(presses & ~back, 0.0, -INFINITY)),
         )
         greatest = np.concatenate(
-            (
-                np.where(presses, 0.0, self._unbounded),
-                np.where(presses & ~forth, 0.0, self._unbounded),
-            )
+            (np.where(presses, 0.0, INFINITY), np.where(presses & ~forth, 0.0, INFINITY))
         )
         highs = self._highs
         highs.changeColsBounds(len(upper), self._columns, np.zeros(len(upper)), upper)
         highs.changeRowsBounds(len(least), self._contacts, least, greatest)  # type: ignore[attr-defined]
-        highs.run()
-        if highs.getModelStatus() != highspy.HighsModelStatus.kOptimal:
+        answer = solved(highs)
+        if answer is None:
             return None
-        answer = np.array(highs.getSolution().col_value)
         moves, edges = answer[:rows], np.maximum(answer[rows:], 0.0).reshape(-1, 2)
         return Fall(moves, edges, self._masses * moves)

@@ -3,36 +3,21 @@
 import numpy as np
 
 from drystone.kernels.certificate import Figures
-from drystone.statics.lp.program import EquilibriumProgram, Floats
-from drystone.statics.lp.solution import Solution
+from drystone.statics.lp.program import EquilibriumProgram, Floats, Solution
 from drystone.statics.result import CERTIFIED, Certificate, LimitStatus
 
 
 def certify(program: EquilibriumProgram, solution: Solution, sign: float) -> Certificate | None:
     """Check the forces and the mechanism of a solution for the extreme of alpha.
 
-    Parameters
-    ----------
-    program : EquilibriumProgram
-        The equations.
-    solution : Solution
-        For costs of 1 or -1 on alpha and 0 on all forces.
-    sign : float
-        1 when the greatest alpha was asked for, -1 for the least.  The mechanism of the other end
-        is no proof.
+    The sign is 1 when the greatest alpha was asked for, -1 for the least: the mechanism of the
+    other end is not a proof.  None when the solver failed or brought no vectors; whether the
+    certificate holds is for the caller to ask.
 
-    Returns
-    -------
-    Certificate or None
-        None when the solver failed or brought no vectors.  Whether it holds is for the caller to
-        ask.
-
-    Notes
-    -----
     With duals y, v = -y are the velocities of the blocks and g . v >= 0 for every edge g of a
-    friction cone says that they open contacts at least as fast as the associated flow rule
-    demands.  For any such v and any forces in equilibrium, alpha live . v <= -dead . v: the
-    balance of work bounds alpha on the side to which v goes along with the live load.
+    friction cone says that they open contacts at least as fast as the associated flow rule demands.
+    For any such v and any forces in equilibrium, alpha live . v <= -dead . v: the balance of work
+    bounds alpha on the side to which v goes along with the live load.
     """
     if solution.status is LimitStatus.OPTIMAL:
         assert solution.columns is not None  # noqa: S101 - an optimal solution has both
@@ -55,30 +40,12 @@ def in_equilibrium(program: EquilibriumProgram, solution: Solution) -> bool:
 
 
 def of_fall(program: EquilibriumProgram, velocity: Floats) -> Certificate:
-    """Certify that the blocks do not stand under dead load: it does work on a mechanism.
-
-    Parameters
-    ----------
-    program : EquilibriumProgram
-        The equations.
-    velocity : (rows,) float array
-        The mechanism, one entry a row of the program.
-    """
+    """Certify that the dead load does work on a mechanism, one velocity a row of the program."""
     return fall_of(_figures(program, None, velocity))
 
 
 def optimum_of(found: Figures, alpha: float, sign: float) -> Certificate:
-    """Certify that alpha is an extreme.
-
-    Parameters
-    ----------
-    found : Figures
-        Of the forces and the mechanism.
-    alpha : float
-        Load multiplier of the forces.
-    sign : float
-        1 when it is said to be the greatest, -1 for the least.
-    """
+    """Certify that alpha is the greatest (sign 1) or the least (-1)."""
     # Of the live load; along the end that was asked for.
     power = sign * found.live
     upper = slack = None
@@ -95,23 +62,22 @@ def optimum_of(found: Figures, alpha: float, sign: float) -> Certificate:
     )
 
 
-def fall_of(found: Figures) -> Certificate:
-    """Certify that the dead load does work on a mechanism."""
+def fall_of(found: Figures, live: float = 0.0) -> Certificate:
+    """Certify that the dead load does work on a mechanism.
+
+    That no alpha holds the blocks up is a fall on which `live`, the work of the live load, is 0.
+    """
     if found.largest == 0.0:
         return Certificate(fall_work=0.0)
     return Certificate(
-        inadmissible=found.inadmissible / found.largest, fall_work=-found.rhs / found.largest
+        inadmissible=max(found.inadmissible, abs(live)) / found.largest,
+        fall_work=-found.rhs / found.largest,
     )
 
 
 def no_alpha_of(found: Figures) -> Certificate:
-    """Certify that no alpha holds the blocks up: as a fall on which the live load does no work."""
-    if found.largest == 0.0:
-        return Certificate(fall_work=0.0)
-    return Certificate(
-        inadmissible=max(found.inadmissible, abs(found.live)) / found.largest,
-        fall_work=-found.rhs / found.largest,
-    )
+    """Certify that no alpha holds the blocks up."""
+    return fall_of(found, found.live)
 
 
 def _figures(program: EquilibriumProgram, columns: Floats | None, velocity: Floats) -> Figures:

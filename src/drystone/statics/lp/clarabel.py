@@ -1,33 +1,20 @@
 """Clarabel: an interior point method that grows slowly with the number of blocks."""
 
-from collections.abc import Mapping
 from typing import Any
 
 import clarabel
 import numpy as np
 from scipy.sparse import csc_array, csc_matrix, diags_array, vstack
 
-from drystone.statics.lp.program import EquilibriumProgram, Floats
-from drystone.statics.lp.solution import Solution
+from drystone.statics.lp.program import EquilibriumProgram, Floats, Solution
 from drystone.statics.result import LimitStatus
 
 NAME = "Clarabel"
 
 # At 1e-10 the last digits are off by 1e-7 for a thousand blocks; 1e-12 costs the same.
-_SETTINGS: Mapping[str, Any] = {
-    "verbose": False,
-    "tol_gap_abs": 1e-12,
-    "tol_gap_rel": 1e-12,
-    "tol_feas": 1e-12,
-    "max_threads": 1,
-}
+_LINEAR = 1e-12
 # Near 1e-12 quadratic ones stop short, some far from the end.
-_QUADRATIC: Mapping[str, Any] = {
-    **_SETTINGS,
-    "tol_gap_abs": 1e-8,
-    "tol_gap_rel": 1e-8,
-    "tol_feas": 1e-8,
-}
+_QUADRATIC = 1e-8
 
 # "Almost" and "insufficient progress" stop near the last digits: the certificate decides.
 _STATUS = {
@@ -41,14 +28,15 @@ _STATUS = {
 }
 
 
-class ClarabelSession:
-    """One program in Clarabel; every objective is solved from the start.
+def _settings(tolerance: float) -> Any:
+    settings = clarabel.DefaultSettings()
+    settings.verbose, settings.max_threads = False, 1
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = tolerance
+    return settings
 
-    Parameters
-    ----------
-    program : EquilibriumProgram
-        The equations.
-    """
+
+class ClarabelSession:
+    """One program in Clarabel; every objective is solved from the start."""
 
     def __init__(self, program: EquilibriumProgram) -> None:
         rows, columns = program.matrix.shape
@@ -63,12 +51,9 @@ class ClarabelSession:
 
     def minimise(self, costs: Floats) -> Solution:
         """Minimise costs . x; see :meth:`drystone.statics.lp.highs.HighsSession.minimise`."""
-        settings = clarabel.DefaultSettings()
-        for name, value in _SETTINGS.items():
-            setattr(settings, name, value)
         nothing = csc_matrix((len(costs), len(costs)))
         solver = clarabel.DefaultSolver(
-            nothing, costs, self._matrix, self._rhs, self._cones, settings
+            nothing, costs, self._matrix, self._rhs, self._cones, _settings(_LINEAR)
         )
         found = solver.solve()
         said = str(found.status)
@@ -87,35 +72,19 @@ class ClarabelSession:
 def least_constraint(
     masses: Floats, forces: Floats, matrix: csc_array, least: Floats
 ) -> tuple[Floats, Floats] | None:
-    """Minimise sum(masses x^2) / 2 - forces . x, subject to matrix' x >= least.
+    """Minimise sum(masses x^2) / 2 - forces . x, subject to matrix' x >= least, which is <= 0.
 
-    Gauss's principle: masses under given forces accelerate so, and the multipliers are what the
-    constraints do to them.
-
-    Parameters
-    ----------
-    masses, forces : (n,) float array
-        Masses above 0.
-    matrix : (n, m) sparse array
-        A constraint a column.
-    least : (m,) float array
-        At most 0.
-
-    Returns
-    -------
-    x, multipliers : (n,) and (m,) float array
-        None when Clarabel gives up.
+    Gauss's principle: masses above 0 under given forces accelerate so, and the multipliers are what
+    the constraints, the columns of the matrix, do to them.  Returned are x and the multipliers;
+    None when Clarabel gives up.
     """
-    settings = clarabel.DefaultSettings()
-    for name, value in _QUADRATIC.items():
-        setattr(settings, name, value)
     solver = clarabel.DefaultSolver(
         csc_matrix(diags_array(masses)),
         -forces,
         csc_matrix(-matrix.T),
         -least,
         [clarabel.NonnegativeConeT(len(least))],
-        settings,
+        _settings(_QUADRATIC),
     )
     found = solver.solve()
     if _STATUS.get(str(found.status)) is not LimitStatus.OPTIMAL:

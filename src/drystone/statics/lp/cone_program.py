@@ -23,26 +23,13 @@ class ConeProgram:
     """Equilibrium of loose blocks on the tilting table, as :mod:`drystone.kernels.simplex` has it.
 
     Its numbers are those of :class:`drystone.statics.lp.program.EquilibriumProgram`.
-
-    Parameters
-    ----------
-    units : Units
-        Of lengths and forces.
-    bodies : mapping of int to Body
-        Of every block and of the ground, by id.
-    weights : (n,) float array
-        Of the blocks, in units of weight.
-    cones : Cones
-        Edges of the cones of friction at all contact points.
-    interfaces : (N,) int array
-        Place of the interface of each column in the model.
     """
 
     units: Units
-    bodies: Mapping[int, Body]
-    weights: NDArray[np.float64]
+    bodies: Mapping[int, Body]  # of every block and of the ground, by id
+    weights: NDArray[np.float64]  # (n,): of the blocks, in units of weight
     cones: Cones
-    interfaces: Ints
+    interfaces: Ints  # (N,): place of the interface of each column in the model
 
     @classmethod
     def empty(cls, units: Units) -> "ConeProgram":
@@ -57,20 +44,10 @@ class ConeProgram:
         return np.array([x for place, x, _ in self.bodies.values() if place >= 0])
 
     def columns_of(self, addition: Addition, mu: float) -> Added | None:
-        """Return what a stone and its wedges add.
+        """Return what a stone and its wedges add to the program.
 
-        Parameters
-        ----------
-        addition : Addition
-            To the model of this program.
-        mu : float
-            Friction of interfaces that have none of their own.
-
-        Returns
-        -------
-        Added or None
-            None when a block is fixed or held, or weighs nothing, or when an interface is not
-            between a block and another one or the ground: that is for other solvers.
+        None when a block is fixed or held, or weighs nothing, or when an interface is not between a
+        block and another one or the ground: that is for other solvers.
         """
         new = self._new_bodies(addition.blocks)
         if new is None:
@@ -86,15 +63,7 @@ class ConeProgram:
         return Added(weights, cones, gone)
 
     def appended(self, addition: Addition, added: Added) -> "ConeProgram":
-        """Return the program with a stone and its wedges.
-
-        Parameters
-        ----------
-        addition : Addition
-            What is new.
-        added : Added
-            What :meth:`columns_of` makes of it.
-        """
+        """Return the program with a stone and its wedges, as :meth:`columns_of` has them."""
         bodies = self._new_bodies(addition.blocks)
         assert bodies is not None  # noqa: S101 - or there would be no columns
         return ConeProgram(

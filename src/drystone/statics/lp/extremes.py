@@ -1,7 +1,7 @@
 """The two ends of the range of alpha: solvers are asked in turn until an answer is certified."""
 
 import itertools
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, Protocol
@@ -10,8 +10,7 @@ import numpy as np
 
 from drystone.statics.lp.certificate import certify, in_equilibrium
 from drystone.statics.lp.highs import HighsSession, WarmSession
-from drystone.statics.lp.program import EquilibriumProgram, Floats
-from drystone.statics.lp.solution import Solution
+from drystone.statics.lp.program import EquilibriumProgram, Floats, Solution
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import Certificate, LimitStatus
 
@@ -66,21 +65,8 @@ def extremes(
 
     Solvers and certificates allow errors of 1e-9 to 1e-8 of the mean weight.  The moment that
     brings down a stone of a millionth of it is no larger, so the equations of light blocks are
-    divided by their own weight and size.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Blocks and interfaces.
-    program : EquilibriumProgram
-        Of the model.
-    solver, mechanism
-        As for :func:`drystone.statics.limit.lateral_resistance`.
-
-    Returns
-    -------
-    least, greatest : Extreme
-        Velocities in the units of the program; certificates in those of each block.
+    divided by their own weight and size.  Velocities come in the units of the program, certificates
+    in those of each block.
     """
     units = units_of_light_blocks(model, program)
     if units is not None:
@@ -94,16 +80,7 @@ def extremes(
 
 
 def units_of_light_blocks(model: RigidBlockModel, program: EquilibriumProgram) -> Floats | None:
-    """Return the unit of every row, in those of the program; None where all of them are 1.
-
-    Examples
-    --------
-    >>> from drystone.contacts.given import model_from_json
-    >>> from drystone.statics.lp.program import assemble
-    >>> model = model_from_json({"blocks_xywh": [[0, 0, 100, 100], [40, 100, 1, 1]]})
-    >>> units_of_light_blocks(model, assemble(model)).round(7).tolist()
-    [1.0, 1.0, 1.0, 0.0002, 0.0002, 2.8e-06]
-    """
+    """Return the unit of every row, in those of the program; None where all of them are 1."""
     free = [block for block in model.blocks if not block.fixed]
     weights = np.array([block.weight for block in free]) / program.weight
     light = (weights >= WEIGHTLESS) & (weights < LIGHT)
@@ -131,15 +108,12 @@ def _extremes(
 ) -> tuple[Extreme, Extreme]:
     """Find the greatest alpha, then the least from its basis."""
     sessions = _sessions(program, solver, mechanism=mechanism)
-    greatest, session = _certified(program, _made(sessions), 1.0)
+    greatest, session = _certified(program, (make() for make in sessions), 1.0)
     if greatest.status is LimitStatus.UNSTABLE:
         return greatest, greatest
-    least, _ = _certified(program, itertools.chain([session], _made(sessions)), -1.0)
+    again = itertools.chain([session], (make() for make in sessions))
+    least, _ = _certified(program, again, -1.0)
     return least, greatest
-
-
-def _made(sessions: Sequence[Callable[[], Session]]) -> Iterator[Session]:
-    return (make() for make in sessions)
 
 
 def _certified(

@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
-from drystone.statics.lp.program import EquilibriumProgram, Floats
-from drystone.statics.lp.solution import Solution
+from drystone.statics.lp.program import EquilibriumProgram, Floats, Solution
 from drystone.statics.result import LimitStatus
 
 Algorithm = Literal["simplex", "ipm"]
+
+INFINITY = highspy.kHighsInf
 
 TOLERANCE = 1e-9
 """Primal and dual feasibility; the default of HiGHS costs two digits of alpha at 300 blocks."""
@@ -47,9 +48,10 @@ _SIMPLEX: Mapping[str, Any] = {
 # the primal one then needs a fifth of the pivots at 60 blocks.
 _DUAL: Mapping[str, Any] = {"simplex_strategy": 1}
 _PRIMAL: Mapping[str, Any] = {"simplex_strategy": 4}
-_IPM: Mapping[str, Any] = {"solver": "ipm", "run_crossover": "on", "presolve": "on"}
-
-_OPTIONS: Mapping[Algorithm, Mapping[str, Any]] = {"simplex": _SIMPLEX, "ipm": _IPM}
+_OPTIONS: Mapping[Algorithm, Mapping[str, Any]] = {
+    "simplex": _SIMPLEX,
+    "ipm": {"solver": "ipm", "run_crossover": "on", "presolve": "on"},
+}
 
 _STATUS = {
     highspy.HighsModelStatus.kOptimal: LimitStatus.OPTIMAL,
@@ -75,17 +77,33 @@ class _SilentHighs(highspy.Highs):
         super().enableCallbacks()  # type: ignore[no-untyped-call]  # it has no types
 
 
-def silent_highs(options: Mapping[str, Any]) -> highspy.Highs:
-    """Return HiGHS with these options, that prints nothing.
-
-    Parameters
-    ----------
-    options : mapping from str to bool, int, float or str
-        Options of HiGHS by name.
-    """
+def loaded(
+    options: Mapping[str, Any],
+    matrix: csc_array,
+    rows: tuple[Floats, Floats],
+    lower: Floats,
+    costs: Floats | None = None,
+) -> highspy.Highs:
+    """Return HiGHS, that prints nothing, with a program: low <= matrix . x <= high, lower <= x."""
     highs = _SilentHighs()  # type: ignore[no-untyped-call]  # nor has its constructor
-    set_options(highs, {"output_flag": False, **options})
+    set_options(highs, {"output_flag": False, **_COMMON, **options})
+    (count, columns), (low, high) = matrix.shape, rows
+    by_column, minimise, offset = 1, 1, 0.0
+    highs.passModel(
+        columns, count, matrix.nnz, by_column, minimise, offset,
+        np.zeros(columns) if costs is None else costs, lower, np.full(columns, INFINITY), low, high,
+        matrix.indptr.astype(np.int32), matrix.indices.astype(np.int32), matrix.data,
+        np.zeros(columns, np.int32),
+    )  # fmt: skip
     return highs
+
+
+def solved(highs: highspy.Highs) -> Floats | None:
+    """Solve what HiGHS has loaded; return its unknowns, or None when there is no optimum."""
+    highs.run()
+    if highs.getModelStatus() != highspy.HighsModelStatus.kOptimal:
+        return None
+    return np.array(highs.getSolution().col_value)
 
 
 def set_options(highs: highspy.Highs, options: Mapping[str, Any]) -> None:
@@ -94,21 +112,44 @@ def set_options(highs: highspy.Highs, options: Mapping[str, Any]) -> None:
         highs.setOptionValue(name, value)
 
 
+@dataclass(frozen=True)
+class WarmBasis:
+    """Which unknowns and equations are basic; it does not depend on the units of a program."""
+
+    columns: tuple[highspy.HighsBasisStatus, ...] = (_FREE,)  # of the unknowns and of the equations
+    rows: tuple[highspy.HighsBasisStatus, ...] = ()
+    whole: bool = True  # False when unknowns that were basic are gone
+
+    def appended(self, columns: int, rows: int) -> "WarmBasis":
+        """Return the basis for so many unknowns, the new ones at 0, and so many equations.
+
+        The slack of a new equation is basic, so the basis stays regular.
+        """
+        more_columns = (_AT_ZERO,) * (columns - len(self.columns))
+        more_rows = (_BASIC,) * (rows - len(self.rows))
+        return WarmBasis(self.columns + more_columns, self.rows + more_rows, self.whole)
+
+    def with_columns(self, stay: NDArray[np.bool_]) -> "WarmBasis":
+        """Return the basis with some of the unknowns only."""
+        both = list(zip(self.columns, stay.tolist(), strict=True))
+        columns = tuple(status for status, stays in both if stays)
+        return WarmBasis(
+            columns, self.rows, all(stays or status != _BASIC for status, stays in both)
+        )
+
+
 class HighsSession:
     """One program in HiGHS, solved for one objective after another, each from the last basis.
 
-    Parameters
-    ----------
-    program : EquilibriumProgram
-        The equations.
-    algorithm : {"simplex", "ipm"}
-        "simplex" is dual for the first objective and primal from the last basis after it.
+    "simplex" is dual for the first objective and primal from the last basis after it.
     """
 
     def __init__(self, program: EquilibriumProgram, algorithm: Algorithm = "simplex") -> None:
         self.limit = PIVOTS_PER_ROW * len(program.rhs) + 1000
-        limit = {"simplex_iteration_limit": self.limit}
-        self.highs = _loaded(program, {**_COMMON, **limit, **_OPTIONS[algorithm]})
+        options = {"simplex_iteration_limit": self.limit, **_OPTIONS[algorithm]}
+        lower = np.zeros(program.column_count)
+        lower[0] = -INFINITY
+        self.highs = loaded(options, program.matrix, (program.rhs, program.rhs), lower)
         self.name = f"HiGHS {algorithm}"
         self._warm: Mapping[str, Any] = _PRIMAL if algorithm == "simplex" else {}
         self._costs = np.zeros(program.column_count)
@@ -116,10 +157,7 @@ class HighsSession:
     def minimise(self, costs: Floats) -> Solution:
         """Minimise costs . x; the basis that it ends with starts the next call.
 
-        Parameters
-        ----------
-        costs : (columns,) float array
-            Of alpha, then of the two edges of the friction cone at every contact point.
+        The costs are of alpha, then of the two edges of the friction cone at every contact point.
         """
         changed = np.flatnonzero(costs != self._costs).astype(np.int32)
         self.highs.changeColsCost(len(changed), changed, costs[changed])
@@ -136,6 +174,11 @@ class HighsSession:
         if status is LimitStatus.OPTIMAL:
             set_options(self.highs, self._warm)
         return Solution(status, columns, duals, said, name)
+
+    def basis(self) -> WarmBasis | None:
+        """Return a copy of the last basis; None when there is none."""
+        found = self.highs.getBasis()
+        return WarmBasis(tuple(found.col_status), tuple(found.row_status)) if found.valid else None
 
     def _find_ray(self) -> str:
         """Prove that there is no solution; return the name of what did.
@@ -163,66 +206,12 @@ class HighsSession:
         return None, None
 
 
-def _loaded(program: EquilibriumProgram, options: Mapping[str, Any]) -> highspy.Highs:
-    columns, rows = program.column_count, len(program.rhs)
-    lower = np.zeros(columns)
-    lower[0] = -highspy.kHighsInf
-    upper = np.full(columns, highspy.kHighsInf)
-    by_column, minimise, offset = 1, 1, 0.0
-    highs = silent_highs(options)
-    highs.passModel(
-        columns, rows, len(program.value), by_column, minimise, offset, np.zeros(columns), lower,
-        upper, program.rhs, program.rhs, program.start, program.index, program.value,
-        np.zeros(columns, np.int32),
-    )  # fmt: skip
-    return highs
-
-
-@dataclass(frozen=True)
-class WarmBasis:
-    """Which unknowns and equations are basic; it does not depend on the units of a program.
-
-    Parameters
-    ----------
-    columns, rows : tuple of HighsBasisStatus
-        Of the unknowns and of the equations.
-    whole : bool
-        False when unknowns that were basic are gone.
-    """
-
-    columns: tuple[highspy.HighsBasisStatus, ...] = (_FREE,)
-    rows: tuple[highspy.HighsBasisStatus, ...] = ()
-    whole: bool = True
-
-    def appended(self, columns: int, rows: int) -> "WarmBasis":
-        """Return the basis for so many unknowns, the new ones at 0, and so many equations.
-
-        The slack of a new equation is basic, so the basis stays regular.
-        """
-        more_columns = (_AT_ZERO,) * (columns - len(self.columns))
-        more_rows = (_BASIC,) * (rows - len(self.rows))
-        return WarmBasis(self.columns + more_columns, self.rows + more_rows, self.whole)
-
-    def with_columns(self, stay: NDArray[np.bool_]) -> "WarmBasis":
-        """Return the basis with some of the unknowns only."""
-        both = list(zip(self.columns, stay.tolist(), strict=True))
-        columns = tuple(status for status, stays in both if stays)
-        return WarmBasis(
-            columns, self.rows, all(stays or status != _BASIC for status, stays in both)
-        )
-
-
 class WarmSession(HighsSession):
     """One program in HiGHS, solved from given bases; optima satisfy the equations to 1e-11 or so.
 
-    The simplex method updates the unknowns from pivot to pivot, and HiGHS drops what is very
-    small.  With large forces or thousands of blocks that leaves residuals of 1e-7, too large for a
+    The simplex method updates the unknowns from pivot to pivot, and HiGHS drops what is very small.
+    With large forces or thousands of blocks that leaves residuals of 1e-7, too large for a
     certificate; one correction by the last basis leaves 1e-13.
-
-    Parameters
-    ----------
-    program : EquilibriumProgram
-        The equations.
     """
 
     def __init__(self, program: EquilibriumProgram) -> None:
@@ -268,24 +257,12 @@ class WarmSession(HighsSession):
         return self.name
 
 
-def read_basis(found: highspy.HighsBasis) -> WarmBasis | None:
-    """Copy a basis out of HiGHS; None when it has none."""
-    return WarmBasis(tuple(found.col_status), tuple(found.row_status)) if found.valid else None
-
-
 def corrected(
     highs: highspy.Highs, program: tuple[Floats, csc_array, Floats], columns: Floats, duals: Floats
 ) -> tuple[Floats, Floats]:
-    """Return the optimum that HiGHS has just found, with small residuals.
+    """Return the optimum that HiGHS has just found, columns and duals, with small residuals.
 
-    Parameters
-    ----------
-    highs : Highs
-        With the basis of the optimum.
-    program : tuple
-        Costs, matrix and right-hand side.
-    columns, duals : float arrays
-        Of the optimum.
+    The program is its costs, matrix and right-hand side.
     """
     costs, matrix, rhs = program
     left = rhs - matrix @ columns

@@ -10,6 +10,7 @@ from scipy.sparse import csc_array
 
 from drystone.statics.loads import Loads, tilting_table
 from drystone.statics.model import FREEDOMS, GROUND, Block, RigidBlockModel
+from drystone.statics.result import LimitStatus, Mechanism
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -17,33 +18,14 @@ Ints = NDArray[np.int32]
 
 @dataclass(frozen=True)
 class Units:
-    """What lengths and forces are measured in.
-
-    Parameters
-    ----------
-    length : float
-        About the root of the area of a block.
-    weight : float
-        About the weight of a block.
-    """
+    """What lengths and forces are measured in."""
 
     length: float
     weight: float
 
 
 def units_of(model: RigidBlockModel) -> Units:
-    """Return the units in which free blocks have the mean weight 1 and the mean area 1.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        With at least one free block.
-
-    Examples
-    --------
-    >>> units_of(RigidBlockModel((Block(1, 4.0, (1.0, 1.0), density=2.0),), ()))
-    Units(length=2.0, weight=8.0)
-    """
+    """Return the units in which free blocks, of which there is one, have mean weight and area 1."""
     free = [block for block in model.blocks if not block.fixed]
     area = np.mean([block.area for block in free])
     return Units(float(np.sqrt(area)), float(np.mean([block.weight for block in free])))
@@ -57,38 +39,18 @@ class EquilibriumProgram:
     two edges of its friction cone, normal + mu tangent and normal - mu tangent.  Each free block
     has up to three rows, the horizontal and vertical forces on it and their moment about its
     centroid; what it is held in has no row.  The matrix is stored by columns.
-
-    Parameters
-    ----------
-    block_ids : (n,) tuple of int
-        Free blocks.
-    rows : (n, 3) int array
-        Row of each freedom of each free block; -1 for what is held.
-    start : (2 m + 2,) int array
-        Where each column starts in `index` and `value`.
-    index : int array
-        Rows.
-    value : float array
-        Coefficients.
-    rhs : float array
-        Right-hand side.
-    friction : (m,) float array
-        Coefficient of friction at each contact point.
-    length : float
-        Characteristic length: moments are divided by it, so that all rows are of one size.
-    weight : float
-        Unit of force: mean weight of the free blocks.
     """
 
-    block_ids: tuple[int, ...]
-    rows: Ints
-    start: Ints
+    block_ids: tuple[int, ...]  # (n,): free blocks
+    rows: Ints  # (n, 3): row of each freedom of each free block; -1 for what is held
+    start: Ints  # (2 m + 2,): where each column starts in `index` and `value`
     index: Ints
     value: Floats
     rhs: Floats
-    friction: Floats
+    friction: Floats  # (m,): coefficient of friction at each contact point
     length: float
-    weight: float
+    """Characteristic length: moments are divided by it, so that all rows are of one size."""
+    weight: float  # unit of force: mean weight of the free blocks
 
     @property
     def column_count(self) -> int:
@@ -100,6 +62,20 @@ class EquilibriumProgram:
         """The equations as a sparse matrix."""
         shape = (len(self.rhs), self.column_count)
         return csc_array((self.value, self.index, self.start), shape=shape)
+
+    def mechanism(self, velocity: Floats) -> Mechanism:
+        """Return how the blocks move, from a velocity for each row (§4.1)."""
+        by_block = np.zeros((len(self.rows), 3))
+        by_block[self.rows >= 0] = velocity
+        by_block[:, 2] /= self.length
+        fastest = float(np.hypot(by_block[:, 0], by_block[:, 1]).max())
+        # Of blocks that only turn about their centroids the rate of turning says how fast.
+        return Mechanism(self.block_ids, by_block / (fastest or float(np.abs(by_block).max())))
+
+    def forces(self, edges: Floats) -> Floats:
+        """Add up the edges (m, 2) of every cone: normal part, and part along mu t."""
+        first, second = self.weight * edges.T
+        return np.column_stack((first + second, self.friction * (first - second)))
 
     def save(self, path: Path) -> None:
         """Write the program as NPZ, for a report of what no solver could solve (E140)."""
@@ -119,31 +95,31 @@ class EquilibriumProgram:
         return cls(block_ids=ids, length=length, weight=weight, **arrays)
 
 
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Answer to: minimise costs . x subject to the program."""
+
+    status: LimitStatus  # OPTIMAL; UNSTABLE when the program has no solution; UNBOUNDED; FAILED
+    columns: Floats | None
+    """Unknowns; for UNBOUNDED a ray along which the costs fall for ever, if the solver has it."""
+    duals: Floats | None
+    """Of the rows, y with costs - y . column >= 0; for UNSTABLE a ray with y . column <= 0 and y .
+    rhs > 0, if the solver has it."""
+    said: str  # status in the solver's words
+    solver: str
+
+
 _ARRAYS = ("rows", "start", "index", "value", "rhs", "friction")
 
 
 def assemble(
     model: RigidBlockModel, loads: Loads | None = None, units: Units | None = None
 ) -> EquilibriumProgram:
-    """Set up Eq. 23-24 in scaled units.
+    """Set up Eq. 23-24 in scaled units, those of :func:`units_of` unless given.
 
-    A force f at point p on block i, centroid c, enters its rows as (f, (p - c) x f); the block
-    on the other side takes -f, the ground and fixed blocks nothing.  The cone |t| <= mu n,
-    n >= 0 of a contact point is spanned by the forces normal +- mu tangent.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Blocks and interfaces.
-    loads : Loads, optional
-        Dead and live loads; the tilting table unless given.
-    units : Units, optional
-        Those of :func:`units_of` unless given, which takes a free block.
-
-    Examples
-    --------
-    >>> assemble(RigidBlockModel((Block(1, 4.0, (1.0, 1.0)),), ())).column_count
-    1
+    A force f at point p on block i, centroid c, enters its rows as (f, (p - c) x f); the block on
+    the other side takes -f, the ground and fixed blocks nothing.  The cone |t| <= mu n, n >= 0 of a
+    contact point is spanned by the forces normal +- mu tangent.
     """
     loads = tilting_table(model) if loads is None else loads
     places = [i for i, block in enumerate(model.blocks) if not block.fixed]
@@ -152,7 +128,8 @@ def assemble(
     unit = units.weight * np.array([1.0, 1.0, units.length])
     rows = _rows(free)
     moving = rows >= 0
-    friction = _friction(model)
+    each = np.array([model.friction(interface) for interface in model.interfaces], float)
+    friction = each[model.contact_interfaces]
     force, arm, blocks = _cone_edges(model, free, friction)
 
     value = np.empty((len(force), 2, 3))
@@ -190,37 +167,23 @@ def _rows(free: list[Block]) -> Ints:
     return rows
 
 
-def _friction(model: RigidBlockModel) -> Floats:
-    each = [model.friction(interface) for interface in model.interfaces]
-    counts = [len(interface.points) for interface in model.interfaces]
-    return np.repeat(np.array(each, float), np.array(counts, np.int64))
-
-
 def _cone_edges(
     model: RigidBlockModel, free: list[Block], friction: Floats
 ) -> tuple[Floats, Floats, Ints]:
-    """List the two edges of the friction cone at every contact point.
+    """List the two edges of the friction cone at every contact point, m in all.
 
-    Returns
-    -------
-    force : (m, 2) float array
-        On the block that the normal points into.
-    arm : (m, 2, 2) float array
-        From the centroids of that block and of the other one to the point; anything for the
-        ground.
-    blocks : (m, 2) int array
-        Their places in `free`, -1 for what does not move.
+    Returned are the forces (m, 2) on the block that the normal points into; the arms (m, 2, 2) from
+    the centroids of that block and of the other one to the point, anything for the ground; and the
+    places (m, 2) of both in `free`, -1 for what does not move.
     """
-    place = {block.id: -1 for block in model.blocks}
-    place[GROUND] = -1
+    place = dict.fromkeys((GROUND, *(block.id for block in model.blocks)), -1)
     place.update((block.id, i) for i, block in enumerate(free))
+    of_edge = np.repeat(model.contact_interfaces, 2)
     points = [interface.points for interface in model.interfaces]
-    repeats = 2 * np.array([len(ends) for ends in points], np.int64)
     at = np.repeat(np.concatenate([np.empty((0, 2)), *points]), 2, axis=0)
     pairs = [(place[i.block], place[i.other]) for i in model.interfaces]
-    blocks = np.repeat(np.array(pairs, np.int32).reshape(-1, 2), repeats, axis=0)
-    normals = [interface.normal for interface in model.interfaces]
-    normal = np.repeat(np.array(normals, float).reshape(-1, 2), repeats, axis=0)
+    blocks = np.array(pairs, np.int32).reshape(-1, 2)[of_edge]
+    normal = np.array([i.normal for i in model.interfaces], float).reshape(-1, 2)[of_edge]
     tangent = np.column_stack((normal[:, 1], -normal[:, 0]))
     along = np.repeat(friction, 2) * np.tile([1.0, -1.0], len(friction))
     centroid = np.array([*(block.centroid for block in free), (0.0, 0.0)])

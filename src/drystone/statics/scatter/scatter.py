@@ -1,6 +1,5 @@
 """Scatter of the load multiplier: walls shaken at random, and each one analysed (Monte Carlo)."""
 
-from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -28,38 +27,24 @@ class Quantiles(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Scatter:
-    """What the shaken walls carry; a wall that does not stand is a result too, without numbers.
-
-    Parameters
-    ----------
-    settings : ScatterSettings
-        What was shaken.
-    seed : int
-        Of the random numbers.
-    unshaken : LateralResistance
-        Of the model as it was given, with its own friction.
-    status : (n,) tuple of LimitStatus
-        Of every sample: "optimal" when both directions are.
-    mu : (n,) float array
-        Coefficient of friction of every sample; the mean over the interfaces that draw one when
-        each has its own.
-    alpha_left, alpha_right : (number of optimal samples,) float array
-        Load multipliers of the walls that stand, in the order of the samples.
-    """
+    """What the shaken walls carry; a wall that does not stand is a result too, without numbers."""
 
     settings: ScatterSettings
     seed: int
-    unshaken: LateralResistance
-    status: tuple[LimitStatus, ...]
+    unshaken: LateralResistance  # of the model as it was given, with its own friction
+    status: tuple[LimitStatus, ...]  # (n,): of every sample: "optimal" when both directions are
     mu: Floats
+    """(n,): coefficient of friction of every sample; the mean over the interfaces that draw one
+    when each has its own."""
     alpha_left: Floats
-    alpha_right: Floats
+    """(number of optimal samples,): load multipliers of the walls that stand, in the order of the
+    samples."""
+    alpha_right: Floats  # (number of optimal samples,)
 
     @property
     def counts(self) -> dict[LimitStatus, int]:
         """How many samples ended how."""
-        counted = Counter(self.status)
-        return {status: counted[status] for status in LimitStatus}
+        return {status: self.status.count(status) for status in LimitStatus}
 
     @property
     def falling_share(self) -> float | None:
@@ -120,30 +105,8 @@ def scatter(
 ) -> Scatter:
     """Shake a wall many times and find what it carries each time, to both sides.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        The wall.
-    settings : ScatterSettings
-        What is shaken, and how often.
-    seed : int
-        >= 0.  Each sample has random numbers of its own, from the seed and its number.
-    executor : concurrent.futures.Executor, optional
-        Threads or processes; never changes the result.
-    on_sample : callable, optional
-        Told how many samples are done, after each one.
-
-    Returns
-    -------
-    Scatter
-
-    Examples
-    --------
-    >>> from drystone.contacts.given import model_from_json
-    >>> block = model_from_json({"blocks_xywh": [[0, 0, 4, 2]]})
-    >>> found = scatter(block, ScatterSettings(samples=20, mu=(0.4, 0.8)))
-    >>> bool(np.allclose(found.alpha, found.mu)), found.falling_share
-    (True, 0.0)
+    Each sample has random numbers of its own, from the seed and its number, so that threads or
+    processes of an executor never change the result.  `on_sample` gets the number of samples done.
     """
     analyse = partial(_analysed, model, settings, seed)
     numbers = range(settings.samples)
@@ -155,34 +118,23 @@ def scatter(
         samples.append(sample)
         if on_sample is not None:
             on_sample(done)
-    standing = [sample.alphas for sample in samples if sample.alphas is not None]
-    alphas = np.array(standing, float).reshape(-1, 2)
-    return Scatter(
-        settings=settings,
-        seed=seed,
-        unshaken=lateral_resistance(model),
-        status=tuple(sample.status for sample in samples),
-        mu=np.array([sample.mu for sample in samples]),
-        alpha_left=alphas[:, 0],
-        alpha_right=alphas[:, 1],
-    )
+    alphas = np.array([s[2:] for s in samples if s[0] is LimitStatus.OPTIMAL], float)
+    left, right = alphas.reshape(-1, 2).T
+    mu = np.array([sample[1] for sample in samples])
+    unshaken, status = lateral_resistance(model), tuple(sample[0] for sample in samples)
+    return Scatter(settings, seed, unshaken, status, mu, left, right)
 
 
-class _Sample(NamedTuple):
-    mu: float
-    status: LimitStatus
-    alphas: tuple[float, float] | None
-
-
-def _analysed(model: RigidBlockModel, settings: ScatterSettings, seed: int, number: int) -> _Sample:
+def _analysed(
+    model: RigidBlockModel, settings: ScatterSettings, seed: int, number: int
+) -> tuple[LimitStatus, float, float | None, float | None]:
+    """Return how a sample ends, its friction, and its load multipliers to both sides."""
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(number,)))
     wall = shaken(model, settings, rng)
     both = lateral_resistance(wall)
-    if both.left.alpha is not None and both.right.alpha is not None:
-        return _Sample(wall.mu, LimitStatus.OPTIMAL, (both.left.alpha, both.right.alpha))
-    ends = (both.left.status, both.right.status)
-    worst = (LimitStatus.FAILED, LimitStatus.UNSTABLE, LimitStatus.UNBOUNDED)
-    return _Sample(wall.mu, next(status for status in worst if status in ends), None)
+    ends = both.left.status, both.right.status
+    worst = (status for status in reversed(LimitStatus) if status in ends)
+    return next(worst), wall.mu, both.left.alpha, both.right.alpha
 
 
 def _quantiles(values: Floats) -> Quantiles | None:

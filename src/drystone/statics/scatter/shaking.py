@@ -39,34 +39,14 @@ RESOLVED = 3.0
 
 @dataclass(frozen=True, kw_only=True)
 class ScatterSettings:
-    """What is not known exactly.
+    """What is not known exactly; lengths are those of the model (E302, E318 for nonsense)."""
 
-    Parameters
-    ----------
-    samples : int
-        Walls to analyse, at least 1.
-    mu : (float, float) or None
-        Least and greatest coefficient of friction, >= 0; None for that of the model.
-    mu_per_interface : bool
-        Every interface has a friction of its own, independent of the others; False for one
-        value for the whole wall.
-    outline_noise : float
-        Standard deviation of outlines, in lengths of the model, >= 0.
-    placement_noise : float
-        Standard deviation of the place of a stone in each direction, in lengths of the model,
-        >= 0.
-
-    Raises
-    ------
-    InputError
-        E302 for a range of friction that makes no sense, E318 for the others.
-    """
-
-    samples: int = 500
-    mu: tuple[float, float] | None = None
-    mu_per_interface: bool = False
-    outline_noise: float = 0.0
+    samples: int = 500  # walls to analyse
+    mu: tuple[float, float] | None = None  # least and greatest friction; None for that of the model
+    mu_per_interface: bool = False  # every interface has a friction of its own
+    outline_noise: float = 0.0  # standard deviation of outlines, >= 0
     placement_noise: float = 0.0
+    """Standard deviation of the place of a stone in each direction, >= 0."""
 
     def __post_init__(self) -> None:
         if self.mu is not None and not 0 <= self.mu[0] <= self.mu[1] < np.inf:
@@ -90,15 +70,6 @@ def shaken(
     """Return the wall as it might be.
 
     The same numbers are drawn whatever the settings, so twice the noise moves things twice as far.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        The wall as it was read.
-    settings : ScatterSettings
-        What is shaken.
-    rng : numpy.random.Generator
-        Random numbers.
     """
     rubbed = _with_friction(model, settings, rng)
     steps = settings.placement_noise * rng.standard_normal((len(model.blocks), 2))
@@ -136,20 +107,10 @@ def _shaken_interfaces(
     errors: Floats,
     turns: Floats,
 ) -> tuple[Interface, ...]:
-    """Move the ends of all interfaces with their stones, and turn them.
+    """Move the ends of all k interfaces with their stones, and turn them.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Its k interfaces are shaken.
-    settings : ScatterSettings
-        For the noise of outlines.
-    steps : (n, 2) float array
-        Of the blocks, in their order.
-    errors : (k, 2, 2) float array
-        Along the interface, of both stones (first axis after k) at both ends (second).
-    turns : (k,) float array
-        In standard deviations.
+    `steps` is (n, 2), of the blocks.  `errors` is (k, 2, 2), along the interface, of both stones at
+    both ends.  `turns` is (k,), in standard deviations.
     """
     if not (model.interfaces and (settings.outline_noise or settings.placement_noise)):
         return model.interfaces
@@ -184,16 +145,10 @@ def _shaken_interfaces(
 def _of_both_stones(
     model: RigidBlockModel, steps: Floats
 ) -> tuple[Floats, NDArray[np.bool_], NDArray[np.bool_]]:
-    """Tell of the stones at every interface how they move.
+    """Return what the stones at every interface do: steps (k, 2, 2), and (k,) and (k, 2) flags.
 
-    Returns
-    -------
-    step : (k, 2, 2) float array
-        Of the stone that the normal points into, and of the other one.
-    stays : (k,) bool array
-        One of them cannot move.
-    endless : (k, 2) bool array
-        It is the ground.
+    The first stone is the one that the normal points into.  The flags say that one of the two
+    cannot move, and which of them is the ground.
     """
     place = {block.id: row for row, block in enumerate(model.blocks)} | {GROUND: -1}
     pairs = np.array([(place[i.block], place[i.other]) for i in model.interfaces])
