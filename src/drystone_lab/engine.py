@@ -27,24 +27,13 @@ COLUMNS = (
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """A wall in the engine.
-
-    Parameters
-    ----------
-    name : str
-        Of the wall.
-    result : PlanResult
-        As planned.
-    built : BuildUp
-        As the engine has it.
-    tilts : (float or None, float or None)
-        Tangent of the tilt at which it comes down, to the left and to the right; None when it
-        fell before, or never.
-    """
+    """A wall in the engine."""
 
     name: str
     result: PlanResult
     built: BuildUp
+    # Tangent of the tilt at which it comes down, to the left and to the right; None when it fell
+    # before, or never
     tilts: tuple[float | None, float | None]
 
     @property

@@ -59,13 +59,7 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
 
 
 def load_packer() -> Any:
-    """Return spyrrow; it is an extra, so it is loaded only when it is needed.
-
-    Raises
-    ------
-    UsageError
-        E305 when it is not installed.
-    """
+    """Return spyrrow; it is an extra, so it is loaded only when it is needed."""
     try:
         return import_module("spyrrow")
     except ImportError as error:
@@ -127,16 +121,7 @@ def _row(
 def packed(spec: RunSpec, data: Path | None) -> Outcome:
     """Pack the stones of a run into a strip as high as its wall, as short as it gets.
 
-    Returns
-    -------
-    outcome : Outcome
-        Of its figures F_SF alone: area of the stones over that of the strip, or over that of the
-        wall where the strip is shorter.  Without steps.
-
-    Raises
-    ------
-    UsageError
-        E305: spyrrow is not installed.
+    It has F_SF alone: area of the stones over that of the strip, or of the wall where it is larger.
     """
     packer = load_packer()
     stones = spec.source.stones(data)

@@ -14,28 +14,16 @@ COVERED = 0.95
 
 @dataclass(frozen=True)
 class Difference:
-    """What one method has more than another.
+    """What one method has more than another."""
 
-    Parameters
-    ----------
-    median : float
-        Of the differences of all pairs.
-    low, high : float
-        Ends of its interval.
-    pairs : int
-        How many there are.
-    """
-
-    median: float
-    low: float
+    median: float  # Of the differences of all pairs
+    low: float  # low, high: Ends of its interval
     high: float
     pairs: int
 
     def text(self) -> str:
         """Return it as a cell of a table.
 
-        Examples
-        --------
         >>> Difference(0.25, -0.5, 1.0, 6).text()
         '+0.25 (-0.5 to +1)'
         """
@@ -47,19 +35,6 @@ def median_difference(
 ) -> Difference | None:
     """Return the median difference between pairs, with its percentile bootstrap interval.
 
-    Parameters
-    ----------
-    first, second : sequence of float or None
-        Of the two methods, in the same order; pairs with a None are left out.
-
-    Returns
-    -------
-    difference : Difference or None
-        First minus second.  Pairs are drawn with the same random numbers every time.  None when
-        there is no pair.
-
-    Examples
-    --------
     >>> median_difference([3.0, 4.0, 9.0], [1.0, 2.0, 7.0])
     Difference(median=2.0, low=2.0, high=2.0, pairs=3)
     """

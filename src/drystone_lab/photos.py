@@ -26,26 +26,15 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class Score:
-    """What was found of what is there.
+    """What was found of what is there."""
 
-    Parameters
-    ----------
-    stones, found : int
-        Whole stones in the photograph, and stones that were found.
-    recall, precision : float
-        Share of either that has a match.
-    ious : tuple of float
-        Intersection over union of every stone with what covers it best, in the order of the
-        stones.
-    scale_error_percent : float or None
-        Largest error of distances between places of the ground; None without a scale.
-    """
-
-    stones: int
+    stones: int  # stones, found: Whole stones in the photograph, and stones that were found
     found: int
-    recall: float
+    recall: float  # recall, precision: Share of either that has a match
     precision: float
+    # Intersection over union of every stone with what covers it best, in the order of the stones
     ious: tuple[float, ...]
+    # Largest error of distances between places of the ground; None without a scale
     scale_error_percent: float | None
 
 
@@ -98,8 +87,6 @@ def score(made: Photograph, result: SegmentedPhoto) -> Score:
 def overlaps(truth: NDArray[np.uint16], labels: NDArray[np.uint16]) -> NDArray[np.float64]:
     """Return intersection over union of every true stone with every found one, (n, m).
 
-    Examples
-    --------
     >>> overlaps(np.array([[1, 1, 0]], np.uint16), np.array([[0, 1, 1]], np.uint16)).round(3)
     array([[0.333]])
     """

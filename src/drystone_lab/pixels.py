@@ -46,15 +46,10 @@ SHORTEST = 0.04
 
 @dataclass(frozen=True, eq=False)
 class TiltedWall:
-    """A wall of height 1 on flat ground whose joints follow no grid.
+    """A wall of height 1 on flat ground whose joints follow no grid."""
 
-    Parameters
-    ----------
-    polygons : tuple of (n, 2) float array
-        Corners of stone 1, 2, ...; counter-clockwise, not closed, x to the right and y up;
-        without gaps between them.
-    """
-
+    # Corners of stone 1, 2, ...; counter-clockwise, not closed, x to the right and y up; without
+    # gaps between them
     polygons: tuple[Points, ...]
 
     def model(self, mu: float = 0.58) -> RigidBlockModel:
@@ -68,17 +63,7 @@ class TiltedWall:
     def picture(self, height_px: int, offset_px: tuple[float, float] = (0.0, 0.0)) -> Labels:
         """Return its label image: a pixel belongs to the stone that its centre lies in.
 
-        Parameters
-        ----------
-        height_px : int
-            Height of the wall.
-        offset_px : (float, float)
-            Where the wall's lower left corner lies right of and above a pixel corner, 0 to 1.
-
-        Returns
-        -------
-        (h, w) uint32 array
-            Row 0 at the top, the lowest pixels of the wall in the last row.
+        `offset_px` is where the lower left corner lies right of and above a pixel corner, 0 to 1.
         """
         scaled = [polygon * height_px + offset_px for polygon in self.polygons]
         width, height = np.ceil(np.max([p.max(axis=0) for p in scaled], axis=0)).astype(int)
@@ -94,18 +79,9 @@ class TiltedWall:
 def tilted_wall(rng: Generator, courses: int = 4, length: float = 0.9) -> TiltedWall:
     """Draw a wall whose bed joints zigzag, whose head joints lean and whose ends have a batter.
 
-    Raises
-    ------
-    ValueError
-        When no such wall was found.
-
-    Notes
-    -----
     Bends and ends of joints are at least `SHORTEST` apart along a bed.  A facet smaller than a
     pixel cannot be seen in a picture, but may carry a good part of the load.
 
-    Examples
-    --------
     >>> wall = tilted_wall(np.random.default_rng(1), courses=3)
     >>> len(wall.polygons), wall.picture(40).shape
     (7, (40, 36))
@@ -195,28 +171,17 @@ COURSES = (3, 4, 5)
 
 @dataclass(frozen=True)
 class RefinementRow:
-    """Errors at one resolution.
+    """Errors at one resolution."""
 
-    Parameters
-    ----------
-    height_px : int
-        Height of the wall.
-    cases : int
-        Load multipliers compared: walls times offsets times two directions.
-    unanswered : int
-        Comparisons without a number, of either kind of contacts; left out of the means.
-    pixel_error, outline_error : float
-        Mean of |alpha - exact alpha| with contacts from pixel edges and from outlines.
-    pixel_worst, outline_worst : float
-        Largest of them.
-    """
-
-    height_px: int
-    cases: int
+    height_px: int  # Height of the wall
+    cases: int  # Load multipliers compared: walls times offsets times two directions
+    # Comparisons without a number, of either kind of contacts; left out of the means
     unanswered: int
+    # pixel_error, outline_error: Mean of |alpha - exact alpha| with contacts from pixel edges and
+    # from outlines
     pixel_error: float
     outline_error: float
-    pixel_worst: float
+    pixel_worst: float  # pixel_worst, outline_worst: Largest of them
     outline_worst: float
 
 
@@ -239,25 +204,8 @@ def refinement_study(
 ) -> RefinementStudy:
     """Compare pictures of walls of tilted joints with their polygons.
 
-    Parameters
-    ----------
-    heights_px : sequence of int
-        Heights of the walls in the pictures, at least two different ones.
-    walls : int
-        Number of walls from :func:`drystone_lab.pixels.tilted_wall`.
-    offsets : int
-        Sub-pixel positions at which each wall is rasterised.
-    mu : float
-        Coefficient of friction.
-    seed : int
-        Decides the walls.
-
-    Notes
-    -----
     A picture of blocks that do not stand counts with alpha = 0.
 
-    Examples
-    --------
     >>> study = refinement_study((40, 80), walls=1, offsets=1)
     >>> [row.cases for row in study.rows]
     [2, 2]
@@ -289,8 +237,6 @@ def refinement_study(
 def fitted_order(heights_px: Sequence[int], errors: Sequence[float]) -> float:
     """Return p of error ~ height^-p by least squares of the logarithms.
 
-    Examples
-    --------
     >>> round(fitted_order((10, 20, 40), (0.4, 0.1, 0.025)), 9)
     2.0
     """
@@ -344,8 +290,6 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
 def rasterised(rectangles: Iterable[Rectangle], px: float) -> Labels:
     """Draw rectangles, numbered from 1, at `px` pixels per unit; edges at the nearest pixel edge.
 
-    Examples
-    --------
     >>> rasterised([(0, 0, 1, 1), (0.4, 1, 1, 1)], 2).tolist()
     [[0, 2, 2], [0, 2, 2], [1, 1, 0], [1, 1, 0]]
     """

@@ -21,20 +21,10 @@ SETS = (PR, R, IR)
 
 @dataclass(frozen=True, eq=False)
 class PlannedWall:
-    """A plan, and the wall after every step.
+    """A plan, and the wall after every step."""
 
-    Parameters
-    ----------
-    name : str
-        Set, method and seed.
-    plan : Plan
-        The plan.
-    stones : StoneSet
-        What it was made from.
-    """
-
-    name: str
-    plan: Plan
+    name: str  # Set, method and seed
+    plan: Plan  # The plan
     stones: StoneSet
 
     @cached_property
@@ -62,18 +52,7 @@ class PlannedWall:
 def planned_walls(
     settings: BenchSettings, methods: tuple[str, ...] = ("paper", "best"), seeds: int = 1
 ) -> Iterator[PlannedWall]:
-    """Plan walls from the published sets, one after another.
-
-    Parameters
-    ----------
-    settings : BenchSettings
-        `data` is the folder of the published sets; without it there are no walls.  `quick` plans
-        only the smallest wall, by the first method.
-    methods : tuple of str
-        Of the planner.
-    seeds : int
-        Walls of each set and method, from the seed of the settings on.
-    """
+    """Plan walls from the published sets, one after another."""
     if missing_data(settings):
         return
     for target in SETS[:1] if settings.quick else SETS:

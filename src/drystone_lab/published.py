@@ -59,26 +59,14 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class Expected:
-    """What the answers for one direction must be.
+    """What the answers for one direction must be."""
 
-    Parameters
-    ----------
-    alpha, tolerance : float
-        Associative load factor.
-    low, high : float
-        Range of the factor without dilatancy.
-    words : str
-        That range for people.
-    may_not_converge : bool
-        No factor without dilatancy is accepted too.
-    """
-
-    alpha: float
+    alpha: float  # alpha, tolerance: Associative load factor
     tolerance: float
-    low: float
+    low: float  # low, high: Range of the factor without dilatancy
     high: float
-    words: str
-    may_not_converge: bool = False
+    words: str  # That range for people
+    may_not_converge: bool = False  # No factor without dilatancy is accepted too
 
     def fits(self, found: LimitResult) -> bool:
         """Tell whether a load factor is certified and as expected."""
@@ -112,18 +100,7 @@ class Row:
 
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
-    """Compare the limit analysis with all published cases.
-
-    Parameters
-    ----------
-    settings : BenchSettings
-        With `quick` most arches and most of the factors without dilatancy are left out.
-
-    Returns
-    -------
-    tuple of Table
-        Closed forms, walls of Ferris and Tin-Loi, arches; a verdict a row.
-    """
+    """Compare the limit analysis with all published cases."""
     arches = (*WITHOUT_SLIDING, *WITH_FRICTION)
     chosen = [case for case in arches if not settings.quick or case in QUICK_ARCHES]
     return _closed_forms(quick=settings.quick), _ferris(quick=settings.quick), _arches(chosen)

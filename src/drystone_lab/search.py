@@ -25,21 +25,11 @@ PAIRS = ((SEARCH, RESTARTS), (SEARCH, WEDGED), (SEARCH, NO_COURSES))
 
 @dataclass(frozen=True, eq=False)
 class Compared:
-    """What all methods came to on one wall.
+    """What all methods came to on one wall."""
 
-    Parameters
-    ----------
-    target : Target
-        The wall.
-    stones : int
-        How many there are to build with.
-    results : dict of str to list of Result
-        Of each method, seed after seed.
-    """
-
-    target: Target
-    stones: int
-    results: dict[str, list[Result]]
+    target: Target  # The wall
+    stones: int  # How many there are to build with
+    results: dict[str, list[Result]]  # Of each method, seed after seed
 
     def values(self, way: str, figure: str) -> list[float | None]:
         """Return a figure of a method, seed after seed."""

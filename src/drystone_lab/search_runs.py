@@ -28,23 +28,12 @@ FIGURES = (
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """What one method came to with one seed.
+    """What one method came to with one seed."""
 
-    Parameters
-    ----------
-    figures : dict of str to float or None
-        By the names of :data:`FIGURES`; None where a figure is not defined.
-    walls : int
-        How many walls it built.
-    possible : float
-        Area bound on F_SF.
-    seconds : float
-        How long it took.
-    """
-
+    # By the names of :data:`FIGURES`; None where a figure is not defined
     figures: dict[str, float | None]
     walls: int
-    possible: float
+    possible: float  # Area bound on F_SF
     seconds: float
 
     @classmethod
@@ -80,24 +69,12 @@ def second_of(wall: Wall) -> SecondArrangement:
 
 @dataclass(frozen=True)
 class Run:
-    """One method that looks for one wall.
-
-    Parameters
-    ----------
-    wall : str
-        Name of the target.
-    way : str
-        Of the method.
-    seed : int
-        Of all that is drawn.
-    seconds : float
-        CPU time.
-    """
+    """One method that looks for one wall."""
 
     wall: str
     way: str
     seed: int
-    seconds: float
+    seconds: float  # CPU time
 
 
 KEY = ("wall", "method", "seed", "seconds")
@@ -106,13 +83,7 @@ COLUMNS = (*KEY, *FIGURES, "possible F_SF", "walls", "CPU s")
 
 
 def read_results(path: Path) -> dict[Run, Result]:
-    """Read the results that a table holds; none when there is no table.
-
-    Raises
-    ------
-    UsageError
-        E148 when it is another kind of file.
-    """
+    """Read the results that a table holds; none when there is no table."""
     if not path.exists():
         return {}
     with path.open(newline="", encoding="utf-8") as file:
@@ -163,31 +134,15 @@ def append_results(path: Path, results: Iterable[tuple[Run, Result]]) -> None:
 
 @dataclass(frozen=True)
 class Task:
-    """What one process does: a method looks for a wall, and is asked at several times.
+    """What one process does: a method looks for a wall, and is asked at several times."""
 
-    Parameters
-    ----------
-    wall, way : str
-        Names of the target and the method.
-    seed : int
-        Of all that is drawn.
-    times : tuple of float
-        CPU times, s.
-    data : Path or None
-        Folder of the published data.
-    quick : bool
-        Whether targets are those of the smaller version.
-    changes : tuple of (str, value)
-        Settings that are replaced.
-    """
-
-    wall: str
+    wall: str  # wall, way: Names of the target and the method
     way: str
     seed: int
-    times: tuple[float, ...]
-    data: Path | None
-    quick: bool
-    changes: Changes = ()
+    times: tuple[float, ...]  # CPU times, s
+    data: Path | None  # Folder of the published data
+    quick: bool  # Whether targets are those of the smaller version
+    changes: Changes = ()  # Settings that are replaced
 
     @property
     def method(self) -> str:
@@ -206,8 +161,6 @@ class Task:
 def method_name(way: str, changes: Changes) -> str:
     """Return what a way with settings is called in a table.
 
-    Examples
-    --------
     >>> method_name("search", (("goal.F_AV", 24.0),))
     'search, goal.F_AV = 24.0'
     """
@@ -220,25 +173,10 @@ def searched(
     times: tuple[float, ...],
     settings: BenchSettings,
 ) -> dict[Run, Result]:
-    """Let every method look for every wall with every seed; what is in the table is not done again.
+    """Let every method look for every wall with every seed; what the table has is not done again.
 
-    Parameters
-    ----------
-    walls : sequence of (Target, StoneSet)
-        What is searched.
-    seeds : sequence of int
-        One after the other; with each all methods take turns, so that all have the same day.
-    times : tuple of float
-        CPU times at which methods are asked, rising, s.
-    settings : BenchSettings
-        Which methods, how many processes, and the table.
-
-    Raises
-    ------
-    UsageError
-        E138: a method that there is not; E148: see :func:`read_results`.
-    DrystoneError
-        E402: a process died; what the others were doing is done and kept.
+    With each seed all methods take turns, so that all have the same day.  `times` are CPU s,
+    rising.
     """
     known = {} if settings.runs is None else read_results(settings.runs)
     tasks = [
@@ -270,13 +208,7 @@ def searched_walls(settings: BenchSettings) -> tuple[Target, ...]:
 
 
 def chosen_ways(names: Sequence[str]) -> tuple[Way, ...]:
-    """Return all ways, or those that are named.
-
-    Raises
-    ------
-    UsageError
-        E138 for a name that none has.
-    """
+    """Return all ways, or those that are named."""
     unknown = set(names) - {way.name for way in WAYS}
     if unknown:
         raise UsageError(

@@ -28,18 +28,10 @@ BETWEEN_SEEDS = 10_000
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """How far a way is.
+    """How far a way is."""
 
-    Parameters
-    ----------
-    walls : int
-        How many walls it has built.
-    best : callable
-        Gives the best of them.
-    """
-
-    walls: int
-    best: Callable[[], Found]
+    walls: int  # How many walls it has built
+    best: Callable[[], Found]  # Gives the best of them
 
 
 States = Callable[[Planner, float, Clock], Iterator[State]]
@@ -47,40 +39,21 @@ States = Callable[[Planner, float, Clock], Iterator[State]]
 
 @dataclass(frozen=True)
 class Way:
-    """A way to look for a good wall.
-
-    Parameters
-    ----------
-    name : str
-        For people.
-    states : callable
-        Goes on from the planner of the first wall, which is built, for as long as it is asked, or
-        until a time of a clock.
-    """
+    """A way to look for a good wall."""
 
     name: str
+    # Goes on from the planner of the first wall, which is built, for as long as it is asked, or
+    # until a time of a clock
     states: States
 
 
 @dataclass(frozen=True, eq=False)
 class Looked:
-    """What a way came to.
-
-    Parameters
-    ----------
-    found : Found
-        Its best wall.
-    walls : int
-        How many walls it built; the last may have been finished after the end.
-    possible : float
-        Area bound on F_SF.
-    seconds : float
-        How long it took.
-    """
+    """What a way came to."""
 
     found: Found
-    walls: int
-    possible: float
+    walls: int  # How many walls it built; the last may have been finished after the end
+    possible: float  # Area bound on F_SF
     seconds: float
 
 
@@ -186,23 +159,6 @@ def looked_at_times(
     The last wall is the one that is begun before the end and finished after it, but for a search,
     which leaves it there; of the earlier times what was finished by then counts, though never less
     than the first wall.
-
-    Parameters
-    ----------
-    way : Way
-        How.
-    stones : StoneSet
-        To build with.
-    target : Target
-        What is to be built.
-    times : sequence of float
-        CPU times of this process from the stones on, rising, s; the last ends it.
-    seed : int
-        Of all that is drawn.
-    clock : callable
-        Gives the time that is used up, s.
-    changes : tuple of (str, value)
-        Settings that are replaced.
     """
     started = clock()
     end = started + times[-1]

@@ -64,8 +64,6 @@ class Predictions:
 def predict(series: ShearSeries, loading: Loading) -> Predicted:
     """Compute the largest V that a wall carries.
 
-    Examples
-    --------
     A level beam on which 30 kN stand slides off at mu N.
 
     >>> predict(SERIES[0], Loading(30.0, level=True, mu=0.5)).associative
@@ -84,20 +82,7 @@ def predict(series: ShearSeries, loading: Loading) -> Predicted:
 
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
-    """Compare the limit analysis with the shear tests.
-
-    Parameters
-    ----------
-    settings : BenchSettings
-        With `quick` only the first test of each series; the effects of friction, density and bond
-        are left out, and the picture.
-
-    Returns
-    -------
-    tuple of Table
-        Predictions, predicted over measured by test, their mean and scatter, and what friction,
-        density and bond change.
-    """
+    """Compare the limit analysis with the shear tests."""
     known = Predictions()
     if settings.quick:
         few = tuple(replace(series, tests=series.tests[:1]) for series in SERIES)

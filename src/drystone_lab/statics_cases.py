@@ -33,24 +33,13 @@ SHIFTS = (0.0, 0.1, 0.2, 0.4, 0.5)
 
 @dataclass(frozen=True)
 class Case:
-    """Rectangles on the ground and the load factors they must have.
-
-    Parameters
-    ----------
-    name : str
-        For people.
-    rectangles : tuple of (x, y, width, height)
-        Blocks 1, 2, ...
-    mu : float
-        Coefficient of friction.
-    left, right : float
-        Load factors towards -x and +x on the tilting table, the same for both flow rules: a
-        stack with one bed a course is statically determinate.
-    """
+    """Rectangles on the ground and the load factors they must have."""
 
     name: str
-    rectangles: tuple[Rectangle, ...]
-    mu: float
+    rectangles: tuple[Rectangle, ...]  # Blocks 1, 2, ...
+    mu: float  # Coefficient of friction
+    # left, right: Load factors towards -x and +x on the tilting table, the same for both flow
+    # rules: a stack with one bed a course is statically determinate
     left: float
     right: float
 
@@ -63,8 +52,6 @@ class Case:
     def model(self) -> RigidBlockModel:
         """The case as a model.
 
-        Examples
-        --------
         >>> len(running_bond().model.blocks)
         10
         """
@@ -92,8 +79,6 @@ def offset_stack(shift: float, mu: float) -> Case:
     the ground at (.5 + .5 - s) / (.5 + 1.5); towards -x the upper block at 1, both at
     (.5 + .5 + s) / (.5 + 1.5).
 
-    Examples
-    --------
     >>> case = offset_stack(0.25, mu=0.9)
     >>> case.left, case.right
     (0.625, 0.375)
@@ -138,21 +123,11 @@ THINNEST, THICKEST = 0.01, 0.4
 
 @dataclass(frozen=True)
 class ArchCase:
-    """An arch and the least thickness it must have.
+    """An arch and the least thickness it must have."""
 
-    Parameters
-    ----------
-    count : int
-        Voussoirs.
-    mu : float
-        Coefficient of friction.
-    least : float or None
-        Least t/R, to five digits; None when no thickness up to `THICKEST` stands.
-    """
-
-    count: int
-    mu: float
-    least: float | None
+    count: int  # Voussoirs
+    mu: float  # Coefficient of friction
+    least: float | None  # Least t/R, to five digits; None when no thickness up to `THICKEST` stands
 
 
 WITHOUT_SLIDING = (
@@ -177,8 +152,6 @@ WITH_FRICTION = (
 def arch(count: int, thickness: float, mu: float) -> RigidBlockModel:
     """Make an arch with the joints of its corners, and area and centroid of annular sectors.
 
-    Examples
-    --------
     >>> model = arch(9, 0.2, mu=0.6)
     >>> len(model.blocks), len(model.interfaces)
     (9, 10)
@@ -211,22 +184,7 @@ def stands(count: int, thickness: float, mu: float) -> bool:
 
 
 def least_thickness(count: int, mu: float, tolerance: float) -> float | None:
-    """Find the thickness over the mean radius at which an arch first stands, by bisection.
-
-    Parameters
-    ----------
-    count : int
-        Voussoirs.
-    mu : float
-        Coefficient of friction.
-    tolerance : float
-        The arch stands at what is returned, and falls at this much less.
-
-    Returns
-    -------
-    float or None
-        None when it does not stand at `THICKEST` either.
-    """
+    """Find the thickness over the mean radius at which an arch first stands, by bisection."""
     falls, carries = THINNEST, THICKEST
     if not stands(count, carries, mu):
         return None
@@ -264,31 +222,16 @@ F_OPEN: Course = ((0, 4), (4, 6), (10, 12), (12, 16), (16, 18), (22, 24), (24, 2
 
 @dataclass(frozen=True)
 class FerrisWall:
-    """One of the examples.
+    """One of the examples."""
 
-    Parameters
-    ----------
-    number : int
-        1 to 6, as published.
-    courses : tuple of courses
-        Bottom first.
-    blocks, contacts : int
-        How many there are.
-    associative : float
-        Load factor, the same in both directions.
-    nonassociative : (float, float)
-        Range of accepted load factors without dilatancy; never above the associative one.
-    may_not_converge : bool
-        An answer without a factor is accepted too.
-    """
-
-    number: int
-    courses: tuple[Course, ...]
+    number: int  # 1 to 6, as published
+    courses: tuple[Course, ...]  # Bottom first
     blocks: int
     contacts: int
-    associative: float
+    associative: float  # Load factor, the same in both directions
+    # Range of accepted load factors without dilatancy; never above the associative one
     nonassociative: tuple[float, float]
-    may_not_converge: bool = False
+    may_not_converge: bool = False  # An answer without a factor is accepted too
 
     @property
     def rectangles(self) -> tuple[tuple[float, float, float, float], ...]:
@@ -303,8 +246,6 @@ class FerrisWall:
     def model(self) -> RigidBlockModel:
         """The wall as a model.
 
-        Examples
-        --------
         >>> model = WALLS[0].model
         >>> len(model.blocks), len(model.interfaces)
         (33, 83)

@@ -11,24 +11,12 @@ Cell = str | int | float | bool | None
 
 @dataclass(frozen=True)
 class Table:
-    """Rows under named columns.
-
-    Parameters
-    ----------
-    title : str
-        What the rows show.
-    columns : tuple of str
-        Names, with units.
-    rows : tuple of tuples
-        A cell a column; None where there is no value.
-    notes : tuple of str
-        What a reader must know: sources, misses and their causes.
-    """
+    """Rows under named columns."""
 
     title: str
-    columns: tuple[str, ...]
-    rows: tuple[tuple[Cell, ...], ...]
-    notes: tuple[str, ...] = ()
+    columns: tuple[str, ...]  # Names, with units
+    rows: tuple[tuple[Cell, ...], ...]  # A cell a column; None where there is no value
+    notes: tuple[str, ...] = ()  # What a reader must know: sources, misses and their causes
 
     def records(self) -> list[dict[str, Cell]]:
         """Return a dict a row."""
@@ -37,8 +25,6 @@ class Table:
     def text(self) -> str:
         """Return the table for a terminal, numbers to the right.
 
-        Examples
-        --------
         >>> print(Table("Blocks", ("name", "alpha"), (("tall", 0.25), ("flat", None))).text())
         Blocks
         name  alpha
@@ -65,48 +51,25 @@ class Table:
 
 @dataclass(frozen=True)
 class BenchSettings:
-    """What every suite is run with.
+    """What every suite is run with."""
 
-    Parameters
-    ----------
-    data : Path or None
-        Folder of the published data sets; rows that need it say so without it.
-    output : Path or None
-        Folder for pictures; None draws none.
-    seed : int
-        Of all random choices.
-    quick : bool
-        A smaller version, for tests.
-    seconds : tuple of float
-        Times of each search, for suites of searches; empty for theirs.
-    seeds : int or None
-        How many seeds they search with, from `seed` on; None for theirs.
-    only : tuple of str
-        How the names of walls begin that are searched; empty for all.
-    policies : tuple of str
-        Names of the ways to search that are compared; empty for all.
-    changes : tuple of (str, value)
-        Settings that are replaced for all of them, by names such as ``"goal.F_AH"``.
-    jobs : int or None
-        How many searches run side by side, each in a process of its own; None for one.
-    runs : Path or None
-        Table to which every search is added, and of which none is done again; None keeps nothing.
-    say : callable
-        Told of every result of a long suite as it comes.
-    """
-
+    # Folder of the published data sets; rows that need it say so without it
     data: Path | None = None
-    output: Path | None = None
+    output: Path | None = None  # Folder for pictures; None draws none
     seed: int = 0
-    quick: bool = False
+    quick: bool = False  # A smaller version, for tests
+    # Times of each search, for suites of searches; empty for theirs
     seconds: tuple[float, ...] = ()
-    seeds: int | None = None
-    only: tuple[str, ...] = ()
-    policies: tuple[str, ...] = ()
+    seeds: int | None = None  # How many seeds they search with, from `seed` on; None for theirs
+    only: tuple[str, ...] = ()  # How the names of walls begin that are searched; empty for all
+    policies: tuple[str, ...] = ()  # Names of the ways to search that are compared; empty for all
+    # Settings that are replaced for all of them, by names such as ``"goal.F_AH"``
     changes: Changes = ()
+    # How many searches run side by side, each in a process of its own; None for one
     jobs: int | None = None
+    # Table to which every search is added, and of which none is done again; None keeps nothing
     runs: Path | None = None
-    say: Callable[[str], None] = lambda _: None
+    say: Callable[[str], None] = lambda _: None  # Told of every result of a long suite as it comes
 
 
 def _written(cell: Cell) -> str:

@@ -89,8 +89,6 @@ def fitted(points: Sequence[tuple[float, float]]) -> PowerLaw | None:
 
     None with less than two sizes, or where something took no time.
 
-    Examples
-    --------
     >>> law = fitted([(1.0, 3.0), (2.0, 12.0), (4.0, 48.0)])
     >>> round(law.factor, 9), round(law.exponent, 9)
     (3.0, 2.0)

@@ -30,13 +30,7 @@ DPI = 150
 
 
 def public_tables(arguments: argparse.Namespace, suite: str, data: Path | None) -> Sequence[Table]:
-    """Run a public suite and return its tables.
-
-    Raises
-    ------
-    UsageError
-        E138: options that make no sense together.
-    """
+    """Run a public suite and return its tables."""
     _refuse_useless(arguments)
     if arguments.store is not None:
         make_folder(Path(arguments.store))
@@ -66,14 +60,7 @@ def public_tables(arguments: argparse.Namespace, suite: str, data: Path | None) 
 
 
 def history_tables(arguments: argparse.Namespace, suite: str | None) -> Sequence[Table]:
-    """Return what a store holds by version, and draw it with -o.
-
-    Raises
-    ------
-    UsageError
-        E138: no store is named, or it holds no such runs; or an option is given that only runs
-        go by.
-    """
+    """Return what a store holds by version, and draw it with -o."""
     for name in RUNS_ALONE:
         if getattr(arguments, name):
             raise UsageError(

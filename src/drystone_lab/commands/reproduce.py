@@ -21,15 +21,7 @@ LISTED = 12
 
 
 def run(arguments: argparse.Namespace, items: "Mapping[str, Item] | None" = None) -> ExitCode:
-    """Make items, print their tables, and say where the report is.
-
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        Of the command.
-    items : mapping of str to Item, optional
-        Some of those of the paper, by its names; None for the paper's.
-    """
+    """Make items, print their tables, and say where the report is."""
     if arguments.list:
         for name, (text, _) in ITEMS.items():
             print(f"{name:<{LISTED}}{text}")
@@ -57,15 +49,7 @@ def run(arguments: argparse.Namespace, items: "Mapping[str, Item] | None" = None
 
 
 def exit_code(done: "Sequence[Made]", *, every: bool) -> ExitCode:
-    """Return what the shell is told.
-
-    Parameters
-    ----------
-    done : sequence of Made
-        What became of the items.
-    every : bool
-        All were asked for: those without published data count only when there is no other.
-    """
+    """Return what the shell is told."""
     failed = [made for made in done if made.status == "failed"]
     missing = [made for made in done if made.status == "missing data"]
     if failed and failed[0].error is not None:

@@ -18,79 +18,35 @@ Rock = Literal["granite", "sandstone", "limestone", "basalt", "schist"]
 
 @dataclass(frozen=True, kw_only=True)
 class Level:
-    """What a photograph shows, and what the camera does to it.
-
-    Parameters
-    ----------
-    name : str
-        For tables.
-    seed : int
-        Of everything at random.
-    count : int
-        Stones; a few less when they find no place.
-    angular : float
-        Share of the stones that are rubble, 0 to 1; the others are rounded.
-    rocks : tuple of str
-        Kinds of rock, in turn.
-    ground : str
-        What the stones lie on.
-    gap_px : int
-        Empty px between stones and between stones and the edge, at least.
-    touching : int
-        Stones that are pushed against another one.
-    cut : int
-        Stones that the edge of the photograph cuts.
-    shadow : float
-        How much light a cast shadow takes, 0 to 1.
-    sun_deg : float
-        Height of the light above the ground.
-    uneven : float
-        How much darker the darkest place of the ground is lit than the brightest, 0 to 1.
-    markers : str
-        A sheet of four, four single ones, or none.
-    marker_mm : float
-        Side of a marker.
-    wrong_print : float
-        How much too large the last paper was printed; 1 is right.
-    tilt_deg : float
-        How far the camera looks away from the vertical.
-    turn_deg : float
-        How far the photograph is turned about the line of sight.
-    blur_px, noise, quality
-        Radius (sigma) of the defocus, standard deviation of the sensor's noise in grey values,
-        quality of the JPEG.
-    orientation : int
-        EXIF orientation, 1 to 8, with which the file is stored.
-    width_px, height_px : int
-        Of the photograph as it is seen.
-    px_per_m : float
-        About, in the middle of the photograph.
-    """
+    """What a photograph shows, and what the camera does to it."""
 
     name: str
     seed: int = 1
-    count: int = 24
-    angular: float = 0.5
-    rocks: tuple[Rock, ...] = ("granite", "sandstone", "limestone")
+    count: int = 24  # Stones; a few less when they find no place
+    angular: float = 0.5  # Share of the stones that are rubble, 0 to 1; the others are rounded
+    rocks: tuple[Rock, ...] = ("granite", "sandstone", "limestone")  # Kinds of rock, in turn
     ground: Ground = "tarpaulin"
-    gap_px: int = 24
-    touching: int = 0
-    cut: int = 0
-    shadow: float = 0.0
-    sun_deg: float = 50.0
+    gap_px: int = 24  # Empty px between stones and between stones and the edge, at least
+    touching: int = 0  # Stones that are pushed against another one
+    cut: int = 0  # Stones that the edge of the photograph cuts
+    shadow: float = 0.0  # How much light a cast shadow takes, 0 to 1
+    sun_deg: float = 50.0  # Height of the light above the ground
+    # How much darker the darkest place of the ground is lit than the brightest, 0 to 1
     uneven: float = 0.0
-    markers: Markers = "sheet"
-    marker_mm: float = 75.0
-    wrong_print: float = 1.0
-    tilt_deg: float = 0.0
-    turn_deg: float = 0.0
+    markers: Markers = "sheet"  # A sheet of four, four single ones, or none
+    marker_mm: float = 75.0  # Side of a marker
+    wrong_print: float = 1.0  # How much too large the last paper was printed; 1 is right
+    tilt_deg: float = 0.0  # How far the camera looks away from the vertical
+    turn_deg: float = 0.0  # How far the photograph is turned about the line of sight
+    # blur_px, noise, quality: Radius (sigma) of the defocus, standard deviation of the sensor's
+    # noise in grey values, quality of the JPEG
     blur_px: float = 0.6
     noise: float = 1.5
     quality: int = 92
-    orientation: int = 1
-    width_px: int = 2000
+    orientation: int = 1  # EXIF orientation, 1 to 8, with which the file is stored
+    width_px: int = 2000  # width_px, height_px: Of the photograph as it is seen
     height_px: int = 1500
-    px_per_m: float = 1250.0
+    px_per_m: float = 1250.0  # About, in the middle of the photograph
 
 
 LEVELS: tuple[Level, ...] = (
@@ -126,33 +82,16 @@ COVERED = 0.24
 
 @dataclass(frozen=True)
 class Layout:
-    """Stones on the ground.
+    """Stones on the ground."""
 
-    Parameters
-    ----------
-    labels : (h, w) uint16 array
-        Stones 1 ... n, 0 elsewhere.
-    touching : tuple of (int, int)
-        Stones that were pushed against each other.
-    """
-
-    labels: Labels
-    touching: tuple[tuple[int, int], ...]
+    labels: Labels  # Stones 1 ... n, 0 elsewhere
+    touching: tuple[tuple[int, int], ...]  # Stones that were pushed against each other
 
 
 def lay_stones(level: Level, forbidden: Mask, seen: Mask, rng: Generator) -> Layout:
     """Lay stones down where there is room.
 
-    Parameters
-    ----------
-    level : Level
-        How many, how close, and how many touch or are cut by the edge.
-    forbidden : (h, w) bool array
-        Where no stone may lie: the markers.
-    seen : (h, w) bool array
-        What the camera sees of the ground.
-    rng : Generator
-        Equal states give equal stones.
+    `forbidden` (h, w) is where the markers are, `seen` (h, w) what the camera sees of the ground.
     """
     masks = [np.rot90(mask, int(rng.integers(4))) for mask in _shapes(level, rng)]
     masks.sort(key=lambda mask: -int(mask.sum()))

@@ -44,8 +44,6 @@ _ROCKS: dict[Rock, _Face] = {
 def linear(colour: str) -> NDArray[np.float32]:
     """Return the linear light of ``"#rrggbb"``.
 
-    Examples
-    --------
     >>> [round(float(part), 3) for part in linear("#ff8000")]
     [1.0, 0.216, 0.0]
     """
@@ -158,12 +156,7 @@ def inverse(homography: Homography) -> Homography:
 def view_of(level: Level) -> tuple[Homography, tuple[int, int]]:
     """Return the homography from the ground to the photograph, and the ground that is seen.
 
-    Returns
-    -------
-    homography : (3, 3) float array
-        Ground px to photograph px.
-    shape : (int, int)
-        Height and width of the ground that holds all that the camera sees, px.
+    The homography takes ground px to px of the photograph; the ground is (height, width) in px.
     """
     focal = FOCAL * level.width_px
     tilt, turn = math.radians(level.tilt_deg), math.radians(level.turn_deg)
@@ -189,8 +182,6 @@ def frame_corners(level: Level) -> NDArray[np.float64]:
 def moved(homography: Homography, points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Map points (n, 2).
 
-    Examples
-    --------
     >>> moved(np.diag([2.0, 2.0, 1.0]), np.array([[1.0, 3.0]])).tolist()
     [[2.0, 6.0]]
     """
@@ -321,29 +312,13 @@ SKY = (0.92, 1.0, 1.12)
 
 @dataclass(frozen=True, eq=False)
 class Photograph:
-    """A rendered photograph and the truth.
+    """A rendered photograph and the truth."""
 
-    Parameters
-    ----------
-    jpeg : bytes
-        The file.
-    truth : (h, w) uint16 array
-        Stones 1 ... n in the frame of the ground.
-    homography : (3, 3) float array
-        Ground px to px of the photograph as it is seen.
-    px_per_m : float
-        Ground px in a metre.
-    touching : tuple of (int, int)
-        Stones that touch.
-    level : Level
-        What was asked for.
-    """
-
-    jpeg: bytes
-    truth: Labels
-    homography: Homography
-    px_per_m: float
-    touching: tuple[tuple[int, int], ...]
+    jpeg: bytes  # The file
+    truth: Labels  # Stones 1 ... n in the frame of the ground
+    homography: Homography  # Ground px to px of the photograph as it is seen
+    px_per_m: float  # Ground px in a metre
+    touching: tuple[tuple[int, int], ...]  # Stones that touch
     level: Level
 
     def truth_in(self, to_photo: Homography, shape: tuple[int, int]) -> Labels:

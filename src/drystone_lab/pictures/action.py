@@ -30,15 +30,7 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True)
 class Beside:
-    """A placed stone that an index looks at.
-
-    Parameters
-    ----------
-    id : int
-        Its label.
-    box : Box
-        Its bounding box.
-    """
+    """A placed stone that an index looks at."""
 
     id: int
     box: Box
@@ -46,36 +38,17 @@ class Beside:
 
 @dataclass(frozen=True, eq=False)
 class Action:
-    """A stone at a place, and what its indices measure; working px, building side on the left.
+    """A stone at a place, and what its indices measure; working px, building side on the left."""
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        The landscape before the stone, row 0 at the top.
-    posed : PosedStone
-        The stone.
-    row, col : int
-        Top-left corner of its mask.
-    swept : (h, w) bool array
-        What its rays sweep (:func:`drystone.indices.swept_pixels`).
-    built_height : int
-        Height of the box B of the landscape.
-    neighbour : Beside or None
-        Left neighbour in its course.
-    below : (Beside or None, Beside or None)
-        below1 and below2.
-    peaks : (int, int) or None
-        Columns of the mask in which the highest points of its halves are.
-    """
-
-    labels: Labels
-    posed: PosedStone
-    row: int
+    labels: Labels  # The landscape before the stone, row 0 at the top
+    posed: PosedStone  # The stone
+    row: int  # row, col: Top-left corner of its mask
     col: int
     swept: Mask
-    built_height: int
-    neighbour: Beside | None
-    below: tuple[Beside | None, Beside | None]
+    built_height: int  # Height of the box B of the landscape
+    neighbour: Beside | None  # Left neighbour in its course
+    below: tuple[Beside | None, Beside | None]  # below1 and below2
+    # Columns of the mask in which the highest points of its halves are
     peaks: tuple[int, int] | None
 
     @property
@@ -95,24 +68,7 @@ class Action:
 def plot_action(
     action: Action, marks: Collection[Mark], ax: Axes | None = None, *, title: str = ""
 ) -> Axes:
-    """Draw a stone on the landscape with what some of its indices measure.
-
-    Parameters
-    ----------
-    action : Action
-        The stone.
-    marks : collection of str
-        Which.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    title : str
-        Written above.
-
-    Returns
-    -------
-    ax : Axes
-        In working px, y up from the ground.
-    """
+    """Draw a stone on the landscape with what some of its indices measure."""
     height, width = action.labels.shape
     depth = 0.04 * max(height, 0.2 * width)
     ax = fit_axes(ax, (-2.0, -depth, width + 2.0, height + 2.0))

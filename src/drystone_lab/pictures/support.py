@@ -25,26 +25,12 @@ Window = tuple[float, float, float, float]
 
 @dataclass(frozen=True, eq=False)
 class Standing:
-    """A stone where it is.
+    """A stone where it is."""
 
-    Parameters
-    ----------
-    pose : (PosedStone, int, int)
-        The stone and the row and column of its mask.
-    support : Support
-        Its support, over wedges as well.
-    falls : int
-        Side to which it falls: -1 left, +1 right, 0 stable.
-    wedges : tuple of Wedge
-        Under it.
-    height_px : int
-        Of the wall image.
-    """
-
-    pose: Pose
-    support: Support
-    falls: int
-    wedges: tuple[Wedge, ...]
+    pose: Pose  # The stone and the row and column of its mask
+    support: Support  # Its support, over wedges as well
+    falls: int  # Side to which it falls: -1 left, +1 right, 0 stable
+    wedges: tuple[Wedge, ...]  # Under it
     height_px: int
 
     @property
@@ -88,20 +74,7 @@ def plot_standing(
 ) -> Axes:
     """Draw a stone on its support with the points of Fig. 9.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        The landscape without the stone, row 0 at the top.
-    standing : Standing
-        The stone.
-    window : (float, float, float, float)
-        What is shown.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    before : Standing, optional
-        Where it was at first, dashed.
-    title : str
-        Written above.
+    `labels` is the landscape without the stone; `before` is where it was at first, dashed.
     """
     ax = fit_axes(ax, window)
     for region in label_regions(labels):

@@ -27,18 +27,7 @@ from drystone_lab.walls import Target
 
 
 def pga_of(spec: RunSpec, outcome: Outcome, data: Path | None) -> float | None:
-    """Return the amplitude that a planned wall stands, g.
-
-    Returns
-    -------
-    float or None
-        None when nothing was built, or it does not stand at rest in the engine.
-
-    Raises
-    ------
-    UsageError
-        E305 when pymunk is not installed.
-    """
+    """Return the amplitude that a planned wall stands, g."""
     if not outcome.figures["placed"]:
         return None
     wall = outcome.wall(spec, data)
@@ -67,30 +56,14 @@ Task = tuple[Target, BenchMethod, RunSpec]
 
 @dataclass(frozen=True, kw_only=True)
 class PublicSettings(BenchSettings):
-    """What is run, and by whom; `policies` are the methods, `jobs` None for this process.
+    """What is run, and by whom; `policies` are the methods, `jobs` None for this process."""
 
-    Parameters
-    ----------
-    suite : str
-        One of :data:`drystone_lab.public.suites.PUBLIC_SUITES`.
-    stamp : Stamp
-        Version, time and machine.
-    store : Path or None
-        Folder of the runs that are kept; None keeps nothing.
-    again : bool
-        Do runs again that are kept.
-    dask : str or None
-        Address of a scheduler.
-    shake : bool
-        Shake the walls too.
-    """
-
-    suite: str
-    stamp: Stamp
-    store: Path | None = None
-    again: bool = False
-    dask: str | None = None
-    shake: bool = False
+    suite: str  # One of :data:`drystone_lab.public.suites.PUBLIC_SUITES`
+    stamp: Stamp  # Version, time and machine
+    store: Path | None = None  # Folder of the runs that are kept; None keeps nothing
+    again: bool = False  # Do runs again that are kept
+    dask: str | None = None  # Address of a scheduler
+    shake: bool = False  # Shake the walls too
 
     @property
     def seed_range(self) -> range:
@@ -108,22 +81,7 @@ class _NothingKept(RunStore):
 
 
 def run_public(settings: PublicSettings) -> tuple[Table, ...]:
-    """Run a suite and compare its methods.
-
-    Returns
-    -------
-    tuple of Table
-        Walls, all walls, seconds; then with two methods or more their differences and a ranking.
-
-    Raises
-    ------
-    UsageError
-        E138: no wall has the name that is asked for; E146, E123: there is no such method or
-        setting; E305: the yardstick needs spyrrow, which is not installed.
-    InputError
-        E100: all walls need published stones, which are not there; E160: there are others in
-        their place; E401: the store is damaged.
-    """
+    """Run a suite and compare its methods."""
     methods = [method_named(name, settings.changes) for name in settings.policies]
     asked = walls_of(settings.suite, settings.only, quick=settings.quick)
     walls = [wall for wall in asked if wall.source.is_there(settings.data)]

@@ -28,49 +28,19 @@ NOT_SHAKEN = "no"
 
 @dataclass(frozen=True)
 class KeptRun:
-    """A row of the table `runs`.
+    """A row of the table `runs`."""
 
-    Parameters
-    ----------
-    run_key : str
-        Of the run (:attr:`RunSpec.key`): equal runs of one version have the same.
-    suite, suite_version, wall
-        Of the benchmark.
-    method : str
-        Its name in the benchmark.
-    settings : str
-        JSON of the settings that were replaced for all methods alike; "{}" for none.
-    seed : int
-        Of the plan.
-    version : str
-        Of drystone.
-    placed, stones : int
-        Stones in the wall, and all.
-    F_SF, F_AV, F_AH, F_LR, T_LEVEL, E_FLUSH, wedge_area : float or None
-        Figures of the wall; areas in source px.
-    seconds : float
-        From the stones to the last step.
-    pga_g : float or None
-        Amplitude that the wall stands on the shaking table, g.
-    shaken : str
-        "yes"; "no" when it was not asked for; "falls" when nothing was built, or it does not
-        stand at rest there.
-    made_at : str
-        Date and time, UTC.
-    platform : str
-        System and machine, without names of hosts.
-    """
-
-    run_key: str
+    run_key: str  # Of the run (:attr:`RunSpec.key`): equal runs of one version have the same
     suite: str
     suite_version: int
     wall: str
     method: str
-    settings: str
+    settings: str  # JSON of the settings that were replaced for all methods alike; "{}" for none
     seed: int
     version: str
-    placed: int
+    placed: int  # placed, stones: Stones in the wall, and all
     stones: int
+    # F_SF, F_AV, F_AH, F_LR, T_LEVEL, E_FLUSH, wedge_area: Figures of the wall; areas in source px
     F_SF: float | None
     F_AV: float | None
     F_AH: float | None
@@ -78,11 +48,13 @@ class KeptRun:
     T_LEVEL: float | None
     E_FLUSH: float | None
     wedge_area: float | None
-    seconds: float
-    pga_g: float | None
+    seconds: float  # From the stones to the last step
+    pga_g: float | None  # Amplitude that the wall stands on the shaking table, g
+    # "yes"; "no" when it was not asked for; "falls" when nothing was built, or it does not stand at
+    # rest there
     shaken: str
-    made_at: str
-    platform: str
+    made_at: str  # Date and time, UTC
+    platform: str  # System and machine, without names of hosts
 
 
 COLUMNS = tuple(field.name for field in fields(KeptRun))
@@ -91,13 +63,7 @@ _TYPES = {int: "INTEGER NOT NULL", str: "TEXT NOT NULL", float: "REAL NOT NULL"}
 
 @dataclass(frozen=True)
 class Stamp:
-    """What runs that are kept together have in common.
-
-    Parameters
-    ----------
-    version, made_at, platform : str
-        As in :class:`KeptRun`.
-    """
+    """What runs that are kept together have in common."""
 
     version: str
     made_at: str
@@ -121,13 +87,7 @@ def kept_run(result: Result, outcome: Outcome, changes: Changes, stamp: Stamp) -
 
 
 class BenchStore:
-    """Runs of the benchmark in a folder.
-
-    Parameters
-    ----------
-    folder : Path
-        Made when the first run is kept.
-    """
+    """Runs of the benchmark in a folder."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -138,13 +98,7 @@ class BenchStore:
         return self.folder / DATABASE
 
     def runs(self) -> tuple[KeptRun, ...]:
-        """Return all runs, in the order of suite, wall, method, seed, version.
-
-        Raises
-        ------
-        InputError
-            E401: the file is no database of runs.
-        """
+        """Return all runs, in the order of suite, wall, method, seed, version."""
         if not self.database.is_file():
             return ()
         order = "suite, suite_version, wall, method, settings, seed, version"

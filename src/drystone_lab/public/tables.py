@@ -33,28 +33,15 @@ DECIMALS = 9
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """A wall that a method built.
-
-    Parameters
-    ----------
-    wall : Target
-        What was to be built.
-    method : str
-        Name of the method.
-    seed : int
-        Of the plan.
-    figures : dict of str to float or None
-        By the names of :data:`HIGHER_IS_BETTER`; None where a figure is not defined, such as F_LR
-        of a wall that could not be analysed.
-    seconds : float
-        From the stones to the last step.
-    """
+    """A wall that a method built."""
 
     wall: Target
     method: str
     seed: int
+    # By the names of :data:`HIGHER_IS_BETTER`; None where a figure is not defined, such as F_LR of
+    # a wall that could not be analysed
     figures: Mapping[str, float | None]
-    seconds: float
+    seconds: float  # From the stones to the last step
 
     @classmethod
     def of(cls, wall: Target, method: str, seed: int, outcome: Outcome) -> "Result":
@@ -68,15 +55,9 @@ class Result:
 
 @dataclass(frozen=True, eq=False)
 class Results:
-    """Results of every method on every wall with every seed.
+    """Results of every method on every wall with every seed."""
 
-    Parameters
-    ----------
-    all : tuple of Result
-        Of each method on each wall for the same seeds.
-    """
-
-    all: tuple[Result, ...]
+    all: tuple[Result, ...]  # Of each method on each wall for the same seeds
 
     @property
     def walls(self) -> tuple[Target, ...]:
@@ -247,31 +228,15 @@ EXACT = 50
 
 @dataclass(frozen=True)
 class Compared:
-    """What one method has more than another, of one figure.
+    """What one method has more than another, of one figure."""
 
-    Parameters
-    ----------
-    pairs : int
-        Walls, each with a seed that counts, for which both have a value.
-    left_out : int
-        Those for which one or both have none.
-    mean : float
-        Of the differences, first minus second.
-    low, high : float
-        Ends of the percentile bootstrap interval of the mean.
-    won : float
-        Share of the pairs in which the first is better; of equal ones half.
-    p : float
-        Of Wilcoxon's signed-rank test, two-sided, not corrected.
-    """
-
-    pairs: int
-    left_out: int
-    mean: float
-    low: float
+    pairs: int  # Walls, each with a seed that counts, for which both have a value
+    left_out: int  # Those for which one or both have none
+    mean: float  # Of the differences, first minus second
+    low: float  # low, high: Ends of the percentile bootstrap interval of the mean
     high: float
-    won: float
-    p: float
+    won: float  # Share of the pairs in which the first is better; of equal ones half
+    p: float  # Of Wilcoxon's signed-rank test, two-sided, not corrected
 
     @property
     def holds_zero(self) -> bool:
@@ -284,13 +249,6 @@ def compared(
 ) -> Compared | None:
     """Compare two methods by one figure.
 
-    Returns
-    -------
-    Compared or None
-        None when there is no pair.  Pairs are drawn with the same random numbers every time.
-
-    Examples
-    --------
     >>> found = compared([3.0, 4.0, 9.0, None], [1.0, 2.0, 7.0, 1.0])
     >>> found.mean, found.low, found.high, found.won, found.p, found.left_out
     (2.0, 2.0, 2.0, 1.0, 0.25, 1)
@@ -318,13 +276,6 @@ def compared(
 def holm(p_values: Sequence[float]) -> list[float]:
     """Correct p values for how many they are (Holm 1979).
 
-    Returns
-    -------
-    list of float
-        In the same order, at most 1.
-
-    Examples
-    --------
     >>> holm([0.01, 0.04, 0.03])
     [0.03, 0.06, 0.06]
     """

@@ -32,29 +32,14 @@ class Brick:
 
 @dataclass(frozen=True)
 class Courses:
-    """What the courses of a wall are like.
-
-    Parameters
-    ----------
-    bricks : int
-        In the wall.
-    lying : int
-        With their long side level.
-    in_course : int
-        Lying, with their foot at a whole number of brick heights.
-    courses : int
-        Of these bricks.
-    joints : int
-        Head joints within courses that have a course next to them.
-    crossed : int
-        Those that are apart from all head joints of the courses beside them by :data:`OVERLAP`.
-    """
+    """What the courses of a wall are like."""
 
     bricks: int
-    lying: int
-    in_course: int
+    lying: int  # With their long side level
+    in_course: int  # Lying, with their foot at a whole number of brick heights
     courses: int
-    joints: int
+    joints: int  # Head joints within courses that have a course next to them
+    # Those that are apart from all head joints of the courses beside them by :data:`OVERLAP`
     crossed: int
 
 
@@ -74,8 +59,6 @@ def bricks_of(wall: Wall) -> tuple[Brick, ...]:
 def courses_of(bricks: Sequence[Brick], height_px: int, width_px: int) -> Courses:
     """Look at the courses of equal bricks, of the size of one that lies.
 
-    Examples
-    --------
     >>> low = [Brick(0, 20, 0, 10, True), Brick(20, 40, 0, 10, True)]
     >>> courses_of([*low, Brick(10, 30, 10, 20, True), Brick(30, 50, 10, 20, True)], 10, 20)
     Courses(bricks=4, lying=4, in_course=4, courses=2, joints=2, crossed=2)

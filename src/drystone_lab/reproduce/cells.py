@@ -61,8 +61,6 @@ def rounded(value: float | None) -> float | None:
 def in_words(figures: Mapping[str, float | None]) -> str:
     """Write F_SF, F_AV, F_AH and F_LR in a line.
 
-    Examples
-    --------
     >>> in_words({"F_SF": 0.8123, "F_AV": 20.0, "F_AH": 2.345, "F_LR": None})
     'F_SF 0.812  F_AV 20.0  F_AH 2.35  F_LR -'
     """
@@ -106,8 +104,6 @@ class Wins:
 def wins(first: Sequence[float | None], second: Sequence[float | None], figure: str) -> Wins:
     """Compare figures in pairs; those with a None are left out.
 
-    Examples
-    --------
     >>> wins([0.8, 0.7, None], [0.7, 0.7, 0.9], "F_SF")
     Wins(better=1, equal=1, worse=0, median_difference=0.05)
     """
@@ -142,8 +138,6 @@ class Trend:
     def words(self) -> str:
         """Return it for a sentence.
 
-        Examples
-        --------
         >>> Trend(-0.5, 0.012345, 24).words()
         'rho -0.50, p 0.012, n 24'
         """
@@ -153,8 +147,6 @@ class Trend:
 def trend(pairs: Sequence[tuple[float, float | None]]) -> Trend | None:
     """Correlate the ranks of two figures; None with few pairs, or where either never changes.
 
-    Examples
-    --------
     >>> trend([(1, 2.0), (2, 3.0), (3, 5.0), (4, 4.0), (5, None)])
     Trend(rho=0.8, p=0.2, count=4)
     """
@@ -184,8 +176,6 @@ def findings_table(title: str, findings: Sequence[Finding]) -> Table:
 def sentences(findings: Sequence[Finding]) -> tuple[str, ...]:
     """Return of how many claims the walls agree with the paper, and a paragraph each.
 
-    Examples
-    --------
     >>> sentences([Finding("Walls are low.", "2 px.", True)])[0]
     'Of 1 claims of the paper that can be told, 1 agree.'
     """

@@ -35,23 +35,11 @@ from drystone_lab.runs.spec import RunSpec
 
 @dataclass(frozen=True, eq=False)
 class Moment:
-    """A state of construction, before one of the stones that were placed.
+    """A state of construction, before one of the stones that were placed."""
 
-    Parameters
-    ----------
-    number : int
-        Of the stone that comes next, from 1.
-    wall : Wall
-        What is built.
-    workshop : Workshop
-        All stones of the set.
-    settings : PlannerSettings
-        Of the run.
-    """
-
-    number: int
+    number: int  # Of the stone that comes next, from 1
     wall: Wall
-    workshop: Workshop
+    workshop: Workshop  # All stones of the set
     settings: PlannerSettings
 
     @cached_property
@@ -78,20 +66,10 @@ class Moment:
 
 @dataclass(frozen=True, eq=False)
 class Construction:
-    """A finished run, to be looked at step by step.
+    """A finished run, to be looked at step by step."""
 
-    Parameters
-    ----------
-    stages : tuple of Stage
-        The wall before and after each stone.
-    workshop : Workshop
-        The stones.
-    settings : PlannerSettings
-        Of the run.
-    """
-
-    stages: tuple[Stage, ...]
-    workshop: Workshop
+    stages: tuple[Stage, ...]  # The wall before and after each stone
+    workshop: Workshop  # The stones
     settings: PlannerSettings
 
     @property
@@ -126,22 +104,13 @@ def construction(context: Context, spec: RunSpec) -> Construction:
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """A stone where it would rest.
+    """A stone where it would rest."""
 
-    Parameters
-    ----------
-    posed : PosedStone
-        The stone.
-    row, col : int
-        Top-left corner of its mask.
-    values : mapping of str to float
-        SF, LFR, GDS, NHR, IWR and IS that have a meaning here: NHR beside a neighbour, IWR of an
-        inner stone over two joints, IS of a boundary stone.
-    """
-
-    posed: PosedStone
-    row: int
+    posed: PosedStone  # The stone
+    row: int  # row, col: Top-left corner of its mask
     col: int
+    # SF, LFR, GDS, NHR, IWR and IS that have a meaning here: NHR beside a neighbour, IWR of an
+    # inner stone over two joints, IS of a boundary stone
     values: Mapping[str, float]
 
     @property

@@ -30,57 +30,28 @@ EVERY_S = 2.0
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """How items are made.
+    """How items are made."""
 
-    Parameters
-    ----------
-    data : Path or None
-        Folder of the published data.
-    quick, seed, image
-        See :class:`drystone_lab.reproduce.item.Context`.
-    again : bool
-        Make items again that are finished; their walls are taken from the folder all the same.
-    work : callable
-        Who plans the walls.
-    say : callable
-        Told of progress, a line each.
-    now : callable
-        Gives the time of day that is written into the report.
-    """
-
-    data: Path | None = None
-    quick: bool = False
+    data: Path | None = None  # Folder of the published data
+    quick: bool = False  # quick, seed, image: See :class:`drystone_lab.reproduce.item.Context`
     seed: int = 1
     image: Path | None = None
+    # Make items again that are finished; their walls are taken from the folder all the same
     again: bool = False
-    work: Work = one_by_one
-    say: Callable[[str], None] = lambda _: None
-    now: Clock = utc_now
+    work: Work = one_by_one  # Who plans the walls
+    say: Callable[[str], None] = lambda _: None  # Told of progress, a line each
+    now: Clock = utc_now  # Gives the time of day that is written into the report
 
 
 @dataclass(frozen=True, eq=False)
 class Made:
-    """What became of an item.
-
-    Parameters
-    ----------
-    name : str
-        Of the item.
-    status : {"made", "kept", "missing data", "failed"}
-        "kept" when it was finished before.
-    record : dict or None
-        Contents of its JSON, None when there is none.
-    error : DrystoneError or None
-        Why there is none.
-    page : Path
-        Its page, if it was made.
-    """
+    """What became of an item."""
 
     name: str
-    status: Status
-    record: Mapping[str, Any] | None
-    error: DrystoneError | None
-    page: Path
+    status: Status  # "kept" when it was finished before
+    record: Mapping[str, Any] | None  # Contents of its JSON, None when there is none
+    error: DrystoneError | None  # Why there is none
+    page: Path  # Its page, if it was made
 
 
 def reproduce(
@@ -89,26 +60,7 @@ def reproduce(
     options: Options,
     items: Mapping[str, Item] | None = None,
 ) -> Iterator[Made]:
-    """Make items and yield what became of each; the report is written anew after every one.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Of `items`.
-    folder : Path
-        To write to; items of earlier calls stay in it and in its report.
-    options : Options
-        How.
-    items : mapping of str to Item, optional
-        In the order of the report; None for the paper's.
-
-    Raises
-    ------
-    UsageError
-        E129: the folder has other files.
-    InputError
-        E100: there is no such image.
-    """
+    """Make items and yield what became of each; the report is written anew after every one."""
     items = {name: item_named(name) for name in ITEMS} if items is None else items
     request = request_of(
         quick=options.quick, seed=options.seed, image=options.image, data=options.data
@@ -126,17 +78,7 @@ def reproduce(
 
 
 class Progress:
-    """Says which item is made, and how many of its walls are there.
-
-    Parameters
-    ----------
-    say : callable
-        Told a line each.
-    total : int
-        How many items.
-    clock : callable
-        Seconds from any beginning.
-    """
+    """Says which item is made, and how many of its walls are there."""
 
     def __init__(
         self, say: Callable[[str], None], total: int, clock: Callable[[], float] = time.monotonic

@@ -40,15 +40,7 @@ def plot_boundary_edges(
 ) -> Axes:
     """Draw the pixel edges on which blocks touch, each with its normal.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        Row 0 at the top; the wall stands on the last row.
-    starts, ends : (n, 2) float arrays
-        Ends (x, y) of each edge, px, y up from the ground; the normal is to the left of the way
-        from start to end.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
+    `starts` and `ends` are (n, 2), px, y up from the ground; the normal is to the left of the way.
     """
     height, width = labels.shape
     depth = 0.06 * max(height, 0.2 * width)
@@ -77,17 +69,7 @@ def plot_boundary_edges(
 
 
 def plot_blocks(labels: Labels, model: RigidBlockModel, ax: Axes | None = None) -> Axes:
-    """Draw rigid blocks: interfaces, their ends and normals, and the centres of mass.
-
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        Row 0 at the top.
-    model : RigidBlockModel
-        Of this image.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    """
+    """Draw rigid blocks: interfaces, their ends and normals, and the centres of mass."""
     ax = plot_contacts(labels, model, ax)
     for block in model.blocks:
         ax.plot(*block.centroid, "^", color=CENTRE, markersize=7, gid=f"centre-{block.id}",
@@ -129,18 +111,7 @@ def blocks(context: Context, wall: Target = PR) -> Blocks:
 
 
 def three_stones(wall: Wall) -> Labels:
-    """Return the picture of three stones of a wall: two on the ground, and one on both.
-
-    Parameters
-    ----------
-    wall : Wall
-        At least three stones.  Without such a group the first three are taken.
-
-    Returns
-    -------
-    labels : (h, w) uint32 array
-        Cut out, with the ground below the last row.
-    """
+    """Return the picture of three stones of a wall: two on the ground, and one on both."""
     touches: dict[int, set[int]] = defaultdict(set)
     for interface in model_from_labels(wall.labels).model.interfaces:
         touches[interface.block].add(interface.other)
@@ -163,13 +134,6 @@ def three_stones(wall: Wall) -> Labels:
 def boundary_edges(labels: Labels) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the pixel edges between two stones or a stone and the ground.
 
-    Returns
-    -------
-    starts, ends : (n, 2) float arrays
-        (x, y), y up from the ground; the stone of the larger id is on the left of the way.
-
-    Examples
-    --------
     >>> starts, ends = boundary_edges(np.array([[5], [3]]))
     >>> starts.tolist(), ends.tolist()
     ([[0.0, 0.0], [0.0, 1.0]], [[1.0, 0.0], [1.0, 1.0]])

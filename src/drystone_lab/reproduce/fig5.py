@@ -41,16 +41,7 @@ def plot_features(
 ) -> Axes:
     """Draw stones by eccentricity and size, coloured by cluster and numbered by id.
 
-    Parameters
-    ----------
-    features : (n, 2) float array
-        From :func:`drystone.clusters.stone_features`.
-    stone_ids : sequence of int
-        Their ids.
-    clusters : mapping of int to int
-        Cluster of each id, from 1.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
+    `features` is (n, 2), from :func:`drystone.clusters.stone_features`; clusters are by id, from 1.
     """
     ax = Figure(figsize=SQUARE_IN, layout="constrained").add_subplot() if ax is None else ax
     for stone_id, (across, up) in zip(stone_ids, features.tolist(), strict=True):
@@ -91,17 +82,7 @@ def plot_counts(
     *,
     claim: tuple[float, int, str] | None = None,
 ) -> Axes:
-    """Draw how many clusters there are over the distance threshold.
-
-    Parameters
-    ----------
-    counts : mapping of str to sequence of (float, int)
-        By name of the stones: threshold and clusters, thresholds ascending.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    claim : (float, int, str), optional
-        Threshold, clusters, and who found them.
-    """
+    """Draw how many clusters there are over the distance threshold."""
     ax = Figure(figsize=COUNTS_IN, layout="constrained").add_subplot() if ax is None else ax
     for rank, (name, points) in enumerate(counts.items()):
         colour, marker = COUNT_LOOKS[rank % len(COUNT_LOOKS)]

@@ -28,12 +28,7 @@ from drystone_lab.walls import PR, Target
 def recounted(action: Action, name: str) -> float | None:
     """Return an index counted in the label image; None where the picture does not show it.
 
-    Parameters
-    ----------
-    action : Action
-        The stone where it is, and what its indices measure.
-    name : {"SF", "LFR", "GDS", "NHR", "IWR", "IS"}
-        Which.  SF is that of the working pixels here; the planner's is that of the source image.
+    SF is that of the working pixels; the planner's is that of the source image.
     """
     counts = {"SF": _shape, "LFR": _filling, "GDS": _dice, "NHR": _height, "IWR": _joints,
               "IS": _slope}  # fmt: skip

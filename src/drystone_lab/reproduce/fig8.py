@@ -35,19 +35,9 @@ VALUES = "cividis"
 
 @dataclass(frozen=True, eq=False)
 class Layer:
-    """A set of positions of a mask.
+    """A set of positions of a mask."""
 
-    Parameters
-    ----------
-    positions : (h - h' + 1, w - w' + 1) bool array
-        By row and column of the mask's top-left corner.
-    colour : str
-        Of the set.
-    label : str
-        Its meaning.
-    """
-
-    positions: Mask
+    positions: Mask  # By row and column of the mask's top-left corner
     colour: str
     label: str
 
@@ -55,24 +45,7 @@ class Layer:
 def plot_position_layers(
     labels: Labels, posed: PosedStone, layers: Sequence[Layer], ax: Axes | None = None
 ) -> Axes:
-    """Draw sets of positions of a stone as areas; a position is where its centroid is.
-
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        The landscape, row 0 at the top.
-    posed : PosedStone
-        The stone.
-    layers : sequence of Layer
-        Later ones cover earlier ones.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-
-    Returns
-    -------
-    ax : Axes
-        In working px, y up from the ground.
-    """
+    """Draw sets of positions of a stone as areas; a position is where its centroid is."""
     ax = _landscape(labels, ax)
     height = labels.shape[0]
     x, y = posed.anchor
@@ -100,18 +73,7 @@ def plot_position_values(
 ) -> Axes:
     """Draw what positions of a stone are worth, and the stone where it was put.
 
-    Parameters
-    ----------
-    labels, posed
-        As for :func:`plot_position_layers`.
-    positions : (n, 2) int array
-        Row and column of the mask's top-left corner.
-    values : (n,) float array
-        Of each.
-    chosen : (int, int)
-        Row and column of the one that was taken.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
+    `positions` (n, 2) and `chosen` are rows and columns of the mask's top-left corner.
     """
     ax = _landscape(labels, ax)
     height = labels.shape[0]
@@ -168,29 +130,17 @@ PANEL_IN = (7.2, 2.35)
 
 @dataclass(frozen=True, eq=False)
 class PositionMaps:
-    """All positions of a stone on a landscape, by row and column of its mask's top-left corner.
+    """All positions of a stone on a landscape, by row and column of its mask's top-left corner."""
 
-    Parameters
-    ----------
-    free : (h - h' + 1, w - w' + 1) bool array
-        No pixel overlaps.
-    floating : bool array of the same shape
-        None would overlap the landscape, with the bounds of the wall, dilated by one pixel.
-    """
-
-    free: Mask
+    free: Mask  # No pixel overlaps
+    # None would overlap the landscape, with the bounds of the wall, dilated by one pixel
     floating: Mask
 
     @classmethod
     def of(cls, occupied: Mask, mask: Mask) -> "PositionMaps":
         """Find them as the paper does, by convolution.
 
-        Parameters
-        ----------
-        occupied : (h, w) bool array
-            The landscape; L_0 of the paper has bounds on all four sides (Fig. 4b).
-        mask : (h', w') bool array
-            The stone.
+        The landscape (L_0 of the paper) has bounds on all four sides (Fig. 4b).
         """
         bounded = np.pad(occupied, 1, constant_values=True)
         dilated = ndimage.binary_dilation(bounded)[1:-1, 1:-1]

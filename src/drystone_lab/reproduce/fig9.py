@@ -20,27 +20,13 @@ from drystone_lab.walls import PR, Target
 
 @dataclass(frozen=True, eq=False)
 class Unstable:
-    """A stone that falls where the rule of placement puts it.
-
-    Parameters
-    ----------
-    moment : Moment
-        What is built.
-    trial : Standing
-        The stone there.
-    turned : Standing or None
-        Where it rests after turning; None when it meets the landscape before.
-    pivots : int
-        About how many points it was turned.
-    wedged : Standing or None
-        In its place on wedges; None when no wedge within the limits holds it.
-    """
+    """A stone that falls where the rule of placement puts it."""
 
     moment: Moment
-    trial: Standing
-    turned: Standing | None
-    pivots: int
-    wedged: Standing | None
+    trial: Standing  # The stone there
+    turned: Standing | None  # Where it rests after turning; None when it meets the landscape before
+    pivots: int  # About how many points it was turned
+    wedged: Standing | None  # In its place on wedges; None when no wedge within the limits holds it
 
     @property
     def stone_id(self) -> int:
@@ -69,12 +55,7 @@ class Unstable:
 def unstable_trials(built: Construction) -> tuple[int, tuple[Unstable, ...]]:
     """Try every stone that is left before each step of a run.
 
-    Returns
-    -------
-    trials : int
-        How many were tried and had a position.
-    unstable : tuple of Unstable
-        Those that fall.
+    Returns how many were tried and had a position, and those that fall.
     """
     count, found = 0, []
     for moment in built.moments:

@@ -42,33 +42,18 @@ def utc_now() -> datetime:
 
 @dataclass(frozen=True)
 class Request:
-    """What the contents of an item depend on, beside its name.
-
-    Parameters
-    ----------
-    version : str
-        Of drystone.
-    quick : bool
-        The smaller version.
-    seed : int
-        Of all random choices, or the first of several.
-    image_sha256 : str or None
-        Of a user's own stones.
-    published : tuple of str
-        Published files that are there; some items leave out rows whose stones are not.
-    """
+    """What the contents of an item depend on, beside its name."""
 
     version: str
-    quick: bool
-    seed: int
-    image_sha256: str | None
+    quick: bool  # The smaller version
+    seed: int  # Of all random choices, or the first of several
+    image_sha256: str | None  # Of a user's own stones
+    # Published files that are there; some items leave out rows whose stones are not
     published: tuple[str, ...]
 
     def is_met_by(self, record: Mapping[str, Any]) -> bool:
         """Return whether an item that was made before is what is asked for now.
 
-        Examples
-        --------
         >>> full = Request("1", False, 1, None, ("almeida/R.png",))
         >>> less = Request("1", False, 1, None, ())
         >>> less.is_met_by(full.as_dict()), full.is_met_by(less.as_dict())
@@ -89,13 +74,7 @@ class Request:
 
 
 def request_of(*, quick: bool, seed: int, image: Path | None, data: Path | None) -> Request:
-    """Return what is asked for.
-
-    Raises
-    ------
-    InputError
-        E100: there is no such image.
-    """
+    """Return what is asked for."""
     files = [file.name for each in SETS.values() for file in each.files]
     there = tuple(name for name in files if data is not None and (data / name).is_file())
     digest = None if image is None else _sha256(image)
@@ -131,18 +110,7 @@ TIMES = "_times"
 
 
 def write_tables(folder: Path, output: Output) -> dict[str, list[dict[str, Any]]]:
-    """Write the tables of an item; those of times under names that end with ``_times.csv``.
-
-    Returns
-    -------
-    dict
-        ``"tables"`` and ``"times"``, as JSON writes them, each with its ``"file"``.
-
-    Raises
-    ------
-    ValueError
-        Two tables have one name, or a number is not finite: both are faults of the item.
-    """
+    """Write the tables of an item; those of times under names that end with ``_times.csv``."""
     tables = [(name, table) for name, table in output.tables]
     times = [(name.removesuffix(TIMES) + TIMES, table) for name, table in output.times]
     names = [name for name, _ in (*tables, *times)]
@@ -179,8 +147,6 @@ def files_of(record: dict[str, Any]) -> Iterator[str]:
 def csv_text(table: Table) -> str:
     r"""Return a table as CSV: numbers that read back as they were, nothing for None.
 
-    Examples
-    --------
     >>> csv_text(Table("Blocks", ("name", "alpha"), (("tall", 0.1 + 0.2), ("flat", None))))
     'name,alpha\ntall,0.30000000000000004\nflat,\n'
     """
@@ -218,18 +184,7 @@ ITEM_SCHEMA = "drystone-item/1"
 
 
 class ReportFolder:
-    """Where items are written, one folder each, with a report of all of them.
-
-    Parameters
-    ----------
-    path : Path
-        Made when it is missing; taken when it is empty or one of these.
-
-    Raises
-    ------
-    UsageError
-        E129: there are other files in it.
-    """
+    """Where items are written, one folder each, with a report of all of them."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -274,13 +229,7 @@ class ReportFolder:
     def keep(
         self, name: str, item: Item, output: Output, about: Mapping[str, Any]
     ) -> dict[str, Any]:
-        """Write the files of an item in place of those of an earlier one; its JSON comes last.
-
-        Returns
-        -------
-        record : dict
-            What the JSON says.
-        """
+        """Write the files of an item in place of those of an earlier one; its JSON comes last."""
         folder = self.path / name
         folder.mkdir(exist_ok=True)
         self._remove(name)

@@ -58,13 +58,6 @@ ALL = "all"
 def item_names(asked: str) -> tuple[str, ...]:
     """Return the names of the items that are meant.
 
-    Raises
-    ------
-    UsageError
-        E138: there is none of this name.
-
-    Examples
-    --------
     >>> item_names("fig18"), len(item_names("all"))
     (('table2',), 23)
     """

@@ -39,13 +39,6 @@ def drawn_together(labels: Labels) -> Labels:
     its centre nearest to the corner, and does not overlap another stone or leave the image, as
     long as there is one; every stone is moved once.
 
-    Returns
-    -------
-    moved : (h, w) array of the same type
-        The same stones.
-
-    Examples
-    --------
     >>> drawn_together(np.array([[0, 1, 0, 2], [0, 0, 0, 2]])).tolist()
     [[0, 2, 0, 0], [1, 2, 0, 0]]
     """
@@ -63,8 +56,6 @@ def dilated(labels: Labels) -> Labels:
 
     A pixel that several stones reach goes to the smallest id.
 
-    Examples
-    --------
     >>> dilated(np.array([[1, 0, 0, 0, 2]])).tolist()
     [[1, 1, 0, 2, 2]]
     """

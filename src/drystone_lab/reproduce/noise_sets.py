@@ -40,24 +40,13 @@ GAP_RANGE = (0.5, 1.0, 1.5)
 
 @dataclass(frozen=True)
 class Reference:
-    """A published wall, measured as a label image.
-
-    Parameters
-    ----------
-    stones : int
-        In it.
-    F_SF : float
-        Of the whole image, which is also the wall that our method is to fill.
-    F_AV, F_AH : float or None
-        As :class:`drystone.metrics.measure.WallMetrics`.
-    F_LR : tuple of (float or None)
-        With no gap closed, then with those of :data:`GAP_RANGE`; None where it does not stand.
-    """
+    """A published wall, measured as a label image."""
 
     stones: int
-    F_SF: float
+    F_SF: float  # Of the whole image, which is also the wall that our method is to fill
     F_AV: float | None
     F_AH: float | None
+    # With no gap closed, then with those of :data:`GAP_RANGE`; None where it does not stand
     F_LR: tuple[float | None, ...]
 
     @property
@@ -84,8 +73,6 @@ def generated_set(noise: int, count: int, scale: float) -> Target:
 
     The noise is the deviation of the corners over the shorter side of the brick, %.
 
-    Examples
-    --------
     >>> wall = generated_set(30, 26, 0.3)
     >>> round(wall.source.stones(None).total_area_px / (wall.width * wall.height), 3)
     0.696

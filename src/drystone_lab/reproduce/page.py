@@ -18,8 +18,6 @@ Record = Mapping[str, Any]
 def heading(name: str, title: str) -> str:
     """Return the heading of an item: its numbers in the paper and what it shows.
 
-    Examples
-    --------
     >>> heading("fig26-27", "stones of four kinds")
     'Fig. 26–27: stones of four kinds'
     >>> heading("figB33", "irregular stones"), heading("growth", "time over size")
@@ -36,8 +34,6 @@ def heading(name: str, title: str) -> str:
 def part(text: str) -> str:
     """Return a section of the paper with its sign.
 
-    Examples
-    --------
     >>> part("5.2"), part("§5.2"), part("B.1")
     ('§5.2', '§5.2', 'Appendix B.1')
     """
@@ -97,8 +93,6 @@ def duration_of_walls(records: Sequence[Record]) -> str:
 def duration(seconds: float) -> str:
     """Write a time.
 
-    Examples
-    --------
     >>> duration(3.21), duration(90), duration(7300)
     ('3.2 s', '1 min 30 s', '2 h 1 min')
     """
@@ -111,8 +105,6 @@ def duration(seconds: float) -> str:
 def shown(cell: Cell) -> str:
     """Write a cell of a table to five digits; the CSV has all of them.
 
-    Examples
-    --------
     >>> shown(None), shown(True), shown(0.123456), shown(2e-5), shown(1200), shown("R")
     ('–', 'yes', '0.12346', '2.0e-05', '1200', 'R')
     """
@@ -141,20 +133,12 @@ SHOWN = 0.624
 
 @dataclass(frozen=True)
 class Miss:
-    """An item that could not be made when it was last asked for.
-
-    Parameters
-    ----------
-    name, title, section : str
-        Of the item.
-    error : str
-        Why, with the cure.
-    """
+    """An item that could not be made when it was last asked for."""
 
     name: str
     title: str
     section: str
-    error: str
+    error: str  # Why, with the cure
 
 
 @dataclass(frozen=True)
@@ -212,19 +196,7 @@ class Section:
 def write_page(
     path: Path, records: Sequence[Record], misses: Sequence[Miss], order: Sequence[str]
 ) -> Path:
-    """Write the report of everything that was made; pictures and tables are linked beside it.
-
-    Parameters
-    ----------
-    path : Path
-        The file; the files of an item lie in a folder of its name beside it.
-    records : sequence of mapping
-        What the JSON of each item says.
-    misses : sequence of Miss
-        Items that could not be made; one may have a record of an earlier time all the same.
-    order : sequence of str
-        Names in the order of the paper.
-    """
+    """Write the report of everything that was made; pictures and tables are linked beside it."""
     errors = {miss.name: miss.error for miss in misses}
     sections = {
         record["name"]: section(record, f"{record['name']}/", errors.get(record["name"], ""))
@@ -247,15 +219,7 @@ def write_page(
 
 
 def write_item_page(path: Path, record: Record) -> Path:
-    """Write the page of one item, into the folder of its files.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    record : mapping
-        What the JSON of the item says.
-    """
+    """Write the page of one item, into the folder of its files."""
     return _write(
         path,
         title=heading(record["name"], record["title"]),
@@ -269,14 +233,7 @@ def write_item_page(path: Path, record: Record) -> Path:
 def section(record: Record, prefix: str, error: str) -> Section:
     """Return an item as the page shows it.
 
-    Parameters
-    ----------
-    record : mapping
-        What its JSON says.
-    prefix : str
-        Path from the page to its files, with the slash.
-    error : str
-        Why it could not be made when it was last asked for; empty when it could.
+    `prefix` is the path from the page to its files; `error` says why it was not made.
     """
     head = heading(record["name"], record["title"])
     return Section(

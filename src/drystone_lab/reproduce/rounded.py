@@ -67,8 +67,6 @@ class Kind:
     def mean_area_px(self) -> float:
         """Expected area of a stone.
 
-        Examples
-        --------
         >>> round(Kind(0.0, 30.0, 30.0).mean_area_px / (math.pi * 30**2), 4)
         1.0023
         """

@@ -19,28 +19,15 @@ ONE_WAY: Mapping[str, Changes] = {"variant": ()}
 
 @dataclass(frozen=True, kw_only=True)
 class Study:
-    """What is built.
+    """What is built."""
 
-    Parameters
-    ----------
-    walls : tuple of Target
-        The sets.
-    ways : mapping of str to changes
-        Settings that replace the paper's, by name of the way.
-    seeds, quick_seeds : int
-        How many, the same for all; in the quick version.
-    quick_walls : tuple of Target
-        Of the quick version; empty for the same.
-    at_hand : bool
-        Leave out sets whose stones are not there.
-    """
-
-    walls: tuple[Target, ...]
+    walls: tuple[Target, ...]  # The sets
+    # Settings that replace the paper's, by name of the way
     ways: Mapping[str, Changes] = field(default_factory=lambda: ONE_WAY)
-    seeds: int = 20
+    seeds: int = 20  # seeds, quick_seeds: How many, the same for all; in the quick version
     quick_seeds: int = 3
-    quick_walls: tuple[Target, ...] = ()
-    at_hand: bool = False
+    quick_walls: tuple[Target, ...] = ()  # Of the quick version; empty for the same
+    at_hand: bool = False  # Leave out sets whose stones are not there
 
     def __call__(self, context: Context) -> "Built":
         """Build the walls."""

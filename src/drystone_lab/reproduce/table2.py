@@ -72,8 +72,6 @@ def _merit(outcome: Outcome) -> tuple[float, float, float, float]:
 def tenths(value: float) -> int:
     """Round to one decimal, halves up; in tenths.
 
-    Examples
-    --------
     >>> tenths(0.45), tenths(0.4499999999), tenths(0.44)
     (5, 5, 4)
     """

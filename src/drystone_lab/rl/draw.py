@@ -55,8 +55,6 @@ class DrawSettings:
 def draw_wall(settings: DrawSettings, rng: Generator) -> tuple[StoneSet, Site]:
     """Draw stones, numbered from 1 in the order in which they arrive, and the site of their wall.
 
-    Examples
-    --------
     >>> stones, site = draw_wall(DrawSettings(kinds=("brick",)), np.random.default_rng(1))
     >>> len(stones), site
     (20, Site(width_px=118, height_px=47, scale=1.0, px_per_m=None))

@@ -50,14 +50,10 @@ def observation_space(offers: int, columns: int) -> spaces.Space[Observation]:
 def observation(episode: Episode, offers: int, columns: int) -> Observation:
     """Return what is seen.
 
-    Returns
-    -------
-    dict of str to float32 arrays
-        ``"offers"``, (offers, F): a row an offer (:data:`FEATURES`, then :data:`STONE`), zeros
-        where there is none.  ``"profile"``, (columns,): height of the wall's top from its left to
-        its right end, over the height that it is to have; means of equal parts of its width.
-        ``"left"``, (2,): the share of the stones that have not arrived yet, and of the wall that
-        is still to be filled.
+    ``"offers"``, (offers, F): a row an offer (:data:`FEATURES`, then :data:`STONE`), zeros where
+    there is none.  ``"profile"``, (columns,): height of the wall's top from left to right over the
+    height that it is to have, means of equal parts of its width.  ``"left"``, (2,): the share of
+    the stones that have not arrived yet, and of the wall that is still to be filled.
     """
     fitting = max(1, len(episode.workshop.fitting))
     left = np.array([episode.waiting / fitting, 1.0 - episode.build.wall.filling])
@@ -195,19 +191,9 @@ class WallEnv(gymnasium.Env[Observation, np.int64]):
     ) -> tuple[Observation, dict[str, Any]]:
         """Begin a wall.
 
-        Parameters
-        ----------
-        seed : int, optional
-            Of the stones and their order, in this episode and those after it.
-        options : mapping, optional
-            ``"stones"``: a StoneSet, with ``"site"``: a Site, to build with instead of stones
-            that are drawn; and ``"order"``: ids in the order of arrival, random when missing.
-
-        Raises
-        ------
-        UsageError
-            E123: other options, or an order that is none; E126: there are no stones; E201: an id
-            of the order is no stone's.
+        Options: ``"stones"`` (a StoneSet) with ``"site"`` (a Site) instead of stones that are
+        drawn; and ``"order"``, ids in the order of arrival, random when missing.  E123: other
+        options, or an order that is none; E126: there are no stones; E201: an id is no stone's.
         """
         super().reset(seed=seed)
         stones, site, order = self._given(options or {})
@@ -221,11 +207,8 @@ class WallEnv(gymnasium.Env[Observation, np.int64]):
     def step(self, action: np.int64) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Build the stone that has arrived; see :class:`gymnasium.Env`.
 
-        Raises
-        ------
-        UsageError
-            E151: there is no such action, the episode is over, or with ``illegal="error"`` the
-            place is not offered.
+        E151: there is no such action, the episode is over, or with ``illegal="error"`` the place is
+        not offered.
         """
         episode = self._running()
         if self._ended:

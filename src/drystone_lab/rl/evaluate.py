@@ -41,25 +41,15 @@ Walls = Mapping[str, Sequence[float]]
 
 @dataclass(frozen=True)
 class Interval:
-    """A mean, and where that of all walls of their kind lies.
-
-    Parameters
-    ----------
-    mean : float
-        Of the differences.
-    half : float
-        Half the width of the interval by Student's t; infinite for a single difference.
-    """
+    """A mean, and where that of all walls of their kind lies."""
 
     mean: float
-    half: float
+    half: float  # Half the width of the interval by Student's t; infinite for a single difference
 
     @classmethod
     def of(cls, differences: Sequence[float]) -> "Interval":
         """Return the interval of some differences.
 
-        Examples
-        --------
         >>> Interval.of([1.0, 1.0, 1.0])
         Interval(mean=1.0, half=0.0)
         """
@@ -86,13 +76,7 @@ def held_out_wall(kind: str, number: int, draw: DrawSettings) -> Workshop:
 def figures_by(
     policy: str, workshops: Sequence[Workshop], settings: PlannerSettings = ARRIVING
 ) -> dict[str, list[float]]:
-    """Return the figures of the walls that a policy builds.
-
-    Raises
-    ------
-    UsageError
-        E146: there is no such policy.
-    """
+    """Return the figures of the walls that a policy builds."""
     found: dict[str, list[float]] = {name: [] for name in FIGURES}
     rule = replace(settings, selection_rule=rule_of(policy))
     for number, workshop in enumerate(workshops):

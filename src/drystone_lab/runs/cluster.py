@@ -35,19 +35,6 @@ def cluster_at_work(address: str, *, patience_s: float = PATIENCE_S) -> Iterator
     Published stones are read by the workers: from the folder that is given here if it is there on
     the worker's machine, else from the folder that ``DRYSTONE_DATA`` names there.  A file of
     one's own is read here, and its stones are sent.
-
-    Yields
-    ------
-    Work
-        An interrupt (Ctrl-C) goes to the caller after the outcomes of the runs that have ended,
-        and so does the error of a run; runs that have not begun are then called off.
-
-    Raises
-    ------
-    UsageError
-        E403: Dask is not installed; E404: nobody answers at the address, or there is no worker;
-        E405: the scheduler or a worker has another version of this package.  While it works, E404
-        is raised when the connection is lost, and E405 by a worker that joined later.
     """
     distributed = _distributed()
     client = _client(distributed, address, patience_s)
@@ -59,13 +46,7 @@ def cluster_at_work(address: str, *, patience_s: float = PATIENCE_S) -> Iterator
 
 
 def check_versions(client: Any) -> None:
-    """Compare the versions of this package on a cluster.
-
-    Raises
-    ------
-    UsageError
-        E405: they are not all this one, which would plan other walls under the same names.
-    """
+    """Compare the versions of this package on a cluster."""
     found = dict(client.run(version, "drystone", on_error="return"))
     try:
         found["scheduler"] = client.run_on_scheduler(version, "drystone")
@@ -85,15 +66,7 @@ def check_versions(client: Any) -> None:
 def execute_there(spec: RunSpec, data: Path | None, stones: StoneSet | None) -> Outcome:
     """Plan the wall of a run, on a worker.
 
-    Parameters
-    ----------
-    spec : RunSpec
-        The run.
-    data : Path or None
-        Folder of the published data where the run is asked for; if it is not there on this
-        machine, that of ``DRYSTONE_DATA``.
-    stones : StoneSet or None
-        Those of a file.
+    `data` is the folder here; if it is not there on this machine, that of ``DRYSTONE_DATA``.
     """
     if data is not None and not data.is_dir():
         data = Path(os.environ.get("DRYSTONE_DATA", data))
@@ -161,13 +134,7 @@ def _outcomes(
 
 
 def _outcome(distributed: Any, future: Any, spec: RunSpec) -> Outcome:
-    """Return the outcome of a run that has ended.
-
-    Raises
-    ------
-    DrystoneError
-        See :func:`cluster_at_work`; or what the run raised.
-    """
+    """Return the outcome of a run that has ended."""
     try:
         outcome: Outcome = future.result()
     except distributed.KilledWorker as error:

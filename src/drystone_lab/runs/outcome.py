@@ -26,26 +26,15 @@ FIGURES = (
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """A planned wall, as it is kept.
-
-    Parameters
-    ----------
-    key : str
-        Of the run (:attr:`RunSpec.key`).
-    figures : dict of str to float, int or None
-        By the names of :data:`FIGURES`; lengths and areas in source px; None where a figure is not
-        defined.
-    plan : dict
-        Contents of its plan.json.
-    times : dict of str to float
-        Seconds on the machine where it ran: ``"wall"`` from the stones to the last step, and the
-        parts of the work (:mod:`drystone.planner.profile`).  Nothing else differs between
-        machines.
-    """
+    """A planned wall, as it is kept."""
 
     key: str
+    # By the names of :data:`FIGURES`; lengths and areas in source px; None where a figure is not
+    # defined
     figures: Mapping[str, float | int | None]
-    plan: Mapping[str, Any]
+    plan: Mapping[str, Any]  # Contents of its plan.json
+    # Seconds on the machine where it ran: ``"wall"`` from the stones to the last step, and the
+    # parts of the work (:mod:`drystone.planner.profile`).  Nothing else differs between machines
     times: Mapping[str, float]
 
     @property
@@ -70,13 +59,6 @@ class Outcome:
 def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) -> Outcome:
     """Plan the wall of a run, in this process.
 
-    Raises
-    ------
-    KeyboardInterrupt
-        Ctrl-C: the part of the wall that is built is no outcome.
-
-    Examples
-    --------
     >>> from drystone_lab.runs.spec import generated
     >>> spec = RunSpec(source=generated("brick", 1, count=6, height_px=10, aspect=2),
     ...                width=60, height=20)
@@ -117,38 +99,20 @@ def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) ->
 
 
 def uninterrupted(result: PlanResult) -> PlanResult:
-    """Return a result; raise the interrupt again that it was the end of, as no run is half a wall.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        Planning takes an interrupt for the end of its time, and says what it has.
-    """
+    """Return a result; raise KeyboardInterrupt if one ended it: no run is half a wall."""
     if result.status == "interrupted":
         raise KeyboardInterrupt
     return result
 
 
 class RunStore:
-    """Outcomes as files, one a run.
-
-    Parameters
-    ----------
-    folder : Path
-        Made when the first outcome is kept.
-    """
+    """Outcomes as files, one a run."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
 
     def get(self, key: str) -> Outcome | None:
-        """Return the outcome of a run; None when it is not there.
-
-        Raises
-        ------
-        InputError
-            E401: its file is no outcome; it was cut short or changed.
-        """
+        """Return the outcome of a run; None when it is not there."""
         path = self._path(key)
         try:
             return _outcome(key, json.loads(path.read_text(encoding="utf-8")))

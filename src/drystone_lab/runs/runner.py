@@ -23,8 +23,6 @@ def died(spec: RunSpec | str, who: str) -> DrystoneError:
 def absent_data(absent: Sequence[str], *, known: bool) -> InputError:
     """Return the error about published stones that are not there (E100).
 
-    Examples
-    --------
     >>> absent_data(["almeida/R.png", "almeida/PR.png"], known=True).where
     'almeida/R.png, almeida/PR.png'
     """
@@ -51,24 +49,13 @@ def one_by_one(specs: Sequence[RunSpec], data: Path | None) -> Iterator[Outcome]
 
 @dataclass(frozen=True)
 class Runner:
-    """Does runs and keeps their outcomes.
-
-    Parameters
-    ----------
-    store : RunStore
-        Of the outcomes.
-    data : Path or None
-        Folder of the published data.
-    work : callable
-        Who does what is not there yet; never changes an outcome but for its times.
-    say : callable
-        Told of progress, a line each.
-    """
+    """Does runs and keeps their outcomes."""
 
     store: RunStore
-    data: Path | None = None
+    data: Path | None = None  # Folder of the published data
+    # Who does what is not there yet; never changes an outcome but for its times
     work: Work = one_by_one
-    say: Callable[[str], None] = lambda _: None
+    say: Callable[[str], None] = lambda _: None  # Told of progress, a line each
 
     def run(self, specs: Sequence[RunSpec]) -> tuple[Outcome, ...]:
         """Return the outcomes of runs, in their order; what ended is kept at once."""
