@@ -51,25 +51,25 @@ class Table:
 
 @dataclass(frozen=True)
 class BenchSettings:
-    """What every suite is run with."""
+    """What a suite is run with; each goes by some of it."""
 
-    # Folder of the published data sets; rows that need it say so without it
-    data: Path | None = None
-    output: Path | None = None  # Folder for pictures; None draws none
-    seed: int = 0
-    quick: bool = False  # A smaller version, for tests
-    # Times of each search, for suites of searches; empty for theirs
-    seconds: tuple[float, ...] = ()
-    seeds: int | None = None  # How many seeds they search with, from `seed` on; None for theirs
-    only: tuple[str, ...] = ()  # How the names of walls begin that are searched; empty for all
-    policies: tuple[str, ...] = ()  # Names of the ways to search that are compared; empty for all
-    # Settings that are replaced for all of them, by names such as ``"goal.F_AH"``
-    changes: Changes = ()
-    # How many searches run side by side, each in a process of its own; None for one
-    jobs: int | None = None
-    # Table to which every search is added, and of which none is done again; None keeps nothing
-    runs: Path | None = None
-    say: Callable[[str], None] = lambda _: None  # Told of every result of a long suite as it comes
+    data: Path | None = None  # folder of the published sets; rows that need it say so without it
+    output: Path | None = None  # folder for pictures; None draws none
+    seed: int = 0  # of all random choices, or the first
+    quick: bool = False  # a smaller version, for tests
+    seconds: tuple[float, ...] = ()  # CPU times of each search; empty for the suite's
+    seeds: int | None = None  # how many, from `seed` on; None for the suite's
+    only: tuple[str, ...] = ()  # how the names of walls begin; empty for all
+    policies: tuple[str, ...] = ()  # methods that are compared; empty for all
+    changes: Changes = ()  # settings that are replaced for all methods
+    jobs: int | None = None  # processes; None for this one
+    runs: Path | None = None  # table of searches, of which none is done again
+    say: Callable[[str], None] = lambda _: None  # told of every result as it comes
+    # Of public suites alone:
+    dask: str | None = None  # address of a scheduler
+    store: Path | None = None  # folder of the runs that are kept
+    again: bool = False  # do runs again that are kept
+    shake: bool = False  # shake the walls too
 
 
 def _written(cell: Cell) -> str:

@@ -56,10 +56,11 @@ class Runner:
     # Who does what is not there yet; never changes an outcome but for its times
     work: Work = one_by_one
     say: Callable[[str], None] = lambda _: None  # Told of progress, a line each
+    again: bool = False  # Do runs again that are kept
 
     def run(self, specs: Sequence[RunSpec]) -> tuple[Outcome, ...]:
         """Return the outcomes of runs, in their order; what ended is kept at once."""
-        found = {spec.key: self.store.get(spec.key) for spec in specs}
+        found = {spec.key: None if self.again else self.store.get(spec.key) for spec in specs}
         missing = {spec.key: spec for spec in specs if found[spec.key] is None}
         for count, outcome in enumerate(self.work(tuple(missing.values()), self.data), 1):
             self.store.put(outcome)
