@@ -1,5 +1,7 @@
 """What a suite of experiments gives back: tables, as text, Markdown, or records."""
 
+import csv
+import io
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -31,7 +33,7 @@ class Table:
         tall   0.25
         flat      -
         """
-        cells = [list(self.columns), *([_written(cell) for cell in row] for row in self.rows)]
+        cells = [list(self.columns), *([written(cell) for cell in row] for row in self.rows)]
         widths = [max(len(row[k]) for row in cells) for k in range(len(self.columns))]
         words = [_is_words([row[k] for row in self.rows]) for k in range(len(self.columns))]
         lines = [_aligned(row, widths, words) for row in cells]
@@ -40,13 +42,32 @@ class Table:
     def markdown(self) -> str:
         """Return the table in Markdown, its title above."""
         lines = [self.columns, ["---"] * len(self.columns)]
-        lines += [[_written(cell) for cell in row] for row in self.rows]
+        lines += [[written(cell) for cell in row] for row in self.rows]
         return "\n".join(
             [f"**{self.title}**", ""]
             + ["| " + " | ".join(line) + " |" for line in lines]
             + [""] * bool(self.notes)
             + [f"* {note}" for note in self.notes]
         )
+
+    def csv(self) -> str:
+        r"""Return the table as CSV: numbers that read back as they were, nothing for None.
+
+        >>> Table("Blocks", ("name", "alpha"), (("tall", 0.1 + 0.2), ("flat", None))).csv()
+        'name,alpha\ntall,0.30000000000000004\nflat,\n'
+        """
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(self.columns)
+        writer.writerows([_exact(cell) for cell in row] for row in self.rows)
+        return text.getvalue()
+
+
+def _exact(cell: Cell) -> Cell:
+    if isinstance(cell, bool):
+        return "yes" if cell else "no"
+    # Floats of NumPy are floats, but write their type.
+    return float(cell) if isinstance(cell, float) else cell
 
 
 @dataclass(frozen=True)
@@ -72,7 +93,8 @@ class BenchSettings:
     shake: bool = False  # shake the walls too
 
 
-def _written(cell: Cell) -> str:
+def written(cell: Cell) -> str:
+    """Write a cell for people, to five digits."""
     if cell is None:
         return "-"
     if isinstance(cell, bool):

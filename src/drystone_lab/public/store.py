@@ -1,7 +1,5 @@
 """Results by version, in an SQLite file, with exports as CSV and Parquet."""
 
-import csv
-import io
 import json
 import sqlite3
 from collections.abc import Iterator, Sequence
@@ -17,6 +15,7 @@ from drystone_lab.public.suites import SUITE_VERSION
 from drystone_lab.public.tables import SHAKE, Result
 from drystone_lab.runs.outcome import Outcome
 from drystone_lab.runs.spec import Changes
+from drystone_lab.table import Table
 
 DATABASE = "bench.sqlite"
 CSV = "runs.csv"
@@ -121,11 +120,8 @@ class BenchStore:
     def export(self) -> tuple[Path, ...]:
         """Write all runs as CSV, and as Parquet where pyarrow is installed; return the files."""
         runs = self.runs()
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(COLUMNS)
-        writer.writerows(astuple(run) for run in runs)
-        write_whole(self.folder / CSV, text.getvalue().encode())
+        table = Table("", COLUMNS, tuple(astuple(run) for run in runs))
+        write_whole(self.folder / CSV, table.csv().encode())
         if find_spec("pyarrow") is None:
             return (self.folder / CSV,)
         write_whole(self.folder / PARQUET, _parquet(runs))

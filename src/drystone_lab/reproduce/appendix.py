@@ -10,7 +10,7 @@ from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import METRICS, metric_cells
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.reproduce.study import Built, Trials, built
-from drystone_lab.runs.spec import Changes, RunSpec, from_file, generated
+from drystone_lab.runs.spec import Changes, from_file, generated
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import TWO_SIDED, Target
 
@@ -204,11 +204,6 @@ class Bricks:
 
     built: Built
     aspects: tuple[float, ...]
-
-    @property
-    def runs(self) -> tuple[RunSpec, ...]:
-        """Of all walls."""
-        return self.built.runs
 
     @property
     def all(self) -> list[tuple[float, Trials, Courses]]:

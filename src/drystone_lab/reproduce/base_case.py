@@ -25,7 +25,6 @@ from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, Finding, rounded
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.reproduce.study import Built, Study, Trials, sheet
-from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import IR, LIU_5, PR
 
@@ -48,11 +47,6 @@ class BaseCase:
     def trials(self) -> Trials:
         """The walls."""
         return self.built.all[0]
-
-    @property
-    def runs(self) -> tuple[RunSpec, ...]:
-        """Of all walls."""
-        return self.built.runs
 
     def over_mu(self, side: str) -> list[float]:
         """Return the load multipliers of all walls towards a side, over mu."""

@@ -11,7 +11,6 @@ from drystone.errors import DrystoneError, InputError
 from drystone_lab.reproduce.folder import (
     Clock,
     ReportFolder,
-    Request,
     made_with,
     request_of,
     utc_now,
@@ -120,7 +119,7 @@ class _Maker:
 
     report: ReportFolder
     options: Options
-    request: Request
+    request: Mapping[str, Any]
     runner: Runner
 
     def made(self, name: str, items: Mapping[str, Item]) -> Made:
@@ -145,7 +144,7 @@ class _Maker:
         context = Context(self.runner, self.options.quick, self.options.seed, self.options.image)
         output = item.make(context)
         about = {
-            "request": self.request.as_dict(),
+            "request": self.request,
             "made": made_with(self.options.now),
             "taken": taken(output, self.runner.store, time.perf_counter() - begun),
         }

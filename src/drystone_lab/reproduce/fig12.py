@@ -23,7 +23,6 @@ from drystone.model.wall import Labels, Wall
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from drystone_lab.reproduce.cells import Finding
 from drystone_lab.reproduce.item import Context, Item, Picture
-from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
 
@@ -93,7 +92,6 @@ class Blocks:
     labels: Labels
     model: RigidBlockModel
     whole: RigidBlockModel
-    runs: tuple[RunSpec, ...]
 
     @cached_property
     def edges(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -107,7 +105,7 @@ def blocks(context: Context, wall: Target = PR) -> Blocks:
     built = context.wall(spec)
     labels = three_stones(built)
     model, whole = (model_from_labels(each).model for each in (labels, built.labels))
-    return Blocks(wall, labels, model, whole, (spec,))
+    return Blocks(wall, labels, model, whole)
 
 
 def three_stones(wall: Wall) -> Labels:

@@ -21,7 +21,6 @@ from drystone.metrics.paths import (
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
 from drystone_lab.reproduce.item import Context, Item, Picture
-from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
 
@@ -61,15 +60,7 @@ class Paths:
         return mean_excess(across, self.width), mean_excess(upright, self.height)
 
 
-@dataclass(frozen=True, eq=False)
-class Walls:
-    """A planned wall, and the masons' beside it where it is published."""
-
-    all: tuple[Paths, ...]
-    runs: tuple[RunSpec, ...]
-
-
-def walls(context: Context, wall: Target = PR) -> Walls:
+def walls(context: Context, wall: Target = PR) -> tuple[Paths, ...]:
     """Find the shortest paths; of published stones the image is the masons' wall."""
     spec = wall.run(context.seed)
     built = context.wall(spec)
@@ -77,7 +68,7 @@ def walls(context: Context, wall: Target = PR) -> Walls:
     if context.data is not None and wall.source.kind == "published":
         traced = read_wall_image(published_file(context.data, wall.source.name))
         found.append(Paths.of(f"the masons' {wall.name}", reduce_labels(traced, wall.scale)))
-    return Walls(tuple(found), (spec,))
+    return tuple(found)
 
 
 def _figures(walls: Sequence[Paths]) -> Table:
@@ -149,10 +140,7 @@ PATHS = Item(
         "the side, each stone eroded once, so that stones that touch have a joint of two px. The "
         "paper's Eq. 26 and Eq. 27 leave n and the starts open.",
     ),
-    tables={
-        "figures": lambda found: _figures(found.all),
-        "paths": lambda found: _paths(found.all),
-    },
-    pictures=lambda found: [_picture(paths, number) for number, paths in enumerate(found.all)],
+    tables={"figures": _figures, "paths": _paths},
+    pictures=lambda found: [_picture(paths, number) for number, paths in enumerate(found)],
     needs=(PR.source.name,),
 )

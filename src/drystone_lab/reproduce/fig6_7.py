@@ -20,7 +20,6 @@ from drystone_lab.reproduce.construction import (
     resting_places,
 )
 from drystone_lab.reproduce.item import Context, Item, Picture
-from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
 
@@ -119,7 +118,6 @@ class Places:
     moment: Moment
     place: Place
     all: tuple[Place, ...]
-    runs: tuple[RunSpec, ...]
 
     @property
     def cases(self) -> Cases:
@@ -136,7 +134,7 @@ def places(context: Context, wall: Target = PR) -> Places:
     """Find the places of all stones that are left at a moment of a run."""
     spec = wall.run(context.seed)
     moment, place = amid_course(construction(context, spec))
-    return Places(wall, moment, place, resting_places(moment), (spec,))
+    return Places(wall, moment, place, resting_places(moment))
 
 
 def _row(moment: Moment, place: Place, name: str) -> tuple[Cell, ...]:

@@ -23,7 +23,6 @@ from drystone.model.wall import Labels
 from drystone_lab.reproduce.cells import Finding
 from drystone_lab.reproduce.construction import Moment, amid_course, construction
 from drystone_lab.reproduce.item import Context, Item, Picture
-from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
 
@@ -166,7 +165,6 @@ class Trial:
     moment: Moment
     posed: PosedStone
     chosen: tuple[int, int]
-    runs: tuple[RunSpec, ...]
 
     @cached_property
     def maps(self) -> PositionMaps:
@@ -199,7 +197,7 @@ def trial(context: Context, wall: Target = PR) -> Trial:
     found = moment.trial(place.posed.stone.id)
     if found is None:
         raise RuntimeError("a stone of the run fits nowhere where it was placed")
-    return Trial(wall, moment, found[0], found[1:], (spec,))
+    return Trial(wall, moment, found[0], found[1:])
 
 
 def _table(found: Trial) -> Table:

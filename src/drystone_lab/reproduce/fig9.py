@@ -13,7 +13,6 @@ from drystone.stabilise.support import Pose, falling_side, support_polyline
 from drystone_lab.pictures.support import Standing, plot_standing, window_around
 from drystone_lab.reproduce.construction import Construction, Moment, construction
 from drystone_lab.reproduce.item import Context, Item, Picture
-from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
 
@@ -110,7 +109,6 @@ class Falls:
     wall: Target
     trials: int
     unstable: tuple[Unstable, ...]
-    runs: tuple[RunSpec, ...]
 
     @property
     def shown(self) -> tuple[Unstable, ...]:
@@ -121,7 +119,7 @@ class Falls:
 def falls(context: Context, wall: Target = PR) -> Falls:
     """Try all stones that are left before each step of a run, and treat those that fall."""
     spec = wall.run(context.seed)
-    return Falls(wall, *unstable_trials(construction(context, spec)), (spec,))
+    return Falls(wall, *unstable_trials(construction(context, spec)))
 
 
 def _shown(unstable: Sequence[Unstable]) -> tuple[Unstable, ...]:

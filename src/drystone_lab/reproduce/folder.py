@@ -1,13 +1,10 @@
 """A folder of items that were made: their files, and what was asked for."""
 
-import csv
-import io
 import json
 import math
 import os
 import platform
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from hashlib import sha256
 from importlib.metadata import version
@@ -25,7 +22,7 @@ from drystone.whole_files import write_whole
 from drystone_lab.reproduce.item import Item, Output, Picture
 from drystone_lab.reproduce.page import PAGE, Miss, write_item_page, write_page
 from drystone_lab.runs.outcome import RunStore
-from drystone_lab.table import Cell, Table
+from drystone_lab.table import Table
 
 PACKAGES = (
     "numpy", "scipy", "scikit-image", "shapely", "highspy", "clarabel", "pillow", "matplotlib",
@@ -40,45 +37,31 @@ def utc_now() -> datetime:
     return datetime.now(UTC)
 
 
-@dataclass(frozen=True)
-class Request:
-    """What the contents of an item depend on, beside its name."""
+def request_of(*, quick: bool, seed: int, image: Path | None, data: Path | None) -> dict[str, Any]:
+    """Return what the contents of an item depend on, beside its name.
 
-    version: str
-    quick: bool  # The smaller version
-    seed: int  # Of all random choices, or the first of several
-    image_sha256: str | None  # Of a user's own stones
-    # Published files that are there; some items leave out rows whose stones are not
-    published: tuple[str, ...]
-
-    def is_met_by(self, record: Mapping[str, Any]) -> bool:
-        """Return whether an item that was made before is what is asked for now.
-
-        >>> full = Request("1", False, 1, None, ("almeida/R.png",))
-        >>> less = Request("1", False, 1, None, ())
-        >>> less.is_met_by(full.as_dict()), full.is_met_by(less.as_dict())
-        (True, False)
-        """
-        same = all(
-            record[name] == getattr(self, name)
-            for name in ("version", "quick", "seed", "image_sha256")
-        )
-        return same and {*self.published} <= {*record["published"]}
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return what JSON writes."""
-        return {
-            "version": self.version, "quick": self.quick, "seed": self.seed,
-            "image_sha256": self.image_sha256, "published": list(self.published),
-        }  # fmt: skip
-
-
-def request_of(*, quick: bool, seed: int, image: Path | None, data: Path | None) -> Request:
-    """Return what is asked for."""
+    Published are the files that are there: some items leave out rows whose stones are not.
+    """
     files = [file.name for each in SETS.values() for file in each.files]
-    there = tuple(name for name in files if data is not None and (data / name).is_file())
-    digest = None if image is None else _sha256(image)
-    return Request(version("drystone"), quick, seed, digest, there)
+    return {
+        "version": version("drystone"),
+        "quick": quick,
+        "seed": seed,
+        "image_sha256": None if image is None else _sha256(image),
+        "published": [name for name in files if data is not None and (data / name).is_file()],
+    }
+
+
+def is_met(request: Mapping[str, Any], made: Mapping[str, Any]) -> bool:
+    """Return whether what was made for one request is what another asks for.
+
+    >>> few = {"seed": 1, "published": []}
+    >>> more = {"seed": 1, "published": ["almeida/R.png"]}
+    >>> is_met(few, more), is_met(more, few)
+    (True, False)
+    """
+    same = all(made[name] == value for name, value in request.items() if name != "published")
+    return same and {*request["published"]} <= {*made["published"]}
 
 
 def made_with(now: Clock) -> dict[str, Any]:
@@ -144,38 +127,16 @@ def files_of(record: dict[str, Any]) -> Iterator[str]:
         yield picture["svg"]
 
 
-def csv_text(table: Table) -> str:
-    r"""Return a table as CSV: numbers that read back as they were, nothing for None.
-
-    >>> csv_text(Table("Blocks", ("name", "alpha"), (("tall", 0.1 + 0.2), ("flat", None))))
-    'name,alpha\ntall,0.30000000000000004\nflat,\n'
-    """
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(table.columns)
-    writer.writerows([_written(cell) for cell in row] for row in table.rows)
-    return text.getvalue()
-
-
 def _write_table(folder: Path, name: str, table: Table) -> dict[str, Any]:
     for row in table.rows:
         if any(isinstance(cell, float) and not math.isfinite(cell) for cell in row):
             raise ValueError(f"{name}: a number of {row} is not finite; None says there is none")
     file = f"{name}.csv"
-    write_whole(folder / file, csv_text(table).encode())
+    write_whole(folder / file, table.csv().encode())
     return {
         "name": name, "file": file, "title": table.title, "columns": list(table.columns),
         "rows": [list(row) for row in table.rows], "notes": list(table.notes),
     }  # fmt: skip
-
-
-def _written(cell: Cell) -> str:
-    if cell is None:
-        return ""
-    if isinstance(cell, bool):
-        return "yes" if cell else "no"
-    # Floats of NumPy are floats, but write their type.
-    return repr(float(cell)) if isinstance(cell, float) else str(cell)
 
 
 MARK = "reproduce.json"
@@ -221,10 +182,10 @@ class ReportFolder:
             return None
         return record
 
-    def finished(self, name: str, request: Request) -> dict[str, Any] | None:
+    def finished(self, name: str, request: Mapping[str, Any]) -> dict[str, Any] | None:
         """Return the record of an item that was made for such a request; None without one."""
         record = self.record(name)
-        return record if record is not None and request.is_met_by(record["request"]) else None
+        return record if record is not None and is_met(request, record["request"]) else None
 
     def keep(
         self, name: str, item: Item, output: Output, about: Mapping[str, Any]

@@ -1,7 +1,7 @@
 """A table or figure of the paper that can be made again."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +24,7 @@ class Context:
     quick: bool = False
     seed: int = 1  # Of all random choices, or the first of several
     image: Path | None = None  # A user's own stones, for items that take them
+    asked: list[RunSpec] = field(default_factory=list)  # Runs so far: what the item is made of
 
     @property
     def data(self) -> Path | None:
@@ -32,6 +33,7 @@ class Context:
 
     def run(self, specs: Sequence[RunSpec]) -> tuple[Outcome, ...]:
         """Return the outcomes of runs, in their order."""
+        self.asked.extend(specs)
         return self.runner.run(specs)
 
     def wall(self, spec: RunSpec) -> Wall:
@@ -75,7 +77,7 @@ class Item:
     # What the paper shows and reports there, its numbers among it; a paragraph each
     paper: tuple[str, ...]
     # Does what the item is about: builds walls (:class:`~drystone_lab.reproduce.study.Study`) or
-    # times them.  All others take what it returns; its `runs` are those of the item
+    # times them.  All others take what it returns
     study: Callable[[Context], Any]
     notes: tuple[str, ...] = ()  # What a reader of the results must know; a paragraph each
     # Compares what was found with claims of the paper; they are a table too
@@ -89,6 +91,7 @@ class Item:
 
     def make(self, context: Context) -> Output:
         """Do the study, and read everything off it."""
+        context = replace(context, asked=[])
         found = self.study(context)
         claims = tuple(self.claims(found))
         tables = [(name, table(found)) for name, table in self.tables.items()]
@@ -100,5 +103,5 @@ class Item:
             tables=tuple(tables),
             times=tuple((name, table(found)) for name, table in self.times.items()),
             pictures=tuple(self.pictures(found)),
-            runs=tuple(getattr(found, "runs", ())),
+            runs=tuple(dict.fromkeys(context.asked)),
         )

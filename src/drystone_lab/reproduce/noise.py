@@ -39,7 +39,6 @@ from drystone_lab.reproduce.noise_sets import (
 )
 from drystone_lab.reproduce.study import Built, Study, Trials, walls_table, ways_table
 from drystone_lab.runs.outcome import Outcome
-from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import TWO_SIDED
 
@@ -91,11 +90,6 @@ class Levels:
 
     built: Built
     all: tuple[Level, ...]
-
-    @property
-    def runs(self) -> tuple[RunSpec, ...]:
-        """Of all walls."""
-        return self.built.runs
 
     @property
     def low(self) -> list[Level]:

@@ -10,8 +10,8 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from drystone.drawing.report.html import HERE
 from drystone.whole_files import write_whole
+from drystone_lab.table import written
 
-Cell = str | int | float | bool | None
 Record = Mapping[str, Any]
 
 
@@ -102,21 +102,6 @@ def duration(seconds: float) -> str:
     return f"{minutes} min {rest} s" if minutes < 60 else f"{minutes // 60} h {minutes % 60} min"
 
 
-def shown(cell: Cell) -> str:
-    """Write a cell of a table to five digits; the CSV has all of them.
-
-    >>> shown(None), shown(True), shown(0.123456), shown(2e-5), shown(1200), shown("R")
-    ('–', 'yes', '0.12346', '2.0e-05', '1200', 'R')
-    """
-    if cell is None:
-        return "–"  # noqa: RUF001 - as the report of a plan writes it
-    if isinstance(cell, bool):
-        return "yes" if cell else "no"
-    if isinstance(cell, float):
-        return f"{cell:.1e}" if 0 < abs(cell) < 1e-3 else f"{cell:.5g}"
-    return str(cell)
-
-
 def _different(values: Iterable[object]) -> str:
     return "; ".join(dict.fromkeys(map(str, values)))
 
@@ -141,78 +126,25 @@ class Miss:
     error: str  # Why, with the cure
 
 
-@dataclass(frozen=True)
-class ShownTable:
-    """A table as the page shows it: cells are text, `words` says which columns are no numbers."""
-
-    title: str
-    file: str
-    columns: tuple[str, ...]
-    words: tuple[bool, ...]
-    rows: tuple[tuple[str, ...], ...]
-    notes: tuple[str, ...]
-
-    @property
-    def long(self) -> bool:
-        """Whether it is folded up."""
-        return len(self.rows) > LONG
-
-
-@dataclass(frozen=True)
-class ShownPicture:
-    """A picture as the page shows it; `width` and `height` in px of the PNG."""
-
-    png: str
-    svg: str
-    width: int
-    height: int
-    alt: str
-    caption: str
-
-    @property
-    def shown_px(self) -> int:
-        """Width on a page that is wide enough, CSS px."""
-        return round(self.width * SHOWN)
-
-
-@dataclass(frozen=True)
-class Section:
-    """An item as the page shows it; a miss has no record."""
-
-    name: str
-    heading: str
-    part: str
-    about: str
-    version: str
-    error: str
-    paper: tuple[str, ...] = ()
-    ours: tuple[str, ...] = ()
-    tables: tuple[ShownTable, ...] = ()
-    times: tuple[ShownTable, ...] = ()
-    pictures: tuple[ShownPicture, ...] = ()
-    json: str = ""
-
-
 def write_page(
     path: Path, records: Sequence[Record], misses: Sequence[Miss], order: Sequence[str]
 ) -> Path:
-    """Write the report of everything that was made; pictures and tables are linked beside it."""
-    errors = {miss.name: miss.error for miss in misses}
+    """Write the report of everything that was made; pictures and tables are linked beside it.
+
+    A miss may have a record of an earlier time all the same; `order` has the names of all items.
+    """
     sections = {
-        record["name"]: section(record, f"{record['name']}/", errors.get(record["name"], ""))
-        for record in records
+        miss.name: _section({"name": miss.name, "title": miss.title, "section": miss.section})
+        for miss in misses
     }
+    sections |= {record["name"]: _made_section(record, f"{record['name']}/") for record in records}
     for miss in misses:
-        alone = Section(
-            miss.name, heading(miss.name, miss.title), part(miss.section), "", "", miss.error
-        )
-        sections.setdefault(miss.name, alone)
-    shown = [sections[name] for name in order if name in sections]
+        sections[miss.name]["error"] = miss.error
     return _write(
         path,
         title="The paper's tables and figures, made again",
         lead=lead(records, len(order)),
-        sections=shown,
+        sections=[sections[name] for name in order if name in sections],
         made=made_rows(records),
         up="",
     )
@@ -224,50 +156,56 @@ def write_item_page(path: Path, record: Record) -> Path:
         path,
         title=heading(record["name"], record["title"]),
         lead="",
-        sections=[section(record, "", "")],
+        sections=[_made_section(record, "")],
         made=made_rows([record]),
         up=f"../{PAGE}#{record['name']}",
     )
 
 
-def section(record: Record, prefix: str, error: str) -> Section:
-    """Return an item as the page shows it.
-
-    `prefix` is the path from the page to its files; `error` says why it was not made.
-    """
+def _section(record: Record) -> dict[str, Any]:
+    """Return an item as the page shows it when it was not made."""
     head = heading(record["name"], record["title"])
-    return Section(
-        name=record["name"],
-        heading=head,
-        part=part(record["section"]),
-        about=about(record),
-        version="quick version" if record["request"]["quick"] else "full version",
-        error=error,
-        paper=tuple(record["paper"]),
-        ours=tuple(record["ours"]),
-        tables=tuple(_table(table, prefix) for table in record["tables"]),
-        times=tuple(_table(table, prefix) for table in record["times"]),
-        pictures=tuple(
-            ShownPicture(
-                prefix + picture["png"], prefix + picture["svg"], picture["width_px"],
-                picture["height_px"], f"{head}. {picture['caption']}", picture["caption"],
-            )
-            for picture in record["pictures"]
-        ),
-        json=f"{prefix}{record['name']}.json",
-    )  # fmt: skip
+    shown = {"name": record["name"], "heading": head, "part": part(record["section"])}
+    return shown | {"error": "", "json": "", "version": ""}
 
 
-def _table(table: Mapping[str, Any], prefix: str) -> ShownTable:
-    rows = tuple(tuple(row) for row in table["rows"])
-    return ShownTable(
-        table["title"],
-        prefix + table["file"],
-        tuple(table["columns"]),
-        tuple(any(isinstance(row[k], str) for row in rows) for k in range(len(table["columns"]))),
-        tuple(tuple(shown(cell) for cell in row) for row in rows),
-        tuple(table["notes"]),
-    )
+def _made_section(record: Record, prefix: str) -> dict[str, Any]:
+    """Return an item as the page shows it; `prefix` is the path from the page to its files."""
+    made = _section(record)
+    pictures = [
+        {
+            "png": prefix + picture["png"], "svg": prefix + picture["svg"],
+            "width": picture["width_px"], "height": picture["height_px"],
+            "shown_px": round(picture["width_px"] * SHOWN),
+            "alt": f"{made['heading']}. {picture['caption']}", "caption": picture["caption"],
+        }
+        for picture in record["pictures"]
+    ]  # fmt: skip
+    return made | {
+        "about": about(record),
+        "version": "quick version" if record["request"]["quick"] else "full version",
+        "paper": record["paper"],
+        "ours": record["ours"],
+        "tables": [_table(table, prefix) for table in record["tables"]],
+        "times": [_table(table, prefix) for table in record["times"]],
+        "pictures": pictures,
+        "json": f"{prefix}{record['name']}.json",
+    }
+
+
+def _table(table: Mapping[str, Any], prefix: str) -> dict[str, Any]:
+    """Return a table as the page shows it: `words` says which columns are not numbers."""
+    rows, columns = table["rows"], table["columns"]
+    return {
+        "title": table["title"],
+        "file": prefix + table["file"],
+        "columns": columns,
+        "words": [any(isinstance(row[k], str) for row in rows) for k in range(len(columns))],
+        # Five digits and, as the report of a plan has it, a dash; the CSV has all digits.
+        "rows": [["–" if cell is None else written(cell) for cell in row] for row in rows],  # noqa: RUF001
+        "notes": table["notes"],
+        "long": len(rows) > LONG,
+    }
 
 
 def _write(path: Path, **content: object) -> Path:

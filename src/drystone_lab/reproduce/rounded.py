@@ -22,7 +22,7 @@ from drystone_lab.reproduce.cells import (
 )
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.reproduce.study import Built, Trials
-from drystone_lab.runs.spec import RunSpec, generated
+from drystone_lab.runs.spec import generated
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import TWO_SIDED, Target
 
@@ -96,11 +96,6 @@ class Rounded:
 
     kinds: tuple[Kind, ...]
     by_ratio: Mapping[float, Built]
-
-    @property
-    def runs(self) -> tuple[RunSpec, ...]:
-        """Of all walls."""
-        return tuple(run for built in self.by_ratio.values() for run in built.runs)
 
     @property
     def first(self) -> Built:

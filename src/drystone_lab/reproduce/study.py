@@ -76,11 +76,6 @@ class Built:
         return iter(self.all)
 
     @property
-    def runs(self) -> tuple[RunSpec, ...]:
-        """Of all walls."""
-        return tuple(spec for trials in self.all for spec in trials.specs)
-
-    @property
     def seeds(self) -> tuple[int, ...]:
         """Of every set and way."""
         return tuple(spec.seed for spec in self.all[0].specs)

@@ -33,7 +33,6 @@ from drystone_lab.reproduce.masons import (
 )
 from drystone_lab.reproduce.study import Built, Study, Trials
 from drystone_lab.runs.outcome import Outcome
-from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import FIVE, MASONS
 
@@ -128,11 +127,6 @@ class Five:
 
     built: Built
     walls: tuple[FiveWall, ...]
-
-    @property
-    def runs(self) -> tuple[RunSpec, ...]:
-        """Of all walls."""
-        return self.built.runs
 
 
 def five_walls(context: Context, study: Study) -> Five:

@@ -16,7 +16,6 @@ from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import METRICS, Finding, findings_table, metric_cells, trend
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.reproduce.study import ONE_WAY, Built, built
-from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
 from drystone_lab.timed_walls import (
     PAPER_STEP_S,
@@ -207,11 +206,6 @@ class Scaled:
 
     built: Built
     timed: Mapping[float, Planned]
-
-    @property
-    def runs(self) -> tuple[RunSpec, ...]:
-        """Of all walls."""
-        return self.built.runs
 
 
 def by_scale(context: Context, wall: Target = PR, scales: Sequence[float] = SCALES) -> Scaled:

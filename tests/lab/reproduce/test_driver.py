@@ -12,7 +12,7 @@ import pytest
 
 from drystone.errors import InputError, UsageError
 from drystone_lab.reproduce.driver import EVERY_S, Made, Options, Progress, reproduce
-from drystone_lab.reproduce.folder import csv_text, write_tables
+from drystone_lab.reproduce.folder import write_tables
 from drystone_lab.reproduce.item import Item, Output
 from drystone_lab.runs.runner import one_by_one
 from drystone_lab.table import Table
@@ -95,7 +95,7 @@ def test_tables_read_back_to_the_last_digit(tmp_path: Path) -> None:
 def test_cells_of_all_kinds() -> None:
     np_float = type("float64", (float,), {"__repr__": lambda _: "np.float64(1.5)"})
     table = Table("x", ("a", "b"), ((True, np_float(1.5)), ('say "a, b"', 0.1 + 0.2), (None, 3)))
-    assert csv_text(table) == 'a,b\nyes,1.5\n"say ""a, b""",0.30000000000000004\n,3\n'
+    assert table.csv() == 'a,b\nyes,1.5\n"say ""a, b""",0.30000000000000004\n,3\n'
 
 
 def test_faulty_tables_are_refused(tmp_path: Path) -> None:

@@ -12,10 +12,10 @@ from drystone_lab.reproduce.page import (
     Miss,
     duration,
     heading,
-    shown,
     write_item_page,
     write_page,
 )
+from drystone_lab.table import written
 from tests.drawing.report.test_report import Page
 
 ORDER = ("fig5", "fig13", "table2")
@@ -124,7 +124,7 @@ def test_words() -> None:
     assert heading("table2", "walls") == "Table 2: walls"
     assert heading("figB30-32", "x") == "Fig. B.30\N{EN DASH}32: x"
     assert heading("beta", "the threshold") == "The threshold"
-    assert [shown(value) for value in (0.0, False, 1e-4, 123456.7)] == [
+    assert [written(value) for value in (0.0, False, 1e-4, 123456.7)] == [
         "0", "no", "1.0e-04", "1.2346e+05",
     ]  # fmt: skip
     assert duration(59.97) == "1 min 0 s"
