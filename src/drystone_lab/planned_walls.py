@@ -7,12 +7,11 @@ from functools import cached_property
 from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
-from drystone.search.plan_wall import plan_wall
 from drystone.statics.model import RigidBlockModel
 from drystone.verify.lengths import plan_settings
 from drystone.verify.replay import Stage, replay_plan
 from drystone.verify.stability import wall_model
-from drystone_lab.runs.outcome import uninterrupted
+from drystone_lab.runs.outcome import execute
 from drystone_lab.table import BenchSettings
 from drystone_lab.walls import IR, PR, R
 
@@ -59,9 +58,7 @@ def planned_walls(
         stones = target.source.stones(settings.data)
         for method in methods[:1] if settings.quick else methods:
             for seed in range(settings.seed, settings.seed + (1 if settings.quick else seeds)):
-                size = target.size(stones)
-                result = plan_wall(stones, *size, seed=seed, method=method, scale=target.scale)
-                plan = uninterrupted(result).plan
+                plan = execute(target.run(seed, method=method), settings.data, stones).as_plan
                 yield PlannedWall(f"{target.name}, {method}, seed {seed}", plan, stones)
 
 

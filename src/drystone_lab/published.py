@@ -1,7 +1,8 @@
 """Suite "statics": published and closed-form cases of the limit analysis, both flow rules."""
 
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass, replace
+from dataclasses import dataclass
+from typing import NamedTuple
 
 from drystone.statics.flow.nonassociative import NonassociativeResult, nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
@@ -44,17 +45,9 @@ QUICK_WALLS = (3,)
 QUICK_ARCHES = (*WITHOUT_SLIDING[:2], *WITH_FRICTION[2::2])
 
 COLUMNS = (
-    "case",
-    "mu",
-    "towards",
-    "expected",
-    "alpha",
-    "difference",
-    "certificate gap",
-    "without dilatancy, accepted",
-    "without dilatancy",
-    "verdict",
-)
+    "case", "mu", "towards", "expected", "alpha", "difference", "certificate gap",
+    "without dilatancy, accepted", "without dilatancy", "verdict",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -83,8 +76,7 @@ class Expected:
         return checked and below and self.low <= found.alpha <= self.high
 
 
-@dataclass(frozen=True)
-class Row:
+class CaseRow(NamedTuple):
     """A row of `COLUMNS`."""
 
     case: str
@@ -107,16 +99,11 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
 
 
 def _closed_forms(*, quick: bool) -> Table:
-    rows: list[Row] = []
+    rows: list[CaseRow] = []
     for number, case in enumerate(closed_forms()):
+        near = CLOSED_FORM_TOLERANCE
         expected = [
-            Expected(
-                alpha,
-                CLOSED_FORM_TOLERANCE,
-                alpha - CLOSED_FORM_TOLERANCE,
-                alpha + CLOSED_FORM_TOLERANCE,
-                "the same",
-            )
+            Expected(alpha, near, alpha - near, alpha + near, "the same")
             for alpha in (case.left, case.right)
         ]
         both_rules = not quick or number % QUICK_STEP == 0
@@ -124,7 +111,7 @@ def _closed_forms(*, quick: bool) -> Table:
     return Table(
         "Closed forms: load factors alpha on the tilting table",
         COLUMNS,
-        tuple(astuple(row) for row in rows),
+        tuple(rows),
         (
             f"Tolerance {CLOSED_FORM_TOLERANCE:g}. The running bond has no formula: its factor is "
             "the answer of another program.",
@@ -133,7 +120,7 @@ def _closed_forms(*, quick: bool) -> Table:
 
 
 def _ferris(*, quick: bool) -> Table:
-    rows: list[Row] = []
+    rows: list[CaseRow] = []
     for wall in WALLS:
         low, high = wall.nonassociative
         words = f"{low:g} to {high:g}" if low else f"at most {high:g}, or none"
@@ -146,7 +133,7 @@ def _ferris(*, quick: bool) -> Table:
     return Table(
         "Walls of Ferris and Tin-Loi (2001): load factors alpha on the tilting table",
         COLUMNS,
-        tuple(astuple(row) for row in rows),
+        tuple(rows),
         (
             f"Tolerance {FERRIS_TOLERANCE:g}, half a unit of the fifth digit.",
             "Without dilatancy there are several solutions, and methods find different ones. The "
@@ -157,7 +144,7 @@ def _ferris(*, quick: bool) -> Table:
 
 def _rows(
     case: str, model: RigidBlockModel, expected: list[Expected], *, both_rules: bool = True
-) -> list[Row]:
+) -> list[CaseRow]:
     """Return a row for each direction, or one when both say the same."""
     both = lateral_resistance(model)
     found: list[LimitResult] = [both.left, both.right]
@@ -172,16 +159,12 @@ def _rows(
 
 
 def _row(
-    case: str,
-    mu: float,
-    expected: Expected,
-    found: LimitResult,
-    other: NonassociativeResult | None,
-) -> Row:
+    case: str, mu: float, expected: Expected, found: LimitResult, other: NonassociativeResult | None
+) -> CaseRow:
     fits = expected.fits(found)
     if other is not None:
         fits = fits and expected.fits_without_dilatancy(other, found.alpha)
-    return Row(
+    return CaseRow(
         case=case,
         mu=mu,
         towards="-x" if found.direction == "left" else "+x",
@@ -195,7 +178,7 @@ def _row(
     )
 
 
-def _together(left: Row, right: Row) -> list[Row]:
+def _together(left: CaseRow, right: CaseRow) -> list[CaseRow]:
     """Make one row of two that agree: the larger difference, and the larger gap."""
     alike = _agree(left.alpha, right.alpha) and _agree(
         left.without_dilatancy, right.without_dilatancy
@@ -204,7 +187,7 @@ def _together(left: Row, right: Row) -> list[Row]:
         return [left, right]
     worse = max((left, right), key=lambda row: row.difference or 0.0)
     gap = max((row.gap for row in (left, right) if row.gap is not None), default=None)
-    return [replace(worse, towards="both", gap=gap)]
+    return [worse._replace(towards="both", gap=gap)]
 
 
 def _agree(first: float | None, second: float | None) -> bool:

@@ -15,13 +15,7 @@ from drystone.statics.model import RigidBlockModel
 Rectangle = tuple[float, float, float, float]
 """x, y of the lower left corner, width, height."""
 
-BLOCKS = (
-    (1.0, 1.0, 0.3),
-    (1.0, 2.0, 0.7),
-    (1.0, 4.0, 0.65),
-    (2.0, 1.0, 0.65),
-    (0.2, 1.0, 0.7),
-)
+BLOCKS = ((1.0, 1.0, 0.3), (1.0, 2.0, 0.7), (1.0, 4.0, 0.65), (2.0, 1.0, 0.65), (0.2, 1.0, 0.7))
 """Width, height and mu of single blocks; the last is that of Portioli's examples."""
 
 PAIRS = ((1.0, 1.0, 0.65), (2.0, 1.0, 0.65), (3.0, 0.5, 0.9))
@@ -168,11 +162,7 @@ def arch(count: int, thickness: float, mu: float) -> RigidBlockModel:
     area = half * (outer**2 - inner**2)
     radius = 2.0 / 3.0 * math.sin(half) / half * (outer**3 - inner**3) / (outer**2 - inner**2)
     sectors = tuple(
-        replace(
-            block,
-            area=area,
-            centroid=(radius * math.cos(middle), radius * math.sin(middle)),
-        )
+        replace(block, area=area, centroid=(radius * math.cos(middle), radius * math.sin(middle)))
         for block, middle in zip(model.blocks, (angles[:-1] + half).tolist(), strict=True)
     )
     return RigidBlockModel(sectors, model.interfaces, mu)
@@ -264,12 +254,7 @@ WALLS = (
     FerrisWall(3, (P, Q, P, *_DOORS_3 * 2, Q_OPEN, P, Q, P), 46, 102, 0.40369, (0.350, 0.361)),
     FerrisWall(4, (A, B, A, *_DOORS_4 * 2, A_OPEN, A, B, A), 55, 116, 0.33195, (0.262, 0.267)),
     FerrisWall(
-        5,
-        (*(C, D, C, *_DOORS_5 * 2, C_OPEN) * 2, C, D, C),
-        61,
-        120,
-        0.23964,
-        (0.205, 0.217),
+        5, (*(C, D, C, *_DOORS_5 * 2, C_OPEN) * 2, C, D, C), 61, 120, 0.23964, (0.205, 0.217)
     ),
     FerrisWall(
         6,

@@ -240,10 +240,7 @@ def plot_pixels(name: str, by_scale: Mapping[float, Planned], ax: Axes | None = 
         for px, s in said_of_steps.items()
     ]
     return plot_growth(
-        (
-            Series("whole wall", walls, fitted(walls)),
-            Series("longest step", steps, fitted(steps)),
-        ),
+        (Series("whole wall", walls, fitted(walls)), Series("longest step", steps, fitted(steps))),
         claims,
         ax,
         size="pixels of the wall",

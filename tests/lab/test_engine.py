@@ -14,8 +14,7 @@ NO_ENGINE = "pymunk is not installed (extra `physics`)"
 
 def judged(alphas, tilts, *, stands=True):
     built = SimpleNamespace(stands=stands)
-    metrics = SimpleNamespace(alpha_left=alphas[0], alpha_right=alphas[1])
-    return Judged("wall", SimpleNamespace(metrics=metrics), built, tilts)
+    return Judged("wall", 9, built, alphas, tilts)
 
 
 def test_bricks_stand_and_slide_at_their_friction():

@@ -10,7 +10,7 @@ from types import MappingProxyType
 import numpy as np
 from scipy.stats import rankdata, wilcoxon
 
-from drystone_lab.paired import COVERED, RESAMPLES
+from drystone_lab.paired import COVERED, interval_of
 from drystone_lab.runs.outcome import Outcome
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import Target
@@ -227,7 +227,7 @@ EXACT = 50
 
 
 @dataclass(frozen=True)
-class Compared:
+class MethodPair:
     """What one method has more than another, of one figure."""
 
     pairs: int  # Walls, each with a seed that counts, for which both have a value
@@ -246,7 +246,7 @@ class Compared:
 
 def compared(
     first: Sequence[float | None], second: Sequence[float | None], *, higher: bool = True
-) -> Compared | None:
+) -> MethodPair | None:
     """Compare two methods by one figure.
 
     >>> found = compared([3.0, 4.0, 9.0, None], [1.0, 2.0, 7.0, 1.0])
@@ -257,20 +257,12 @@ def compared(
     found = np.array([round(a - b, DECIMALS) for a, b in pairs if a is not None and b is not None])
     if not found.size:
         return None
-    rng = np.random.default_rng(0)
-    means = rng.choice(found, (RESAMPLES, found.size)).mean(axis=1)
-    low, high = np.quantile(means, [LEVEL / 2, 1 - LEVEL / 2]).tolist()
+    low, high = interval_of(found, np.mean)
     better = found if higher else -found
     won = float(np.mean((better > 0) + 0.5 * (better == 0)))
-    return Compared(
-        found.size,
-        len(pairs) - found.size,
-        float(found.mean()),
-        low,
-        high,
-        won,
-        _signed_rank(found),
-    )
+    left_out = len(pairs) - found.size
+    mean = float(found.mean())
+    return MethodPair(found.size, left_out, mean, low, high, won, _signed_rank(found))
 
 
 def holm(p_values: Sequence[float]) -> list[float]:
@@ -310,13 +302,13 @@ Key = tuple[str, str, str]
 
 def _compared(
     results: Results, figure: str, pair: tuple[str, str], counting: Sequence[bool]
-) -> Compared | None:
+) -> MethodPair | None:
     first, second = (list(compress(results.values(name, figure), counting)) for name in pair)
     return compared(first, second, higher=HIGHER_IS_BETTER[figure])
 
 
 def _pairs_table(
-    figure: str, known: dict[Key, Compared], p: dict[Key, float], *, copies: bool
+    figure: str, known: dict[Key, MethodPair], p: dict[Key, float], *, copies: bool
 ) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for key, pair in known.items():
@@ -359,7 +351,7 @@ def _too_few(pairs: int, tests: int, *, copies: bool) -> tuple[str, ...]:
     )
 
 
-def _ranking(results: Results, known: dict[Key, Compared], p: dict[Key, float]) -> Table:
+def _ranking(results: Results, known: dict[Key, MethodPair], p: dict[Key, float]) -> Table:
     """Rank the methods by their mean rank over figures, walls and seeds."""
     per_figure = {figure: _mean_ranks(results, figure) for figure in results.figures}
     overall = {m: fmean(ranks[m] for ranks in per_figure.values()) for m in results.methods}
@@ -412,13 +404,13 @@ def _not_told_apart(
     return ", ".join(same) or "none"
 
 
-def _shown(key: Key, pair: Compared, p: float) -> str:
+def _shown(key: Key, pair: MethodPair, p: float) -> str:
     if pair.holds_zero:
         return "nothing"
     return _better(key, pair) if p < LEVEL else f"{_better(key, pair)}?"
 
 
-def _better(key: Key, pair: Compared) -> str:
+def _better(key: Key, pair: MethodPair) -> str:
     first_is_higher = pair.mean > 0
     return key[1] if first_is_higher == HIGHER_IS_BETTER[key[0]] else key[2]
 

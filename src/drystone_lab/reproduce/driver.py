@@ -8,13 +8,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from drystone.errors import DrystoneError, InputError
-from drystone_lab.reproduce.folder import (
-    Clock,
-    ReportFolder,
-    made_with,
-    request_of,
-    utc_now,
-)
+from drystone_lab.reproduce.folder import Clock, ReportFolder, made_with, request_of, utc_now
 from drystone_lab.reproduce.item import Context, Item, Output
 from drystone_lab.reproduce.items import ITEMS, item_named
 from drystone_lab.runs.outcome import RunStore
@@ -54,10 +48,7 @@ class Made:
 
 
 def reproduce(
-    names: Sequence[str],
-    folder: Path,
-    options: Options,
-    items: Mapping[str, Item] | None = None,
+    names: Sequence[str], folder: Path, options: Options, items: Mapping[str, Item] | None = None
 ) -> Iterator[Made]:
     """Make items and yield what became of each; the report is written anew after every one."""
     items = {name: item_named(name) for name in ITEMS} if items is None else items

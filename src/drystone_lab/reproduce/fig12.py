@@ -32,10 +32,7 @@ NORMAL_PX = 2.5
 
 
 def plot_boundary_edges(
-    labels: Labels,
-    starts: NDArray[np.floating],
-    ends: NDArray[np.floating],
-    ax: Axes | None = None,
+    labels: Labels, starts: NDArray[np.floating], ends: NDArray[np.floating], ax: Axes | None = None
 ) -> Axes:
     """Draw the pixel edges on which blocks touch, each with its normal.
 
@@ -236,10 +233,7 @@ PIC_TO_RI = Item(
         "The mean of the normals of a run depends on its two ends alone; the planner fits a line.",
     ),
     claims=_claims,
-    tables={
-        "blocks": lambda found: _blocks(found.model),
-        "interfaces": _interfaces,
-    },
+    tables={"blocks": lambda found: _blocks(found.model), "interfaces": _interfaces},
     pictures=lambda found: (_picture(found),),
     needs=(PR.source.name,),
 )

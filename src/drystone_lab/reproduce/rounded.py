@@ -237,9 +237,6 @@ ROUNDED = Item(
         "have used one set of each, and its 20 walls may be of all kinds together.",
     ),
     claims=_claims,
-    tables={
-        "kinds": _kinds_table,
-        "walls": _walls_table,
-    },
+    tables={"kinds": _kinds_table, "walls": _walls_table},
     pictures=lambda found: tuple(_pictures(found)),
 )

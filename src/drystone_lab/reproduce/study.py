@@ -122,10 +122,7 @@ class Built:
 
 
 def built(
-    context: Context,
-    walls: Sequence[Target],
-    ways: Mapping[str, Changes],
-    seeds: Sequence[int],
+    context: Context, walls: Sequence[Target], ways: Mapping[str, Changes], seeds: Sequence[int]
 ) -> Built:
     """Build walls of every set, by every way, from every seed."""
     asked = [

@@ -11,7 +11,6 @@ from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.model.plan import Plan, StoneStep, WedgeStep
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
-from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
 from drystone.verify.replay import replay_plan
 from drystone.whole_files import write_whole
@@ -70,18 +69,17 @@ def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) ->
 
         return packed(spec, data)
     stones = spec.source.stones(data) if stones is None else stones
-    settings = spec.settings()
-    result = uninterrupted(
-        plan_wall(
-            stones,
-            spec.width or float(stones.source.width_px),
-            spec.height or float(stones.source.height_px),
-            seed=spec.seed,
-            method=spec.method,
-            settings=settings,
-            scale=spec.scale,
-        )
+    result = plan_wall(
+        stones,
+        spec.width or float(stones.source.width_px),
+        spec.height or float(stones.source.height_px),
+        seed=spec.seed,
+        method=spec.method,
+        settings=spec.settings(),
+        scale=spec.scale,
     )
+    if result.status == "interrupted":  # planning takes Ctrl-C for the end of its time
+        raise KeyboardInterrupt
     plan, metrics = result.plan, result.metrics
     figures: dict[str, float | int | None] = {
         "placed": sum(isinstance(step, StoneStep) for step in plan.steps),
@@ -96,13 +94,6 @@ def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) ->
         for name in ("placement", "stabilisation", "contacts", "limit analysis", "indices")
     }
     return Outcome(spec.key, figures, plan_to_json(plan), times)
-
-
-def uninterrupted(result: PlanResult) -> PlanResult:
-    """Return a result; raise KeyboardInterrupt if one ended it: no run is half a wall."""
-    if result.status == "interrupted":
-        raise KeyboardInterrupt
-    return result
 
 
 class RunStore:

@@ -55,11 +55,7 @@ def test_items_are_named_one_a_line(run: Run) -> None:
     ],
 )
 def test_what_is_not_said_well(
-    options: tuple[str, ...],
-    said: str,
-    run: Run,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    options: tuple[str, ...], said: str, run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     ran = run("reproduce", *options)

@@ -22,10 +22,7 @@ OPTIONS = Options(now=lambda: datetime(2026, 1, 2, 3, 4, tzinfo=UTC))
 
 
 def make(
-    folder: Path,
-    *names: str,
-    options: Options = OPTIONS,
-    items: Mapping[str, Item] = fakes.ITEMS,
+    folder: Path, *names: str, options: Options = OPTIONS, items: Mapping[str, Item] = fakes.ITEMS
 ) -> list[Made]:
     return list(reproduce(names, folder, options, items))
 

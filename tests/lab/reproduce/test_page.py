@@ -7,14 +7,7 @@ from typing import Any
 import pytest
 
 from drystone.errors import PlanError
-from drystone_lab.reproduce.page import (
-    LONG,
-    Miss,
-    duration,
-    heading,
-    write_item_page,
-    write_page,
-)
+from drystone_lab.reproduce.page import LONG, Miss, duration, heading, write_item_page, write_page
 from drystone_lab.table import written
 from tests.drawing.report.test_report import Page
 
