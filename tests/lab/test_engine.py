@@ -53,11 +53,6 @@ def test_what_fell_or_never_falls_is_in_no_pair():
     assert record["tilt / alpha"] == pytest.approx(0.7 / 0.55)
 
 
-def test_the_median_of_two_ratios_is_between_them():
-    assert engine._median_ratio([(0.5, 0.4), (0.5, 0.6), (0.0, 1.0)]) == pytest.approx(1.0)
-    assert engine._median_ratio([(0.0, 1.0)]) is None
-
-
 def test_a_wall_that_does_not_rest_is_not_tilted(monkeypatch):
     monkeypatch.setattr(engine, "build_up", lambda *_: None)
     monkeypatch.setattr(engine, "tilt_of", lambda _: None)

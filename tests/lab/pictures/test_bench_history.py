@@ -1,10 +1,9 @@
 """Figures of a benchmark by version."""
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from drystone.drawing.palette import rgb
-from drystone_lab.pictures.charts import LOOKS, history_panels, plot_history
+from drystone_lab.pictures.charts import LOOKS, plot_history
 
 
 def test_versions_without_a_value_have_no_point():
@@ -14,15 +13,6 @@ def test_versions_without_a_value_have_no_point():
     assert line.get_ydata().tolist() == [0.5, 0.7]
     assert [tick.get_text() for tick in ax.get_xticklabels()] == ["1", "2", "3"]
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("version", "F_SF")
-
-
-def test_a_panel_a_figure_and_one_legend():
-    lines = {"paper": [0.5, 0.6], "random": [0.4, None]}
-    figure = history_panels(["1", "2"], dict.fromkeys("abcd", lines), "suite")
-    assert isinstance(figure, Figure)
-    assert [ax.get_ylabel() for ax in figure.axes] == list("abcd")
-    (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()] == ["paper", "random"]
 
 
 def test_methods_look_different():

@@ -25,10 +25,6 @@ def test_ids_are_apart_though_points_are_close():
     assert not any(a.overlaps(b) for k, a in enumerate(boxes) for b in boxes[:k])
 
 
-def test_one_stone_has_its_id():
-    assert [text.get_text() for text in plot_features(FEATURES[:1], [7], {7: 1}).texts] == ["7"]
-
-
 def test_counts_and_what_somebody_else_found():
     ax = plot_counts({"PR": [(0.1, 12), (0.2, 7)]}, claim=(0.2, 7, "the paper"))
     lines = {line.get_gid(): line.get_xydata().tolist() for line in ax.lines}

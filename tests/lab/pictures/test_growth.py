@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from drystone.drawing.files import save
 from drystone.planner.profile import StepTime
 from drystone_lab.pictures.growth import (
     LINES,
@@ -64,15 +63,6 @@ def test_points_laws_and_claims_are_drawn_where_they_are():
     assert [wall.get_marker(), step.get_marker()] == ["x", "v"]
     assert step.get_xydata().tolist() == [[90.0, 25.0]]
     assert [points.get_color(), bare.get_color()] == [colour for colour, _ in LINES[:2]]
-    assert (ax.get_xscale(), ax.get_yscale(), ax.get_xlabel()) == ("log", "log", "pixels")
-
-
-def test_the_legend_tells_exponents_and_claims():
-    words = [text.get_text() for text in plot_growth(SERIES, CLAIMS).get_legend().get_texts()]
+    words = [text.get_text() for text in ax.get_legend().get_texts()]
     assert words == ["wall", "exponent 1.00", "step", "paper: wall", "paper: step"]
-
-
-def test_the_same_times_give_the_same_bytes(tmp_path):
-    for name in ("one.png", "two.png"):
-        save(plot_growth(SERIES, CLAIMS).figure, tmp_path / name, dpi=60)
-    assert (tmp_path / "one.png").read_bytes() == (tmp_path / "two.png").read_bytes()
+    assert (ax.get_xscale(), ax.get_yscale(), ax.get_xlabel()) == ("log", "log", "pixels")

@@ -36,11 +36,6 @@ def test_panels_stay_readable(columns: int, wide: float) -> None:
     assert figure.get_size_inches()[0] >= wide
 
 
-def test_legends_are_taken_away() -> None:
-    panel = Panel("", 0.5, lambda ax: (ax.plot([1, 2], label="x"), ax.legend()))
-    assert sheet_of([panel], 1).axes[0].get_legend() is None
-
-
 @pytest.mark.parametrize(("panels", "columns"), [([], 1), ([EMPTY], 0)])
 def test_there_must_be_something(panels: list[Panel], columns: int) -> None:
     with pytest.raises(ValueError, match="a panel and a column"):

@@ -5,7 +5,7 @@ from drystone.model.placement import Wedge
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
 from drystone.stabilise.support import Support
-from drystone_lab.pictures.support import Standing, plot_standing, window_around
+from drystone_lab.pictures.support import Standing, plot_standing
 
 LABELS = np.zeros((10, 20), np.uint32)
 LABELS[6:, :8] = 1
@@ -46,11 +46,3 @@ def test_a_wedge_has_its_sizes_and_leaves_the_supported_side_alone():
     assert (box.x0, box.y0, box.x1, box.y1) == (13, 0, 15, 4)
     assert patches["supported"].get_bbox().bounds == (4, 4, 4, 3)
     assert "h 4, w 2" in [text.get_text() for text in ax.texts]
-
-
-def test_the_window_shows_the_stones():
-    left, bottom, right, top = window_around([TRIAL, WEDGED])
-    assert left < 4
-    assert right > 16
-    assert -3 < bottom <= 0
-    assert top > 7

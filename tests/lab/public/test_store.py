@@ -30,15 +30,6 @@ def test_runs_come_back_as_they_were(tmp_path):
     assert [run.seconds for run in store.runs()] == [0.5, 9.0]
 
 
-def test_tables_are_plain(tmp_path):
-    """Other programs read it: table `runs`, columns by name, NULL where nothing is defined."""
-    BenchStore(tmp_path).put([RUN])
-    with sqlite3.connect(tmp_path / "bench.sqlite") as connection:
-        row = connection.execute("SELECT F_SF, F_LR, typeof(seed) FROM runs").fetchone()
-    connection.close()
-    assert row == (0.8, None, "integer")
-
-
 def test_exports_hold_all_runs(tmp_path):
     store = BenchStore(tmp_path)
     store.put([RUN, replace(RUN, run_key="b", seed=1, F_LR=0.1)])

@@ -11,7 +11,7 @@ from drystone_lab.public import bench
 from drystone_lab.public.bench import run_public
 from drystone_lab.public.history import history_table, medians_of
 from drystone_lab.public.store import BenchStore, Stamp
-from drystone_lab.public.suites import known_methods, method_named, walls_of
+from drystone_lab.public.suites import method_named, walls_of
 from drystone_lab.runs.outcome import FIGURES, execute
 from drystone_lab.table import BenchSettings
 
@@ -93,8 +93,3 @@ def test_what_is_missing_is_said_before_anything_is_done(monkeypatch: pytest.Mon
     with pytest.raises(UsageError) as caught:
         run_public("bricks", BenchSettings(policies=("paper", "spyrrow")), STAMP)
     assert caught.value.code == "E305"
-
-
-def test_it_is_listed_with_its_extra() -> None:
-    assert "`bench`" in known_methods()["spyrrow"]
-    assert "no policy" in known_methods()["spyrrow"]

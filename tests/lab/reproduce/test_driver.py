@@ -1,6 +1,5 @@
 """Items are made, kept, reported; walls that were planned are not planned again."""
 
-import csv
 import json
 from collections.abc import Mapping
 from dataclasses import replace
@@ -74,19 +73,6 @@ def test_equal_seeds_give_equal_tables_and_pictures(tmp_path: Path) -> None:
         assert (tmp_path / "a/fig5" / name).read_bytes() == (
             tmp_path / "b/fig5" / name
         ).read_bytes()
-
-
-def test_tables_read_back_to_the_last_digit(tmp_path: Path) -> None:
-    (made,) = make(tmp_path, "fig5")
-    assert made.record is not None
-    text = (tmp_path / "fig5" / "walls.csv").read_bytes().decode()
-    assert "\r" not in text
-    head, *rows = csv.reader(text.splitlines())
-    assert head == ["seed", "F_SF", "F_AV"]
-    kept = made.record["tables"][0]["rows"]
-    assert [(int(seed), float(filling), rest) for seed, filling, rest in rows] == [
-        (seed, filling, "") for seed, filling, _ in kept
-    ]
 
 
 def test_cells_of_all_kinds() -> None:
@@ -194,15 +180,6 @@ def test_published_stones_that_are_not_there(tmp_path: Path) -> None:
     assert "Only words" in page
     make(tmp_path / "out", "fig13")
     assert "Not made" not in (tmp_path / "out" / "index.html").read_text("utf-8")
-
-
-def test_more_published_stones_are_a_reason_to_make_it_again(tmp_path: Path) -> None:
-    assert make(tmp_path / "out", "beta")[0].status == "made"
-    (tmp_path / "data" / "almeida").mkdir(parents=True)
-    (tmp_path / "data" / "almeida" / "R.png").touch()
-    given = replace(OPTIONS, data=tmp_path / "data")
-    assert make(tmp_path / "out", "beta", options=given)[0].status == "made"
-    assert make(tmp_path / "out", "beta", options=given)[0].status == "kept"
 
 
 def test_your_own_stones_are_known_by_their_contents(tmp_path: Path) -> None:

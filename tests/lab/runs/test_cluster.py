@@ -192,10 +192,6 @@ class Workers:
 HERE = version("drystone")
 
 
-def test_equal_versions() -> None:
-    check_versions(Workers(HERE, a=HERE, b=HERE))
-
-
 @pytest.mark.parametrize(
     ("client", "said"),
     [
@@ -220,7 +216,7 @@ def _collected() -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("_collected")
-@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "127.0.0.1", "nonsense://here", "x y"])
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "nonsense://here"])
 def test_nobody_answers(address: str) -> None:
     with pytest.raises(UsageError) as caught, cluster_at_work(address, patience_s=0.3):
         pass

@@ -74,7 +74,3 @@ def test_what_ended_before_an_error_is_kept(tmp_path: Path) -> None:
 def test_runs_that_nobody_did_are_missed(tmp_path: Path) -> None:
     with pytest.raises(RuntimeError, match="lost"):
         Runner(RunStore(tmp_path), work=lambda _specs, _data: iter(())).run([run(1)])
-
-
-def test_no_runs_at_all(tmp_path: Path) -> None:
-    assert Runner(RunStore(tmp_path)).run([]) == ()
