@@ -17,7 +17,7 @@ from drystone.poses import PoseBook
 from drystone_lab.planned_walls import missing_data
 from drystone_lab.runs.outcome import FIGURES, Outcome
 from drystone_lab.runs.spec import RunSpec
-from drystone_lab.search_ways import SEARCH, WAYS, looked_for
+from drystone_lab.search_ways import SEARCH, WAYS, looked_at_times
 from drystone_lab.table import BenchSettings, Cell, Table
 from drystone_lab.walls import BRICKS, SEARCHED, Target, chosen
 
@@ -105,7 +105,7 @@ def _row(
         packed_width_px(packer, stones, height, turns, seconds, seed) for turns in TURNS.values()
     ]
     (way,) = (way for way in WAYS if way.name == SEARCH)
-    looked = looked_for(way, stones, target, seconds, seed)
+    looked = looked_at_times(way, stones, target, (seconds,), seed)[0]
     figures = looked.found.figures
     return (
         target.name,

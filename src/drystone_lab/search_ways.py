@@ -133,18 +133,6 @@ def tries(budget: int) -> PlannerSettings:
     return replace(best, search=replace(best.search, budget=budget))
 
 
-def looked_for(
-    way: Way,
-    stones: StoneSet,
-    target: Target,
-    seconds: float,
-    seed: int,
-    clock: Clock = time.process_time,
-) -> Looked:
-    """Look for a good wall until the time is used up; see :func:`looked_at_times`."""
-    return looked_at_times(way, stones, target, (seconds,), seed, clock)[0]
-
-
 def looked_at_times(
     way: Way,
     stones: StoneSet,

@@ -11,7 +11,7 @@ from drystone.generate.brick import BrickSettings, brick_stones
 from drystone.search.plan_wall import plan_wall
 from drystone_lab import search_ways
 from drystone_lab.runs.spec import generated
-from drystone_lab.search_ways import BETWEEN_SEEDS, State, Way, looked_at_times, looked_for, tries
+from drystone_lab.search_ways import BETWEEN_SEEDS, State, Way, looked_at_times, tries
 from drystone_lab.walls import Target
 
 STONES = brick_stones(BrickSettings(count=4), np.random.default_rng(1))
@@ -23,6 +23,10 @@ def ticking() -> search_ways.Clock:
     """A clock that goes on by a second whenever it is looked at."""
     ticks = count()
     return lambda: next(ticks)
+
+
+def looked_for(way, stones, target, seconds, seed, clock):
+    return looked_at_times(way, stones, target, (seconds,), seed, clock)[0]
 
 
 def clock_of(*times: float) -> search_ways.Clock:

@@ -88,20 +88,17 @@ def _distributed() -> Any:
 def _client(distributed: Any, address: str, patience_s: float) -> Any:
     """Return a client of a cluster that has a worker."""
     cure = "Start `dask scheduler` and `dask worker`, and give the address that they name."
+    what = f"no Dask scheduler answers at {address}."
+    client = None
     try:
         client = distributed.Client(address, timeout=patience_s, set_as_default=False)
+        what = f"the Dask cluster at {address} has no workers."
+        client.wait_for_workers(1, timeout=patience_s)
     except (OSError, ValueError, AssertionError) as error:
         # A timeout is an OSError; Dask asserts that its own loop began within ten seconds.
-        raise UsageError(
-            "E404", f"no Dask scheduler answers at {address}.", where=OPTION, cure=cure
-        ) from error
-    try:
-        client.wait_for_workers(1, timeout=patience_s)
-    except TimeoutError as error:
-        client.close()
-        raise UsageError(
-            "E404", f"the Dask cluster at {address} has no workers.", where=OPTION, cure=cure
-        ) from error
+        if client is not None:
+            client.close()
+        raise UsageError("E404", what, where=OPTION, cure=cure) from error
     return client
 
 
