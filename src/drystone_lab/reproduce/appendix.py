@@ -198,27 +198,8 @@ FULL_SIZE, QUICK_SIZE = (8, 8), (4, 4)
 """Bricks in a course, and courses."""
 
 
-@dataclass(frozen=True, eq=False)
-class Bricks:
-    """Walls of bricks of each aspect from each side, and what their courses are like."""
-
-    built: Built
-    aspects: tuple[float, ...]
-
-    @property
-    def all(self) -> list[tuple[float, Trials, Courses]]:
-        """Aspect, run, and courses; all aspects from one side, then from both."""
-        groups = list(zip(self.aspects, self.built.by_wall, strict=True))
-        return [
-            (aspect, one, _courses(group, one, aspect))
-            for side in SIDES
-            for aspect, group in groups
-            for one in group.of(side)
-        ]
-
-
-def _courses(group: Built, one: Trials, aspect: float) -> Courses:
-    return courses_of(bricks_of(group.wall(one)), HEIGHT_PX, round(HEIGHT_PX * aspect))
+Bricks = Sequence[tuple[float, Trials, Wall]]
+"""Aspect, run and wall; all aspects from one side, then from both."""
 
 
 def brick_walls(context: Context, size: tuple[int, int] | None = None) -> Bricks:
@@ -232,13 +213,19 @@ def brick_walls(context: Context, size: tuple[int, int] | None = None) -> Bricks
         )
         for aspect in ASPECTS
     )  # fmt: skip
-    return Bricks(built(context, walls, SIDES, (context.seed,)), ASPECTS)
+    found = built(context, walls, SIDES, (context.seed,))
+    return [
+        (aspect, one, found.wall(one))
+        for side in SIDES
+        for aspect, one in zip(ASPECTS, found.of(side), strict=True)
+    ]
 
 
 def _bricks_table(found: Bricks) -> Table:
     rows: list[tuple[Cell, ...]] = []
-    for aspect, one, courses in found.all:
+    for aspect, one, wall in found:
         outcome, spec = one.outcomes[0], one.specs[0]
+        courses = courses_of(bricks_of(wall), HEIGHT_PX, round(HEIGHT_PX * aspect))
         rows.append(
             (
                 aspect, one.way, f"{spec.width:g} x {spec.height:g}", outcome.figures["placed"],
@@ -260,12 +247,12 @@ def _bricks_table(found: Bricks) -> Table:
 
 def _bricks_picture(found: Bricks) -> Picture:
     walls = []
-    for aspect, one, _ in found.all:
+    for aspect, one, wall in found:
         outcome = one.outcomes[0]
         # Bricks are one cluster: a colour each tells them apart, as in the paper.
         colours = {brick: number for number, brick in enumerate(sorted(outcome.clusters), 1)}
         title = f"aspect {aspect:g}, from {one.way}: F_SF {outcome.figures['F_SF']:.2f}"
-        walls.append((title, found.built.wall(one), colours))
+        walls.append((title, wall, colours))
     return Picture(
         "figB34", plot_walls(walls, len(ASPECTS)),
         "Walls of bricks of aspect 2 and 3, coloured for differentiation and numbered in order of "

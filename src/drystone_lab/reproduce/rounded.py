@@ -21,7 +21,7 @@ from drystone_lab.reproduce.cells import (
     summary,
 )
 from drystone_lab.reproduce.item import Context, Item, Picture
-from drystone_lab.reproduce.study import Built, Trials
+from drystone_lab.reproduce.study import Built, trials_of
 from drystone_lab.runs.spec import generated
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import TWO_SIDED, Target
@@ -92,7 +92,7 @@ KINDS = tuple(Kind(D2, *radii) for D2 in (0.0, 0.2) for radii in ((30.0, 30.0), 
 
 @dataclass(frozen=True, eq=False)
 class Rounded:
-    """Walls of every kind; the first ratio is what is drawn and judged."""
+    """Walls of every kind by the ratio of areas; those of the first ratio are drawn."""
 
     kinds: tuple[Kind, ...]
     by_ratio: Mapping[float, Built]
@@ -106,25 +106,21 @@ class Rounded:
 def rounded_walls(
     context: Context, kinds: Sequence[Kind] = KINDS, wall_px: int = WALL_PX, walls: int = 0
 ) -> Rounded:
-    """Build walls of every kind of stones, from both ends."""
+    """Build walls of every kind of stones, each of stones of its own, from both ends."""
     ratios = AREA_RATIOS[:1] if context.quick else AREA_RATIOS
     count = walls or (QUICK_WALLS if context.quick else WALLS)
     seeds = range(context.seed, context.seed + count)
-    asked = {
-        (ratio, kind): [kind.wall(seed, wall_px, ratio).run(seed, *TWO_SIDED) for seed in seeds]
+    asked = [
+        (kind.wall(0, wall_px, ratio), kind.name,
+         tuple(kind.wall(seed, wall_px, ratio).run(seed, *TWO_SIDED) for seed in seeds))
         for ratio in ratios
         for kind in kinds
-    }
-    outcomes = iter(context.run([spec for group in asked.values() for spec in group]))
-    trials = {
-        key: Trials(key[1].wall(0, wall_px, key[0]), key[1].name, tuple(specs),
-                    tuple(next(outcomes) for _ in specs))
-        for key, specs in asked.items()
-    }  # fmt: skip
-    by_ratio = {
-        ratio: Built(context, tuple(trials[ratio, kind] for kind in kinds)) for ratio in ratios
-    }
-    return Rounded(tuple(kinds), by_ratio)
+    ]  # fmt: skip
+    found, each = trials_of(context, asked), len(kinds)
+    return Rounded(
+        tuple(kinds),
+        {ratio: Built(context, found[each * k : each * (k + 1)]) for k, ratio in enumerate(ratios)},
+    )
 
 
 def rounded_findings(kinds: Sequence[Kind], built: Built) -> tuple[Finding, ...]:

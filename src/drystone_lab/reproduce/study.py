@@ -130,11 +130,17 @@ def built(
         for wall in walls
         for way, changes in ways.items()
     ]
+    return Built(context, trials_of(context, asked))
+
+
+def trials_of(
+    context: Context, asked: Sequence[tuple[Target, str, tuple[RunSpec, ...]]]
+) -> tuple[Trials, ...]:
+    """Do the runs of several walls and ways, all at once."""
     outcomes = iter(context.run([spec for *_, specs in asked for spec in specs]))
-    trials = (
+    return tuple(
         Trials(wall, way, specs, tuple(next(outcomes) for _ in specs)) for wall, way, specs in asked
     )
-    return Built(context, tuple(trials))
 
 
 Cells = Callable[[Trials], tuple[Cell, ...]]

@@ -121,26 +121,20 @@ class FiveWall:
         return None if self.masons is None else measured(self.masons.labels)
 
 
-@dataclass(frozen=True, eq=False)
-class Five:
-    """All walls."""
-
-    built: Built
-    walls: tuple[FiveWall, ...]
+Five = tuple[Built, Sequence[FiveWall]]
 
 
 def five_walls(context: Context, study: Study) -> Five:
     """Build the walls, and read the masons'."""
     found = study(context)
-    walls = (
+    return found, [
         FiveWall(
             each,
             each.wall.source.stones(context.data),
             None if each.wall.stand_in else masons_wall(each.wall, context.data),
         )
         for each in found
-    )
-    return Five(found, tuple(walls))
+    ]
 
 
 def _comparison(found: Five) -> Table:
@@ -149,7 +143,7 @@ def _comparison(found: Five) -> Table:
         "Table 2: reference walls and constructed ones by one definition, and what the paper "
         "prints",
         ("wall", "stones", "what", "placed", "of", *METRICS, *(f"paper {m}" for m in METRICS)),
-        tuple(row for wall in found.walls for row in (*_references(wall), *_ours(wall))),
+        tuple(row for wall in found[1] for row in (*_references(wall), *_ours(wall))),
         (
             "F_SF a share, F_AV and F_AH in percent. Our walls: the area of their stones over the "
             "target; masons' walls: over the bounding box of their stones.",
@@ -196,12 +190,12 @@ def _ours(wall: FiveWall) -> Iterator[tuple[Cell, ...]]:
 
 
 def _spread(found: Five) -> Table:
-    rows = tuple((*wall.name, *cells.summary(wall.trials.outcomes)) for wall in found.walls)
+    rows = tuple((*wall.name, *cells.summary(wall.trials.outcomes)) for wall in found[1])
     return Table("Walls of all seeds", ("wall", "set", *cells.COLUMNS), rows)
 
 
 def _fig18(found: Five) -> Picture:
-    panels = [panel for wall in found.walls for panel in _panels(found.built, wall)]
+    panels = [panel for wall in found[1] for panel in _panels(found[0], wall)]
     return Picture(
         "fig18",
         sheet_of(panels, 4),
