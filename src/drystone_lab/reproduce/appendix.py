@@ -8,7 +8,7 @@ from itertools import pairwise
 from drystone.model.wall import Wall
 from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import METRICS, metric_cells
-from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.reproduce.item import Context, Item, Picture, paper
 from drystone_lab.reproduce.study import Built, Trials, built
 from drystone_lab.runs.spec import Changes, from_file, generated
 from drystone_lab.table import Cell, Table
@@ -168,21 +168,8 @@ def _irregular_picture(found: Built) -> Picture:
 
 
 IRREGULAR = Item(
-    title="91 irregular stones",
-    section="B.2",
-    paper=(
-        "Fig. B.33 (B.2): 'Walls constructed from a stone set of 91 irregular stones, of which "
-        f"{PAPER_PLACED[0]} stones could be placed in the construction of the left wall and "
-        f"{PAPER_PLACED[1]} stones could be placed in the construction of the right wall', "
-        "coloured by cluster. The stones are not public, and what the two walls differ in is not "
-        "said.",
-    ),
+    **paper("figB33"),
     study=irregular_walls,
-    notes=(
-        "The paper's stones are not public; generated ones are our own irregular rubble. How many "
-        "of them fit depends on the wall that they are given, which the paper does not tell, so "
-        "the counts can be compared in kind only.",
-    ),
     tables={"walls": _irregular_table},
     pictures=lambda found: (_irregular_picture(found),),
 )
@@ -261,21 +248,8 @@ def _bricks_picture(found: Bricks) -> Picture:
 
 
 BRICKS = Item(
-    title="bricks of aspect 2 and 3",
-    section="B.2",
-    paper=(
-        "Fig. B.34 (B.2): 'Walls constructed with bricks of the same size. The wall on the left is "
-        "constructed with bricks of an aspect ratio of 2 and the wall on the right is constructed "
-        "with bricks of an aspect ratio of 3.' There are no numbers; sizes of the walls are not "
-        "given.",
-    ),
+    **paper("figB34"),
     study=brick_walls,
-    notes=(
-        "The bricks of a wall are alike, so that variant sampling has next to nothing to choose "
-        "from: Eq. 12 alone says where the next one lies, and the indices that reward a bond "
-        "compare stones, not places. §5.3 says the like of stones of little variety: easy to stack "
-        "and to fill with, 'but it often results in walls with inferior interlocking'.",
-    ),
     tables={"walls": _bricks_table},
     pictures=lambda found: (_bricks_picture(found),),
 )

@@ -23,7 +23,7 @@ from drystone_lab.pictures.charts import group_panels
 from drystone_lab.pictures.walls import Panel, sheet_of, wall_aspect
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, Finding, rounded
-from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.reproduce.item import Context, Item, Picture, paper
 from drystone_lab.reproduce.study import Built, Study, Trials, sheet
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import IR, LIU_5, PR
@@ -148,22 +148,8 @@ def _pictures(case: BaseCase) -> Iterator[Picture]:
 
 
 BASE_CASE = Item(
-    title="The base case PR and its failure mechanisms",
-    section="§5.1, Figs. 14 and 15",
-    paper=(
-        f"§5.1, Fig. 14: the base case PR; load multipliers {ALPHAS['left']:g} and "
-        f"{ALPHAS['right']:g} for tilting to the left and right. Fig. 15: in the mechanism to "
-        "the left a sliding stone rises, which is artificial dilation by the associative flow "
-        "rule. How the wall was chosen from those of other seeds is not said.",
-    ),
+    **paper("fig14-15"),
     study=partial(base_case, study=Study(walls=(PR,), quick_seeds=5)),
-    notes=(
-        "A wall on flat ground slides as a whole when the load is mu times its weight, so alpha is "
-        f"at most mu. The paper's {ALPHAS['left']:g} and {ALPHAS['right']:g} are over mu already, "
-        "as its LLC is, which it says to be between 0 and 1 (Eq. 11), or belong to a larger mu "
-        "that it does not state; we compare them with alpha over mu.",
-        "The wall that is drawn is the first, not the best; tables have it by both flow rules.",
-    ),
     tables={"fig14_seeds": _seeds, "fig14": _summary, "fig15": _rules},
     pictures=lambda case: tuple(_pictures(case)),
     needs=(PR.source.name,),
@@ -282,13 +268,7 @@ def _draw_zoom(wall: Wall, box: Box, ax: Axes) -> None:
 
 
 WEDGES = Item(
-    title="Wedges of walls 3 and 5",
-    section="§5.2, Fig. 19",
-    paper=(
-        "§5.2, Fig. 19: walls 3 and 5 need wedges (in red), since their stones differ much in "
-        "size and eccentricity and large ones must be kept stable. Their number and sizes are "
-        "in the picture only.",
-    ),
+    **paper("fig19"),
     study=Study(walls=(IR, LIU_5), seeds=1, quick_seeds=1),
     claims=_wedges_claims,
     tables={"fig19": _wedges_table},

@@ -22,7 +22,7 @@ from drystone.kernels.boundary import EMPTY, boundary_of
 from drystone.model.wall import Labels, Wall
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from drystone_lab.reproduce.cells import Finding
-from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.reproduce.item import Context, Item, Picture, paper
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
 
@@ -219,19 +219,8 @@ def _claims(found: Blocks) -> Iterator[Finding]:
 
 
 PIC_TO_RI = Item(
-    title="Pic-to-Ri: from pixels to rigid blocks",
-    section="§4.2",
-    paper=(
-        "Fig. 12 takes three stones on an initial landscape: (a) each stone's pixels have one "
-        "value; (b) edge detection gives the contacts and the normal at each of their pixels; (c) "
-        "the areas are the weights, the centres of the pixels the centres of mass (triangles), "
-        "'only the end points of the interface are used', and its normal is 'the average of all "
-        "normal vectors in a given interface' (§4.2). There are no numbers.",
-    ),
+    **paper("fig12"),
     study=blocks,
-    notes=(
-        "The mean of the normals of a run depends on its two ends alone; the planner fits a line.",
-    ),
     claims=_claims,
     tables={"blocks": lambda found: _blocks(found.model), "interfaces": _interfaces},
     pictures=lambda found: (_picture(found),),

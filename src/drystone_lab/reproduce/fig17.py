@@ -20,7 +20,7 @@ from drystone.metrics.paths import (
 )
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
-from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.reproduce.item import Context, Item, Picture, paper
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
 
@@ -125,21 +125,8 @@ def _picture(paths: Paths, number: int) -> Picture:
 
 
 PATHS = Item(
-    title="shortest paths along the joints",
-    section="§5.2",
-    paper=(
-        "Fig. 17 draws (a) the three shortest horizontal paths along the joints of a dry-stone "
-        "wall and (b) seven shortest vertical ones. From such paths come F_AH (Eq. 26), by how "
-        "much they are longer than the wall is wide, the lower the straighter the courses, and "
-        "F_AV (Eq. 27), by how much they are longer than it is high, the higher the better head "
-        "joints are interrupted. The lengths of the paths are not given.",
-    ),
+    **paper("fig17"),
     study=walls,
-    notes=(
-        "Both walls are measured by one definition on pixels of one size: starts every tenth of "
-        "the side, each stone eroded once, so that stones that touch have a joint of two px. The "
-        "paper's Eq. 26 and Eq. 27 leave n and the starts open.",
-    ),
     tables={"figures": _figures, "paths": _paths},
     pictures=lambda found: [_picture(paths, number) for number, paths in enumerate(found)],
     needs=(PR.source.name,),

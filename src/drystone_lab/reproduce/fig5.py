@@ -16,7 +16,7 @@ from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
 from drystone_lab.pictures.charts import name_axes
 from drystone_lab.reproduce.cells import Finding
-from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.reproduce.item import Context, Item, Picture, paper
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import MASONS, PR, Target
 
@@ -230,20 +230,8 @@ def _claims(counted: Sequence[Grouped]) -> Iterator[Finding]:
 
 
 CLUSTERS = Item(
-    title="clusters of the stones PR",
-    section="§3.4",
-    paper=(
-        "Fig. 5 shows the stones of the wall PR coloured by cluster, and each as a point by its "
-        f"features. §3.4: 'a set with 32 stones which is separated into {PAPER_CLUSTERS} clusters' "
-        "by Ward's agglomerative clustering with a distance threshold of 0.2, on the eccentricity "
-        "of the ellipse with like second moments and the area of the bounding box over the largest "
-        "in the set. The members of the clusters are only in the picture.",
-    ),
+    **paper("fig5"),
     study=grouped,
-    notes=(
-        "Size is relative to the largest of a set, so the number depends on how far its sizes "
-        "spread, and one very large stone makes fewer clusters of the others.",
-    ),
     claims=_claims,
     tables={
         "clusters": lambda sets: _clusters(sets[0]),

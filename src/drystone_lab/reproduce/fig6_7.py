@@ -19,7 +19,7 @@ from drystone_lab.reproduce.construction import (
     extreme,
     resting_places,
 )
-from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.reproduce.item import Context, Item, Picture, paper
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
 
@@ -218,24 +218,8 @@ def _picture7(moment: Moment, place: Place) -> Picture:
 
 
 INDICES = Item(
-    title="the indices, good and bad, on real stones",
-    section="§3.5",
-    paper=(
-        "Fig. 6 draws a favourable and an unfavourable case of each geometric index SF, LFR, GDS, "
-        "NHR, IWR and IS. §3.5 gives their ranges: SF, LFR, GDS and IWR from 0 to 1, the highest "
-        "best; a straight course is NHR = 0; a large IS is a top that slopes inwards. Fig. 6 has "
-        "no values.",
-        "Fig. 7 shows on one landscape what they are computed from: the rays of LFR to the left "
-        "and downwards, the bounding box of the landscape, the left neighbour and the two stones "
-        "below.",
-    ),
+    **paper("fig6-7"),
     study=places,
-    notes=(
-        "NHR is taken where there is a left neighbour, IWR of inner stones over two joints, IS of "
-        "boundary stones. The column of values counted again is worked out from the pixels of the "
-        "picture alone; SF differs there because the planner takes the area and the box from the "
-        "source image.",
-    ),
     tables={
         "extremes": lambda found: _extremes(found.moment, found.cases),
         "ranges": lambda found: _ranges(found.all),

@@ -22,7 +22,7 @@ from drystone.model.pose import PosedStone
 from drystone.model.wall import Labels
 from drystone_lab.reproduce.cells import Finding
 from drystone_lab.reproduce.construction import Moment, amid_course, construction
-from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.reproduce.item import Context, Item, Picture, paper
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
 
@@ -267,20 +267,8 @@ def _claims(found: Trial) -> Iterator[Finding]:
 
 
 POSITIONS = Item(
-    title="feasible positions of a stone",
-    section="§3.6",
-    paper=(
-        "Fig. 8 shows a landscape and a stone. The convolution of the landscape with the stone "
-        "gives the positions without overlap (red); the convolution of the landscape dilated by "
-        "one pixel those at which the stone would not touch it either (blue); 'the difference of "
-        "the two convolution results (red and blue in Fig. 8) produce the feasible solutions' "
-        "(pink, §3.6). The stone goes where Eq. 12 is largest (black). There are no numbers.",
-    ),
+    **paper("fig8"),
     study=trial,
-    notes=(
-        "The planner is stricter than the paper: a touch at a side or at the bounds carries "
-        "nothing, so that the paper's best position may rest on nothing.",
-    ),
     claims=_claims,
     tables={"positions": _table},
     pictures=lambda found: (_drawn(found),),

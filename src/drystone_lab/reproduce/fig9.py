@@ -12,7 +12,7 @@ from drystone.stabilise.stabilise import WedgeStock, make_stable
 from drystone.stabilise.support import Pose, falling_side, support_polyline
 from drystone_lab.pictures.support import Standing, plot_standing, window_around
 from drystone_lab.reproduce.construction import Construction, Moment, construction
-from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.reproduce.item import Context, Item, Picture, paper
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
 
@@ -224,23 +224,8 @@ def _draw_case(axes: Sequence[Axes], case: Unstable) -> None:
 
 
 STABILISING = Item(
-    title="an unstable stone, turned and wedged",
-    section="§3.7",
-    paper=(
-        "Fig. 9 draws one stone: (a) not stable, since its centre of mass C is not above the "
-        "support AB; (b) turned about A, the nearer end, until C' lies on the new AB, "
-        "counter-clockwise when AB x AC is positive; (c) on a wedge under the unsupported part, of "
-        "height h_wedge and width w_wedge. 'The rotation-based stabilization has the priority, "
-        "whereas wedging is employed only when the rotation-based method fails' (§3.7). There are "
-        "no numbers.",
-    ),
+    **paper("fig9"),
     study=falls,
-    notes=(
-        "Before each step every stone that is left was tried where Eq. 12 puts it. AB x AC of the "
-        "wrong sign would turn a stone away from the side to which it falls; C is below A where "
-        "the stone hangs on a shoulder. So the planner turns towards the side on which C is "
-        "beyond A.",
-    ),
     tables={"counts": _counts, "cases": lambda found: _cases(found.shown)},
     pictures=lambda found: (_picture(found.shown, found.wall.name),) if found.shown else (),
     needs=(PR.source.name,),

@@ -1,5 +1,6 @@
 """A table or figure of the paper that can be made again."""
 
+import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -13,6 +14,12 @@ from drystone_lab.runs.outcome import Outcome
 from drystone_lab.runs.runner import Runner
 from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Table
+
+
+def paper(name: str) -> dict[str, Any]:
+    """Return the words of an item of the paper: its title, section, paper and notes."""
+    words = tomllib.loads(Path(__file__).with_name("paper.toml").read_text("utf-8"))[name]
+    return {key: value if isinstance(value, str) else tuple(value) for key, value in words.items()}
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,7 +22,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone_lab.pictures.walls import masonry_panel, sheet_of
 from drystone_lab.reproduce.cells import METRICS, rounded
-from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.reproduce.item import Context, Item, Picture, paper
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import MASONS, Target
 
@@ -243,23 +243,8 @@ def _picture(walls: Walls) -> Picture:
 
 
 FIG13 = Item(
-    title="The masons' walls, and with their gaps closed",
-    section="§5.1, Fig. 13",
-    paper=(
-        "§5.1: the walls are annotated from photographs and have gaps. For the load multiplier "
-        "stones are moved towards the bottom left corner one after the other, those nearest to "
-        "it first, and dilated by one pixel. Fig. 13 shows PR before and after; Table 2 has "
-        "F_LR "
-        + ", ".join(f"{REFERENCES[wall.number][-1]:g} ({wall.name})" for wall in MASONS)
-        + " of the walls so treated, and says that they depend on the annotation.",
-    ),
+    **paper("fig13"),
     study=treated_walls,
-    notes=(
-        "Dilation by one px closes gaps of at most two, what stones drawn to the corner leave open "
-        "stays open, and one stone without support is enough for a wall without a multiplier. The "
-        "figure is one of the treatment and of the tracing as much as of the wall; no F_LR of a "
-        "masons' wall is a target here.",
-    ),
     tables={"fig13": _metrics, "fig13_resistance": _resistance},
     pictures=lambda walls: (_picture(walls),),
     needs=tuple(wall.source.name for wall in MASONS),

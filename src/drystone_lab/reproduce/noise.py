@@ -27,7 +27,7 @@ from drystone_lab.reproduce.cells import (
     rounded,
     trend,
 )
-from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.reproduce.item import Context, Item, Picture, paper
 from drystone_lab.reproduce.noise_sets import (
     GAP_RANGE,
     NOISES,
@@ -377,20 +377,7 @@ def _panel(levels: Levels, name: str, words: str) -> NoisePanel:
 
 
 NOISE = Item(
-    title="polygons of eight noise levels",
-    section="§5.3",
-    paper=(
-        "§5.3: stones of Thangavelu et al. (2018), polygons 'with eight degrees of Gaussian noise "
-        "applied to their vertices', ten walls of each set, built from two sides. Fig. 22 shows "
-        "one of each, Fig. 23 F_SF over F_LR of all 80, Fig. 24 the four figures over the noise, "
-        "with the walls of that study for reference. The numbers are only in the pictures.",
-        "The text says: the set of 80 % is the most difficult, its walls 'both unfilled and weak'; "
-        "filling rises as the noise falls, with one level done surprisingly well (which one is "
-        "lost in our copy of the text); below 60 % noise F_SF is always above .6, 'outperforming "
-        "the random strategy'; F_LR has no clear trend; F_AV rises with the noise in its own and "
-        "in the reference walls, and its own is better; F_AH has no obvious trend; the wall is "
-        "filled as much as in the reference.",
-    ),
+    **paper("fig22-24"),
     study=partial(
         noise_levels,
         study=Study(
@@ -400,12 +387,6 @@ NOISE = Item(
             quick_seeds=2,
             quick_walls=tuple(noise_set(noise, 0.15) for noise in NOISES),
         ),
-    ),
-    notes=(
-        f"The stones of {', '.join(map(str, PUBLISHED))} % are the published ones and the wall has "
-        "the size of their image, as these stones are those of a finished wall. The other levels "
-        "are not public: their stones are our own noisy polygons, marked as generated everywhere, "
-        "and their wall is as large as the published walls are for their stones.",
     ),
     claims=noise_findings,
     tables={
@@ -494,15 +475,7 @@ def _turned_pictures(found: Built) -> Iterator[Picture]:
     )  # fmt: skip
 
 
-TURNED = Item(
-    title="orientations in steps of 10 degrees",
-    section="§5.3",
-    paper=(
-        "§5.3: 'By considering more orientation options, such as orientations ranging between "
-        "[-pi, pi] with 10-degree intervals, the performance of the algorithm can significantly "
-        "increase in terms of the filling ratio and the lateral resistance.' Fig. 25 shows typical "
-        "walls; no numbers are given.",
-    ),
+TURNED = Item(**paper("fig25"),
     study=Study(
         walls=tuple(map(noise_set, TURNED_NOISES)),
         ways={name: (*TWO_SIDED, ("orientations", name)) for name in ORIENTATIONS},
@@ -510,11 +483,6 @@ TURNED = Item(
         quick_seeds=1,
         # A few generated stones: 36 orientations of each are still a thousand candidates.
         quick_walls=(generated_set(70, 10, 0.1),),
-    ),
-    notes=(
-        "Which sets the paper draws is not in its text. With few orientations a stone has that of "
-        "its largest shape factor; the paper's 'minimized' is read as a slip, as Eq. 12d has "
-        "argmax. Pairs of one set share its stones, so that the test below is lenient with a gain.",
     ),
     claims=turned_findings,
     tables={

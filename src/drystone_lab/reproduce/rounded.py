@@ -20,7 +20,7 @@ from drystone_lab.reproduce.cells import (
     metric_cells,
     summary,
 )
-from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.reproduce.item import Context, Item, Picture, paper
 from drystone_lab.reproduce.study import Built, trials_of
 from drystone_lab.runs.spec import generated
 from drystone_lab.table import Cell, Table
@@ -212,26 +212,8 @@ def _claims(found: Rounded) -> Iterator[Finding]:
 
 
 ROUNDED = Item(
-    title="Fourier stones of four kinds",
-    section="§5.3",
-    paper=(
-        "§5.3: stones of Fourier descriptors (Eq. 30), round (D2 = 0) or elliptic (D2 = .2), with "
-        "a radius of 30 px or uniform between 10 and 50 px; 'we form four sets of stones and "
-        "construct 20 walls, each measuring 210 pixels in height and width'. Fig. 26 shows one of "
-        "each, Fig. 27 F_SF and F_AV of all; the numbers are only in the picture.",
-        "The text says: the walls of stones of a fixed size are poorly filled, as stones are "
-        "placed near the boundary first (Eq. 12) and round ones then do not stay; stones of "
-        "varying sizes are easier to stack, and their variety enhances interlocking.",
-    ),
+    **paper("fig26-27"),
     study=rounded_walls,
-    notes=(
-        "The paper does not say how many stones a set has; here their area is "
-        f"{AREA_RATIOS[0]:g} times that of the wall. We took it for the main version after we had "
-        f"seen the walls of both {AREA_RATIOS[0]:g} and {AREA_RATIOS[1]:g} times, so agreement "
-        "with the paper is in part our choice; the full version tells both. Every wall has stones "
-        "of its own, so that what differs is their kind and not the luck of one set; the paper may "
-        "have used one set of each, and its 20 walls may be of all kinds together.",
-    ),
     claims=_claims,
     tables={"kinds": _kinds_table, "walls": _walls_table},
     pictures=lambda found: tuple(_pictures(found)),

@@ -22,7 +22,7 @@ from drystone_lab.pictures.walls import (
 )
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, rounded
-from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.reproduce.item import Context, Item, Picture, paper
 from drystone_lab.reproduce.masons import (
     PAPERS_WAY,
     REFERENCES,
@@ -231,29 +231,8 @@ def _panels(built: Built, wall: FiveWall) -> list[Panel]:
 
 
 TABLE2 = Item(
-    title="Walls 1 to 5: fixed seed, best of 20, masons",
-    section="§5.2, Table 2 and Fig. 18",
-    paper=(
-        "§5.2, Fig. 18: walls of five sets of stones from a fixed seed, and the wall 'with the "
-        "highest filling ratio and kinematics multiplier (rounded to one decimal place)' of 20 "
-        "trials, beside the reference wall of masons (1 to 3) or of a model-free algorithm (4, 5). "
-        "Table 2 has the figures of the last two.",
-        "The text finds its walls better than the masons' in F_SF and F_LR, and worse in F_AV and "
-        "F_AH. By its Table 2 F_SF is larger in wall 1, equal in wall 2 and smaller in wall 3.",
-    ),
+    **paper("table2"),
     study=partial(five_walls, study=Study(walls=FIVE, quick_seeds=4)),
-    notes=(
-        "No wall can have a larger F_SF than all its stones together. Where the paper's is larger, "
-        "a smaller target or stones measured after dilation would explain it.",
-        "F_AV and F_AH of the same masons' walls differ from the paper's by the definition alone. "
-        "The paper does not say where paths start, how many there are, or how wide a joint is; "
-        "ours start every tenth of the side, the five shortest count, and a joint is what one "
-        "erosion by 3 x 3 px leaves. Figures of one column compare with each other, not across.",
-        "F_LR of masons' walls is one of how their gaps were closed and is shown by fig13; the "
-        "paper marks it with the same caution.",
-        "Walls 4 and 5: the stones of Liu et al. (2018) are not public. The paper's figures stand "
-        "in rows of their own, ours are of generated stones and say nothing about theirs.",
-    ),
     tables={"table2": _comparison, "table2_seeds": _spread},
     pictures=lambda found: (_fig18(found),),
     needs=tuple(wall.source.name for wall in MASONS),

@@ -14,7 +14,7 @@ from drystone.selection.sampling import Sampling
 from drystone_lab.pictures.growth import GROWTH_IN, Series, plot_growth
 from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import METRICS, Finding, findings_table, metric_cells, trend
-from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.reproduce.item import Context, Item, Picture, paper
 from drystone_lab.reproduce.study import ONE_WAY, Built, built
 from drystone_lab.table import Cell, Table
 from drystone_lab.timed_walls import (
@@ -160,21 +160,8 @@ def _procedures(walls: BySampling) -> Table:
     return Table("Shares of the paper's procedures in their time", columns, tuple(rows))
 
 
-STEPS = Item(
-    title="time of a step by part",
-    section="§6.1",
-    paper=(
-        "Fig. 28 (§6.1): the time of each of the 32 steps of two walls of PR, 280 x 80 px, by "
-        "trial placement, stabilisation and selection, with variant and with full batch sampling. "
-        "The numbers are only in the picture.",
-        "The text says: 'the placement procedure takes most of the time, the selection ranks "
-        "second, and the computational demand in the stabilization procedure is negligible'; with "
-        "variant sampling a step is almost stable, while selection grows slightly as stones are "
-        "placed, by its kinematic analysis; with the full batch a step gets shorter as the "
-        "candidates get fewer.",
-    ),
+STEPS = Item(**paper("fig28"),
     study=by_sampling,
-    notes=(HOW_TIMED,),
     tables={"candidates": _candidates},
     times={
         "claims": lambda walls: findings_table(
@@ -273,24 +260,8 @@ def _scales_pictures(found: Scaled) -> Iterator[Picture]:
 
 
 RESOLUTION = Item(
-    title="resolutions .5 to 2",
-    section="§6.3",
-    paper=(
-        "Fig. 29 (§6.3): the stones PR at resolutions of .5, 1, 1.5 and 2 times 280 x 80 px, each "
-        "stone in one colour, and the time of the wall and of its longest step. 'There is a "
-        "quadratic relationship between the resolution scale and the computation cost'; 'when the "
-        "image is of size 140 x 40, it only takes 0.18 min to stack 32 stones'; at the highest "
-        "resolution 'the maximum step time remains below 25 s'. Other times are only in the "
-        "picture. 'The difference in stone layout results from the non-deterministic nature of the "
-        "algorithm.'",
-    ),
+    **paper("fig29"),
     study=by_scale,
-    notes=(
-        "All walls have the seed of the plan in common and come out the same whenever they are "
-        "planned again. Every resolution has positions and indices of its own, and one other "
-        "choice changes all that follow.",
-        HOW_TIMED,
-    ),
     tables={"walls": _scales_table},
     times={
         "claims": lambda found: findings_table(
@@ -456,22 +427,8 @@ def _growth_picture(walls: Grew) -> Picture:
 
 
 GROWTH = Item(
-    title="time against stones and clusters",
-    section="§6.2",
-    paper=(
-        "§6.2: initial rotation is O(Q) in the number of stones Q, clustering O(Q^2 log Q); "
-        "placement, stabilisation and selection of a step are O(K) in the number of clusters K "
-        "with variant sampling and O(Q) with the full batch. 'For the entire wall construction, "
-        "the time complexity using variant sampling is O(QK), and using full batch sampling is "
-        "O(Q^2).' It is derived, not measured, and takes the cost of a candidate as constant.",
-    ),
+    **paper("growth"),
     study=by_stones,
-    notes=(
-        f"Generated rubble for a wall of {WALL_PX[0]} x {WALL_PX[1]} px, smaller stones the more "
-        "there are. A count of candidates is the same on every machine: what the paper derives is "
-        "that count.",
-        HOW_TIMED,
-    ),
     claims=counts,
     tables={"walls": _counted},
     times={

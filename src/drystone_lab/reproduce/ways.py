@@ -7,7 +7,7 @@ from statistics import median
 from drystone_lab.pictures.charts import group_panels, plot_two_figures
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, Finding, rounded
-from drystone_lab.reproduce.item import Item, Picture
+from drystone_lab.reproduce.item import Item, Picture, paper
 from drystone_lab.reproduce.study import (
     Built,
     Study,
@@ -44,19 +44,8 @@ def _beta_picture(found: Built) -> Picture:
 
 
 BETA = Item(
-    title="The threshold of GDS in Eq. 12",
-    section="§3.6",
-    paper=(
-        "§3.6: in the majority of the cases evaluated, beta = 0.7 in H(GDS, beta) of Eq. 12 "
-        "resulted in better outcomes than GDS alone or beta = 0, 0.5 or 0.9. Neither the cases "
-        "nor the numbers are given.",
-    ),
+    **paper("beta"),
     study=Study(walls=MASONS, ways={beta: (("placement.beta", float(beta)),) for beta in BETAS}),
-    notes=(
-        "GDS alone and beta = 0 are one function, as GDS is never below 0: H(x, 0) = x. The paper "
-        "names both; perhaps its GDS alone is an objective without LFR and without the distance "
-        "from the end.",
-    ),
     tables={
         "beta": ways_table(
             "Walls by the threshold of GDS",
@@ -130,18 +119,8 @@ def _sampling_times(found: Built) -> Table:
 
 
 SAMPLING = Item(
-    title="Sampling: uniform, two-fold, full batch beside variant",
-    section="§5.1, Fig. 16",
-    paper=(
-        "§5.1, Fig. 16: uniform sampling (of 7 stones) gives a more irregular layout than "
-        "variant sampling, above all at the ends and in the fourth course. Two-fold sampling "
-        "fills the right end better and has straighter courses, and costs twice as much. Full "
-        "batch has straighter courses too, but for the last. No metrics are given, and 'For "
-        "all sampling methods, the algorithm is able to complete the construction process by "
-        "stacking stones to fill the target wall volume'.",
-    ),
+    **paper("fig16"),
     study=Study(walls=(PR,), ways=SAMPLED),
-    notes=("Which filling the paper calls complete is not said; Algorithm 1 ends above .99.",),
     claims=_sampling_claims,
     tables={
         "fig16": ways_table(
@@ -209,23 +188,13 @@ def _pairs_of_wall(number: int, found: Built) -> Table:
 
 
 STABILISATION = Item(
-    title="Stabilisation: filling against area of wedges",
-    section="§5.2, Fig. 20",
-    paper=(
-        "§5.2, Fig. 20: walls of the fifth set, a point each, by filling and area of wedges: "
-        "'combining rotation and wedging techniques enhances the algorithm's performance in "
-        "optimizing the stone filling ratio'. Its numbers are in the picture only.",
-    ),
+    **paper("fig20"),
     study=Study(
         walls=(LIU_5, IR),
         ways={method: (("stabilise.method", method),) for method in STABILISED},
         quick_seeds=4,
         quick_walls=(coarser(LIU_5, 0.2), coarser(IR, 0.2)),
         at_hand=True,
-    ),
-    notes=(
-        "The stones of Liu et al. (2018) are not public: a stand-in is a set of generated polygons "
-        "of much noise, not theirs.",
     ),
     claims=_stabilised_claims,
     tables={
@@ -250,16 +219,8 @@ SIDES: dict[str, Changes] = {ONE: (), TWO: TWO_SIDED}
 FLUSH = (*METRICS, "E_FLUSH")
 
 
-BOTH_ENDS = Item(
-    title="Walls built from both ends",
-    section="§5.2, Fig. 21",
-    paper=(
-        "§5.2, Fig. 21: built from both ends (Eq. 29), stones are aligned with both ends of "
-        "the walls R, PR and IR, and the weak region with voids moves from the right end to "
-        "the middle, where both halves meet. No metrics are given.",
-    ),
+BOTH_ENDS = Item(**paper("fig21"),
     study=Study(walls=MASONS, ways=SIDES, quick_seeds=4),
-    notes=("Where the voids are was not measured: the picture shows it for one seed.",),
     tables={
         "fig21": ways_table(
             "Walls built from one end and from both",
@@ -295,14 +256,7 @@ def _methods_picture(group: Built) -> Picture:
     return sheet(group, f"fig{number.replace('.', '')}", len(SIDES), lambda one: one.way, caption)
 
 
-ALL_METHODS = Item(
-    title="Walls of the stones of Fig. 18 by other methods",
-    section="B.1, Figs. B.30 to B.32",
-    paper=(
-        "B.1, Figs. B.30 to B.32: walls of the regular, partially regular and irregular "
-        "stones by various methods of construction, on images of 289 x 79, 280 x 80 and "
-        "433 x 115 px. No numbers, and no names of the methods, are in the text.",
-    ),
+ALL_METHODS = Item(**paper("figB30-32"),
     study=Study(
         walls=MASONS,
         ways={
@@ -313,10 +267,6 @@ ALL_METHODS = Item(
         seeds=1,
         quick_seeds=1,
         quick_walls=(coarser(R, 0.1), coarser(PR, 0.25)),  # the many stones of IR take longest
-    ),
-    notes=(
-        "One seed a method; how much walls of one method differ from seed to seed is seen in "
-        "table2, fig16 and fig21. The quick version has coarser walls, and none of IR.",
     ),
     tables={
         "figB30_32": walls_table(
