@@ -85,6 +85,7 @@ def _summary(judged: Sequence[Judged]) -> Table:
         for one in judged
         if None not in one.alphas and None not in one.tilts
     ]
+    ratios = [tilt / alpha for alpha, tilt in pairs if alpha > 0]
     return Table(
         "Load multipliers beside tilts",
         ("walls", "nothing falls", "both sides", "rank correlation", "weaker side", "tilt / alpha"),
@@ -95,7 +96,7 @@ def _summary(judged: Sequence[Judged]) -> Table:
                 len(pairs),
                 _rank_correlation(pairs),
                 _rank_correlation(weaker),
-                _median_ratio(pairs),
+                median(ratios) if ratios else None,
             ),
         ),
         (
@@ -110,8 +111,3 @@ def _rank_correlation(pairs: Sequence[tuple[float, float]]) -> float | None:
         return None
     found = spearmanr([first for first, _ in pairs], [second for _, second in pairs])
     return float(found.statistic)
-
-
-def _median_ratio(pairs: Sequence[tuple[float, float]]) -> float | None:
-    ratios = [tilt / alpha for alpha, tilt in pairs if alpha > 0]
-    return median(ratios) if ratios else None

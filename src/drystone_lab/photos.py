@@ -162,12 +162,9 @@ def _refused() -> tuple[tuple[str, Level, Change], ...]:
          replace(single, wrong_print=1.06), lambda image: image),
         ("the photograph is mirrored", easy, lambda image: image[:, ::-1]),
         ("no stones", replace(easy, count=1, cut=1, angular=0.0), lambda image: image),
-        ("noise", bare, _noise),
+        ("noise", bare,
+         lambda image: np.random.default_rng(1).integers(0, 256, image.shape, np.uint8)),
     )  # fmt: skip
-
-
-def _noise(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    return np.random.default_rng(1).integers(0, 256, image.shape, np.uint8)
 
 
 def _one_marker(image: NDArray[np.uint8]) -> NDArray[np.uint8]:

@@ -12,7 +12,7 @@ from statistics import fmean, stdev
 
 from drystone.statics.flow.nonassociative import nonassociative_load
 from drystone.statics.limit import lateral_resistance
-from drystone_lab.shear_walls import SERIES, ShearSeries, ShearTest, shear_wall
+from drystone_lab.shear_walls import SERIES, ShearSeries, shear_wall
 from drystone_lab.table import BenchSettings, Cell, Table
 
 FRICTION = 0.62
@@ -110,14 +110,13 @@ def _ratios(
 ) -> list[list[float | None]]:
     """Return predicted over measured of every test by all `MODELS`."""
     return [
-        [_over(v, test) for v in _four(known, one, test.vertical_kn, mu)]
+        [
+            None if v is None else v / test.measured_kn
+            for v in _four(known, one, test.vertical_kn, mu)
+        ]
         for one in all_series
         for test in one.tests
     ]
-
-
-def _over(predicted: float | None, test: ShearTest) -> float | None:
-    return None if predicted is None else predicted / test.measured_kn
 
 
 def _predicted(known: Predict, all_series: Sequence[ShearSeries]) -> Table:

@@ -35,7 +35,10 @@ class Table:
         """
         cells = [list(self.columns), *([written(cell) for cell in row] for row in self.rows)]
         widths = [max(len(row[k]) for row in cells) for k in range(len(self.columns))]
-        words = [_is_words([row[k] for row in self.rows]) for k in range(len(self.columns))]
+        words = [
+            all(isinstance(row[k], str | bool) for row in self.rows)
+            for k in range(len(self.columns))
+        ]
         lines = [_aligned(row, widths, words) for row in cells]
         return "\n".join([self.title, *lines, *(f"* {note}" for note in self.notes)])
 
@@ -102,10 +105,6 @@ def written(cell: Cell) -> str:
     if isinstance(cell, float):
         return f"{cell:.1e}" if 0 < abs(cell) < 1e-3 else f"{cell + 0.0:.5g}"  # -0.0 + 0.0 is 0.0
     return str(cell)
-
-
-def _is_words(cells: Sequence[Cell]) -> bool:
-    return all(isinstance(cell, str | bool) for cell in cells)
 
 
 def _aligned(row: Sequence[str], widths: Sequence[int], words: Sequence[bool]) -> str:

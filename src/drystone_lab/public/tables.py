@@ -108,11 +108,6 @@ def _comparable(result: Result) -> tuple[float | None, ...]:
     return tuple(None if value is None else round(value, DECIMALS) for value in figures)
 
 
-def best_of(values: Sequence[float], figure: str) -> float:
-    """Return the best of at least one value of a figure."""
-    return max(values) if HIGHER_IS_BETTER[figure] else min(values)
-
-
 UNITS = {PLACED: "placed share", SHAKE: "PGA, g"}
 """Figures that are written otherwise in tables."""
 
@@ -167,7 +162,7 @@ def _cells(figures: Sequence[str], walls: Sequence[Sequence[Result]]) -> tuple[C
         cells += [
             _mean([fmean(values) for values in found]),
             _rounded(sqrt(fsum(s * s for s in spreads) / len(spreads))) if spreads else None,
-            _mean([best_of(values, figure) for values in found]),
+            _mean([(max if HIGHER_IS_BETTER[figure] else min)(values) for values in found]),
         ]
     return tuple(cells)
 

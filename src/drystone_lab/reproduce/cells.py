@@ -42,12 +42,6 @@ def figures_of(outcomes: Sequence[Outcome], name: str) -> list[float]:
     return [float(value) for value in values if value is not None]
 
 
-def median_of(outcomes: Sequence[Outcome], name: str) -> float | None:
-    """Return the median of a figure over the walls that have it; None when none has."""
-    found = figures_of(outcomes, name)
-    return median(found) if found else None
-
-
 def metric_cells(outcome: Outcome) -> tuple[Cell, ...]:
     """Return F_SF, F_AV, F_AH and F_LR of a wall as cells of a table."""
     return tuple(rounded(outcome.figures[name]) for name in METRICS)
@@ -90,11 +84,6 @@ class Wins:
     def pairs(self) -> int:
         """How many there are."""
         return self.better + self.equal + self.worse
-
-    @property
-    def is_majority(self) -> bool:
-        """True when the first is better in more than half of all pairs."""
-        return 2 * self.better > self.pairs
 
     def cells(self, figure: str) -> tuple[Cell, ...]:
         """Return the cells of :data:`WINS`."""

@@ -72,6 +72,8 @@ def made_rows(records: Sequence[Record]) -> tuple[tuple[str, str], ...]:
     if not records:
         return ()
     made = [record["made"] for record in records]
+    walls = sum(record["taken"]["walls"] for record in records)
+    planned = sum(record["taken"]["wall_seconds"] for record in records)
     packages = dict.fromkeys(name for one in made for name in one["packages"])
     return (
         ("drystone", _different(record["request"]["version"] for record in records)),
@@ -80,14 +82,8 @@ def made_rows(records: Sequence[Record]) -> tuple[tuple[str, str], ...]:
         *((name, _different(one["packages"].get(name, "–") for one in made)) for name in packages),  # noqa: RUF001
         ("machine", _different(one["machine"] for one in made)),
         ("seeds", _different(record["request"]["seed"] for record in records)),
-        ("walls", duration_of_walls(records)),
+        ("walls", f"{walls} in {duration(planned)}"),  # those of several items once for each
     )
-
-
-def duration_of_walls(records: Sequence[Record]) -> str:
-    """Say how many walls were planned in what time, those of several items once for each."""
-    walls = sum(record["taken"]["walls"] for record in records)
-    return f"{walls} in {duration(sum(record['taken']['wall_seconds'] for record in records))}"
 
 
 def duration(seconds: float) -> str:

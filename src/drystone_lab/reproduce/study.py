@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from statistics import median
 
 from drystone.model.wall import Wall
 from drystone_lab.pictures.charts import group_panels
@@ -54,7 +55,8 @@ class Trials:
 
     def median(self, figure: str) -> float | None:
         """Return the median of a figure over the walls that have it; None when none has."""
-        return cells.median_of(self.outcomes, figure)
+        found = cells.figures_of(self.outcomes, figure)
+        return median(found) if found else None
 
     @property
     def middle(self) -> int:

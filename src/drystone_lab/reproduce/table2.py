@@ -109,12 +109,6 @@ class FiveWall:
         filled = [value or 0.0 for value in self.trials.values("F_SF")]
         return filled.index(max(filled))
 
-    @property
-    def most_filling(self) -> float:
-        """F_SF of a wall with all stones, which no wall of these stones can exceed."""
-        wall = self.trials.wall
-        return float(self.stones.total_area_px) / (wall.width * wall.height)
-
     @cached_property
     def traced(self) -> WallMetrics | None:
         """Metrics of the masons' wall as it was traced."""
@@ -185,7 +179,8 @@ def _ours(wall: FiveWall) -> Iterator[tuple[Cell, ...]]:
     if wall.stand_in:
         yield (wall.name[0], "the paper's", "best of 20", None, None, *NONE, *papers)
     yield (*one(f"fullest of {seeds}", wall.fullest), *NONE)
-    most = rounded(wall.most_filling)
+    area = wall.stones.total_area_px
+    most = rounded(float(area) / (trials.wall.width * trials.wall.height))
     yield (*wall.name, "all stones", count, count, most, None, None, None, *NONE)
 
 

@@ -10,7 +10,6 @@ from drystone_lab.reproduce.cells import (
     Wins,
     figures_of,
     findings_table,
-    median_of,
     metric_cells,
     sentences,
     summary,
@@ -38,7 +37,6 @@ def test_medians_and_ranges() -> None:
 def test_a_figure_that_no_wall_has() -> None:
     cells = dict(zip(COLUMNS, summary([outcome(F_LR=None)] * 2), strict=True))
     assert (cells["F_LR median"], cells["F_LR range"]) == (None, None)
-    assert median_of([outcome(F_LR=None)], "F_LR") is None
     assert figures_of([outcome(F_LR=None), outcome(F_LR=0.5)], "F_LR") == [0.5]
 
 
@@ -60,11 +58,9 @@ def test_counts_are_those_of_all_pairs(figure: str) -> None:
     assert found.median_difference == np.median(first - second)
 
 
-def test_what_is_missing_makes_no_pair_and_a_majority_is_of_all() -> None:
+def test_what_is_missing_makes_no_pair() -> None:
     assert wins([None, 1.0], [2.0, None], "F_LR") == Wins(0, 0, 0, None)
     assert wins([0.5, 0.5], [0.5 + 1e-12, None], "F_LR").equal == 1
-    assert Wins(3, 0, 2, 0.0).is_majority
-    assert not Wins(3, 3, 0, 0.0).is_majority
 
 
 def test_a_trend_is_the_correlation_of_the_ranks() -> None:
