@@ -23,18 +23,18 @@ COLUMNS = (
 )  # fmt: skip
 
 
-Ends = tuple[float | None, float | None]
+BothSides = tuple[float | None, float | None]
 
 
 @dataclass(frozen=True, eq=False)
-class Judged:
+class EngineWall:
     """A wall in the engine; ends are to the left and to the right."""
 
     name: str
     stones: int  # in it
     built: BuildUp
-    alphas: Ends  # load multipliers of the plan
-    tilts: Ends  # tangents at which it comes down; None when it fell before, or never
+    alphas: BothSides  # load multipliers of the plan
+    tilts: BothSides  # tangents at which it comes down; None when it fell before, or never
 
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
@@ -52,17 +52,17 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     )
 
 
-def _judged(target: Target, stones: StoneSet, seed: int) -> Judged:
+def _judged(target: Target, stones: StoneSet, seed: int) -> EngineWall:
     outcome = execute(target.run(seed, ("search.budget", 1), method="best"), None, stones)
     plan, figures = outcome.as_plan, outcome.figures
     built = build_up(plan_polygons(plan, stones), float(plan.settings["mu"]))
     found = tilt_of(built)
     tilts = (None, None) if found is None else (found[0].alpha, found[1].alpha)
     alphas = figures["alpha_left"], figures["alpha_right"]
-    return Judged(f"{target.name}, seed {seed}", len(plan.stone_steps), built, alphas, tilts)
+    return EngineWall(f"{target.name}, seed {seed}", len(plan.stone_steps), built, alphas, tilts)
 
 
-def _row(judged: Judged) -> tuple[Cell, ...]:
+def _row(judged: EngineWall) -> tuple[Cell, ...]:
     moves = judged.built.moves
     return (
         judged.name, judged.stones, ", ".join(map(str, judged.built.fallen)) or "none",
@@ -72,7 +72,7 @@ def _row(judged: Judged) -> tuple[Cell, ...]:
     )  # fmt: skip
 
 
-def _summary(judged: Sequence[Judged]) -> Table:
+def _summary(judged: Sequence[EngineWall]) -> Table:
     standing = sum(one.built.stands for one in judged)
     pairs = [
         (alpha, tilt)

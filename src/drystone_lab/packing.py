@@ -15,7 +15,7 @@ from drystone.kernels.raster import turn
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
 from drystone_lab.planned_walls import missing_data
-from drystone_lab.runs.outcome import FIGURES, Outcome
+from drystone_lab.runs.outcome import FIGURES, RunOutcome
 from drystone_lab.runs.spec import RunSpec
 from drystone_lab.search_ways import SEARCH, WAYS, looked_at_times
 from drystone_lab.table import BenchSettings, Cell, Table
@@ -118,7 +118,7 @@ def _row(
     )
 
 
-def packed(spec: RunSpec, data: Path | None) -> Outcome:
+def packed(spec: RunSpec, data: Path | None) -> RunOutcome:
     """Pack the stones of a run into a strip as high as its wall, as short as it gets.
 
     It has F_SF alone: area of the stones over that of the strip, or of the wall where it is larger.
@@ -134,4 +134,4 @@ def packed(spec: RunSpec, data: Path | None) -> Outcome:
     figures: dict[str, float | int | None] = dict.fromkeys(FIGURES)
     figures["stones"] = len(stones)
     figures["F_SF"] = stones.total_area_px / (max(strip, width) * height)
-    return Outcome(spec.key, figures, {"steps": []}, {"wall": took})
+    return RunOutcome(spec.key, figures, {"steps": []}, {"wall": took})

@@ -11,7 +11,7 @@ from PIL import ImageOps, JpegImagePlugin
 
 from drystone.errors import DrystoneError
 from drystone.photo.segment_photo import SegmentedPhoto, segment_photo
-from drystone_lab.photographs.layout import LEVELS, Level
+from drystone_lab.photographs.layout import LEVELS, PhotoLevel
 from drystone_lab.photographs.scene import Photograph, inverse, layout_of, moved, photograph
 from drystone_lab.table import BenchSettings, Cell, Table
 
@@ -123,7 +123,7 @@ def pixels(made: Photograph) -> NDArray[np.uint8]:
     return np.asarray(ImageOps.exif_transpose(JpegImagePlugin.JpegImageFile(io.BytesIO(made.jpeg))))
 
 
-def _row(level: Level) -> tuple[Cell, ...]:
+def _row(level: PhotoLevel) -> tuple[Cell, ...]:
     made = photograph(level)
     image = pixels(made)
     start = time.perf_counter()
@@ -141,7 +141,7 @@ def _row(level: Level) -> tuple[Cell, ...]:
     )  # fmt: skip
 
 
-def _small(level: Level) -> Level:
+def _small(level: PhotoLevel) -> PhotoLevel:
     """Return a level at less than half the size."""
     return replace(
         level, width_px=900, height_px=675, px_per_m=800.0, count=min(level.count, 10),
@@ -152,7 +152,7 @@ def _small(level: Level) -> Level:
 Change = Callable[[NDArray[np.uint8]], NDArray[np.uint8]]
 
 
-def _refused() -> tuple[tuple[str, Level, Change], ...]:
+def _refused() -> tuple[tuple[str, PhotoLevel, Change], ...]:
     easy, single = LEVELS[0], replace(LEVELS[0], markers="single")
     bare = replace(easy, markers="none")
     return (
@@ -178,7 +178,7 @@ def _one_marker(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
     return changed
 
 
-def _outcome(level: Level, change: Change) -> str:
+def _outcome(level: PhotoLevel, change: Change) -> str:
     made = photograph(level)
     layout = layout_of(level) or layout_of(replace(level, markers="sheet"))
     try:

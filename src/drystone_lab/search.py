@@ -11,7 +11,7 @@ from drystone_lab.planned_walls import missing_data
 from drystone_lab.runs.spec import Changes, nested, told
 from drystone_lab.search_runs import (
     FIGURES,
-    Result,
+    SearchResult,
     SearchRun,
     method_name,
     searched,
@@ -27,7 +27,7 @@ PAIRS = ((SEARCH, RESTARTS), (SEARCH, WEDGED), (SEARCH, NO_COURSES))
 """Methods that are compared: what the first has more than the second."""
 
 
-ByWay = Mapping[str, Sequence[Result]]
+ByWay = Mapping[str, Sequence[SearchResult]]
 """Results on one wall, seed after seed, by method."""
 
 
@@ -115,7 +115,7 @@ def _by_way(
     seeds: Sequence[int],
     seconds: float,
     settings: BenchSettings,
-    results: Mapping[SearchRun, Result],
+    results: Mapping[SearchRun, SearchResult],
 ) -> ByWay:
     """Sort the results of a wall after a time by methods."""
     found = {}
@@ -155,7 +155,7 @@ def _differences(wall: str, by_way: ByWay) -> list[tuple[Cell, ...]]:
     return rows
 
 
-def _values(results: Sequence[Result], figure: str) -> list[float | None]:
+def _values(results: Sequence[SearchResult], figure: str) -> list[float | None]:
     return [result[figure] for result in results]
 
 

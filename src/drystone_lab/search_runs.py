@@ -17,7 +17,7 @@ from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone_lab.runs.spec import Changes, told
 from drystone_lab.runs.workers import crew
-from drystone_lab.search_ways import WAYS, Looked, Way, looked_at_times
+from drystone_lab.search_ways import WAYS, SearchWay, WayResult, looked_at_times
 from drystone_lab.table import BenchSettings
 from drystone_lab.walls import BRICKS, SEARCHED, UNSEEN, Target, chosen
 
@@ -29,7 +29,7 @@ FIGURES = (
 SPENT = ("possible F_SF", "walls", "CPU s")
 """Area bound on F_SF, walls built, and time; every result has them."""
 
-Result = Mapping[str, float | None]
+SearchResult = Mapping[str, float | None]
 """What one method came to, by :data:`FIGURES` and :data:`SPENT`; None where it is not defined."""
 
 
@@ -46,7 +46,7 @@ COLUMNS = ("wall", "method", "seed", "seconds", *FIGURES, *SPENT)
 """Of the table."""
 
 
-def result_of(looked: Looked) -> Result:
+def result_of(looked: WayResult) -> SearchResult:
     """Measure a wall by both definitions."""
     found, figures = looked.found, looked.found.figures
     if figures is None:
@@ -60,7 +60,7 @@ def result_of(looked: Looked) -> Result:
     return dict(zip((*FIGURES, *SPENT), values, strict=True))
 
 
-def in_words(result: Result, stones: int) -> str:
+def in_words(result: SearchResult, stones: int) -> str:
     """Return a result for people who wait; `stones` are all that there are."""
     values = {name: "-" if v is None else f"{v:.4g}" for name, v in result.items()}
     named = ", ".join(f"{name} {values[name]}" for name in FIGURES[1:])
@@ -74,7 +74,7 @@ def second_of(wall: Wall) -> SecondArrangement:
     return second_arrangement(outlined_labels(wall.outlines.blocks, wall.site))
 
 
-def read_results(path: Path) -> dict[SearchRun, Result]:
+def read_results(path: Path) -> dict[SearchRun, SearchResult]:
     """Read the results that a table holds; none when there is no table; E148 for another file."""
     if not path.exists():
         return {}
@@ -85,7 +85,7 @@ def read_results(path: Path) -> dict[SearchRun, Result]:
         return dict(_row(row, path, rows.line_num) for row in rows)
 
 
-def _row(row: dict[str, str], path: Path, line: int) -> tuple[SearchRun, Result]:
+def _row(row: dict[str, str], path: Path, line: int) -> tuple[SearchRun, SearchResult]:
     try:
         run = SearchRun(row["wall"], row["method"], int(row["seed"]), float(row["seconds"]))
         result = {name: _number(row[name]) for name in (*FIGURES, *SPENT)}
@@ -112,7 +112,7 @@ def _not_a_table(path: Path, line: int) -> UsageError:
     )
 
 
-def append_results(path: Path, results: Iterable[tuple[SearchRun, Result]]) -> None:
+def append_results(path: Path, results: Iterable[tuple[SearchRun, SearchResult]]) -> None:
     """Add results at the end of a table, which is begun when there is none."""
     new = not path.exists()
     with path.open("a", newline="", encoding="utf-8") as file:
@@ -159,7 +159,7 @@ def searched(
     seeds: Sequence[int],
     times: tuple[float, ...],
     settings: BenchSettings,
-) -> dict[SearchRun, Result]:
+) -> dict[SearchRun, SearchResult]:
     """Let every method look for every wall with every seed; what the table has is not done again.
 
     With each seed all methods take turns, so that all have the same day.  `times` are CPU times,
@@ -195,7 +195,7 @@ def searched_walls(settings: BenchSettings) -> tuple[Target, ...]:
     return chosen((BRICKS,) if settings.quick else (*SEARCHED, *UNSEEN), settings.only)
 
 
-def chosen_ways(names: Sequence[str]) -> tuple[Way, ...]:
+def chosen_ways(names: Sequence[str]) -> tuple[SearchWay, ...]:
     """Return all ways, or those that are named; E138 for a name that none has."""
     unknown = set(names) - {way.name for way in WAYS}
     if unknown:
@@ -208,7 +208,9 @@ def chosen_ways(names: Sequence[str]) -> tuple[Way, ...]:
     return tuple(way for way in WAYS if not names or way.name in names)
 
 
-def _done(tasks: Sequence[SearchTask], jobs: int) -> Iterator[tuple[SearchTask, list[Result]]]:
+def _done(
+    tasks: Sequence[SearchTask], jobs: int
+) -> Iterator[tuple[SearchTask, list[SearchResult]]]:
     """Do tasks, and give their results as they come."""
     if jobs == 1:
         yield from map(_with_results, tasks)
@@ -217,12 +219,12 @@ def _done(tasks: Sequence[SearchTask], jobs: int) -> Iterator[tuple[SearchTask, 
         yield from processes.work(_with_results, tasks)
 
 
-def _with_results(task: SearchTask) -> tuple[SearchTask, list[Result]]:
+def _with_results(task: SearchTask) -> tuple[SearchTask, list[SearchResult]]:
     """Do a task, and say which it was."""
     return task, do(task)
 
 
-def do(task: SearchTask) -> list[Result]:
+def do(task: SearchTask) -> list[SearchResult]:
     """Do a task."""
     settings = BenchSettings(data=task.data, quick=task.quick)
     (target,) = (one for one in searched_walls(settings) if one.name == task.wall)

@@ -27,18 +27,18 @@ BETWEEN_SEEDS = 10_000
 
 
 @dataclass(frozen=True, eq=False)
-class State:
+class WayState:
     """How far a way is."""
 
     walls: int  # How many walls it has built
     best: Callable[[], Found]  # Gives the best of them
 
 
-States = Callable[[Planner, float, Clock], Iterator[State]]
+States = Callable[[Planner, float, Clock], Iterator[WayState]]
 
 
 @dataclass(frozen=True)
-class Way:
+class SearchWay:
     """A way to look for a good wall."""
 
     name: str
@@ -48,7 +48,7 @@ class Way:
 
 
 @dataclass(frozen=True, eq=False)
-class Looked:
+class WayResult:
     """What a way came to."""
 
     found: Found
@@ -57,11 +57,11 @@ class Looked:
     seconds: float
 
 
-def _restarts(first: Planner, _end: float, _clock: Clock) -> Iterator[State]:
+def _restarts(first: Planner, _end: float, _clock: Clock) -> Iterator[WayState]:
     return _passes(first, lambda found, _: found)
 
 
-def _restarts_with_wedges(first: Planner, _end: float, _clock: Clock) -> Iterator[State]:
+def _restarts_with_wedges(first: Planner, _end: float, _clock: Clock) -> Iterator[WayState]:
     settings = first.settings
 
     def finished(found: Found, best: Found) -> Found:
@@ -73,12 +73,12 @@ def _restarts_with_wedges(first: Planner, _end: float, _clock: Clock) -> Iterato
     return _passes(first, finished)
 
 
-def _passes(first: Planner, finished: Callable[[Found, Found], Found]) -> Iterator[State]:
+def _passes(first: Planner, finished: Callable[[Found, Found], Found]) -> Iterator[WayState]:
     """Build wall after wall from other seeds, and keep the best."""
     start = Found.of(first)
     best, walls = finished(start, start), 1
     while True:
-        yield State(walls, lambda best=best: best)  # type: ignore[misc]
+        yield WayState(walls, lambda best=best: best)  # type: ignore[misc]
         planner = Planner(
             first.workshop.stones,
             first.workshop.site,
@@ -92,11 +92,11 @@ def _passes(first: Planner, finished: Callable[[Found, Found], Found]) -> Iterat
         best, walls = max(best, found, key=lambda one: one.merit), walls + 1
 
 
-def _search(first: Planner, end: float, clock: Clock) -> Iterator[State]:
+def _search(first: Planner, end: float, clock: Clock) -> Iterator[WayState]:
     return _searched(first, first.settings, end, clock)
 
 
-def _without_courses(first: Planner, end: float, clock: Clock) -> Iterator[State]:
+def _without_courses(first: Planner, end: float, clock: Clock) -> Iterator[WayState]:
     # Courses are planned in further first walls only, and chains of other walls never do.
     settings = first.settings
     alone = replace(settings, search=replace(settings.search, passes=1))
@@ -105,12 +105,12 @@ def _without_courses(first: Planner, end: float, clock: Clock) -> Iterator[State
 
 def _searched(
     first: Planner, settings: PlannerSettings, end: float, clock: Clock
-) -> Iterator[State]:
+) -> Iterator[WayState]:
     workshop = first.workshop
     until = Deadline(end, clock)
     for progress in searching(Found.of(first), workshop, settings, first.seed, until=until):
         packed = progress.best
-        yield State(
+        yield WayState(
             progress.walls,
             lambda packed=packed: found_again(packed, workshop, settings),  # type: ignore[misc]
         )
@@ -120,10 +120,10 @@ RESTARTS, WEDGED = "restarts", "restarts with wedges"
 SEARCH, NO_COURSES = "search", "without courses"
 
 WAYS = (
-    Way(RESTARTS, _restarts),
-    Way(WEDGED, _restarts_with_wedges),
-    Way(SEARCH, _search),
-    Way(NO_COURSES, _without_courses),
+    SearchWay(RESTARTS, _restarts),
+    SearchWay(WEDGED, _restarts_with_wedges),
+    SearchWay(SEARCH, _search),
+    SearchWay(NO_COURSES, _without_courses),
 )
 
 
@@ -134,14 +134,14 @@ def tries(budget: int) -> PlannerSettings:
 
 
 def looked_at_times(
-    way: Way,
+    way: SearchWay,
     stones: StoneSet,
     target: Target,
     times: Sequence[float],
     seed: int,
     clock: Clock = time.process_time,
     changes: Changes = (),
-) -> list[Looked]:
+) -> list[WayResult]:
     """Look for a good wall, and say what was the best after several times.
 
     The last wall is the one that is begun before the end and finished after it, but for a search,
@@ -157,8 +157,8 @@ def looked_at_times(
     first = Planner(stones, site, seed=seed, settings=settings)
     for _ in first.steps():
         pass
-    reached: list[tuple[State, float]] = []
-    before: tuple[State, float] | None = None
+    reached: list[tuple[WayState, float]] = []
+    before: tuple[WayState, float] | None = None
     for state in way.states(first, end, clock):
         now = state, clock()
         while len(reached) < len(times) - 1 and now[1] > started + times[len(reached)]:
@@ -170,4 +170,4 @@ def looked_at_times(
     reached += [before] * (len(times) - len(reached))
     # Packed walls are built again only now, in nobody's time.
     possible = possible_filling(first.workshop)
-    return [Looked(state.best(), state.walls, possible, at - started) for state, at in reached]
+    return [WayResult(state.best(), state.walls, possible, at - started) for state, at in reached]

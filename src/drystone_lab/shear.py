@@ -24,14 +24,14 @@ DENSITIES_KG_M3 = (2000.0, 2800.0)
 
 RESTRAINTS = {False: "beam turns", True: "beam level"}
 
-Predict = Callable[["ShearSeries", "Loading"], "Predicted"]
+ShearModel = Callable[["ShearSeries", "Loading"], "ShearForces"]
 """The largest V that a wall carries."""
 
 PICTURE, DPI = "shear_tests.png", 170
 
 
 @dataclass(frozen=True)
-class Predicted:
+class ShearForces:
     """V in kN by both flow rules; None where an answer is not certified."""
 
     associative: float | None
@@ -48,7 +48,7 @@ class Loading:
     halves_first: bool = False
 
 
-def predict(series: ShearSeries, loading: Loading) -> Predicted:
+def predict(series: ShearSeries, loading: Loading) -> ShearForces:
     """Compute the largest V that a wall carries.
 
     A level beam on which 30 kN stand slides off at mu N.
@@ -65,7 +65,7 @@ def predict(series: ShearSeries, loading: Loading) -> Predicted:
     )
     associative = lateral_resistance(model, loads).right.alpha
     without = nonassociative_load(model, "right", loads=loads).alpha
-    return Predicted(*(None if v is None else round(v, 6) for v in (associative, without)))
+    return ShearForces(*(None if v is None else round(v, 6) for v in (associative, without)))
 
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
@@ -86,7 +86,7 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     )
 
 
-def _v(known: Predict, series: ShearSeries, loading: Loading) -> Predicted:
+def _v(known: ShearModel, series: ShearSeries, loading: Loading) -> ShearForces:
     return known(replace(series, name="", tests=()), loading)
 
 
@@ -98,7 +98,7 @@ MODELS = tuple(
 
 
 def _four(
-    known: Predict, series: ShearSeries, vertical_kn: float, mu: float = FRICTION
+    known: ShearModel, series: ShearSeries, vertical_kn: float, mu: float = FRICTION
 ) -> list[float | None]:
     """Return V by all `MODELS`."""
     both = [_v(known, series, Loading(vertical_kn, level, mu)) for level in RESTRAINTS]
@@ -106,7 +106,7 @@ def _four(
 
 
 def _ratios(
-    known: Predict, all_series: Sequence[ShearSeries], mu: float = FRICTION
+    known: ShearModel, all_series: Sequence[ShearSeries], mu: float = FRICTION
 ) -> list[list[float | None]]:
     """Return predicted over measured of every test by all `MODELS`."""
     return [
@@ -119,7 +119,7 @@ def _ratios(
     ]
 
 
-def _predicted(known: Predict, all_series: Sequence[ShearSeries]) -> Table:
+def _predicted(known: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for series in all_series:
         for vertical in dict.fromkeys(test.vertical_kn for test in series.tests):
@@ -144,7 +144,7 @@ def _predicted(known: Predict, all_series: Sequence[ShearSeries]) -> Table:
     )
 
 
-def _by_test(known: Predict, all_series: Sequence[ShearSeries]) -> Table:
+def _by_test(known: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for series in all_series:
         for test, ratios in zip(series.tests, _ratios(known, [series]), strict=True):
@@ -159,7 +159,7 @@ def _by_test(known: Predict, all_series: Sequence[ShearSeries]) -> Table:
     )
 
 
-def _scatter(known: Predict, all_series: Sequence[ShearSeries]) -> Table:
+def _scatter(known: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
     rows: list[tuple[Cell, ...]] = [
         (name, *_mean_and_deviation(_ratios(known, series)))
         for name, series in (*((one.name, (one,)) for one in all_series), ("all", all_series))
@@ -171,7 +171,7 @@ def _scatter(known: Predict, all_series: Sequence[ShearSeries]) -> Table:
     )
 
 
-def _friction(known: Predict) -> Table:
+def _friction(known: ShearModel) -> Table:
     rows: list[tuple[Cell, ...]] = [
         (one.name, mu, *_mean_and_deviation(_ratios(known, (one,), mu)))
         for one in SERIES
@@ -184,7 +184,7 @@ def _friction(known: Predict) -> Table:
     )
 
 
-def _details(known: Predict) -> Table:
+def _details(known: ShearModel) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for series in SERIES[:2]:
         loads = sorted({test.vertical_kn for test in series.tests})
@@ -217,7 +217,7 @@ def _rounded(value: float | None, digits: int) -> float | None:
     return None if value is None else round(value, digits)
 
 
-def _draw(known: Predict, path: Path) -> None:
+def _draw(known: ShearModel, path: Path) -> None:
     """Draw predicted against measured, associative, with the band of friction."""
     from drystone.drawing.files import save  # noqa: PLC0415 - Matplotlib takes long to import
     from drystone_lab.pictures.validation import Prediction, plot_predictions  # noqa: PLC0415

@@ -26,7 +26,7 @@ SHIFTS = (0.0, 0.1, 0.2, 0.4, 0.5)
 
 
 @dataclass(frozen=True)
-class Case:
+class ClosedForm:
     """Rectangles on the ground and the load factors they must have."""
 
     name: str
@@ -52,21 +52,21 @@ class Case:
         return model_from_json(self.data)
 
 
-def single_block(width: float, height: float, mu: float) -> Case:
+def single_block(width: float, height: float, mu: float) -> ClosedForm:
     """Return a block that slides at mu or overturns about its toe at b/h."""
     alpha = min(mu, width / height)
     name = f"block {width:g} x {height:g}: min(mu, b/h)"
-    return Case(name, ((0.0, 0.0, width, height),), mu, alpha, alpha)
+    return ClosedForm(name, ((0.0, 0.0, width, height),), mu, alpha, alpha)
 
 
-def two_equal_blocks(width: float, height: float, mu: float) -> Case:
+def two_equal_blocks(width: float, height: float, mu: float) -> ClosedForm:
     """Return two aligned blocks, which overturn as one at b/(2h)."""
     alpha = min(mu, width / (2.0 * height))
     rows = ((0.0, 0.0, width, height), (0.0, height, width, height))
-    return Case(f"two blocks {width:g} x {height:g}: min(mu, b/(2h))", rows, mu, alpha, alpha)
+    return ClosedForm(f"two blocks {width:g} x {height:g}: min(mu, b/(2h))", rows, mu, alpha, alpha)
 
 
-def offset_stack(shift: float, mu: float) -> Case:
+def offset_stack(shift: float, mu: float) -> ClosedForm:
     """Return a unit block on a unit block, shifted by 0 to .5 towards +x.
 
     Towards +x the upper block overturns about the lower one's edge at (.5 - s) / .5, both about
@@ -80,10 +80,10 @@ def offset_stack(shift: float, mu: float) -> Case:
     right = min(mu, (0.5 - shift) / 0.5, (1.0 - shift) / 2.0)
     left = min(mu, 1.0, (1.0 + shift) / 2.0)
     rows = ((0.0, 0.0, 1.0, 1.0), (shift, 1.0, 1.0, 1.0))
-    return Case(f"unit block on unit block, shifted by {shift:g}", rows, mu, left, right)
+    return ClosedForm(f"unit block on unit block, shifted by {shift:g}", rows, mu, left, right)
 
 
-def running_bond() -> Case:
+def running_bond() -> ClosedForm:
     """Return bricks 2 x 1 in four courses of running bond, 4 wide; they slide at mu = .58.
 
     No closed form; the value that a public program for block assemblies prints for this wall.
@@ -95,10 +95,10 @@ def running_bond() -> Case:
         for course in range(4)
         for x, width in (whole, halves)[course % 2]
     )
-    return Case("running bond of four courses, bricks 2 x 1: mu", rows, 0.58, 0.58, 0.58)
+    return ClosedForm("running bond of four courses, bricks 2 x 1: mu", rows, 0.58, 0.58, 0.58)
 
 
-def closed_forms() -> tuple[Case, ...]:
+def closed_forms() -> tuple[ClosedForm, ...]:
     """Return all cases of this page."""
     return (
         *(single_block(*block) for block in BLOCKS),

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from drystone_lab import engine
-from drystone_lab.engine import Judged
+from drystone_lab.engine import EngineWall
 from drystone_lab.table import BenchSettings
 from drystone_lab.walls import BRICKS
 
@@ -14,7 +14,7 @@ NO_ENGINE = "pymunk is not installed (extra `physics`)"
 
 def judged(alphas, tilts, *, stands=True):
     built = SimpleNamespace(stands=stands)
-    return Judged("wall", 9, built, alphas, tilts)
+    return EngineWall("wall", 9, built, alphas, tilts)
 
 
 def test_bricks_stand_and_slide_at_their_friction():

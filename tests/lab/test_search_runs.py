@@ -13,14 +13,14 @@ from drystone_lab import search_runs
 from drystone_lab.search_runs import (
     FIGURES,
     SPENT,
-    Result,
+    SearchResult,
     SearchRun,
     SearchTask,
     chosen_ways,
     read_results,
     searched,
 )
-from drystone_lab.search_ways import WAYS, Way
+from drystone_lab.search_ways import WAYS, SearchWay
 from drystone_lab.table import BenchSettings
 from drystone_lab.walls import BRICKS
 
@@ -34,7 +34,7 @@ def done(monkeypatch: pytest.MonkeyPatch) -> list[SearchTask]:
     """Tasks that were done; their walls have as many stones as their seed says."""
     tasks: list[SearchTask] = []
 
-    def do(task: SearchTask) -> list[Result]:
+    def do(task: SearchTask) -> list[SearchResult]:
         tasks.append(task)
         figures = dict.fromkeys((*FIGURES, *SPENT), 0.5) | {"placed": task.seed}
         return [{**figures, "CPU s": seconds} for seconds in task.times]
@@ -119,7 +119,7 @@ def test_what_ended_is_kept_when_a_task_fails(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, death: bool
 ) -> None:
     # In another process the unknown way is nobody's.
-    last = Way(Deadly("unknown") if death else "unknown", WAYS[0].states)
+    last = SearchWay(Deadly("unknown") if death else "unknown", WAYS[0].states)
     monkeypatch.setattr(search_runs, "chosen_ways", lambda _: (WAYS[0], last))
     settings = replace(ONE_WAY, runs=tmp_path / "runs.csv", jobs=2)
     error, words = (DrystoneError, "E402") if death else (ValueError, "unpack")

@@ -7,7 +7,7 @@ from drystone.statics.flow.nonassociative import NonassociativeResult
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LimitStatus
 from drystone_lab import shear
-from drystone_lab.shear import Predicted, run
+from drystone_lab.shear import ShearForces, run
 from drystone_lab.shear_walls import GRAVITY, SERIES, shear_wall
 from drystone_lab.table import BenchSettings
 
@@ -131,7 +131,7 @@ def test_the_full_version_draws_and_varies_what_is_not_known(monkeypatch, tmp_pa
 
     def cheap(series, loading):
         asked.append((series.density_kg_m3, (series.height, loading)))
-        return Predicted(loading.mu * loading.vertical_kn, None)
+        return ShearForces(loading.mu * loading.vertical_kn, None)
 
     monkeypatch.setattr(shear, "predict", cheap)
     assert len(run(BenchSettings(output=tmp_path))) == 5

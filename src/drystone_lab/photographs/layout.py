@@ -12,12 +12,12 @@ from drystone.generate import FourierSettings, RubbleSettings, fourier_stones, r
 from drystone.kernels.raster import Mask
 
 Markers = Literal["sheet", "single", "none"]
-Ground = Literal["plywood", "tarpaulin", "cloth", "rubber", "gravel", "grass"]
+GroundKind = Literal["plywood", "tarpaulin", "cloth", "rubber", "gravel", "grass"]
 Rock = Literal["granite", "sandstone", "limestone", "basalt", "schist"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Level:
+class PhotoLevel:
     """What a photograph shows, and what the camera does to it."""
 
     name: str
@@ -25,7 +25,7 @@ class Level:
     count: int = 24  # Stones; a few less when they find no place
     angular: float = 0.5  # Share of the stones that are rubble, 0 to 1; the others are rounded
     rocks: tuple[Rock, ...] = ("granite", "sandstone", "limestone")  # Kinds of rock, in turn
-    ground: Ground = "tarpaulin"
+    ground: GroundKind = "tarpaulin"
     gap_px: int = 24  # Empty px between stones and between stones and the edge, at least
     touching: int = 0  # Stones that are pushed against another one
     cut: int = 0  # Stones that the edge of the photograph cuts
@@ -49,27 +49,27 @@ class Level:
     px_per_m: float = 1250.0  # About, in the middle of the photograph
 
 
-LEVELS: tuple[Level, ...] = (
-    Level(name="1 flat, even light", seed=1),
-    Level(name="2 dark ground, turned", seed=2, ground="rubber", rocks=("granite", "limestone"),
-          turn_deg=8.0, orientation=6),
-    Level(name="3 plywood, uneven light", seed=3, ground="plywood", uneven=0.3, markers="single",
-          marker_mm=100.0, rocks=("granite", "basalt", "schist")),
-    Level(name="4 soft shadows", seed=4, shadow=0.3, sun_deg=60.0, tilt_deg=10.0),
-    Level(name="5 many stones, blur", seed=5, count=45, gap_px=12, blur_px=1.6, noise=3.0,
-          ground="cloth", rocks=("sandstone", "basalt", "granite"), tilt_deg=12.0),
-    Level(name="6 hard shadows", seed=6, ground="plywood", shadow=0.5, sun_deg=45.0, tilt_deg=15.0,
-          rocks=("granite", "basalt", "schist", "limestone"), orientation=8),
-    Level(name="7 touching stones", seed=7, touching=6, cut=2, shadow=0.3, uneven=0.25,
-          tilt_deg=15.0, rocks=("granite", "sandstone", "basalt")),
-    Level(name="8 gravel, strong perspective", seed=8, ground="gravel", uneven=0.2, shadow=0.3,
-          rocks=("basalt", "sandstone", "schist"), tilt_deg=28.0, noise=4.0, markers="single",
-          marker_mm=100.0),
-    Level(name="9 grass, shadows, touching", seed=9, ground="grass", touching=4, shadow=0.45,
-          tilt_deg=22.0, uneven=0.3, noise=4.0, blur_px=1.2),
-    Level(name="10 low contrast, everything", seed=10, ground="cloth", count=32, touching=5, cut=2,
-          rocks=("limestone", "granite", "sandstone"), shadow=0.5, sun_deg=40.0, uneven=0.4,
-          tilt_deg=30.0, blur_px=1.6, noise=6.0, quality=75),
+LEVELS: tuple[PhotoLevel, ...] = (
+    PhotoLevel(name="1 flat, even light", seed=1),
+    PhotoLevel(name="2 dark ground, turned", seed=2, ground="rubber",
+               rocks=("granite", "limestone"), turn_deg=8.0, orientation=6),
+    PhotoLevel(name="3 plywood, uneven light", seed=3, ground="plywood", uneven=0.3,
+               markers="single", marker_mm=100.0, rocks=("granite", "basalt", "schist")),
+    PhotoLevel(name="4 soft shadows", seed=4, shadow=0.3, sun_deg=60.0, tilt_deg=10.0),
+    PhotoLevel(name="5 many stones, blur", seed=5, count=45, gap_px=12, blur_px=1.6, noise=3.0,
+               ground="cloth", rocks=("sandstone", "basalt", "granite"), tilt_deg=12.0),
+    PhotoLevel(name="6 hard shadows", seed=6, ground="plywood", shadow=0.5, sun_deg=45.0,
+               tilt_deg=15.0, rocks=("granite", "basalt", "schist", "limestone"), orientation=8),
+    PhotoLevel(name="7 touching stones", seed=7, touching=6, cut=2, shadow=0.3, uneven=0.25,
+               tilt_deg=15.0, rocks=("granite", "sandstone", "basalt")),
+    PhotoLevel(name="8 gravel, strong perspective", seed=8, ground="gravel", uneven=0.2, shadow=0.3,
+               rocks=("basalt", "sandstone", "schist"), tilt_deg=28.0, noise=4.0, markers="single",
+               marker_mm=100.0),
+    PhotoLevel(name="9 grass, shadows, touching", seed=9, ground="grass", touching=4, shadow=0.45,
+               tilt_deg=22.0, uneven=0.3, noise=4.0, blur_px=1.2),
+    PhotoLevel(name="10 low contrast, everything", seed=10, ground="cloth", count=32, touching=5,
+               cut=2, rocks=("limestone", "granite", "sandstone"), shadow=0.5, sun_deg=40.0,
+               uneven=0.4, tilt_deg=30.0, blur_px=1.6, noise=6.0, quality=75),
 )  # fmt: skip
 """Test photographs, from easy to hard."""
 
@@ -81,14 +81,14 @@ COVERED = 0.24
 
 
 @dataclass(frozen=True)
-class Layout:
+class StoneLayout:
     """Stones on the ground."""
 
     labels: Labels  # Stones 1 ... n, 0 elsewhere
     touching: tuple[tuple[int, int], ...]  # Stones that were pushed against each other
 
 
-def lay_stones(level: Level, forbidden: Mask, seen: Mask, rng: Generator) -> Layout:
+def lay_stones(level: PhotoLevel, forbidden: Mask, seen: Mask, rng: Generator) -> StoneLayout:
     """Lay stones down where there is room.
 
     `forbidden` (h, w) is where the markers are, `seen` (h, w) what the camera sees of the ground.
@@ -109,10 +109,10 @@ def lay_stones(level: Level, forbidden: Mask, seen: Mask, rng: Generator) -> Lay
             table.drop(mask, np.argwhere(edge), rng, table.taken)
         else:
             table.drop(mask, np.argwhere(inside), rng, table.taken | table.outside)
-    return Layout(table.labels, tuple(touching))
+    return StoneLayout(table.labels, tuple(touching))
 
 
-def _shapes(level: Level, rng: Generator) -> list[Mask]:
+def _shapes(level: PhotoLevel, rng: Generator) -> list[Mask]:
     """Return masks of about the area that leaves room for all."""
     angular = round(level.angular * level.count)
     area = COVERED * level.width_px * level.height_px / level.count

@@ -26,7 +26,7 @@ COLUMNS = 4
 SPREAD = 0.28
 """Half the width of a strip; groups are 1 apart."""
 
-Figures = Sequence[float | None]
+GroupValues = Sequence[float | None]
 """A figure of several walls; None where a wall has none, which is left out."""
 
 Pairs = Sequence[tuple[float | None, float | None]]
@@ -56,7 +56,7 @@ def panel_sheet(
 
 
 def plot_groups(
-    groups: Mapping[str, Figures],
+    groups: Mapping[str, GroupValues],
     ax: Axes | None = None,
     *,
     figure: str = "",
@@ -98,7 +98,7 @@ def plot_groups(
 
 
 def group_panels(
-    figures: Mapping[str, Mapping[str, Figures]],
+    figures: Mapping[str, Mapping[str, GroupValues]],
     *,
     title: str = "",
     claims: Mapping[str, Mapping[str, float]] | None = None,
@@ -243,12 +243,12 @@ def noise_panels(
 HISTORY_IN = (3.4, 2.4)
 ACROSS = 3
 
-Lines = Mapping[str, Sequence[float | None]]
+VersionLines = Mapping[str, Sequence[float | None]]
 """By method: a value a version, None where there is none."""
 
 
 def plot_history(
-    versions: Sequence[str], lines: Lines, ax: Axes | None = None, *, figure: str = ""
+    versions: Sequence[str], lines: VersionLines, ax: Axes | None = None, *, figure: str = ""
 ) -> Axes:
     """Draw a figure over versions, a line a method; dashed where colours come round again."""
     ax = Figure(figsize=HISTORY_IN).add_subplot() if ax is None else ax
@@ -266,7 +266,9 @@ def plot_history(
     return ax
 
 
-def history_panels(versions: Sequence[str], figures: Mapping[str, Lines], title: str) -> Figure:
+def history_panels(
+    versions: Sequence[str], figures: Mapping[str, VersionLines], title: str
+) -> Figure:
     """Draw several figures over versions, with one legend."""
     sheet, panels = panel_sheet(len(figures), ACROSS, HISTORY_IN, title)
     for ax, (name, lines) in zip(panels, figures.items(), strict=True):

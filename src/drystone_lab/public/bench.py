@@ -18,8 +18,8 @@ from drystone.physics.table import load_engine
 from drystone_lab.packing import load_packer
 from drystone_lab.public.store import NOT_SHAKEN, BenchStore, KeptRun, Stamp, kept_run
 from drystone_lab.public.suites import STRIP_SECONDS, method_named, walls_of
-from drystone_lab.public.tables import SHAKE, Result, Results, comparison, pair_tables
-from drystone_lab.runs.outcome import Outcome, RunStore
+from drystone_lab.public.tables import SHAKE, BenchResult, BenchResults, comparison, pair_tables
+from drystone_lab.runs.outcome import RunOutcome, RunStore
 from drystone_lab.runs.runner import Runner, absent_data
 from drystone_lab.runs.spec import STRIPS, RunSpec
 from drystone_lab.runs.workers import work_of
@@ -27,7 +27,7 @@ from drystone_lab.table import BenchSettings, Table
 from drystone_lab.walls import Target
 
 
-def pga_of(spec: RunSpec, outcome: Outcome, data: Path | None) -> float | None:
+def pga_of(spec: RunSpec, outcome: RunOutcome, data: Path | None) -> float | None:
     """Return the amplitude that a planned wall stands, g."""
     if not outcome.figures["placed"]:
         return None
@@ -51,7 +51,7 @@ SEEDS, QUICK_SEEDS = 5, 2
 RUNS = "runs"
 """Folder of the plans in a store."""
 
-Run = tuple[RunSpec, Outcome, Result]
+BenchRun = tuple[RunSpec, RunOutcome, BenchResult]
 
 
 def run_public(suite: str, settings: BenchSettings, stamp: Stamp) -> tuple[Table, ...]:
@@ -78,13 +78,13 @@ def run_public(suite: str, settings: BenchSettings, stamp: Stamp) -> tuple[Table
     ]
     results = _done(tasks, settings, stamp)
     # The yardstick builds no walls to be compared.
-    planned = Results(tuple(result for result in results.all if result.method != STRIPS))
+    planned = BenchResults(tuple(result for result in results.all if result.method != STRIPS))
     first, *others = (*comparison(results), *pair_tables(planned))
     notes = (*first.notes, *_yardstick(results), *_left_out(asked, walls))
     return (replace(first, notes=notes), *others)
 
 
-def _yardstick(results: Results) -> tuple[str, ...]:
+def _yardstick(results: BenchResults) -> tuple[str, ...]:
     """Say what the yardstick is, where there is one."""
     if STRIPS not in results.methods:
         return ()
@@ -104,7 +104,7 @@ def _left_out(asked: Sequence[Target], there: Sequence[Target]) -> tuple[str, ..
 
 def _done(
     tasks: Sequence[tuple[Target, str, RunSpec]], settings: BenchSettings, stamp: Stamp
-) -> Results:
+) -> BenchResults:
     """Do the runs, keep them, and shake the walls if that is asked for."""
     if settings.shake:
         load_engine()  # what is missing is said before an hour of planning
@@ -121,11 +121,11 @@ def _done(
         runner = Runner(plans, settings.data, work, settings.say, again=settings.again)
         outcomes = runner.run([spec for *_, spec in tasks])
     runs = [
-        (spec, outcome, Result.of(wall, method, spec.seed, outcome))
+        (spec, outcome, BenchResult.of(wall, method, spec.seed, outcome))
         for (wall, method, spec), outcome in zip(tasks, outcomes, strict=True)
     ]
 
-    def keep(new: Sequence[Run]) -> None:
+    def keep(new: Sequence[BenchRun]) -> None:
         if store is not None:
             store.put([kept_run(one, plan, settings.changes, stamp) for _, plan, one in new])
 
@@ -134,15 +134,15 @@ def _done(
         runs = _shaken(runs, {} if settings.again else kept, keep, settings)
     for path in () if store is None else store.export():
         settings.say(f"wrote {path}")
-    return Results(tuple(result for *_, result in runs))
+    return BenchResults(tuple(result for *_, result in runs))
 
 
 def _shaken(
-    runs: Sequence[Run],
+    runs: Sequence[BenchRun],
     kept: Mapping[str, KeptRun],
-    keep: Callable[[Sequence[Run]], None],
+    keep: Callable[[Sequence[BenchRun]], None],
     settings: BenchSettings,
-) -> list[Run]:
+) -> list[BenchRun]:
     """Return the results with their amplitudes; each is kept at once, as it takes long."""
     done = []
     for number, (spec, outcome, result) in enumerate(runs, 1):

@@ -12,8 +12,8 @@ from typing import Any
 from drystone.errors import DrystoneError, InputError, UsageError, not_written
 from drystone.whole_files import write_whole
 from drystone_lab.public.suites import SUITE_VERSION
-from drystone_lab.public.tables import SHAKE, Result
-from drystone_lab.runs.outcome import Outcome
+from drystone_lab.public.tables import SHAKE, BenchResult
+from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.spec import Changes
 from drystone_lab.table import Table
 
@@ -69,7 +69,7 @@ class Stamp:
     platform: str
 
 
-def kept_run(result: Result, outcome: Outcome, changes: Changes, stamp: Stamp) -> KeptRun:
+def kept_run(result: BenchResult, outcome: RunOutcome, changes: Changes, stamp: Stamp) -> KeptRun:
     """Return the row of a run; `changes` replaced settings for all methods alike."""
     figures, wall = outcome.figures, result.wall
     names = ("F_SF", "F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH", "wedge_area")

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.stats import rankdata, wilcoxon
 
 from drystone_lab.paired import COVERED, interval_of
-from drystone_lab.runs.outcome import Outcome
+from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import Target
 
@@ -32,7 +32,7 @@ DECIMALS = 9
 
 
 @dataclass(frozen=True, eq=False)
-class Result:
+class BenchResult:
     """A wall that a method built."""
 
     wall: Target
@@ -44,7 +44,7 @@ class Result:
     seconds: float  # From the stones to the last step
 
     @classmethod
-    def of(cls, wall: Target, method: str, seed: int, outcome: Outcome) -> "Result":
+    def of(cls, wall: Target, method: str, seed: int, outcome: RunOutcome) -> "BenchResult":
         """Take the figures of an outcome."""
         found = outcome.figures
         figures: dict[str, float | None] = {name: found[name] for name in FIGURES[1:]}
@@ -54,10 +54,10 @@ class Result:
 
 
 @dataclass(frozen=True, eq=False)
-class Results:
+class BenchResults:
     """Results of every method on every wall with every seed."""
 
-    all: tuple[Result, ...]  # Of each method on each wall for the same seeds
+    all: tuple[BenchResult, ...]  # Of each method on each wall for the same seeds
 
     @property
     def walls(self) -> tuple[Target, ...]:
@@ -75,7 +75,7 @@ class Results:
         shaken = any(SHAKE in result.figures for result in self.all)
         return (*FIGURES, SHAKE) if shaken else FIGURES
 
-    def of(self, method: str, wall: Target | None = None) -> tuple[Result, ...]:
+    def of(self, method: str, wall: Target | None = None) -> tuple[BenchResult, ...]:
         """Return the results of a method on a wall or on all, in one order for all methods."""
         found = [r for r in self.all if r.method == method and wall in (None, r.wall)]
         order = {known: number for number, known in enumerate(self.walls)}
@@ -102,7 +102,7 @@ class Results:
         return tuple(counts)
 
 
-def _comparable(result: Result) -> tuple[float | None, ...]:
+def _comparable(result: BenchResult) -> tuple[float | None, ...]:
     """Return the figures without the rounding errors of sums."""
     figures = (result.figures[name] for name in sorted(result.figures))
     return tuple(None if value is None else round(value, DECIMALS) for value in figures)
@@ -112,7 +112,7 @@ UNITS = {PLACED: "placed share", SHAKE: "PGA, g"}
 """Figures that are written otherwise in tables."""
 
 
-def comparison(results: Results) -> tuple[Table, ...]:
+def comparison(results: BenchResults) -> tuple[Table, ...]:
     """Return the figures of every method on every wall, on all walls, and the times."""
     walls = Table(
         "Walls: mean over seeds, standard deviation (±), best",
@@ -149,7 +149,7 @@ def _columns(figures: Sequence[str]) -> tuple[str, ...]:
     return tuple(text for name, short in named for text in (name, f"±{short}", f"best {short}"))
 
 
-def _cells(figures: Sequence[str], walls: Sequence[Sequence[Result]]) -> tuple[Cell, ...]:
+def _cells(figures: Sequence[str], walls: Sequence[Sequence[BenchResult]]) -> tuple[Cell, ...]:
     """Return mean, spread and best of every figure; None where no wall of the method has it."""
     cells: list[Cell] = []
     for figure in figures:
@@ -170,7 +170,7 @@ def _cells(figures: Sequence[str], walls: Sequence[Sequence[Result]]) -> tuple[C
 _NOT_SHAKEN = "nothing was built, or it does not stand at rest in the engine"
 
 
-def _undefined(results: Results) -> tuple[str, ...]:
+def _undefined(results: BenchResults) -> tuple[str, ...]:
     """Say how many walls have no value of a figure, which is left out of means and never 0."""
     notes = []
     for figure in results.figures:
@@ -188,7 +188,7 @@ def _undefined(results: Results) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _times(results: Results) -> Table:
+def _times(results: BenchResults) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for wall in results.walls:
         for method in results.methods:
@@ -274,7 +274,7 @@ def holm(p_values: Sequence[float]) -> list[float]:
     return corrected
 
 
-def pair_tables(results: Results) -> tuple[Table, ...]:
+def pair_tables(results: BenchResults) -> tuple[Table, ...]:
     """Return the differences of all pairs of methods, a table a figure, and the ranking."""
     if len(results.methods) < 2:
         return ()
@@ -291,19 +291,19 @@ def pair_tables(results: Results) -> tuple[Table, ...]:
     return (*tables, _ranking(results, known, p))
 
 
-Key = tuple[str, str, str]
+PairKey = tuple[str, str, str]
 """Figure, first method, second method."""
 
 
 def _compared(
-    results: Results, figure: str, pair: tuple[str, str], counting: Sequence[bool]
+    results: BenchResults, figure: str, pair: tuple[str, str], counting: Sequence[bool]
 ) -> MethodPair | None:
     first, second = (list(compress(results.values(name, figure), counting)) for name in pair)
     return compared(first, second, higher=HIGHER_IS_BETTER[figure])
 
 
 def _pairs_table(
-    figure: str, known: dict[Key, MethodPair], p: dict[Key, float], *, copies: bool
+    figure: str, known: dict[PairKey, MethodPair], p: dict[PairKey, float], *, copies: bool
 ) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for key, pair in known.items():
@@ -346,7 +346,9 @@ def _too_few(pairs: int, tests: int, *, copies: bool) -> tuple[str, ...]:
     )
 
 
-def _ranking(results: Results, known: dict[Key, MethodPair], p: dict[Key, float]) -> Table:
+def _ranking(
+    results: BenchResults, known: dict[PairKey, MethodPair], p: dict[PairKey, float]
+) -> Table:
     """Rank the methods by their mean rank over figures, walls and seeds."""
     per_figure = {figure: _mean_ranks(results, figure) for figure in results.figures}
     overall = {m: fmean(ranks[m] for ranks in per_figure.values()) for m in results.methods}
@@ -373,7 +375,7 @@ def _ranking(results: Results, known: dict[Key, MethodPair], p: dict[Key, float]
     )
 
 
-def _mean_ranks(results: Results, figure: str) -> dict[str, float]:
+def _mean_ranks(results: BenchResults, figure: str) -> dict[str, float]:
     sign = -1.0 if HIGHER_IS_BETTER[figure] else 1.0
     columns = [results.values(method, figure) for method in results.methods]
     ranks = [
@@ -385,7 +387,7 @@ def _mean_ranks(results: Results, figure: str) -> dict[str, float]:
 
 
 def _not_told_apart(
-    method: str, order: Sequence[str], figures: Sequence[str], shown: set[Key]
+    method: str, order: Sequence[str], figures: Sequence[str], shown: set[PairKey]
 ) -> str | None:
     place = order.index(method)
     if place + 1 == len(order):
@@ -399,13 +401,13 @@ def _not_told_apart(
     return ", ".join(same) or "none"
 
 
-def _shown(key: Key, pair: MethodPair, p: float) -> str:
+def _shown(key: PairKey, pair: MethodPair, p: float) -> str:
     if pair.holds_zero:
         return "nothing"
     return _better(key, pair) if p < LEVEL else f"{_better(key, pair)}?"
 
 
-def _better(key: Key, pair: MethodPair) -> str:
+def _better(key: PairKey, pair: MethodPair) -> str:
     first_is_higher = pair.mean > 0
     return key[1] if first_is_higher == HIGHER_IS_BETTER[key[0]] else key[2]
 

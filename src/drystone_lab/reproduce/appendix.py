@@ -8,8 +8,8 @@ from itertools import pairwise
 from drystone.model.wall import Wall
 from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import METRICS, metric_cells
-from drystone_lab.reproduce.item import Context, Item, Picture, paper
-from drystone_lab.reproduce.study import Built, Trials, built
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
+from drystone_lab.reproduce.study import StudyWalls, Trials, built
 from drystone_lab.runs.spec import Changes, from_file, generated
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import TWO_SIDED, Target
@@ -31,7 +31,7 @@ class Brick:
 
 
 @dataclass(frozen=True)
-class Courses:
+class BrickCourses:
     """What the courses of a wall are like."""
 
     bricks: int
@@ -56,7 +56,7 @@ def bricks_of(wall: Wall) -> tuple[Brick, ...]:
     return tuple(bricks)
 
 
-def courses_of(bricks: Sequence[Brick], height_px: int, width_px: int) -> Courses:
+def courses_of(bricks: Sequence[Brick], height_px: int, width_px: int) -> BrickCourses:
     """Look at the courses of equal bricks, of the size of one that lies.
 
     >>> low = [Brick(0, 20, 0, 10, True), Brick(20, 40, 0, 10, True)]
@@ -78,7 +78,7 @@ def courses_of(bricks: Sequence[Brick], height_px: int, width_px: int) -> Course
         crossed += sum(
             all(abs(place - other) >= OVERLAP * width_px for other in beside) for place in places
         )
-    return Courses(len(bricks), len(lying), len(level), len(by_course), count, crossed)
+    return BrickCourses(len(bricks), len(lying), len(level), len(by_course), count, crossed)
 
 
 def head_joints(course: Sequence[Brick]) -> list[float]:
@@ -122,7 +122,7 @@ MOST_PX = 96_000
 """Pixels of the wall of a user's stones at the working resolution, at most."""
 
 
-def irregular_walls(context: Context) -> Built:
+def irregular_walls(context: Context) -> StudyWalls:
     """Build a wall from one end and from both; of a user's own stones where there are any."""
     wall = QUICK if context.quick else GENERATED
     if context.image is not None:
@@ -142,7 +142,7 @@ def wall_of_image(context: Context) -> Target:
     return Target(context.image.name, source, 0.0, 0.0, scale)
 
 
-def _irregular_table(found: Built) -> Table:
+def _irregular_table(found: StudyWalls) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for one in found:
         outcome = one.outcomes[0]
@@ -158,16 +158,16 @@ def _irregular_table(found: Built) -> Table:
     return Table("Walls of many irregular stones", columns, tuple(rows))
 
 
-def _irregular_picture(found: Built) -> Picture:
+def _irregular_picture(found: StudyWalls) -> ItemPicture:
     walls = [found.titled(one, f"{found.name}, from {one.way}") for one in found]
-    return Picture(
+    return ItemPicture(
         "figB33", plot_walls(walls, 2),
         f"Walls of {found.name}, built from one end and from both; stones of one cluster have "
         "one colour, numbers are the order of placement, wedges are dark red.",
     )  # fmt: skip
 
 
-IRREGULAR = Item(
+IRREGULAR = PaperItem(
     **paper("figB33"),
     study=irregular_walls,
     tables={"walls": _irregular_table},
@@ -232,7 +232,7 @@ def _bricks_table(found: Bricks) -> Table:
     )  # fmt: skip
 
 
-def _bricks_picture(found: Bricks) -> Picture:
+def _bricks_picture(found: Bricks) -> ItemPicture:
     walls = []
     for aspect, one, wall in found:
         outcome = one.outcomes[0]
@@ -240,14 +240,14 @@ def _bricks_picture(found: Bricks) -> Picture:
         colours = {brick: number for number, brick in enumerate(sorted(outcome.clusters), 1)}
         title = f"aspect {aspect:g}, from {one.way}: F_SF {outcome.figures['F_SF']:.2f}"
         walls.append((title, wall, colours))
-    return Picture(
+    return ItemPicture(
         "figB34", plot_walls(walls, len(ASPECTS)),
         "Walls of bricks of aspect 2 and 3, coloured for differentiation and numbered in order of "
         "placement.",
     )  # fmt: skip
 
 
-BRICKS = Item(
+BRICKS = PaperItem(
     **paper("figB34"),
     study=brick_walls,
     tables={"walls": _bricks_table},

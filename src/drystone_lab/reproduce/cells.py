@@ -6,7 +6,7 @@ from statistics import median
 
 from scipy.stats import spearmanr
 
-from drystone_lab.runs.outcome import Outcome
+from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.table import Cell, Table
 
 FORMATS = {"placed": ".0f", "F_SF": ".3f", "F_AV": ".1f", "F_AH": ".2f", "F_LR": ".2f"}
@@ -26,7 +26,7 @@ DIGITS = 4
 """Decimals of a number in a table, which all machines agree on."""
 
 
-def summary(outcomes: Sequence[Outcome]) -> tuple[Cell, ...]:
+def summary(outcomes: Sequence[RunOutcome]) -> tuple[Cell, ...]:
     """Return the cells of :data:`COLUMNS` of walls of the same stones; None for what none has."""
     found: list[Cell] = [len(outcomes), outcomes[0].figures["stones"]]
     for name, written in FORMATS.items():
@@ -36,13 +36,13 @@ def summary(outcomes: Sequence[Outcome]) -> tuple[Cell, ...]:
     return tuple(found)
 
 
-def figures_of(outcomes: Sequence[Outcome], name: str) -> list[float]:
+def figures_of(outcomes: Sequence[RunOutcome], name: str) -> list[float]:
     """Return a figure of the walls that have it, in their order."""
     values = (outcome.figures[name] for outcome in outcomes)
     return [float(value) for value in values if value is not None]
 
 
-def metric_cells(outcome: Outcome) -> tuple[Cell, ...]:
+def metric_cells(outcome: RunOutcome) -> tuple[Cell, ...]:
     """Return F_SF, F_AV, F_AH and F_LR of a wall as cells of a table."""
     return tuple(rounded(outcome.figures[name]) for name in METRICS)
 
@@ -148,7 +148,7 @@ def trend(pairs: Sequence[tuple[float, float | None]]) -> Trend | None:
 
 
 @dataclass(frozen=True)
-class Finding:
+class ClaimCheck:
     """One claim of the paper, what our walls say of it, and whether that agrees (None: unknown)."""
 
     claim: str
@@ -156,13 +156,13 @@ class Finding:
     holds: bool | None
 
 
-def findings_table(title: str, findings: Sequence[Finding]) -> Table:
+def findings_table(title: str, findings: Sequence[ClaimCheck]) -> Table:
     """Return claims and findings as a table."""
     rows = tuple((each.claim, each.found, each.holds) for each in findings)
     return Table(title, ("the paper", "here", "agrees"), rows)
 
 
-def sentences(findings: Sequence[Finding]) -> tuple[str, ...]:
+def sentences(findings: Sequence[ClaimCheck]) -> tuple[str, ...]:
     """Return of how many claims the walls agree with the paper, and a paragraph each.
 
     >>> sentences([Finding("Walls are low.", "2 px.", True)])[0]

@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import Any, Literal
 
 from drystone.errors import DrystoneError, InputError
-from drystone_lab.reproduce.folder import Clock, ReportFolder, made_with, request_of, utc_now
-from drystone_lab.reproduce.item import Context, Item, Output
+from drystone_lab.reproduce.folder import ReportFolder, TimeOfDay, made_with, request_of, utc_now
+from drystone_lab.reproduce.item import Context, Output, PaperItem
 from drystone_lab.reproduce.items import ITEMS, item_named
 from drystone_lab.runs.outcome import RunStore
-from drystone_lab.runs.runner import Runner, Work, absent_data, one_by_one
+from drystone_lab.runs.runner import Runner, RunWorker, absent_data, one_by_one
 from drystone_lab.runs.spec import published
 
-Status = Literal["made", "kept", "missing data", "failed"]
+ItemStatus = Literal["made", "kept", "missing data", "failed"]
 
 EVERY_S = 2.0
 """Walls are told of no oftener than that."""
@@ -31,32 +31,35 @@ class Options:
     image: Path | None = None
     # Make items again that are finished; their walls are taken from the folder all the same
     again: bool = False
-    work: Work = one_by_one  # Who plans the walls
+    work: RunWorker = one_by_one  # Who plans the walls
     say: Callable[[str], None] = lambda _: None  # Told of progress, a line each
-    now: Clock = utc_now  # Gives the time of day that is written into the report
+    now: TimeOfDay = utc_now  # Gives the time of day that is written into the report
 
 
 @dataclass(frozen=True, eq=False)
-class Made:
+class MadeItem:
     """What became of an item."""
 
     name: str
-    status: Status  # "kept" when it was finished before
+    status: ItemStatus  # "kept" when it was finished before
     record: Mapping[str, Any] | None  # Contents of its JSON, None when there is none
     error: DrystoneError | None  # Why there is none
     page: Path  # Its page, if it was made
 
 
 def reproduce(
-    names: Sequence[str], folder: Path, options: Options, items: Mapping[str, Item] | None = None
-) -> Iterator[Made]:
+    names: Sequence[str],
+    folder: Path,
+    options: Options,
+    items: Mapping[str, PaperItem] | None = None,
+) -> Iterator[MadeItem]:
     """Make items and yield what became of each; the report is written anew after every one."""
     items = {name: item_named(name) for name in ITEMS} if items is None else items
     request = request_of(
         quick=options.quick, seed=options.seed, image=options.image, data=options.data
     )
     report = ReportFolder(folder)
-    progress = Progress(options.say, len(names))
+    progress = ItemProgress(options.say, len(names))
     runner = Runner(report.runs, options.data, options.work, progress.walls)
     maker = _Maker(report, options, request, runner)
     for name in names:
@@ -67,7 +70,7 @@ def reproduce(
         yield made
 
 
-class Progress:
+class ItemProgress:
     """Says which item is made, and how many of its walls are there."""
 
     def __init__(
@@ -113,24 +116,24 @@ class _Maker:
     request: Mapping[str, Any]
     runner: Runner
 
-    def made(self, name: str, items: Mapping[str, Item]) -> Made:
+    def made(self, name: str, items: Mapping[str, PaperItem]) -> MadeItem:
         """Return what becomes of an item: it is kept, made, or there is an error."""
         page = self.report.page(name)
         kept = None if self.options.again else self.report.finished(name, self.request)
         if kept is not None:
             self.report.forget_miss(name)
-            return Made(name, "kept", kept, None, page)
+            return MadeItem(name, "kept", kept, None, page)
         item = items[name]
         if (absent := self._absent(item)) is not None:
             self.report.miss(name, item, absent)
-            return Made(name, "missing data", None, absent, page)
+            return MadeItem(name, "missing data", None, absent, page)
         try:
-            return Made(name, "made", self._make(name, item), None, page)
+            return MadeItem(name, "made", self._make(name, item), None, page)
         except DrystoneError as error:
             self.report.miss(name, item, error)
-            return Made(name, "failed", None, error, page)
+            return MadeItem(name, "failed", None, error, page)
 
-    def _make(self, name: str, item: Item) -> dict[str, Any]:
+    def _make(self, name: str, item: PaperItem) -> dict[str, Any]:
         begun = time.perf_counter()
         context = Context(self.runner, self.options.quick, self.options.seed, self.options.image)
         output = item.make(context)
@@ -141,7 +144,7 @@ class _Maker:
         }
         return self.report.keep(name, item, output, about)
 
-    def _absent(self, item: Item) -> InputError | None:
+    def _absent(self, item: PaperItem) -> InputError | None:
         """Return the error about published stones that an item needs and that are not there."""
         data = self.options.data
         absent = [name for name in item.needs if not published(name).is_there(data)]

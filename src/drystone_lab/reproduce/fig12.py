@@ -21,8 +21,8 @@ from drystone.drawing.pictures.stones import plot_labels
 from drystone.kernels.boundary import EMPTY, boundary_of
 from drystone.model.wall import Labels, Wall
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
-from drystone_lab.reproduce.cells import Finding
-from drystone_lab.reproduce.item import Context, Item, Picture, paper
+from drystone_lab.reproduce.cells import ClaimCheck
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
 
@@ -190,7 +190,7 @@ def _interfaces(found: Blocks) -> Table:
     )  # fmt: skip
 
 
-def _picture(found: Blocks) -> Picture:
+def _picture(found: Blocks) -> ItemPicture:
     labels, model = found.labels, found.model
     figure = Figure(figsize=(PANEL_IN[0], 3 * PANEL_IN[1]), layout="constrained")
     first, second, third = figure.subplots(3, 1)
@@ -199,7 +199,7 @@ def _picture(found: Blocks) -> Picture:
     second.set_title("(b) edges between blocks, and their normals", fontsize=9, loc="left")
     plot_blocks(labels, model, third)
     third.set_title("(c) rigid blocks", fontsize=9, loc="left")
-    return Picture(
+    return ItemPicture(
         "fig12", figure,
         f"Pic-to-Ri on three stones of {found.wall.name}: (a) label image, (b) pixel edges between "
         "two stones or a stone and the ground with their normals, (c) interfaces with their end "
@@ -207,9 +207,9 @@ def _picture(found: Blocks) -> Picture:
     )  # fmt: skip
 
 
-def _claims(found: Blocks) -> Iterator[Finding]:
+def _claims(found: Blocks) -> Iterator[ClaimCheck]:
     angles = sorted(_apart_deg(i) for i in found.whole.interfaces if len(i.points) == 2)
-    yield Finding(
+    yield ClaimCheck(
         "The normal of an interface is the mean of the normals of its pixels.",
         "the planner takes that of the fitted line, which differs by more than "
         f"{TILTED_DEG:g} degree in {sum(angle > TILTED_DEG for angle in angles)} of {len(angles)} "
@@ -218,7 +218,7 @@ def _claims(found: Blocks) -> Iterator[Finding]:
     )
 
 
-PIC_TO_RI = Item(
+PIC_TO_RI = PaperItem(
     **paper("fig12"),
     study=blocks,
     claims=_claims,

@@ -20,7 +20,7 @@ from drystone.metrics.paths import (
 )
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
-from drystone_lab.reproduce.item import Context, Item, Picture, paper
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
 
@@ -105,7 +105,7 @@ def _paths(walls: Sequence[Paths]) -> Table:
     )
 
 
-def _picture(paths: Paths, number: int) -> Picture:
+def _picture(paths: Paths, number: int) -> ItemPicture:
     figure = Figure(figsize=(PANEL_IN[0], 2 * PANEL_IN[1]), layout="constrained")
     pad = np.array([PAD_TOP, PAD_LEFT])
     for ax, found, count, way in zip(
@@ -116,7 +116,7 @@ def _picture(paths: Paths, number: int) -> Picture:
         plot_joint_paths(paths.labels, [path.pixels - pad for path in shown], ax)
         lengths = ", ".join(f"{path.length_px:.0f}" for path in shown)
         ax.set_title(f"{paths.name}: {way} paths of {lengths} px", fontsize=8, loc="left")
-    return Picture(
+    return ItemPicture(
         "fig17" if number == 0 else "fig17-masons", figure,
         f"The shortest paths along the joints, {paths.name}: {len(paths.across[:ACROSS])} "
         f"horizontal and {len(paths.upright[:UPRIGHT])} vertical ones. F_AH and F_AV come from the "
@@ -124,7 +124,7 @@ def _picture(paths: Paths, number: int) -> Picture:
     )  # fmt: skip
 
 
-PATHS = Item(
+PATHS = PaperItem(
     **paper("fig17"),
     study=walls,
     tables={"figures": _figures, "paths": _paths},

@@ -20,9 +20,9 @@ from drystone.kernels.merits import eq12_merits
 from drystone.kernels.raster import Mask
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Labels
-from drystone_lab.reproduce.cells import Finding
+from drystone_lab.reproduce.cells import ClaimCheck
 from drystone_lab.reproduce.construction import Moment, amid_course, construction
-from drystone_lab.reproduce.item import Context, Item, Picture, paper
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
 
@@ -158,7 +158,7 @@ def _overlap(picture: Mask, mask: Mask) -> NDArray[np.int64]:
 
 
 @dataclass(frozen=True, eq=False)
-class Trial:
+class PositionTrial:
     """A stone of a run on what was built before it: its positions, and the one that is tried."""
 
     wall: Target
@@ -190,17 +190,17 @@ class Trial:
         return np.argwhere(self.maps.touching).astype(np.int64)
 
 
-def trial(context: Context, wall: Target = PR) -> Trial:
+def trial(context: Context, wall: Target = PR) -> PositionTrial:
     """Find the positions of a stone of the run on what was built before it."""
     spec = wall.run(context.seed)
     moment, place = amid_course(construction(context, spec))
     found = moment.trial(place.posed.stone.id)
     if found is None:
         raise RuntimeError("a stone of the run fits nowhere where it was placed")
-    return Trial(wall, moment, found[0], found[1:])
+    return PositionTrial(wall, moment, found[0], found[1:])
 
 
-def _table(found: Trial) -> Table:
+def _table(found: PositionTrial) -> Table:
     posed, maps, height = found.posed, found.maps, found.moment.landscape.height_px
     value = float(found.values(np.array([found.chosen], np.int64))[0])
     sets: list[tuple[str, int, tuple[int, int, float] | None]] = [
@@ -224,7 +224,7 @@ def _table(found: Trial) -> Table:
     )
 
 
-def _best(found: Trial, positions: Positions) -> tuple[int, int, float]:
+def _best(found: PositionTrial, positions: Positions) -> tuple[int, int, float]:
     """Return the position of the largest value; of equal ones the lower, then the left one."""
     values = found.values(positions)
     order = np.lexsort((positions[:, 1], -positions[:, 0], -np.round(values, 12)))
@@ -232,7 +232,7 @@ def _best(found: Trial, positions: Positions) -> tuple[int, int, float]:
     return row, col, float(values[order[0]])
 
 
-def _drawn(found: Trial) -> Picture:
+def _drawn(found: PositionTrial) -> ItemPicture:
     moment, posed, maps, resting = found.moment, found.posed, found.maps, found.resting
     figure = Figure(figsize=(PANEL_IN[0], 3 * PANEL_IN[1]), layout="constrained")
     first, second, third = figure.subplots(3, 1)
@@ -246,7 +246,7 @@ def _drawn(found: Trial) -> Picture:
     rests = Layer(bearing, "#000000", "resting on something from below")
     plot_position_layers(labels, posed, (touching, rests), second)
     plot_position_values(labels, posed, resting, found.values(resting), found.chosen, third)
-    return Picture(
+    return ItemPicture(
         "fig8", figure,
         f"Positions of stone {posed.stone.id} on {len(moment.wall.placements)} stones of "
         f"{found.wall.name}, each drawn where the stone's centroid would be. Top: no overlap, and "
@@ -255,10 +255,10 @@ def _drawn(found: Trial) -> Picture:
     )  # fmt: skip
 
 
-def _claims(found: Trial) -> Iterator[Finding]:
+def _claims(found: PositionTrial) -> Iterator[ClaimCheck]:
     resting = found.resting
     inside = int(np.count_nonzero(found.maps.touching[resting[:, 0], resting[:, 1]]))
-    yield Finding(
+    yield ClaimCheck(
         "The difference of both convolutions gives the feasible positions.",
         f"it holds {inside} of the {len(resting)} at which the stone rests on something, and "
         f"{len(found.touching) - inside} more.",
@@ -266,7 +266,7 @@ def _claims(found: Trial) -> Iterator[Finding]:
     )
 
 
-POSITIONS = Item(
+POSITIONS = PaperItem(
     **paper("fig8"),
     study=trial,
     claims=_claims,

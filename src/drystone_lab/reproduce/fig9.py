@@ -10,9 +10,9 @@ from drystone.model.placement import Wedge
 from drystone.stabilise.rotate import rotate_to_rest
 from drystone.stabilise.stabilise import WedgeStock, make_stable
 from drystone.stabilise.support import Pose, falling_side, support_polyline
-from drystone_lab.pictures.support import Standing, plot_standing, window_around
+from drystone_lab.pictures.support import SupportedStone, plot_standing, window_around
 from drystone_lab.reproduce.construction import Construction, Moment, construction
-from drystone_lab.reproduce.item import Context, Item, Picture, paper
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
 
@@ -22,10 +22,14 @@ class Unstable:
     """A stone that falls where the rule of placement puts it."""
 
     moment: Moment
-    trial: Standing  # The stone there
-    turned: Standing | None  # Where it rests after turning; None when it meets the landscape before
+    trial: SupportedStone  # The stone there
+    turned: (
+        SupportedStone | None
+    )  # Where it rests after turning; None when it meets the landscape before
     pivots: int  # About how many points it was turned
-    wedged: Standing | None  # In its place on wedges; None when no wedge within the limits holds it
+    wedged: (
+        SupportedStone | None
+    )  # In its place on wedges; None when no wedge within the limits holds it
 
     @property
     def stone_id(self) -> int:
@@ -69,7 +73,7 @@ def unstable_trials(built: Construction) -> tuple[int, tuple[Unstable, ...]]:
     return count, tuple(found)
 
 
-def _treated(moment: Moment, trial: Standing) -> Unstable:
+def _treated(moment: Moment, trial: SupportedStone) -> Unstable:
     """Turn a stone that falls, and wedge it instead."""
     occupied, workshop = moment.wall.occupied, moment.workshop
     settings = moment.settings.stabilise
@@ -83,7 +87,7 @@ def _treated(moment: Moment, trial: Standing) -> Unstable:
     return Unstable(moment, trial, turned, rotation.pivots, wedged)
 
 
-def _standing(moment: Moment, pose: Pose, wedges: tuple[Wedge, ...] = ()) -> Standing | None:
+def _standing(moment: Moment, pose: Pose, wedges: tuple[Wedge, ...] = ()) -> SupportedStone | None:
     """Return a stone on what is there and its wedges; None when nothing supports it."""
     scene = moment.wall.occupied.copy()
     for wedge in wedges:
@@ -92,7 +96,7 @@ def _standing(moment: Moment, pose: Pose, wedges: tuple[Wedge, ...] = ()) -> Sta
     if support is None:
         return None
     falls = falling_side(support, pose, moment.settings.stabilise)
-    return Standing(pose, support, falls, wedges, len(scene))
+    return SupportedStone(pose, support, falls, wedges, len(scene))
 
 
 PANEL_IN = (3.1, 2.3)
@@ -180,7 +184,7 @@ def _cases(shown: Sequence[Unstable]) -> Table:
     )  # fmt: skip
 
 
-def _row(case: Unstable, pose: str, standing: Standing) -> tuple[Cell, ...]:
+def _row(case: Unstable, pose: str, standing: SupportedStone) -> tuple[Cell, ...]:
     a, b = standing.ends
     points = [f"{x:.4g}, {y:.4g}" for x, y in (a, b, standing.mass)]
     turn: Cell = case.turn_deg if pose == "turned" else None
@@ -192,13 +196,13 @@ def _row(case: Unstable, pose: str, standing: Standing) -> tuple[Cell, ...]:
     return (case.stone_id, case.moment.number, pose, *points, cross, turn, pivots, *size)
 
 
-def _picture(shown: Sequence[Unstable], name: str) -> Picture:
+def _picture(shown: Sequence[Unstable], name: str) -> ItemPicture:
     size = (3 * PANEL_IN[0], len(shown) * PANEL_IN[1])
     figure = Figure(figsize=size, layout="constrained")
     panels = figure.subplots(len(shown), 3, squeeze=False)
     for axes, case in zip(panels.tolist(), shown, strict=True):
         _draw_case(axes, case)
-    return Picture(
+    return ItemPicture(
         "fig9", figure,
         f"Stones that fall where they are tried, in a run of {name}: A and B are the ends of the "
         "support, A the one nearer to the centre of mass C, C' its projection; the arrow is the "
@@ -223,7 +227,7 @@ def _draw_case(axes: Sequence[Axes], case: Unstable) -> None:
                     size=8, transform=ax.transAxes)  # fmt: skip
 
 
-STABILISING = Item(
+STABILISING = PaperItem(
     **paper("fig9"),
     study=falls,
     tables={"counts": _counts, "cases": lambda found: _cases(found.shown)},

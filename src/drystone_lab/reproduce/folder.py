@@ -19,7 +19,7 @@ from drystone.io.folder_lock import has_files
 from drystone.io.published_sets import SETS
 from drystone.kernels.backend import describe
 from drystone.whole_files import write_whole
-from drystone_lab.reproduce.item import Item, Output, Picture
+from drystone_lab.reproduce.item import ItemPicture, Output, PaperItem
 from drystone_lab.reproduce.page import PAGE, Miss, write_item_page, write_page
 from drystone_lab.runs.outcome import RunStore
 from drystone_lab.table import Table
@@ -29,7 +29,7 @@ PACKAGES = (
 )  # fmt: skip
 """That results depend on, beside drystone itself."""
 
-Clock = Callable[[], datetime]
+TimeOfDay = Callable[[], datetime]
 
 
 def utc_now() -> datetime:
@@ -64,7 +64,7 @@ def is_met(request: Mapping[str, Any], made: Mapping[str, Any]) -> bool:
     return same and {*request["published"]} <= {*made["published"]}
 
 
-def made_with(now: Clock) -> dict[str, Any]:
+def made_with(now: TimeOfDay) -> dict[str, Any]:
     """Return when, and on what kind of machine with what packages, something is made."""
     return {
         "date": now().strftime("%Y-%m-%d %H:%M UTC"),
@@ -105,7 +105,7 @@ def write_tables(folder: Path, output: Output) -> dict[str, list[dict[str, Any]]
     }
 
 
-def write_picture(folder: Path, picture: Picture) -> dict[str, Any]:
+def write_picture(folder: Path, picture: ItemPicture) -> dict[str, Any]:
     """Write a picture as PNG and SVG; return its names, size in px and caption for JSON."""
     png, svg = f"{picture.name}.png", f"{picture.name}.svg"
     for name in (png, svg):
@@ -188,7 +188,7 @@ class ReportFolder:
         return record if record is not None and is_met(request, record["request"]) else None
 
     def keep(
-        self, name: str, item: Item, output: Output, about: Mapping[str, Any]
+        self, name: str, item: PaperItem, output: Output, about: Mapping[str, Any]
     ) -> dict[str, Any]:
         """Write the files of an item in place of those of an earlier one; its JSON comes last."""
         folder = self.path / name
@@ -213,7 +213,7 @@ class ReportFolder:
         self.forget_miss(name)
         return record
 
-    def miss(self, name: str, item: Item, error: DrystoneError) -> None:
+    def miss(self, name: str, item: PaperItem, error: DrystoneError) -> None:
         """Note why an item cannot be made."""
         text = {"title": item.title, "section": item.section, "error": str(error)}
         self._write_misses({**self.misses, name: text})

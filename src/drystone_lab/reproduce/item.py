@@ -9,8 +9,8 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from drystone.model.wall import Wall
-from drystone_lab.reproduce.cells import Finding, findings_table, sentences
-from drystone_lab.runs.outcome import Outcome
+from drystone_lab.reproduce.cells import ClaimCheck, findings_table, sentences
+from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.runner import Runner
 from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Table
@@ -38,7 +38,7 @@ class Context:
         """Folder of the published data."""
         return self.runner.data
 
-    def run(self, specs: Sequence[RunSpec]) -> tuple[Outcome, ...]:
+    def run(self, specs: Sequence[RunSpec]) -> tuple[RunOutcome, ...]:
         """Return the outcomes of runs, in their order."""
         self.asked.extend(specs)
         return self.runner.run(specs)
@@ -50,7 +50,7 @@ class Context:
 
 
 @dataclass(frozen=True, eq=False)
-class Picture:
+class ItemPicture:
     """A figure of an item; written as NAME.png and NAME.svg."""
 
     name: str
@@ -71,12 +71,12 @@ class Output:
     tables: tuple[tuple[str, Table], ...] = ()
     # Tables of measured times, which differ from machine to machine and run to run
     times: tuple[tuple[str, Table], ...] = ()
-    pictures: tuple[Picture, ...] = ()
+    pictures: tuple[ItemPicture, ...] = ()
     runs: tuple[RunSpec, ...] = ()  # That the item is made of, for its JSON
 
 
 @dataclass(frozen=True, kw_only=True)
-class Item:
+class PaperItem:
     """A table or figure of the paper: data, and what is read off it."""
 
     title: str
@@ -88,11 +88,11 @@ class Item:
     study: Callable[[Context], Any]
     notes: tuple[str, ...] = ()  # What a reader of the results must know; a paragraph each
     # Compares what was found with claims of the paper; they are a table too
-    claims: Callable[[Any], Iterable[Finding]] = lambda _: ()
+    claims: Callable[[Any], Iterable[ClaimCheck]] = lambda _: ()
     # tables, times: By the name of the CSV file; times differ from machine to machine
     tables: Mapping[str, Callable[[Any], Table]] = field(default_factory=dict)
     times: Mapping[str, Callable[[Any], Table]] = field(default_factory=dict)
-    pictures: Callable[[Any], Sequence[Picture]] = lambda _: ()  # Draws
+    pictures: Callable[[Any], Sequence[ItemPicture]] = lambda _: ()  # Draws
     # Published stones without which it cannot be made, as paths in their folder
     needs: tuple[str, ...] = ()
 

@@ -22,7 +22,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone_lab.pictures.walls import masonry_panel, sheet_of
 from drystone_lab.reproduce.cells import METRICS, rounded
-from drystone_lab.reproduce.item import Context, Item, Picture, paper
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import MASONS, Target
 
@@ -118,7 +118,7 @@ PAPERS_WAY = "drawn together and dilated (the paper's way)"
 
 
 @dataclass(frozen=True, eq=False)
-class MasonsWall:
+class TracedWall:
     """A wall of masons as it was traced, at the working scale, and the cluster of each stone."""
 
     wall: Target
@@ -140,16 +140,16 @@ class Treatment:
     status: str
 
 
-def masons_wall(wall: Target, data: Path | None) -> MasonsWall:
+def masons_wall(wall: Target, data: Path | None) -> TracedWall:
     """Read a published wall and bring it to the working scale."""
     if data is None:
         raise FileNotFoundError(wall.source.name)
     stones = wall.source.stones(data)
     labels = reduce_labels(read_wall_image(published_file(data, wall.source.name)), wall.scale)
-    return MasonsWall(wall, labels, cluster_stones(stones, PoseBook(wall.scale)))
+    return TracedWall(wall, labels, cluster_stones(stones, PoseBook(wall.scale)))
 
 
-def treatments(wall: MasonsWall) -> tuple[Treatment, ...]:
+def treatments(wall: TracedWall) -> tuple[Treatment, ...]:
     """Return F_LR of a wall as it was traced and with its gaps treated in all ways."""
     labels = wall.labels
     models = {
@@ -178,16 +178,16 @@ def _treated(name: str, model: RigidBlockModel) -> Treatment:
     return Treatment(name, both.value, str(told.status))
 
 
-Walls = Sequence[tuple[MasonsWall, tuple[Treatment, ...]]]
+TreatedWalls = Sequence[tuple[TracedWall, tuple[Treatment, ...]]]
 
 
-def treated_walls(context: Context, walls: Sequence[Target] = MASONS) -> Walls:
+def treated_walls(context: Context, walls: Sequence[Target] = MASONS) -> TreatedWalls:
     """Read walls, and treat their gaps in all ways."""
     found = [masons_wall(wall, context.data) for wall in walls]
     return [(wall, treatments(wall)) for wall in found]
 
 
-def _metrics(walls: Walls) -> Table:
+def _metrics(walls: TreatedWalls) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for each, _ in walls:
         for name, labels in (("as traced", each.labels), (PAPERS_WAY, each.papers_way)):
@@ -209,7 +209,7 @@ def _metrics(walls: Walls) -> Table:
     )
 
 
-def _resistance(walls: Walls) -> Table:
+def _resistance(walls: TreatedWalls) -> Table:
     return Table(
         "F_LR of the masons' walls by the treatment of their gaps",
         ("wall", "gaps", "F_LR", "status"),
@@ -225,7 +225,7 @@ def _resistance(walls: Walls) -> Table:
     )
 
 
-def _picture(walls: Walls) -> Picture:
+def _picture(walls: TreatedWalls) -> ItemPicture:
     panels = [
         masonry_panel(f"{each.wall.name}, {name}", labels, each.clusters, 1 / each.wall.scale)
         for each, _ in walls
@@ -234,7 +234,7 @@ def _picture(walls: Walls) -> Picture:
             ("drawn together, dilated", each.papers_way),
         )
     ]
-    return Picture(
+    return ItemPicture(
         "fig13",
         sheet_of(panels, 2),
         "Left as traced, right with the stones drawn to the bottom left corner and dilated by one "
@@ -242,7 +242,7 @@ def _picture(walls: Walls) -> Picture:
     )
 
 
-FIG13 = Item(
+FIG13 = PaperItem(
     **paper("fig13"),
     study=treated_walls,
     tables={"fig13": _metrics, "fig13_resistance": _resistance},

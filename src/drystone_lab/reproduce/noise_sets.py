@@ -39,7 +39,7 @@ GAP_RANGE = (0.5, 1.0, 1.5)
 
 
 @dataclass(frozen=True)
-class Reference:
+class ReferenceWall:
     """A published wall, measured as a label image."""
 
     stones: int
@@ -87,14 +87,14 @@ def generated_set(noise: int, count: int, scale: float) -> Target:
     return Target(name, source, width, height, scale, noise, stand_in=True)
 
 
-def reference_of(wall: Target, data: Path | None) -> Reference | None:
+def reference_of(wall: Target, data: Path | None) -> ReferenceWall | None:
     """Measure the published wall of some stones; None of generated ones, which were never built."""
     if wall.stand_in or data is None:
         return None
     return measured(read_wall_image(published_file(data, wall.source.name)), wall.scale)
 
 
-def measured(labels: Labels, scale: float) -> Reference:
+def measured(labels: Labels, scale: float) -> ReferenceWall:
     """Measure a label image as a wall that fills all of it, reduced by a scale."""
     reduced = reduce_labels(labels, scale)
     height, width = reduced.shape
@@ -107,4 +107,4 @@ def measured(labels: Labels, scale: float) -> Reference:
     resistances = tuple(
         lateral_resistance(model_with_closed_gaps(reduced, reach).model).value for reach in reaches
     )
-    return Reference(metrics.stones, metrics.F_SF, metrics.F_AV, metrics.F_AH, resistances)
+    return ReferenceWall(metrics.stones, metrics.F_SF, metrics.F_AV, metrics.F_AH, resistances)

@@ -8,8 +8,8 @@ from drystone.model.wall import Wall
 from drystone_lab.pictures.charts import group_panels
 from drystone_lab.pictures.walls import TitledWall, plot_walls
 from drystone_lab.reproduce import cells
-from drystone_lab.reproduce.item import Context, Picture
-from drystone_lab.runs.outcome import Outcome
+from drystone_lab.reproduce.item import Context, ItemPicture
+from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.spec import Changes, RunSpec
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import Target
@@ -30,7 +30,7 @@ class Study:
     quick_walls: tuple[Target, ...] = ()  # Of the quick version; empty for the same
     at_hand: bool = False  # Leave out sets whose stones are not there
 
-    def __call__(self, context: Context) -> "Built":
+    def __call__(self, context: Context) -> "StudyWalls":
         """Build the walls."""
         walls = (context.quick and self.quick_walls) or self.walls
         if self.at_hand:
@@ -46,7 +46,7 @@ class Trials:
     wall: Target
     way: str
     specs: tuple[RunSpec, ...]
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[RunOutcome, ...]
 
     def values(self, figure: str) -> tuple[float | None, ...]:
         """Return a figure of all of them; None where a wall has none."""
@@ -67,7 +67,7 @@ class Trials:
 
 
 @dataclass(frozen=True, eq=False)
-class Built:
+class StudyWalls:
     """The walls of a study: of the first set by every way, then of the next."""
 
     context: Context
@@ -83,11 +83,11 @@ class Built:
         return tuple(spec.seed for spec in self.all[0].specs)
 
     @property
-    def by_wall(self) -> tuple["Built", ...]:
+    def by_wall(self) -> tuple["StudyWalls", ...]:
         """The walls of each set."""
         walls = dict.fromkeys(trials.wall for trials in self.all)
         return tuple(
-            Built(self.context, tuple(one for one in self.all if one.wall == wall))
+            StudyWalls(self.context, tuple(one for one in self.all if one.wall == wall))
             for wall in walls
         )
 
@@ -125,14 +125,14 @@ class Built:
 
 def built(
     context: Context, walls: Sequence[Target], ways: Mapping[str, Changes], seeds: Sequence[int]
-) -> Built:
+) -> StudyWalls:
     """Build walls of every set, by every way, from every seed."""
     asked = [
         (wall, way, tuple(wall.run(seed, *changes) for seed in seeds))
         for wall in walls
         for way, changes in ways.items()
     ]
-    return Built(context, trials_of(context, asked))
+    return StudyWalls(context, trials_of(context, asked))
 
 
 def trials_of(
@@ -145,20 +145,20 @@ def trials_of(
     )
 
 
-Cells = Callable[[Trials], tuple[Cell, ...]]
+TrialCells = Callable[[Trials], tuple[Cell, ...]]
 
 
 def ways_table(
     title: str,
     heads: Sequence[str],
-    key: Cells,
+    key: TrialCells,
     more: Sequence[str] = (),
-    extra: Cells = lambda _: (),
+    extra: TrialCells = lambda _: (),
     notes: Sequence[str] = (),
-) -> Callable[[Built], Table]:
+) -> Callable[[StudyWalls], Table]:
     """Return a table of medians and ranges, a row a set and way, between `key` and `extra`."""
 
-    def table(found: Built) -> Table:
+    def table(found: StudyWalls) -> Table:
         rows = tuple((*key(one), *cells.summary(one.outcomes), *extra(one)) for one in found)
         return Table(_named(title, found), (*heads, *cells.COLUMNS, *more), rows, tuple(notes))
 
@@ -168,12 +168,12 @@ def ways_table(
 def walls_table(
     title: str,
     heads: Sequence[str],
-    row: Callable[[Trials, RunSpec, Outcome], tuple[Cell, ...]],
+    row: Callable[[Trials, RunSpec, RunOutcome], tuple[Cell, ...]],
     notes: Sequence[str] = (),
-) -> Callable[[Built], Table]:
+) -> Callable[[StudyWalls], Table]:
     """Return a table with a row a wall."""
 
-    def table(found: Built) -> Table:
+    def table(found: StudyWalls) -> Table:
         rows = tuple(
             row(one, spec, outcome)
             for one in found
@@ -184,10 +184,12 @@ def walls_table(
     return table
 
 
-def pairs_table(title: str, way: str, others: Sequence[str], head: str) -> Callable[[Built], Table]:
+def pairs_table(
+    title: str, way: str, others: Sequence[str], head: str
+) -> Callable[[StudyWalls], Table]:
     """Return a table of one way against others, pairs of one set and seed, by figure."""
 
-    def table(found: Built) -> Table:
+    def table(found: StudyWalls) -> Table:
         rows = tuple(
             (other, *found.wins(way, other, figure).cells(figure))
             for other in others
@@ -199,21 +201,21 @@ def pairs_table(title: str, way: str, others: Sequence[str], head: str) -> Calla
 
 
 def strips(
-    found: Built, name: str, figures: Sequence[str], label: Callable[[Trials], str]
-) -> Picture:
+    found: StudyWalls, name: str, figures: Sequence[str], label: Callable[[Trials], str]
+) -> ItemPicture:
     """Draw a point a wall: a panel a figure, a group a set and way."""
     panels = {figure: {label(one): one.values(figure) for one in found} for figure in figures}
-    return Picture(name, group_panels(panels), "A point a wall; lines are medians.")
+    return ItemPicture(name, group_panels(panels), "A point a wall; lines are medians.")
 
 
 def sheet(
-    found: Built, name: str, columns: int, label: Callable[[Trials], str], caption: str
-) -> Picture:
+    found: StudyWalls, name: str, columns: int, label: Callable[[Trials], str], caption: str
+) -> ItemPicture:
     """Draw the wall of the first seed of every set and way."""
     walls = [found.titled(one, label(one)) for one in found]
     caption += " Numbers are steps of the plan, colours clusters of stones, wedges are dark red."
-    return Picture(name, plot_walls(walls, columns), caption)
+    return ItemPicture(name, plot_walls(walls, columns), caption)
 
 
-def _named(title: str, found: Built) -> str:
+def _named(title: str, found: StudyWalls) -> str:
     return title.format(wall=found.name) if found.all else title

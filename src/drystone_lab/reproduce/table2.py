@@ -22,17 +22,17 @@ from drystone_lab.pictures.walls import (
 )
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, rounded
-from drystone_lab.reproduce.item import Context, Item, Picture, paper
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.reproduce.masons import (
     PAPERS_WAY,
     REFERENCES,
-    MasonsWall,
     Printed,
+    TracedWall,
     masons_wall,
     measured,
 )
-from drystone_lab.reproduce.study import Built, Study, Trials
-from drystone_lab.runs.outcome import Outcome
+from drystone_lab.reproduce.study import Study, StudyWalls, Trials
+from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import FIVE, MASONS
 
@@ -49,7 +49,7 @@ EXACT = 6
 """Decimals of a load multiplier that every solver agrees on; halves are rounded up after that."""
 
 
-def best_trial(outcomes: Sequence[Outcome]) -> int:
+def best_trial(outcomes: Sequence[RunOutcome]) -> int:
     """Return the place of the wall with the highest filling and multiplier, to one decimal.
 
     The paper chooses "the wall with the highest filling ratio and kinematics multiplier (rounded
@@ -61,7 +61,7 @@ def best_trial(outcomes: Sequence[Outcome]) -> int:
     return max(range(len(outcomes)), key=lambda place: (*_merit(outcomes[place]), -place))
 
 
-def _merit(outcome: Outcome) -> tuple[float, float, float, float]:
+def _merit(outcome: RunOutcome) -> tuple[float, float, float, float]:
     resistance, filled = outcome.figures["F_LR"], float(outcome.figures["F_SF"] or 0.0)
     if resistance is None:
         return tenths(filled), -1.0, filled, 0.0
@@ -86,7 +86,7 @@ class FiveWall:
 
     trials: Trials
     stones: StoneSet
-    masons: MasonsWall | None
+    masons: TracedWall | None
 
     @property
     def name(self) -> tuple[int, str]:
@@ -115,7 +115,7 @@ class FiveWall:
         return None if self.masons is None else measured(self.masons.labels)
 
 
-Five = tuple[Built, Sequence[FiveWall]]
+Five = tuple[StudyWalls, Sequence[FiveWall]]
 
 
 def five_walls(context: Context, study: Study) -> Five:
@@ -189,9 +189,9 @@ def _spread(found: Five) -> Table:
     return Table("Walls of all seeds", ("wall", "set", *cells.COLUMNS), rows)
 
 
-def _fig18(found: Five) -> Picture:
+def _fig18(found: Five) -> ItemPicture:
     panels = [panel for wall in found[1] for panel in _panels(found[0], wall)]
-    return Picture(
+    return ItemPicture(
         "fig18",
         sheet_of(panels, 4),
         "From the left: the stones by cluster; the wall of the fixed seed; the best of all seeds "
@@ -201,7 +201,7 @@ def _fig18(found: Five) -> Picture:
     )
 
 
-def _panels(built: Built, wall: FiveWall) -> list[Panel]:
+def _panels(built: StudyWalls, wall: FiveWall) -> list[Panel]:
     trials, stones = wall.trials, wall.stones
     seeds = [spec.seed for spec in trials.specs]
     clusters = cluster_stones(stones, PoseBook(trials.wall.scale))
@@ -225,7 +225,7 @@ def _panels(built: Built, wall: FiveWall) -> list[Panel]:
     ]
 
 
-TABLE2 = Item(
+TABLE2 = PaperItem(
     **paper("table2"),
     study=partial(five_walls, study=Study(walls=FIVE, quick_seeds=4)),
     tables={"table2": _comparison, "table2_seeds": _spread},

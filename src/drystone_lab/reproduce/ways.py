@@ -6,11 +6,11 @@ from statistics import median
 
 from drystone_lab.pictures.charts import group_panels, plot_two_figures
 from drystone_lab.reproduce import cells
-from drystone_lab.reproduce.cells import METRICS, Finding, rounded
-from drystone_lab.reproduce.item import Item, Picture, paper
+from drystone_lab.reproduce.cells import METRICS, ClaimCheck, rounded
+from drystone_lab.reproduce.item import ItemPicture, PaperItem, paper
 from drystone_lab.reproduce.study import (
-    Built,
     Study,
+    StudyWalls,
     Trials,
     pairs_table,
     sheet,
@@ -29,7 +29,7 @@ PAPERS = "0.7"
 """The threshold that the paper found best."""
 
 
-def _beta_picture(found: Built) -> Picture:
+def _beta_picture(found: StudyWalls) -> ItemPicture:
     panels = {
         f"{group.name}, {figure}": {one.way: one.values(figure) for one in group}
         for group in found.by_wall
@@ -40,10 +40,10 @@ def _beta_picture(found: Built) -> Picture:
         "A point a wall, a row a set of stones. F_AH is better when lower, the others when higher; "
         "F_AV and F_AH in percent."
     )
-    return Picture("beta", group_panels(panels, title=title), caption)
+    return ItemPicture("beta", group_panels(panels, title=title), caption)
 
 
-BETA = Item(
+BETA = PaperItem(
     **paper("beta"),
     study=Study(walls=MASONS, ways={beta: (("placement.beta", float(beta)),) for beta in BETAS}),
     tables={
@@ -69,10 +69,10 @@ SAMPLED: dict[str, Changes] = {name: (("sampling", name),) for name in SAMPLINGS
 PARTS = ("placement", "stabilisation", "contacts", "limit analysis", "indices")
 
 
-def _sampling_claims(found: Built) -> Iterator[Finding]:
+def _sampling_claims(found: StudyWalls) -> Iterator[ClaimCheck]:
     counts = {one.way: one.median("candidates") or 0.0 for one in found}
     times = {way: count / counts["variant"] for way, count in counts.items()}
-    yield Finding(
+    yield ClaimCheck(
         "Two-fold sampling is twice as expensive as variant sampling.",
         "candidates of a wall over those of variant sampling, medians: "
         f"{', '.join(f'{way} {ratio:.2f}' for way, ratio in times.items())}.",
@@ -81,7 +81,7 @@ def _sampling_claims(found: Built) -> Iterator[Finding]:
     whole = {one.way: _whole(one) for one in found}
     ends = Counter(outcome.plan["stopped"] for one in found for outcome in one.outcomes)
     stopped = ", ".join(f"'{reason}' {count} times" for reason, count in ends.most_common())
-    yield Finding(
+    yield ClaimCheck(
         "All methods stack stones to fill the wall.",
         f"all stones are placed by {', '.join(f'{way} {n}' for way, n in whole.items())} of "
         f"{len(found.seeds)} walls each; construction ended with {stopped}.",
@@ -90,7 +90,7 @@ def _sampling_claims(found: Built) -> Iterator[Finding]:
     (full,) = found.of("full")
     plans = [outcome.plan["steps"] for outcome in full.outcomes]
     kinds = sum(plan not in plans[:place] for place, plan in enumerate(plans))
-    yield Finding(
+    yield ClaimCheck(
         "Full batch has nothing to choose at random.",
         f"its seeds give {kinds} different walls.",
         kinds == 1,
@@ -101,7 +101,7 @@ def _whole(trials: Trials) -> int:
     return sum(o.figures["placed"] == o.figures["stones"] for o in trials.outcomes)
 
 
-def _sampling_times(found: Built) -> Table:
+def _sampling_times(found: StudyWalls) -> Table:
     return Table(
         "Seconds a wall by the sampling of candidates, medians",
         ("sampling", "wall, s", *(f"{part}, s" for part in PARTS)),
@@ -118,7 +118,7 @@ def _sampling_times(found: Built) -> Table:
     )
 
 
-SAMPLING = Item(
+SAMPLING = PaperItem(
     **paper("fig16"),
     study=Study(walls=(PR,), ways=SAMPLED),
     claims=_sampling_claims,
@@ -150,18 +150,18 @@ def _wedge_share(trials: Trials) -> tuple[float | None, ...]:
     )
 
 
-def _stabilised_claims(found: Built) -> Iterator[Finding]:
+def _stabilised_claims(found: StudyWalls) -> Iterator[ClaimCheck]:
     for group in found.by_wall:
         medians = {one.way: one.median("F_SF") or 0.0 for one in group}
         best = max(medians, key=lambda way: medians[way])
-        yield Finding(
+        yield ClaimCheck(
             f"Rotation and wedging together fill a wall best ({group.name}).",
             f"the median filling is largest with {best}.",
             best == "both",
         )
 
 
-def _wedges_picture(group: Built, number: int) -> Picture:
+def _wedges_picture(group: StudyWalls, number: int) -> ItemPicture:
     points = {
         one.way: tuple(zip(_wedge_share(one), one.values("F_SF"), strict=True)) for one in group
     }
@@ -169,7 +169,7 @@ def _wedges_picture(group: Built, number: int) -> Picture:
     across = f"{group.name}: area of wedges, % of the wall"
     figure = plot_two_figures(points, across=across, up="F_SF").get_figure(root=True)
     assert figure is not None  # noqa: S101 - it was made for the axes
-    return Picture(f"fig20_{number}", figure, f"{group.name}: a point a wall, medians large.")
+    return ItemPicture(f"fig20_{number}", figure, f"{group.name}: a point a wall, medians large.")
 
 
 def _wedge_cells(one: Trials) -> tuple[float | None, ...]:
@@ -177,7 +177,7 @@ def _wedge_cells(one: Trials) -> tuple[float | None, ...]:
     return one.median("wedges"), rounded(median(shares))
 
 
-def _pairs_of_wall(number: int, found: Built) -> Table:
+def _pairs_of_wall(number: int, found: StudyWalls) -> Table:
     table = pairs_table(
         "{wall}: both against other ways to stabilise, pairs of one seed",
         "both",
@@ -187,7 +187,7 @@ def _pairs_of_wall(number: int, found: Built) -> Table:
     return table(found.by_wall[number])
 
 
-STABILISATION = Item(
+STABILISATION = PaperItem(
     **paper("fig20"),
     study=Study(
         walls=(LIU_5, IR),
@@ -219,7 +219,7 @@ SIDES: dict[str, Changes] = {ONE: (), TWO: TWO_SIDED}
 FLUSH = (*METRICS, "E_FLUSH")
 
 
-BOTH_ENDS = Item(**paper("fig21"),
+BOTH_ENDS = PaperItem(**paper("fig21"),
     study=Study(walls=MASONS, ways=SIDES, quick_seeds=4),
     tables={
         "fig21": ways_table(
@@ -250,13 +250,13 @@ BOTH_ENDS = Item(**paper("fig21"),
 NUMBERS = {"R": "B.30", "PR": "B.31", "IR": "B.32"}
 
 
-def _methods_picture(group: Built) -> Picture:
+def _methods_picture(group: StudyWalls) -> ItemPicture:
     number = NUMBERS.get(group.name, "B.1")
     caption = f"Fig. {number}, stones {group.name}: left from one end, right from both."
     return sheet(group, f"fig{number.replace('.', '')}", len(SIDES), lambda one: one.way, caption)
 
 
-ALL_METHODS = Item(**paper("figB30-32"),
+ALL_METHODS = PaperItem(**paper("figB30-32"),
     study=Study(
         walls=MASONS,
         ways={

@@ -26,14 +26,14 @@ from drystone_lab.rl.draw import DrawSettings, draw_wall
 from drystone_lab.rl.episode import ARRIVING, Episode, prepared
 
 Floats32 = NDArray[np.float32]
-Observation = dict[str, Floats32]
+WallObservation = dict[str, Floats32]
 
 STONE = ("area", "width", "height")
 """Of an offer, beside its features: of the stone over the wall's, the same for all its offers but
 for how it lies."""
 
 
-def observation_space(offers: int, columns: int) -> spaces.Space[Observation]:
+def observation_space(offers: int, columns: int) -> spaces.Space[WallObservation]:
     """Return the space of :func:`observation`."""
     shape = (offers, len(FEATURES) + len(STONE))
     space: Any = spaces.Dict(
@@ -43,11 +43,11 @@ def observation_space(offers: int, columns: int) -> spaces.Space[Observation]:
             "left": spaces.Box(0.0, 1.0, (2,), np.float32),
         }
     )
-    found: spaces.Space[Observation] = space  # a Dict does not know of what its values are
+    found: spaces.Space[WallObservation] = space  # a Dict does not know of what its values are
     return found
 
 
-def observation(episode: Episode, offers: int, columns: int) -> Observation:
+def observation(episode: Episode, offers: int, columns: int) -> WallObservation:
     """Return what is seen.
 
     ``"offers"``, (offers, F): a row an offer (:data:`FEATURES`, then :data:`STONE`), zeros where
@@ -117,7 +117,7 @@ OPTIONS = ("stones", "site", "order")
 """What :meth:`WallEnv.reset` may be told."""
 
 
-class WallEnv(gymnasium.Env[Observation, np.int64]):
+class WallEnv(gymnasium.Env[WallObservation, np.int64]):
     """Build a wall from stones that arrive in a random order.
 
     An action says which of the places offered for the stone that has arrived it is built in.  A
@@ -188,7 +188,7 @@ class WallEnv(gymnasium.Env[Observation, np.int64]):
 
     def reset(
         self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
-    ) -> tuple[Observation, dict[str, Any]]:
+    ) -> tuple[WallObservation, dict[str, Any]]:
         """Begin a wall.
 
         Options: ``"stones"`` (a StoneSet) with ``"site"`` (a Site) instead of stones that are
@@ -204,7 +204,7 @@ class WallEnv(gymnasium.Env[Observation, np.int64]):
         self._ended = False
         return self._seen(), self._info(illegal=False)
 
-    def step(self, action: np.int64) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
+    def step(self, action: np.int64) -> tuple[WallObservation, float, bool, bool, dict[str, Any]]:
         """Build the stone that has arrived; see :class:`gymnasium.Env`.
 
         E151: there is no such action, the episode is over, or with ``illegal="error"`` the place is
@@ -282,7 +282,7 @@ class WallEnv(gymnasium.Env[Observation, np.int64]):
             raise _no_action("no wall was begun", "Call `reset` first.")
         return self._episode
 
-    def _seen(self) -> Observation:
+    def _seen(self) -> WallObservation:
         return observation(self._running(), self._offers, self._columns)
 
     def _info(self, *, illegal: bool) -> dict[str, Any]:

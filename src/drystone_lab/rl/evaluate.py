@@ -35,7 +35,7 @@ FREE = replace(ARRIVING, order="free", sampling="variant")
 COVERED = 0.95
 """Of the intervals."""
 
-Walls = Mapping[str, Sequence[float]]
+PolicyFigures = Mapping[str, Sequence[float]]
 """The figures of some walls by their names."""
 
 
@@ -94,7 +94,7 @@ def figures_by(
     return found
 
 
-def differences(first: Walls, second: Walls) -> dict[str, Interval]:
+def differences(first: PolicyFigures, second: PolicyFigures) -> dict[str, Interval]:
     """Return what the walls of one policy have more than those of another, wall by wall."""
     return {name: Interval.of(np.subtract(first[name], second[name]).tolist()) for name in FIGURES}
 
@@ -105,7 +105,7 @@ def table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-def report(found: Mapping[str, Walls], title: str) -> str:
+def report(found: Mapping[str, PolicyFigures], title: str) -> str:
     """Return the means of each policy, and what the first has more than each of the others."""
     first, *others = found
     means = [

@@ -12,8 +12,8 @@ from typing import Any
 
 from drystone.errors import DrystoneError, UsageError
 from drystone.model.stone import StoneSet
-from drystone_lab.runs.outcome import Outcome, execute
-from drystone_lab.runs.runner import Work, died
+from drystone_lab.runs.outcome import RunOutcome, execute
+from drystone_lab.runs.runner import RunWorker, died
 from drystone_lab.runs.spec import RunSpec
 
 PATIENCE_S = 5.0
@@ -23,7 +23,7 @@ OPTION = "--dask"
 
 
 @contextmanager
-def cluster_at_work(address: str, *, patience_s: float = PATIENCE_S) -> Iterator[Work]:
+def cluster_at_work(address: str, *, patience_s: float = PATIENCE_S) -> Iterator[RunWorker]:
     """Have runs done by a Dask cluster, as long as the block lasts.
 
     The runs of a worker that dies are done by others; one at which so many workers died that the
@@ -63,7 +63,7 @@ def check_versions(client: Any) -> None:
         raise _other_version(f"drystone is {here} here, and {listed}.")
 
 
-def execute_there(spec: RunSpec, data: Path | None, stones: StoneSet | None) -> Outcome:
+def execute_there(spec: RunSpec, data: Path | None, stones: StoneSet | None) -> RunOutcome:
     """Plan the wall of a run, on a worker.
 
     `data` is the folder here; if it is not there on this machine, that of ``DRYSTONE_DATA``.
@@ -104,7 +104,7 @@ def _client(distributed: Any, address: str, patience_s: float) -> Any:
 
 def _outcomes(
     distributed: Any, client: Any, specs: Sequence[RunSpec], data: Path | None
-) -> Iterator[Outcome]:
+) -> Iterator[RunOutcome]:
     """Do runs."""
     if not specs:
         return
@@ -130,10 +130,10 @@ def _outcomes(
         client.cancel(list(asked.values()))
 
 
-def _outcome(distributed: Any, future: Any, spec: RunSpec) -> Outcome:
+def _outcome(distributed: Any, future: Any, spec: RunSpec) -> RunOutcome:
     """Return the outcome of a run that has ended."""
     try:
-        outcome: Outcome = future.result()
+        outcome: RunOutcome = future.result()
     except distributed.KilledWorker as error:
         raise died(spec, "workers, one after the other,") from error
     except CancelledError as error:

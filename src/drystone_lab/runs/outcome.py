@@ -24,7 +24,7 @@ FIGURES = (
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
+class RunOutcome:
     """A planned wall, as it is kept."""
 
     key: str
@@ -55,7 +55,7 @@ class Outcome:
         return replay.stages[-1].after
 
 
-def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) -> Outcome:
+def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) -> RunOutcome:
     """Plan the wall of a run, in this process.
 
     >>> from drystone_lab.runs.spec import generated
@@ -93,7 +93,7 @@ def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) ->
         name: sum(step.parts.get(name, 0.0) for step in result.profile.steps)
         for name in ("placement", "stabilisation", "contacts", "limit analysis", "indices")
     }
-    return Outcome(spec.key, figures, plan_to_json(plan), times)
+    return RunOutcome(spec.key, figures, plan_to_json(plan), times)
 
 
 class RunStore:
@@ -102,7 +102,7 @@ class RunStore:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
 
-    def get(self, key: str) -> Outcome | None:
+    def get(self, key: str) -> RunOutcome | None:
         """Return the outcome of a run; None when it is not there."""
         path = self._path(key)
         try:
@@ -117,7 +117,7 @@ class RunStore:
                 cure="Delete the file: its run is then done again.",
             ) from error
 
-    def put(self, outcome: Outcome) -> None:
+    def put(self, outcome: RunOutcome) -> None:
         """Keep an outcome; the file is whole or not there."""
         self.folder.mkdir(parents=True, exist_ok=True)
         data = {"figures": outcome.figures, "plan": outcome.plan, "times": outcome.times}
@@ -128,9 +128,9 @@ class RunStore:
         return self.folder / f"{key}.json"
 
 
-def _outcome(key: str, data: Any) -> Outcome:
+def _outcome(key: str, data: Any) -> RunOutcome:
     """Return what a file holds; anything else is one of the errors of plain Python."""
     figures, plan, times = (dict(data[name]) for name in ("figures", "plan", "times"))
     if not {"wall"} <= times.keys() or not set(FIGURES) <= figures.keys() or "steps" not in plan:
         raise KeyError(key)
-    return Outcome(key, figures, plan, times)
+    return RunOutcome(key, figures, plan, times)

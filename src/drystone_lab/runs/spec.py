@@ -66,14 +66,14 @@ def told(changes: Changes) -> str:
     return ", ".join(f"{name} = {value}" for name, value in changes)
 
 
-Kind = Literal["published", "file", "fourier", "polygon", "brick", "rubble"]
+SourceKind = Literal["published", "file", "fourier", "polygon", "brick", "rubble"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class StoneSource:
     """Stones by name: published ones, a file, or what a generator makes from a seed."""
 
-    kind: Kind  # Of the source
+    kind: SourceKind  # Of the source
     name: str = ""  # Path in the folder of published data (``"almeida/PR.png"``), or of the file
     seed: int = 0
     settings: tuple[tuple[str, Scalar], ...] = ()
@@ -140,7 +140,7 @@ def from_file(path: Path) -> StoneSource:
     return StoneSource(kind="file", name=str(path), sha256=read_stones(path).source.sha256)
 
 
-def generated(kind: Kind, seed: int, **settings: Scalar) -> StoneSource:
+def generated(kind: SourceKind, seed: int, **settings: Scalar) -> StoneSource:
     """Return the source of stones that a generator makes.
 
     >>> len(generated("brick", 1, count=6).stones(None))

@@ -12,8 +12,8 @@ from typing import Any, TypeVar
 from drystone.errors import UsageError
 from drystone.search.processes import MUCH_MEMORY, process_pool
 from drystone_lab.runs.cluster import cluster_at_work
-from drystone_lab.runs.outcome import Outcome, execute
-from drystone_lab.runs.runner import Work, died, one_by_one
+from drystone_lab.runs.outcome import RunOutcome, execute
+from drystone_lab.runs.runner import RunWorker, died, one_by_one
 from drystone_lab.runs.spec import RunSpec
 
 ONE_THREAD = (
@@ -33,14 +33,14 @@ Process = Any
 
 
 @contextmanager
-def processes_at_work(jobs: int) -> Iterator[Work]:
+def processes_at_work(jobs: int) -> Iterator[RunWorker]:
     """Start processes that do runs; they end with the block, whatever they do then."""
     if jobs == 1:
         yield one_by_one
         return
     with crew(jobs) as found:
 
-        def work(specs: Sequence[RunSpec], data: Path | None) -> Iterator[Outcome]:
+        def work(specs: Sequence[RunSpec], data: Path | None) -> Iterator[RunOutcome]:
             return found.work(partial(execute, data=data), specs)
 
         yield work
@@ -144,7 +144,7 @@ def _told(error: BaseException, task: str) -> BaseException:
 
 
 @contextmanager
-def work_of(jobs: int | None, dask_address: str | None) -> Iterator[Work]:
+def work_of(jobs: int | None, dask_address: str | None) -> Iterator[RunWorker]:
     """Have runs done by whom the options say, as long as the block lasts.
 
     Whoever works, outcomes differ in their times alone.

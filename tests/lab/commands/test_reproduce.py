@@ -10,8 +10,8 @@ from drystone.cli.parser import build_parser
 from drystone.errors import ExitCode, InputError, UsageError
 from drystone.io.folder_lock import LOCK, locked
 from drystone_lab.commands import reproduce
-from drystone_lab.reproduce.driver import Made
-from drystone_lab.reproduce.item import Item
+from drystone_lab.reproduce.driver import MadeItem
+from drystone_lab.reproduce.item import PaperItem
 from drystone_lab.reproduce.items import ITEMS
 from tests.cli.conftest import Ran, Run
 from tests.lab.reproduce import fakes
@@ -28,7 +28,7 @@ def _no_data_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 def run_items(capsys: pytest.CaptureFixture[str]) -> RunItems:
     """Call the command on small items."""
 
-    def call(*arguments: object, items: Mapping[str, Item] = fakes.ITEMS) -> Ran:
+    def call(*arguments: object, items: Mapping[str, PaperItem] = fakes.ITEMS) -> Ran:
         capsys.readouterr()
         parsed = build_parser().parse_args(["reproduce", *map(str, arguments)])
         return Ran(int(reproduce.run(parsed, items)), *capsys.readouterr())
@@ -100,7 +100,7 @@ def test_all_goes_on_without_some_stones(run_items: RunItems, tmp_path: Path) ->
 
 def test_all_without_any(tmp_path: Path) -> None:
     error = InputError("E100", "none")
-    missed = Made("fig5", "missing data", None, error, tmp_path)
+    missed = MadeItem("fig5", "missing data", None, error, tmp_path)
     assert reproduce.exit_code([missed, missed], every=True) == ExitCode.BAD_INPUT
     assert reproduce.exit_code([missed, replace(missed, status="kept")], every=True) == 0
 

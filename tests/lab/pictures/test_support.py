@@ -5,15 +5,15 @@ from drystone.model.placement import Wedge
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
 from drystone.stabilise.support import Support
-from drystone_lab.pictures.support import Standing, plot_standing
+from drystone_lab.pictures.support import SupportedStone, plot_standing
 
 LABELS = np.zeros((10, 20), np.uint32)
 LABELS[6:, :8] = 1
 MASK = np.ones((3, 12), bool)
 POSED = PosedStone(Stone(9, MASK), 0.0, 1.0, MASK, (6.0, 1.5))
-TRIAL = Standing((POSED, 3, 4), Support(4, 8, 6, 6), 1, (), 10)
+TRIAL = SupportedStone((POSED, 3, 4), Support(4, 8, 6, 6), 1, (), 10)
 WEDGE = Wedge(10, 9, np.ones((4, 2), bool), 6, 13)
-WEDGED = Standing((POSED, 3, 4), Support(4, 15, 6, 6), 0, (WEDGE,), 10)
+WEDGED = SupportedStone((POSED, 3, 4), Support(4, 15, 6, 6), 0, (WEDGE,), 10)
 
 
 def lines(ax):

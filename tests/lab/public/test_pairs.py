@@ -8,19 +8,19 @@ import pytest
 from scipy.stats import norm, rankdata, wilcoxon
 
 from drystone_lab.public.suites import walls_of
-from drystone_lab.public.tables import FIGURES, Result, Results, compared, pair_tables
+from drystone_lab.public.tables import FIGURES, BenchResult, BenchResults, compared, pair_tables
 
 WALLS = walls_of("bricks")[:2]
 
 
 def result(wall, method, seed, **figures):
     values = dict.fromkeys(FIGURES, 0.5) | figures
-    return Result(wall, method, seed, values, 1.0)
+    return BenchResult(wall, method, seed, values, 1.0)
 
 
 def results(values):
     """Results of F_SF by method: seed after seed on the first wall, then on the second."""
-    return Results(
+    return BenchResults(
         tuple(
             result(wall, method, seed, F_SF=column[half * len(column) // 2 + seed])
             for method, column in values.items()
@@ -137,7 +137,7 @@ def test_walls_count_for_those_two_methods_that_depend_on_the_seed():
 
 
 def test_ties_of_one_figure_are_pairs():
-    found = Results(
+    found = BenchResults(
         tuple(
             result(WALLS[0], method, seed, F_SF=0.5, F_AV=value + seed)
             for method, value in (("a", 7.0), ("b", 8.0))

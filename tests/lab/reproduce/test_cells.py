@@ -6,7 +6,7 @@ import pytest
 from drystone_lab.reproduce.cells import (
     COLUMNS,
     METRICS,
-    Finding,
+    ClaimCheck,
     Wins,
     figures_of,
     findings_table,
@@ -86,8 +86,10 @@ def test_there_is_no_trend_of_few_or_equal_values() -> None:
 
 def test_claims_that_cannot_be_told_do_not_count() -> None:
     found = [
-        Finding("A.", "one", True), Finding("B.", "two", False), Finding("C.", "three", None)
-    ]  # fmt: skip
+        ClaimCheck("A.", "one", True),
+        ClaimCheck("B.", "two", False),
+        ClaimCheck("C.", "three", None),
+    ]
     told = sentences(found)
     assert told[0] == "Of 2 claims of the paper that can be told, 1 agree."
     assert [one.split(":")[0] for one in told[1:]] == ["Agrees", "Differs", "Cannot be told"]

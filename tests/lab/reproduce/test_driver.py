@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from drystone.errors import InputError, UsageError
-from drystone_lab.reproduce.driver import EVERY_S, Made, Options, Progress, reproduce
+from drystone_lab.reproduce.driver import EVERY_S, ItemProgress, MadeItem, Options, reproduce
 from drystone_lab.reproduce.folder import write_tables
-from drystone_lab.reproduce.item import Item, Output
+from drystone_lab.reproduce.item import Output, PaperItem
 from drystone_lab.runs.runner import one_by_one
 from drystone_lab.table import Table
 from tests.lab.reproduce import fakes
@@ -21,8 +21,11 @@ OPTIONS = Options(now=lambda: datetime(2026, 1, 2, 3, 4, tzinfo=UTC))
 
 
 def make(
-    folder: Path, *names: str, options: Options = OPTIONS, items: Mapping[str, Item] = fakes.ITEMS
-) -> list[Made]:
+    folder: Path,
+    *names: str,
+    options: Options = OPTIONS,
+    items: Mapping[str, PaperItem] = fakes.ITEMS,
+) -> list[MadeItem]:
     return list(reproduce(names, folder, options, items))
 
 
@@ -241,7 +244,7 @@ def test_progress_says_which_item_and_how_many_walls(tmp_path: Path) -> None:
 def test_walls_are_told_of_now_and_then() -> None:
     said: list[str] = []
     now = [0.0]
-    progress = Progress(said.append, 1, lambda: now[0])
+    progress = ItemProgress(said.append, 1, lambda: now[0])
     progress.begin("fig5")
     for text, step in (("1", 0.0), ("2", EVERY_S / 2), ("3", EVERY_S), ("4", 3661.0)):
         now[0] += step

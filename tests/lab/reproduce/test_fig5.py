@@ -58,7 +58,7 @@ def test_counts_over_the_threshold(output, features):
 
 
 def test_the_span_of_thresholds_has_the_paper_s_count(stones, features):
-    grouped = fig5.Grouped.of("rubble", stones)
+    grouped = fig5.ClusteredStones.of("rubble", stones)
     low, high = grouped.between(7)
     assert len(naive_ward(features, (low + high) / 2)) == 7
     assert len(naive_ward(features, low - 2e-3)) > 7 > len(naive_ward(features, high + 2e-3))

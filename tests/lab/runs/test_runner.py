@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from drystone.errors import DrystoneError
-from drystone_lab.runs.outcome import Outcome, RunStore
+from drystone_lab.runs.outcome import RunOutcome, RunStore
 from drystone_lab.runs.runner import Runner, one_by_one
 from drystone_lab.runs.spec import RunSpec
 from tests.lab.runs.bricks import NOT_SIX, kept, run
@@ -17,7 +17,7 @@ class Book:
         self.done: list[int] = []
         self.interrupt_after = interrupt_after
 
-    def __call__(self, specs: Sequence[RunSpec], data: Path | None) -> Iterator[Outcome]:
+    def __call__(self, specs: Sequence[RunSpec], data: Path | None) -> Iterator[RunOutcome]:
         for spec in specs:
             if len(self.done) == self.interrupt_after:
                 raise KeyboardInterrupt
@@ -26,7 +26,7 @@ class Book:
 
 
 def test_outcomes_are_in_the_order_of_the_runs(tmp_path: Path) -> None:
-    def backwards(specs: Sequence[RunSpec], data: Path | None) -> Iterator[Outcome]:
+    def backwards(specs: Sequence[RunSpec], data: Path | None) -> Iterator[RunOutcome]:
         yield from one_by_one(specs[::-1], data)
 
     specs = [run(3), run(1), run(2)]

@@ -4,16 +4,16 @@ from pathlib import Path
 import pytest
 
 from drystone.errors import DrystoneError
-from drystone_lab.runs.outcome import Outcome, RunStore, execute
+from drystone_lab.runs.outcome import RunOutcome, RunStore, execute
 from tests.lab.runs.bricks import run
 
 
 @pytest.fixture(scope="module")
-def outcome() -> Outcome:
+def outcome() -> RunOutcome:
     return execute(run(1), None)
 
 
-def test_what_was_kept_is_found(tmp_path: Path, outcome: Outcome) -> None:
+def test_what_was_kept_is_found(tmp_path: Path, outcome: RunOutcome) -> None:
     store = RunStore(tmp_path / "new" / "folder")
     assert store.get(outcome.key) is None
     store.put(outcome)
@@ -46,7 +46,7 @@ def without(text: str, *names: str) -> str:
         lambda text: without(text, "figures", "F_LR"),
     ],
 )
-def test_a_damaged_file_is_named_with_the_cure(tmp_path: Path, outcome: Outcome, damage) -> None:
+def test_a_damaged_file_is_named_with_the_cure(tmp_path: Path, outcome: RunOutcome, damage) -> None:
     store = RunStore(tmp_path)
     store.put(outcome)
     (path,) = tmp_path.iterdir()
