@@ -5,7 +5,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from drystone.errors import UsageError
 from drystone.generate.brick import BrickSettings, brick_stones
 from drystone_lab import packing
 from drystone_lab.table import BenchSettings
@@ -63,15 +62,6 @@ def test_strips_stand_beside_walls(monkeypatch):
     assert [turns for *_, turns in packer.items[::9]] == [(0.0, 90.0, 180.0, 270.0), None]
     assert packer.configs[0]["total_computation_time"] == 1
     assert len(said) == 1
-
-
-def test_a_missing_packer_is_an_extra(monkeypatch):
-    def absent(name):
-        raise ImportError(name)
-
-    monkeypatch.setattr(packing, "import_module", absent)
-    with pytest.raises(UsageError, match=r"E305.*spyrrow"):
-        packing.load_packer()
 
 
 def test_the_packer_fits_stones_into_a_strip():

@@ -117,15 +117,6 @@ def test_answers_that_are_missing_stay_out(tables):
         assert {row["beam turns, without dilatancy"] for row in tables[number]} == {"-"}
 
 
-def test_friction_moves_a_level_beam_but_hardly_a_turning_one(tables):
-    def mean(mu, model):
-        (row,) = rows_of(tables, 3, series=SERIES[1].name, mu=mu)
-        return float(row[f"{model}, associative"].split()[0])
-
-    assert mean(0.70, "beam level") / mean(0.55, "beam level") == pytest.approx(70 / 55, abs=0.01)
-    assert mean(0.70, "beam turns") - mean(0.55, "beam turns") < 0.02
-
-
 def test_the_full_version_draws_and_varies_what_is_not_known(monkeypatch, tmp_path):
     asked = []
 

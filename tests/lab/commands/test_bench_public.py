@@ -85,12 +85,6 @@ def test_options_that_make_no_sense(options: tuple[str, ...], named: str, run: R
     assert named in ran.err
 
 
-def test_a_policy_that_is_none(run: Run) -> None:
-    said = run("bench", "bricks", "--policy", "nobody").err
-    assert "E146" in said
-    assert "best" in said
-
-
 @pytest.mark.parametrize("suite", ["masons", "walls"])
 def test_other_stones_in_the_place_of_the_masons(suite: str, run: Run, tmp_path: Path) -> None:
     data, store = tmp_path / "data", tmp_path / "store"

@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
@@ -62,10 +60,3 @@ def test_rays_box_and_slope(action):
     assert patches["box"].get_bbox().bounds == (5, 4, 4, 3)
     assert patches["begun"].get_bbox().bounds == (0, 0, 20, 8)
     assert drawn(ax, "slope") == [[[5.5, 7], [8.5, 7]]]
-
-
-def test_what_is_not_there_is_not_drawn(action):
-    alone = replace(action, neighbour=None, below=(None, None), peaks=None)
-    ax = plot_action(alone, {"neighbour", "joints", "slope"})
-    assert not any(drawn(ax, gid) for gid in ("top", "joint", "offset", "slope"))
-    assert [text.get_text() for text in ax.texts] == ["stone"]

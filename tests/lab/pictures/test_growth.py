@@ -40,11 +40,6 @@ def test_parts_stand_on_top_of_each_other_and_reach_the_time_of_the_step():
     assert ax.get_title() == "variant"
 
 
-def test_parts_measured_longer_than_the_step_leave_no_rest():
-    ax = plot_step_times([StepTime(0, 1, 0.001, {"placement": 0.002})])
-    assert ax.containers[-1].patches[0].get_height() == 0.0
-
-
 def test_panels_have_the_walls_beside_each_other_and_one_legend():
     figure = step_time_panels({"variant": STEPS, "full": STEPS[:1]})
     left, right = figure.axes

@@ -5,12 +5,10 @@ import pytest
 
 from drystone_lab.reproduce.cells import (
     COLUMNS,
-    METRICS,
     ClaimCheck,
     Wins,
     figures_of,
     findings_table,
-    metric_cells,
     sentences,
     summary,
     trend,
@@ -38,13 +36,6 @@ def test_a_figure_that_no_wall_has() -> None:
     cells = dict(zip(COLUMNS, summary([outcome(F_LR=None)] * 2), strict=True))
     assert (cells["F_LR median"], cells["F_LR range"]) == (None, None)
     assert figures_of([outcome(F_LR=None), outcome(F_LR=0.5)], "F_LR") == [0.5]
-
-
-def test_figures_of_one_wall() -> None:
-    wall = outcome(F_SF=0.123456, F_AV=None, F_AH=2.0, F_LR=0.5)
-    assert dict(zip(METRICS, metric_cells(wall), strict=True)) == {
-        "F_SF": 0.1235, "F_AV": None, "F_AH": 2.0, "F_LR": 0.5,
-    }  # fmt: skip
 
 
 @pytest.mark.parametrize("figure", ["F_SF", "F_AH"])

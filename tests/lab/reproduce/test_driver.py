@@ -232,15 +232,6 @@ def test_folders_of_others_are_refused(mark: str | None, tmp_path: Path) -> None
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
-def test_progress_says_which_item_and_how_many_walls(tmp_path: Path) -> None:
-    said: list[str] = []
-    make(tmp_path, "fig5", "beta", options=replace(OPTIONS, say=said.append))
-    assert said[0] == "[0:00:00] 1 of 2, fig5"
-    assert "1 of 2, fig5: 1 of 2 walls" in said[1]
-    assert said[-2].endswith("2 of 2, beta")
-    assert said[-1].endswith("2 of 2, beta: made")
-
-
 def test_walls_are_told_of_now_and_then() -> None:
     said: list[str] = []
     now = [0.0]

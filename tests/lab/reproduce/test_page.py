@@ -1,12 +1,10 @@
 """The report of the paper's tables and figures."""
 
-import os
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from drystone.errors import PlanError
 from drystone_lab.reproduce.page import LONG, Miss, duration, heading, write_item_page, write_page
 from drystone_lab.table import written
 from tests.drawing.report.test_report import Page
@@ -99,18 +97,6 @@ def test_a_page_of_one(tmp_path: Path) -> None:
 def test_a_page_of_nothing(tmp_path: Path) -> None:
     path = write_page(tmp_path / "index.html", [], [Miss("fig5", "t", "s", "E100")], ORDER)
     assert "None of 3 was made so far." in path.read_text(encoding="utf-8")
-
-
-def test_a_page_is_whole_or_as_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(*_: object) -> None:
-        raise OSError(28, "No space left on device")
-
-    path = tmp_path / "index.html"
-    path.write_bytes(b"good")
-    monkeypatch.setattr(os, "replace", full)
-    with pytest.raises(PlanError, match="E206"):
-        write_page(path, [], [], ORDER)
-    assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [(path.name, b"good")]
 
 
 def test_words() -> None:

@@ -184,19 +184,6 @@ def test_refuses_settings(wrong: dict[str, Any]) -> None:
     assert caught.value.code == "E123"
 
 
-def test_draws_the_wall() -> None:
-    env = made(render_mode="rgb_array")
-    env.reset(seed=1)
-    empty = env.render()
-    env.step(np.int64(0))
-    built = env.render()
-    assert empty is not None
-    assert built is not None
-    assert empty.shape == built.shape == (400, 800, 3)
-    assert empty.dtype == np.uint8
-    assert not np.array_equal(empty, built)
-
-
 def test_example_of_the_documents_runs(capsys: pytest.CaptureFixture[str]) -> None:
     page = (Path(__file__).parents[3] / "docs" / "learning.md").read_text("utf-8")
     code = page.split("```python\n")[1].split("```")[0]

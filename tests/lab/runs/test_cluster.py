@@ -195,9 +195,7 @@ HERE = version("drystone")
 @pytest.mark.parametrize(
     ("client", "said"),
     [
-        (Workers(HERE, a=HERE, b="0.0.1"), "and 0.0.1 at b."),
         (Workers(HERE, a=None, b="0.0.1"), "and none at a, 0.0.1 at b."),
-        (Workers("0.0.1", a=HERE), "and 0.0.1 at scheduler."),
         (Workers(None, a=HERE), "and none at scheduler."),
     ],
 )

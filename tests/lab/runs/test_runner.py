@@ -3,11 +3,10 @@ from pathlib import Path
 
 import pytest
 
-from drystone.errors import DrystoneError
 from drystone_lab.runs.outcome import RunOutcome, RunStore
 from drystone_lab.runs.runner import Runner, one_by_one
 from drystone_lab.runs.spec import RunSpec
-from tests.lab.runs.bricks import NOT_SIX, kept, run
+from tests.lab.runs.bricks import kept, run
 
 
 class Book:
@@ -61,14 +60,6 @@ def test_what_ended_before_an_interrupt_is_kept(tmp_path: Path) -> None:
     later = Book()
     assert len(Runner(store, work=later).run(specs)) == 3
     assert later.done == [3]
-
-
-def test_what_ended_before_an_error_is_kept(tmp_path: Path) -> None:
-    specs, store = [run(1), run(2, NOT_SIX), run(3)], RunStore(tmp_path)
-    with pytest.raises(DrystoneError) as caught:
-        Runner(store).run(specs)
-    assert caught.value.code == "E130"
-    assert [kept(store, spec) for spec in specs] == [True, False, False]
 
 
 def test_runs_that_nobody_did_are_missed(tmp_path: Path) -> None:
