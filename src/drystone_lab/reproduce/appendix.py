@@ -61,7 +61,7 @@ def courses_of(bricks: Sequence[Brick], height_px: int, width_px: int) -> BrickC
 
     >>> low = [Brick(0, 20, 0, 10, True), Brick(20, 40, 0, 10, True)]
     >>> courses_of([*low, Brick(10, 30, 10, 20, True), Brick(30, 50, 10, 20, True)], 10, 20)
-    Courses(bricks=4, lying=4, in_course=4, courses=2, joints=2, crossed=2)
+    BrickCourses(bricks=4, lying=4, in_course=4, courses=2, joints=2, crossed=2)
     """
     lying = [b for b in bricks if b.full and b.right - b.left == width_px]
     level = [b for b in lying if b.bottom % height_px == 0]

@@ -165,7 +165,7 @@ def findings_table(title: str, findings: Sequence[ClaimCheck]) -> Table:
 def sentences(findings: Sequence[ClaimCheck]) -> tuple[str, ...]:
     """Return of how many claims the walls agree with the paper, and a paragraph each.
 
-    >>> sentences([Finding("Walls are low.", "2 px.", True)])[0]
+    >>> sentences([ClaimCheck("Walls are low.", "2 px.", True)])[0]
     'Of 1 claims of the paper that can be told, 1 agree.'
     """
     verdicts = {True: "Agrees", False: "Differs", None: "Cannot be told"}

@@ -67,7 +67,7 @@ class StoneKind:
     def mean_area_px(self) -> float:
         """Expected area of a stone.
 
-        >>> round(Kind(0.0, 30.0, 30.0).mean_area_px / (math.pi * 30**2), 4)
+        >>> round(StoneKind(0.0, 30.0, 30.0).mean_area_px / (math.pi * 30**2), 4)
         1.0023
         """
         low, high = self.smallest_px, self.largest_px
