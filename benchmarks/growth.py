@@ -12,7 +12,7 @@ from drystone_lab.timed_walls import (
     COLUMNS,
     LEAST_STONES,
     SAMPLINGS,
-    Planned,
+    TimedWall,
     exponent,
     numbers_of,
     parts_ms,
@@ -78,7 +78,7 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     wall = _wall(settings, sizes.stones)
     often = sizes.repeats
 
-    def timed(wall: Target, repeats: int, sampling: Sampling = "variant") -> Planned:
+    def timed(wall: Target, repeats: int, sampling: Sampling = "variant") -> TimedWall:
         paper = method_settings("paper").updated({"sampling": sampling})
         return planned(wall, settings.data, paper, seed=settings.seed, repeats=repeats)
 
@@ -107,7 +107,7 @@ def _scaled(count: int, seed: int, full_px: tuple[int, int], scale: float = 1.0)
     return rubble(count, seed, (width, height), scale=scale)
 
 
-def _walls_table(by_count: dict[int, Planned]) -> Table:
+def _walls_table(by_count: dict[int, TimedWall]) -> Table:
     rows: list[tuple[Cell, ...]] = [
         (
             str(count),
@@ -136,8 +136,8 @@ def _walls_table(by_count: dict[int, Planned]) -> Table:
 def _draw(
     folder: Path,
     name: str,
-    by_scale: dict[float, Planned],
-    by_sampling: dict[Sampling, Planned],
+    by_scale: dict[float, TimedWall],
+    by_sampling: dict[Sampling, TimedWall],
 ) -> None:
     save(steps_figure(by_sampling), folder / STEPS_PICTURE, dpi=DPI)
     save(plot_pixels(name, by_scale).figure, folder / PIXELS_PICTURE, dpi=DPI)

@@ -8,11 +8,9 @@ from scipy.stats import spearmanr
 
 from drystone.model.stone import StoneSet
 from drystone.physics.building import BuildUp, build_up, tilt_of
-from drystone.search.plan_result import PlanResult
-from drystone.search.plan_wall import plan_wall
 from drystone.verify.outlines import plan_polygons
 from drystone_lab.planned_walls import missing_data
-from drystone_lab.search_ways import tries
+from drystone_lab.runs.outcome import execute
 from drystone_lab.table import BenchSettings, Cell, Table
 from drystone_lab.walls import BRICKS, JUDGED, Target
 
@@ -25,33 +23,18 @@ COLUMNS = (
 )  # fmt: skip
 
 
-@dataclass(frozen=True, eq=False)
-class Judged:
-    """A wall in the engine.
+BothSides = tuple[float | None, float | None]
 
-    Parameters
-    ----------
-    name : str
-        Of the wall.
-    result : PlanResult
-        As planned.
-    built : BuildUp
-        As the engine has it.
-    tilts : (float or None, float or None)
-        Tangent of the tilt at which it comes down, to the left and to the right; None when it
-        fell before, or never.
-    """
+
+@dataclass(frozen=True, eq=False)
+class EngineWall:
+    """A wall in the engine; ends are to the left and to the right."""
 
     name: str
-    result: PlanResult
+    stones: int  # in it
     built: BuildUp
-    tilts: tuple[float | None, float | None]
-
-    @property
-    def alphas(self) -> tuple[float | None, float | None]:
-        """Load multipliers of the plan, to the left and to the right."""
-        metrics = self.result.metrics
-        return metrics.alpha_left, metrics.alpha_right
+    alphas: BothSides  # load multipliers of the plan
+    tilts: BothSides  # tangents at which it comes down; None when it fell before, or never
 
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
@@ -64,44 +47,32 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     ]
     rows = tuple(_row(one) for one in judged)
     return (
-        Table(
-            "Walls of one pass on outlines in the engine",
-            COLUMNS,
-            rows,
-            missing_data(settings),
-        ),
+        Table("Walls of one pass on outlines in the engine", COLUMNS, rows, missing_data(settings)),
         _summary(judged),
     )
 
 
-def _judged(target: Target, stones: StoneSet, seed: int) -> Judged:
-    size = target.size(stones)
-    result = plan_wall(stones, *size, seed=seed, settings=tries(1), scale=target.scale)
-    built = build_up(plan_polygons(result.plan, stones), float(result.plan.settings["mu"]))
-    tilts = tilt_of(built)
-    alphas = (None, None) if tilts is None else (tilts[0].alpha, tilts[1].alpha)
-    return Judged(f"{target.name}, seed {seed}", result, built, alphas)
+def _judged(target: Target, stones: StoneSet, seed: int) -> EngineWall:
+    outcome = execute(target.run(seed, ("search.budget", 1), method="best"), None, stones)
+    plan, figures = outcome.as_plan, outcome.figures
+    built = build_up(plan_polygons(plan, stones), float(plan.settings["mu"]))
+    found = tilt_of(built)
+    tilts = (None, None) if found is None else (found[0].alpha, found[1].alpha)
+    alphas = figures["alpha_left"], figures["alpha_right"]
+    return EngineWall(f"{target.name}, seed {seed}", len(plan.stone_steps), built, alphas, tilts)
 
 
-def _row(judged: Judged) -> tuple[Cell, ...]:
+def _row(judged: EngineWall) -> tuple[Cell, ...]:
     moves = judged.built.moves
-    alphas, tilts = judged.alphas, judged.tilts
     return (
-        judged.name,
-        len(judged.result.plan.stone_steps),
-        ", ".join(map(str, judged.built.fallen)) or "none",
-        max(move.move_px for move in moves),
-        max(move.share for move in moves),
-        max(move.turn_deg for move in moves),
-        max(move.overlap_px for move in moves),
-        alphas[0],
-        tilts[0],
-        alphas[1],
-        tilts[1],
-    )
+        judged.name, judged.stones, ", ".join(map(str, judged.built.fallen)) or "none",
+        max(move.move_px for move in moves), max(move.share for move in moves),
+        max(move.turn_deg for move in moves), max(move.overlap_px for move in moves),
+        judged.alphas[0], judged.tilts[0], judged.alphas[1], judged.tilts[1],
+    )  # fmt: skip
 
 
-def _summary(judged: Sequence[Judged]) -> Table:
+def _summary(judged: Sequence[EngineWall]) -> Table:
     standing = sum(one.built.stands for one in judged)
     pairs = [
         (alpha, tilt)
@@ -114,6 +85,7 @@ def _summary(judged: Sequence[Judged]) -> Table:
         for one in judged
         if None not in one.alphas and None not in one.tilts
     ]
+    ratios = [tilt / alpha for alpha, tilt in pairs if alpha > 0]
     return Table(
         "Load multipliers beside tilts",
         ("walls", "nothing falls", "both sides", "rank correlation", "weaker side", "tilt / alpha"),
@@ -124,7 +96,7 @@ def _summary(judged: Sequence[Judged]) -> Table:
                 len(pairs),
                 _rank_correlation(pairs),
                 _rank_correlation(weaker),
-                _median_ratio(pairs),
+                median(ratios) if ratios else None,
             ),
         ),
         (
@@ -139,8 +111,3 @@ def _rank_correlation(pairs: Sequence[tuple[float, float]]) -> float | None:
         return None
     found = spearmanr([first for first, _ in pairs], [second for _, second in pairs])
     return float(found.statistic)
-
-
-def _median_ratio(pairs: Sequence[tuple[float, float]]) -> float | None:
-    ratios = [tilt / alpha for alpha, tilt in pairs if alpha > 0]
-    return median(ratios) if ratios else None

@@ -15,9 +15,9 @@ from drystone.kernels.raster import turn
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
 from drystone_lab.planned_walls import missing_data
-from drystone_lab.runs.outcome import FIGURES, Outcome
+from drystone_lab.runs.outcome import FIGURES, RunOutcome
 from drystone_lab.runs.spec import RunSpec
-from drystone_lab.search_ways import SEARCH, WAYS, looked_for
+from drystone_lab.search_ways import SEARCH, WAYS, looked_at_times
 from drystone_lab.table import BenchSettings, Cell, Table
 from drystone_lab.walls import BRICKS, SEARCHED, Target, chosen
 
@@ -59,13 +59,7 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
 
 
 def load_packer() -> Any:
-    """Return spyrrow; it is an extra, so it is loaded only when it is needed.
-
-    Raises
-    ------
-    UsageError
-        E305 when it is not installed.
-    """
+    """Return spyrrow; it is an extra, so it is loaded only when it is needed."""
     try:
         return import_module("spyrrow")
     except ImportError as error:
@@ -111,7 +105,7 @@ def _row(
         packed_width_px(packer, stones, height, turns, seconds, seed) for turns in TURNS.values()
     ]
     (way,) = (way for way in WAYS if way.name == SEARCH)
-    looked = looked_for(way, stones, target, seconds, seed)
+    looked = looked_at_times(way, stones, target, (seconds,), seed)[0]
     figures = looked.found.figures
     return (
         target.name,
@@ -124,19 +118,10 @@ def _row(
     )
 
 
-def packed(spec: RunSpec, data: Path | None) -> Outcome:
+def packed(spec: RunSpec, data: Path | None) -> RunOutcome:
     """Pack the stones of a run into a strip as high as its wall, as short as it gets.
 
-    Returns
-    -------
-    outcome : Outcome
-        Of its figures F_SF alone: area of the stones over that of the strip, or over that of the
-        wall where the strip is shorter.  Without steps.
-
-    Raises
-    ------
-    UsageError
-        E305: spyrrow is not installed.
+    It has F_SF alone: area of the stones over that of the strip, or of the wall where it is larger.
     """
     packer = load_packer()
     stones = spec.source.stones(data)
@@ -149,4 +134,4 @@ def packed(spec: RunSpec, data: Path | None) -> Outcome:
     figures: dict[str, float | int | None] = dict.fromkeys(FIGURES)
     figures["stones"] = len(stones)
     figures["F_SF"] = stones.total_area_px / (max(strip, width) * height)
-    return Outcome(spec.key, figures, {"steps": []}, {"wall": took})
+    return RunOutcome(spec.key, figures, {"steps": []}, {"wall": took})

@@ -1,9 +1,10 @@
 """What two methods differ by, from pairs of results with the same seed."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 RESAMPLES = 10_000
 """Draws of the bootstrap."""
@@ -12,19 +13,19 @@ COVERED = 0.95
 """Share of the draws between the ends of an interval."""
 
 
-@dataclass(frozen=True)
-class Difference:
-    """What one method has more than another.
+def interval_of(values: NDArray[np.float64], statistic: Callable[..., Any]) -> tuple[float, float]:
+    """Return the percentile bootstrap interval of a mean or a median.
 
-    Parameters
-    ----------
-    median : float
-        Of the differences of all pairs.
-    low, high : float
-        Ends of its interval.
-    pairs : int
-        How many there are.
+    Values are drawn with the same random numbers every time.
     """
+    draws = np.random.default_rng(0).choice(values, (RESAMPLES, values.size))
+    ends = [(1 - COVERED) / 2, (1 + COVERED) / 2]
+    low, high = np.quantile(statistic(draws, axis=1), ends).tolist()
+    return low, high
+
+
+class Difference(NamedTuple):
+    """What one method has more than another: the median of all pairs, and its interval."""
 
     median: float
     low: float
@@ -34,8 +35,6 @@ class Difference:
     def text(self) -> str:
         """Return it as a cell of a table.
 
-        Examples
-        --------
         >>> Difference(0.25, -0.5, 1.0, 6).text()
         '+0.25 (-0.5 to +1)'
         """
@@ -45,21 +44,8 @@ class Difference:
 def median_difference(
     first: Sequence[float | None], second: Sequence[float | None]
 ) -> Difference | None:
-    """Return the median difference between pairs, with its percentile bootstrap interval.
+    """Return the median of first minus second; pairs with a None are left out, None without any.
 
-    Parameters
-    ----------
-    first, second : sequence of float or None
-        Of the two methods, in the same order; pairs with a None are left out.
-
-    Returns
-    -------
-    difference : Difference or None
-        First minus second.  Pairs are drawn with the same random numbers every time.  None when
-        there is no pair.
-
-    Examples
-    --------
     >>> median_difference([3.0, 4.0, 9.0], [1.0, 2.0, 7.0])
     Difference(median=2.0, low=2.0, high=2.0, pairs=3)
     """
@@ -67,7 +53,4 @@ def median_difference(
     found = np.array([a - b for a, b in pairs if a is not None and b is not None])
     if not found.size:
         return None
-    rng = np.random.default_rng(0)
-    medians = np.median(rng.choice(found, (RESAMPLES, found.size)), axis=1)
-    low, high = np.quantile(medians, [(1 - COVERED) / 2, (1 + COVERED) / 2]).tolist()
-    return Difference(float(np.median(found)), low, high, found.size)
+    return Difference(float(np.median(found)), *interval_of(found, np.median), found.size)

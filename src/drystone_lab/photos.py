@@ -11,7 +11,7 @@ from PIL import ImageOps, JpegImagePlugin
 
 from drystone.errors import DrystoneError
 from drystone.photo.segment_photo import SegmentedPhoto, segment_photo
-from drystone_lab.photographs.layout import LEVELS, Level
+from drystone_lab.photographs.layout import LEVELS, PhotoLevel
 from drystone_lab.photographs.scene import Photograph, inverse, layout_of, moved, photograph
 from drystone_lab.table import BenchSettings, Cell, Table
 
@@ -26,26 +26,15 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class Score:
-    """What was found of what is there.
+    """What was found of what is there."""
 
-    Parameters
-    ----------
-    stones, found : int
-        Whole stones in the photograph, and stones that were found.
-    recall, precision : float
-        Share of either that has a match.
-    ious : tuple of float
-        Intersection over union of every stone with what covers it best, in the order of the
-        stones.
-    scale_error_percent : float or None
-        Largest error of distances between places of the ground; None without a scale.
-    """
-
-    stones: int
+    stones: int  # stones, found: Whole stones in the photograph, and stones that were found
     found: int
-    recall: float
+    recall: float  # recall, precision: Share of either that has a match
     precision: float
+    # Intersection over union of every stone with what covers it best, in the order of the stones
     ious: tuple[float, ...]
+    # Largest error of distances between places of the ground; None without a scale
     scale_error_percent: float | None
 
 
@@ -98,8 +87,6 @@ def score(made: Photograph, result: SegmentedPhoto) -> Score:
 def overlaps(truth: NDArray[np.uint16], labels: NDArray[np.uint16]) -> NDArray[np.float64]:
     """Return intersection over union of every true stone with every found one, (n, m).
 
-    Examples
-    --------
     >>> overlaps(np.array([[1, 1, 0]], np.uint16), np.array([[0, 1, 1]], np.uint16)).round(3)
     array([[0.333]])
     """
@@ -136,7 +123,7 @@ def pixels(made: Photograph) -> NDArray[np.uint8]:
     return np.asarray(ImageOps.exif_transpose(JpegImagePlugin.JpegImageFile(io.BytesIO(made.jpeg))))
 
 
-def _row(level: Level) -> tuple[Cell, ...]:
+def _row(level: PhotoLevel) -> tuple[Cell, ...]:
     made = photograph(level)
     image = pixels(made)
     start = time.perf_counter()
@@ -154,7 +141,7 @@ def _row(level: Level) -> tuple[Cell, ...]:
     )  # fmt: skip
 
 
-def _small(level: Level) -> Level:
+def _small(level: PhotoLevel) -> PhotoLevel:
     """Return a level at less than half the size."""
     return replace(
         level, width_px=900, height_px=675, px_per_m=800.0, count=min(level.count, 10),
@@ -165,7 +152,7 @@ def _small(level: Level) -> Level:
 Change = Callable[[NDArray[np.uint8]], NDArray[np.uint8]]
 
 
-def _refused() -> tuple[tuple[str, Level, Change], ...]:
+def _refused() -> tuple[tuple[str, PhotoLevel, Change], ...]:
     easy, single = LEVELS[0], replace(LEVELS[0], markers="single")
     bare = replace(easy, markers="none")
     return (
@@ -175,12 +162,9 @@ def _refused() -> tuple[tuple[str, Level, Change], ...]:
          replace(single, wrong_print=1.06), lambda image: image),
         ("the photograph is mirrored", easy, lambda image: image[:, ::-1]),
         ("no stones", replace(easy, count=1, cut=1, angular=0.0), lambda image: image),
-        ("noise", bare, _noise),
+        ("noise", bare,
+         lambda image: np.random.default_rng(1).integers(0, 256, image.shape, np.uint8)),
     )  # fmt: skip
-
-
-def _noise(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    return np.random.default_rng(1).integers(0, 256, image.shape, np.uint8)
 
 
 def _one_marker(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
@@ -194,7 +178,7 @@ def _one_marker(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
     return changed
 
 
-def _outcome(level: Level, change: Change) -> str:
+def _outcome(level: PhotoLevel, change: Change) -> str:
     made = photograph(level)
     layout = layout_of(level) or layout_of(replace(level, markers="sheet"))
     try:

@@ -46,15 +46,10 @@ SHORTEST = 0.04
 
 @dataclass(frozen=True, eq=False)
 class TiltedWall:
-    """A wall of height 1 on flat ground whose joints follow no grid.
+    """A wall of height 1 on flat ground whose joints follow no grid."""
 
-    Parameters
-    ----------
-    polygons : tuple of (n, 2) float array
-        Corners of stone 1, 2, ...; counter-clockwise, not closed, x to the right and y up;
-        without gaps between them.
-    """
-
+    # Corners of stone 1, 2, ...; counter-clockwise, not closed, x to the right and y up; without
+    # gaps between them
     polygons: tuple[Points, ...]
 
     def model(self, mu: float = 0.58) -> RigidBlockModel:
@@ -68,17 +63,7 @@ class TiltedWall:
     def picture(self, height_px: int, offset_px: tuple[float, float] = (0.0, 0.0)) -> Labels:
         """Return its label image: a pixel belongs to the stone that its centre lies in.
 
-        Parameters
-        ----------
-        height_px : int
-            Height of the wall.
-        offset_px : (float, float)
-            Where the wall's lower left corner lies right of and above a pixel corner, 0 to 1.
-
-        Returns
-        -------
-        (h, w) uint32 array
-            Row 0 at the top, the lowest pixels of the wall in the last row.
+        `offset_px` is where the lower left corner lies right of and above a pixel corner, 0 to 1.
         """
         scaled = [polygon * height_px + offset_px for polygon in self.polygons]
         width, height = np.ceil(np.max([p.max(axis=0) for p in scaled], axis=0)).astype(int)
@@ -94,18 +79,9 @@ class TiltedWall:
 def tilted_wall(rng: Generator, courses: int = 4, length: float = 0.9) -> TiltedWall:
     """Draw a wall whose bed joints zigzag, whose head joints lean and whose ends have a batter.
 
-    Raises
-    ------
-    ValueError
-        When no such wall was found.
-
-    Notes
-    -----
     Bends and ends of joints are at least `SHORTEST` apart along a bed.  A facet smaller than a
     pixel cannot be seen in a picture, but may carry a good part of the load.
 
-    Examples
-    --------
     >>> wall = tilted_wall(np.random.default_rng(1), courses=3)
     >>> len(wall.polygons), wall.picture(40).shape
     (7, (40, 36))
@@ -193,74 +169,23 @@ COURSES = (3, 4, 5)
 """The walls have these numbers of courses in turn."""
 
 
-@dataclass(frozen=True)
-class RefinementRow:
-    """Errors at one resolution.
-
-    Parameters
-    ----------
-    height_px : int
-        Height of the wall.
-    cases : int
-        Load multipliers compared: walls times offsets times two directions.
-    unanswered : int
-        Comparisons without a number, of either kind of contacts; left out of the means.
-    pixel_error, outline_error : float
-        Mean of |alpha - exact alpha| with contacts from pixel edges and from outlines.
-    pixel_worst, outline_worst : float
-        Largest of them.
-    """
-
-    height_px: int
-    cases: int
-    unanswered: int
-    pixel_error: float
-    outline_error: float
-    pixel_worst: float
-    outline_worst: float
-
-
-@dataclass(frozen=True)
-class RefinementStudy:
-    """Errors at all resolutions, and p in error ~ height^-p, fitted to their logarithms."""
-
-    rows: tuple[RefinementRow, ...]
-    pixel_order: float
-    outline_order: float
-
-
-def refinement_study(
-    heights_px: Sequence[int] = (40, 80, 160, 320),
+def refinement_errors(
+    heights_px: Sequence[int],
     *,
     walls: int = 9,
     offsets: int = 3,
     mu: float = 0.58,
     seed: int = 0,
-) -> RefinementStudy:
+) -> NDArray[np.float64]:
     """Compare pictures of walls of tilted joints with their polygons.
 
-    Parameters
-    ----------
-    heights_px : sequence of int
-        Heights of the walls in the pictures, at least two different ones.
-    walls : int
-        Number of walls from :func:`drystone_lab.pixels.tilted_wall`.
-    offsets : int
-        Sub-pixel positions at which each wall is rasterised.
-    mu : float
-        Coefficient of friction.
-    seed : int
-        Decides the walls.
+    Each wall is drawn at several heights, and at several sub-pixel positions (`offsets`).  Returns
+    |alpha - exact alpha|, (heights, 2, cases): with contacts from pixel edges, then from outlines;
+    cases are walls times offsets times two directions, nan where there is no number.  A picture of
+    blocks that do not stand counts with alpha = 0.
 
-    Notes
-    -----
-    A picture of blocks that do not stand counts with alpha = 0.
-
-    Examples
-    --------
-    >>> study = refinement_study((40, 80), walls=1, offsets=1)
-    >>> [row.cases for row in study.rows]
-    [2, 2]
+    >>> refinement_errors((40, 80), walls=1, offsets=1).shape
+    (2, 2, 2)
     """
     seeds = np.random.default_rng(seed).integers(0, 2**32, walls).tolist()
     drawn = [
@@ -268,29 +193,24 @@ def refinement_study(
         for i, wall_seed in enumerate(seeds)
     ]
     exact = [_alphas(wall.model(mu)) for wall in drawn]
-    rows = []
-    for height_px in heights_px:
-        pixels, outlines = [], []
-        for wall, true in zip(drawn, exact, strict=True):
-            for number in range(offsets):
-                labels = wall.picture(height_px, _offset(number))
-                standing = _alphas(model_from_labels(labels, mu).model)
-                pixels.append(np.abs(standing - true))
-                standing = _alphas(model_from_outlines(outlines_of_labels(labels), mu))
-                outlines.append(np.abs(standing - true))
-        rows.append(_row(height_px, np.array(pixels), np.array(outlines)))
-    return RefinementStudy(
-        tuple(rows),
-        fitted_order(heights_px, [row.pixel_error for row in rows]),
-        fitted_order(heights_px, [row.outline_error for row in rows]),
-    )
+    return np.array(
+        [
+            [
+                [
+                    np.abs(_alphas(model_of(wall.picture(height_px, _offset(number)), mu)) - true)
+                    for wall, true in zip(drawn, exact, strict=True)
+                    for number in range(offsets)
+                ]
+                for model_of in (from_pixels, from_outlines)
+            ]
+            for height_px in heights_px
+        ]
+    ).reshape(len(heights_px), 2, -1)
 
 
 def fitted_order(heights_px: Sequence[int], errors: Sequence[float]) -> float:
     """Return p of error ~ height^-p by least squares of the logarithms.
 
-    Examples
-    --------
     >>> round(fitted_order((10, 20, 40), (0.4, 0.1, 0.025)), 9)
     2.0
     """
@@ -313,19 +233,6 @@ def _alpha(result: LimitResult) -> float:
     return np.nan if result.alpha is None else result.alpha
 
 
-def _row(height_px: int, pixels: np.ndarray, outlines: np.ndarray) -> RefinementRow:
-    missing = int(np.isnan(pixels).sum() + np.isnan(outlines).sum())
-    return RefinementRow(
-        height_px,
-        pixels.size,
-        missing,
-        float(np.nanmean(pixels)),
-        float(np.nanmean(outlines)),
-        float(np.nanmax(pixels)),
-        float(np.nanmax(outlines)),
-    )
-
-
 BRICK_PX = 20
 """Height of a brick."""
 
@@ -344,8 +251,6 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
 def rasterised(rectangles: Iterable[Rectangle], px: float) -> Labels:
     """Draw rectangles, numbered from 1, at `px` pixels per unit; edges at the nearest pixel edge.
 
-    Examples
-    --------
     >>> rasterised([(0, 0, 1, 1), (0.4, 1, 1, 1)], 2).tolist()
     [[0, 2, 2], [0, 2, 2], [1, 1, 0], [1, 1, 0]]
     """
@@ -422,15 +327,11 @@ def _both(left: float, right: float) -> str:
 
 
 def _refinement(settings: BenchSettings) -> Table:
-    count = 1 if settings.quick else SEEDS
+    heights, count = ((40, 80, 160), 1) if settings.quick else ((40, 80, 160, 320), SEEDS)
+    few = {"walls": 3, "offsets": 1} if settings.quick else {}
     rows: list[tuple[Cell, ...]] = []
     for seed in range(settings.seed, settings.seed + count):
-        study = (
-            refinement_study((40, 80, 160), walls=3, offsets=1, seed=seed)
-            if settings.quick
-            else refinement_study(seed=seed)
-        )
-        rows += _study_rows(seed, study)
+        rows += _study_rows(seed, heights, refinement_errors(heights, seed=seed, **few))
     return Table(
         "Walls of tilted joints: |alpha - alpha of the polygons|",
         ("walls of seed", "height px", "cases", "pixels, mean", "pixels, worst",
@@ -444,14 +345,13 @@ def _refinement(settings: BenchSettings) -> Table:
     )  # fmt: skip
 
 
-def _study_rows(seed: int, study: RefinementStudy) -> list[tuple[Cell, ...]]:
-    last = len(study.rows) - 1
-    return [
-        (
-            seed, row.height_px, row.cases, row.pixel_error, row.pixel_worst, row.outline_error,
-            row.outline_worst,
-            study.pixel_order if place == last else None,
-            study.outline_order if place == last else None,
-        )
-        for place, row in enumerate(study.rows)
-    ]  # fmt: skip
+def _study_rows(
+    seed: int, heights: Sequence[int], errors: NDArray[np.float64]
+) -> list[tuple[Cell, ...]]:
+    means, worst = np.nanmean(errors, axis=2), np.nanmax(errors, axis=2)
+    rows: list[tuple[Cell, ...]] = [
+        (seed, height, errors.shape[2], mean[0], most[0], mean[1], most[1], None, None)
+        for height, mean, most in zip(heights, means.tolist(), worst.tolist(), strict=True)
+    ]
+    rows[-1] = (*rows[-1][:-2], *(fitted_order(heights, each) for each in means.T))
+    return rows

@@ -7,12 +7,11 @@ from functools import cached_property
 from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
-from drystone.search.plan_wall import plan_wall
 from drystone.statics.model import RigidBlockModel
 from drystone.verify.lengths import plan_settings
 from drystone.verify.replay import Stage, replay_plan
 from drystone.verify.stability import wall_model
-from drystone_lab.runs.outcome import uninterrupted
+from drystone_lab.runs.outcome import execute
 from drystone_lab.table import BenchSettings
 from drystone_lab.walls import IR, PR, R
 
@@ -21,20 +20,10 @@ SETS = (PR, R, IR)
 
 @dataclass(frozen=True, eq=False)
 class PlannedWall:
-    """A plan, and the wall after every step.
+    """A plan, and the wall after every step."""
 
-    Parameters
-    ----------
-    name : str
-        Set, method and seed.
-    plan : Plan
-        The plan.
-    stones : StoneSet
-        What it was made from.
-    """
-
-    name: str
-    plan: Plan
+    name: str  # Set, method and seed
+    plan: Plan  # The plan
     stones: StoneSet
 
     @cached_property
@@ -62,27 +51,14 @@ class PlannedWall:
 def planned_walls(
     settings: BenchSettings, methods: tuple[str, ...] = ("paper", "best"), seeds: int = 1
 ) -> Iterator[PlannedWall]:
-    """Plan walls from the published sets, one after another.
-
-    Parameters
-    ----------
-    settings : BenchSettings
-        `data` is the folder of the published sets; without it there are no walls.  `quick` plans
-        only the smallest wall, by the first method.
-    methods : tuple of str
-        Of the planner.
-    seeds : int
-        Walls of each set and method, from the seed of the settings on.
-    """
+    """Plan walls from the published sets, one after another."""
     if missing_data(settings):
         return
     for target in SETS[:1] if settings.quick else SETS:
         stones = target.source.stones(settings.data)
         for method in methods[:1] if settings.quick else methods:
             for seed in range(settings.seed, settings.seed + (1 if settings.quick else seeds)):
-                size = target.size(stones)
-                result = plan_wall(stones, *size, seed=seed, method=method, scale=target.scale)
-                plan = uninterrupted(result).plan
+                plan = execute(target.run(seed, method=method), settings.data, stones).as_plan
                 yield PlannedWall(f"{target.name}, {method}, seed {seed}", plan, stones)
 
 

@@ -1,7 +1,8 @@
 """Suite "statics": published and closed-form cases of the limit analysis, both flow rules."""
 
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass, replace
+from dataclasses import dataclass
+from typing import NamedTuple
 
 from drystone.statics.flow.nonassociative import NonassociativeResult, nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
@@ -44,41 +45,21 @@ QUICK_WALLS = (3,)
 QUICK_ARCHES = (*WITHOUT_SLIDING[:2], *WITH_FRICTION[2::2])
 
 COLUMNS = (
-    "case",
-    "mu",
-    "towards",
-    "expected",
-    "alpha",
-    "difference",
-    "certificate gap",
-    "without dilatancy, accepted",
-    "without dilatancy",
-    "verdict",
-)
+    "case", "mu", "towards", "expected", "alpha", "difference", "certificate gap",
+    "without dilatancy, accepted", "without dilatancy", "verdict",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Expected:
-    """What the answers for one direction must be.
+    """What the answers for one direction must be."""
 
-    Parameters
-    ----------
-    alpha, tolerance : float
-        Associative load factor.
-    low, high : float
-        Range of the factor without dilatancy.
-    words : str
-        That range for people.
-    may_not_converge : bool
-        No factor without dilatancy is accepted too.
-    """
-
-    alpha: float
+    alpha: float  # alpha, tolerance: Associative load factor
     tolerance: float
-    low: float
+    low: float  # low, high: Range of the factor without dilatancy
     high: float
-    words: str
-    may_not_converge: bool = False
+    words: str  # That range for people
+    may_not_converge: bool = False  # No factor without dilatancy is accepted too
 
     def fits(self, found: LimitResult) -> bool:
         """Tell whether a load factor is certified and as expected."""
@@ -95,8 +76,7 @@ class Expected:
         return checked and below and self.low <= found.alpha <= self.high
 
 
-@dataclass(frozen=True)
-class Row:
+class CaseRow(NamedTuple):
     """A row of `COLUMNS`."""
 
     case: str
@@ -112,34 +92,18 @@ class Row:
 
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
-    """Compare the limit analysis with all published cases.
-
-    Parameters
-    ----------
-    settings : BenchSettings
-        With `quick` most arches and most of the factors without dilatancy are left out.
-
-    Returns
-    -------
-    tuple of Table
-        Closed forms, walls of Ferris and Tin-Loi, arches; a verdict a row.
-    """
+    """Compare the limit analysis with all published cases."""
     arches = (*WITHOUT_SLIDING, *WITH_FRICTION)
     chosen = [case for case in arches if not settings.quick or case in QUICK_ARCHES]
     return _closed_forms(quick=settings.quick), _ferris(quick=settings.quick), _arches(chosen)
 
 
 def _closed_forms(*, quick: bool) -> Table:
-    rows: list[Row] = []
+    rows: list[CaseRow] = []
     for number, case in enumerate(closed_forms()):
+        near = CLOSED_FORM_TOLERANCE
         expected = [
-            Expected(
-                alpha,
-                CLOSED_FORM_TOLERANCE,
-                alpha - CLOSED_FORM_TOLERANCE,
-                alpha + CLOSED_FORM_TOLERANCE,
-                "the same",
-            )
+            Expected(alpha, near, alpha - near, alpha + near, "the same")
             for alpha in (case.left, case.right)
         ]
         both_rules = not quick or number % QUICK_STEP == 0
@@ -147,7 +111,7 @@ def _closed_forms(*, quick: bool) -> Table:
     return Table(
         "Closed forms: load factors alpha on the tilting table",
         COLUMNS,
-        tuple(astuple(row) for row in rows),
+        tuple(rows),
         (
             f"Tolerance {CLOSED_FORM_TOLERANCE:g}. The running bond has no formula: its factor is "
             "the answer of another program.",
@@ -156,7 +120,7 @@ def _closed_forms(*, quick: bool) -> Table:
 
 
 def _ferris(*, quick: bool) -> Table:
-    rows: list[Row] = []
+    rows: list[CaseRow] = []
     for wall in WALLS:
         low, high = wall.nonassociative
         words = f"{low:g} to {high:g}" if low else f"at most {high:g}, or none"
@@ -169,7 +133,7 @@ def _ferris(*, quick: bool) -> Table:
     return Table(
         "Walls of Ferris and Tin-Loi (2001): load factors alpha on the tilting table",
         COLUMNS,
-        tuple(astuple(row) for row in rows),
+        tuple(rows),
         (
             f"Tolerance {FERRIS_TOLERANCE:g}, half a unit of the fifth digit.",
             "Without dilatancy there are several solutions, and methods find different ones. The "
@@ -180,7 +144,7 @@ def _ferris(*, quick: bool) -> Table:
 
 def _rows(
     case: str, model: RigidBlockModel, expected: list[Expected], *, both_rules: bool = True
-) -> list[Row]:
+) -> list[CaseRow]:
     """Return a row for each direction, or one when both say the same."""
     both = lateral_resistance(model)
     found: list[LimitResult] = [both.left, both.right]
@@ -195,16 +159,12 @@ def _rows(
 
 
 def _row(
-    case: str,
-    mu: float,
-    expected: Expected,
-    found: LimitResult,
-    other: NonassociativeResult | None,
-) -> Row:
+    case: str, mu: float, expected: Expected, found: LimitResult, other: NonassociativeResult | None
+) -> CaseRow:
     fits = expected.fits(found)
     if other is not None:
         fits = fits and expected.fits_without_dilatancy(other, found.alpha)
-    return Row(
+    return CaseRow(
         case=case,
         mu=mu,
         towards="-x" if found.direction == "left" else "+x",
@@ -218,7 +178,7 @@ def _row(
     )
 
 
-def _together(left: Row, right: Row) -> list[Row]:
+def _together(left: CaseRow, right: CaseRow) -> list[CaseRow]:
     """Make one row of two that agree: the larger difference, and the larger gap."""
     alike = _agree(left.alpha, right.alpha) and _agree(
         left.without_dilatancy, right.without_dilatancy
@@ -227,7 +187,7 @@ def _together(left: Row, right: Row) -> list[Row]:
         return [left, right]
     worse = max((left, right), key=lambda row: row.difference or 0.0)
     gap = max((row.gap for row in (left, right) if row.gap is not None), default=None)
-    return [replace(worse, towards="both", gap=gap)]
+    return [worse._replace(towards="both", gap=gap)]
 
 
 def _agree(first: float | None, second: float | None) -> bool:

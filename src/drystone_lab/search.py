@@ -1,20 +1,24 @@
 """Suite "search": methods that look for good walls, compared at equal CPU time."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from statistics import median
 
 from drystone.errors import UsageError
-from drystone.model.stone import StoneSet
 from drystone.planner.settings import method_settings
 from drystone_lab.masons import masons_walls
 from drystone_lab.paired import median_difference
 from drystone_lab.planned_walls import missing_data
 from drystone_lab.runs.spec import Changes, nested, told
-from drystone_lab.search_runs import FIGURES, Result, Run, method_name, searched, searched_walls
+from drystone_lab.search_runs import (
+    FIGURES,
+    SearchResult,
+    SearchRun,
+    method_name,
+    searched,
+    searched_walls,
+)
 from drystone_lab.search_ways import NO_COURSES, RESTARTS, SEARCH, WAYS, WEDGED
 from drystone_lab.table import BenchSettings, Cell, Table
-from drystone_lab.walls import Target
 
 SECONDS, SEEDS = 20.0, 6
 QUICK_SECONDS, QUICK_SEEDS = 0.1, 2
@@ -23,27 +27,8 @@ PAIRS = ((SEARCH, RESTARTS), (SEARCH, WEDGED), (SEARCH, NO_COURSES))
 """Methods that are compared: what the first has more than the second."""
 
 
-@dataclass(frozen=True, eq=False)
-class Compared:
-    """What all methods came to on one wall.
-
-    Parameters
-    ----------
-    target : Target
-        The wall.
-    stones : int
-        How many there are to build with.
-    results : dict of str to list of Result
-        Of each method, seed after seed.
-    """
-
-    target: Target
-    stones: int
-    results: dict[str, list[Result]]
-
-    def values(self, way: str, figure: str) -> list[float | None]:
-        """Return a figure of a method, seed after seed."""
-        return [result.figures[figure] for result in self.results[way]]
+ByWay = Mapping[str, Sequence[SearchResult]]
+"""Results on one wall, seed after seed, by method."""
 
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
@@ -58,8 +43,14 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     results = searched(walls, seeds, times, settings)
     tables = []
     for seconds in times:
-        compared = [_compared(*wall, seeds, seconds, settings, results) for wall in walls]
-        tables += [_medians(compared, seconds, len(seeds), settings), _paired(compared, seconds)]
+        compared = [
+            (target.name, len(stones), _by_way(target.name, seeds, seconds, settings, results))
+            for target, stones in walls
+        ]
+        medians = [row for one in compared for row in _rows(*one)]
+        differences = [row for name, _, found in compared for row in _differences(name, found)]
+        tables.append(_medians(medians, seconds, len(seeds), settings))
+        tables.append(_paired(differences, seconds))
     return (*tables, masons_walls(settings))
 
 
@@ -77,12 +68,12 @@ def _check(changes: Changes) -> None:
 
 
 def _medians(
-    compared: Sequence[Compared], seconds: float, seeds: int, settings: BenchSettings
+    rows: Sequence[tuple[Cell, ...]], seconds: float, seeds: int, settings: BenchSettings
 ) -> Table:
     return Table(
         f"Best walls after {seconds:g} s of CPU time, medians of {seeds} seeds",
         ("wall", "method", "range", *FIGURES[:2], "possible F_SF", *FIGURES[2:], "walls", "s"),
-        tuple(row for one in compared for row in _rows(one)),
+        tuple(rows),
         (
             "Restarts: single passes from seed to seed, the best by the merit that the search "
             "goes by; with wedges: small ones are put into the gaps of the good ones, as in "
@@ -97,12 +88,12 @@ def _medians(
     )
 
 
-def _paired(compared: Sequence[Compared], seconds: float) -> Table:
+def _paired(rows: Sequence[tuple[Cell, ...]], seconds: float) -> Table:
     return Table(
         f"What the search has more after {seconds:g} s, medians of the pairs of one seed "
         "(95 % intervals)",
         ("wall", "more than", "merit higher", *FIGURES),
-        tuple(row for one in compared for row in _differences(one)),
+        tuple(rows),
         (
             "Percentile bootstrap over the seeds with fixed random numbers. It cannot be wider "
             "than the differences that were seen, which hold the median of all with 1 - .5^(n - 1) "
@@ -119,64 +110,53 @@ def _effort(settings: BenchSettings) -> tuple[tuple[float, ...], range]:
     return times, range(settings.seed, settings.seed + (settings.seeds or usual[1]))
 
 
-def _compared(
-    target: Target,
-    stones: StoneSet,
+def _by_way(
+    wall: str,
     seeds: Sequence[int],
     seconds: float,
     settings: BenchSettings,
-    results: Mapping[Run, Result],
-) -> Compared:
+    results: Mapping[SearchRun, SearchResult],
+) -> ByWay:
     """Sort the results of a wall after a time by methods."""
-    found: dict[str, list[Result]] = {}
+    found = {}
     for way in WAYS:
         method = method_name(way.name, settings.changes)
-        runs = [Run(target.name, method, seed, seconds) for seed in seeds]
+        runs = [SearchRun(wall, method, seed, seconds) for seed in seeds]
         if runs[0] in results:
             found[way.name] = [results[run] for run in runs]
-    return Compared(target, len(stones), found)
+    return found
 
 
-def _rows(one: Compared) -> list[tuple[Cell, ...]]:
+def _rows(wall: str, stones: int, by_way: ByWay) -> list[tuple[Cell, ...]]:
     rows: list[tuple[Cell, ...]] = []
-    for way, results in one.results.items():
-        placed = [value for value in one.values(way, "placed") if value is not None]
-        medians = [_median(one.values(way, figure)) for figure in FIGURES]
-        rows.append(
-            (
-                one.target.name,
-                way,
-                f"{min(placed)}-{max(placed)} of {one.stones}",
-                *medians[:2],
-                results[0].possible,
-                *medians[2:],
-                median(result.walls for result in results),
-                median(result.seconds for result in results),
-            )
-        )
+    for way, results in by_way.items():
+        placed = [count for count in _values(results, "placed") if count is not None]
+        medians = [_median(_values(results, figure)) for figure in FIGURES]
+        spent = [_median(_values(results, name)) for name in ("walls", "CPU s")]
+        words = f"{min(placed)}-{max(placed)} of {stones}"
+        possible = results[0]["possible F_SF"]
+        rows.append((wall, way, words, *medians[:2], possible, *medians[2:], *spent))
     return rows
 
 
-def _differences(one: Compared) -> list[tuple[Cell, ...]]:
+def _differences(wall: str, by_way: ByWay) -> list[tuple[Cell, ...]]:
     rows: list[tuple[Cell, ...]] = []
-    for first, second in PAIRS:
-        if first not in one.results or second not in one.results:
+    for pair in PAIRS:
+        if not by_way.keys() >= set(pair):
             continue
-        merits = zip(one.values(first, "merit"), one.values(second, "merit"), strict=True)
+        first, second = (by_way[way] for way in pair)
+        merits = zip(_values(first, "merit"), _values(second, "merit"), strict=True)
         better = [a is not None and b is not None and a > b for a, b in merits]
         cells = [
-            median_difference(one.values(first, figure), one.values(second, figure))
-            for figure in FIGURES
+            median_difference(_values(first, figure), _values(second, figure)) for figure in FIGURES
         ]
-        rows.append(
-            (
-                one.target.name,
-                second,
-                f"{sum(better)} of {len(better)}",
-                *(None if cell is None else cell.text() for cell in cells),
-            )
-        )
+        told = [None if cell is None else cell.text() for cell in cells]
+        rows.append((wall, pair[1], f"{sum(better)} of {len(better)}", *told))
     return rows
+
+
+def _values(results: Sequence[SearchResult], figure: str) -> list[float | None]:
+    return [result[figure] for result in results]
 
 
 def _median(values: Sequence[float | None]) -> float | None:

@@ -1,9 +1,10 @@
 """Runs of the suite "search": one method, one wall and one seed each, and their table."""
 
 import csv
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from drystone.errors import UsageError
 from drystone.metrics.second import (
@@ -16,7 +17,7 @@ from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone_lab.runs.spec import Changes, told
 from drystone_lab.runs.workers import crew
-from drystone_lab.search_ways import WAYS, Looked, Way, looked_at_times
+from drystone_lab.search_ways import WAYS, SearchWay, WayResult, looked_at_times
 from drystone_lab.table import BenchSettings
 from drystone_lab.walls import BRICKS, SEARCHED, UNSEEN, Target, chosen
 
@@ -25,121 +26,84 @@ FIGURES = (
 )  # fmt: skip
 """What is compared."""
 
+SPENT = ("possible F_SF", "walls", "CPU s")
+"""Area bound on F_SF, walls built, and time; every result has them."""
 
-@dataclass(frozen=True, eq=False)
-class Result:
-    """What one method came to with one seed.
+SearchResult = Mapping[str, float | None]
+"""What one method came to, by :data:`FIGURES` and :data:`SPENT`; None where it is not defined."""
 
-    Parameters
-    ----------
-    figures : dict of str to float or None
-        By the names of :data:`FIGURES`; None where a figure is not defined.
-    walls : int
-        How many walls it built.
-    possible : float
-        Area bound on F_SF.
-    seconds : float
-        How long it took.
-    """
 
-    figures: dict[str, float | None]
-    walls: int
-    possible: float
-    seconds: float
+class SearchRun(NamedTuple):
+    """One method that looks for one wall."""
 
-    @classmethod
-    def of(cls, looked: Looked) -> "Result":
-        """Measure a wall by both definitions."""
-        found, figures = looked.found, looked.found.figures
-        if figures is None:
-            raise ValueError("no stone stands in this wall")
-        second = second_of(found.build.wall)
-        values = (
-            figures.stones, figures.F_SF, figures.F_AV, figures.F_AH, figures.F_LR, second.F_AV,
-            second.F_AH, figures.T_LEVEL, figures.E_FLUSH, found.merit,
-        )  # fmt: skip
-        return cls(
-            dict(zip(FIGURES, values, strict=True)), looked.walls, looked.possible, looked.seconds
-        )
+    wall: str
+    way: str  # the method, with the settings that were replaced
+    seed: int
+    seconds: float  # CPU time
 
-    def words(self, stones: int) -> str:
-        """Return it for people who wait."""
-        values = {name: "-" if v is None else f"{v:.4g}" for name, v in self.figures.items()}
-        named = ", ".join(f"{name} {values[name]}" for name in FIGURES[1:])
-        return f"{values['placed']} of {stones} stones, {named}, {self.walls} walls"
+
+COLUMNS = ("wall", "method", "seed", "seconds", *FIGURES, *SPENT)
+"""Of the table."""
+
+
+def result_of(looked: WayResult) -> SearchResult:
+    """Measure a wall by both definitions."""
+    found, figures = looked.found, looked.found.figures
+    if figures is None:
+        raise ValueError("no stone stands in this wall")
+    second = second_of(found.build.wall)
+    values = (
+        figures.stones, figures.F_SF, figures.F_AV, figures.F_AH, figures.F_LR, second.F_AV,
+        second.F_AH, figures.T_LEVEL, figures.E_FLUSH, found.merit, looked.possible, looked.walls,
+        looked.seconds,
+    )  # fmt: skip
+    return dict(zip((*FIGURES, *SPENT), values, strict=True))
+
+
+def in_words(result: SearchResult, stones: int) -> str:
+    """Return a result for people who wait; `stones` are all that there are."""
+    values = {name: "-" if v is None else f"{v:.4g}" for name, v in result.items()}
+    named = ", ".join(f"{name} {values[name]}" for name in FIGURES[1:])
+    return f"{values['placed']} of {stones} stones, {named}, {result['walls']} walls"
 
 
 def second_of(wall: Wall) -> SecondArrangement:
     """Measure a planned wall by the second definition, on outlines where it has them."""
     if wall.outlines is None:
-        labels = finer_labels(wall.labels)
-    else:
-        labels = outlined_labels(wall.outlines.blocks, wall.site)
-    return second_arrangement(labels)
+        return second_arrangement(finer_labels(wall.labels))
+    return second_arrangement(outlined_labels(wall.outlines.blocks, wall.site))
 
 
-@dataclass(frozen=True)
-class Run:
-    """One method that looks for one wall.
-
-    Parameters
-    ----------
-    wall : str
-        Name of the target.
-    way : str
-        Of the method.
-    seed : int
-        Of all that is drawn.
-    seconds : float
-        CPU time.
-    """
-
-    wall: str
-    way: str
-    seed: int
-    seconds: float
-
-
-KEY = ("wall", "method", "seed", "seconds")
-COLUMNS = (*KEY, *FIGURES, "possible F_SF", "walls", "CPU s")
-"""Of the table."""
-
-
-def read_results(path: Path) -> dict[Run, Result]:
-    """Read the results that a table holds; none when there is no table.
-
-    Raises
-    ------
-    UsageError
-        E148 when it is another kind of file.
-    """
+def read_results(path: Path) -> dict[SearchRun, SearchResult]:
+    """Read the results that a table holds; none when there is no table; E148 for another file."""
     if not path.exists():
         return {}
     with path.open(newline="", encoding="utf-8") as file:
         rows = csv.DictReader(file)
         if tuple(rows.fieldnames or ()) != COLUMNS:
-            raise _no_table(path, 1)
-        return dict(_result(row, path, rows.line_num) for row in rows)
+            raise _not_a_table(path, 1)
+        return dict(_row(row, path, rows.line_num) for row in rows)
 
 
-def _result(row: dict[str, str], path: Path, line: int) -> tuple[Run, Result]:
+def _row(row: dict[str, str], path: Path, line: int) -> tuple[SearchRun, SearchResult]:
     try:
-        run = Run(row["wall"], row["method"], int(row["seed"]), float(row["seconds"]))
-        figures = {name: _number(row[name]) for name in FIGURES}
-        walls, possible, seconds = int(row["walls"]), row["possible F_SF"], row["CPU s"]
-        return run, Result(figures, walls, float(possible), float(seconds))
+        run = SearchRun(row["wall"], row["method"], int(row["seed"]), float(row["seconds"]))
+        result = {name: _number(row[name]) for name in (*FIGURES, *SPENT)}
+        if None in (result[name] for name in SPENT):
+            raise ValueError(line)
     except (TypeError, ValueError) as error:
-        raise _no_table(path, line) from error
+        raise _not_a_table(path, line) from error
+    return run, result
 
 
 def _number(cell: str) -> float | None:
     """Return a figure; those that count something are whole."""
-    if not cell:
+    if cell == "":
         return None
-    return int(cell) if cell.isdecimal() else float(cell)
+    return int(cell) if str(cell).isdecimal() else float(cell)
 
 
-def _no_table(path: Path, line: int) -> UsageError:
+def _not_a_table(path: Path, line: int) -> UsageError:
     return UsageError(
         "E148",
         "this is no table of searches of this version.",
@@ -148,7 +112,7 @@ def _no_table(path: Path, line: int) -> UsageError:
     )
 
 
-def append_results(path: Path, results: Iterable[tuple[Run, Result]]) -> None:
+def append_results(path: Path, results: Iterable[tuple[SearchRun, SearchResult]]) -> None:
     """Add results at the end of a table, which is begun when there is none."""
     new = not path.exists()
     with path.open("a", newline="", encoding="utf-8") as file:
@@ -156,58 +120,34 @@ def append_results(path: Path, results: Iterable[tuple[Run, Result]]) -> None:
         if new:
             writer.writerow(COLUMNS)
         for run, result in results:
-            key = run.wall, run.way, run.seed, run.seconds
-            figures = [result.figures[name] for name in FIGURES]
-            writer.writerow([*key, *figures, result.possible, result.walls, result.seconds])
+            writer.writerow([*run, *(result[name] for name in (*FIGURES, *SPENT))])
 
 
 @dataclass(frozen=True)
-class Task:
-    """What one process does: a method looks for a wall, and is asked at several times.
+class SearchTask:
+    """What one process does: a method looks for a wall, and is asked at several times."""
 
-    Parameters
-    ----------
-    wall, way : str
-        Names of the target and the method.
-    seed : int
-        Of all that is drawn.
-    times : tuple of float
-        CPU times, s.
-    data : Path or None
-        Folder of the published data.
-    quick : bool
-        Whether targets are those of the smaller version.
-    changes : tuple of (str, value)
-        Settings that are replaced.
-    """
-
-    wall: str
+    wall: str  # name of the target
     way: str
     seed: int
-    times: tuple[float, ...]
+    times: tuple[float, ...]  # CPU times, s
     data: Path | None
-    quick: bool
+    quick: bool  # whether targets are those of the smaller version
     changes: Changes = ()
 
     @property
-    def method(self) -> str:
-        """The way with its settings: in a table runs with others are not taken for these."""
-        return method_name(self.way, self.changes)
-
-    @property
-    def runs(self) -> list[Run]:
-        """What its results are called."""
-        return [Run(self.wall, self.method, self.seed, seconds) for seconds in self.times]
+    def runs(self) -> list[SearchRun]:
+        """What its results are called; runs with other settings are not taken for these."""
+        method = method_name(self.way, self.changes)
+        return [SearchRun(self.wall, method, self.seed, seconds) for seconds in self.times]
 
     def __str__(self) -> str:
-        return f"{self.wall}, {self.method}, seed {self.seed}"
+        return f"{self.wall}, {method_name(self.way, self.changes)}, seed {self.seed}"
 
 
 def method_name(way: str, changes: Changes) -> str:
     """Return what a way with settings is called in a table.
 
-    Examples
-    --------
     >>> method_name("search", (("goal.F_AV", 24.0),))
     'search, goal.F_AV = 24.0'
     """
@@ -219,35 +159,21 @@ def searched(
     seeds: Sequence[int],
     times: tuple[float, ...],
     settings: BenchSettings,
-) -> dict[Run, Result]:
-    """Let every method look for every wall with every seed; what is in the table is not done again.
+) -> dict[SearchRun, SearchResult]:
+    """Let every method look for every wall with every seed; what the table has is not done again.
 
-    Parameters
-    ----------
-    walls : sequence of (Target, StoneSet)
-        What is searched.
-    seeds : sequence of int
-        One after the other; with each all methods take turns, so that all have the same day.
-    times : tuple of float
-        CPU times at which methods are asked, rising, s.
-    settings : BenchSettings
-        Which methods, how many processes, and the table.
-
-    Raises
-    ------
-    UsageError
-        E138: a method that there is not; E148: see :func:`read_results`.
-    DrystoneError
-        E402: a process died; what the others were doing is done and kept.
+    With each seed all methods take turns, so that all have the same day.  `times` are CPU times,
+    rising, s.
     """
     known = {} if settings.runs is None else read_results(settings.runs)
     tasks = [
-        Task(target.name, way.name, seed, times, settings.data, settings.quick, settings.changes)
+        SearchTask(
+            target.name, way.name, seed, times, settings.data, settings.quick, settings.changes
+        )
         for seed in seeds
         for target, _ in walls
         for way in chosen_ways(settings.policies)
     ]
-    wanted = [run for task in tasks for run in task.runs]
     counts = {target.name: len(stones) for target, stones in walls}
     left = [task for task in tasks if not known.keys() >= set(task.runs)]
     for task, results in _done(left, settings.jobs or 1):
@@ -259,9 +185,9 @@ def searched(
         for run, result in new.items():
             settings.say(
                 f"{run.wall}, {run.way}, seed {run.seed}, {run.seconds:g} s: "
-                f"{result.words(counts[run.wall])}"
+                f"{in_words(result, counts[run.wall])}"
             )
-    return {run: known[run] for run in wanted}
+    return {run: known[run] for task in tasks for run in task.runs}
 
 
 def searched_walls(settings: BenchSettings) -> tuple[Target, ...]:
@@ -269,14 +195,8 @@ def searched_walls(settings: BenchSettings) -> tuple[Target, ...]:
     return chosen((BRICKS,) if settings.quick else (*SEARCHED, *UNSEEN), settings.only)
 
 
-def chosen_ways(names: Sequence[str]) -> tuple[Way, ...]:
-    """Return all ways, or those that are named.
-
-    Raises
-    ------
-    UsageError
-        E138 for a name that none has.
-    """
+def chosen_ways(names: Sequence[str]) -> tuple[SearchWay, ...]:
+    """Return all ways, or those that are named; E138 for a name that none has."""
     unknown = set(names) - {way.name for way in WAYS}
     if unknown:
         raise UsageError(
@@ -288,7 +208,9 @@ def chosen_ways(names: Sequence[str]) -> tuple[Way, ...]:
     return tuple(way for way in WAYS if not names or way.name in names)
 
 
-def _done(tasks: Sequence[Task], jobs: int) -> Iterator[tuple[Task, list[Result]]]:
+def _done(
+    tasks: Sequence[SearchTask], jobs: int
+) -> Iterator[tuple[SearchTask, list[SearchResult]]]:
     """Do tasks, and give their results as they come."""
     if jobs == 1:
         yield from map(_with_results, tasks)
@@ -297,12 +219,12 @@ def _done(tasks: Sequence[Task], jobs: int) -> Iterator[tuple[Task, list[Result]
         yield from processes.work(_with_results, tasks)
 
 
-def _with_results(task: Task) -> tuple[Task, list[Result]]:
+def _with_results(task: SearchTask) -> tuple[SearchTask, list[SearchResult]]:
     """Do a task, and say which it was."""
     return task, do(task)
 
 
-def do(task: Task) -> list[Result]:
+def do(task: SearchTask) -> list[SearchResult]:
     """Do a task."""
     settings = BenchSettings(data=task.data, quick=task.quick)
     (target,) = (one for one in searched_walls(settings) if one.name == task.wall)
@@ -310,4 +232,4 @@ def do(task: Task) -> list[Result]:
     stones = target.stones(task.data)
     assert stones is not None  # noqa: S101 - who asks has seen them
     looked = looked_at_times(way, stones, target, task.times, task.seed, changes=task.changes)
-    return [Result.of(one) for one in looked]
+    return [result_of(one) for one in looked]

@@ -27,68 +27,41 @@ BETWEEN_SEEDS = 10_000
 
 
 @dataclass(frozen=True, eq=False)
-class State:
-    """How far a way is.
+class WayState:
+    """How far a way is."""
 
-    Parameters
-    ----------
-    walls : int
-        How many walls it has built.
-    best : callable
-        Gives the best of them.
-    """
-
-    walls: int
-    best: Callable[[], FoundWall]
+    walls: int  # How many walls it has built
+    best: Callable[[], FoundWall]  # Gives the best of them
 
 
-States = Callable[[Planner, float, Clock], Iterator[State]]
+States = Callable[[Planner, float, Clock], Iterator[WayState]]
 
 
 @dataclass(frozen=True)
-class Way:
-    """A way to look for a good wall.
-
-    Parameters
-    ----------
-    name : str
-        For people.
-    states : callable
-        Goes on from the planner of the first wall, which is built, for as long as it is asked, or
-        until a time of a clock.
-    """
+class SearchWay:
+    """A way to look for a good wall."""
 
     name: str
+    # Goes on from the planner of the first wall, which is built, for as long as it is asked, or
+    # until a time of a clock
     states: States
 
 
 @dataclass(frozen=True, eq=False)
-class Looked:
-    """What a way came to.
-
-    Parameters
-    ----------
-    found : FoundWall
-        Its best wall.
-    walls : int
-        How many walls it built; the last may have been finished after the end.
-    possible : float
-        Area bound on F_SF.
-    seconds : float
-        How long it took.
-    """
+class WayResult:
+    """What a way came to."""
 
     found: FoundWall
-    walls: int
-    possible: float
+    walls: int  # How many walls it built; the last may have been finished after the end
+    possible: float  # Area bound on F_SF
     seconds: float
 
 
-def _restarts(first: Planner, _end: float, _clock: Clock) -> Iterator[State]:
+def _restarts(first: Planner, _end: float, _clock: Clock) -> Iterator[WayState]:
     return _passes(first, lambda found, _: found)
 
 
-def _restarts_with_wedges(first: Planner, _end: float, _clock: Clock) -> Iterator[State]:
+def _restarts_with_wedges(first: Planner, _end: float, _clock: Clock) -> Iterator[WayState]:
     yard = Yard.of(first)
 
     def finished(found: FoundWall, best: FoundWall) -> FoundWall:
@@ -102,12 +75,12 @@ def _restarts_with_wedges(first: Planner, _end: float, _clock: Clock) -> Iterato
 
 def _passes(
     first: Planner, finished: Callable[[FoundWall, FoundWall], FoundWall]
-) -> Iterator[State]:
+) -> Iterator[WayState]:
     """Build wall after wall from other seeds, and keep the best."""
     start = FoundWall.of(first)
     best, walls = finished(start, start), 1
     while True:
-        yield State(walls, lambda best=best: best)  # type: ignore[misc]
+        yield WayState(walls, lambda best=best: best)  # type: ignore[misc]
         planner = Planner(
             first.workshop.stones,
             first.workshop.site,
@@ -121,11 +94,11 @@ def _passes(
         best, walls = max(best, found, key=lambda one: one.merit), walls + 1
 
 
-def _search(first: Planner, end: float, clock: Clock) -> Iterator[State]:
+def _search(first: Planner, end: float, clock: Clock) -> Iterator[WayState]:
     return _searched(first, first.settings, end, clock)
 
 
-def _without_courses(first: Planner, end: float, clock: Clock) -> Iterator[State]:
+def _without_courses(first: Planner, end: float, clock: Clock) -> Iterator[WayState]:
     # Courses are planned in further first walls only, and chains of other walls never do.
     settings = first.settings
     alone = replace(settings, search=replace(settings.search, passes=1))
@@ -134,11 +107,11 @@ def _without_courses(first: Planner, end: float, clock: Clock) -> Iterator[State
 
 def _searched(
     first: Planner, settings: PlannerSettings, end: float, clock: Clock
-) -> Iterator[State]:
+) -> Iterator[WayState]:
     yard = Yard(first.workshop, settings, Deadline(end, clock))
     for progress in searching(FoundWall.of(first), yard, first.seed):
         packed = progress.best
-        yield State(
+        yield WayState(
             progress.walls,
             lambda packed=packed: found_again(packed, Yard(first.workshop, settings)),  # type: ignore[misc]
         )
@@ -148,10 +121,10 @@ RESTARTS, WEDGED = "restarts", "restarts with wedges"
 SEARCH, NO_COURSES = "search", "without courses"
 
 WAYS = (
-    Way(RESTARTS, _restarts),
-    Way(WEDGED, _restarts_with_wedges),
-    Way(SEARCH, _search),
-    Way(NO_COURSES, _without_courses),
+    SearchWay(RESTARTS, _restarts),
+    SearchWay(WEDGED, _restarts_with_wedges),
+    SearchWay(SEARCH, _search),
+    SearchWay(NO_COURSES, _without_courses),
 )
 
 
@@ -161,49 +134,20 @@ def tries(budget: int) -> PlannerSettings:
     return replace(best, search=replace(best.search, budget=budget))
 
 
-def looked_for(
-    way: Way,
-    stones: StoneSet,
-    target: Target,
-    seconds: float,
-    seed: int,
-    clock: Clock = time.process_time,
-) -> Looked:
-    """Look for a good wall until the time is used up; see :func:`looked_at_times`."""
-    return looked_at_times(way, stones, target, (seconds,), seed, clock)[0]
-
-
 def looked_at_times(
-    way: Way,
+    way: SearchWay,
     stones: StoneSet,
     target: Target,
     times: Sequence[float],
     seed: int,
     clock: Clock = time.process_time,
     changes: Changes = (),
-) -> list[Looked]:
+) -> list[WayResult]:
     """Look for a good wall, and say what was the best after several times.
 
     The last wall is the one that is begun before the end and finished after it, but for a search,
     which leaves it there; of the earlier times what was finished by then counts, though never less
     than the first wall.
-
-    Parameters
-    ----------
-    way : Way
-        How.
-    stones : StoneSet
-        To build with.
-    target : Target
-        What is to be built.
-    times : sequence of float
-        CPU times of this process from the stones on, rising, s; the last ends it.
-    seed : int
-        Of all that is drawn.
-    clock : callable
-        Gives the time that is used up, s.
-    changes : tuple of (str, value)
-        Settings that are replaced.
     """
     started = clock()
     end = started + times[-1]
@@ -214,8 +158,8 @@ def looked_at_times(
     first = Planner(stones, site, seed=seed, settings=settings)
     for _ in first.steps():
         pass
-    reached: list[tuple[State, float]] = []
-    before: tuple[State, float] | None = None
+    reached: list[tuple[WayState, float]] = []
+    before: tuple[WayState, float] | None = None
     for state in way.states(first, end, clock):
         now = state, clock()
         while len(reached) < len(times) - 1 and now[1] > started + times[len(reached)]:
@@ -227,4 +171,4 @@ def looked_at_times(
     reached += [before] * (len(times) - len(reached))
     # Packed walls are built again only now, in nobody's time.
     possible = possible_filling(first.workshop)
-    return [Looked(state.best(), state.walls, possible, at - started) for state, at in reached]
+    return [WayResult(state.best(), state.walls, possible, at - started) for state, at in reached]

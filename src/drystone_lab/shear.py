@@ -4,14 +4,15 @@ Not a pass or a fail: rigid blocks cannot crush, and how the beam on the walls w
 fully known.  Nothing is fitted; what is not known is varied, and what it does is shown.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from statistics import fmean, stdev
 
 from drystone.statics.flow.nonassociative import nonassociative_load
 from drystone.statics.limit import lateral_resistance
-from drystone_lab.shear_walls import SERIES, ShearSeries, ShearTest, shear_wall
+from drystone_lab.shear_walls import SERIES, ShearSeries, shear_wall
 from drystone_lab.table import BenchSettings, Cell, Table
 
 FRICTION = 0.62
@@ -23,11 +24,14 @@ DENSITIES_KG_M3 = (2000.0, 2800.0)
 
 RESTRAINTS = {False: "beam turns", True: "beam level"}
 
+ShearModel = Callable[["ShearSeries", "Loading"], "ShearForces"]
+"""The largest V that a wall carries."""
+
 PICTURE, DPI = "shear_tests.png", 170
 
 
 @dataclass(frozen=True)
-class Predicted:
+class ShearForces:
     """V in kN by both flow rules; None where an answer is not certified."""
 
     associative: float | None
@@ -44,28 +48,9 @@ class Loading:
     halves_first: bool = False
 
 
-class Predictions:
-    """Predictions, each made once.
-
-    Tests of one series with the same vertical load have the same prediction.
-    """
-
-    def __init__(self) -> None:
-        self._known: dict[tuple[object, ...], Predicted] = {}
-
-    def of(self, series: ShearSeries, loading: Loading) -> Predicted:
-        """Return the largest V that a wall carries."""
-        key = (replace(series, name="", tests=()), loading)
-        if key not in self._known:
-            self._known[key] = predict(series, loading)
-        return self._known[key]
-
-
-def predict(series: ShearSeries, loading: Loading) -> Predicted:
+def predict(series: ShearSeries, loading: Loading) -> ShearForces:
     """Compute the largest V that a wall carries.
 
-    Examples
-    --------
     A level beam on which 30 kN stand slides off at mu N.
 
     >>> predict(SERIES[0], Loading(30.0, level=True, mu=0.5)).associative
@@ -80,25 +65,13 @@ def predict(series: ShearSeries, loading: Loading) -> Predicted:
     )
     associative = lateral_resistance(model, loads).right.alpha
     without = nonassociative_load(model, "right", loads=loads).alpha
-    return Predicted(*(None if v is None else round(v, 6) for v in (associative, without)))
+    return ShearForces(*(None if v is None else round(v, 6) for v in (associative, without)))
 
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
-    """Compare the limit analysis with the shear tests.
-
-    Parameters
-    ----------
-    settings : BenchSettings
-        With `quick` only the first test of each series; the effects of friction, density and bond
-        are left out, and the picture.
-
-    Returns
-    -------
-    tuple of Table
-        Predictions, predicted over measured by test, their mean and scatter, and what friction,
-        density and bond change.
-    """
-    known = Predictions()
+    """Compare the limit analysis with the shear tests."""
+    # Tests of one series with the same vertical load have the same prediction, which is made once.
+    known = cache(predict)
     if settings.quick:
         few = tuple(replace(series, tests=series.tests[:1]) for series in SERIES)
         return _predicted(known, few), _by_test(known, few), _scatter(known, few)
@@ -113,6 +86,10 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     )
 
 
+def _v(known: ShearModel, series: ShearSeries, loading: Loading) -> ShearForces:
+    return known(replace(series, name="", tests=()), loading)
+
+
 MODELS = tuple(
     f"{restraint}, {rule}"
     for restraint in RESTRAINTS.values()
@@ -121,29 +98,28 @@ MODELS = tuple(
 
 
 def _four(
-    known: Predictions, series: ShearSeries, vertical_kn: float, mu: float = FRICTION
+    known: ShearModel, series: ShearSeries, vertical_kn: float, mu: float = FRICTION
 ) -> list[float | None]:
     """Return V by all `MODELS`."""
-    both = [known.of(series, Loading(vertical_kn, level, mu)) for level in RESTRAINTS]
+    both = [_v(known, series, Loading(vertical_kn, level, mu)) for level in RESTRAINTS]
     return [v for p in both for v in (p.associative, p.without_dilatancy)]
 
 
 def _ratios(
-    known: Predictions, all_series: Sequence[ShearSeries], mu: float = FRICTION
+    known: ShearModel, all_series: Sequence[ShearSeries], mu: float = FRICTION
 ) -> list[list[float | None]]:
     """Return predicted over measured of every test by all `MODELS`."""
     return [
-        [_over(v, test) for v in _four(known, one, test.vertical_kn, mu)]
+        [
+            None if v is None else v / test.measured_kn
+            for v in _four(known, one, test.vertical_kn, mu)
+        ]
         for one in all_series
         for test in one.tests
     ]
 
 
-def _over(predicted: float | None, test: ShearTest) -> float | None:
-    return None if predicted is None else predicted / test.measured_kn
-
-
-def _predicted(known: Predictions, all_series: Sequence[ShearSeries]) -> Table:
+def _predicted(known: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for series in all_series:
         for vertical in dict.fromkeys(test.vertical_kn for test in series.tests):
@@ -168,7 +144,7 @@ def _predicted(known: Predictions, all_series: Sequence[ShearSeries]) -> Table:
     )
 
 
-def _by_test(known: Predictions, all_series: Sequence[ShearSeries]) -> Table:
+def _by_test(known: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for series in all_series:
         for test, ratios in zip(series.tests, _ratios(known, [series]), strict=True):
@@ -183,7 +159,7 @@ def _by_test(known: Predictions, all_series: Sequence[ShearSeries]) -> Table:
     )
 
 
-def _scatter(known: Predictions, all_series: Sequence[ShearSeries]) -> Table:
+def _scatter(known: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
     rows: list[tuple[Cell, ...]] = [
         (name, *_mean_and_deviation(_ratios(known, series)))
         for name, series in (*((one.name, (one,)) for one in all_series), ("all", all_series))
@@ -195,7 +171,7 @@ def _scatter(known: Predictions, all_series: Sequence[ShearSeries]) -> Table:
     )
 
 
-def _friction(known: Predictions) -> Table:
+def _friction(known: ShearModel) -> Table:
     rows: list[tuple[Cell, ...]] = [
         (one.name, mu, *_mean_and_deviation(_ratios(known, (one,), mu)))
         for one in SERIES
@@ -208,7 +184,7 @@ def _friction(known: Predictions) -> Table:
     )
 
 
-def _details(known: Predictions) -> Table:
+def _details(known: ShearModel) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for series in SERIES[:2]:
         loads = sorted({test.vertical_kn for test in series.tests})
@@ -220,7 +196,7 @@ def _details(known: Predictions) -> Table:
         for vertical in (loads[0], loads[-1]):
             for name, varied, halves in variants:
                 loading = Loading(vertical, level=False, halves_first=halves)
-                v = known.of(varied, loading)
+                v = _v(known, varied, loading)
                 values = (_rounded(v.associative, 2), _rounded(v.without_dilatancy, 2))
                 rows.append((series.name, vertical, name, *values))
     return Table(
@@ -241,7 +217,7 @@ def _rounded(value: float | None, digits: int) -> float | None:
     return None if value is None else round(value, digits)
 
 
-def _draw(known: Predictions, path: Path) -> None:
+def _draw(known: ShearModel, path: Path) -> None:
     """Draw predicted against measured, associative, with the band of friction."""
     from drystone.drawing.files import save  # noqa: PLC0415 - Matplotlib takes long to import
     from drystone_lab.pictures.validation import Prediction, plot_predictions  # noqa: PLC0415
@@ -251,7 +227,7 @@ def _draw(known: Predictions, path: Path) -> None:
         for series in SERIES:
             for test in series.tests:
                 loads = [Loading(test.vertical_kn, level, mu) for mu in FRICTION_BAND]
-                band = [known.of(series, loading).associative for loading in loads]
+                band = [_v(known, series, loading).associative for loading in loads]
                 found = [v for v in band if v is not None]
                 if len(found) == len(band):
                     points.append(Prediction(series.name, restraint, test.measured_kn, *found))

@@ -34,20 +34,11 @@ COURSE_TOLERANCE = 1e-9
 
 @dataclass(frozen=True)
 class ShearTest:
-    """One wall.
-
-    Parameters
-    ----------
-    name : str
-        As in the database.
-    vertical_kn : float
-        N.
-    peaks_kn : tuple of float
-        Largest V; towards either side for cyclic tests, the first side first.
-    """
+    """One wall."""
 
     name: str
-    vertical_kn: float
+    vertical_kn: float  # N
+    # Largest V; towards either side for cyclic tests, the first side first
     peaks_kn: tuple[float, ...]
 
     @property
@@ -58,34 +49,18 @@ class ShearTest:
 
 @dataclass(frozen=True)
 class ShearSeries:
-    """Walls of one kind.
+    """Walls of one kind."""
 
-    Parameters
-    ----------
-    name : str
-        Source, stone, way of loading.
-    length, height, thickness : float
-        Of the wall without the beam.
-    load_height : float
-        Height of V above the ground; the beam is modelled from the top of the wall to as far
-        above V.
-    block_length, block_height : float
-        Of whole blocks.
-    density_kg_m3 : float
-        Of the stone; assumed, not measured.
-    tests : tuple of ShearTest
-        All of the series.
-    """
-
-    name: str
-    length: float
+    name: str  # Source, stone, way of loading
+    length: float  # length, height, thickness: Of the wall without the beam
     height: float
     thickness: float
+    # Height of V above the ground; the beam is modelled from the top of the wall to as far above V
     load_height: float
     block_length: float
     block_height: float
-    density_kg_m3: float
-    tests: tuple[ShearTest, ...]
+    density_kg_m3: float  # Of the stone; assumed, not measured
+    tests: tuple[ShearTest, ...]  # All of the series
 
     @property
     def course_count(self) -> int:
@@ -156,15 +131,6 @@ def shear_wall(
     is the last block, as long as the wall, with the friction of the stones below it; its weight
     counts as part of N, which acts down at its middle.
 
-    Returns
-    -------
-    model : RigidBlockModel
-        In m and kN.
-    loads : Loads
-        Weight and N; alpha is V in kN, towards +x.
-
-    Examples
-    --------
     >>> from drystone.statics.limit import lateral_resistance
     >>> model, loads = shear_wall(SERIES[0], 30.0, level=True)
     >>> len(model.blocks), round(lateral_resistance(model, loads).right.alpha, 6)

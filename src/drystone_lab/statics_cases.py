@@ -15,13 +15,7 @@ from drystone.statics.model import RigidBlockModel
 Rectangle = tuple[float, float, float, float]
 """x, y of the lower left corner, width, height."""
 
-BLOCKS = (
-    (1.0, 1.0, 0.3),
-    (1.0, 2.0, 0.7),
-    (1.0, 4.0, 0.65),
-    (2.0, 1.0, 0.65),
-    (0.2, 1.0, 0.7),
-)
+BLOCKS = ((1.0, 1.0, 0.3), (1.0, 2.0, 0.7), (1.0, 4.0, 0.65), (2.0, 1.0, 0.65), (0.2, 1.0, 0.7))
 """Width, height and mu of single blocks; the last is that of Portioli's examples."""
 
 PAIRS = ((1.0, 1.0, 0.65), (2.0, 1.0, 0.65), (3.0, 0.5, 0.9))
@@ -32,25 +26,14 @@ SHIFTS = (0.0, 0.1, 0.2, 0.4, 0.5)
 
 
 @dataclass(frozen=True)
-class Case:
-    """Rectangles on the ground and the load factors they must have.
-
-    Parameters
-    ----------
-    name : str
-        For people.
-    rectangles : tuple of (x, y, width, height)
-        Blocks 1, 2, ...
-    mu : float
-        Coefficient of friction.
-    left, right : float
-        Load factors towards -x and +x on the tilting table, the same for both flow rules: a
-        stack with one bed a course is statically determinate.
-    """
+class ClosedForm:
+    """Rectangles on the ground and the load factors they must have."""
 
     name: str
-    rectangles: tuple[Rectangle, ...]
-    mu: float
+    rectangles: tuple[Rectangle, ...]  # Blocks 1, 2, ...
+    mu: float  # Coefficient of friction
+    # left, right: Load factors towards -x and +x on the tilting table, the same for both flow
+    # rules: a stack with one bed a course is statically determinate
     left: float
     right: float
 
@@ -63,37 +46,33 @@ class Case:
     def model(self) -> RigidBlockModel:
         """The case as a model.
 
-        Examples
-        --------
         >>> len(running_bond().model.blocks)
         10
         """
         return model_from_json(self.data)
 
 
-def single_block(width: float, height: float, mu: float) -> Case:
+def single_block(width: float, height: float, mu: float) -> ClosedForm:
     """Return a block that slides at mu or overturns about its toe at b/h."""
     alpha = min(mu, width / height)
     name = f"block {width:g} x {height:g}: min(mu, b/h)"
-    return Case(name, ((0.0, 0.0, width, height),), mu, alpha, alpha)
+    return ClosedForm(name, ((0.0, 0.0, width, height),), mu, alpha, alpha)
 
 
-def two_equal_blocks(width: float, height: float, mu: float) -> Case:
+def two_equal_blocks(width: float, height: float, mu: float) -> ClosedForm:
     """Return two aligned blocks, which overturn as one at b/(2h)."""
     alpha = min(mu, width / (2.0 * height))
     rows = ((0.0, 0.0, width, height), (0.0, height, width, height))
-    return Case(f"two blocks {width:g} x {height:g}: min(mu, b/(2h))", rows, mu, alpha, alpha)
+    return ClosedForm(f"two blocks {width:g} x {height:g}: min(mu, b/(2h))", rows, mu, alpha, alpha)
 
 
-def offset_stack(shift: float, mu: float) -> Case:
+def offset_stack(shift: float, mu: float) -> ClosedForm:
     """Return a unit block on a unit block, shifted by 0 to .5 towards +x.
 
     Towards +x the upper block overturns about the lower one's edge at (.5 - s) / .5, both about
     the ground at (.5 + .5 - s) / (.5 + 1.5); towards -x the upper block at 1, both at
     (.5 + .5 + s) / (.5 + 1.5).
 
-    Examples
-    --------
     >>> case = offset_stack(0.25, mu=0.9)
     >>> case.left, case.right
     (0.625, 0.375)
@@ -101,10 +80,10 @@ def offset_stack(shift: float, mu: float) -> Case:
     right = min(mu, (0.5 - shift) / 0.5, (1.0 - shift) / 2.0)
     left = min(mu, 1.0, (1.0 + shift) / 2.0)
     rows = ((0.0, 0.0, 1.0, 1.0), (shift, 1.0, 1.0, 1.0))
-    return Case(f"unit block on unit block, shifted by {shift:g}", rows, mu, left, right)
+    return ClosedForm(f"unit block on unit block, shifted by {shift:g}", rows, mu, left, right)
 
 
-def running_bond() -> Case:
+def running_bond() -> ClosedForm:
     """Return bricks 2 x 1 in four courses of running bond, 4 wide; they slide at mu = .58.
 
     No closed form; the value that a public program for block assemblies prints for this wall.
@@ -116,10 +95,10 @@ def running_bond() -> Case:
         for course in range(4)
         for x, width in (whole, halves)[course % 2]
     )
-    return Case("running bond of four courses, bricks 2 x 1: mu", rows, 0.58, 0.58, 0.58)
+    return ClosedForm("running bond of four courses, bricks 2 x 1: mu", rows, 0.58, 0.58, 0.58)
 
 
-def closed_forms() -> tuple[Case, ...]:
+def closed_forms() -> tuple[ClosedForm, ...]:
     """Return all cases of this page."""
     return (
         *(single_block(*block) for block in BLOCKS),
@@ -138,21 +117,11 @@ THINNEST, THICKEST = 0.01, 0.4
 
 @dataclass(frozen=True)
 class ArchCase:
-    """An arch and the least thickness it must have.
+    """An arch and the least thickness it must have."""
 
-    Parameters
-    ----------
-    count : int
-        Voussoirs.
-    mu : float
-        Coefficient of friction.
-    least : float or None
-        Least t/R, to five digits; None when no thickness up to `THICKEST` stands.
-    """
-
-    count: int
-    mu: float
-    least: float | None
+    count: int  # Voussoirs
+    mu: float  # Coefficient of friction
+    least: float | None  # Least t/R, to five digits; None when no thickness up to `THICKEST` stands
 
 
 WITHOUT_SLIDING = (
@@ -177,8 +146,6 @@ WITH_FRICTION = (
 def arch(count: int, thickness: float, mu: float) -> RigidBlockModel:
     """Make an arch with the joints of its corners, and area and centroid of annular sectors.
 
-    Examples
-    --------
     >>> model = arch(9, 0.2, mu=0.6)
     >>> len(model.blocks), len(model.interfaces)
     (9, 10)
@@ -195,11 +162,7 @@ def arch(count: int, thickness: float, mu: float) -> RigidBlockModel:
     area = half * (outer**2 - inner**2)
     radius = 2.0 / 3.0 * math.sin(half) / half * (outer**3 - inner**3) / (outer**2 - inner**2)
     sectors = tuple(
-        replace(
-            block,
-            area=area,
-            centroid=(radius * math.cos(middle), radius * math.sin(middle)),
-        )
+        replace(block, area=area, centroid=(radius * math.cos(middle), radius * math.sin(middle)))
         for block, middle in zip(model.blocks, (angles[:-1] + half).tolist(), strict=True)
     )
     return RigidBlockModel(sectors, model.interfaces, mu)
@@ -211,22 +174,7 @@ def stands(count: int, thickness: float, mu: float) -> bool:
 
 
 def least_thickness(count: int, mu: float, tolerance: float) -> float | None:
-    """Find the thickness over the mean radius at which an arch first stands, by bisection.
-
-    Parameters
-    ----------
-    count : int
-        Voussoirs.
-    mu : float
-        Coefficient of friction.
-    tolerance : float
-        The arch stands at what is returned, and falls at this much less.
-
-    Returns
-    -------
-    float or None
-        None when it does not stand at `THICKEST` either.
-    """
+    """Find the thickness over the mean radius at which an arch first stands, by bisection."""
     falls, carries = THINNEST, THICKEST
     if not stands(count, carries, mu):
         return None
@@ -264,31 +212,16 @@ F_OPEN: Course = ((0, 4), (4, 6), (10, 12), (12, 16), (16, 18), (22, 24), (24, 2
 
 @dataclass(frozen=True)
 class FerrisWall:
-    """One of the examples.
+    """One of the examples."""
 
-    Parameters
-    ----------
-    number : int
-        1 to 6, as published.
-    courses : tuple of courses
-        Bottom first.
-    blocks, contacts : int
-        How many there are.
-    associative : float
-        Load factor, the same in both directions.
-    nonassociative : (float, float)
-        Range of accepted load factors without dilatancy; never above the associative one.
-    may_not_converge : bool
-        An answer without a factor is accepted too.
-    """
-
-    number: int
-    courses: tuple[Course, ...]
+    number: int  # 1 to 6, as published
+    courses: tuple[Course, ...]  # Bottom first
     blocks: int
     contacts: int
-    associative: float
+    associative: float  # Load factor, the same in both directions
+    # Range of accepted load factors without dilatancy; never above the associative one
     nonassociative: tuple[float, float]
-    may_not_converge: bool = False
+    may_not_converge: bool = False  # An answer without a factor is accepted too
 
     @property
     def rectangles(self) -> tuple[tuple[float, float, float, float], ...]:
@@ -303,8 +236,6 @@ class FerrisWall:
     def model(self) -> RigidBlockModel:
         """The wall as a model.
 
-        Examples
-        --------
         >>> model = WALLS[0].model
         >>> len(model.blocks), len(model.interfaces)
         (33, 83)
@@ -323,12 +254,7 @@ WALLS = (
     FerrisWall(3, (P, Q, P, *_DOORS_3 * 2, Q_OPEN, P, Q, P), 46, 102, 0.40369, (0.350, 0.361)),
     FerrisWall(4, (A, B, A, *_DOORS_4 * 2, A_OPEN, A, B, A), 55, 116, 0.33195, (0.262, 0.267)),
     FerrisWall(
-        5,
-        (*(C, D, C, *_DOORS_5 * 2, C_OPEN) * 2, C, D, C),
-        61,
-        120,
-        0.23964,
-        (0.205, 0.217),
+        5, (*(C, D, C, *_DOORS_5 * 2, C_OPEN) * 2, C, D, C), 61, 120, 0.23964, (0.205, 0.217)
     ),
     FerrisWall(
         6,

@@ -1,5 +1,7 @@
 """What a suite of experiments gives back: tables, as text, Markdown, or records."""
 
+import csv
+import io
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,24 +13,12 @@ Cell = str | int | float | bool | None
 
 @dataclass(frozen=True)
 class Table:
-    """Rows under named columns.
-
-    Parameters
-    ----------
-    title : str
-        What the rows show.
-    columns : tuple of str
-        Names, with units.
-    rows : tuple of tuples
-        A cell a column; None where there is no value.
-    notes : tuple of str
-        What a reader must know: sources, misses and their causes.
-    """
+    """Rows under named columns."""
 
     title: str
-    columns: tuple[str, ...]
-    rows: tuple[tuple[Cell, ...], ...]
-    notes: tuple[str, ...] = ()
+    columns: tuple[str, ...]  # Names, with units
+    rows: tuple[tuple[Cell, ...], ...]  # A cell a column; None where there is no value
+    notes: tuple[str, ...] = ()  # What a reader must know: sources, misses and their causes
 
     def records(self) -> list[dict[str, Cell]]:
         """Return a dict a row."""
@@ -37,24 +27,25 @@ class Table:
     def text(self) -> str:
         """Return the table for a terminal, numbers to the right.
 
-        Examples
-        --------
         >>> print(Table("Blocks", ("name", "alpha"), (("tall", 0.25), ("flat", None))).text())
         Blocks
         name  alpha
         tall   0.25
         flat      -
         """
-        cells = [list(self.columns), *([_written(cell) for cell in row] for row in self.rows)]
+        cells = [list(self.columns), *([written(cell) for cell in row] for row in self.rows)]
         widths = [max(len(row[k]) for row in cells) for k in range(len(self.columns))]
-        words = [_is_words([row[k] for row in self.rows]) for k in range(len(self.columns))]
+        words = [
+            all(isinstance(row[k], str | bool) for row in self.rows)
+            for k in range(len(self.columns))
+        ]
         lines = [_aligned(row, widths, words) for row in cells]
         return "\n".join([self.title, *lines, *(f"* {note}" for note in self.notes)])
 
     def markdown(self) -> str:
         """Return the table in Markdown, its title above."""
         lines = [self.columns, ["---"] * len(self.columns)]
-        lines += [[_written(cell) for cell in row] for row in self.rows]
+        lines += [[written(cell) for cell in row] for row in self.rows]
         return "\n".join(
             [f"**{self.title}**", ""]
             + ["| " + " | ".join(line) + " |" for line in lines]
@@ -62,54 +53,51 @@ class Table:
             + [f"* {note}" for note in self.notes]
         )
 
+    def csv(self) -> str:
+        r"""Return the table as CSV: numbers that read back as they were, nothing for None.
+
+        >>> Table("Blocks", ("name", "alpha"), (("tall", 0.1 + 0.2), ("flat", None))).csv()
+        'name,alpha\ntall,0.30000000000000004\nflat,\n'
+        """
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(self.columns)
+        writer.writerows([_exact(cell) for cell in row] for row in self.rows)
+        return text.getvalue()
+
+
+def _exact(cell: Cell) -> Cell:
+    if isinstance(cell, bool):
+        return "yes" if cell else "no"
+    # Floats of NumPy are floats, but write their type.
+    return float(cell) if isinstance(cell, float) else cell
+
 
 @dataclass(frozen=True)
 class BenchSettings:
-    """What every suite is run with.
+    """What a suite is run with; each goes by some of it."""
 
-    Parameters
-    ----------
-    data : Path or None
-        Folder of the published data sets; rows that need it say so without it.
-    output : Path or None
-        Folder for pictures; None draws none.
-    seed : int
-        Of all random choices.
-    quick : bool
-        A smaller version, for tests.
-    seconds : tuple of float
-        Times of each search, for suites of searches; empty for theirs.
-    seeds : int or None
-        How many seeds they search with, from `seed` on; None for theirs.
-    only : tuple of str
-        How the names of walls begin that are searched; empty for all.
-    policies : tuple of str
-        Names of the ways to search that are compared; empty for all.
-    changes : tuple of (str, value)
-        Settings that are replaced for all of them, by names such as ``"goal.F_AH"``.
-    jobs : int or None
-        How many searches run side by side, each in a process of its own; None for one.
-    runs : Path or None
-        Table to which every search is added, and of which none is done again; None keeps nothing.
-    say : callable
-        Told of every result of a long suite as it comes.
-    """
-
-    data: Path | None = None
-    output: Path | None = None
-    seed: int = 0
-    quick: bool = False
-    seconds: tuple[float, ...] = ()
-    seeds: int | None = None
-    only: tuple[str, ...] = ()
-    policies: tuple[str, ...] = ()
-    changes: Changes = ()
-    jobs: int | None = None
-    runs: Path | None = None
-    say: Callable[[str], None] = lambda _: None
+    data: Path | None = None  # folder of the published sets; rows that need it say so without it
+    output: Path | None = None  # folder for pictures; None draws none
+    seed: int = 0  # of all random choices, or the first
+    quick: bool = False  # a smaller version, for tests
+    seconds: tuple[float, ...] = ()  # CPU times of each search; empty for the suite's
+    seeds: int | None = None  # how many, from `seed` on; None for the suite's
+    only: tuple[str, ...] = ()  # how the names of walls begin; empty for all
+    policies: tuple[str, ...] = ()  # methods that are compared; empty for all
+    changes: Changes = ()  # settings that are replaced for all methods
+    jobs: int | None = None  # processes; None for this one
+    runs: Path | None = None  # table of searches, of which none is done again
+    say: Callable[[str], None] = lambda _: None  # told of every result as it comes
+    # Of public suites alone:
+    dask: str | None = None  # address of a scheduler
+    store: Path | None = None  # folder of the runs that are kept
+    again: bool = False  # do runs again that are kept
+    shake: bool = False  # shake the walls too
 
 
-def _written(cell: Cell) -> str:
+def written(cell: Cell) -> str:
+    """Write a cell for people, to five digits."""
     if cell is None:
         return "-"
     if isinstance(cell, bool):
@@ -117,10 +105,6 @@ def _written(cell: Cell) -> str:
     if isinstance(cell, float):
         return f"{cell:.1e}" if 0 < abs(cell) < 1e-3 else f"{cell + 0.0:.5g}"  # -0.0 + 0.0 is 0.0
     return str(cell)
-
-
-def _is_words(cells: Sequence[Cell]) -> bool:
-    return all(isinstance(cell, str | bool) for cell in cells)
 
 
 def _aligned(row: Sequence[str], widths: Sequence[int], words: Sequence[bool]) -> str:

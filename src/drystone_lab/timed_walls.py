@@ -31,7 +31,7 @@ LEAST_STONES = 32
 
 
 @dataclass(frozen=True)
-class Planned:
+class TimedWall:
     """Times of one wall: seconds before the first step, and each step, the quickest of several."""
 
     site: Site
@@ -69,7 +69,7 @@ def rubble(
 
 def planned(
     wall: Target, data: Path | None, settings: PlannerSettings, *, seed: int, repeats: int
-) -> Planned:
+) -> TimedWall:
     """Plan a wall several times, and keep the quickest repetition of every step."""
     stones = wall.source.stones(data)
     site = Site.from_source(wall.width, wall.height, wall.scale)
@@ -81,7 +81,7 @@ def planned(
         profiles.append(planner.profile)
     each = zip(*(profile.steps for profile in profiles), strict=True)
     steps = tuple(min(same, key=lambda step: step.seconds) for same in each)
-    return Planned(site, min(p.total("preparation") for p in profiles), steps)
+    return TimedWall(site, min(p.total("preparation") for p in profiles), steps)
 
 
 def fitted(points: Sequence[tuple[float, float]]) -> PowerLaw | None:
@@ -89,8 +89,6 @@ def fitted(points: Sequence[tuple[float, float]]) -> PowerLaw | None:
 
     None with less than two sizes, or where something took no time.
 
-    Examples
-    --------
     >>> law = fitted([(1.0, 3.0), (2.0, 12.0), (4.0, 48.0)])
     >>> round(law.factor, 9), round(law.exponent, 9)
     (3.0, 2.0)
@@ -156,7 +154,7 @@ def papers(name: str) -> tuple[dict[int, float], dict[int, float]]:
     return (PAPER_WALL_S, PAPER_STEP_S) if name == PUBLISHED else ({}, {})
 
 
-def pixels_table(name: str, by_scale: Mapping[float, Planned]) -> Table:
+def pixels_table(name: str, by_scale: Mapping[float, TimedWall]) -> Table:
     """Return the times of walls of several resolutions, and their exponents.
 
     The stones :data:`PUBLISHED` have the paper's times beside.
@@ -194,7 +192,7 @@ def pixels_table(name: str, by_scale: Mapping[float, Planned]) -> Table:
     )  # fmt: skip
 
 
-def steps_table(name: str, by_sampling: Mapping[Sampling, Planned]) -> Table:
+def steps_table(name: str, by_sampling: Mapping[Sampling, TimedWall]) -> Table:
     """Return the times of steps by stones placed, and how those of a candidate grow."""
     rows: list[tuple[Cell, ...]] = []
     for sampling, planned in by_sampling.items():
@@ -225,13 +223,13 @@ def _step_exponents(steps: Sequence[StepTime]) -> list[float | None]:
     return [exponent(list(zip(stones, column, strict=True))) for column in zip(*each, strict=True)]
 
 
-def steps_figure(by_sampling: Mapping[Sampling, Planned]) -> Figure:
+def steps_figure(by_sampling: Mapping[Sampling, TimedWall]) -> Figure:
     """Draw the time of every step by part, a panel a sampling (Fig. 28)."""
     panels = {SAMPLINGS[sampling]: planned.steps for sampling, planned in by_sampling.items()}
     return step_time_panels(panels)
 
 
-def plot_pixels(name: str, by_scale: Mapping[float, Planned], ax: Axes | None = None) -> Axes:
+def plot_pixels(name: str, by_scale: Mapping[float, TimedWall], ax: Axes | None = None) -> Axes:
     """Draw the times of walls and of their longest steps against pixels (Fig. 29)."""
     walls = tuple((float(p.pixels), p.seconds) for p in by_scale.values())
     steps = tuple((float(p.pixels), p.longest) for p in by_scale.values())
@@ -242,10 +240,7 @@ def plot_pixels(name: str, by_scale: Mapping[float, Planned], ax: Axes | None = 
         for px, s in said_of_steps.items()
     ]
     return plot_growth(
-        (
-            Series("whole wall", walls, fitted(walls)),
-            Series("longest step", steps, fitted(steps)),
-        ),
+        (Series("whole wall", walls, fitted(walls)), Series("longest step", steps, fitted(steps))),
         claims,
         ax,
         size="pixels of the wall",

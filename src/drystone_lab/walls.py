@@ -11,34 +11,16 @@ from drystone_lab.runs.spec import Changes, RunSpec, Scalar, StoneSource, genera
 
 @dataclass(frozen=True)
 class Target:
-    """A stone set and the wall to be built of it.
+    """A stone set and the wall to be built of it."""
 
-    Parameters
-    ----------
-    name : str
-        Of the wall; no other of a study has it.
-    source : StoneSource
-        The stones; generated ones where the paper's are not public.
-    width, height : float
-        Of the wall, source px; 0 for those of the source image.
-    scale : float
-        Working resolution over source resolution.
-    number : int
-        Of its row in Fig. 18 of the paper, or noise of its stones, %.
-    stand_in : bool
-        True where the stones are not those of the paper.
-    suite : str
-        Of the public benchmark; empty for none.
-    """
-
-    name: str
-    source: StoneSource
-    width: float
+    name: str  # Of the wall; no other of a study has it
+    source: StoneSource  # The stones; generated ones where the paper's are not public
+    width: float  # width, height: Of the wall, source px; 0 for those of the source image
     height: float
-    scale: float
-    number: int = 0
-    stand_in: bool = False
-    suite: str = ""
+    scale: float  # Working resolution over source resolution
+    number: int = 0  # Of its row in Fig. 18 of the paper, or noise of its stones, %
+    stand_in: bool = False  # True where the stones are not those of the paper
+    suite: str = ""  # Of the public benchmark; empty for none
 
     def run(self, seed: int, *changes: tuple[str, Scalar], method: str = "paper") -> RunSpec:
         """Return a run by a method with some settings replaced."""
@@ -135,13 +117,7 @@ def coarser(wall: Target, scale: float) -> Target:
 
 
 def chosen(walls: Sequence[Target], only: Sequence[str], suite: str = "") -> tuple[Target, ...]:
-    """Return the walls whose names begin with one of `only`; all without any.
-
-    Raises
-    ------
-    UsageError
-        E138: no wall begins with one of them.
-    """
+    """Return the walls whose names begin with one of `only`; all without any."""
     names = [wall.name for wall in walls]
     for start in only:
         if not any(name.startswith(start) for name in names):

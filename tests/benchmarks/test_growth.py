@@ -12,7 +12,7 @@ from drystone.planner.settings import method_settings
 from drystone_lab import timed_walls
 from drystone_lab.pictures.growth import PowerLaw
 from drystone_lab.table import BenchSettings
-from drystone_lab.timed_walls import Planned, fitted, pixels_table, planned, rubble, steps_table
+from drystone_lab.timed_walls import TimedWall, fitted, pixels_table, planned, rubble, steps_table
 from drystone_lab.walls import PR
 
 
@@ -31,7 +31,7 @@ def step(stones, candidates=2, seconds=0.01, **parts):
 
 
 def wall(width, height, *steps):
-    return Planned(Site(width, height), 0.5, steps)
+    return TimedWall(Site(width, height), 0.5, steps)
 
 
 def test_the_quick_suite_plans_every_wall(tables, folder):

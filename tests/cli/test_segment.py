@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from drystone_lab.photographs.layout import Level
+from drystone_lab.photographs.layout import PhotoLevel
 from drystone_lab.photographs.scene import photograph
 from drystone_lab.photos import overlaps
 
-SHEET = Level(
+SHEET = PhotoLevel(
     name="sheet", count=7, width_px=900, height_px=675, px_per_m=800.0, gap_px=10, tilt_deg=12.0,
     shadow=0.35, ground="plywood", rocks=("granite", "basalt"), turn_deg=5.0,
 )  # fmt: skip

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from drystone_lab import engine
-from drystone_lab.engine import Judged
+from drystone_lab.engine import EngineWall
 from drystone_lab.table import BenchSettings
 from drystone_lab.walls import BRICKS
 
@@ -14,8 +14,7 @@ NO_ENGINE = "pymunk is not installed (extra `physics`)"
 
 def judged(alphas, tilts, *, stands=True):
     built = SimpleNamespace(stands=stands)
-    metrics = SimpleNamespace(alpha_left=alphas[0], alpha_right=alphas[1])
-    return Judged("wall", SimpleNamespace(metrics=metrics), built, tilts)
+    return EngineWall("wall", 9, built, alphas, tilts)
 
 
 def test_bricks_stand_and_slide_at_their_friction():
@@ -52,11 +51,6 @@ def test_what_fell_or_never_falls_is_in_no_pair():
     assert record["weaker side"] == pytest.approx(1.0)  # (.1, .2), (.3, .35), (.55, .7)
     # Ratios .75 1.17 1.2 1.27 1.5 1.5 2.
     assert record["tilt / alpha"] == pytest.approx(0.7 / 0.55)
-
-
-def test_the_median_of_two_ratios_is_between_them():
-    assert engine._median_ratio([(0.5, 0.4), (0.5, 0.6), (0.0, 1.0)]) == pytest.approx(1.0)
-    assert engine._median_ratio([(0.0, 1.0)]) is None
 
 
 def test_a_wall_that_does_not_rest_is_not_tilted(monkeypatch):

@@ -1,12 +1,10 @@
 """The packer beside the planner: what it is asked, and that it fits stones into a strip."""
 
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from drystone.errors import UsageError
 from drystone.generate.brick import BrickSettings, brick_stones
 from drystone_lab import packing
 from drystone_lab.table import BenchSettings
@@ -66,23 +64,7 @@ def test_strips_stand_beside_walls(monkeypatch):
     assert len(said) == 1
 
 
-def test_a_missing_packer_is_an_extra(monkeypatch):
-    def absent(name):
-        raise ImportError(name)
-
-    monkeypatch.setattr(packing, "import_module", absent)
-    with pytest.raises(UsageError, match=r"E305.*spyrrow"):
-        packing.load_packer()
-
-
 def test_the_packer_fits_stones_into_a_strip():
     packer = pytest.importorskip("spyrrow", reason="spyrrow (extra bench) is not installed")
     width = packing.packed_width_px(packer, BRICKS, 40.0, (0.0, 90.0), 1, 1)
     assert 3 * 36 * 12 / 40 <= width <= 40
-
-
-def test_no_data_is_no_row(tmp_path: Path, monkeypatch):
-    monkeypatch.setattr(packing, "load_packer", Packer)
-    (table,) = packing.run(BenchSettings(data=tmp_path))
-    assert table.rows == ()
-    assert any("--data" in note for note in table.notes)

@@ -11,14 +11,7 @@ from drystone.generate.brick import BrickSettings, brick_stones
 from drystone.search.plan_wall import plan_wall
 from drystone_lab import search_ways
 from drystone_lab.runs.spec import generated
-from drystone_lab.search_ways import (
-    BETWEEN_SEEDS,
-    State,
-    Way,
-    looked_at_times,
-    looked_for,
-    tries,
-)
+from drystone_lab.search_ways import BETWEEN_SEEDS, SearchWay, WayState, looked_at_times, tries
 from drystone_lab.walls import Target
 
 STONES = brick_stones(BrickSettings(count=4), np.random.default_rng(1))
@@ -30,6 +23,10 @@ def ticking() -> search_ways.Clock:
     """A clock that goes on by a second whenever it is looked at."""
     ticks = count()
     return lambda: next(ticks)
+
+
+def looked_for(way, stones, target, seconds, seed, clock):
+    return looked_at_times(way, stones, target, (seconds,), seed, clock)[0]
 
 
 def clock_of(*times: float) -> search_ways.Clock:
@@ -74,12 +71,12 @@ def test_the_first_wall_counts_however_long_it_takes():
 def test_the_time_is_counted_from_the_start():
     asked: list[int] = []
 
-    def states(*_: object) -> Iterator[State]:
+    def states(*_: object) -> Iterator[WayState]:
         for number in count(1):
             asked.append(number)
-            yield State(number, lambda number=number: number)  # type: ignore[misc, return-value]
+            yield WayState(number, lambda number=number: number)  # type: ignore[misc, return-value]
 
-    way = Way("by hand", states)
+    way = SearchWay("by hand", states)
     looked = looked_for(way, STONES, WALL, 5, 1, clock_of(10, 14.9, 15, 15.1))
     assert (looked.found, looked.walls) == (3, 3)
     assert asked == [1, 2, 3]  # the third was begun in time, and finished after it
@@ -141,8 +138,8 @@ def test_wedges_go_into_walls_that_are_nearly_the_best(worth, monkeypatch):
 
 
 def test_of_earlier_times_what_was_finished_by_then_counts():
-    walls = [State(n, lambda n=n: n) for n in range(1, 6)]
-    way = Way("five walls", lambda *_: iter(walls))
+    walls = [WayState(n, lambda n=n: n) for n in range(1, 6)]
+    way = SearchWay("five walls", lambda *_: iter(walls))
     # Started at 10; the walls are finished at 14, 15, 17, 17.5 and 21.
     clock = clock_of(10, 14, 15, 17, 17.5, 21)
     found = looked_at_times(way, STONES, WALL, (2, 6, 7, 10), 1, clock)

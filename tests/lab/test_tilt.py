@@ -39,15 +39,6 @@ def test_what_counts_as_agreement(one, agreement):
     assert tilt._row("wall", one)[5] == agreement
 
 
-def test_agreement_is_counted():
-    rows = [
-        tilt._row("a", compared(0.5, 0.4, (0.39, 0.41))),
-        tilt._row("b", compared(None, None, None, fell=True)),
-        tilt._row("c", compared(0.5, 0.4, None)),
-    ]
-    assert tilt.table_of(rows, BenchSettings()).notes[0].startswith("2 of 3 directions: ")
-
-
 def test_a_picture_is_tilted_and_predicted():
     """A stone of 20 x 40 px topples at .5, whatever the flow rule."""
     pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")

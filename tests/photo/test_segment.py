@@ -11,11 +11,11 @@ from drystone.photo.segment import segment
 from drystone.photo.segment_doubts import doubts_of, notices_of, ruler_doubts
 from drystone.photo.segment_photo import segment_photo
 from drystone.photo.segment_settings import SegmentSettings
-from drystone_lab.photographs.layout import Level
+from drystone_lab.photographs.layout import PhotoLevel
 from drystone_lab.photographs.scene import photograph
 from drystone_lab.photos import overlaps, pixels, score
 
-SMALL = Level(
+SMALL = PhotoLevel(
     name="small", count=8, width_px=600, height_px=450, px_per_m=400.0, gap_px=10, markers="none"
 )
 

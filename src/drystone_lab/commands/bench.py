@@ -1,17 +1,33 @@
 """`drystone bench`: how good the numbers are, and how good methods are."""
 
 import argparse
+import platform
 import sys
 from collections.abc import Sequence
+from datetime import UTC, datetime
+from importlib.metadata import version
 from pathlib import Path
 
 from drystone.cli.output import make_folder, print_json, say
+from drystone.cli.settings import read_toml
 from drystone.errors import ExitCode, UsageError
 from drystone.io.published import published_folder
 from drystone_lab.commands.options import PUBLIC_OPTIONS
-from drystone_lab.public.suites import PUBLIC_SUITES
+from drystone_lab.public.suites import PUBLIC_SUITES, flat_changes, known_methods
 from drystone_lab.suites import PICTURED, SEARCHES, SUITES, run_suite
 from drystone_lab.table import BenchSettings, Table
+
+# What draws or counts is loaded where it is run: --list and a misspelt suite do not wait for it.
+
+DEFAULT_METHODS = ("paper", "random")
+
+RUNS_ALONE = (
+    "policy", "settings", "jobs", "dask", "again", "shake", "quick", "seed", "seeds", "only",
+    "seconds",
+)  # fmt: skip
+"""Options that a history has no use for."""
+
+DPI = 150
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
@@ -20,7 +36,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         _print_list()
         return ExitCode.DONE
     suite = _suite(arguments)
-    tables = _tables(arguments, suite)
+    tables = _history(arguments, suite) if arguments.history else _tables(arguments, str(suite))
     if arguments.json:
         print_json({table.title: table.records() for table in tables})
     else:
@@ -31,9 +47,6 @@ def run(arguments: argparse.Namespace) -> ExitCode:
 
 
 def _print_list() -> None:
-    """Print suites and policies, one a line."""
-    from drystone_lab.public.suites import known_methods  # noqa: PLC0415 - see _tables
-
     for name, (text, _) in SUITES.items():
         print(f"{name}: {text}")
     for name, text in PUBLIC_SUITES.items():
@@ -42,88 +55,129 @@ def _print_list() -> None:
         print(f"{name}: policy of public suites: {text}")
 
 
+def _useless(what: str, where: str, cure: str) -> UsageError:
+    return UsageError("E138", what, where=where, cure=cure)
+
+
 def _suite(arguments: argparse.Namespace) -> str | None:
     """Return the suite that is named; None for the history of all (E138 for any other)."""
     if arguments.suite and arguments.named and arguments.suite != arguments.named:
-        raise UsageError(
-            "E138",
-            f"two suites are named: {arguments.suite!r} and {arguments.named!r}.",
-            where="--suite",
-            cure="Name one; `all` has the walls of every public suite.",
-        )
+        what = f"two suites are named: {arguments.suite!r} and {arguments.named!r}."
+        raise _useless(what, "--suite", "Name one; `all` has the walls of every public suite.")
     suite: str | None = arguments.named or arguments.suite
     known = (*PUBLIC_SUITES,) if arguments.history else (*SUITES, *PUBLIC_SUITES)
     if suite in known or (suite is None and arguments.history):
         return suite
-    raise UsageError(
-        "E138",
+    raise _useless(
         f"there is no suite {suite!r}." if suite else "no suite is named.",
-        where="bench",
-        cure=f"Name one of {', '.join(known)}; `drystone bench --list` explains them.",
+        "bench",
+        f"Name one of {', '.join(known)}; `drystone bench --list` explains them.",
     )
 
 
-def _tables(arguments: argparse.Namespace, suite: str | None) -> Sequence[Table]:
-    # Loaded when it is run: --list and a misspelt suite do not wait for SciPy and Matplotlib.
-    from drystone_lab.commands.bench_public import history_tables, public_tables  # noqa: PLC0415
+def _tables(arguments: argparse.Namespace, suite: str) -> Sequence[Table]:
+    data = _data(arguments.data)
+    public = suite in PUBLIC_SUITES
+    (_refuse_of_public if public else _refuse_of_others)(arguments, suite)
+    for folder in (arguments.output, arguments.store):
+        if folder is not None:
+            make_folder(Path(folder))
+    policies = arguments.policy or (DEFAULT_METHODS if public else ())
+    output, runs, store = (
+        None if given is None else Path(given)
+        for given in (arguments.output, arguments.runs, arguments.store)
+    )
+    settings = BenchSettings(
+        data=data, output=output, seed=arguments.seed, quick=arguments.quick,
+        seconds=tuple(arguments.seconds), seeds=arguments.seeds, only=tuple(arguments.only),
+        policies=tuple(dict.fromkeys(policies)), changes=_changes(arguments.settings),
+        jobs=arguments.jobs, dask=arguments.dask, runs=runs, store=store, again=arguments.again,
+        shake=arguments.shake, say=say,
+    )  # fmt: skip
+    if not public:
+        return run_suite(suite, settings)
+    from drystone_lab.public.bench import run_public  # noqa: PLC0415 - see above
+    from drystone_lab.public.store import Stamp  # noqa: PLC0415
 
-    if arguments.history:
-        return history_tables(arguments, suite)
-    if suite is not None and suite in PUBLIC_SUITES:
-        return public_tables(arguments, suite, _data(arguments.data))
-    return run_suite(str(suite), _settings(arguments, str(suite)))
+    now = datetime.now(UTC).isoformat(timespec="seconds")
+    stamp = Stamp(version("drystone"), now, f"{platform.system()} {platform.machine()}")
+    return run_public(suite, settings, stamp)
 
 
-def _settings(arguments: argparse.Namespace, suite: str) -> BenchSettings:
-    """Return what a suite is run with; E138 for options that it does not go by."""
+def _changes(name: str | None) -> tuple[tuple[str, bool | int | float | str], ...]:
+    """Return what a file of settings replaces for all methods; nothing without a file."""
+    return () if name is None else flat_changes(read_toml(Path(name)), name)
+
+
+def _refuse_of_others(arguments: argparse.Namespace, suite: str) -> None:
+    """Refuse options that a suite of the lab does not go by (E138)."""
     for name in ("seconds", "seeds", "only", "runs", *PUBLIC_OPTIONS):
         if getattr(arguments, name) and name not in SEARCHES.get(suite, ()):
             known = [other for other, names in SEARCHES.items() if name in names]
             if name not in ("seconds", "runs"):
                 known.append("the public suites")
-            raise UsageError(
-                "E138",
-                f"the suite {suite!r} does not go by it.",
-                where=f"--{name}",
-                cure=f"Leave it out; it is for {' and '.join(known)}.",
-            )
-    from drystone_lab.commands.bench_public import read_changes  # noqa: PLC0415 - see _tables
+            cure = f"Leave it out; it is for {' and '.join(known)}."
+            raise _useless(f"the suite {suite!r} does not go by it.", f"--{name}", cure)
+    if arguments.output is not None and suite not in PICTURED:
+        cure = f"Leave it out; it is for {' and '.join(PICTURED)}."
+        raise _useless(f"the suite {suite!r} draws no pictures.", "-o", cure)
 
-    output = None if arguments.output is None else Path(arguments.output)
-    if output is not None and suite not in PICTURED:
-        raise UsageError(
-            "E138",
-            f"the suite {suite!r} draws no pictures.",
-            where="-o",
-            cure=f"Leave it out; it is for {' and '.join(PICTURED)}.",
-        )
-    if output is not None:
-        make_folder(output)
-    return BenchSettings(
-        data=_data(arguments.data),
-        output=output,
-        seed=arguments.seed,
-        quick=arguments.quick,
-        seconds=tuple(arguments.seconds),
-        seeds=arguments.seeds,
-        only=tuple(arguments.only),
-        policies=tuple(arguments.policy),
-        changes=read_changes(arguments.settings),
-        jobs=arguments.jobs,
-        runs=None if arguments.runs is None else Path(arguments.runs),
-        say=say,
-    )
+
+def _refuse_of_public(arguments: argparse.Namespace, _: str) -> None:
+    """Refuse options that a public suite does not go by (E138)."""
+    useless = {
+        "--seconds": (arguments.seconds, "Public suites build one wall a seed: use --seeds."),
+        "--runs": (arguments.runs, "Public suites keep their runs in a --store."),
+        "-o": (arguments.output, "Public suites draw nothing but a --history."),
+        "--again": (
+            arguments.again and arguments.store is None,
+            "Nothing is kept without --store, so all runs are done.",
+        ),
+    }
+    for name, (given, cure) in useless.items():
+        if given:
+            raise _useless("it would do nothing here.", name, cure)
 
 
 def _data(given: str | None) -> Path | None:
     """Return the folder of published data: the option, DRYSTONE_DATA, the cache, or none."""
     folder = published_folder(given)
-    if folder is None:
-        return None
-    if not folder.is_dir():
-        print(
-            f"drystone: there is no folder {folder}; rows that need it are left out",
-            file=sys.stderr,
-        )
+    if folder is not None and not folder.is_dir():
+        said = f"drystone: there is no folder {folder}; rows that need it are left out"
+        print(said, file=sys.stderr)
         return None
     return folder
+
+
+def _history(arguments: argparse.Namespace, suite: str | None) -> Sequence[Table]:
+    """Return what a store holds by version, and draw it with -o; E138 for other options."""
+    from drystone_lab.public.history import (  # noqa: PLC0415 - see above
+        drawn_history,
+        history_table,
+        medians_of,
+    )
+    from drystone_lab.public.store import BenchStore  # noqa: PLC0415
+
+    for name in RUNS_ALONE:
+        if getattr(arguments, name):
+            what = "a history shows all that a store holds, and runs nothing."
+            raise _useless(what, f"--{name}", "Leave it out, or --history.")
+    if arguments.store is None:
+        raise _useless("there is no store to show.", "--history", "Add --store DIR.")
+    runs = [
+        run for run in BenchStore(Path(arguments.store)).runs() if suite in (None, "all", run.suite)
+    ]
+    if not runs:
+        what = "the store holds no runs" + (f" of {suite!r}." if suite else ".")
+        cure = "`drystone bench --suite NAME --store DIR` adds some."
+        raise _useless(what, arguments.store, cure)
+    medians = medians_of(runs)
+    if arguments.output is not None:
+        from drystone.drawing.files import save  # noqa: PLC0415 - see above
+
+        make_folder(Path(arguments.output))
+        for each in dict.fromkeys(one.suite for one in medians):
+            path = Path(arguments.output) / f"history-{each.replace('/', '-')}.png"
+            save(drawn_history([one for one in medians if one.suite == each]), path, DPI)
+            say(f"wrote {path}")
+    return (history_table(medians),)

@@ -12,24 +12,16 @@ from drystone.io.folder_lock import locked
 from drystone_lab.reproduce.items import ALL, ITEMS, OWN_STONES, item_names
 
 if TYPE_CHECKING:  # loaded when something is made: --list does not wait for matplotlib
-    from drystone_lab.reproduce.driver import Made, Options
-    from drystone_lab.reproduce.item import Item
-    from drystone_lab.runs.runner import Work
+    from drystone_lab.reproduce.driver import MadeItem, Options
+    from drystone_lab.reproduce.item import PaperItem
+    from drystone_lab.runs.runner import RunWorker
 
 LISTED = 12
 """Columns for the names of the list."""
 
 
-def run(arguments: argparse.Namespace, items: "Mapping[str, Item] | None" = None) -> ExitCode:
-    """Make items, print their tables, and say where the report is.
-
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        Of the command.
-    items : mapping of str to Item, optional
-        Some of those of the paper, by its names; None for the paper's.
-    """
+def run(arguments: argparse.Namespace, items: "Mapping[str, PaperItem] | None" = None) -> ExitCode:
+    """Make items, print their tables, and say where the report is."""
     if arguments.list:
         for name, (text, _) in ITEMS.items():
             print(f"{name:<{LISTED}}{text}")
@@ -56,16 +48,8 @@ def run(arguments: argparse.Namespace, items: "Mapping[str, Item] | None" = None
     return exit_code(done, every=ALL in arguments.names)
 
 
-def exit_code(done: "Sequence[Made]", *, every: bool) -> ExitCode:
-    """Return what the shell is told.
-
-    Parameters
-    ----------
-    done : sequence of Made
-        What became of the items.
-    every : bool
-        All were asked for: those without published data count only when there is no other.
-    """
+def exit_code(done: "Sequence[MadeItem]", *, every: bool) -> ExitCode:
+    """Return what the shell is told."""
     failed = [made for made in done if made.status == "failed"]
     missing = [made for made in done if made.status == "missing data"]
     if failed and failed[0].error is not None:
@@ -96,7 +80,7 @@ def _names(arguments: argparse.Namespace) -> tuple[str, ...]:
     return tuple(name for name in ITEMS if name in asked)
 
 
-def _options(arguments: argparse.Namespace, work: "Work") -> "Options":
+def _options(arguments: argparse.Namespace, work: "RunWorker") -> "Options":
     from drystone.io.published import published_folder  # noqa: PLC0415
     from drystone_lab.reproduce.driver import Options  # noqa: PLC0415
 
@@ -115,7 +99,7 @@ def _options(arguments: argparse.Namespace, work: "Work") -> "Options":
     )
 
 
-def _print(made: "Made") -> None:
+def _print(made: "MadeItem") -> None:
     """Print the tables of an item, and where its page is."""
     from drystone_lab.table import Table  # noqa: PLC0415
 
@@ -129,7 +113,7 @@ def _print(made: "Made") -> None:
     print(f"page: {made.page}\n", flush=True)
 
 
-def _as_json(made: "Made") -> dict[str, Any]:
+def _as_json(made: "MadeItem") -> dict[str, Any]:
     """Return what `--json` says of an item: the record, without what was run for it."""
     about: dict[str, Any] = {"name": made.name, "status": made.status}
     if made.error is not None:

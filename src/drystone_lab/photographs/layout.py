@@ -12,108 +12,64 @@ from drystone.generate import FourierSettings, RubbleSettings, fourier_stones, r
 from drystone.kernels.raster import Mask
 
 Markers = Literal["sheet", "single", "none"]
-Ground = Literal["plywood", "tarpaulin", "cloth", "rubber", "gravel", "grass"]
+GroundKind = Literal["plywood", "tarpaulin", "cloth", "rubber", "gravel", "grass"]
 Rock = Literal["granite", "sandstone", "limestone", "basalt", "schist"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Level:
-    """What a photograph shows, and what the camera does to it.
-
-    Parameters
-    ----------
-    name : str
-        For tables.
-    seed : int
-        Of everything at random.
-    count : int
-        Stones; a few less when they find no place.
-    angular : float
-        Share of the stones that are rubble, 0 to 1; the others are rounded.
-    rocks : tuple of str
-        Kinds of rock, in turn.
-    ground : str
-        What the stones lie on.
-    gap_px : int
-        Empty px between stones and between stones and the edge, at least.
-    touching : int
-        Stones that are pushed against another one.
-    cut : int
-        Stones that the edge of the photograph cuts.
-    shadow : float
-        How much light a cast shadow takes, 0 to 1.
-    sun_deg : float
-        Height of the light above the ground.
-    uneven : float
-        How much darker the darkest place of the ground is lit than the brightest, 0 to 1.
-    markers : str
-        A sheet of four, four single ones, or none.
-    marker_mm : float
-        Side of a marker.
-    wrong_print : float
-        How much too large the last paper was printed; 1 is right.
-    tilt_deg : float
-        How far the camera looks away from the vertical.
-    turn_deg : float
-        How far the photograph is turned about the line of sight.
-    blur_px, noise, quality
-        Radius (sigma) of the defocus, standard deviation of the sensor's noise in grey values,
-        quality of the JPEG.
-    orientation : int
-        EXIF orientation, 1 to 8, with which the file is stored.
-    width_px, height_px : int
-        Of the photograph as it is seen.
-    px_per_m : float
-        About, in the middle of the photograph.
-    """
+class PhotoLevel:
+    """What a photograph shows, and what the camera does to it."""
 
     name: str
     seed: int = 1
-    count: int = 24
-    angular: float = 0.5
-    rocks: tuple[Rock, ...] = ("granite", "sandstone", "limestone")
-    ground: Ground = "tarpaulin"
-    gap_px: int = 24
-    touching: int = 0
-    cut: int = 0
-    shadow: float = 0.0
-    sun_deg: float = 50.0
+    count: int = 24  # Stones; a few less when they find no place
+    angular: float = 0.5  # Share of the stones that are rubble, 0 to 1; the others are rounded
+    rocks: tuple[Rock, ...] = ("granite", "sandstone", "limestone")  # Kinds of rock, in turn
+    ground: GroundKind = "tarpaulin"
+    gap_px: int = 24  # Empty px between stones and between stones and the edge, at least
+    touching: int = 0  # Stones that are pushed against another one
+    cut: int = 0  # Stones that the edge of the photograph cuts
+    shadow: float = 0.0  # How much light a cast shadow takes, 0 to 1
+    sun_deg: float = 50.0  # Height of the light above the ground
+    # How much darker the darkest place of the ground is lit than the brightest, 0 to 1
     uneven: float = 0.0
-    markers: Markers = "sheet"
-    marker_mm: float = 75.0
-    wrong_print: float = 1.0
-    tilt_deg: float = 0.0
-    turn_deg: float = 0.0
+    markers: Markers = "sheet"  # A sheet of four, four single ones, or none
+    marker_mm: float = 75.0  # Side of a marker
+    wrong_print: float = 1.0  # How much too large the last paper was printed; 1 is right
+    tilt_deg: float = 0.0  # How far the camera looks away from the vertical
+    turn_deg: float = 0.0  # How far the photograph is turned about the line of sight
+    # blur_px, noise, quality: Radius (sigma) of the defocus, standard deviation of the sensor's
+    # noise in grey values, quality of the JPEG
     blur_px: float = 0.6
     noise: float = 1.5
     quality: int = 92
-    orientation: int = 1
-    width_px: int = 2000
+    orientation: int = 1  # EXIF orientation, 1 to 8, with which the file is stored
+    width_px: int = 2000  # width_px, height_px: Of the photograph as it is seen
     height_px: int = 1500
-    px_per_m: float = 1250.0
+    px_per_m: float = 1250.0  # About, in the middle of the photograph
 
 
-LEVELS: tuple[Level, ...] = (
-    Level(name="1 flat, even light", seed=1),
-    Level(name="2 dark ground, turned", seed=2, ground="rubber", rocks=("granite", "limestone"),
-          turn_deg=8.0, orientation=6),
-    Level(name="3 plywood, uneven light", seed=3, ground="plywood", uneven=0.3, markers="single",
-          marker_mm=100.0, rocks=("granite", "basalt", "schist")),
-    Level(name="4 soft shadows", seed=4, shadow=0.3, sun_deg=60.0, tilt_deg=10.0),
-    Level(name="5 many stones, blur", seed=5, count=45, gap_px=12, blur_px=1.6, noise=3.0,
-          ground="cloth", rocks=("sandstone", "basalt", "granite"), tilt_deg=12.0),
-    Level(name="6 hard shadows", seed=6, ground="plywood", shadow=0.5, sun_deg=45.0, tilt_deg=15.0,
-          rocks=("granite", "basalt", "schist", "limestone"), orientation=8),
-    Level(name="7 touching stones", seed=7, touching=6, cut=2, shadow=0.3, uneven=0.25,
-          tilt_deg=15.0, rocks=("granite", "sandstone", "basalt")),
-    Level(name="8 gravel, strong perspective", seed=8, ground="gravel", uneven=0.2, shadow=0.3,
-          rocks=("basalt", "sandstone", "schist"), tilt_deg=28.0, noise=4.0, markers="single",
-          marker_mm=100.0),
-    Level(name="9 grass, shadows, touching", seed=9, ground="grass", touching=4, shadow=0.45,
-          tilt_deg=22.0, uneven=0.3, noise=4.0, blur_px=1.2),
-    Level(name="10 low contrast, everything", seed=10, ground="cloth", count=32, touching=5, cut=2,
-          rocks=("limestone", "granite", "sandstone"), shadow=0.5, sun_deg=40.0, uneven=0.4,
-          tilt_deg=30.0, blur_px=1.6, noise=6.0, quality=75),
+LEVELS: tuple[PhotoLevel, ...] = (
+    PhotoLevel(name="1 flat, even light", seed=1),
+    PhotoLevel(name="2 dark ground, turned", seed=2, ground="rubber",
+               rocks=("granite", "limestone"), turn_deg=8.0, orientation=6),
+    PhotoLevel(name="3 plywood, uneven light", seed=3, ground="plywood", uneven=0.3,
+               markers="single", marker_mm=100.0, rocks=("granite", "basalt", "schist")),
+    PhotoLevel(name="4 soft shadows", seed=4, shadow=0.3, sun_deg=60.0, tilt_deg=10.0),
+    PhotoLevel(name="5 many stones, blur", seed=5, count=45, gap_px=12, blur_px=1.6, noise=3.0,
+               ground="cloth", rocks=("sandstone", "basalt", "granite"), tilt_deg=12.0),
+    PhotoLevel(name="6 hard shadows", seed=6, ground="plywood", shadow=0.5, sun_deg=45.0,
+               tilt_deg=15.0, rocks=("granite", "basalt", "schist", "limestone"), orientation=8),
+    PhotoLevel(name="7 touching stones", seed=7, touching=6, cut=2, shadow=0.3, uneven=0.25,
+               tilt_deg=15.0, rocks=("granite", "sandstone", "basalt")),
+    PhotoLevel(name="8 gravel, strong perspective", seed=8, ground="gravel", uneven=0.2, shadow=0.3,
+               rocks=("basalt", "sandstone", "schist"), tilt_deg=28.0, noise=4.0, markers="single",
+               marker_mm=100.0),
+    PhotoLevel(name="9 grass, shadows, touching", seed=9, ground="grass", touching=4, shadow=0.45,
+               tilt_deg=22.0, uneven=0.3, noise=4.0, blur_px=1.2),
+    PhotoLevel(name="10 low contrast, everything", seed=10, ground="cloth", count=32, touching=5,
+               cut=2, rocks=("limestone", "granite", "sandstone"), shadow=0.5, sun_deg=40.0,
+               uneven=0.4, tilt_deg=30.0, blur_px=1.6, noise=6.0, quality=75),
 )  # fmt: skip
 """Test photographs, from easy to hard."""
 
@@ -125,34 +81,17 @@ COVERED = 0.24
 
 
 @dataclass(frozen=True)
-class Layout:
-    """Stones on the ground.
+class StoneLayout:
+    """Stones on the ground."""
 
-    Parameters
-    ----------
-    labels : (h, w) uint16 array
-        Stones 1 ... n, 0 elsewhere.
-    touching : tuple of (int, int)
-        Stones that were pushed against each other.
-    """
-
-    labels: Labels
-    touching: tuple[tuple[int, int], ...]
+    labels: Labels  # Stones 1 ... n, 0 elsewhere
+    touching: tuple[tuple[int, int], ...]  # Stones that were pushed against each other
 
 
-def lay_stones(level: Level, forbidden: Mask, seen: Mask, rng: Generator) -> Layout:
+def lay_stones(level: PhotoLevel, forbidden: Mask, seen: Mask, rng: Generator) -> StoneLayout:
     """Lay stones down where there is room.
 
-    Parameters
-    ----------
-    level : Level
-        How many, how close, and how many touch or are cut by the edge.
-    forbidden : (h, w) bool array
-        Where no stone may lie: the markers.
-    seen : (h, w) bool array
-        What the camera sees of the ground.
-    rng : Generator
-        Equal states give equal stones.
+    `forbidden` (h, w) is where the markers are, `seen` (h, w) what the camera sees of the ground.
     """
     masks = [np.rot90(mask, int(rng.integers(4))) for mask in _shapes(level, rng)]
     masks.sort(key=lambda mask: -int(mask.sum()))
@@ -170,10 +109,10 @@ def lay_stones(level: Level, forbidden: Mask, seen: Mask, rng: Generator) -> Lay
             table.drop(mask, np.argwhere(edge), rng, table.taken)
         else:
             table.drop(mask, np.argwhere(inside), rng, table.taken | table.outside)
-    return Layout(table.labels, tuple(touching))
+    return StoneLayout(table.labels, tuple(touching))
 
 
-def _shapes(level: Level, rng: Generator) -> list[Mask]:
+def _shapes(level: PhotoLevel, rng: Generator) -> list[Mask]:
     """Return masks of about the area that leaves room for all."""
     angular = round(level.angular * level.count)
     area = COVERED * level.width_px * level.height_px / level.count

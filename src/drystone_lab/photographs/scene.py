@@ -16,7 +16,7 @@ from skimage.transform import warp
 from drystone.kernels.raster import Mask
 from drystone.photo.dictionaries import marker_modules
 from drystone.photo.layout import ON_A_SHEET, MarkerLayout, page_mm, parse_layout
-from drystone_lab.photographs.layout import Ground, Labels, Level, Rock, lay_stones
+from drystone_lab.photographs.layout import GroundKind, Labels, PhotoLevel, Rock, lay_stones
 
 Plane = NDArray[np.float32]
 """(h, w)."""
@@ -44,8 +44,6 @@ _ROCKS: dict[Rock, _Face] = {
 def linear(colour: str) -> NDArray[np.float32]:
     """Return the linear light of ``"#rrggbb"``.
 
-    Examples
-    --------
     >>> [round(float(part), 3) for part in linear("#ff8000")]
     [1.0, 0.216, 0.0]
     """
@@ -87,7 +85,7 @@ def stone_face(rock: Rock, shape: tuple[int, int], rng: Generator) -> Light:
     return np.clip(colour, 0.01, 1.0).astype(np.float32)
 
 
-def ground_surface(ground: Ground, shape: tuple[int, int], rng: Generator) -> Light:
+def ground_surface(ground: GroundKind, shape: tuple[int, int], rng: Generator) -> Light:
     """Return a ground, evenly lit."""
     makers = {
         "plywood": _plywood, "tarpaulin": _tarpaulin, "cloth": _cloth,
@@ -155,15 +153,10 @@ def inverse(homography: Homography) -> Homography:
     return np.asarray(np.linalg.inv(homography), np.float64)
 
 
-def view_of(level: Level) -> tuple[Homography, tuple[int, int]]:
+def view_of(level: PhotoLevel) -> tuple[Homography, tuple[int, int]]:
     """Return the homography from the ground to the photograph, and the ground that is seen.
 
-    Returns
-    -------
-    homography : (3, 3) float array
-        Ground px to photograph px.
-    shape : (int, int)
-        Height and width of the ground that holds all that the camera sees, px.
+    The homography takes ground px to px of the photograph; the ground is (height, width) in px.
     """
     focal = FOCAL * level.width_px
     tilt, turn = math.radians(level.tilt_deg), math.radians(level.turn_deg)
@@ -180,7 +173,7 @@ def view_of(level: Level) -> tuple[Homography, tuple[int, int]]:
     return centred @ shift, (height, width)
 
 
-def frame_corners(level: Level) -> NDArray[np.float64]:
+def frame_corners(level: PhotoLevel) -> NDArray[np.float64]:
     """Return the corners of the photograph, (4, 2), in turn."""
     width, height = level.width_px, level.height_px
     return np.array([[0, 0], [width, 0], [width, height], [0, height]], float)
@@ -189,8 +182,6 @@ def frame_corners(level: Level) -> NDArray[np.float64]:
 def moved(homography: Homography, points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Map points (n, 2).
 
-    Examples
-    --------
     >>> moved(np.diag([2.0, 2.0, 1.0]), np.array([[1.0, 3.0]])).tolist()
     [[2.0, 6.0]]
     """
@@ -198,7 +189,7 @@ def moved(homography: Homography, points: NDArray[np.float64]) -> NDArray[np.flo
     return np.asarray(mapped[:, :2] / mapped[:, 2:])
 
 
-def exposed(ground: Light, homography: Homography, level: Level, rng: Generator) -> bytes:
+def exposed(ground: Light, homography: Homography, level: PhotoLevel, rng: Generator) -> bytes:
     """Return the JPEG that a camera makes of a lit ground."""
     shape = (level.height_px, level.width_px)
     # Centres of px lie at halves in the homography and at whole numbers in `warp`.
@@ -233,13 +224,13 @@ _FINE = 3
 """Samples along a side of a px."""
 
 
-def layout_of(level: Level) -> MarkerLayout | None:
+def layout_of(level: PhotoLevel) -> MarkerLayout | None:
     """Return the markers of a photograph as its user would name them; None without."""
     names = {"sheet": f"A4:{level.marker_mm:g}mm", "single": f"{level.marker_mm:g}mm"}
     return None if level.markers == "none" else parse_layout(names[level.markers])
 
 
-def place_markers(level: Level, surface: Light, seen: Mask) -> Mask:
+def place_markers(level: PhotoLevel, surface: Light, seen: Mask) -> Mask:
     """Draw markers on the ground; return where no stone may lie."""
     layout = layout_of(level)
     covered = np.zeros(seen.shape, bool)
@@ -321,30 +312,14 @@ SKY = (0.92, 1.0, 1.12)
 
 @dataclass(frozen=True, eq=False)
 class Photograph:
-    """A rendered photograph and the truth.
+    """A rendered photograph and the truth."""
 
-    Parameters
-    ----------
-    jpeg : bytes
-        The file.
-    truth : (h, w) uint16 array
-        Stones 1 ... n in the frame of the ground.
-    homography : (3, 3) float array
-        Ground px to px of the photograph as it is seen.
-    px_per_m : float
-        Ground px in a metre.
-    touching : tuple of (int, int)
-        Stones that touch.
-    level : Level
-        What was asked for.
-    """
-
-    jpeg: bytes
-    truth: Labels
-    homography: Homography
-    px_per_m: float
-    touching: tuple[tuple[int, int], ...]
-    level: Level
+    jpeg: bytes  # The file
+    truth: Labels  # Stones 1 ... n in the frame of the ground
+    homography: Homography  # Ground px to px of the photograph as it is seen
+    px_per_m: float  # Ground px in a metre
+    touching: tuple[tuple[int, int], ...]  # Stones that touch
+    level: PhotoLevel
 
     def truth_in(self, to_photo: Homography, shape: tuple[int, int]) -> Labels:
         """Return the true stones in another frame, such as that of a label image."""
@@ -358,7 +333,7 @@ class Photograph:
         return found.reshape(shape).astype(np.uint16)
 
 
-def photograph(level: Level) -> Photograph:
+def photograph(level: PhotoLevel) -> Photograph:
     """Render a photograph."""
     rng = np.random.default_rng(level.seed)
     homography, shape = view_of(level)
@@ -379,7 +354,7 @@ def photograph(level: Level) -> Photograph:
     return Photograph(jpeg, layout.labels, homography, level.px_per_m, layout.touching, level)
 
 
-def _light_on_ground(labels: Labels, level: Level, rng: Generator) -> Light:
+def _light_on_ground(labels: Labels, level: PhotoLevel, rng: Generator) -> Light:
     """Return what reaches the ground, (h, w, 3): cast shadows, and a dim rim below the stones."""
     shadow = np.zeros(labels.shape, np.float32)
     azimuth = rng.uniform(0, 2 * math.pi)
@@ -409,7 +384,7 @@ def _add(whole: Plane, part: NDArray[np.bool_], row: int, col: int) -> None:
     np.maximum(area, part[top - row :, left - col :][: area.shape[0], : area.shape[1]], out=area)
 
 
-def _shading(mask: NDArray[np.bool_], level: Level) -> Plane:
+def _shading(mask: NDArray[np.bool_], level: PhotoLevel) -> Plane:
     """Return how bright a domed stone is: its rim turns away from the light."""
     depth = ndimage.distance_transform_edt(np.pad(mask, 1))[1:-1, 1:-1]
     dome = np.sqrt(np.clip(1 - (1 - np.clip(depth / max(depth.max(), 1), 0, 1)) ** 2, 0, 1))
@@ -417,7 +392,7 @@ def _shading(mask: NDArray[np.bool_], level: Level) -> Plane:
     return np.asarray(1 - side * (1 - dome), np.float32)
 
 
-def _lamp(shape: tuple[int, int], level: Level, rng: Generator) -> Plane:
+def _lamp(shape: tuple[int, int], level: PhotoLevel, rng: Generator) -> Plane:
     """Return uneven light over the whole picture: a slope and a bright spot, 1 at most."""
     if not level.uneven:
         return np.ones(shape, np.float32)

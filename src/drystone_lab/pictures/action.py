@@ -25,57 +25,30 @@ BUILT = "#e4e0d8"
 STONE, NEIGHBOUR, BELOW, RAYS, BEGUN = "#d55e00", "#009e73", "#56b4e9", "#f0e442", "#0072b2"
 """Okabe and Ito's colours, apart for colour-blind readers; roles as in Fig. 7."""
 
-Point = tuple[float, float]
+PointXY = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class Beside:
-    """A placed stone that an index looks at.
-
-    Parameters
-    ----------
-    id : int
-        Its label.
-    box : Box
-        Its bounding box.
-    """
+class NeighbourBox:
+    """A placed stone that an index looks at."""
 
     id: int
     box: Box
 
 
 @dataclass(frozen=True, eq=False)
-class Action:
-    """A stone at a place, and what its indices measure; working px, building side on the left.
+class ActionView:
+    """A stone at a place, and what its indices measure; working px, building side on the left."""
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        The landscape before the stone, row 0 at the top.
-    posed : PosedStone
-        The stone.
-    row, col : int
-        Top-left corner of its mask.
-    swept : (h, w) bool array
-        What its rays sweep (:func:`drystone.indices.swept_pixels`).
-    built_height : int
-        Height of the box B of the landscape.
-    neighbour : Beside or None
-        Left neighbour in its course.
-    below : (Beside or None, Beside or None)
-        below1 and below2.
-    peaks : (int, int) or None
-        Columns of the mask in which the highest points of its halves are.
-    """
-
-    labels: Labels
-    posed: PosedStone
-    row: int
+    labels: Labels  # The landscape before the stone, row 0 at the top
+    posed: PosedStone  # The stone
+    row: int  # row, col: Top-left corner of its mask
     col: int
     swept: Mask
-    built_height: int
-    neighbour: Beside | None
-    below: tuple[Beside | None, Beside | None]
+    built_height: int  # Height of the box B of the landscape
+    neighbour: NeighbourBox | None  # Left neighbour in its course
+    below: tuple[NeighbourBox | None, NeighbourBox | None]  # below1 and below2
+    # Columns of the mask in which the highest points of its halves are
     peaks: tuple[int, int] | None
 
     @property
@@ -93,26 +66,9 @@ class Action:
 
 
 def plot_action(
-    action: Action, marks: Collection[Mark], ax: Axes | None = None, *, title: str = ""
+    action: ActionView, marks: Collection[Mark], ax: Axes | None = None, *, title: str = ""
 ) -> Axes:
-    """Draw a stone on the landscape with what some of its indices measure.
-
-    Parameters
-    ----------
-    action : Action
-        The stone.
-    marks : collection of str
-        Which.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    title : str
-        Written above.
-
-    Returns
-    -------
-    ax : Axes
-        In working px, y up from the ground.
-    """
+    """Draw a stone on the landscape with what some of its indices measure."""
     height, width = action.labels.shape
     depth = 0.04 * max(height, 0.2 * width)
     ax = fit_axes(ax, (-2.0, -depth, width + 2.0, height + 2.0))
@@ -139,7 +95,7 @@ def plot_action(
     return ax
 
 
-def _fills(action: Action, marks: Collection[Mark]) -> dict[int, str]:
+def _fills(action: ActionView, marks: Collection[Mark]) -> dict[int, str]:
     fills: dict[int, str] = {}
     if "joints" in marks:
         fills |= {beside.id: BELOW for beside in action.below if beside is not None}
@@ -148,7 +104,7 @@ def _fills(action: Action, marks: Collection[Mark]) -> dict[int, str]:
     return fills
 
 
-def _name_stones(ax: Axes, action: Action) -> None:
+def _name_stones(ax: Axes, action: ActionView) -> None:
     """Write which stone is which, where several are coloured."""
     below1, below2 = action.below
     told = {"left neighbour": action.neighbour, "below1": below1, "below2": below2}
@@ -167,7 +123,7 @@ def _name_stones(ax: Axes, action: Action) -> None:
         )
 
 
-def _draw_rays(ax: Axes, action: Action) -> None:
+def _draw_rays(ax: Axes, action: ActionView) -> None:
     """Colour what the rays sweep: pale where it is empty, stronger over what is filled."""
     height, width = action.labels.shape
     image = np.zeros((height, width, 4))
@@ -178,7 +134,7 @@ def _draw_rays(ax: Axes, action: Action) -> None:
     ax.set_aspect("equal")
 
 
-def _draw_box(ax: Axes, action: Action) -> None:
+def _draw_box(ax: Axes, action: ActionView) -> None:
     left, right, bottom, top = action.box
     ax.add_patch(
         Rectangle((left, bottom), right - left, top - bottom, fill=False, linewidth=1.0,
@@ -186,7 +142,7 @@ def _draw_box(ax: Axes, action: Action) -> None:
     )  # fmt: skip
 
 
-def _draw_begun(ax: Axes, action: Action) -> None:
+def _draw_begun(ax: Axes, action: ActionView) -> None:
     width = action.labels.shape[1]
     ax.add_patch(
         Rectangle((0, 0), width, action.built_height, fill=False, linewidth=1.6,
@@ -194,7 +150,7 @@ def _draw_begun(ax: Axes, action: Action) -> None:
     )  # fmt: skip
 
 
-def _draw_tops(ax: Axes, action: Action) -> None:
+def _draw_tops(ax: Axes, action: ActionView) -> None:
     """Draw the heights of both tops, and how far they are apart."""
     if action.neighbour is None:
         return
@@ -208,11 +164,11 @@ def _draw_tops(ax: Axes, action: Action) -> None:
             gid="difference", zorder=5, solid_capstyle="butt")  # fmt: skip
 
 
-def _draw_joints(ax: Axes, action: Action) -> None:
+def _draw_joints(ax: Axes, action: ActionView) -> None:
     """Draw how far the ends of the stone are from the joints below."""
     below1, below2 = action.below
     stone = action.box
-    pairs: list[tuple[Point, Point]] = []
+    pairs: list[tuple[PointXY, PointXY]] = []
     if below1 is not None:
         pairs.append(((stone.left, stone.bottom), (below1.box.right, below1.box.top)))
     if below2 is not None:
@@ -226,7 +182,7 @@ def _draw_joints(ax: Axes, action: Action) -> None:
                 zorder=5)  # fmt: skip
 
 
-def _draw_slope(ax: Axes, action: Action) -> None:
+def _draw_slope(ax: Axes, action: ActionView) -> None:
     if action.peaks is None:
         return
     top = action.posed.top

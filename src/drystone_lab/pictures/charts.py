@@ -26,7 +26,7 @@ COLUMNS = 4
 SPREAD = 0.28
 """Half the width of a strip; groups are 1 apart."""
 
-Figures = Sequence[float | None]
+GroupValues = Sequence[float | None]
 """A figure of several walls; None where a wall has none, which is left out."""
 
 Pairs = Sequence[tuple[float | None, float | None]]
@@ -56,7 +56,7 @@ def panel_sheet(
 
 
 def plot_groups(
-    groups: Mapping[str, Figures],
+    groups: Mapping[str, GroupValues],
     ax: Axes | None = None,
     *,
     figure: str = "",
@@ -65,21 +65,6 @@ def plot_groups(
 ) -> Axes:
     """Draw the values of each group as a strip of points, and its median as a line.
 
-    Parameters
-    ----------
-    groups : mapping of str to sequence of float or None
-        Values by name of the group.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    figure : str
-        What the values are, with its unit; written at the axis.
-    claims : mapping of str to float, optional
-        What somebody else found, drawn as crosses, by name of the group.
-    claim : str
-        Who, for the legend.
-
-    Examples
-    --------
     >>> ax = plot_groups({"rotation": [0.7, 0.8], "wedge": [0.6, None]}, figure="F_SF")
     >>> [text.get_text() for text in ax.get_xticklabels()]
     ['rotation', 'wedge']
@@ -113,22 +98,12 @@ def plot_groups(
 
 
 def group_panels(
-    figures: Mapping[str, Mapping[str, Figures]],
+    figures: Mapping[str, Mapping[str, GroupValues]],
     *,
     title: str = "",
     claims: Mapping[str, Mapping[str, float]] | None = None,
 ) -> Figure:
-    """Draw several figures of the same groups, a panel each.
-
-    Parameters
-    ----------
-    figures : mapping of str to mapping of str to sequence of float or None
-        Values by figure (written at its axis) and group.
-    title : str
-        Above all of them.
-    claims : mapping of str to mapping of str to float, optional
-        By figure and group, what the paper reports.
-    """
+    """Draw several figures of the same groups, a panel each."""
     sheet, panels = panel_sheet(len(figures), COLUMNS, PANEL_IN, title)
     for ax, (name, groups) in zip(panels, figures.items(), strict=True):
         plot_groups(groups, ax, figure=name, claims=(claims or {}).get(name))
@@ -138,17 +113,7 @@ def group_panels(
 def plot_two_figures(
     groups: Mapping[str, Pairs], ax: Axes | None = None, *, across: str, up: str
 ) -> Axes:
-    """Draw one figure over another, a point a wall, and the medians of each group as a large one.
-
-    Parameters
-    ----------
-    groups : mapping of str to sequence of (float or None, float or None)
-        Across and up, by name of the group; a pair with a None is left out.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    across, up : str
-        What they are, with their units; written at the axes.
-    """
+    """Draw one figure over another, a point a wall; large ones are medians of groups."""
     ax = Figure(figsize=TWO_IN).add_subplot() if ax is None else ax
     for place, (name, pairs) in enumerate(groups.items()):
         colour, marker = LOOKS[place % len(LOOKS)]
@@ -218,19 +183,10 @@ NoisePairs = Sequence[tuple[int, float]]
 
 @dataclass(frozen=True)
 class NoisePanel:
-    """One figure of many walls.
+    """One figure of many walls."""
 
-    Parameters
-    ----------
-    figure : str
-        Which, with its unit; written at the axis.
-    full, poor : sequence of (int, float)
-        Noise in % and value of the walls filled above and below the threshold.
-    reference, baseline : mapping of int to float
-        By noise, drawn as lines.
-    """
-
-    figure: str
+    figure: str  # Which, with its unit; written at the axis
+    # full, poor: Noise in % and value of the walls filled above and below the threshold
     full: NoisePairs
     poor: NoisePairs
     reference: Mapping[int, float]
@@ -248,17 +204,7 @@ class NoiseNames:
 
 
 def plot_noise(panel: NoisePanel, names: NoiseNames, ax: Axes | None = None) -> Axes:
-    """Draw a figure over the noise.
-
-    Parameters
-    ----------
-    panel : NoisePanel
-        What is drawn.
-    names : NoiseNames
-        For a legend.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    """
+    """Draw a figure over the noise."""
     ax = Figure(figsize=NOISE_IN).add_subplot() if ax is None else ax
     for name, pairs, look in ((names.full, panel.full, FULL), (names.poor, panel.poor, POOR)):
         seen: Counter[int] = Counter()
@@ -284,17 +230,7 @@ def plot_noise(panel: NoisePanel, names: NoiseNames, ax: Axes | None = None) -> 
 def noise_panels(
     panels: Sequence[NoisePanel], names: NoiseNames, ticks: Mapping[int, str]
 ) -> Figure:
-    """Draw several figures of the same walls, with one legend above.
-
-    Parameters
-    ----------
-    panels : sequence of NoisePanel
-        At least one.
-    names : NoiseNames
-        For the legend.
-    ticks : mapping of int to str
-        What is written at the axis of noise.
-    """
+    """Draw several figures of the same walls, with one legend above."""
     sheet, axes = panel_sheet(len(panels), NOISE_COLUMNS, NOISE_IN)
     for ax, panel in zip(axes, panels, strict=True):
         plot_noise(panel, names, ax)
@@ -307,26 +243,14 @@ def noise_panels(
 HISTORY_IN = (3.4, 2.4)
 ACROSS = 3
 
-Lines = Mapping[str, Sequence[float | None]]
+VersionLines = Mapping[str, Sequence[float | None]]
 """By method: a value a version, None where there is none."""
 
 
 def plot_history(
-    versions: Sequence[str], lines: Lines, ax: Axes | None = None, *, figure: str = ""
+    versions: Sequence[str], lines: VersionLines, ax: Axes | None = None, *, figure: str = ""
 ) -> Axes:
-    """Draw a figure over versions, a line a method; dashed where colours come round again.
-
-    Parameters
-    ----------
-    versions : sequence of str
-        Oldest first.
-    lines : mapping of str to sequence of float or None
-        By method, a value a version.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    figure : str
-        What it is, with its unit, written at the axis.
-    """
+    """Draw a figure over versions, a line a method; dashed where colours come round again."""
     ax = Figure(figsize=HISTORY_IN).add_subplot() if ax is None else ax
     for number, (method, values) in enumerate(lines.items()):
         turn, place = divmod(number, len(LOOKS))
@@ -342,18 +266,10 @@ def plot_history(
     return ax
 
 
-def history_panels(versions: Sequence[str], figures: Mapping[str, Lines], title: str) -> Figure:
-    """Draw several figures over versions, with one legend.
-
-    Parameters
-    ----------
-    versions : sequence of str
-        Oldest first.
-    figures : mapping of str to lines
-        By figure with its unit, at least one; the same methods in each.
-    title : str
-        Above them.
-    """
+def history_panels(
+    versions: Sequence[str], figures: Mapping[str, VersionLines], title: str
+) -> Figure:
+    """Draw several figures over versions, with one legend."""
     sheet, panels = panel_sheet(len(figures), ACROSS, HISTORY_IN, title)
     for ax, (name, lines) in zip(panels, figures.items(), strict=True):
         plot_history(versions, lines, ax, figure=name)

@@ -42,55 +42,25 @@ class PowerLaw:
 
 @dataclass(frozen=True)
 class Series:
-    """Times over a size.
-
-    Parameters
-    ----------
-    label : str
-        What takes the time.
-    points : tuple of (float, float)
-        Size and seconds.
-    law : PowerLaw or None
-        Fitted to the points; drawn as a line.
-    """
+    """Times over a size."""
 
     label: str
-    points: tuple[tuple[float, float], ...]
-    law: PowerLaw | None = None
+    points: tuple[tuple[float, float], ...]  # Size and seconds
+    law: PowerLaw | None = None  # Fitted to the points; drawn as a line
 
 
 @dataclass(frozen=True)
 class Claim:
-    """What somebody else measured.
+    """What somebody else measured."""
 
-    Parameters
-    ----------
-    label : str
-        Who, and what.
-    size, seconds : float
-        The point.
-    at_most : bool
-        Less than that.
-    """
-
-    label: str
-    size: float
+    label: str  # Who, and what
+    size: float  # size, seconds: The point
     seconds: float
-    at_most: bool = False
+    at_most: bool = False  # Less than that
 
 
 def plot_step_times(steps: Sequence[StepTime], ax: Axes | None = None, *, title: str = "") -> Axes:
-    """Draw the time of every step as a bar, its parts on top of each other (Fig. 28).
-
-    Parameters
-    ----------
-    steps : sequence of StepTime
-        At least one, in order.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    title : str
-        Above it.
-    """
+    """Draw the time of every step as a bar, its parts on top of each other (Fig. 28)."""
     ax = Figure(figsize=PANEL_IN).add_subplot() if ax is None else ax
     number = np.arange(1, len(steps) + 1)
     foot = np.zeros(len(steps))
@@ -107,13 +77,7 @@ def plot_step_times(steps: Sequence[StepTime], ax: Axes | None = None, *, title:
 
 
 def step_time_panels(runs: Mapping[str, Sequence[StepTime]]) -> Figure:
-    """Draw the steps of several walls side by side, with one legend.
-
-    Parameters
-    ----------
-    runs : mapping of str to sequence of StepTime
-        By title.
-    """
+    """Draw the steps of several walls side by side, with one legend."""
     figure = Figure(figsize=(PANEL_IN[0] * len(runs), PANEL_IN[1]))
     panels = figure.subplots(1, len(runs), squeeze=False)[0]
     for ax, (title, steps) in zip(panels, runs.items(), strict=True):
@@ -135,19 +99,7 @@ def plot_growth(
     *,
     size: str = "size",
 ) -> Axes:
-    """Draw times over sizes, both logarithmic, with the power laws fitted to them (Fig. 29).
-
-    Parameters
-    ----------
-    series : sequence of Series
-        At most three.
-    claims : sequence of Claim
-        Drawn beside them as crosses, or as triangles that point down.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    size : str
-        What the sizes are, written at the axis.
-    """
+    """Draw times over sizes, both logarithmic, with the power laws fitted to them (Fig. 29)."""
     ax = Figure(figsize=GROWTH_IN).add_subplot() if ax is None else ax
     for each, (colour, marker) in zip(series, LINES, strict=False):
         x = [point[0] for point in each.points]

@@ -18,43 +18,29 @@ from drystone.stabilise.support import Pose, Support
 BUILT, STONE, GHOST = "#e4e0d8", "#9ecae1", "#0072b2"
 LINE, MASS = "#d55e00", "#000000"
 
-Point = tuple[float, float]
+PointXY = tuple[float, float]
 Window = tuple[float, float, float, float]
 """x0, y0, x1, y1, working px, y up from the ground."""
 
 
 @dataclass(frozen=True, eq=False)
-class Standing:
-    """A stone where it is.
+class SupportedStone:
+    """A stone where it is."""
 
-    Parameters
-    ----------
-    pose : (PosedStone, int, int)
-        The stone and the row and column of its mask.
-    support : Support
-        Its support, over wedges as well.
-    falls : int
-        Side to which it falls: -1 left, +1 right, 0 stable.
-    wedges : tuple of Wedge
-        Under it.
-    height_px : int
-        Of the wall image.
-    """
-
-    pose: Pose
-    support: Support
-    falls: int
-    wedges: tuple[Wedge, ...]
+    pose: Pose  # The stone and the row and column of its mask
+    support: Support  # Its support, over wedges as well
+    falls: int  # Side to which it falls: -1 left, +1 right, 0 stable
+    wedges: tuple[Wedge, ...]  # Under it
     height_px: int
 
     @property
-    def mass(self) -> Point:
+    def mass(self) -> PointXY:
         """Centre of mass C."""
         posed, row, col = self.pose
         return col + posed.anchor[0], self.height_px - row - posed.height_px + posed.anchor[1]
 
     @property
-    def ends(self) -> tuple[Point, Point]:
+    def ends(self) -> tuple[PointXY, PointXY]:
         """A, the end of the support that is nearer to the centre of mass, and B."""
         left = float(self.support.left_x), float(self.height_px - self.support.left_row)
         right = float(self.support.right_x), float(self.height_px - self.support.right_row)
@@ -79,29 +65,16 @@ class Standing:
 
 def plot_standing(
     labels: Labels,
-    standing: Standing,
+    standing: SupportedStone,
     window: Window,
     ax: Axes | None = None,
     *,
-    before: Standing | None = None,
+    before: SupportedStone | None = None,
     title: str = "",
 ) -> Axes:
     """Draw a stone on its support with the points of Fig. 9.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        The landscape without the stone, row 0 at the top.
-    standing : Standing
-        The stone.
-    window : (float, float, float, float)
-        What is shown.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    before : Standing, optional
-        Where it was at first, dashed.
-    title : str
-        Written above.
+    `labels` is the landscape without the stone; `before` is where it was at first, dashed.
     """
     ax = fit_axes(ax, window)
     for region in label_regions(labels):
@@ -124,14 +97,14 @@ def plot_standing(
     return ax
 
 
-def window_around(standings: Sequence[Standing], margin_px: float = 6.0) -> Window:
+def window_around(standings: Sequence[SupportedStone], margin_px: float = 6.0) -> Window:
     """Return a window that shows some stones and what is around them."""
     points = np.concatenate([loop for one in standings for loop in one.loops])
     low, high = points.min(axis=0) - 2 * margin_px, points.max(axis=0) + margin_px
     return float(low[0]), float(max(low[1], -2.0)), float(high[0] + margin_px), float(high[1])
 
 
-def _draw_points(ax: Axes, standing: Standing) -> None:
+def _draw_points(ax: Axes, standing: SupportedStone) -> None:
     """Draw A, B and the line between them, C and its projection C'."""
     a, b = standing.ends
     x_c, y_c = standing.mass
@@ -150,12 +123,12 @@ def _draw_points(ax: Axes, standing: Standing) -> None:
     _write(ax, "C'", (x_c, y_on), (7.0 * side, 5.0))
 
 
-def _write(ax: Axes, text: str, at: Point, offset: Point) -> None:
+def _write(ax: Axes, text: str, at: PointXY, offset: PointXY) -> None:
     ax.annotate(text, at, offset, textcoords="offset points", size=7.5, ha="center", va="center",
                 zorder=7, path_effects=[withStroke(linewidth=1.8, foreground="white")])  # fmt: skip
 
 
-def _draw_turn(ax: Axes, standing: Standing) -> None:
+def _draw_turn(ax: Axes, standing: SupportedStone) -> None:
     """Draw to which side the stone turns, above it."""
     points = np.concatenate(standing.loops)
     (left, _), (right, top) = points.min(axis=0), points.max(axis=0)
@@ -170,7 +143,7 @@ def _draw_turn(ax: Axes, standing: Standing) -> None:
     )  # fmt: skip
 
 
-def _draw_supported(ax: Axes, before: Standing) -> None:
+def _draw_supported(ax: Axes, before: SupportedStone) -> None:
     """Draw the supported side, which wedging leaves alone (grey in Fig. 9c)."""
     points = np.concatenate(before.loops)
     (left, bottom), (right, top) = points.min(axis=0), points.max(axis=0)

@@ -22,24 +22,12 @@ SIZE_IN = (6.0, 6.0)
 
 @dataclass(frozen=True)
 class Prediction:
-    """One measured value and what a model says of it.
+    """One measured value and what a model says of it."""
 
-    Parameters
-    ----------
-    series : str
-        Kind of test; chooses the marker.
-    model : str
-        Assumptions; choose the colour.
-    measured : float
-        What it is compared with.
-    low, predicted, high : float
-        Band and middle, in the same unit.
-    """
-
-    series: str
-    model: str
+    series: str  # Kind of test; chooses the marker
+    model: str  # Assumptions; choose the colour
     measured: float
-    low: float
+    low: float  # low, predicted, high: Band and middle, in the same unit
     predicted: float
     high: float
 
@@ -51,24 +39,7 @@ def plot_predictions(
     unit: str = "kN",
     band: str = "band",
 ) -> Axes:
-    """Draw predicted against measured values, with bands as vertical bars and the line of equals.
-
-    Parameters
-    ----------
-    predictions : sequence of Prediction
-        At least one; of at most three models and four series.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    unit : str
-        Written at both axes.
-    band : str
-        What the bars stand for.
-
-    Returns
-    -------
-    ax : Axes
-        From 0 to above the largest value, both axes alike.
-    """
+    """Draw predicted over measured values, bands as bars; at most three models, four series."""
     ax = Figure(figsize=SIZE_IN).add_subplot() if ax is None else ax
     models = list(dict.fromkeys(p.model for p in predictions))
     series = list(dict.fromkeys(p.series for p in predictions))

@@ -29,21 +29,11 @@ TITLE_PT = 8
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """A picture on a sheet.
+    """A picture on a sheet."""
 
-    Parameters
-    ----------
-    title : str
-        Written above, in lines, or "".
-    aspect : float
-        Height over width of what is drawn.
-    draw : callable
-        Draws it on axes; without it the place stays empty.
-    """
-
-    title: str
-    aspect: float
-    draw: Callable[[Axes], object] | None
+    title: str  # Written above, in lines, or ""
+    aspect: float  # Height over width of what is drawn
+    draw: Callable[[Axes], object] | None  # Draws it on axes; without it the place stays empty
 
 
 EMPTY = Panel("", 0.0, None)
@@ -53,26 +43,6 @@ EMPTY = Panel("", 0.0, None)
 def sheet_of(panels: Sequence[Panel], columns: int) -> Figure:
     """Draw panels in rows, all of one width.
 
-    Parameters
-    ----------
-    panels : sequence of Panel
-        At least one.
-    columns : int
-        Panels in a row.
-
-    Returns
-    -------
-    Figure
-        An axes a panel that is not empty, in their order, without legends: one below every small
-        picture would say the same again and again.
-
-    Raises
-    ------
-    ValueError
-        There is no panel, or no column.
-
-    Examples
-    --------
     >>> figure = sheet_of([Panel("a", 0.5, lambda ax: ax.plot([1, 2])), EMPTY], 2)
     >>> [ax.get_title(loc="left") for ax in figure.axes]
     ['a']
@@ -121,27 +91,7 @@ over their height or a fifth of their width."""
 
 
 def plot_walls(walls: Sequence[TitledWall], columns: int) -> Figure:
-    """Draw walls in rows, stones coloured by cluster and numbered in order, wedges dark red.
-
-    Parameters
-    ----------
-    walls : sequence of (str, Wall, mapping or None)
-        At least one: title (of lines, or ""), wall, and clusters by stone or None for stones in
-        one colour.
-    columns : int
-        Walls in a row.
-
-    Returns
-    -------
-    Figure
-        An axes a wall, in their order, each in its own scale; px or m as in
-        :func:`drystone.drawing.plot_wall`.
-
-    Raises
-    ------
-    ValueError
-        There is no wall, or no column.
-    """
+    """Draw walls in rows, stones coloured by cluster and numbered in order, wedges dark red."""
     return sheet_of([wall_panel(*wall) for wall in walls], columns)
 
 
@@ -157,8 +107,6 @@ def wall_panel(title: str, wall: Wall, clusters: Mapping[int, int] | None) -> Pa
 def wall_aspect(aspect: float) -> float:
     """Return height over width of a wall's picture, the ground included, from those of the wall.
 
-    Examples
-    --------
     >>> round(wall_aspect(0.5), 4)
     0.517
     """
@@ -174,21 +122,7 @@ def plot_masonry(
 ) -> Axes:
     """Draw the stones of a wall, coloured by cluster, on the ground.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        0 where nothing is; row 0 at the top, the ground below the last row.
-    clusters : mapping of int to int, optional
-        Cluster of each stone's id, from 1; None, or a stone that it does not name: one colour.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    units_per_px : float
-        Source px in a px of the image.
-
-    Returns
-    -------
-    ax : Axes
-        In source px, y up from the ground.
+    In source px, y up from the ground, which is below the last row of `labels` (row 0 at the top).
     """
     height, width = (units_per_px * size for size in labels.shape)
     margin, depth = 0.015 * width, 0.035 * max(height, 0.2 * width)

@@ -1,8 +1,8 @@
 """Runs of the public benchmark: every method on every wall with every seed."""
 
-from collections.abc import Mapping, Sequence
-from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -17,36 +17,25 @@ from drystone.physics.shake import shake_once
 from drystone.physics.table import load_engine
 from drystone_lab.packing import load_packer
 from drystone_lab.public.store import NOT_SHAKEN, BenchStore, KeptRun, Stamp, kept_run
-from drystone_lab.public.suites import STRIP_SECONDS, BenchMethod, method_named, walls_of
-from drystone_lab.public.tables import SHAKE, Result, Results, comparison, pair_tables
-from drystone_lab.runs.outcome import Outcome, RunStore
-from drystone_lab.runs.runner import Runner, Work, absent_data, one_by_one
+from drystone_lab.public.suites import STRIP_SECONDS, method_named, walls_of
+from drystone_lab.public.tables import SHAKE, BenchResult, BenchResults, comparison, pair_tables
+from drystone_lab.runs.outcome import RunOutcome, RunStore
+from drystone_lab.runs.runner import Runner, absent_data
 from drystone_lab.runs.spec import STRIPS, RunSpec
+from drystone_lab.runs.workers import work_of
 from drystone_lab.table import BenchSettings, Table
 from drystone_lab.walls import Target
 
 
-def pga_of(spec: RunSpec, outcome: Outcome, data: Path | None) -> float | None:
-    """Return the amplitude that a planned wall stands, g.
-
-    Returns
-    -------
-    float or None
-        None when nothing was built, or it does not stand at rest in the engine.
-
-    Raises
-    ------
-    UsageError
-        E305 when pymunk is not installed.
-    """
+def pga_of(spec: RunSpec, outcome: RunOutcome, data: Path | None) -> float | None:
+    """Return the amplitude that a planned wall stands, g."""
     if not outcome.figures["placed"]:
         return None
     wall = outcome.wall(spec, data)
     # Wedges may fall out: the score is about stones.
     stones = frozenset(placement.stone_id for placement in wall.placements)
     scene = EngineScene(wall_outlines(wall), spec.settings().mu)
-    trial = shake_once(scene, ROUNDED, watched=stones)
-    return trial.pga_g
+    return shake_once(scene, ROUNDED, watched=stones).pga_g
 
 
 def wall_outlines(wall: Wall) -> Mapping[int, Points]:
@@ -62,95 +51,40 @@ SEEDS, QUICK_SEEDS = 5, 2
 RUNS = "runs"
 """Folder of the plans in a store."""
 
-Task = tuple[Target, BenchMethod, RunSpec]
+BenchRun = tuple[RunSpec, RunOutcome, BenchResult]
 
 
-@dataclass(frozen=True, kw_only=True)
-class PublicSettings(BenchSettings):
-    """What is run, and by whom; `policies` are the methods, `jobs` None for this process.
-
-    Parameters
-    ----------
-    suite : str
-        One of :data:`drystone_lab.public.suites.PUBLIC_SUITES`.
-    stamp : Stamp
-        Version, time and machine.
-    store : Path or None
-        Folder of the runs that are kept; None keeps nothing.
-    again : bool
-        Do runs again that are kept.
-    dask : str or None
-        Address of a scheduler.
-    shake : bool
-        Shake the walls too.
-    """
-
-    suite: str
-    stamp: Stamp
-    store: Path | None = None
-    again: bool = False
-    dask: str | None = None
-    shake: bool = False
-
-    @property
-    def seed_range(self) -> range:
-        """All seeds."""
-        count = self.seeds or (QUICK_SEEDS if self.quick else SEEDS)
-        return range(self.seed, self.seed + count)
-
-
-class _NothingKept(RunStore):
-    """Keeps what it is given, and finds nothing of before."""
-
-    def get(self, key: str) -> Outcome | None:
-        del key
-        return None
-
-
-def run_public(settings: PublicSettings) -> tuple[Table, ...]:
+def run_public(suite: str, settings: BenchSettings, stamp: Stamp) -> tuple[Table, ...]:
     """Run a suite and compare its methods.
 
-    Returns
-    -------
-    tuple of Table
-        Walls, all walls, seconds; then with two methods or more their differences and a ranking.
-
-    Raises
-    ------
-    UsageError
-        E138: no wall has the name that is asked for; E146, E123: there is no such method or
-        setting; E305: the yardstick needs spyrrow, which is not installed.
-    InputError
-        E100: all walls need published stones, which are not there; E160: there are others in
-        their place; E401: the store is damaged.
+    The tables are walls, all walls, and seconds; then the differences of two methods or more, and
+    their ranking.
     """
     methods = [method_named(name, settings.changes) for name in settings.policies]
-    asked = walls_of(settings.suite, settings.only, quick=settings.quick)
+    asked = walls_of(suite, settings.only, quick=settings.quick)
     walls = [wall for wall in asked if wall.source.is_there(settings.data)]
     if not walls:
         absent = dict.fromkeys(wall.source.name for wall in asked)
         raise absent_data(tuple(absent), known=settings.data is not None)
     for wall in walls:
         wall.source.check(settings.data)  # before an hour of planning, and before a run is kept
+    count = settings.seeds or (QUICK_SEEDS if settings.quick else SEEDS)
     # Methods take turns, so that all have the same day.
     tasks = [
-        (wall, method, method.run(wall, seed))
+        (wall, method.name, method.run(wall, seed))
         for wall in walls
-        for seed in settings.seed_range
+        for seed in range(settings.seed, settings.seed + count)
         for method in methods
     ]
-    results = _done(tasks, settings)
-    first, *others = (*comparison(results), *pair_tables(_planned(results)))
+    results = _done(tasks, settings, stamp)
+    # The yardstick builds no walls to be compared.
+    planned = BenchResults(tuple(result for result in results.all if result.method != STRIPS))
+    first, *others = (*comparison(results), *pair_tables(planned))
     notes = (*first.notes, *_yardstick(results), *_left_out(asked, walls))
     return (replace(first, notes=notes), *others)
 
 
-def _planned(results: Results) -> Results:
-    """Leave out the yardstick, which builds no walls to be compared."""
-    return Results(tuple(result for result in results.all if result.method != STRIPS))
-
-
-def _yardstick(results: Results) -> tuple[str, ...]:
+def _yardstick(results: BenchResults) -> tuple[str, ...]:
     """Say what the yardstick is, where there is one."""
     if STRIPS not in results.methods:
         return ()
@@ -162,86 +96,63 @@ def _yardstick(results: Results) -> tuple[str, ...]:
     )
 
 
-def _done(tasks: Sequence[Task], settings: PublicSettings) -> Results:
+def _left_out(asked: Sequence[Target], there: Sequence[Target]) -> tuple[str, ...]:
+    names = ", ".join(wall.name for wall in asked if wall not in there)
+    needed = "Left out, as they need the published stone sets (`drystone fetch`, or --data DIR): "
+    return (f"{needed}{names}.",) if names else ()
+
+
+def _done(
+    tasks: Sequence[tuple[Target, str, RunSpec]], settings: BenchSettings, stamp: Stamp
+) -> BenchResults:
     """Do the runs, keep them, and shake the walls if that is asked for."""
     if settings.shake:
         load_engine()  # what is missing is said before an hour of planning
-    if any(method.name == STRIPS for _, method, _ in tasks):
+    if any(spec.method == STRIPS for *_, spec in tasks):
         load_packer()
     store = None if settings.store is None else BenchStore(settings.store)
     kept = {} if store is None else {run.run_key: run for run in store.runs()}
-    specs = [spec for _, _, spec in tasks]
-    with _folder(settings) as folder, _workers(settings) as work:
-        kind = _NothingKept if settings.again else RunStore
-        runner = Runner(kind(Path(folder) / RUNS), settings.data, work, settings.say)
-        outcomes = runner.run(specs)
+    place = None if settings.store is None else nullcontext(str(settings.store))
+    with (
+        place or TemporaryDirectory(prefix="drystone-bench-") as folder,
+        work_of(settings.jobs, settings.dask) as work,
+    ):
+        plans = RunStore(Path(folder) / RUNS)
+        runner = Runner(plans, settings.data, work, settings.say, again=settings.again)
+        outcomes = runner.run([spec for *_, spec in tasks])
     runs = [
-        (spec, outcome, Result.of(wall, method.name, spec.seed, outcome))
+        (spec, outcome, BenchResult.of(wall, method, spec.seed, outcome))
         for (wall, method, spec), outcome in zip(tasks, outcomes, strict=True)
     ]
-    if store is not None:
-        new = [run for run in runs if settings.again or run[1].key not in kept]
-        store.put(
-            [
-                kept_run(result, outcome, settings.changes, settings.stamp)
-                for _, outcome, result in new
-            ]
-        )
-    results = [result for _, _, result in runs]
+
+    def keep(new: Sequence[BenchRun]) -> None:
+        if store is not None:
+            store.put([kept_run(one, plan, settings.changes, stamp) for _, plan, one in new])
+
+    keep([run for run in runs if settings.again or run[1].key not in kept])
     if settings.shake:
-        results = _shaken(runs, {} if settings.again else kept, store, settings)
-    if store is not None:
-        for path in store.export():
-            settings.say(f"wrote {path}")
-    return Results(tuple(results))
+        runs = _shaken(runs, {} if settings.again else kept, keep, settings)
+    for path in () if store is None else store.export():
+        settings.say(f"wrote {path}")
+    return BenchResults(tuple(result for *_, result in runs))
 
 
 def _shaken(
-    runs: Sequence[tuple[RunSpec, Outcome, Result]],
+    runs: Sequence[BenchRun],
     kept: Mapping[str, KeptRun],
-    store: BenchStore | None,
-    settings: PublicSettings,
-) -> list[Result]:
+    keep: Callable[[Sequence[BenchRun]], None],
+    settings: BenchSettings,
+) -> list[BenchRun]:
     """Return the results with their amplitudes; each is kept at once, as it takes long."""
-    results = []
+    done = []
     for number, (spec, outcome, result) in enumerate(runs, 1):
-        if spec.method == STRIPS:
-            results.append(_with_score(result, None))
-            continue
         before = kept.get(outcome.key)
-        if before is not None and before.shaken != NOT_SHAKEN:
-            results.append(_with_score(result, before.pga_g))
-            continue
-        results.append(_with_score(result, pga_of(spec, outcome, settings.data)))
-        if store is not None:
-            store.put([kept_run(results[-1], outcome, settings.changes, settings.stamp)])
-        settings.say(f"{number} of {len(runs)} walls shaken")
-    return results
-
-
-def _with_score(result: Result, pga_g: float | None) -> Result:
-    return replace(result, figures={**result.figures, SHAKE: pga_g})
-
-
-def _folder(settings: PublicSettings) -> AbstractContextManager[str]:
-    if settings.store is None:
-        return TemporaryDirectory(prefix="drystone-bench-")
-    return nullcontext(str(settings.store))
-
-
-def _workers(settings: PublicSettings) -> AbstractContextManager[Work]:
-    if settings.dask is None and settings.jobs in (None, 1):
-        return nullcontext(one_by_one)
-    from drystone_lab.runs.workers import work_of  # noqa: PLC0415 - Dask is an extra
-
-    return work_of(settings.jobs, settings.dask)
-
-
-def _left_out(asked: Sequence[Target], there: Sequence[Target]) -> tuple[str, ...]:
-    names = [wall.name for wall in asked if wall not in there]
-    if not names:
-        return ()
-    return (
-        f"Left out, as they need the published stone sets (`drystone fetch`, or --data DIR): "
-        f"{', '.join(names)}.",
-    )
+        shakes = spec.method != STRIPS and (before is None or before.shaken == NOT_SHAKEN)
+        pga_g = None if before is None or spec.method == STRIPS else before.pga_g
+        if shakes:
+            pga_g = pga_of(spec, outcome, settings.data)
+        done.append((spec, outcome, replace(result, figures={**result.figures, SHAKE: pga_g})))
+        if shakes:
+            keep(done[-1:])
+            settings.say(f"{number} of {len(runs)} walls shaken")
+    return done

@@ -17,27 +17,13 @@ Value = float | None
 
 @dataclass(frozen=True)
 class Medians:
-    """What a method came to in a version.
+    """What a method came to in a version."""
 
-    Parameters
-    ----------
-    suite : str
-        Suite and its version, such as ``"masons/1"``.
-    method : str
-        Its name, with settings that were replaced.
-    version : str
-        Of drystone.
-    runs : tuple of (str, int)
-        Walls and seeds.
-    values : dict of str to float or None
-        Median of each figure over its runs; None where no run has it.
-    """
-
-    suite: str
-    method: str
+    suite: str  # Suite and its version, such as ``"masons/1"``
+    method: str  # Its name, with settings that were replaced
     version: str
-    runs: tuple[tuple[str, int], ...]
-    values: dict[str, Value]
+    runs: tuple[tuple[str, int], ...]  # Walls and seeds
+    values: dict[str, Value]  # Median of each figure over its runs; None where no run has it
 
 
 def medians_of(runs: Sequence[KeptRun]) -> tuple[Medians, ...]:
@@ -116,8 +102,6 @@ def drawn_history(medians: Sequence[Medians]) -> Figure:
 def version_order(version: str) -> tuple[tuple[int, int, str], ...]:
     """Return what sorts versions, pre-releases before their release.
 
-    Examples
-    --------
     >>> sorted(["0.10.0", "0.9.1", "0.10.0rc1", "0.9"], key=version_order)
     ['0.9', '0.9.1', '0.10.0rc1', '0.10.0']
     """

@@ -1,7 +1,5 @@
 """Results by version, in an SQLite file, with exports as CSV and Parquet."""
 
-import csv
-import io
 import json
 import sqlite3
 from collections.abc import Iterator, Sequence
@@ -14,9 +12,10 @@ from typing import Any
 from drystone.errors import DrystoneError, InputError, UsageError, not_written
 from drystone.whole_files import write_whole
 from drystone_lab.public.suites import SUITE_VERSION
-from drystone_lab.public.tables import SHAKE, Result
-from drystone_lab.runs.outcome import Outcome
+from drystone_lab.public.tables import SHAKE, BenchResult
+from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.spec import Changes
+from drystone_lab.table import Table
 
 DATABASE = "bench.sqlite"
 CSV = "runs.csv"
@@ -28,49 +27,19 @@ NOT_SHAKEN = "no"
 
 @dataclass(frozen=True)
 class KeptRun:
-    """A row of the table `runs`.
+    """A row of the table `runs`."""
 
-    Parameters
-    ----------
-    run_key : str
-        Of the run (:attr:`RunSpec.key`): equal runs of one version have the same.
-    suite, suite_version, wall
-        Of the benchmark.
-    method : str
-        Its name in the benchmark.
-    settings : str
-        JSON of the settings that were replaced for all methods alike; "{}" for none.
-    seed : int
-        Of the plan.
-    version : str
-        Of drystone.
-    placed, stones : int
-        Stones in the wall, and all.
-    F_SF, F_AV, F_AH, F_LR, T_LEVEL, E_FLUSH, wedge_area : float or None
-        Figures of the wall; areas in source px.
-    seconds : float
-        From the stones to the last step.
-    pga_g : float or None
-        Amplitude that the wall stands on the shaking table, g.
-    shaken : str
-        "yes"; "no" when it was not asked for; "falls" when nothing was built, or it does not
-        stand at rest there.
-    made_at : str
-        Date and time, UTC.
-    platform : str
-        System and machine, without names of hosts.
-    """
-
-    run_key: str
+    run_key: str  # Of the run (:attr:`RunSpec.key`): equal runs of one version have the same
     suite: str
     suite_version: int
     wall: str
     method: str
-    settings: str
+    settings: str  # JSON of the settings that were replaced for all methods alike; "{}" for none
     seed: int
     version: str
-    placed: int
+    placed: int  # placed, stones: Stones in the wall, and all
     stones: int
+    # F_SF, F_AV, F_AH, F_LR, T_LEVEL, E_FLUSH, wedge_area: Figures of the wall; areas in source px
     F_SF: float | None
     F_AV: float | None
     F_AH: float | None
@@ -78,11 +47,13 @@ class KeptRun:
     T_LEVEL: float | None
     E_FLUSH: float | None
     wedge_area: float | None
-    seconds: float
-    pga_g: float | None
+    seconds: float  # From the stones to the last step
+    pga_g: float | None  # Amplitude that the wall stands on the shaking table, g
+    # "yes"; "no" when it was not asked for; "falls" when nothing was built, or it does not stand at
+    # rest there
     shaken: str
-    made_at: str
-    platform: str
+    made_at: str  # Date and time, UTC
+    platform: str  # System and machine, without names of hosts
 
 
 COLUMNS = tuple(field.name for field in fields(KeptRun))
@@ -91,20 +62,14 @@ _TYPES = {int: "INTEGER NOT NULL", str: "TEXT NOT NULL", float: "REAL NOT NULL"}
 
 @dataclass(frozen=True)
 class Stamp:
-    """What runs that are kept together have in common.
-
-    Parameters
-    ----------
-    version, made_at, platform : str
-        As in :class:`KeptRun`.
-    """
+    """What runs that are kept together have in common."""
 
     version: str
     made_at: str
     platform: str
 
 
-def kept_run(result: Result, outcome: Outcome, changes: Changes, stamp: Stamp) -> KeptRun:
+def kept_run(result: BenchResult, outcome: RunOutcome, changes: Changes, stamp: Stamp) -> KeptRun:
     """Return the row of a run; `changes` replaced settings for all methods alike."""
     figures, wall = outcome.figures, result.wall
     names = ("F_SF", "F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH", "wedge_area")
@@ -121,13 +86,7 @@ def kept_run(result: Result, outcome: Outcome, changes: Changes, stamp: Stamp) -
 
 
 class BenchStore:
-    """Runs of the benchmark in a folder.
-
-    Parameters
-    ----------
-    folder : Path
-        Made when the first run is kept.
-    """
+    """Runs of the benchmark in a folder."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -138,13 +97,7 @@ class BenchStore:
         return self.folder / DATABASE
 
     def runs(self) -> tuple[KeptRun, ...]:
-        """Return all runs, in the order of suite, wall, method, seed, version.
-
-        Raises
-        ------
-        InputError
-            E401: the file is no database of runs.
-        """
+        """Return all runs, in the order of suite, wall, method, seed, version."""
         if not self.database.is_file():
             return ()
         order = "suite, suite_version, wall, method, settings, seed, version"
@@ -167,11 +120,8 @@ class BenchStore:
     def export(self) -> tuple[Path, ...]:
         """Write all runs as CSV, and as Parquet where pyarrow is installed; return the files."""
         runs = self.runs()
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(COLUMNS)
-        writer.writerows(astuple(run) for run in runs)
-        write_whole(self.folder / CSV, text.getvalue().encode())
+        table = Table("", COLUMNS, tuple(astuple(run) for run in runs))
+        write_whole(self.folder / CSV, table.csv().encode())
         if find_spec("pyarrow") is None:
             return (self.folder / CSV,)
         write_whole(self.folder / PARQUET, _parquet(runs))

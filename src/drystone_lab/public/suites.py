@@ -114,13 +114,6 @@ PUBLIC_SUITES: Mapping[str, str] = MappingProxyType(
 def walls_of(suite: str, only: Sequence[str] = (), *, quick: bool = False) -> tuple[Target, ...]:
     """Return the walls of a suite, in order.
 
-    Raises
-    ------
-    UsageError
-        E138: no wall begins with one of `only`.
-
-    Examples
-    --------
     >>> [wall.name for wall in walls_of("masons", ["PR"])]
     ['PR 560x160', 'PR 600x160']
     """
@@ -145,21 +138,11 @@ ABOUT = {
 
 @dataclass(frozen=True)
 class BenchMethod:
-    """Somebody who builds walls.
-
-    Parameters
-    ----------
-    name : str
-        In tables.
-    method : str
-        Of the planner.
-    changes : tuple of (str, value)
-        Settings that replace the method's.
-    """
+    """Somebody who builds walls."""
 
     name: str
     method: str
-    changes: Changes = ()
+    changes: Changes = ()  # Settings that replace the method's
 
     def run(self, wall: Target, seed: int) -> RunSpec:
         """Return the run that builds a wall."""
@@ -175,13 +158,6 @@ def known_methods() -> dict[str, str]:
 def method_named(name: str, changes: Changes = ()) -> BenchMethod:
     """Return a method.
 
-    Raises
-    ------
-    UsageError
-        E146: there is none of this name; E123: `changes` name no setting, or one is out of range.
-
-    Examples
-    --------
     >>> method_named("lowest", (("sampling", "full"),)).changes
     (('selection_rule', 'lowest'), ('sampling', 'full'))
     """
@@ -209,13 +185,6 @@ def method_named(name: str, changes: Changes = ()) -> BenchMethod:
 def flat_changes(nested: Mapping[str, Any], where: str) -> Changes:
     """Return settings from a TOML file as changes of every method.
 
-    Raises
-    ------
-    UsageError
-        E138: it says who chooses the stones, or names stones: methods and walls differ in these.
-
-    Examples
-    --------
     >>> flat_changes({"sampling": "full", "placement": {"beta": 0.5}}, "full.toml")
     (('placement.beta', 0.5), ('sampling', 'full'))
     """

@@ -10,8 +10,8 @@ from types import MappingProxyType
 import numpy as np
 from scipy.stats import rankdata, wilcoxon
 
-from drystone_lab.paired import COVERED, RESAMPLES
-from drystone_lab.runs.outcome import Outcome
+from drystone_lab.paired import COVERED, interval_of
+from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import Target
 
@@ -32,32 +32,19 @@ DECIMALS = 9
 
 
 @dataclass(frozen=True, eq=False)
-class Result:
-    """A wall that a method built.
-
-    Parameters
-    ----------
-    wall : Target
-        What was to be built.
-    method : str
-        Name of the method.
-    seed : int
-        Of the plan.
-    figures : dict of str to float or None
-        By the names of :data:`HIGHER_IS_BETTER`; None where a figure is not defined, such as F_LR
-        of a wall that could not be analysed.
-    seconds : float
-        From the stones to the last step.
-    """
+class BenchResult:
+    """A wall that a method built."""
 
     wall: Target
     method: str
     seed: int
+    # By the names of :data:`HIGHER_IS_BETTER`; None where a figure is not defined, such as F_LR of
+    # a wall that could not be analysed
     figures: Mapping[str, float | None]
-    seconds: float
+    seconds: float  # From the stones to the last step
 
     @classmethod
-    def of(cls, wall: Target, method: str, seed: int, outcome: Outcome) -> "Result":
+    def of(cls, wall: Target, method: str, seed: int, outcome: RunOutcome) -> "BenchResult":
         """Take the figures of an outcome."""
         found = outcome.figures
         figures: dict[str, float | None] = {name: found[name] for name in FIGURES[1:]}
@@ -67,16 +54,10 @@ class Result:
 
 
 @dataclass(frozen=True, eq=False)
-class Results:
-    """Results of every method on every wall with every seed.
+class BenchResults:
+    """Results of every method on every wall with every seed."""
 
-    Parameters
-    ----------
-    all : tuple of Result
-        Of each method on each wall for the same seeds.
-    """
-
-    all: tuple[Result, ...]
+    all: tuple[BenchResult, ...]  # Of each method on each wall for the same seeds
 
     @property
     def walls(self) -> tuple[Target, ...]:
@@ -94,7 +75,7 @@ class Results:
         shaken = any(SHAKE in result.figures for result in self.all)
         return (*FIGURES, SHAKE) if shaken else FIGURES
 
-    def of(self, method: str, wall: Target | None = None) -> tuple[Result, ...]:
+    def of(self, method: str, wall: Target | None = None) -> tuple[BenchResult, ...]:
         """Return the results of a method on a wall or on all, in one order for all methods."""
         found = [r for r in self.all if r.method == method and wall in (None, r.wall)]
         order = {known: number for number, known in enumerate(self.walls)}
@@ -121,22 +102,17 @@ class Results:
         return tuple(counts)
 
 
-def _comparable(result: Result) -> tuple[float | None, ...]:
+def _comparable(result: BenchResult) -> tuple[float | None, ...]:
     """Return the figures without the rounding errors of sums."""
     figures = (result.figures[name] for name in sorted(result.figures))
     return tuple(None if value is None else round(value, DECIMALS) for value in figures)
-
-
-def best_of(values: Sequence[float], figure: str) -> float:
-    """Return the best of at least one value of a figure."""
-    return max(values) if HIGHER_IS_BETTER[figure] else min(values)
 
 
 UNITS = {PLACED: "placed share", SHAKE: "PGA, g"}
 """Figures that are written otherwise in tables."""
 
 
-def comparison(results: Results) -> tuple[Table, ...]:
+def comparison(results: BenchResults) -> tuple[Table, ...]:
     """Return the figures of every method on every wall, on all walls, and the times."""
     walls = Table(
         "Walls: mean over seeds, standard deviation (±), best",
@@ -173,7 +149,7 @@ def _columns(figures: Sequence[str]) -> tuple[str, ...]:
     return tuple(text for name, short in named for text in (name, f"±{short}", f"best {short}"))
 
 
-def _cells(figures: Sequence[str], walls: Sequence[Sequence[Result]]) -> tuple[Cell, ...]:
+def _cells(figures: Sequence[str], walls: Sequence[Sequence[BenchResult]]) -> tuple[Cell, ...]:
     """Return mean, spread and best of every figure; None where no wall of the method has it."""
     cells: list[Cell] = []
     for figure in figures:
@@ -186,7 +162,7 @@ def _cells(figures: Sequence[str], walls: Sequence[Sequence[Result]]) -> tuple[C
         cells += [
             _mean([fmean(values) for values in found]),
             _rounded(sqrt(fsum(s * s for s in spreads) / len(spreads))) if spreads else None,
-            _mean([best_of(values, figure) for values in found]),
+            _mean([(max if HIGHER_IS_BETTER[figure] else min)(values) for values in found]),
         ]
     return tuple(cells)
 
@@ -194,7 +170,7 @@ def _cells(figures: Sequence[str], walls: Sequence[Sequence[Result]]) -> tuple[C
 _NOT_SHAKEN = "nothing was built, or it does not stand at rest in the engine"
 
 
-def _undefined(results: Results) -> tuple[str, ...]:
+def _undefined(results: BenchResults) -> tuple[str, ...]:
     """Say how many walls have no value of a figure, which is left out of means and never 0."""
     notes = []
     for figure in results.figures:
@@ -212,7 +188,7 @@ def _undefined(results: Results) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _times(results: Results) -> Table:
+def _times(results: BenchResults) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for wall in results.walls:
         for method in results.methods:
@@ -246,32 +222,16 @@ EXACT = 50
 
 
 @dataclass(frozen=True)
-class Compared:
-    """What one method has more than another, of one figure.
+class MethodPair:
+    """What one method has more than another, of one figure."""
 
-    Parameters
-    ----------
-    pairs : int
-        Walls, each with a seed that counts, for which both have a value.
-    left_out : int
-        Those for which one or both have none.
-    mean : float
-        Of the differences, first minus second.
-    low, high : float
-        Ends of the percentile bootstrap interval of the mean.
-    won : float
-        Share of the pairs in which the first is better; of equal ones half.
-    p : float
-        Of Wilcoxon's signed-rank test, two-sided, not corrected.
-    """
-
-    pairs: int
-    left_out: int
-    mean: float
-    low: float
+    pairs: int  # Walls, each with a seed that counts, for which both have a value
+    left_out: int  # Those for which one or both have none
+    mean: float  # Of the differences, first minus second
+    low: float  # low, high: Ends of the percentile bootstrap interval of the mean
     high: float
-    won: float
-    p: float
+    won: float  # Share of the pairs in which the first is better; of equal ones half
+    p: float  # Of Wilcoxon's signed-rank test, two-sided, not corrected
 
     @property
     def holds_zero(self) -> bool:
@@ -281,16 +241,9 @@ class Compared:
 
 def compared(
     first: Sequence[float | None], second: Sequence[float | None], *, higher: bool = True
-) -> Compared | None:
+) -> MethodPair | None:
     """Compare two methods by one figure.
 
-    Returns
-    -------
-    Compared or None
-        None when there is no pair.  Pairs are drawn with the same random numbers every time.
-
-    Examples
-    --------
     >>> found = compared([3.0, 4.0, 9.0, None], [1.0, 2.0, 7.0, 1.0])
     >>> found.mean, found.low, found.high, found.won, found.p, found.left_out
     (2.0, 2.0, 2.0, 1.0, 0.25, 1)
@@ -299,32 +252,17 @@ def compared(
     found = np.array([round(a - b, DECIMALS) for a, b in pairs if a is not None and b is not None])
     if not found.size:
         return None
-    rng = np.random.default_rng(0)
-    means = rng.choice(found, (RESAMPLES, found.size)).mean(axis=1)
-    low, high = np.quantile(means, [LEVEL / 2, 1 - LEVEL / 2]).tolist()
+    low, high = interval_of(found, np.mean)
     better = found if higher else -found
     won = float(np.mean((better > 0) + 0.5 * (better == 0)))
-    return Compared(
-        found.size,
-        len(pairs) - found.size,
-        float(found.mean()),
-        low,
-        high,
-        won,
-        _signed_rank(found),
-    )
+    left_out = len(pairs) - found.size
+    mean = float(found.mean())
+    return MethodPair(found.size, left_out, mean, low, high, won, _signed_rank(found))
 
 
 def holm(p_values: Sequence[float]) -> list[float]:
     """Correct p values for how many they are (Holm 1979).
 
-    Returns
-    -------
-    list of float
-        In the same order, at most 1.
-
-    Examples
-    --------
     >>> holm([0.01, 0.04, 0.03])
     [0.03, 0.06, 0.06]
     """
@@ -336,7 +274,7 @@ def holm(p_values: Sequence[float]) -> list[float]:
     return corrected
 
 
-def pair_tables(results: Results) -> tuple[Table, ...]:
+def pair_tables(results: BenchResults) -> tuple[Table, ...]:
     """Return the differences of all pairs of methods, a table a figure, and the ranking."""
     if len(results.methods) < 2:
         return ()
@@ -353,19 +291,19 @@ def pair_tables(results: Results) -> tuple[Table, ...]:
     return (*tables, _ranking(results, known, p))
 
 
-Key = tuple[str, str, str]
+PairKey = tuple[str, str, str]
 """Figure, first method, second method."""
 
 
 def _compared(
-    results: Results, figure: str, pair: tuple[str, str], counting: Sequence[bool]
-) -> Compared | None:
+    results: BenchResults, figure: str, pair: tuple[str, str], counting: Sequence[bool]
+) -> MethodPair | None:
     first, second = (list(compress(results.values(name, figure), counting)) for name in pair)
     return compared(first, second, higher=HIGHER_IS_BETTER[figure])
 
 
 def _pairs_table(
-    figure: str, known: dict[Key, Compared], p: dict[Key, float], *, copies: bool
+    figure: str, known: dict[PairKey, MethodPair], p: dict[PairKey, float], *, copies: bool
 ) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for key, pair in known.items():
@@ -408,7 +346,9 @@ def _too_few(pairs: int, tests: int, *, copies: bool) -> tuple[str, ...]:
     )
 
 
-def _ranking(results: Results, known: dict[Key, Compared], p: dict[Key, float]) -> Table:
+def _ranking(
+    results: BenchResults, known: dict[PairKey, MethodPair], p: dict[PairKey, float]
+) -> Table:
     """Rank the methods by their mean rank over figures, walls and seeds."""
     per_figure = {figure: _mean_ranks(results, figure) for figure in results.figures}
     overall = {m: fmean(ranks[m] for ranks in per_figure.values()) for m in results.methods}
@@ -435,7 +375,7 @@ def _ranking(results: Results, known: dict[Key, Compared], p: dict[Key, float]) 
     )
 
 
-def _mean_ranks(results: Results, figure: str) -> dict[str, float]:
+def _mean_ranks(results: BenchResults, figure: str) -> dict[str, float]:
     sign = -1.0 if HIGHER_IS_BETTER[figure] else 1.0
     columns = [results.values(method, figure) for method in results.methods]
     ranks = [
@@ -447,7 +387,7 @@ def _mean_ranks(results: Results, figure: str) -> dict[str, float]:
 
 
 def _not_told_apart(
-    method: str, order: Sequence[str], figures: Sequence[str], shown: set[Key]
+    method: str, order: Sequence[str], figures: Sequence[str], shown: set[PairKey]
 ) -> str | None:
     place = order.index(method)
     if place + 1 == len(order):
@@ -461,13 +401,13 @@ def _not_told_apart(
     return ", ".join(same) or "none"
 
 
-def _shown(key: Key, pair: Compared, p: float) -> str:
+def _shown(key: PairKey, pair: MethodPair, p: float) -> str:
     if pair.holds_zero:
         return "nothing"
     return _better(key, pair) if p < LEVEL else f"{_better(key, pair)}?"
 
 
-def _better(key: Key, pair: Compared) -> str:
+def _better(key: PairKey, pair: MethodPair) -> str:
     first_is_higher = pair.mean > 0
     return key[1] if first_is_higher == HIGHER_IS_BETTER[key[0]] else key[2]
 

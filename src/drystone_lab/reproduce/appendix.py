@@ -8,9 +8,9 @@ from itertools import pairwise
 from drystone.model.wall import Wall
 from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import METRICS, metric_cells
-from drystone_lab.reproduce.item import Context, Item, Picture
-from drystone_lab.reproduce.study import Built, Trials, built
-from drystone_lab.runs.spec import Changes, RunSpec, from_file, generated
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
+from drystone_lab.reproduce.study import StudyWalls, Trials, built
+from drystone_lab.runs.spec import Changes, from_file, generated
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import TWO_SIDED, Target
 
@@ -31,30 +31,15 @@ class Brick:
 
 
 @dataclass(frozen=True)
-class Courses:
-    """What the courses of a wall are like.
-
-    Parameters
-    ----------
-    bricks : int
-        In the wall.
-    lying : int
-        With their long side level.
-    in_course : int
-        Lying, with their foot at a whole number of brick heights.
-    courses : int
-        Of these bricks.
-    joints : int
-        Head joints within courses that have a course next to them.
-    crossed : int
-        Those that are apart from all head joints of the courses beside them by :data:`OVERLAP`.
-    """
+class BrickCourses:
+    """What the courses of a wall are like."""
 
     bricks: int
-    lying: int
-    in_course: int
+    lying: int  # With their long side level
+    in_course: int  # Lying, with their foot at a whole number of brick heights
     courses: int
-    joints: int
+    joints: int  # Head joints within courses that have a course next to them
+    # Those that are apart from all head joints of the courses beside them by :data:`OVERLAP`
     crossed: int
 
 
@@ -71,14 +56,12 @@ def bricks_of(wall: Wall) -> tuple[Brick, ...]:
     return tuple(bricks)
 
 
-def courses_of(bricks: Sequence[Brick], height_px: int, width_px: int) -> Courses:
+def courses_of(bricks: Sequence[Brick], height_px: int, width_px: int) -> BrickCourses:
     """Look at the courses of equal bricks, of the size of one that lies.
 
-    Examples
-    --------
     >>> low = [Brick(0, 20, 0, 10, True), Brick(20, 40, 0, 10, True)]
     >>> courses_of([*low, Brick(10, 30, 10, 20, True), Brick(30, 50, 10, 20, True)], 10, 20)
-    Courses(bricks=4, lying=4, in_course=4, courses=2, joints=2, crossed=2)
+    BrickCourses(bricks=4, lying=4, in_course=4, courses=2, joints=2, crossed=2)
     """
     lying = [b for b in bricks if b.full and b.right - b.left == width_px]
     level = [b for b in lying if b.bottom % height_px == 0]
@@ -95,7 +78,7 @@ def courses_of(bricks: Sequence[Brick], height_px: int, width_px: int) -> Course
         crossed += sum(
             all(abs(place - other) >= OVERLAP * width_px for other in beside) for place in places
         )
-    return Courses(len(bricks), len(lying), len(level), len(by_course), count, crossed)
+    return BrickCourses(len(bricks), len(lying), len(level), len(by_course), count, crossed)
 
 
 def head_joints(course: Sequence[Brick]) -> list[float]:
@@ -139,7 +122,7 @@ MOST_PX = 96_000
 """Pixels of the wall of a user's stones at the working resolution, at most."""
 
 
-def irregular_walls(context: Context) -> Built:
+def irregular_walls(context: Context) -> StudyWalls:
     """Build a wall from one end and from both; of a user's own stones where there are any."""
     wall = QUICK if context.quick else GENERATED
     if context.image is not None:
@@ -159,7 +142,7 @@ def wall_of_image(context: Context) -> Target:
     return Target(context.image.name, source, 0.0, 0.0, scale)
 
 
-def _irregular_table(found: Built) -> Table:
+def _irregular_table(found: StudyWalls) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for one in found:
         outcome = one.outcomes[0]
@@ -175,31 +158,18 @@ def _irregular_table(found: Built) -> Table:
     return Table("Walls of many irregular stones", columns, tuple(rows))
 
 
-def _irregular_picture(found: Built) -> Picture:
+def _irregular_picture(found: StudyWalls) -> ItemPicture:
     walls = [found.titled(one, f"{found.name}, from {one.way}") for one in found]
-    return Picture(
+    return ItemPicture(
         "figB33", plot_walls(walls, 2),
         f"Walls of {found.name}, built from one end and from both; stones of one cluster have "
         "one colour, numbers are the order of placement, wedges are dark red.",
     )  # fmt: skip
 
 
-IRREGULAR = Item(
-    title="91 irregular stones",
-    section="B.2",
-    paper=(
-        "Fig. B.33 (B.2): 'Walls constructed from a stone set of 91 irregular stones, of which "
-        f"{PAPER_PLACED[0]} stones could be placed in the construction of the left wall and "
-        f"{PAPER_PLACED[1]} stones could be placed in the construction of the right wall', "
-        "coloured by cluster. The stones are not public, and what the two walls differ in is not "
-        "said.",
-    ),
+IRREGULAR = PaperItem(
+    **paper("figB33"),
     study=irregular_walls,
-    notes=(
-        "The paper's stones are not public; generated ones are our own irregular rubble. How many "
-        "of them fit depends on the wall that they are given, which the paper does not tell, so "
-        "the counts can be compared in kind only.",
-    ),
     tables={"walls": _irregular_table},
     pictures=lambda found: (_irregular_picture(found),),
 )
@@ -215,32 +185,8 @@ FULL_SIZE, QUICK_SIZE = (8, 8), (4, 4)
 """Bricks in a course, and courses."""
 
 
-@dataclass(frozen=True, eq=False)
-class Bricks:
-    """Walls of bricks of each aspect from each side, and what their courses are like."""
-
-    built: Built
-    aspects: tuple[float, ...]
-
-    @property
-    def runs(self) -> tuple[RunSpec, ...]:
-        """Of all walls."""
-        return self.built.runs
-
-    @property
-    def all(self) -> list[tuple[float, Trials, Courses]]:
-        """Aspect, run, and courses; all aspects from one side, then from both."""
-        groups = list(zip(self.aspects, self.built.by_wall, strict=True))
-        return [
-            (aspect, one, _courses(group, one, aspect))
-            for side in SIDES
-            for aspect, group in groups
-            for one in group.of(side)
-        ]
-
-
-def _courses(group: Built, one: Trials, aspect: float) -> Courses:
-    return courses_of(bricks_of(group.wall(one)), HEIGHT_PX, round(HEIGHT_PX * aspect))
+Bricks = Sequence[tuple[float, Trials, Wall]]
+"""Aspect, run and wall; all aspects from one side, then from both."""
 
 
 def brick_walls(context: Context, size: tuple[int, int] | None = None) -> Bricks:
@@ -254,13 +200,19 @@ def brick_walls(context: Context, size: tuple[int, int] | None = None) -> Bricks
         )
         for aspect in ASPECTS
     )  # fmt: skip
-    return Bricks(built(context, walls, SIDES, (context.seed,)), ASPECTS)
+    found = built(context, walls, SIDES, (context.seed,))
+    return [
+        (aspect, one, found.wall(one))
+        for side in SIDES
+        for aspect, one in zip(ASPECTS, found.of(side), strict=True)
+    ]
 
 
 def _bricks_table(found: Bricks) -> Table:
     rows: list[tuple[Cell, ...]] = []
-    for aspect, one, courses in found.all:
+    for aspect, one, wall in found:
         outcome, spec = one.outcomes[0], one.specs[0]
+        courses = courses_of(bricks_of(wall), HEIGHT_PX, round(HEIGHT_PX * aspect))
         rows.append(
             (
                 aspect, one.way, f"{spec.width:g} x {spec.height:g}", outcome.figures["placed"],
@@ -280,37 +232,24 @@ def _bricks_table(found: Bricks) -> Table:
     )  # fmt: skip
 
 
-def _bricks_picture(found: Bricks) -> Picture:
+def _bricks_picture(found: Bricks) -> ItemPicture:
     walls = []
-    for aspect, one, _ in found.all:
+    for aspect, one, wall in found:
         outcome = one.outcomes[0]
         # Bricks are one cluster: a colour each tells them apart, as in the paper.
         colours = {brick: number for number, brick in enumerate(sorted(outcome.clusters), 1)}
         title = f"aspect {aspect:g}, from {one.way}: F_SF {outcome.figures['F_SF']:.2f}"
-        walls.append((title, found.built.wall(one), colours))
-    return Picture(
+        walls.append((title, wall, colours))
+    return ItemPicture(
         "figB34", plot_walls(walls, len(ASPECTS)),
         "Walls of bricks of aspect 2 and 3, coloured for differentiation and numbered in order of "
         "placement.",
     )  # fmt: skip
 
 
-BRICKS = Item(
-    title="bricks of aspect 2 and 3",
-    section="B.2",
-    paper=(
-        "Fig. B.34 (B.2): 'Walls constructed with bricks of the same size. The wall on the left is "
-        "constructed with bricks of an aspect ratio of 2 and the wall on the right is constructed "
-        "with bricks of an aspect ratio of 3.' There are no numbers; sizes of the walls are not "
-        "given.",
-    ),
+BRICKS = PaperItem(
+    **paper("figB34"),
     study=brick_walls,
-    notes=(
-        "The bricks of a wall are alike, so that variant sampling has next to nothing to choose "
-        "from: Eq. 12 alone says where the next one lies, and the indices that reward a bond "
-        "compare stones, not places. §5.3 says the like of stones of little variety: easy to stack "
-        "and to fill with, 'but it often results in walls with inferior interlocking'.",
-    ),
     tables={"walls": _bricks_table},
     pictures=lambda found: (_bricks_picture(found),),
 )

@@ -22,24 +22,23 @@ from drystone.statics.result import LimitResult, LimitStatus
 from drystone_lab.pictures.charts import group_panels
 from drystone_lab.pictures.walls import Panel, sheet_of, wall_aspect
 from drystone_lab.reproduce import cells
-from drystone_lab.reproduce.cells import METRICS, Finding, rounded
-from drystone_lab.reproduce.item import Context, Item, Picture
-from drystone_lab.reproduce.study import Built, Study, Trials, sheet
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.reproduce.cells import METRICS, ClaimCheck, rounded
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
+from drystone_lab.reproduce.study import Study, StudyWalls, Trials, sheet
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import IR, LIU_5, PR
 
 ALPHAS: Mapping[str, float] = {"left": 0.79, "right": 0.71}
 """Load multipliers of §5.1, tilting towards that side."""
 
-Result = LimitResult | NonassociativeResult
+EitherResult = LimitResult | NonassociativeResult
 
 
 @dataclass(frozen=True, eq=False)
 class BaseCase:
     """Walls of several seeds, and the mechanisms of the first by both flow rules."""
 
-    built: Built
+    built: StudyWalls
     wall: Wall
     model: RigidBlockModel
     pairs: tuple[tuple[LimitResult, NonassociativeResult], ...]
@@ -48,11 +47,6 @@ class BaseCase:
     def trials(self) -> Trials:
         """The walls."""
         return self.built.all[0]
-
-    @property
-    def runs(self) -> tuple[RunSpec, ...]:
-        """Of all walls."""
-        return self.built.runs
 
     def over_mu(self, side: str) -> list[float]:
         """Return the load multipliers of all walls towards a side, over mu."""
@@ -102,7 +96,10 @@ def _summary(case: BaseCase) -> Table:
 def _rules(case: BaseCase) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for one, other in case.pairs:
-        found: tuple[tuple[Result, str], ...] = (one, "associative"), (other, "without dilatancy")
+        found: tuple[tuple[EitherResult, str], ...] = (
+            (one, "associative"),
+            (other, "without dilatancy"),
+        )
         for result, rule in found:
             over = None if result.alpha is None else rounded(result.alpha / case.model.mu)
             papers = ALPHAS[result.direction] if result is one else None
@@ -117,7 +114,7 @@ def _rules(case: BaseCase) -> Table:
     )
 
 
-def _words(case: BaseCase, result: Result) -> str | None:
+def _words(case: BaseCase, result: EitherResult) -> str | None:
     if result.mechanism is None:
         return None
     falls = result.status is LimitStatus.UNSTABLE
@@ -127,11 +124,11 @@ def _words(case: BaseCase, result: Result) -> str | None:
     ).words
 
 
-def _pictures(case: BaseCase) -> Iterator[Picture]:
+def _pictures(case: BaseCase) -> Iterator[ItemPicture]:
     title = f"{case.built.name}, seed {case.built.seeds[0]}"
     yield sheet(case.built, "fig14", 1, lambda _: title, "The first wall.")
     for one, other in case.pairs:
-        named: tuple[tuple[Result, str, str], ...] = (
+        named: tuple[tuple[EitherResult, str, str], ...] = (
             (one, "", "associative"), (other, "_coulomb", "no dilatancy"),
         )  # fmt: skip
         for result, name, rule in named:
@@ -143,33 +140,19 @@ def _pictures(case: BaseCase) -> Iterator[Picture]:
                 assert figure is not None  # noqa: S101 - it was made for the axes
                 caption = f"Mechanism towards the {one.direction}, {rule}; colours are "
                 caption += "displacements over the largest, grey lines the wall before."
-                yield Picture(f"fig15_{one.direction}{name}", figure, caption)
+                yield ItemPicture(f"fig15_{one.direction}{name}", figure, caption)
     sides = {side: case.over_mu(side) for side in ALPHAS}
     metrics: dict[str, dict[str, Sequence[float | None]]] = {
         name: {case.built.name: case.trials.values(name)} for name in ("F_SF", "F_AV", "F_AH")
     }
     panels = group_panels({"alpha / mu": sides, **metrics}, claims={"alpha / mu": ALPHAS})
     caption = "All seeds; lines are medians, crosses the paper's load multipliers over mu."
-    yield Picture("fig14_seeds", panels, caption)
+    yield ItemPicture("fig14_seeds", panels, caption)
 
 
-BASE_CASE = Item(
-    title="The base case PR and its failure mechanisms",
-    section="§5.1, Figs. 14 and 15",
-    paper=(
-        f"§5.1, Fig. 14: the base case PR; load multipliers {ALPHAS['left']:g} and "
-        f"{ALPHAS['right']:g} for tilting to the left and right. Fig. 15: in the mechanism to "
-        "the left a sliding stone rises, which is artificial dilation by the associative flow "
-        "rule. How the wall was chosen from those of other seeds is not said.",
-    ),
+BASE_CASE = PaperItem(
+    **paper("fig14-15"),
     study=partial(base_case, study=Study(walls=(PR,), quick_seeds=5)),
-    notes=(
-        "A wall on flat ground slides as a whole when the load is mu times its weight, so alpha is "
-        f"at most mu. The paper's {ALPHAS['left']:g} and {ALPHAS['right']:g} are over mu already, "
-        "as its LLC is, which it says to be between 0 and 1 (Eq. 11), or belong to a larger mu "
-        "that it does not state; we compare them with alpha over mu.",
-        "The wall that is drawn is the first, not the best; tables have it by both flow rules.",
-    ),
     tables={"fig14_seeds": _seeds, "fig14": _summary, "fig15": _rules},
     pictures=lambda case: tuple(_pictures(case)),
     needs=(PR.source.name,),
@@ -183,15 +166,15 @@ ZOOM = 0.25
 
 ZOOM_ASPECT = 0.6
 
-Box = tuple[float, float, float, float]
+ZoomBox = tuple[float, float, float, float]
 
 
-def _wedges_claims(found: Built) -> Iterator[Finding]:
+def _wedges_claims(found: StudyWalls) -> Iterator[ClaimCheck]:
     for one in found:
         wall, figures = found.wall(one), one.outcomes[0].figures
         share = 100 * float(figures["wedge_area"] or 0.0) / (one.wall.width * one.wall.height)
         tallest = max((wedge.mask.shape[0] for wedge in wall.wedges), default=0)
-        yield Finding(
+        yield ClaimCheck(
             f"Wall {one.wall.number} ({one.wall.name}) needs wedges.",
             f"{len(wall.wedges)} under {len({w.under for w in wall.wedges})} of "
             f"{figures['placed']} stones, {share:.2f} % of the wall's area; the tallest has "
@@ -204,7 +187,7 @@ def _mean_height_px(wall: Wall) -> float:
     return fmean(placement.posed.mask.shape[0] for placement in wall.placements)
 
 
-def _wedges_table(found: Built) -> Table:
+def _wedges_table(found: StudyWalls) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for one in found:
         wall = found.wall(one)
@@ -224,7 +207,7 @@ def _wedges_table(found: Built) -> Table:
     )  # fmt: skip
 
 
-def _wedges_picture(trials: Trials, wall: Wall) -> Picture:
+def _wedges_picture(trials: Trials, wall: Wall) -> ItemPicture:
     boxes = [_box(wall, wedge) for wedge in shown(wall)]
     title = f"Wall {trials.wall.number}, {trials.wall.name}\n"
     title += cells.in_words(trials.outcomes[0].figures)
@@ -235,7 +218,7 @@ def _wedges_picture(trials: Trials, wall: Wall) -> Picture:
         for letter, wedge, box in zip("abc", shown(wall), boxes, strict=False)
     ]  # fmt: skip
     figure: Figure = sheet_of([Panel(title, aspect, partial(_draw_whole, wall, boxes)), *zooms], 2)
-    return Picture(
+    return ItemPicture(
         f"fig19_wall{trials.wall.number}",
         figure,
         f"Wall {trials.wall.number} ({trials.wall.name}): all wedges in dark red, and the "
@@ -261,7 +244,7 @@ def _middle(wall: Wall, wedge: Wedge) -> tuple[float, float]:
     return (wedge.col + width / 2) * unit, (wall.site.height_px - wedge.row - height / 2) * unit
 
 
-def _box(wall: Wall, wedge: Wedge) -> Box:
+def _box(wall: Wall, wedge: Wedge) -> ZoomBox:
     """Return what a zoom on a wedge shows."""
     x, y = _middle(wall, wedge)
     half = ZOOM * wall.site.width_px * wall.site.units_per_px / 2
@@ -270,7 +253,7 @@ def _box(wall: Wall, wedge: Wedge) -> Box:
     return x - half, y0, x + half, y0 + 2 * ZOOM_ASPECT * half
 
 
-def _draw_whole(wall: Wall, boxes: Sequence[Box], ax: Axes) -> None:
+def _draw_whole(wall: Wall, boxes: Sequence[ZoomBox], ax: Axes) -> None:
     plot_wall(wall, None, ax)
     for letter, (x0, y0, x1, y1) in zip("abc", boxes, strict=False):
         ax.plot([x0, x1, x1, x0, x0], [y0, y0, y1, y1, y0], color=OUTLINE_COLOUR, linewidth=0.9,
@@ -281,20 +264,14 @@ def _draw_whole(wall: Wall, boxes: Sequence[Box], ax: Axes) -> None:
         )  # fmt: skip
 
 
-def _draw_zoom(wall: Wall, box: Box, ax: Axes) -> None:
+def _draw_zoom(wall: Wall, box: ZoomBox, ax: Axes) -> None:
     plot_wall(wall, None, ax)
     ax.set_xlim(box[0], box[2])
     ax.set_ylim(box[1], box[3])
 
 
-WEDGES = Item(
-    title="Wedges of walls 3 and 5",
-    section="§5.2, Fig. 19",
-    paper=(
-        "§5.2, Fig. 19: walls 3 and 5 need wedges (in red), since their stones differ much in "
-        "size and eccentricity and large ones must be kept stable. Their number and sizes are "
-        "in the picture only.",
-    ),
+WEDGES = PaperItem(
+    **paper("fig19"),
     study=Study(walls=(IR, LIU_5), seeds=1, quick_seeds=1),
     claims=_wedges_claims,
     tables={"fig19": _wedges_table},

@@ -6,7 +6,7 @@ from statistics import median
 
 from scipy.stats import spearmanr
 
-from drystone_lab.runs.outcome import Outcome
+from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.table import Cell, Table
 
 FORMATS = {"placed": ".0f", "F_SF": ".3f", "F_AV": ".1f", "F_AH": ".2f", "F_LR": ".2f"}
@@ -26,7 +26,7 @@ DIGITS = 4
 """Decimals of a number in a table, which all machines agree on."""
 
 
-def summary(outcomes: Sequence[Outcome]) -> tuple[Cell, ...]:
+def summary(outcomes: Sequence[RunOutcome]) -> tuple[Cell, ...]:
     """Return the cells of :data:`COLUMNS` of walls of the same stones; None for what none has."""
     found: list[Cell] = [len(outcomes), outcomes[0].figures["stones"]]
     for name, written in FORMATS.items():
@@ -36,19 +36,13 @@ def summary(outcomes: Sequence[Outcome]) -> tuple[Cell, ...]:
     return tuple(found)
 
 
-def figures_of(outcomes: Sequence[Outcome], name: str) -> list[float]:
+def figures_of(outcomes: Sequence[RunOutcome], name: str) -> list[float]:
     """Return a figure of the walls that have it, in their order."""
     values = (outcome.figures[name] for outcome in outcomes)
     return [float(value) for value in values if value is not None]
 
 
-def median_of(outcomes: Sequence[Outcome], name: str) -> float | None:
-    """Return the median of a figure over the walls that have it; None when none has."""
-    found = figures_of(outcomes, name)
-    return median(found) if found else None
-
-
-def metric_cells(outcome: Outcome) -> tuple[Cell, ...]:
+def metric_cells(outcome: RunOutcome) -> tuple[Cell, ...]:
     """Return F_SF, F_AV, F_AH and F_LR of a wall as cells of a table."""
     return tuple(rounded(outcome.figures[name]) for name in METRICS)
 
@@ -61,8 +55,6 @@ def rounded(value: float | None) -> float | None:
 def in_words(figures: Mapping[str, float | None]) -> str:
     """Write F_SF, F_AV, F_AH and F_LR in a line.
 
-    Examples
-    --------
     >>> in_words({"F_SF": 0.8123, "F_AV": 20.0, "F_AH": 2.345, "F_LR": None})
     'F_SF 0.812  F_AV 20.0  F_AH 2.35  F_LR -'
     """
@@ -93,11 +85,6 @@ class Wins:
         """How many there are."""
         return self.better + self.equal + self.worse
 
-    @property
-    def is_majority(self) -> bool:
-        """True when the first is better in more than half of all pairs."""
-        return 2 * self.better > self.pairs
-
     def cells(self, figure: str) -> tuple[Cell, ...]:
         """Return the cells of :data:`WINS`."""
         return figure, self.better, self.equal, self.worse, rounded(self.median_difference)
@@ -106,8 +93,6 @@ class Wins:
 def wins(first: Sequence[float | None], second: Sequence[float | None], figure: str) -> Wins:
     """Compare figures in pairs; those with a None are left out.
 
-    Examples
-    --------
     >>> wins([0.8, 0.7, None], [0.7, 0.7, 0.9], "F_SF")
     Wins(better=1, equal=1, worse=0, median_difference=0.05)
     """
@@ -142,8 +127,6 @@ class Trend:
     def words(self) -> str:
         """Return it for a sentence.
 
-        Examples
-        --------
         >>> Trend(-0.5, 0.012345, 24).words()
         'rho -0.50, p 0.012, n 24'
         """
@@ -153,8 +136,6 @@ class Trend:
 def trend(pairs: Sequence[tuple[float, float | None]]) -> Trend | None:
     """Correlate the ranks of two figures; None with few pairs, or where either never changes.
 
-    Examples
-    --------
     >>> trend([(1, 2.0), (2, 3.0), (3, 5.0), (4, 4.0), (5, None)])
     Trend(rho=0.8, p=0.2, count=4)
     """
@@ -167,7 +148,7 @@ def trend(pairs: Sequence[tuple[float, float | None]]) -> Trend | None:
 
 
 @dataclass(frozen=True)
-class Finding:
+class ClaimCheck:
     """One claim of the paper, what our walls say of it, and whether that agrees (None: unknown)."""
 
     claim: str
@@ -175,18 +156,16 @@ class Finding:
     holds: bool | None
 
 
-def findings_table(title: str, findings: Sequence[Finding]) -> Table:
+def findings_table(title: str, findings: Sequence[ClaimCheck]) -> Table:
     """Return claims and findings as a table."""
     rows = tuple((each.claim, each.found, each.holds) for each in findings)
     return Table(title, ("the paper", "here", "agrees"), rows)
 
 
-def sentences(findings: Sequence[Finding]) -> tuple[str, ...]:
+def sentences(findings: Sequence[ClaimCheck]) -> tuple[str, ...]:
     """Return of how many claims the walls agree with the paper, and a paragraph each.
 
-    Examples
-    --------
-    >>> sentences([Finding("Walls are low.", "2 px.", True)])[0]
+    >>> sentences([ClaimCheck("Walls are low.", "2 px.", True)])[0]
     'Of 1 claims of the paper that can be told, 1 agree.'
     """
     verdicts = {True: "Agrees", False: "Differs", None: "Cannot be told"}

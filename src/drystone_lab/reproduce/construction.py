@@ -28,30 +28,18 @@ from drystone.planner.workshop import Workshop
 from drystone.stabilise.stabilise import falls_to
 from drystone.stabilise.support import Pose
 from drystone.verify.replay import Stage, replay_plan
-from drystone_lab.pictures.action import Action, Beside
+from drystone_lab.pictures.action import ActionView, NeighbourBox
 from drystone_lab.reproduce.item import Context
 from drystone_lab.runs.spec import RunSpec
 
 
 @dataclass(frozen=True, eq=False)
 class Moment:
-    """A state of construction, before one of the stones that were placed.
+    """A state of construction, before one of the stones that were placed."""
 
-    Parameters
-    ----------
-    number : int
-        Of the stone that comes next, from 1.
-    wall : Wall
-        What is built.
-    workshop : Workshop
-        All stones of the set.
-    settings : PlannerSettings
-        Of the run.
-    """
-
-    number: int
+    number: int  # Of the stone that comes next, from 1
     wall: Wall
-    workshop: Workshop
+    workshop: Workshop  # All stones of the set
     settings: PlannerSettings
 
     @cached_property
@@ -78,20 +66,10 @@ class Moment:
 
 @dataclass(frozen=True, eq=False)
 class Construction:
-    """A finished run, to be looked at step by step.
+    """A finished run, to be looked at step by step."""
 
-    Parameters
-    ----------
-    stages : tuple of Stage
-        The wall before and after each stone.
-    workshop : Workshop
-        The stones.
-    settings : PlannerSettings
-        Of the run.
-    """
-
-    stages: tuple[Stage, ...]
-    workshop: Workshop
+    stages: tuple[Stage, ...]  # The wall before and after each stone
+    workshop: Workshop  # The stones
     settings: PlannerSettings
 
     @property
@@ -125,23 +103,14 @@ def construction(context: Context, spec: RunSpec) -> Construction:
 
 
 @dataclass(frozen=True, eq=False)
-class Place:
-    """A stone where it would rest.
+class RestingPlace:
+    """A stone where it would rest."""
 
-    Parameters
-    ----------
-    posed : PosedStone
-        The stone.
-    row, col : int
-        Top-left corner of its mask.
-    values : mapping of str to float
-        SF, LFR, GDS, NHR, IWR and IS that have a meaning here: NHR beside a neighbour, IWR of an
-        inner stone over two joints, IS of a boundary stone.
-    """
-
-    posed: PosedStone
-    row: int
+    posed: PosedStone  # The stone
+    row: int  # row, col: Top-left corner of its mask
     col: int
+    # SF, LFR, GDS, NHR, IWR and IS that have a meaning here: NHR beside a neighbour, IWR of an
+    # inner stone over two joints, IS of a boundary stone
     values: Mapping[str, float]
 
     @property
@@ -150,7 +119,7 @@ class Place:
         return -(self.row + self.posed.height_px), self.col, self.posed.stone.id
 
 
-def resting_places(moment: Moment) -> tuple[Place, ...]:
+def resting_places(moment: Moment) -> tuple[RestingPlace, ...]:
     """Return every feasible position of every stone that is left at which it rests by itself."""
     occupied, settings = moment.wall.occupied, moment.settings.stabilise
     found = []
@@ -165,7 +134,7 @@ def resting_places(moment: Moment) -> tuple[Place, ...]:
     return tuple(found)
 
 
-def place_of(moment: Moment, posed: PosedStone, row: int, col: int, factor: float) -> Place:
+def place_of(moment: Moment, posed: PosedStone, row: int, col: int, factor: float) -> RestingPlace:
     """Return a place with its indices."""
     landscape, end_px = moment.landscape, moment.workshop.stock.narrowest_px
     box = view_box(posed, row, col, landscape.height_px)
@@ -181,10 +150,10 @@ def place_of(moment: Moment, posed: PosedStone, row: int, col: int, factor: floa
         values["IS"] = inward_slope(landscape, posed, col)
     elif box.bottom > 0 and None not in joints_below(landscape, box, end_px):
         values["IWR"] = interlocking_width_ratio(landscape, box, end_px)
-    return Place(posed, row, col, values)
+    return RestingPlace(posed, row, col, values)
 
 
-def extreme(places: Sequence[Place], name: str, *, best: bool) -> Place | None:
+def extreme(places: Sequence[RestingPlace], name: str, *, best: bool) -> RestingPlace | None:
     """Return the place where an index is best, or worst; None when it has a meaning nowhere.
 
     Of equal ones the lowest, then that furthest to the left, then that of the smaller id.
@@ -195,7 +164,7 @@ def extreme(places: Sequence[Place], name: str, *, best: bool) -> Place | None:
     return min(meant, key=lambda p: (sign * p.values[name], p.order), default=None)
 
 
-def amid_course(built: Construction) -> tuple[Moment, Place]:
+def amid_course(built: Construction) -> tuple[Moment, RestingPlace]:
     """Return a stone of a run that has a left neighbour and two joints below, and when it came.
 
     The first in the second half of the run, or else the stone that comes next halfway; where it
@@ -213,17 +182,17 @@ def amid_course(built: Construction) -> tuple[Moment, Place]:
     return found[0]
 
 
-def action_at(moment: Moment, posed: PosedStone, row: int, col: int) -> Action:
+def action_at(moment: Moment, posed: PosedStone, row: int, col: int) -> ActionView:
     """Return what the indices of a stone at a place measure, to be drawn."""
     landscape, end_px = moment.landscape, moment.workshop.stock.narrowest_px
     box = view_box(posed, row, col, landscape.height_px)
     ids = [placement.stone_id for placement in moment.wall.placements]
 
-    def beside(found: Box | None) -> Beside | None:
-        return None if found is None else Beside(ids[landscape.boxes.index(found)], found)
+    def beside(found: Box | None) -> NeighbourBox | None:
+        return None if found is None else NeighbourBox(ids[landscape.boxes.index(found)], found)
 
     below1, below2 = joints_below(landscape, box, end_px)
-    return Action(
+    return ActionView(
         labels=moment.wall.labels,
         posed=posed,
         row=row,

@@ -8,21 +8,14 @@ from pathlib import Path
 from typing import Any, Literal
 
 from drystone.errors import DrystoneError, InputError
-from drystone_lab.reproduce.folder import (
-    Clock,
-    ReportFolder,
-    Request,
-    made_with,
-    request_of,
-    utc_now,
-)
-from drystone_lab.reproduce.item import Context, Item, Output
+from drystone_lab.reproduce.folder import ReportFolder, TimeOfDay, made_with, request_of, utc_now
+from drystone_lab.reproduce.item import Context, Output, PaperItem
 from drystone_lab.reproduce.items import ITEMS, item_named
 from drystone_lab.runs.outcome import RunStore
-from drystone_lab.runs.runner import Runner, Work, absent_data, one_by_one
+from drystone_lab.runs.runner import Runner, RunWorker, absent_data, one_by_one
 from drystone_lab.runs.spec import published
 
-Status = Literal["made", "kept", "missing data", "failed"]
+ItemStatus = Literal["made", "kept", "missing data", "failed"]
 
 EVERY_S = 2.0
 """Walls are told of no oftener than that."""
@@ -30,91 +23,43 @@ EVERY_S = 2.0
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """How items are made.
+    """How items are made."""
 
-    Parameters
-    ----------
-    data : Path or None
-        Folder of the published data.
-    quick, seed, image
-        See :class:`drystone_lab.reproduce.item.Context`.
-    again : bool
-        Make items again that are finished; their walls are taken from the folder all the same.
-    work : callable
-        Who plans the walls.
-    say : callable
-        Told of progress, a line each.
-    now : callable
-        Gives the time of day that is written into the report.
-    """
-
-    data: Path | None = None
-    quick: bool = False
+    data: Path | None = None  # Folder of the published data
+    quick: bool = False  # quick, seed, image: See :class:`drystone_lab.reproduce.item.Context`
     seed: int = 1
     image: Path | None = None
+    # Make items again that are finished; their walls are taken from the folder all the same
     again: bool = False
-    work: Work = one_by_one
-    say: Callable[[str], None] = lambda _: None
-    now: Clock = utc_now
+    work: RunWorker = one_by_one  # Who plans the walls
+    say: Callable[[str], None] = lambda _: None  # Told of progress, a line each
+    now: TimeOfDay = utc_now  # Gives the time of day that is written into the report
 
 
 @dataclass(frozen=True, eq=False)
-class Made:
-    """What became of an item.
-
-    Parameters
-    ----------
-    name : str
-        Of the item.
-    status : {"made", "kept", "missing data", "failed"}
-        "kept" when it was finished before.
-    record : dict or None
-        Contents of its JSON, None when there is none.
-    error : DrystoneError or None
-        Why there is none.
-    page : Path
-        Its page, if it was made.
-    """
+class MadeItem:
+    """What became of an item."""
 
     name: str
-    status: Status
-    record: Mapping[str, Any] | None
-    error: DrystoneError | None
-    page: Path
+    status: ItemStatus  # "kept" when it was finished before
+    record: Mapping[str, Any] | None  # Contents of its JSON, None when there is none
+    error: DrystoneError | None  # Why there is none
+    page: Path  # Its page, if it was made
 
 
 def reproduce(
     names: Sequence[str],
     folder: Path,
     options: Options,
-    items: Mapping[str, Item] | None = None,
-) -> Iterator[Made]:
-    """Make items and yield what became of each; the report is written anew after every one.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Of `items`.
-    folder : Path
-        To write to; items of earlier calls stay in it and in its report.
-    options : Options
-        How.
-    items : mapping of str to Item, optional
-        In the order of the report; None for the paper's.
-
-    Raises
-    ------
-    UsageError
-        E129: the folder has other files.
-    InputError
-        E100: there is no such image.
-    """
+    items: Mapping[str, PaperItem] | None = None,
+) -> Iterator[MadeItem]:
+    """Make items and yield what became of each; the report is written anew after every one."""
     items = {name: item_named(name) for name in ITEMS} if items is None else items
     request = request_of(
         quick=options.quick, seed=options.seed, image=options.image, data=options.data
     )
     report = ReportFolder(folder)
-    progress = Progress(options.say, len(names))
+    progress = ItemProgress(options.say, len(names))
     runner = Runner(report.runs, options.data, options.work, progress.walls)
     maker = _Maker(report, options, request, runner)
     for name in names:
@@ -125,18 +70,8 @@ def reproduce(
         yield made
 
 
-class Progress:
-    """Says which item is made, and how many of its walls are there.
-
-    Parameters
-    ----------
-    say : callable
-        Told a line each.
-    total : int
-        How many items.
-    clock : callable
-        Seconds from any beginning.
-    """
+class ItemProgress:
+    """Says which item is made, and how many of its walls are there."""
 
     def __init__(
         self, say: Callable[[str], None], total: int, clock: Callable[[], float] = time.monotonic
@@ -178,38 +113,38 @@ class _Maker:
 
     report: ReportFolder
     options: Options
-    request: Request
+    request: Mapping[str, Any]
     runner: Runner
 
-    def made(self, name: str, items: Mapping[str, Item]) -> Made:
+    def made(self, name: str, items: Mapping[str, PaperItem]) -> MadeItem:
         """Return what becomes of an item: it is kept, made, or there is an error."""
         page = self.report.page(name)
         kept = None if self.options.again else self.report.finished(name, self.request)
         if kept is not None:
             self.report.forget_miss(name)
-            return Made(name, "kept", kept, None, page)
+            return MadeItem(name, "kept", kept, None, page)
         item = items[name]
         if (absent := self._absent(item)) is not None:
             self.report.miss(name, item, absent)
-            return Made(name, "missing data", None, absent, page)
+            return MadeItem(name, "missing data", None, absent, page)
         try:
-            return Made(name, "made", self._make(name, item), None, page)
+            return MadeItem(name, "made", self._make(name, item), None, page)
         except DrystoneError as error:
             self.report.miss(name, item, error)
-            return Made(name, "failed", None, error, page)
+            return MadeItem(name, "failed", None, error, page)
 
-    def _make(self, name: str, item: Item) -> dict[str, Any]:
+    def _make(self, name: str, item: PaperItem) -> dict[str, Any]:
         begun = time.perf_counter()
         context = Context(self.runner, self.options.quick, self.options.seed, self.options.image)
         output = item.make(context)
         about = {
-            "request": self.request.as_dict(),
+            "request": self.request,
             "made": made_with(self.options.now),
             "taken": taken(output, self.runner.store, time.perf_counter() - begun),
         }
         return self.report.keep(name, item, output, about)
 
-    def _absent(self, item: Item) -> InputError | None:
+    def _absent(self, item: PaperItem) -> InputError | None:
         """Return the error about published stones that an item needs and that are not there."""
         data = self.options.data
         absent = [name for name in item.needs if not published(name).is_there(data)]

@@ -21,9 +21,8 @@ from drystone.drawing.pictures.stones import plot_labels
 from drystone.kernels.boundary import EMPTY, boundary_of
 from drystone.model.wall import Labels, Wall
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
-from drystone_lab.reproduce.cells import Finding
-from drystone_lab.reproduce.item import Context, Item, Picture
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.reproduce.cells import ClaimCheck
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
 
@@ -33,22 +32,11 @@ NORMAL_PX = 2.5
 
 
 def plot_boundary_edges(
-    labels: Labels,
-    starts: NDArray[np.floating],
-    ends: NDArray[np.floating],
-    ax: Axes | None = None,
+    labels: Labels, starts: NDArray[np.floating], ends: NDArray[np.floating], ax: Axes | None = None
 ) -> Axes:
     """Draw the pixel edges on which blocks touch, each with its normal.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        Row 0 at the top; the wall stands on the last row.
-    starts, ends : (n, 2) float arrays
-        Ends (x, y) of each edge, px, y up from the ground; the normal is to the left of the way
-        from start to end.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
+    `starts` and `ends` are (n, 2), px, y up from the ground; the normal is to the left of the way.
     """
     height, width = labels.shape
     depth = 0.06 * max(height, 0.2 * width)
@@ -77,17 +65,7 @@ def plot_boundary_edges(
 
 
 def plot_blocks(labels: Labels, model: RigidBlockModel, ax: Axes | None = None) -> Axes:
-    """Draw rigid blocks: interfaces, their ends and normals, and the centres of mass.
-
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        Row 0 at the top.
-    model : RigidBlockModel
-        Of this image.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    """
+    """Draw rigid blocks: interfaces, their ends and normals, and the centres of mass."""
     ax = plot_contacts(labels, model, ax)
     for block in model.blocks:
         ax.plot(*block.centroid, "^", color=CENTRE, markersize=7, gid=f"centre-{block.id}",
@@ -111,7 +89,6 @@ class Blocks:
     labels: Labels
     model: RigidBlockModel
     whole: RigidBlockModel
-    runs: tuple[RunSpec, ...]
 
     @cached_property
     def edges(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -125,22 +102,11 @@ def blocks(context: Context, wall: Target = PR) -> Blocks:
     built = context.wall(spec)
     labels = three_stones(built)
     model, whole = (model_from_labels(each).model for each in (labels, built.labels))
-    return Blocks(wall, labels, model, whole, (spec,))
+    return Blocks(wall, labels, model, whole)
 
 
 def three_stones(wall: Wall) -> Labels:
-    """Return the picture of three stones of a wall: two on the ground, and one on both.
-
-    Parameters
-    ----------
-    wall : Wall
-        At least three stones.  Without such a group the first three are taken.
-
-    Returns
-    -------
-    labels : (h, w) uint32 array
-        Cut out, with the ground below the last row.
-    """
+    """Return the picture of three stones of a wall: two on the ground, and one on both."""
     touches: dict[int, set[int]] = defaultdict(set)
     for interface in model_from_labels(wall.labels).model.interfaces:
         touches[interface.block].add(interface.other)
@@ -163,13 +129,6 @@ def three_stones(wall: Wall) -> Labels:
 def boundary_edges(labels: Labels) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the pixel edges between two stones or a stone and the ground.
 
-    Returns
-    -------
-    starts, ends : (n, 2) float arrays
-        (x, y), y up from the ground; the stone of the larger id is on the left of the way.
-
-    Examples
-    --------
     >>> starts, ends = boundary_edges(np.array([[5], [3]]))
     >>> starts.tolist(), ends.tolist()
     ([[0.0, 0.0], [0.0, 1.0]], [[1.0, 0.0], [1.0, 1.0]])
@@ -231,7 +190,7 @@ def _interfaces(found: Blocks) -> Table:
     )  # fmt: skip
 
 
-def _picture(found: Blocks) -> Picture:
+def _picture(found: Blocks) -> ItemPicture:
     labels, model = found.labels, found.model
     figure = Figure(figsize=(PANEL_IN[0], 3 * PANEL_IN[1]), layout="constrained")
     first, second, third = figure.subplots(3, 1)
@@ -240,7 +199,7 @@ def _picture(found: Blocks) -> Picture:
     second.set_title("(b) edges between blocks, and their normals", fontsize=9, loc="left")
     plot_blocks(labels, model, third)
     third.set_title("(c) rigid blocks", fontsize=9, loc="left")
-    return Picture(
+    return ItemPicture(
         "fig12", figure,
         f"Pic-to-Ri on three stones of {found.wall.name}: (a) label image, (b) pixel edges between "
         "two stones or a stone and the ground with their normals, (c) interfaces with their end "
@@ -248,9 +207,9 @@ def _picture(found: Blocks) -> Picture:
     )  # fmt: skip
 
 
-def _claims(found: Blocks) -> Iterator[Finding]:
+def _claims(found: Blocks) -> Iterator[ClaimCheck]:
     angles = sorted(_apart_deg(i) for i in found.whole.interfaces if len(i.points) == 2)
-    yield Finding(
+    yield ClaimCheck(
         "The normal of an interface is the mean of the normals of its pixels.",
         "the planner takes that of the fitted line, which differs by more than "
         f"{TILTED_DEG:g} degree in {sum(angle > TILTED_DEG for angle in angles)} of {len(angles)} "
@@ -259,25 +218,11 @@ def _claims(found: Blocks) -> Iterator[Finding]:
     )
 
 
-PIC_TO_RI = Item(
-    title="Pic-to-Ri: from pixels to rigid blocks",
-    section="§4.2",
-    paper=(
-        "Fig. 12 takes three stones on an initial landscape: (a) each stone's pixels have one "
-        "value; (b) edge detection gives the contacts and the normal at each of their pixels; (c) "
-        "the areas are the weights, the centres of the pixels the centres of mass (triangles), "
-        "'only the end points of the interface are used', and its normal is 'the average of all "
-        "normal vectors in a given interface' (§4.2). There are no numbers.",
-    ),
+PIC_TO_RI = PaperItem(
+    **paper("fig12"),
     study=blocks,
-    notes=(
-        "The mean of the normals of a run depends on its two ends alone; the planner fits a line.",
-    ),
     claims=_claims,
-    tables={
-        "blocks": lambda found: _blocks(found.model),
-        "interfaces": _interfaces,
-    },
+    tables={"blocks": lambda found: _blocks(found.model), "interfaces": _interfaces},
     pictures=lambda found: (_picture(found),),
     needs=(PR.source.name,),
 )

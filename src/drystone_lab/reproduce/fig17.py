@@ -20,8 +20,7 @@ from drystone.metrics.paths import (
 )
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
-from drystone_lab.reproduce.item import Context, Item, Picture
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
 
@@ -61,15 +60,7 @@ class Paths:
         return mean_excess(across, self.width), mean_excess(upright, self.height)
 
 
-@dataclass(frozen=True, eq=False)
-class Walls:
-    """A planned wall, and the masons' beside it where it is published."""
-
-    all: tuple[Paths, ...]
-    runs: tuple[RunSpec, ...]
-
-
-def walls(context: Context, wall: Target = PR) -> Walls:
+def walls(context: Context, wall: Target = PR) -> tuple[Paths, ...]:
     """Find the shortest paths; of published stones the image is the masons' wall."""
     spec = wall.run(context.seed)
     built = context.wall(spec)
@@ -77,7 +68,7 @@ def walls(context: Context, wall: Target = PR) -> Walls:
     if context.data is not None and wall.source.kind == "published":
         traced = read_wall_image(published_file(context.data, wall.source.name))
         found.append(Paths.of(f"the masons' {wall.name}", reduce_labels(traced, wall.scale)))
-    return Walls(tuple(found), (spec,))
+    return tuple(found)
 
 
 def _figures(walls: Sequence[Paths]) -> Table:
@@ -114,7 +105,7 @@ def _paths(walls: Sequence[Paths]) -> Table:
     )
 
 
-def _picture(paths: Paths, number: int) -> Picture:
+def _picture(paths: Paths, number: int) -> ItemPicture:
     figure = Figure(figsize=(PANEL_IN[0], 2 * PANEL_IN[1]), layout="constrained")
     pad = np.array([PAD_TOP, PAD_LEFT])
     for ax, found, count, way in zip(
@@ -125,7 +116,7 @@ def _picture(paths: Paths, number: int) -> Picture:
         plot_joint_paths(paths.labels, [path.pixels - pad for path in shown], ax)
         lengths = ", ".join(f"{path.length_px:.0f}" for path in shown)
         ax.set_title(f"{paths.name}: {way} paths of {lengths} px", fontsize=8, loc="left")
-    return Picture(
+    return ItemPicture(
         "fig17" if number == 0 else "fig17-masons", figure,
         f"The shortest paths along the joints, {paths.name}: {len(paths.across[:ACROSS])} "
         f"horizontal and {len(paths.upright[:UPRIGHT])} vertical ones. F_AH and F_AV come from the "
@@ -133,26 +124,10 @@ def _picture(paths: Paths, number: int) -> Picture:
     )  # fmt: skip
 
 
-PATHS = Item(
-    title="shortest paths along the joints",
-    section="§5.2",
-    paper=(
-        "Fig. 17 draws (a) the three shortest horizontal paths along the joints of a dry-stone "
-        "wall and (b) seven shortest vertical ones. From such paths come F_AH (Eq. 26), by how "
-        "much they are longer than the wall is wide, the lower the straighter the courses, and "
-        "F_AV (Eq. 27), by how much they are longer than it is high, the higher the better head "
-        "joints are interrupted. The lengths of the paths are not given.",
-    ),
+PATHS = PaperItem(
+    **paper("fig17"),
     study=walls,
-    notes=(
-        "Both walls are measured by one definition on pixels of one size: starts every tenth of "
-        "the side, each stone eroded once, so that stones that touch have a joint of two px. The "
-        "paper's Eq. 26 and Eq. 27 leave n and the starts open.",
-    ),
-    tables={
-        "figures": lambda found: _figures(found.all),
-        "paths": lambda found: _paths(found.all),
-    },
-    pictures=lambda found: [_picture(paths, number) for number, paths in enumerate(found.all)],
+    tables={"figures": _figures, "paths": _paths},
+    pictures=lambda found: [_picture(paths, number) for number, paths in enumerate(found)],
     needs=(PR.source.name,),
 )

@@ -15,8 +15,8 @@ from drystone.drawing.pictures.stones import plot_stones
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
 from drystone_lab.pictures.charts import name_axes
-from drystone_lab.reproduce.cells import Finding
-from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.reproduce.cells import ClaimCheck
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import MASONS, PR, Target
 
@@ -41,16 +41,7 @@ def plot_features(
 ) -> Axes:
     """Draw stones by eccentricity and size, coloured by cluster and numbered by id.
 
-    Parameters
-    ----------
-    features : (n, 2) float array
-        From :func:`drystone.clusters.stone_features`.
-    stone_ids : sequence of int
-        Their ids.
-    clusters : mapping of int to int
-        Cluster of each id, from 1.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
+    `features` is (n, 2), from :func:`drystone.clusters.stone_features`; clusters are by id, from 1.
     """
     ax = Figure(figsize=SQUARE_IN, layout="constrained").add_subplot() if ax is None else ax
     for stone_id, (across, up) in zip(stone_ids, features.tolist(), strict=True):
@@ -91,17 +82,7 @@ def plot_counts(
     *,
     claim: tuple[float, int, str] | None = None,
 ) -> Axes:
-    """Draw how many clusters there are over the distance threshold.
-
-    Parameters
-    ----------
-    counts : mapping of str to sequence of (float, int)
-        By name of the stones: threshold and clusters, thresholds ascending.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    claim : (float, int, str), optional
-        Threshold, clusters, and who found them.
-    """
+    """Draw how many clusters there are over the distance threshold."""
     ax = Figure(figsize=COUNTS_IN, layout="constrained").add_subplot() if ax is None else ax
     for rank, (name, points) in enumerate(counts.items()):
         colour, marker = COUNT_LOOKS[rank % len(COUNT_LOOKS)]
@@ -127,7 +108,7 @@ PAPER_CLUSTERS = 7
 
 
 @dataclass(frozen=True, eq=False)
-class Grouped:
+class ClusteredStones:
     """A set of stones in clusters: their number by threshold, and those at the paper's by id.
 
     Merges are the distances at which Ward's linkage joins two clusters, ascending.
@@ -141,7 +122,7 @@ class Grouped:
     clusters: Mapping[int, int]
 
     @classmethod
-    def of(cls, name: str, stones: StoneSet) -> "Grouped":
+    def of(cls, name: str, stones: StoneSet) -> "ClusteredStones":
         """Group a set of at least two stones by every threshold."""
         book = PoseBook()
         features = stone_features(stones, book)
@@ -165,13 +146,13 @@ class Grouped:
 
 def grouped(
     context: Context, wall: Target = PR, others: Sequence[Target] = MASONS
-) -> list[Grouped]:
+) -> list[ClusteredStones]:
     """Group the stones of a wall, which are drawn, and of others whose stones are there."""
     sets = {one.name: one.stones(context.data) for one in (wall, *others)}
-    return [Grouped.of(name, stones) for name, stones in sets.items() if stones is not None]
+    return [ClusteredStones.of(name, stones) for name, stones in sets.items() if stones is not None]
 
 
-def _clusters(drawn: Grouped) -> Table:
+def _clusters(drawn: ClusteredStones) -> Table:
     ids = np.array([stone.id for stone in drawn.stones])
     place = np.array([drawn.clusters[i] for i in ids.tolist()])
     rows: list[tuple[Cell, ...]] = []
@@ -188,7 +169,7 @@ def _clusters(drawn: Grouped) -> Table:
     )
 
 
-def _stones(drawn: Grouped) -> Table:
+def _stones(drawn: ClusteredStones) -> Table:
     return Table(
         f"Features of the stones {drawn.name}",
         ("stone", "cluster", "eccentricity", "size"),
@@ -201,7 +182,7 @@ def _stones(drawn: Grouped) -> Table:
     )
 
 
-def _thresholds(counted: Sequence[Grouped]) -> Table:
+def _thresholds(counted: Sequence[ClusteredStones]) -> Table:
     return Table(
         "Clusters over the distance threshold",
         ("stones", "count", *(f"{distance:g}" for distance in DISTANCES)),
@@ -213,56 +194,44 @@ def _thresholds(counted: Sequence[Grouped]) -> Table:
     )
 
 
-def _picture(drawn: Grouped) -> Picture:
+def _picture(drawn: ClusteredStones) -> ItemPicture:
     figure = Figure(figsize=(7.2, 6.4), layout="constrained")
     parts = figure.subfigures(2, 1, squeeze=False, height_ratios=(1.5, 1.0))
     above, below = parts[:, 0]
     ids = [stone.id for stone in drawn.stones]
     plot_features(drawn.features, ids, drawn.clusters, above.add_subplot())
     plot_stones(drawn.stones, drawn.clusters, below.add_subplot())
-    return Picture(
+    return ItemPicture(
         "fig5", figure,
         f"The {len(ids)} stones {drawn.name} in {drawn.number} clusters: by eccentricity and size, "
         "and as they lie in the source image. Numbers are ids.",
     )  # fmt: skip
 
 
-def _counts_picture(counted: Sequence[Grouped]) -> Picture:
+def _counts_picture(counted: Sequence[ClusteredStones]) -> ItemPicture:
     counts = {one.name: sorted(one.counts.items()) for one in counted}
     claim = (0.2, PAPER_CLUSTERS, "PR in the paper")
     figure = Figure(figsize=COUNTS_IN, layout="constrained")
     plot_counts(counts, figure.add_subplot(), claim=claim)
-    return Picture(
+    return ItemPicture(
         "fig5-thresholds", figure,
         "How many clusters there are over the distance threshold.",
     )  # fmt: skip
 
 
-def _claims(counted: Sequence[Grouped]) -> Iterator[Finding]:
+def _claims(counted: Sequence[ClusteredStones]) -> Iterator[ClaimCheck]:
     drawn = counted[0]
     low, high = drawn.between(PAPER_CLUSTERS)
-    yield Finding(
+    yield ClaimCheck(
         f"The stones PR fall into {PAPER_CLUSTERS} clusters at a distance of {DISTANCE:g}.",
         f"{drawn.number}; {PAPER_CLUSTERS} for every threshold from {low:.3f} to {high:.3f}.",
         drawn.number == PAPER_CLUSTERS,
     )
 
 
-CLUSTERS = Item(
-    title="clusters of the stones PR",
-    section="§3.4",
-    paper=(
-        "Fig. 5 shows the stones of the wall PR coloured by cluster, and each as a point by its "
-        f"features. §3.4: 'a set with 32 stones which is separated into {PAPER_CLUSTERS} clusters' "
-        "by Ward's agglomerative clustering with a distance threshold of 0.2, on the eccentricity "
-        "of the ellipse with like second moments and the area of the bounding box over the largest "
-        "in the set. The members of the clusters are only in the picture.",
-    ),
+CLUSTERS = PaperItem(
+    **paper("fig5"),
     study=grouped,
-    notes=(
-        "Size is relative to the largest of a set, so the number depends on how far its sizes "
-        "spread, and one very large stone makes fewer clusters of the others.",
-    ),
     claims=_claims,
     tables={
         "clusters": lambda sets: _clusters(sets[0]),

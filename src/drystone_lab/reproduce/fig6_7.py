@@ -9,47 +9,41 @@ from matplotlib.figure import Figure
 
 from drystone.kernels.raster import Mask
 from drystone.model.wall import Labels
-from drystone_lab.pictures.action import Action, Mark, plot_action
+from drystone_lab.pictures.action import ActionView, Mark, plot_action
 from drystone_lab.reproduce.construction import (
     Moment,
-    Place,
+    RestingPlace,
     action_at,
     amid_course,
     construction,
     extreme,
     resting_places,
 )
-from drystone_lab.reproduce.item import Context, Item, Picture
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
 
 
-def recounted(action: Action, name: str) -> float | None:
+def recounted(action: ActionView, name: str) -> float | None:
     """Return an index counted in the label image; None where the picture does not show it.
 
-    Parameters
-    ----------
-    action : Action
-        The stone where it is, and what its indices measure.
-    name : {"SF", "LFR", "GDS", "NHR", "IWR", "IS"}
-        Which.  SF is that of the working pixels here; the planner's is that of the source image.
+    SF is that of the working pixels; the planner's is that of the source image.
     """
     counts = {"SF": _shape, "LFR": _filling, "GDS": _dice, "NHR": _height, "IWR": _joints,
               "IS": _slope}  # fmt: skip
     return counts[name](action)
 
 
-def _shape(action: Action) -> float:
+def _shape(action: ActionView) -> float:
     return float(action.posed.mask.mean())
 
 
-def _filling(action: Action) -> float:
+def _filling(action: ActionView) -> float:
     swept = action.labels[action.swept] > 0
     return float(swept.mean()) if swept.size else 1.0
 
 
-def _dice(action: Action) -> float:
+def _dice(action: ActionView) -> float:
     built = np.zeros(action.labels.shape, bool)
     filled = np.flatnonzero((action.labels > 0).any(axis=1))
     built[filled[0] if filled.size else len(built) :] = True
@@ -59,14 +53,14 @@ def _dice(action: Action) -> float:
     return float(np.count_nonzero(built) / area * inside / np.count_nonzero(stone | built))
 
 
-def _height(action: Action) -> float | None:
+def _height(action: ActionView) -> float | None:
     if action.neighbour is None:
         return None
     top, other = _rows(action.stone_pixels), _rows(_pixels(action.labels, action.neighbour.id))
     return abs(top[0] - other[0]) / (top[1] - top[0])
 
 
-def _joints(action: Action) -> float | None:
+def _joints(action: ActionView) -> float | None:
     below1, below2 = action.below
     if below1 is None or below2 is None:
         return None
@@ -77,7 +71,7 @@ def _joints(action: Action) -> float | None:
     return sum(min(1.0, term) for term in terms) / 2
 
 
-def _slope(action: Action) -> float | None:
+def _slope(action: ActionView) -> float | None:
     if action.peaks is None or action.peaks[0] == action.peaks[1]:
         return None
     left, right = (action.col + column for column in action.peaks)
@@ -112,19 +106,18 @@ MARKS: Mapping[str, Mark] = MappingProxyType(
 PANEL_IN = (3.6, 1.28)
 WIDE_IN = (8.4, 3.1)
 
-Cases = Sequence[tuple[str, bool, Place]]
+Cases = Sequence[tuple[str, bool, RestingPlace]]
 """Index, whether it is best there, and the place."""
 
 
 @dataclass(frozen=True, eq=False)
-class Places:
+class MomentPlaces:
     """A moment of a run, where stones that are left would rest, and a stone amid a course."""
 
     wall: Target
     moment: Moment
-    place: Place
-    all: tuple[Place, ...]
-    runs: tuple[RunSpec, ...]
+    place: RestingPlace
+    all: tuple[RestingPlace, ...]
 
     @property
     def cases(self) -> Cases:
@@ -137,14 +130,14 @@ class Places:
         return [(name, best, place) for name, best, place in found if place is not None]
 
 
-def places(context: Context, wall: Target = PR) -> Places:
+def places(context: Context, wall: Target = PR) -> MomentPlaces:
     """Find the places of all stones that are left at a moment of a run."""
     spec = wall.run(context.seed)
     moment, place = amid_course(construction(context, spec))
-    return Places(wall, moment, place, resting_places(moment), (spec,))
+    return MomentPlaces(wall, moment, place, resting_places(moment))
 
 
-def _row(moment: Moment, place: Place, name: str) -> tuple[Cell, ...]:
+def _row(moment: Moment, place: RestingPlace, name: str) -> tuple[Cell, ...]:
     action = action_at(moment, place.posed, place.row, place.col)
     again, box = recounted(action, name), action.box
     value = round(place.values[name], 4)
@@ -166,7 +159,7 @@ def _extremes(moment: Moment, cases: Cases) -> Table:
     )
 
 
-def _ranges(places: Sequence[Place]) -> Table:
+def _ranges(places: Sequence[RestingPlace]) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for name in MARKS:
         values = sorted(place.values[name] for place in places if name in place.values)
@@ -180,7 +173,7 @@ def _ranges(places: Sequence[Place]) -> Table:
     )
 
 
-def _one(moment: Moment, place: Place) -> Table:
+def _one(moment: Moment, place: RestingPlace) -> Table:
     return Table(
         f"Indices of the stone of Fig. 7, number {moment.number} of the run",
         ("index", "stone", "left px", "bottom px", "value", "counted again"),
@@ -188,7 +181,7 @@ def _one(moment: Moment, place: Place) -> Table:
     )
 
 
-def _picture6(moment: Moment, cases: Cases, name: str) -> Picture:
+def _picture6(moment: Moment, cases: Cases, name: str) -> ItemPicture:
     rows = -(-len(cases) // 2)
     size = (2 * PANEL_IN[0], rows * PANEL_IN[1])
     figure = Figure(figsize=size, layout="constrained")
@@ -199,7 +192,7 @@ def _picture6(moment: Moment, cases: Cases, name: str) -> Picture:
         title = f"{index} = {place.values[index]:.3f}, {verdict}: stone {place.posed.stone.id}"
         plot_action(action, {MARKS[index]}, ax, title=title)
         ax.set_axis_off()
-    return Picture(
+    return ItemPicture(
         "fig6", figure,
         f"The best and the worst place by each index among all at which a stone that is left of "
         f"{name} would rest. Orange: the stone. SF: its bounding box. LFR: what the rays sweep, "
@@ -209,14 +202,14 @@ def _picture6(moment: Moment, cases: Cases, name: str) -> Picture:
     )  # fmt: skip
 
 
-def _picture7(moment: Moment, place: Place) -> Picture:
+def _picture7(moment: Moment, place: RestingPlace) -> ItemPicture:
     action = action_at(moment, place.posed, place.row, place.col)
     values = ", ".join(f"{name} {value:.2f}" for name, value in place.values.items())
     figure = Figure(figsize=WIDE_IN, layout="constrained")
     title = f"stone {place.posed.stone.id}: {values}"
     ax = plot_action(action, set(MARKS.values()), figure.add_subplot(), title=title)
     ax.set_xlabel("working px", fontsize=7, labelpad=1)
-    return Picture(
+    return ItemPicture(
         "fig7", figure,
         "What the indices of one stone (orange) are computed from: swept by its rays (yellow, "
         "darker where filled), box B (dark blue), left neighbour (green) and the tops, the two "
@@ -224,25 +217,9 @@ def _picture7(moment: Moment, place: Place) -> Picture:
     )  # fmt: skip
 
 
-INDICES = Item(
-    title="the indices, good and bad, on real stones",
-    section="§3.5",
-    paper=(
-        "Fig. 6 draws a favourable and an unfavourable case of each geometric index SF, LFR, GDS, "
-        "NHR, IWR and IS. §3.5 gives their ranges: SF, LFR, GDS and IWR from 0 to 1, the highest "
-        "best; a straight course is NHR = 0; a large IS is a top that slopes inwards. Fig. 6 has "
-        "no values.",
-        "Fig. 7 shows on one landscape what they are computed from: the rays of LFR to the left "
-        "and downwards, the bounding box of the landscape, the left neighbour and the two stones "
-        "below.",
-    ),
+INDICES = PaperItem(
+    **paper("fig6-7"),
     study=places,
-    notes=(
-        "NHR is taken where there is a left neighbour, IWR of inner stones over two joints, IS of "
-        "boundary stones. The column of values counted again is worked out from the pixels of the "
-        "picture alone; SF differs there because the planner takes the area and the box from the "
-        "source image.",
-    ),
     tables={
         "extremes": lambda found: _extremes(found.moment, found.cases),
         "ranges": lambda found: _ranges(found.all),

@@ -20,10 +20,9 @@ from drystone.kernels.merits import eq12_merits
 from drystone.kernels.raster import Mask
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Labels
-from drystone_lab.reproduce.cells import Finding
+from drystone_lab.reproduce.cells import ClaimCheck
 from drystone_lab.reproduce.construction import Moment, amid_course, construction
-from drystone_lab.reproduce.item import Context, Item, Picture
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
 
@@ -35,19 +34,9 @@ VALUES = "cividis"
 
 @dataclass(frozen=True, eq=False)
 class Layer:
-    """A set of positions of a mask.
+    """A set of positions of a mask."""
 
-    Parameters
-    ----------
-    positions : (h - h' + 1, w - w' + 1) bool array
-        By row and column of the mask's top-left corner.
-    colour : str
-        Of the set.
-    label : str
-        Its meaning.
-    """
-
-    positions: Mask
+    positions: Mask  # By row and column of the mask's top-left corner
     colour: str
     label: str
 
@@ -55,24 +44,7 @@ class Layer:
 def plot_position_layers(
     labels: Labels, posed: PosedStone, layers: Sequence[Layer], ax: Axes | None = None
 ) -> Axes:
-    """Draw sets of positions of a stone as areas; a position is where its centroid is.
-
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        The landscape, row 0 at the top.
-    posed : PosedStone
-        The stone.
-    layers : sequence of Layer
-        Later ones cover earlier ones.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-
-    Returns
-    -------
-    ax : Axes
-        In working px, y up from the ground.
-    """
+    """Draw sets of positions of a stone as areas; a position is where its centroid is."""
     ax = _landscape(labels, ax)
     height = labels.shape[0]
     x, y = posed.anchor
@@ -100,18 +72,7 @@ def plot_position_values(
 ) -> Axes:
     """Draw what positions of a stone are worth, and the stone where it was put.
 
-    Parameters
-    ----------
-    labels, posed
-        As for :func:`plot_position_layers`.
-    positions : (n, 2) int array
-        Row and column of the mask's top-left corner.
-    values : (n,) float array
-        Of each.
-    chosen : (int, int)
-        Row and column of the one that was taken.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
+    `positions` (n, 2) and `chosen` are rows and columns of the mask's top-left corner.
     """
     ax = _landscape(labels, ax)
     height = labels.shape[0]
@@ -168,29 +129,17 @@ PANEL_IN = (7.2, 2.35)
 
 @dataclass(frozen=True, eq=False)
 class PositionMaps:
-    """All positions of a stone on a landscape, by row and column of its mask's top-left corner.
+    """All positions of a stone on a landscape, by row and column of its mask's top-left corner."""
 
-    Parameters
-    ----------
-    free : (h - h' + 1, w - w' + 1) bool array
-        No pixel overlaps.
-    floating : bool array of the same shape
-        None would overlap the landscape, with the bounds of the wall, dilated by one pixel.
-    """
-
-    free: Mask
+    free: Mask  # No pixel overlaps
+    # None would overlap the landscape, with the bounds of the wall, dilated by one pixel
     floating: Mask
 
     @classmethod
     def of(cls, occupied: Mask, mask: Mask) -> "PositionMaps":
         """Find them as the paper does, by convolution.
 
-        Parameters
-        ----------
-        occupied : (h, w) bool array
-            The landscape; L_0 of the paper has bounds on all four sides (Fig. 4b).
-        mask : (h', w') bool array
-            The stone.
+        The landscape (L_0 of the paper) has bounds on all four sides (Fig. 4b).
         """
         bounded = np.pad(occupied, 1, constant_values=True)
         dilated = ndimage.binary_dilation(bounded)[1:-1, 1:-1]
@@ -209,14 +158,13 @@ def _overlap(picture: Mask, mask: Mask) -> NDArray[np.int64]:
 
 
 @dataclass(frozen=True, eq=False)
-class Trial:
+class PositionTrial:
     """A stone of a run on what was built before it: its positions, and the one that is tried."""
 
     wall: Target
     moment: Moment
     posed: PosedStone
     chosen: tuple[int, int]
-    runs: tuple[RunSpec, ...]
 
     @cached_property
     def maps(self) -> PositionMaps:
@@ -242,17 +190,17 @@ class Trial:
         return np.argwhere(self.maps.touching).astype(np.int64)
 
 
-def trial(context: Context, wall: Target = PR) -> Trial:
+def trial(context: Context, wall: Target = PR) -> PositionTrial:
     """Find the positions of a stone of the run on what was built before it."""
     spec = wall.run(context.seed)
     moment, place = amid_course(construction(context, spec))
     found = moment.trial(place.posed.stone.id)
     if found is None:
         raise RuntimeError("a stone of the run fits nowhere where it was placed")
-    return Trial(wall, moment, found[0], found[1:], (spec,))
+    return PositionTrial(wall, moment, found[0], found[1:])
 
 
-def _table(found: Trial) -> Table:
+def _table(found: PositionTrial) -> Table:
     posed, maps, height = found.posed, found.maps, found.moment.landscape.height_px
     value = float(found.values(np.array([found.chosen], np.int64))[0])
     sets: list[tuple[str, int, tuple[int, int, float] | None]] = [
@@ -276,7 +224,7 @@ def _table(found: Trial) -> Table:
     )
 
 
-def _best(found: Trial, positions: Positions) -> tuple[int, int, float]:
+def _best(found: PositionTrial, positions: Positions) -> tuple[int, int, float]:
     """Return the position of the largest value; of equal ones the lower, then the left one."""
     values = found.values(positions)
     order = np.lexsort((positions[:, 1], -positions[:, 0], -np.round(values, 12)))
@@ -284,7 +232,7 @@ def _best(found: Trial, positions: Positions) -> tuple[int, int, float]:
     return row, col, float(values[order[0]])
 
 
-def _drawn(found: Trial) -> Picture:
+def _drawn(found: PositionTrial) -> ItemPicture:
     moment, posed, maps, resting = found.moment, found.posed, found.maps, found.resting
     figure = Figure(figsize=(PANEL_IN[0], 3 * PANEL_IN[1]), layout="constrained")
     first, second, third = figure.subplots(3, 1)
@@ -298,7 +246,7 @@ def _drawn(found: Trial) -> Picture:
     rests = Layer(bearing, "#000000", "resting on something from below")
     plot_position_layers(labels, posed, (touching, rests), second)
     plot_position_values(labels, posed, resting, found.values(resting), found.chosen, third)
-    return Picture(
+    return ItemPicture(
         "fig8", figure,
         f"Positions of stone {posed.stone.id} on {len(moment.wall.placements)} stones of "
         f"{found.wall.name}, each drawn where the stone's centroid would be. Top: no overlap, and "
@@ -307,10 +255,10 @@ def _drawn(found: Trial) -> Picture:
     )  # fmt: skip
 
 
-def _claims(found: Trial) -> Iterator[Finding]:
+def _claims(found: PositionTrial) -> Iterator[ClaimCheck]:
     resting = found.resting
     inside = int(np.count_nonzero(found.maps.touching[resting[:, 0], resting[:, 1]]))
-    yield Finding(
+    yield ClaimCheck(
         "The difference of both convolutions gives the feasible positions.",
         f"it holds {inside} of the {len(resting)} at which the stone rests on something, and "
         f"{len(found.touching) - inside} more.",
@@ -318,21 +266,9 @@ def _claims(found: Trial) -> Iterator[Finding]:
     )
 
 
-POSITIONS = Item(
-    title="feasible positions of a stone",
-    section="§3.6",
-    paper=(
-        "Fig. 8 shows a landscape and a stone. The convolution of the landscape with the stone "
-        "gives the positions without overlap (red); the convolution of the landscape dilated by "
-        "one pixel those at which the stone would not touch it either (blue); 'the difference of "
-        "the two convolution results (red and blue in Fig. 8) produce the feasible solutions' "
-        "(pink, §3.6). The stone goes where Eq. 12 is largest (black). There are no numbers.",
-    ),
+POSITIONS = PaperItem(
+    **paper("fig8"),
     study=trial,
-    notes=(
-        "The planner is stricter than the paper: a touch at a side or at the bounds carries "
-        "nothing, so that the paper's best position may rest on nothing.",
-    ),
     claims=_claims,
     tables={"positions": _table},
     pictures=lambda found: (_drawn(found),),

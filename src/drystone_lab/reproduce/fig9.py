@@ -10,37 +10,26 @@ from drystone.model.placement import Wedge
 from drystone.stabilise.rotate import rotate_to_rest
 from drystone.stabilise.stabilise import WedgeStock, make_stable
 from drystone.stabilise.support import Pose, falling_side, support_polyline
-from drystone_lab.pictures.support import Standing, plot_standing, window_around
+from drystone_lab.pictures.support import SupportedStone, plot_standing, window_around
 from drystone_lab.reproduce.construction import Construction, Moment, construction
-from drystone_lab.reproduce.item import Context, Item, Picture
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
 
 
 @dataclass(frozen=True, eq=False)
 class Unstable:
-    """A stone that falls where the rule of placement puts it.
-
-    Parameters
-    ----------
-    moment : Moment
-        What is built.
-    trial : Standing
-        The stone there.
-    turned : Standing or None
-        Where it rests after turning; None when it meets the landscape before.
-    pivots : int
-        About how many points it was turned.
-    wedged : Standing or None
-        In its place on wedges; None when no wedge within the limits holds it.
-    """
+    """A stone that falls where the rule of placement puts it."""
 
     moment: Moment
-    trial: Standing
-    turned: Standing | None
-    pivots: int
-    wedged: Standing | None
+    trial: SupportedStone  # The stone there
+    turned: (
+        SupportedStone | None
+    )  # Where it rests after turning; None when it meets the landscape before
+    pivots: int  # About how many points it was turned
+    wedged: (
+        SupportedStone | None
+    )  # In its place on wedges; None when no wedge within the limits holds it
 
     @property
     def stone_id(self) -> int:
@@ -69,12 +58,7 @@ class Unstable:
 def unstable_trials(built: Construction) -> tuple[int, tuple[Unstable, ...]]:
     """Try every stone that is left before each step of a run.
 
-    Returns
-    -------
-    trials : int
-        How many were tried and had a position.
-    unstable : tuple of Unstable
-        Those that fall.
+    Returns how many were tried and had a position, and those that fall.
     """
     count, found = 0, []
     for moment in built.moments:
@@ -89,7 +73,7 @@ def unstable_trials(built: Construction) -> tuple[int, tuple[Unstable, ...]]:
     return count, tuple(found)
 
 
-def _treated(moment: Moment, trial: Standing) -> Unstable:
+def _treated(moment: Moment, trial: SupportedStone) -> Unstable:
     """Turn a stone that falls, and wedge it instead."""
     occupied, workshop = moment.wall.occupied, moment.workshop
     settings = moment.settings.stabilise
@@ -103,7 +87,7 @@ def _treated(moment: Moment, trial: Standing) -> Unstable:
     return Unstable(moment, trial, turned, rotation.pivots, wedged)
 
 
-def _standing(moment: Moment, pose: Pose, wedges: tuple[Wedge, ...] = ()) -> Standing | None:
+def _standing(moment: Moment, pose: Pose, wedges: tuple[Wedge, ...] = ()) -> SupportedStone | None:
     """Return a stone on what is there and its wedges; None when nothing supports it."""
     scene = moment.wall.occupied.copy()
     for wedge in wedges:
@@ -112,7 +96,7 @@ def _standing(moment: Moment, pose: Pose, wedges: tuple[Wedge, ...] = ()) -> Sta
     if support is None:
         return None
     falls = falling_side(support, pose, moment.settings.stabilise)
-    return Standing(pose, support, falls, wedges, len(scene))
+    return SupportedStone(pose, support, falls, wedges, len(scene))
 
 
 PANEL_IN = (3.1, 2.3)
@@ -129,7 +113,6 @@ class Falls:
     wall: Target
     trials: int
     unstable: tuple[Unstable, ...]
-    runs: tuple[RunSpec, ...]
 
     @property
     def shown(self) -> tuple[Unstable, ...]:
@@ -140,7 +123,7 @@ class Falls:
 def falls(context: Context, wall: Target = PR) -> Falls:
     """Try all stones that are left before each step of a run, and treat those that fall."""
     spec = wall.run(context.seed)
-    return Falls(wall, *unstable_trials(construction(context, spec)), (spec,))
+    return Falls(wall, *unstable_trials(construction(context, spec)))
 
 
 def _shown(unstable: Sequence[Unstable]) -> tuple[Unstable, ...]:
@@ -201,7 +184,7 @@ def _cases(shown: Sequence[Unstable]) -> Table:
     )  # fmt: skip
 
 
-def _row(case: Unstable, pose: str, standing: Standing) -> tuple[Cell, ...]:
+def _row(case: Unstable, pose: str, standing: SupportedStone) -> tuple[Cell, ...]:
     a, b = standing.ends
     points = [f"{x:.4g}, {y:.4g}" for x, y in (a, b, standing.mass)]
     turn: Cell = case.turn_deg if pose == "turned" else None
@@ -213,13 +196,13 @@ def _row(case: Unstable, pose: str, standing: Standing) -> tuple[Cell, ...]:
     return (case.stone_id, case.moment.number, pose, *points, cross, turn, pivots, *size)
 
 
-def _picture(shown: Sequence[Unstable], name: str) -> Picture:
+def _picture(shown: Sequence[Unstable], name: str) -> ItemPicture:
     size = (3 * PANEL_IN[0], len(shown) * PANEL_IN[1])
     figure = Figure(figsize=size, layout="constrained")
     panels = figure.subplots(len(shown), 3, squeeze=False)
     for axes, case in zip(panels.tolist(), shown, strict=True):
         _draw_case(axes, case)
-    return Picture(
+    return ItemPicture(
         "fig9", figure,
         f"Stones that fall where they are tried, in a run of {name}: A and B are the ends of the "
         "support, A the one nearer to the centre of mass C, C' its projection; the arrow is the "
@@ -244,24 +227,9 @@ def _draw_case(axes: Sequence[Axes], case: Unstable) -> None:
                     size=8, transform=ax.transAxes)  # fmt: skip
 
 
-STABILISING = Item(
-    title="an unstable stone, turned and wedged",
-    section="§3.7",
-    paper=(
-        "Fig. 9 draws one stone: (a) not stable, since its centre of mass C is not above the "
-        "support AB; (b) turned about A, the nearer end, until C' lies on the new AB, "
-        "counter-clockwise when AB x AC is positive; (c) on a wedge under the unsupported part, of "
-        "height h_wedge and width w_wedge. 'The rotation-based stabilization has the priority, "
-        "whereas wedging is employed only when the rotation-based method fails' (§3.7). There are "
-        "no numbers.",
-    ),
+STABILISING = PaperItem(
+    **paper("fig9"),
     study=falls,
-    notes=(
-        "Before each step every stone that is left was tried where Eq. 12 puts it. AB x AC of the "
-        "wrong sign would turn a stone away from the side to which it falls; C is below A where "
-        "the stone hangs on a shoulder. So the planner turns towards the side on which C is "
-        "beyond A.",
-    ),
     tables={"counts": _counts, "cases": lambda found: _cases(found.shown)},
     pictures=lambda found: (_picture(found.shown, found.wall.name),) if found.shown else (),
     needs=(PR.source.name,),

@@ -1,13 +1,10 @@
 """A folder of items that were made: their files, and what was asked for."""
 
-import csv
-import io
 import json
 import math
 import os
 import platform
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from hashlib import sha256
 from importlib.metadata import version
@@ -22,17 +19,17 @@ from drystone.io.folder_lock import has_files
 from drystone.io.published import SETS
 from drystone.kernels.backend import describe
 from drystone.whole_files import write_whole
-from drystone_lab.reproduce.item import Item, Output, Picture
+from drystone_lab.reproduce.item import ItemPicture, Output, PaperItem
 from drystone_lab.reproduce.page import PAGE, Miss, write_item_page, write_page
 from drystone_lab.runs.outcome import RunStore
-from drystone_lab.table import Cell, Table
+from drystone_lab.table import Table
 
 PACKAGES = (
     "numpy", "scipy", "scikit-image", "shapely", "highspy", "clarabel", "pillow", "matplotlib",
 )  # fmt: skip
 """That results depend on, beside drystone itself."""
 
-Clock = Callable[[], datetime]
+TimeOfDay = Callable[[], datetime]
 
 
 def utc_now() -> datetime:
@@ -40,69 +37,34 @@ def utc_now() -> datetime:
     return datetime.now(UTC)
 
 
-@dataclass(frozen=True)
-class Request:
-    """What the contents of an item depend on, beside its name.
+def request_of(*, quick: bool, seed: int, image: Path | None, data: Path | None) -> dict[str, Any]:
+    """Return what the contents of an item depend on, beside its name.
 
-    Parameters
-    ----------
-    version : str
-        Of drystone.
-    quick : bool
-        The smaller version.
-    seed : int
-        Of all random choices, or the first of several.
-    image_sha256 : str or None
-        Of a user's own stones.
-    published : tuple of str
-        Published files that are there; some items leave out rows whose stones are not.
-    """
-
-    version: str
-    quick: bool
-    seed: int
-    image_sha256: str | None
-    published: tuple[str, ...]
-
-    def is_met_by(self, record: Mapping[str, Any]) -> bool:
-        """Return whether an item that was made before is what is asked for now.
-
-        Examples
-        --------
-        >>> full = Request("1", False, 1, None, ("almeida/R.png",))
-        >>> less = Request("1", False, 1, None, ())
-        >>> less.is_met_by(full.as_dict()), full.is_met_by(less.as_dict())
-        (True, False)
-        """
-        same = all(
-            record[name] == getattr(self, name)
-            for name in ("version", "quick", "seed", "image_sha256")
-        )
-        return same and {*self.published} <= {*record["published"]}
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return what JSON writes."""
-        return {
-            "version": self.version, "quick": self.quick, "seed": self.seed,
-            "image_sha256": self.image_sha256, "published": list(self.published),
-        }  # fmt: skip
-
-
-def request_of(*, quick: bool, seed: int, image: Path | None, data: Path | None) -> Request:
-    """Return what is asked for.
-
-    Raises
-    ------
-    InputError
-        E100: there is no such image.
+    Published are the files that are there: some items leave out rows whose stones are not.
     """
     files = [file.name for each in SETS.values() for file in each.files]
-    there = tuple(name for name in files if data is not None and (data / name).is_file())
-    digest = None if image is None else _sha256(image)
-    return Request(version("drystone"), quick, seed, digest, there)
+    return {
+        "version": version("drystone"),
+        "quick": quick,
+        "seed": seed,
+        "image_sha256": None if image is None else _sha256(image),
+        "published": [name for name in files if data is not None and (data / name).is_file()],
+    }
 
 
-def made_with(now: Clock) -> dict[str, Any]:
+def is_met(request: Mapping[str, Any], made: Mapping[str, Any]) -> bool:
+    """Return whether what was made for one request is what another asks for.
+
+    >>> few = {"seed": 1, "published": []}
+    >>> more = {"seed": 1, "published": ["almeida/R.png"]}
+    >>> is_met(few, more), is_met(more, few)
+    (True, False)
+    """
+    same = all(made[name] == value for name, value in request.items() if name != "published")
+    return same and {*request["published"]} <= {*made["published"]}
+
+
+def made_with(now: TimeOfDay) -> dict[str, Any]:
     """Return when, and on what kind of machine with what packages, something is made."""
     return {
         "date": now().strftime("%Y-%m-%d %H:%M UTC"),
@@ -131,18 +93,7 @@ TIMES = "_times"
 
 
 def write_tables(folder: Path, output: Output) -> dict[str, list[dict[str, Any]]]:
-    """Write the tables of an item; those of times under names that end with ``_times.csv``.
-
-    Returns
-    -------
-    dict
-        ``"tables"`` and ``"times"``, as JSON writes them, each with its ``"file"``.
-
-    Raises
-    ------
-    ValueError
-        Two tables have one name, or a number is not finite: both are faults of the item.
-    """
+    """Write the tables of an item; those of times under names that end with ``_times.csv``."""
     tables = [(name, table) for name, table in output.tables]
     times = [(name.removesuffix(TIMES) + TIMES, table) for name, table in output.times]
     names = [name for name, _ in (*tables, *times)]
@@ -154,7 +105,7 @@ def write_tables(folder: Path, output: Output) -> dict[str, list[dict[str, Any]]
     }
 
 
-def write_picture(folder: Path, picture: Picture) -> dict[str, Any]:
+def write_picture(folder: Path, picture: ItemPicture) -> dict[str, Any]:
     """Write a picture as PNG and SVG; return its names, size in px and caption for JSON."""
     png, svg = f"{picture.name}.png", f"{picture.name}.svg"
     for name in (png, svg):
@@ -176,40 +127,16 @@ def files_of(record: dict[str, Any]) -> Iterator[str]:
         yield picture["svg"]
 
 
-def csv_text(table: Table) -> str:
-    r"""Return a table as CSV: numbers that read back as they were, nothing for None.
-
-    Examples
-    --------
-    >>> csv_text(Table("Blocks", ("name", "alpha"), (("tall", 0.1 + 0.2), ("flat", None))))
-    'name,alpha\ntall,0.30000000000000004\nflat,\n'
-    """
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(table.columns)
-    writer.writerows([_written(cell) for cell in row] for row in table.rows)
-    return text.getvalue()
-
-
 def _write_table(folder: Path, name: str, table: Table) -> dict[str, Any]:
     for row in table.rows:
         if any(isinstance(cell, float) and not math.isfinite(cell) for cell in row):
             raise ValueError(f"{name}: a number of {row} is not finite; None says there is none")
     file = f"{name}.csv"
-    write_whole(folder / file, csv_text(table).encode())
+    write_whole(folder / file, table.csv().encode())
     return {
         "name": name, "file": file, "title": table.title, "columns": list(table.columns),
         "rows": [list(row) for row in table.rows], "notes": list(table.notes),
     }  # fmt: skip
-
-
-def _written(cell: Cell) -> str:
-    if cell is None:
-        return ""
-    if isinstance(cell, bool):
-        return "yes" if cell else "no"
-    # Floats of NumPy are floats, but write their type.
-    return repr(float(cell)) if isinstance(cell, float) else str(cell)
 
 
 MARK = "reproduce.json"
@@ -218,18 +145,7 @@ ITEM_SCHEMA = "drystone-item/1"
 
 
 class ReportFolder:
-    """Where items are written, one folder each, with a report of all of them.
-
-    Parameters
-    ----------
-    path : Path
-        Made when it is missing; taken when it is empty or one of these.
-
-    Raises
-    ------
-    UsageError
-        E129: there are other files in it.
-    """
+    """Where items are written, one folder each, with a report of all of them."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -266,21 +182,15 @@ class ReportFolder:
             return None
         return record
 
-    def finished(self, name: str, request: Request) -> dict[str, Any] | None:
+    def finished(self, name: str, request: Mapping[str, Any]) -> dict[str, Any] | None:
         """Return the record of an item that was made for such a request; None without one."""
         record = self.record(name)
-        return record if record is not None and request.is_met_by(record["request"]) else None
+        return record if record is not None and is_met(request, record["request"]) else None
 
     def keep(
-        self, name: str, item: Item, output: Output, about: Mapping[str, Any]
+        self, name: str, item: PaperItem, output: Output, about: Mapping[str, Any]
     ) -> dict[str, Any]:
-        """Write the files of an item in place of those of an earlier one; its JSON comes last.
-
-        Returns
-        -------
-        record : dict
-            What the JSON says.
-        """
+        """Write the files of an item in place of those of an earlier one; its JSON comes last."""
         folder = self.path / name
         folder.mkdir(exist_ok=True)
         self._remove(name)
@@ -303,7 +213,7 @@ class ReportFolder:
         self.forget_miss(name)
         return record
 
-    def miss(self, name: str, item: Item, error: DrystoneError) -> None:
+    def miss(self, name: str, item: PaperItem, error: DrystoneError) -> None:
         """Note why an item cannot be made."""
         text = {"title": item.title, "section": item.section, "error": str(error)}
         self._write_misses({**self.misses, name: text})

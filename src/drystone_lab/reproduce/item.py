@@ -1,49 +1,46 @@
 """A table or figure of the paper that can be made again."""
 
+import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
 
 from drystone.model.wall import Wall
-from drystone_lab.reproduce.cells import Finding, findings_table, sentences
-from drystone_lab.runs.outcome import Outcome
+from drystone_lab.reproduce.cells import ClaimCheck, findings_table, sentences
+from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.runner import Runner
 from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Table
 
 
+def paper(name: str) -> dict[str, Any]:
+    """Return the words of an item of the paper: its title, section, paper and notes."""
+    words = tomllib.loads(Path(__file__).with_name("paper.toml").read_text("utf-8"))[name]
+    return {key: value if isinstance(value, str) else tuple(value) for key, value in words.items()}
+
+
 @dataclass(frozen=True, eq=False)
 class Context:
-    """What an item is made with.
+    """What an item is made with."""
 
-    Parameters
-    ----------
-    runner : Runner
-        Does and keeps runs; `runner.data` is the folder of the published data or None.
-    quick : bool
-        A smaller version: the same kind of walls, fewer or smaller ones, a minute of one core at
-        most.
-    seed : int
-        Of all random choices, or the first of several.
-    image : Path or None
-        A user's own stones, for items that take them.
-    """
-
-    runner: Runner
+    runner: Runner  # Does and keeps runs; `runner.data` is the folder of the published data or None
+    # A smaller version: the same kind of walls, fewer or smaller ones, a minute of one core at most
     quick: bool = False
-    seed: int = 1
-    image: Path | None = None
+    seed: int = 1  # Of all random choices, or the first of several
+    image: Path | None = None  # A user's own stones, for items that take them
+    asked: list[RunSpec] = field(default_factory=list)  # Runs so far: what the item is made of
 
     @property
     def data(self) -> Path | None:
         """Folder of the published data."""
         return self.runner.data
 
-    def run(self, specs: Sequence[RunSpec]) -> tuple[Outcome, ...]:
+    def run(self, specs: Sequence[RunSpec]) -> tuple[RunOutcome, ...]:
         """Return the outcomes of runs, in their order."""
+        self.asked.extend(specs)
         return self.runner.run(specs)
 
     def wall(self, spec: RunSpec) -> Wall:
@@ -53,94 +50,55 @@ class Context:
 
 
 @dataclass(frozen=True, eq=False)
-class Picture:
-    """A figure of an item; written as NAME.png and NAME.svg.
-
-    Parameters
-    ----------
-    name : str
-        Of the files.
-    figure : matplotlib.figure.Figure
-        What is drawn.
-    caption : str
-        What is seen, in a sentence or two.
-    """
+class ItemPicture:
+    """A figure of an item; written as NAME.png and NAME.svg."""
 
     name: str
     figure: Figure
-    caption: str
+    caption: str  # What is seen, in a sentence or two
 
 
 @dataclass(frozen=True, eq=False)
 class Output:
-    """What an item came to.
+    """What an item came to."""
 
-    Parameters
-    ----------
-    paper : tuple of str
-        What the paper shows and reports there, its numbers among it; a paragraph each.
-    ours : tuple of str
-        What we found, in sentences whose numbers are computed, and why it differs; a paragraph
-        each.
-    tables : tuple of (str, Table)
-        Name of the CSV file without ending, and the table.  Equal seeds give equal tables on every
-        machine: no times are in them.
-    times : tuple of (str, Table)
-        Tables of measured times, which differ from machine to machine and run to run.
-    pictures : tuple of Picture
-        What is drawn.
-    runs : tuple of RunSpec
-        That the item is made of, for its JSON.
-    """
-
+    # What the paper shows and reports there, its numbers among it; a paragraph each
     paper: tuple[str, ...]
+    # What we found, in sentences whose numbers are computed, and why it differs; a paragraph each
     ours: tuple[str, ...]
+    # Name of the CSV file without ending, and the table.  Equal seeds give equal tables on every
+    # machine: no times are in them
     tables: tuple[tuple[str, Table], ...] = ()
+    # Tables of measured times, which differ from machine to machine and run to run
     times: tuple[tuple[str, Table], ...] = ()
-    pictures: tuple[Picture, ...] = ()
-    runs: tuple[RunSpec, ...] = ()
+    pictures: tuple[ItemPicture, ...] = ()
+    runs: tuple[RunSpec, ...] = ()  # That the item is made of, for its JSON
 
 
 @dataclass(frozen=True, kw_only=True)
-class Item:
-    """A table or figure of the paper: data, and what is read off it.
-
-    Parameters
-    ----------
-    title : str
-        What it shows.
-    section : str
-        Of the paper.
-    paper : tuple of str
-        What the paper shows and reports there, its numbers among it; a paragraph each.
-    study : callable
-        Does what the item is about: builds walls (:class:`~drystone_lab.reproduce.study.Study`)
-        or times them.  All others take what it returns; its `runs` are those of the item.
-    notes : tuple of str
-        What a reader of the results must know; a paragraph each.
-    claims : callable
-        Compares what was found with claims of the paper; they are a table too.
-    tables, times : mapping of str to callable
-        By the name of the CSV file; times differ from machine to machine.
-    pictures : callable
-        Draws.
-    needs : tuple of str
-        Published stones without which it cannot be made, as paths in their folder.
-    """
+class PaperItem:
+    """A table or figure of the paper: data, and what is read off it."""
 
     title: str
     section: str
+    # What the paper shows and reports there, its numbers among it; a paragraph each
     paper: tuple[str, ...]
+    # Does what the item is about: builds walls (:class:`~drystone_lab.reproduce.study.Study`) or
+    # times them.  All others take what it returns
     study: Callable[[Context], Any]
-    notes: tuple[str, ...] = ()
-    claims: Callable[[Any], Iterable[Finding]] = lambda _: ()
+    notes: tuple[str, ...] = ()  # What a reader of the results must know; a paragraph each
+    # Compares what was found with claims of the paper; they are a table too
+    claims: Callable[[Any], Iterable[ClaimCheck]] = lambda _: ()
+    # tables, times: By the name of the CSV file; times differ from machine to machine
     tables: Mapping[str, Callable[[Any], Table]] = field(default_factory=dict)
     times: Mapping[str, Callable[[Any], Table]] = field(default_factory=dict)
-    pictures: Callable[[Any], Sequence[Picture]] = lambda _: ()
+    pictures: Callable[[Any], Sequence[ItemPicture]] = lambda _: ()  # Draws
+    # Published stones without which it cannot be made, as paths in their folder
     needs: tuple[str, ...] = ()
 
     def make(self, context: Context) -> Output:
         """Do the study, and read everything off it."""
+        context = replace(context, asked=[])
         found = self.study(context)
         claims = tuple(self.claims(found))
         tables = [(name, table(found)) for name, table in self.tables.items()]
@@ -152,5 +110,5 @@ class Item:
             tables=tuple(tables),
             times=tuple((name, table(found)) for name, table in self.times.items()),
             pictures=tuple(self.pictures(found)),
-            runs=tuple(getattr(found, "runs", ())),
+            runs=tuple(dict.fromkeys(context.asked)),
         )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 from drystone.errors import UsageError
 
 if TYPE_CHECKING:  # names are listed without waiting for matplotlib
-    from drystone_lab.reproduce.item import Item
+    from drystone_lab.reproduce.item import PaperItem
 
 ITEMS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
@@ -58,13 +58,6 @@ ALL = "all"
 def item_names(asked: str) -> tuple[str, ...]:
     """Return the names of the items that are meant.
 
-    Raises
-    ------
-    UsageError
-        E138: there is none of this name.
-
-    Examples
-    --------
     >>> item_names("fig18"), len(item_names("all"))
     (('table2',), 23)
     """
@@ -81,7 +74,7 @@ def item_names(asked: str) -> tuple[str, ...]:
     return (name,)
 
 
-def item_named(name: str) -> "Item":
+def item_named(name: str) -> "PaperItem":
     """Return one of :data:`ITEMS`."""
     module, _, item = ITEMS[name][1].partition(".")
-    return cast("Item", getattr(import_module(f"drystone_lab.reproduce.{module}"), item))
+    return cast("PaperItem", getattr(import_module(f"drystone_lab.reproduce.{module}"), item))

@@ -22,7 +22,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone_lab.pictures.walls import masonry_panel, sheet_of
 from drystone_lab.reproduce.cells import METRICS, rounded
-from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import MASONS, Target
 
@@ -39,13 +39,6 @@ def drawn_together(labels: Labels) -> Labels:
     its centre nearest to the corner, and does not overlap another stone or leave the image, as
     long as there is one; every stone is moved once.
 
-    Returns
-    -------
-    moved : (h, w) array of the same type
-        The same stones.
-
-    Examples
-    --------
     >>> drawn_together(np.array([[0, 1, 0, 2], [0, 0, 0, 2]])).tolist()
     [[0, 2, 0, 0], [1, 2, 0, 0]]
     """
@@ -63,8 +56,6 @@ def dilated(labels: Labels) -> Labels:
 
     A pixel that several stones reach goes to the smallest id.
 
-    Examples
-    --------
     >>> dilated(np.array([[1, 0, 0, 0, 2]])).tolist()
     [[1, 1, 0, 2, 2]]
     """
@@ -127,7 +118,7 @@ PAPERS_WAY = "drawn together and dilated (the paper's way)"
 
 
 @dataclass(frozen=True, eq=False)
-class MasonsWall:
+class TracedWall:
     """A wall of masons as it was traced, at the working scale, and the cluster of each stone."""
 
     wall: Target
@@ -149,16 +140,16 @@ class Treatment:
     status: str
 
 
-def masons_wall(wall: Target, data: Path | None) -> MasonsWall:
+def masons_wall(wall: Target, data: Path | None) -> TracedWall:
     """Read a published wall and bring it to the working scale."""
     if data is None:
         raise FileNotFoundError(wall.source.name)
     stones = wall.source.stones(data)
     labels = reduce_labels(read_wall_image(published_file(data, wall.source.name)), wall.scale)
-    return MasonsWall(wall, labels, cluster_stones(stones, PoseBook(wall.scale)))
+    return TracedWall(wall, labels, cluster_stones(stones, PoseBook(wall.scale)))
 
 
-def treatments(wall: MasonsWall) -> tuple[Treatment, ...]:
+def treatments(wall: TracedWall) -> tuple[Treatment, ...]:
     """Return F_LR of a wall as it was traced and with its gaps treated in all ways."""
     labels = wall.labels
     models = {
@@ -187,16 +178,16 @@ def _treated(name: str, model: RigidBlockModel) -> Treatment:
     return Treatment(name, both.value, str(told.status))
 
 
-Walls = Sequence[tuple[MasonsWall, tuple[Treatment, ...]]]
+TreatedWalls = Sequence[tuple[TracedWall, tuple[Treatment, ...]]]
 
 
-def treated_walls(context: Context, walls: Sequence[Target] = MASONS) -> Walls:
+def treated_walls(context: Context, walls: Sequence[Target] = MASONS) -> TreatedWalls:
     """Read walls, and treat their gaps in all ways."""
     found = [masons_wall(wall, context.data) for wall in walls]
     return [(wall, treatments(wall)) for wall in found]
 
 
-def _metrics(walls: Walls) -> Table:
+def _metrics(walls: TreatedWalls) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for each, _ in walls:
         for name, labels in (("as traced", each.labels), (PAPERS_WAY, each.papers_way)):
@@ -218,7 +209,7 @@ def _metrics(walls: Walls) -> Table:
     )
 
 
-def _resistance(walls: Walls) -> Table:
+def _resistance(walls: TreatedWalls) -> Table:
     return Table(
         "F_LR of the masons' walls by the treatment of their gaps",
         ("wall", "gaps", "F_LR", "status"),
@@ -234,7 +225,7 @@ def _resistance(walls: Walls) -> Table:
     )
 
 
-def _picture(walls: Walls) -> Picture:
+def _picture(walls: TreatedWalls) -> ItemPicture:
     panels = [
         masonry_panel(f"{each.wall.name}, {name}", labels, each.clusters, 1 / each.wall.scale)
         for each, _ in walls
@@ -243,7 +234,7 @@ def _picture(walls: Walls) -> Picture:
             ("drawn together, dilated", each.papers_way),
         )
     ]
-    return Picture(
+    return ItemPicture(
         "fig13",
         sheet_of(panels, 2),
         "Left as traced, right with the stones drawn to the bottom left corner and dilated by one "
@@ -251,24 +242,9 @@ def _picture(walls: Walls) -> Picture:
     )
 
 
-FIG13 = Item(
-    title="The masons' walls, and with their gaps closed",
-    section="§5.1, Fig. 13",
-    paper=(
-        "§5.1: the walls are annotated from photographs and have gaps. For the load multiplier "
-        "stones are moved towards the bottom left corner one after the other, those nearest to "
-        "it first, and dilated by one pixel. Fig. 13 shows PR before and after; Table 2 has "
-        "F_LR "
-        + ", ".join(f"{REFERENCES[wall.number][-1]:g} ({wall.name})" for wall in MASONS)
-        + " of the walls so treated, and says that they depend on the annotation.",
-    ),
+FIG13 = PaperItem(
+    **paper("fig13"),
     study=treated_walls,
-    notes=(
-        "Dilation by one px closes gaps of at most two, what stones drawn to the corner leave open "
-        "stays open, and one stone without support is enough for a wall without a multiplier. The "
-        "figure is one of the treatment and of the tracing as much as of the wall; no F_LR of a "
-        "masons' wall is a target here.",
-    ),
     tables={"fig13": _metrics, "fig13_resistance": _resistance},
     pictures=lambda walls: (_picture(walls),),
     needs=tuple(wall.source.name for wall in MASONS),

@@ -20,26 +20,25 @@ from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import (
     LEVEL,
     METRICS,
-    Finding,
+    ClaimCheck,
     Trend,
     figures_of,
     metric_cells,
     rounded,
     trend,
 )
-from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.reproduce.noise_sets import (
     GAP_RANGE,
     NOISES,
     PUBLISHED,
-    Reference,
+    ReferenceWall,
     generated_set,
     noise_set,
     reference_of,
 )
-from drystone_lab.reproduce.study import Built, Study, Trials, walls_table, ways_table
-from drystone_lab.runs.outcome import Outcome
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.reproduce.study import Study, StudyWalls, Trials, walls_table, ways_table
+from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import TWO_SIDED
 
@@ -54,11 +53,11 @@ MIXED = 60
 
 
 @dataclass(frozen=True, eq=False)
-class Level:
+class NoiseLevel:
     """The walls of one set of stones by either rule, and the published wall where there is one."""
 
-    built: Built
-    reference: Reference | None
+    built: StudyWalls
+    reference: ReferenceWall | None
 
     @property
     def noise(self) -> int:
@@ -86,38 +85,33 @@ class Level:
 
 
 @dataclass(frozen=True, eq=False)
-class Levels:
+class NoiseLevels:
     """The walls of all noise levels."""
 
-    built: Built
-    all: tuple[Level, ...]
+    built: StudyWalls
+    all: tuple[NoiseLevel, ...]
 
     @property
-    def runs(self) -> tuple[RunSpec, ...]:
-        """Of all walls."""
-        return self.built.runs
-
-    @property
-    def low(self) -> list[Level]:
+    def low(self) -> list[NoiseLevel]:
         """Levels below :data:`MIXED`."""
         return [level for level in self.all if level.noise < MIXED]
 
 
-def noise_levels(context: Context, study: Study) -> Levels:
+def noise_levels(context: Context, study: Study) -> NoiseLevels:
     """Build walls of every noise level, and measure the published ones."""
     found = study(context)
     groups = found.by_wall
-    levels = (Level(group, reference_of(group.all[0].wall, context.data)) for group in groups)
-    return Levels(found, tuple(levels))
+    levels = (NoiseLevel(group, reference_of(group.all[0].wall, context.data)) for group in groups)
+    return NoiseLevels(found, tuple(levels))
 
 
-def is_full(outcome: Outcome) -> bool:
+def is_full(outcome: RunOutcome) -> bool:
     """Tell whether a wall is filled above :data:`FILLED`."""
     filling = outcome.figures["F_SF"]
     return filling is not None and filling > FILLED
 
 
-def trends(levels: Levels, name: str, rule: str = "paper") -> dict[str, Trend | None]:
+def trends(levels: NoiseLevels, name: str, rule: str = "paper") -> dict[str, Trend | None]:
     """Correlate a figure with the noise: over walls; over sets, which alone are independent."""
     walls = [(level.noise, value) for level in levels.all
              for value in figures_of(level.rule(rule).outcomes, name)]  # fmt: skip
@@ -129,13 +123,13 @@ def trends(levels: Levels, name: str, rule: str = "paper") -> dict[str, Trend | 
     }
 
 
-def reference_trend(levels: Levels, name: str) -> Trend | None:
+def reference_trend(levels: NoiseLevels, name: str) -> Trend | None:
     """Correlate a figure of the published walls with the noise."""
     known = [level for level in levels.all if level.reference is not None]
     return trend([(one.noise, one.reference.metric(name)) for one in known if one.reference])
 
 
-def residuals(levels: Levels) -> dict[int, float]:
+def residuals(levels: NoiseLevels) -> dict[int, float]:
     """Return by how much the median filling of each level is above that of its neighbours."""
     medians = [level.least("F_SF") for level in levels.all]
     found = {}
@@ -146,7 +140,7 @@ def residuals(levels: Levels) -> dict[int, float]:
     return found
 
 
-def noise_findings(levels: Levels) -> tuple[Finding, ...]:
+def noise_findings(levels: NoiseLevels) -> tuple[ClaimCheck, ...]:
     """Compare the levels with what §5.3 says of them."""
     low = [outcome for level in levels.low for outcome in level.ours.outcomes]
     full = sum(map(is_full, low))
@@ -160,13 +154,13 @@ def noise_findings(levels: Levels) -> tuple[Finding, ...]:
     clear = reference is not None and (reference.clear or reference.rho <= 0)
     return (
         _trending(levels, "F_SF", -1, "Filling falls as the noise rises (Fig. 24a)."),
-        Finding(
+        ClaimCheck(
             f"Below {MIXED} % noise F_SF is always above {FILLED:g}.",
             f"{full} of {len(low)} walls below {MIXED} % are above {FILLED:g}.",
             full == len(low) if low else None,
         ),
         *_between(levels),
-        Finding(
+        ClaimCheck(
             f"Below {MIXED} % noise the walls are better filled than by the random strategy.",
             f"against a random choice among the same candidates the median is higher by {told} of "
             f"{len(levels.low)} sets. The random strategy of that study is another one.",
@@ -174,7 +168,7 @@ def noise_findings(levels: Levels) -> tuple[Finding, ...]:
         ),
         _trending(levels, "F_LR", 0, "Lateral resistance has no clear trend."),
         _trending(levels, "F_AV", 1, "Interlocking F_AV rises with the noise."),
-        Finding(
+        ClaimCheck(
             "F_AV of the reference walls rises with the noise.",
             "too few published walls." if reference is None else f"{reference.words()}.",
             reference.rho > 0 if reference is not None and clear else None,
@@ -187,21 +181,21 @@ def noise_findings(levels: Levels) -> tuple[Finding, ...]:
     )
 
 
-def _trending(levels: Levels, name: str, sign: int, claim: str) -> Finding:
+def _trending(levels: NoiseLevels, name: str, sign: int, claim: str) -> ClaimCheck:
     """Compare a trend over the medians of the sets with a claimed one; 0 for none."""
     each = trends(levels, name)
     words = [f"over {over}: {found.words()}" for over, found in each.items() if found is not None]
     said, sets = "; ".join(words) + "." if words else "too few levels.", each["sets"]
     if sets is None:
-        return Finding(claim, said, None)
+        return ClaimCheck(claim, said, None)
     if sign:
-        return Finding(claim, said, sets.rho * sign > 0 and sets.clear)
+        return ClaimCheck(claim, said, sets.rho * sign > 0 and sets.clear)
     # Eight medians may miss a trend that the walls, or the published sets alone, do show.
     others = any(found.clear for found in each.values() if found is not None)
-    return Finding(claim, said, False if sets.clear else None if others else True)
+    return ClaimCheck(claim, said, False if sets.clear else None if others else True)
 
 
-def _between(levels: Levels) -> Iterator[Finding]:
+def _between(levels: NoiseLevels) -> Iterator[ClaimCheck]:
     if len(levels.all) < 2:
         return
     worst = {
@@ -215,13 +209,13 @@ def _between(levels: Levels) -> Iterator[Finding]:
     there = levels.all[-1].noise == NOISES[-1]
     hardest = all(level.noise == NOISES[-1] for level in worst.values())
     claim = f"The set of {NOISES[-1]} % is the most difficult: walls unfilled and weak."
-    yield Finding(claim, f"{words}.", hardest if there else None)
+    yield ClaimCheck(claim, f"{words}.", hardest if there else None)
     # The first and the last have a neighbour on one side only: a mere trend sets them apart.
     inner = [level.noise for level in levels.all[1:-1]]
     if inner:
         above = residuals(levels)
         best = max(inner, key=lambda noise: above[noise])
-        yield Finding(
+        yield ClaimCheck(
             "One noisy level is filled surprisingly well.",
             f"the median F_SF of {best} % less that of the levels beside it is {above[best]:+.3f}, "
             "the most of all that have one on either side.",
@@ -229,7 +223,7 @@ def _between(levels: Levels) -> Iterator[Finding]:
         )
 
 
-def _against_reference(levels: Levels, name: str, claim: str) -> Finding:
+def _against_reference(levels: NoiseLevels, name: str, claim: str) -> ClaimCheck:
     known = [(level, level.reference) for level in levels.all if level.reference is not None]
     # Sizes of walls are rounded to px, so that walls of all stones differ in later digits.
     better = sum(
@@ -240,10 +234,10 @@ def _against_reference(levels: Levels, name: str, claim: str) -> Finding:
         for level, wall in known
     )
     words = f"the median is at least the published wall's in {better} of {len(known)} sets"
-    return Finding(claim, f"{words} ({each}).", better == len(known) if known else None)
+    return ClaimCheck(claim, f"{words} ({each}).", better == len(known) if known else None)
 
 
-def _reference_table(levels: Levels) -> Table:
+def _reference_table(levels: NoiseLevels) -> Table:
     closed = (f"F_LR, gaps closed x{factor:g}" for factor in GAP_RANGE)
     rows = []
     for level in levels.all:
@@ -262,7 +256,7 @@ def _reference_table(levels: Levels) -> Table:
     )
 
 
-def _trends_table(levels: Levels) -> Table:
+def _trends_table(levels: NoiseLevels) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for name in METRICS:
         each = {
@@ -310,7 +304,7 @@ _walls_table = walls_table(
 )  # fmt: skip
 
 
-def _noise_pictures(levels: Levels) -> Iterator[Picture]:
+def _noise_pictures(levels: NoiseLevels) -> Iterator[ItemPicture]:
     walls = []
     for level in levels.all:
         place = level.ours.middle
@@ -318,7 +312,7 @@ def _noise_pictures(levels: Levels) -> Iterator[Picture]:
         resistance = "-" if figures["F_LR"] is None else f"{figures['F_LR']:.2f}"
         title = f"{level.ours.wall.name}\nF_SF {figures['F_SF'] or 0.0:.2f}, F_LR {resistance}"
         walls.append(level.built.drawn(level.ours, f"{title}, seed {seed}", place))
-    yield Picture(
+    yield ItemPicture(
         "fig22", plot_walls(walls, 2),
         "A wall of each noise level, the one in the middle by filling. Generated: stones of our "
         "own, where those of the paper are not public. Numbers are the order of placement, colours "
@@ -330,7 +324,7 @@ def _noise_pictures(levels: Levels) -> Iterator[Picture]:
     ticks = {level.noise: f"{level.noise}{'*' if level.generated else ''}" for level in levels.all}
     axes = {"F_SF": "F_SF", "F_LR": "F_LR", "F_AV": "F_AV, %", "F_AH": "F_AH, %"}
     panels = [_panel(levels, name, words) for name, words in axes.items()]
-    yield Picture(
+    yield ItemPicture(
         "fig24", noise_panels(panels, names, ticks),
         "The four figures over the noise; * generated stones. Dashed: the walls that Thangavelu et "
         "al. (2018) built of the same stones, measured in the same way; their F_LR with gaps of up "
@@ -338,7 +332,7 @@ def _noise_pictures(levels: Levels) -> Iterator[Picture]:
     )  # fmt: skip
 
 
-def _scatter(levels: Levels) -> Picture:
+def _scatter(levels: NoiseLevels) -> ItemPicture:
     groups = {
         f"{level.noise} %{' gen.' if level.generated else ''}": list(
             zip(level.ours.values("F_LR"), level.ours.values("F_SF"), strict=True)
@@ -357,14 +351,14 @@ def _scatter(levels: Levels) -> Picture:
                 fontsize=6.5, arrowprops={"arrowstyle": "-|>", "linewidth": 0.7, "shrinkB": 1.5},
                 gid=f"example-{level.noise}",
             )  # fmt: skip
-    return Picture(
+    return ItemPicture(
         "fig23", figure,
         "Filling over lateral resistance of all walls. Large marks: medians of a set; arrows: the "
         "walls drawn in fig22; gen.: generated stones.",
     )  # fmt: skip
 
 
-def _panel(levels: Levels, name: str, words: str) -> NoisePanel:
+def _panel(levels: NoiseLevels, name: str, words: str) -> NoisePanel:
     def pairs(full: bool) -> tuple[tuple[int, float], ...]:
         return tuple(
             (level.noise, value)
@@ -382,21 +376,8 @@ def _panel(levels: Levels, name: str, words: str) -> NoisePanel:
     return NoisePanel(words, pairs(True), pairs(False), reference, baseline)
 
 
-NOISE = Item(
-    title="polygons of eight noise levels",
-    section="§5.3",
-    paper=(
-        "§5.3: stones of Thangavelu et al. (2018), polygons 'with eight degrees of Gaussian noise "
-        "applied to their vertices', ten walls of each set, built from two sides. Fig. 22 shows "
-        "one of each, Fig. 23 F_SF over F_LR of all 80, Fig. 24 the four figures over the noise, "
-        "with the walls of that study for reference. The numbers are only in the pictures.",
-        "The text says: the set of 80 % is the most difficult, its walls 'both unfilled and weak'; "
-        "filling rises as the noise falls, with one level done surprisingly well (which one is "
-        "lost in our copy of the text); below 60 % noise F_SF is always above .6, 'outperforming "
-        "the random strategy'; F_LR has no clear trend; F_AV rises with the noise in its own and "
-        "in the reference walls, and its own is better; F_AH has no obvious trend; the wall is "
-        "filled as much as in the reference.",
-    ),
+NOISE = PaperItem(
+    **paper("fig22-24"),
     study=partial(
         noise_levels,
         study=Study(
@@ -406,12 +387,6 @@ NOISE = Item(
             quick_seeds=2,
             quick_walls=tuple(noise_set(noise, 0.15) for noise in NOISES),
         ),
-    ),
-    notes=(
-        f"The stones of {', '.join(map(str, PUBLISHED))} % are the published ones and the wall has "
-        "the size of their image, as these stones are those of a finished wall. The other levels "
-        "are not public: their stones are our own noisy polygons, marked as generated everywhere, "
-        "and their wall is as large as the published walls are for their stones.",
     ),
     claims=noise_findings,
     tables={
@@ -430,7 +405,7 @@ ORIENTATIONS = ("sf", "10deg")
 TURNED_NOISES = (40, 50, 70, 80)
 
 
-def _gains(found: Built, name: str) -> list[float]:
+def _gains(found: StudyWalls, name: str) -> list[float]:
     """Return by how much a figure is larger with more orientations, for each set and seed."""
     few, many = (
         [value for one in found.of(way) for value in one.values(name)] for way in ORIENTATIONS
@@ -438,7 +413,7 @@ def _gains(found: Built, name: str) -> list[float]:
     return [b - a for a, b in zip(few, many, strict=True) if a is not None and b is not None]
 
 
-def turned_findings(found: Built) -> tuple[Finding, ...]:
+def turned_findings(found: StudyWalls) -> tuple[ClaimCheck, ...]:
     """Compare the figures of equal seeds."""
     return (
         _gain(_gains(found, "F_SF"), "Filling increases significantly with 10-degree steps."),
@@ -449,9 +424,9 @@ def turned_findings(found: Built) -> tuple[Finding, ...]:
     )
 
 
-def _gain(gains: Sequence[float], claim: str) -> Finding:
+def _gain(gains: Sequence[float], claim: str) -> ClaimCheck:
     if not gains:
-        return Finding(claim, "no wall of either has it.", None)
+        return ClaimCheck(claim, "no wall of either has it.", None)
     higher, lower = sum(gain > 0 for gain in gains), sum(gain < 0 for gain in gains)
     # Most pairs share their stones with others, so the test is lenient with a gain.
     changed = higher + lower
@@ -462,10 +437,10 @@ def _gain(gains: Sequence[float], claim: str) -> Finding:
     )
     # Four pairs cannot pass a test at this level even if all of them agree.
     enough = 0.5 ** len(gains) < LEVEL
-    return Finding(claim, words, median(gains) > 0 and p < LEVEL if enough else None)
+    return ClaimCheck(claim, words, median(gains) > 0 and p < LEVEL if enough else None)
 
 
-def _turned_seconds(found: Built) -> Table:
+def _turned_seconds(found: StudyWalls) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for group in found.by_wall:
         few, many = (median(o.times["wall"] for o in one.outcomes) for one in group)
@@ -474,12 +449,12 @@ def _turned_seconds(found: Built) -> Table:
     return Table("Seconds a wall, median", columns, tuple(rows))
 
 
-def _turned_pictures(found: Built) -> Iterator[Picture]:
+def _turned_pictures(found: StudyWalls) -> Iterator[ItemPicture]:
     walls = [
         found.titled(one, f"{one.wall.name}, orientations {one.way}, seed {found.seeds[0]}")
         for one in found
     ]
-    yield Picture(
+    yield ItemPicture(
         "fig25", plot_walls(walls, 2),
         "Left: each stone in its orientation of largest shape factor. Right: in steps of 10 "
         "degrees, the same seed.",
@@ -493,22 +468,14 @@ def _turned_pictures(found: Built) -> Iterator[Picture]:
         }
         for figure in ("F_SF", "F_LR")
     }
-    yield Picture(
+    yield ItemPicture(
         "fig25-figures", group_panels(panels),
         "Filling and lateral resistance by noise and orientations: a point a wall, a line the "
         "median; gen.: generated stones.",
     )  # fmt: skip
 
 
-TURNED = Item(
-    title="orientations in steps of 10 degrees",
-    section="§5.3",
-    paper=(
-        "§5.3: 'By considering more orientation options, such as orientations ranging between "
-        "[-pi, pi] with 10-degree intervals, the performance of the algorithm can significantly "
-        "increase in terms of the filling ratio and the lateral resistance.' Fig. 25 shows typical "
-        "walls; no numbers are given.",
-    ),
+TURNED = PaperItem(**paper("fig25"),
     study=Study(
         walls=tuple(map(noise_set, TURNED_NOISES)),
         ways={name: (*TWO_SIDED, ("orientations", name)) for name in ORIENTATIONS},
@@ -516,11 +483,6 @@ TURNED = Item(
         quick_seeds=1,
         # A few generated stones: 36 orientations of each are still a thousand candidates.
         quick_walls=(generated_set(70, 10, 0.1),),
-    ),
-    notes=(
-        "Which sets the paper draws is not in its text. With few orientations a stone has that of "
-        "its largest shape factor; the paper's 'minimized' is read as a slip, as Eq. 12d has "
-        "argmax. Pairs of one set share its stones, so that the test below is lenient with a gain.",
     ),
     claims=turned_findings,
     tables={

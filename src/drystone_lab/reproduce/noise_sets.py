@@ -39,25 +39,14 @@ GAP_RANGE = (0.5, 1.0, 1.5)
 
 
 @dataclass(frozen=True)
-class Reference:
-    """A published wall, measured as a label image.
-
-    Parameters
-    ----------
-    stones : int
-        In it.
-    F_SF : float
-        Of the whole image, which is also the wall that our method is to fill.
-    F_AV, F_AH : float or None
-        As :class:`drystone.metrics.measure.WallMetrics`.
-    F_LR : tuple of (float or None)
-        With no gap closed, then with those of :data:`GAP_RANGE`; None where it does not stand.
-    """
+class ReferenceWall:
+    """A published wall, measured as a label image."""
 
     stones: int
-    F_SF: float
+    F_SF: float  # Of the whole image, which is also the wall that our method is to fill
     F_AV: float | None
     F_AH: float | None
+    # With no gap closed, then with those of :data:`GAP_RANGE`; None where it does not stand
     F_LR: tuple[float | None, ...]
 
     @property
@@ -84,8 +73,6 @@ def generated_set(noise: int, count: int, scale: float) -> Target:
 
     The noise is the deviation of the corners over the shorter side of the brick, %.
 
-    Examples
-    --------
     >>> wall = generated_set(30, 26, 0.3)
     >>> round(wall.source.stones(None).total_area_px / (wall.width * wall.height), 3)
     0.696
@@ -100,14 +87,14 @@ def generated_set(noise: int, count: int, scale: float) -> Target:
     return Target(name, source, width, height, scale, noise, stand_in=True)
 
 
-def reference_of(wall: Target, data: Path | None) -> Reference | None:
+def reference_of(wall: Target, data: Path | None) -> ReferenceWall | None:
     """Measure the published wall of some stones; None of generated ones, which were never built."""
     if wall.stand_in or data is None:
         return None
     return measured(read_wall_image(published_file(data, wall.source.name)), wall.scale)
 
 
-def measured(labels: Labels, scale: float) -> Reference:
+def measured(labels: Labels, scale: float) -> ReferenceWall:
     """Measure a label image as a wall that fills all of it, reduced by a scale."""
     reduced = reduce_labels(labels, scale)
     height, width = reduced.shape
@@ -120,4 +107,4 @@ def measured(labels: Labels, scale: float) -> Reference:
     resistances = tuple(
         lateral_resistance(model_with_closed_gaps(reduced, reach).model).value for reach in reaches
     )
-    return Reference(metrics.stones, metrics.F_SF, metrics.F_AV, metrics.F_AH, resistances)
+    return ReferenceWall(metrics.stones, metrics.F_SF, metrics.F_AV, metrics.F_AH, resistances)

@@ -10,16 +10,14 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from drystone.drawing.report.html import HERE
 from drystone.whole_files import write_whole
+from drystone_lab.table import written
 
-Cell = str | int | float | bool | None
 Record = Mapping[str, Any]
 
 
 def heading(name: str, title: str) -> str:
     """Return the heading of an item: its numbers in the paper and what it shows.
 
-    Examples
-    --------
     >>> heading("fig26-27", "stones of four kinds")
     'Fig. 26–27: stones of four kinds'
     >>> heading("figB33", "irregular stones"), heading("growth", "time over size")
@@ -36,8 +34,6 @@ def heading(name: str, title: str) -> str:
 def part(text: str) -> str:
     """Return a section of the paper with its sign.
 
-    Examples
-    --------
     >>> part("5.2"), part("§5.2"), part("B.1")
     ('§5.2', '§5.2', 'Appendix B.1')
     """
@@ -76,6 +72,8 @@ def made_rows(records: Sequence[Record]) -> tuple[tuple[str, str], ...]:
     if not records:
         return ()
     made = [record["made"] for record in records]
+    walls = sum(record["taken"]["walls"] for record in records)
+    planned = sum(record["taken"]["wall_seconds"] for record in records)
     packages = dict.fromkeys(name for one in made for name in one["packages"])
     return (
         ("drystone", _different(record["request"]["version"] for record in records)),
@@ -84,21 +82,13 @@ def made_rows(records: Sequence[Record]) -> tuple[tuple[str, str], ...]:
         *((name, _different(one["packages"].get(name, "–") for one in made)) for name in packages),  # noqa: RUF001
         ("machine", _different(one["machine"] for one in made)),
         ("seeds", _different(record["request"]["seed"] for record in records)),
-        ("walls", duration_of_walls(records)),
+        ("walls", f"{walls} in {duration(planned)}"),  # those of several items once for each
     )
-
-
-def duration_of_walls(records: Sequence[Record]) -> str:
-    """Say how many walls were planned in what time, those of several items once for each."""
-    walls = sum(record["taken"]["walls"] for record in records)
-    return f"{walls} in {duration(sum(record['taken']['wall_seconds'] for record in records))}"
 
 
 def duration(seconds: float) -> str:
     """Write a time.
 
-    Examples
-    --------
     >>> duration(3.21), duration(90), duration(7300)
     ('3.2 s', '1 min 30 s', '2 h 1 min')
     """
@@ -106,23 +96,6 @@ def duration(seconds: float) -> str:
         return f"{seconds:.1f} s"
     minutes, rest = divmod(round(seconds), 60)
     return f"{minutes} min {rest} s" if minutes < 60 else f"{minutes // 60} h {minutes % 60} min"
-
-
-def shown(cell: Cell) -> str:
-    """Write a cell of a table to five digits; the CSV has all of them.
-
-    Examples
-    --------
-    >>> shown(None), shown(True), shown(0.123456), shown(2e-5), shown(1200), shown("R")
-    ('–', 'yes', '0.12346', '2.0e-05', '1200', 'R')
-    """
-    if cell is None:
-        return "–"  # noqa: RUF001 - as the report of a plan writes it
-    if isinstance(cell, bool):
-        return "yes" if cell else "no"
-    if isinstance(cell, float):
-        return f"{cell:.1e}" if 0 < abs(cell) < 1e-3 else f"{cell:.5g}"
-    return str(cell)
 
 
 def _different(values: Iterable[object]) -> str:
@@ -141,72 +114,12 @@ SHOWN = 0.624
 
 @dataclass(frozen=True)
 class Miss:
-    """An item that could not be made when it was last asked for.
-
-    Parameters
-    ----------
-    name, title, section : str
-        Of the item.
-    error : str
-        Why, with the cure.
-    """
+    """An item that could not be made when it was last asked for."""
 
     name: str
     title: str
     section: str
-    error: str
-
-
-@dataclass(frozen=True)
-class ShownTable:
-    """A table as the page shows it: cells are text, `words` says which columns are no numbers."""
-
-    title: str
-    file: str
-    columns: tuple[str, ...]
-    words: tuple[bool, ...]
-    rows: tuple[tuple[str, ...], ...]
-    notes: tuple[str, ...]
-
-    @property
-    def long(self) -> bool:
-        """Whether it is folded up."""
-        return len(self.rows) > LONG
-
-
-@dataclass(frozen=True)
-class ShownPicture:
-    """A picture as the page shows it; `width` and `height` in px of the PNG."""
-
-    png: str
-    svg: str
-    width: int
-    height: int
-    alt: str
-    caption: str
-
-    @property
-    def shown_px(self) -> int:
-        """Width on a page that is wide enough, CSS px."""
-        return round(self.width * SHOWN)
-
-
-@dataclass(frozen=True)
-class Section:
-    """An item as the page shows it; a miss has no record."""
-
-    name: str
-    heading: str
-    part: str
-    about: str
-    version: str
-    error: str
-    paper: tuple[str, ...] = ()
-    ours: tuple[str, ...] = ()
-    tables: tuple[ShownTable, ...] = ()
-    times: tuple[ShownTable, ...] = ()
-    pictures: tuple[ShownPicture, ...] = ()
-    json: str = ""
+    error: str  # Why, with the cure
 
 
 def write_page(
@@ -214,103 +127,81 @@ def write_page(
 ) -> Path:
     """Write the report of everything that was made; pictures and tables are linked beside it.
 
-    Parameters
-    ----------
-    path : Path
-        The file; the files of an item lie in a folder of its name beside it.
-    records : sequence of mapping
-        What the JSON of each item says.
-    misses : sequence of Miss
-        Items that could not be made; one may have a record of an earlier time all the same.
-    order : sequence of str
-        Names in the order of the paper.
+    A miss may have a record of an earlier time all the same; `order` has the names of all items.
     """
-    errors = {miss.name: miss.error for miss in misses}
     sections = {
-        record["name"]: section(record, f"{record['name']}/", errors.get(record["name"], ""))
-        for record in records
+        miss.name: _section({"name": miss.name, "title": miss.title, "section": miss.section})
+        for miss in misses
     }
+    sections |= {record["name"]: _made_section(record, f"{record['name']}/") for record in records}
     for miss in misses:
-        alone = Section(
-            miss.name, heading(miss.name, miss.title), part(miss.section), "", "", miss.error
-        )
-        sections.setdefault(miss.name, alone)
-    shown = [sections[name] for name in order if name in sections]
+        sections[miss.name]["error"] = miss.error
     return _write(
         path,
         title="The paper's tables and figures, made again",
         lead=lead(records, len(order)),
-        sections=shown,
+        sections=[sections[name] for name in order if name in sections],
         made=made_rows(records),
         up="",
     )
 
 
 def write_item_page(path: Path, record: Record) -> Path:
-    """Write the page of one item, into the folder of its files.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    record : mapping
-        What the JSON of the item says.
-    """
+    """Write the page of one item, into the folder of its files."""
     return _write(
         path,
         title=heading(record["name"], record["title"]),
         lead="",
-        sections=[section(record, "", "")],
+        sections=[_made_section(record, "")],
         made=made_rows([record]),
         up=f"../{PAGE}#{record['name']}",
     )
 
 
-def section(record: Record, prefix: str, error: str) -> Section:
-    """Return an item as the page shows it.
-
-    Parameters
-    ----------
-    record : mapping
-        What its JSON says.
-    prefix : str
-        Path from the page to its files, with the slash.
-    error : str
-        Why it could not be made when it was last asked for; empty when it could.
-    """
+def _section(record: Record) -> dict[str, Any]:
+    """Return an item as the page shows it when it was not made."""
     head = heading(record["name"], record["title"])
-    return Section(
-        name=record["name"],
-        heading=head,
-        part=part(record["section"]),
-        about=about(record),
-        version="quick version" if record["request"]["quick"] else "full version",
-        error=error,
-        paper=tuple(record["paper"]),
-        ours=tuple(record["ours"]),
-        tables=tuple(_table(table, prefix) for table in record["tables"]),
-        times=tuple(_table(table, prefix) for table in record["times"]),
-        pictures=tuple(
-            ShownPicture(
-                prefix + picture["png"], prefix + picture["svg"], picture["width_px"],
-                picture["height_px"], f"{head}. {picture['caption']}", picture["caption"],
-            )
-            for picture in record["pictures"]
-        ),
-        json=f"{prefix}{record['name']}.json",
-    )  # fmt: skip
+    shown = {"name": record["name"], "heading": head, "part": part(record["section"])}
+    return shown | {"error": "", "json": "", "version": ""}
 
 
-def _table(table: Mapping[str, Any], prefix: str) -> ShownTable:
-    rows = tuple(tuple(row) for row in table["rows"])
-    return ShownTable(
-        table["title"],
-        prefix + table["file"],
-        tuple(table["columns"]),
-        tuple(any(isinstance(row[k], str) for row in rows) for k in range(len(table["columns"]))),
-        tuple(tuple(shown(cell) for cell in row) for row in rows),
-        tuple(table["notes"]),
-    )
+def _made_section(record: Record, prefix: str) -> dict[str, Any]:
+    """Return an item as the page shows it; `prefix` is the path from the page to its files."""
+    made = _section(record)
+    pictures = [
+        {
+            "png": prefix + picture["png"], "svg": prefix + picture["svg"],
+            "width": picture["width_px"], "height": picture["height_px"],
+            "shown_px": round(picture["width_px"] * SHOWN),
+            "alt": f"{made['heading']}. {picture['caption']}", "caption": picture["caption"],
+        }
+        for picture in record["pictures"]
+    ]  # fmt: skip
+    return made | {
+        "about": about(record),
+        "version": "quick version" if record["request"]["quick"] else "full version",
+        "paper": record["paper"],
+        "ours": record["ours"],
+        "tables": [_table(table, prefix) for table in record["tables"]],
+        "times": [_table(table, prefix) for table in record["times"]],
+        "pictures": pictures,
+        "json": f"{prefix}{record['name']}.json",
+    }
+
+
+def _table(table: Mapping[str, Any], prefix: str) -> dict[str, Any]:
+    """Return a table as the page shows it: `words` says which columns are not numbers."""
+    rows, columns = table["rows"], table["columns"]
+    return {
+        "title": table["title"],
+        "file": prefix + table["file"],
+        "columns": columns,
+        "words": [any(isinstance(row[k], str) for row in rows) for k in range(len(columns))],
+        # Five digits and, as the report of a plan has it, a dash; the CSV has all digits.
+        "rows": [["–" if cell is None else written(cell) for cell in row] for row in rows],  # noqa: RUF001
+        "notes": table["notes"],
+        "long": len(rows) > LONG,
+    }
 
 
 def _write(path: Path, **content: object) -> Path:

@@ -15,14 +15,14 @@ from drystone_lab.reproduce.cells import (
     COLUMNS,
     LEVEL,
     METRICS,
-    Finding,
+    ClaimCheck,
     figures_of,
     metric_cells,
     summary,
 )
-from drystone_lab.reproduce.item import Context, Item, Picture
-from drystone_lab.reproduce.study import Built, Trials
-from drystone_lab.runs.spec import RunSpec, generated
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
+from drystone_lab.reproduce.study import StudyWalls, trials_of
+from drystone_lab.runs.spec import generated
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import TWO_SIDED, Target
 
@@ -38,7 +38,7 @@ WALLS, QUICK_WALLS = 20, 2
 
 
 @dataclass(frozen=True)
-class Kind:
+class StoneKind:
     """A kind of Fourier stones: elongation, and the range of the mean radius."""
 
     D2: float
@@ -67,9 +67,7 @@ class Kind:
     def mean_area_px(self) -> float:
         """Expected area of a stone.
 
-        Examples
-        --------
-        >>> round(Kind(0.0, 30.0, 30.0).mean_area_px / (math.pi * 30**2), 4)
+        >>> round(StoneKind(0.0, 30.0, 30.0).mean_area_px / (math.pi * 30**2), 4)
         1.0023
         """
         low, high = self.smallest_px, self.largest_px
@@ -88,53 +86,47 @@ class Kind:
         return Target(self.name, stones, wall_px, wall_px, 1.0)
 
 
-KINDS = tuple(Kind(D2, *radii) for D2 in (0.0, 0.2) for radii in ((30.0, 30.0), (10.0, 50.0)))
+KINDS = tuple(StoneKind(D2, *radii) for D2 in (0.0, 0.2) for radii in ((30.0, 30.0), (10.0, 50.0)))
 """The paper's, each fixed size before the varied one of its shape."""
 
 
 @dataclass(frozen=True, eq=False)
-class Rounded:
-    """Walls of every kind; the first ratio is what is drawn and judged."""
+class RoundedWalls:
+    """Walls of every kind by the ratio of areas; those of the first ratio are drawn."""
 
-    kinds: tuple[Kind, ...]
-    by_ratio: Mapping[float, Built]
-
-    @property
-    def runs(self) -> tuple[RunSpec, ...]:
-        """Of all walls."""
-        return tuple(run for built in self.by_ratio.values() for run in built.runs)
+    kinds: tuple[StoneKind, ...]
+    by_ratio: Mapping[float, StudyWalls]
 
     @property
-    def first(self) -> Built:
+    def first(self) -> StudyWalls:
         """Walls of the first ratio, a kind after the other."""
         return next(iter(self.by_ratio.values()))
 
 
 def rounded_walls(
-    context: Context, kinds: Sequence[Kind] = KINDS, wall_px: int = WALL_PX, walls: int = 0
-) -> Rounded:
-    """Build walls of every kind of stones, from both ends."""
+    context: Context, kinds: Sequence[StoneKind] = KINDS, wall_px: int = WALL_PX, walls: int = 0
+) -> RoundedWalls:
+    """Build walls of every kind of stones, each of stones of its own, from both ends."""
     ratios = AREA_RATIOS[:1] if context.quick else AREA_RATIOS
     count = walls or (QUICK_WALLS if context.quick else WALLS)
     seeds = range(context.seed, context.seed + count)
-    asked = {
-        (ratio, kind): [kind.wall(seed, wall_px, ratio).run(seed, *TWO_SIDED) for seed in seeds]
+    asked = [
+        (kind.wall(0, wall_px, ratio), kind.name,
+         tuple(kind.wall(seed, wall_px, ratio).run(seed, *TWO_SIDED) for seed in seeds))
         for ratio in ratios
         for kind in kinds
-    }
-    outcomes = iter(context.run([spec for group in asked.values() for spec in group]))
-    trials = {
-        key: Trials(key[1].wall(0, wall_px, key[0]), key[1].name, tuple(specs),
-                    tuple(next(outcomes) for _ in specs))
-        for key, specs in asked.items()
-    }  # fmt: skip
-    by_ratio = {
-        ratio: Built(context, tuple(trials[ratio, kind] for kind in kinds)) for ratio in ratios
-    }
-    return Rounded(tuple(kinds), by_ratio)
+    ]  # fmt: skip
+    found, each = trials_of(context, asked), len(kinds)
+    return RoundedWalls(
+        tuple(kinds),
+        {
+            ratio: StudyWalls(context, found[each * k : each * (k + 1)])
+            for k, ratio in enumerate(ratios)
+        },
+    )
 
 
-def rounded_findings(kinds: Sequence[Kind], built: Built) -> tuple[Finding, ...]:
+def rounded_findings(kinds: Sequence[StoneKind], built: StudyWalls) -> tuple[ClaimCheck, ...]:
     """Compare fixed with varied sizes, for each shape that has both."""
     claims = {
         "F_SF": "Walls of stones of a fixed size are poorly filled",
@@ -153,20 +145,20 @@ def rounded_findings(kinds: Sequence[Kind], built: Built) -> tuple[Finding, ...]
     return tuple(found)
 
 
-def _compared(claim: str, name: str, fixed: Sequence[float], varied: Sequence[float]) -> Finding:
+def _compared(claim: str, name: str, fixed: Sequence[float], varied: Sequence[float]) -> ClaimCheck:
     if not fixed or not varied:
-        return Finding(claim, "no walls that have it.", None)
+        return ClaimCheck(claim, "no walls that have it.", None)
     words = (
         f"median {name} {median(fixed):.3g} for a fixed size and {median(varied):.3g} for varied "
         f"ones, {len(fixed)} and {len(varied)} walls"
     )
     if min(len(fixed), len(varied)) < 4:
-        return Finding(claim, f"{words}: too few for a test.", None)
+        return ClaimCheck(claim, f"{words}: too few for a test.", None)
     p = float(mannwhitneyu(varied, fixed, alternative="greater", method="asymptotic").pvalue)
-    return Finding(claim, f"{words} (rank-sum test, one-sided: p {p:.2g}).", p < LEVEL)
+    return ClaimCheck(claim, f"{words} (rank-sum test, one-sided: p {p:.2g}).", p < LEVEL)
 
 
-def _kinds_table(found: Rounded) -> Table:
+def _kinds_table(found: RoundedWalls) -> Table:
     rows = tuple(
         (ratio, one.way, *summary(one.outcomes))
         for ratio, built in found.by_ratio.items()
@@ -179,7 +171,7 @@ def _kinds_table(found: Rounded) -> Table:
     )
 
 
-def _walls_table(found: Rounded) -> Table:
+def _walls_table(found: RoundedWalls) -> Table:
     rows: list[tuple[Cell, ...]] = [
         (ratio, one.way, spec.seed, outcome.figures["placed"], outcome.figures["stones"],
          *metric_cells(outcome))
@@ -191,14 +183,14 @@ def _walls_table(found: Rounded) -> Table:
     return Table("Walls of Fourier stones", columns, tuple(rows))
 
 
-def _pictures(found: Rounded) -> Iterator[Picture]:
+def _pictures(found: RoundedWalls) -> Iterator[ItemPicture]:
     walls = []
     for one in found.first:
         filling, interlocking, *_ = metric_cells(one.outcomes[one.middle])
         title = f"{one.way}\nF_SF {filling}, F_AV {interlocking} %"
         title += f", seed {one.specs[one.middle].seed}"
         walls.append(found.first.drawn(one, title, one.middle))
-    yield Picture(
+    yield ItemPicture(
         "fig26", plot_walls(walls, 2),
         "A wall of each kind, the one in the middle by filling. Numbers are the order of "
         "placement, colours the clusters, wedges are dark red.",
@@ -210,43 +202,22 @@ def _pictures(found: Rounded) -> Iterator[Picture]:
     figure = Figure(figsize=TWO_IN)
     ax = plot_two_figures(groups, figure.add_subplot(), across="F_SF", up="F_AV, %")
     ax.legend(fontsize=7, frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
-    yield Picture(
+    yield ItemPicture(
         "fig27", figure,
         "Interlocking over filling of all walls by kind of stones; large marks are medians.",
     )  # fmt: skip
 
 
-def _claims(found: Rounded) -> Iterator[Finding]:
+def _claims(found: RoundedWalls) -> Iterator[ClaimCheck]:
     for ratio, built in found.by_ratio.items():
         for one in rounded_findings(found.kinds, built):
             yield replace(one, found=f"with {ratio:g} times the area of the wall, {one.found}")
 
 
-ROUNDED = Item(
-    title="Fourier stones of four kinds",
-    section="§5.3",
-    paper=(
-        "§5.3: stones of Fourier descriptors (Eq. 30), round (D2 = 0) or elliptic (D2 = .2), with "
-        "a radius of 30 px or uniform between 10 and 50 px; 'we form four sets of stones and "
-        "construct 20 walls, each measuring 210 pixels in height and width'. Fig. 26 shows one of "
-        "each, Fig. 27 F_SF and F_AV of all; the numbers are only in the picture.",
-        "The text says: the walls of stones of a fixed size are poorly filled, as stones are "
-        "placed near the boundary first (Eq. 12) and round ones then do not stay; stones of "
-        "varying sizes are easier to stack, and their variety enhances interlocking.",
-    ),
+ROUNDED = PaperItem(
+    **paper("fig26-27"),
     study=rounded_walls,
-    notes=(
-        "The paper does not say how many stones a set has; here their area is "
-        f"{AREA_RATIOS[0]:g} times that of the wall. We took it for the main version after we had "
-        f"seen the walls of both {AREA_RATIOS[0]:g} and {AREA_RATIOS[1]:g} times, so agreement "
-        "with the paper is in part our choice; the full version tells both. Every wall has stones "
-        "of its own, so that what differs is their kind and not the luck of one set; the paper may "
-        "have used one set of each, and its 20 walls may be of all kinds together.",
-    ),
     claims=_claims,
-    tables={
-        "kinds": _kinds_table,
-        "walls": _walls_table,
-    },
+    tables={"kinds": _kinds_table, "walls": _walls_table},
     pictures=lambda found: tuple(_pictures(found)),
 )

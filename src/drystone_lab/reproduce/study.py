@@ -2,13 +2,14 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from statistics import median
 
 from drystone.model.wall import Wall
 from drystone_lab.pictures.charts import group_panels
 from drystone_lab.pictures.walls import TitledWall, plot_walls
 from drystone_lab.reproduce import cells
-from drystone_lab.reproduce.item import Context, Picture
-from drystone_lab.runs.outcome import Outcome
+from drystone_lab.reproduce.item import Context, ItemPicture
+from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.spec import Changes, RunSpec
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import Target
@@ -19,30 +20,17 @@ ONE_WAY: Mapping[str, Changes] = {"variant": ()}
 
 @dataclass(frozen=True, kw_only=True)
 class Study:
-    """What is built.
+    """What is built."""
 
-    Parameters
-    ----------
-    walls : tuple of Target
-        The sets.
-    ways : mapping of str to changes
-        Settings that replace the paper's, by name of the way.
-    seeds, quick_seeds : int
-        How many, the same for all; in the quick version.
-    quick_walls : tuple of Target
-        Of the quick version; empty for the same.
-    at_hand : bool
-        Leave out sets whose stones are not there.
-    """
-
-    walls: tuple[Target, ...]
+    walls: tuple[Target, ...]  # The sets
+    # Settings that replace the paper's, by name of the way
     ways: Mapping[str, Changes] = field(default_factory=lambda: ONE_WAY)
-    seeds: int = 20
+    seeds: int = 20  # seeds, quick_seeds: How many, the same for all; in the quick version
     quick_seeds: int = 3
-    quick_walls: tuple[Target, ...] = ()
-    at_hand: bool = False
+    quick_walls: tuple[Target, ...] = ()  # Of the quick version; empty for the same
+    at_hand: bool = False  # Leave out sets whose stones are not there
 
-    def __call__(self, context: Context) -> "Built":
+    def __call__(self, context: Context) -> "StudyWalls":
         """Build the walls."""
         walls = (context.quick and self.quick_walls) or self.walls
         if self.at_hand:
@@ -58,7 +46,7 @@ class Trials:
     wall: Target
     way: str
     specs: tuple[RunSpec, ...]
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[RunOutcome, ...]
 
     def values(self, figure: str) -> tuple[float | None, ...]:
         """Return a figure of all of them; None where a wall has none."""
@@ -67,7 +55,8 @@ class Trials:
 
     def median(self, figure: str) -> float | None:
         """Return the median of a figure over the walls that have it; None when none has."""
-        return cells.median_of(self.outcomes, figure)
+        found = cells.figures_of(self.outcomes, figure)
+        return median(found) if found else None
 
     @property
     def middle(self) -> int:
@@ -78,7 +67,7 @@ class Trials:
 
 
 @dataclass(frozen=True, eq=False)
-class Built:
+class StudyWalls:
     """The walls of a study: of the first set by every way, then of the next."""
 
     context: Context
@@ -89,21 +78,16 @@ class Built:
         return iter(self.all)
 
     @property
-    def runs(self) -> tuple[RunSpec, ...]:
-        """Of all walls."""
-        return tuple(spec for trials in self.all for spec in trials.specs)
-
-    @property
     def seeds(self) -> tuple[int, ...]:
         """Of every set and way."""
         return tuple(spec.seed for spec in self.all[0].specs)
 
     @property
-    def by_wall(self) -> tuple["Built", ...]:
+    def by_wall(self) -> tuple["StudyWalls", ...]:
         """The walls of each set."""
         walls = dict.fromkeys(trials.wall for trials in self.all)
         return tuple(
-            Built(self.context, tuple(one for one in self.all if one.wall == wall))
+            StudyWalls(self.context, tuple(one for one in self.all if one.wall == wall))
             for wall in walls
         )
 
@@ -140,38 +124,41 @@ class Built:
 
 
 def built(
-    context: Context,
-    walls: Sequence[Target],
-    ways: Mapping[str, Changes],
-    seeds: Sequence[int],
-) -> Built:
+    context: Context, walls: Sequence[Target], ways: Mapping[str, Changes], seeds: Sequence[int]
+) -> StudyWalls:
     """Build walls of every set, by every way, from every seed."""
     asked = [
         (wall, way, tuple(wall.run(seed, *changes) for seed in seeds))
         for wall in walls
         for way, changes in ways.items()
     ]
+    return StudyWalls(context, trials_of(context, asked))
+
+
+def trials_of(
+    context: Context, asked: Sequence[tuple[Target, str, tuple[RunSpec, ...]]]
+) -> tuple[Trials, ...]:
+    """Do the runs of several walls and ways, all at once."""
     outcomes = iter(context.run([spec for *_, specs in asked for spec in specs]))
-    trials = (
+    return tuple(
         Trials(wall, way, specs, tuple(next(outcomes) for _ in specs)) for wall, way, specs in asked
     )
-    return Built(context, tuple(trials))
 
 
-Cells = Callable[[Trials], tuple[Cell, ...]]
+TrialCells = Callable[[Trials], tuple[Cell, ...]]
 
 
 def ways_table(
     title: str,
     heads: Sequence[str],
-    key: Cells,
+    key: TrialCells,
     more: Sequence[str] = (),
-    extra: Cells = lambda _: (),
+    extra: TrialCells = lambda _: (),
     notes: Sequence[str] = (),
-) -> Callable[[Built], Table]:
+) -> Callable[[StudyWalls], Table]:
     """Return a table of medians and ranges, a row a set and way, between `key` and `extra`."""
 
-    def table(found: Built) -> Table:
+    def table(found: StudyWalls) -> Table:
         rows = tuple((*key(one), *cells.summary(one.outcomes), *extra(one)) for one in found)
         return Table(_named(title, found), (*heads, *cells.COLUMNS, *more), rows, tuple(notes))
 
@@ -181,12 +168,12 @@ def ways_table(
 def walls_table(
     title: str,
     heads: Sequence[str],
-    row: Callable[[Trials, RunSpec, Outcome], tuple[Cell, ...]],
+    row: Callable[[Trials, RunSpec, RunOutcome], tuple[Cell, ...]],
     notes: Sequence[str] = (),
-) -> Callable[[Built], Table]:
+) -> Callable[[StudyWalls], Table]:
     """Return a table with a row a wall."""
 
-    def table(found: Built) -> Table:
+    def table(found: StudyWalls) -> Table:
         rows = tuple(
             row(one, spec, outcome)
             for one in found
@@ -197,10 +184,12 @@ def walls_table(
     return table
 
 
-def pairs_table(title: str, way: str, others: Sequence[str], head: str) -> Callable[[Built], Table]:
+def pairs_table(
+    title: str, way: str, others: Sequence[str], head: str
+) -> Callable[[StudyWalls], Table]:
     """Return a table of one way against others, pairs of one set and seed, by figure."""
 
-    def table(found: Built) -> Table:
+    def table(found: StudyWalls) -> Table:
         rows = tuple(
             (other, *found.wins(way, other, figure).cells(figure))
             for other in others
@@ -212,21 +201,21 @@ def pairs_table(title: str, way: str, others: Sequence[str], head: str) -> Calla
 
 
 def strips(
-    found: Built, name: str, figures: Sequence[str], label: Callable[[Trials], str]
-) -> Picture:
+    found: StudyWalls, name: str, figures: Sequence[str], label: Callable[[Trials], str]
+) -> ItemPicture:
     """Draw a point a wall: a panel a figure, a group a set and way."""
     panels = {figure: {label(one): one.values(figure) for one in found} for figure in figures}
-    return Picture(name, group_panels(panels), "A point a wall; lines are medians.")
+    return ItemPicture(name, group_panels(panels), "A point a wall; lines are medians.")
 
 
 def sheet(
-    found: Built, name: str, columns: int, label: Callable[[Trials], str], caption: str
-) -> Picture:
+    found: StudyWalls, name: str, columns: int, label: Callable[[Trials], str], caption: str
+) -> ItemPicture:
     """Draw the wall of the first seed of every set and way."""
     walls = [found.titled(one, label(one)) for one in found]
     caption += " Numbers are steps of the plan, colours clusters of stones, wedges are dark red."
-    return Picture(name, plot_walls(walls, columns), caption)
+    return ItemPicture(name, plot_walls(walls, columns), caption)
 
 
-def _named(title: str, found: Built) -> str:
+def _named(title: str, found: StudyWalls) -> str:
     return title.format(wall=found.name) if found.all else title

@@ -22,18 +22,17 @@ from drystone_lab.pictures.walls import (
 )
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, rounded
-from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.reproduce.masons import (
     PAPERS_WAY,
     REFERENCES,
-    MasonsWall,
     Printed,
+    TracedWall,
     masons_wall,
     measured,
 )
-from drystone_lab.reproduce.study import Built, Study, Trials
-from drystone_lab.runs.outcome import Outcome
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.reproduce.study import Study, StudyWalls, Trials
+from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import FIVE, MASONS
 
@@ -50,7 +49,7 @@ EXACT = 6
 """Decimals of a load multiplier that every solver agrees on; halves are rounded up after that."""
 
 
-def best_trial(outcomes: Sequence[Outcome]) -> int:
+def best_trial(outcomes: Sequence[RunOutcome]) -> int:
     """Return the place of the wall with the highest filling and multiplier, to one decimal.
 
     The paper chooses "the wall with the highest filling ratio and kinematics multiplier (rounded
@@ -62,7 +61,7 @@ def best_trial(outcomes: Sequence[Outcome]) -> int:
     return max(range(len(outcomes)), key=lambda place: (*_merit(outcomes[place]), -place))
 
 
-def _merit(outcome: Outcome) -> tuple[float, float, float, float]:
+def _merit(outcome: RunOutcome) -> tuple[float, float, float, float]:
     resistance, filled = outcome.figures["F_LR"], float(outcome.figures["F_SF"] or 0.0)
     if resistance is None:
         return tenths(filled), -1.0, filled, 0.0
@@ -72,8 +71,6 @@ def _merit(outcome: Outcome) -> tuple[float, float, float, float]:
 def tenths(value: float) -> int:
     """Round to one decimal, halves up; in tenths.
 
-    Examples
-    --------
     >>> tenths(0.45), tenths(0.4499999999), tenths(0.44)
     (5, 5, 4)
     """
@@ -89,7 +86,7 @@ class FiveWall:
 
     trials: Trials
     stones: StoneSet
-    masons: MasonsWall | None
+    masons: TracedWall | None
 
     @property
     def name(self) -> tuple[int, str]:
@@ -112,43 +109,26 @@ class FiveWall:
         filled = [value or 0.0 for value in self.trials.values("F_SF")]
         return filled.index(max(filled))
 
-    @property
-    def most_filling(self) -> float:
-        """F_SF of a wall with all stones, which no wall of these stones can exceed."""
-        wall = self.trials.wall
-        return float(self.stones.total_area_px) / (wall.width * wall.height)
-
     @cached_property
     def traced(self) -> WallMetrics | None:
         """Metrics of the masons' wall as it was traced."""
         return None if self.masons is None else measured(self.masons.labels)
 
 
-@dataclass(frozen=True, eq=False)
-class Five:
-    """All walls."""
-
-    built: Built
-    walls: tuple[FiveWall, ...]
-
-    @property
-    def runs(self) -> tuple[RunSpec, ...]:
-        """Of all walls."""
-        return self.built.runs
+Five = tuple[StudyWalls, Sequence[FiveWall]]
 
 
 def five_walls(context: Context, study: Study) -> Five:
     """Build the walls, and read the masons'."""
     found = study(context)
-    walls = (
+    return found, [
         FiveWall(
             each,
             each.wall.source.stones(context.data),
             None if each.wall.stand_in else masons_wall(each.wall, context.data),
         )
         for each in found
-    )
-    return Five(found, tuple(walls))
+    ]
 
 
 def _comparison(found: Five) -> Table:
@@ -157,7 +137,7 @@ def _comparison(found: Five) -> Table:
         "Table 2: reference walls and constructed ones by one definition, and what the paper "
         "prints",
         ("wall", "stones", "what", "placed", "of", *METRICS, *(f"paper {m}" for m in METRICS)),
-        tuple(row for wall in found.walls for row in (*_references(wall), *_ours(wall))),
+        tuple(row for wall in found[1] for row in (*_references(wall), *_ours(wall))),
         (
             "F_SF a share, F_AV and F_AH in percent. Our walls: the area of their stones over the "
             "target; masons' walls: over the bounding box of their stones.",
@@ -199,18 +179,19 @@ def _ours(wall: FiveWall) -> Iterator[tuple[Cell, ...]]:
     if wall.stand_in:
         yield (wall.name[0], "the paper's", "best of 20", None, None, *NONE, *papers)
     yield (*one(f"fullest of {seeds}", wall.fullest), *NONE)
-    most = rounded(wall.most_filling)
+    area = wall.stones.total_area_px
+    most = rounded(float(area) / (trials.wall.width * trials.wall.height))
     yield (*wall.name, "all stones", count, count, most, None, None, None, *NONE)
 
 
 def _spread(found: Five) -> Table:
-    rows = tuple((*wall.name, *cells.summary(wall.trials.outcomes)) for wall in found.walls)
+    rows = tuple((*wall.name, *cells.summary(wall.trials.outcomes)) for wall in found[1])
     return Table("Walls of all seeds", ("wall", "set", *cells.COLUMNS), rows)
 
 
-def _fig18(found: Five) -> Picture:
-    panels = [panel for wall in found.walls for panel in _panels(found.built, wall)]
-    return Picture(
+def _fig18(found: Five) -> ItemPicture:
+    panels = [panel for wall in found[1] for panel in _panels(found[0], wall)]
+    return ItemPicture(
         "fig18",
         sheet_of(panels, 4),
         "From the left: the stones by cluster; the wall of the fixed seed; the best of all seeds "
@@ -220,7 +201,7 @@ def _fig18(found: Five) -> Picture:
     )
 
 
-def _panels(built: Built, wall: FiveWall) -> list[Panel]:
+def _panels(built: StudyWalls, wall: FiveWall) -> list[Panel]:
     trials, stones = wall.trials, wall.stones
     seeds = [spec.seed for spec in trials.specs]
     clusters = cluster_stones(stones, PoseBook(trials.wall.scale))
@@ -244,30 +225,9 @@ def _panels(built: Built, wall: FiveWall) -> list[Panel]:
     ]
 
 
-TABLE2 = Item(
-    title="Walls 1 to 5: fixed seed, best of 20, masons",
-    section="§5.2, Table 2 and Fig. 18",
-    paper=(
-        "§5.2, Fig. 18: walls of five sets of stones from a fixed seed, and the wall 'with the "
-        "highest filling ratio and kinematics multiplier (rounded to one decimal place)' of 20 "
-        "trials, beside the reference wall of masons (1 to 3) or of a model-free algorithm (4, 5). "
-        "Table 2 has the figures of the last two.",
-        "The text finds its walls better than the masons' in F_SF and F_LR, and worse in F_AV and "
-        "F_AH. By its Table 2 F_SF is larger in wall 1, equal in wall 2 and smaller in wall 3.",
-    ),
+TABLE2 = PaperItem(
+    **paper("table2"),
     study=partial(five_walls, study=Study(walls=FIVE, quick_seeds=4)),
-    notes=(
-        "No wall can have a larger F_SF than all its stones together. Where the paper's is larger, "
-        "a smaller target or stones measured after dilation would explain it.",
-        "F_AV and F_AH of the same masons' walls differ from the paper's by the definition alone. "
-        "The paper does not say where paths start, how many there are, or how wide a joint is; "
-        "ours start every tenth of the side, the five shortest count, and a joint is what one "
-        "erosion by 3 x 3 px leaves. Figures of one column compare with each other, not across.",
-        "F_LR of masons' walls is one of how their gaps were closed and is shown by fig13; the "
-        "paper marks it with the same caution.",
-        "Walls 4 and 5: the stones of Liu et al. (2018) are not public. The paper's figures stand "
-        "in rows of their own, ours are of generated stones and say nothing about theirs.",
-    ),
     tables={"table2": _comparison, "table2_seeds": _spread},
     pictures=lambda found: (_fig18(found),),
     needs=tuple(wall.source.name for wall in MASONS),

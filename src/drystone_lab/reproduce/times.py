@@ -13,16 +13,15 @@ from drystone.poses import PoseBook
 from drystone.selection.sampling import Sampling
 from drystone_lab.pictures.growth import GROWTH_IN, Series, plot_growth
 from drystone_lab.pictures.walls import plot_walls
-from drystone_lab.reproduce.cells import METRICS, Finding, findings_table, metric_cells, trend
-from drystone_lab.reproduce.item import Context, Item, Picture
-from drystone_lab.reproduce.study import ONE_WAY, Built, built
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.reproduce.cells import METRICS, ClaimCheck, findings_table, metric_cells, trend
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
+from drystone_lab.reproduce.study import ONE_WAY, StudyWalls, built
 from drystone_lab.table import Cell, Table
 from drystone_lab.timed_walls import (
     PAPER_STEP_S,
     PAPER_WALL_S,
     SAMPLINGS,
-    Planned,
+    TimedWall,
     exponent,
     fitted,
     pixels_table,
@@ -46,15 +45,15 @@ HOW_TIMED = (
 )
 
 
-def timed(context: Context, wall: Target, changes: Mapping[str, object]) -> Planned:
+def timed(context: Context, wall: Target, changes: Mapping[str, object]) -> TimedWall:
     """Plan a wall by the paper's method and the clock."""
     settings = method_settings("paper").updated(changes)
     repeats = 1 if context.quick else REPEATS
     return planned(wall, context.data, settings, seed=context.seed, repeats=repeats)
 
 
-BySampling = Mapping[Sampling, Planned]
-Shares = Mapping[str, float]
+BySampling = Mapping[Sampling, TimedWall]
+ProcedureShares = Mapping[str, float]
 
 PROCEDURES: Mapping[str, tuple[Part, ...]] = {
     "placement": ("placement",),
@@ -91,7 +90,7 @@ def late_over_early(seconds: Sequence[float]) -> float:
     return fmean(seconds[-quarter:]) / fmean(seconds[:quarter])
 
 
-def step_findings(walls: BySampling) -> tuple[Finding, ...]:
+def step_findings(walls: BySampling) -> tuple[ClaimCheck, ...]:
     """Compare measured steps with what §6.1 says of them."""
     variant, full = walls["variant"].steps, walls["full"].steps
     each = [shares(wall.steps) for wall in walls.values()]
@@ -111,28 +110,28 @@ def step_findings(walls: BySampling) -> tuple[Finding, ...]:
         for name, one in zip(walls, each, strict=True)
     )
     return (
-        Finding(
+        ClaimCheck(
             "Placement takes most of the time, selection is second.",
             f"{told} of the three procedures.",
             all(o["placement"] > 0.5 and o["selection"] > o["stabilisation"] for o in each),
         ),
-        Finding(
+        ClaimCheck(
             "The time of stabilisation is negligible.",
             f"{max(one['stabilisation'] for one in each):.1%} of the three procedures at most.",
             all(one["stabilisation"] < NEGLIGIBLE for one in each),
         ),
-        Finding(
+        ClaimCheck(
             "A step of variant sampling is almost stable.",
             f"a step of the last quarter takes {stable:.2f} times as long as one of the first.",
             1 / STABLE < stable < STABLE,
         ),
-        Finding(
+        ClaimCheck(
             "Selection grows slightly as stones are placed (variant sampling).",
             f"in the last quarter it takes {grows or 0.0:.2f} times as long as in the first; of a "
             f"candidate over the stones placed{words['a candidate']}.",
             None if grows is None else grows > 1,
         ),
-        Finding(
+        ClaimCheck(
             "A step of the full batch gets shorter as the candidates get fewer.",
             f"a step of the last quarter takes {falls:.2f} times as long as one of the first, with "
             f"{late_over_early([float(step.candidates) for step in full]):.2f} times the "
@@ -161,21 +160,8 @@ def _procedures(walls: BySampling) -> Table:
     return Table("Shares of the paper's procedures in their time", columns, tuple(rows))
 
 
-STEPS = Item(
-    title="time of a step by part",
-    section="§6.1",
-    paper=(
-        "Fig. 28 (§6.1): the time of each of the 32 steps of two walls of PR, 280 x 80 px, by "
-        "trial placement, stabilisation and selection, with variant and with full batch sampling. "
-        "The numbers are only in the picture.",
-        "The text says: 'the placement procedure takes most of the time, the selection ranks "
-        "second, and the computational demand in the stabilization procedure is negligible'; with "
-        "variant sampling a step is almost stable, while selection grows slightly as stones are "
-        "placed, by its kinematic analysis; with the full batch a step gets shorter as the "
-        "candidates get fewer.",
-    ),
+STEPS = PaperItem(**paper("fig28"),
     study=by_sampling,
-    notes=(HOW_TIMED,),
     tables={"candidates": _candidates},
     times={
         "claims": lambda walls: findings_table(
@@ -185,7 +171,7 @@ STEPS = Item(
         "steps": lambda walls: steps_table(PR.name, walls),
     },
     pictures=lambda walls: (
-        Picture(
+        ItemPicture(
             "fig28", steps_figure(walls),
             "The time of every step by part. Contacts, limit analysis and indices are the paper's "
             "selection; the rest is sampling and keeping books.",
@@ -202,28 +188,23 @@ QUADRATIC, TOLERANCE = 2.0, 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class Scaled:
+class ScaledWalls:
     """A wall at several resolutions, built to be drawn and timed, by scale."""
 
-    built: Built
-    timed: Mapping[float, Planned]
-
-    @property
-    def runs(self) -> tuple[RunSpec, ...]:
-        """Of all walls."""
-        return self.built.runs
+    built: StudyWalls
+    timed: Mapping[float, TimedWall]
 
 
-def by_scale(context: Context, wall: Target = PR, scales: Sequence[float] = SCALES) -> Scaled:
+def by_scale(context: Context, wall: Target = PR, scales: Sequence[float] = SCALES) -> ScaledWalls:
     """Plan a wall at several resolutions."""
     walls = {scale: replace(wall, scale=scale * wall.scale) for scale in scales}
     found = built(context, tuple(walls.values()), ONE_WAY, (context.seed,))
-    return Scaled(found, {scale: timed(context, one, {}) for scale, one in walls.items()})
+    return ScaledWalls(found, {scale: timed(context, one, {}) for scale, one in walls.items()})
 
 
-def scale_findings(walls: Mapping[float, Planned]) -> Iterator[Finding]:
+def scale_findings(walls: Mapping[float, TimedWall]) -> Iterator[ClaimCheck]:
     """Compare times with what §6.3 says of them."""
-    measures: tuple[tuple[str, Callable[[Planned], float], Mapping[int, float]], ...] = (
+    measures: tuple[tuple[str, Callable[[TimedWall], float], Mapping[int, float]], ...] = (
         ("whole wall", lambda wall: wall.seconds, PAPER_WALL_S),
         ("longest step", lambda wall: wall.longest, PAPER_STEP_S),
     )
@@ -232,16 +213,16 @@ def scale_findings(walls: Mapping[float, Planned]) -> Iterator[Finding]:
         power = exponent([(scale, seconds(wall)) for scale, wall in walls.items()])
         words = "too few scales." if power is None else f"exponent over the scale {power:.2f}."
         near = None if power is None else abs(power - QUADRATIC) <= TOLERANCE
-        yield Finding(claim, words, near)
+        yield ClaimCheck(claim, words, near)
     for wall in walls.values():
         for what, seconds, papers in measures:
             if (said := papers.get(wall.pixels)) is not None:
                 claim = f"At {size_of(wall.site)} px the {what} takes {said:.3g} s or less."
                 words = f"{seconds(wall):.3g} s in one process."
-                yield Finding(claim, words, seconds(wall) <= said)
+                yield ClaimCheck(claim, words, seconds(wall) <= said)
 
 
-def _scales_table(found: Scaled) -> Table:
+def _scales_table(found: ScaledWalls) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for (scale, wall), one in zip(found.timed.items(), found.built, strict=True):
         outcome = one.outcomes[0]
@@ -255,7 +236,7 @@ def _scales_table(found: Scaled) -> Table:
     )
 
 
-def _scales_pictures(found: Scaled) -> Iterator[Picture]:
+def _scales_pictures(found: ScaledWalls) -> Iterator[ItemPicture]:
     ids = sorted({i for one in found.built for i in one.outcomes[0].clusters})
     colours = {stone_id: number for number, stone_id in enumerate(ids, 1)}
     walls = []
@@ -264,39 +245,23 @@ def _scales_pictures(found: Scaled) -> Iterator[Picture]:
         title = f"scale {scale:g}: {size_of(wall.site)} px, {figures['placed']} stones, "
         title += f"F_SF {figures['F_SF']:.2f}"
         walls.append((title, found.built.wall(one), colours))
-    yield Picture(
+    yield ItemPicture(
         "fig29", plot_walls(walls, 2),
         "The wall at several resolutions, in px of the source; the same stone has the same colour. "
         "Numbers are the order of placement, wedges are dark red.",
     )  # fmt: skip
     figure = Figure(figsize=GROWTH_IN)
     plot_pixels(found.built.name, found.timed, figure.add_subplot())
-    yield Picture(
+    yield ItemPicture(
         "fig29-time", figure,
         "Time of the whole wall and of its longest step over the pixels of the wall, with "
         "the power laws fitted to them; exponents over the scale are twice as large.",
     )  # fmt: skip
 
 
-RESOLUTION = Item(
-    title="resolutions .5 to 2",
-    section="§6.3",
-    paper=(
-        "Fig. 29 (§6.3): the stones PR at resolutions of .5, 1, 1.5 and 2 times 280 x 80 px, each "
-        "stone in one colour, and the time of the wall and of its longest step. 'There is a "
-        "quadratic relationship between the resolution scale and the computation cost'; 'when the "
-        "image is of size 140 x 40, it only takes 0.18 min to stack 32 stones'; at the highest "
-        "resolution 'the maximum step time remains below 25 s'. Other times are only in the "
-        "picture. 'The difference in stone layout results from the non-deterministic nature of the "
-        "algorithm.'",
-    ),
+RESOLUTION = PaperItem(
+    **paper("fig29"),
     study=by_scale,
-    notes=(
-        "All walls have the seed of the plan in common and come out the same whenever they are "
-        "planned again. Every resolution has positions and indices of its own, and one other "
-        "choice changes all that follow.",
-        HOW_TIMED,
-    ),
     tables={"walls": _scales_table},
     times={
         "claims": lambda found: findings_table(
@@ -327,14 +292,14 @@ QUICK = Sizes((8, 16, 32), (0.1, 0.4))
 
 
 @dataclass(frozen=True)
-class Grown:
+class GrowthWall:
     """A wall, with the numbers of stones and clusters that its time should depend on."""
 
     sampling: Sampling
     distance: float
     Q: int
     K: int
-    planned: Planned
+    planned: TimedWall
 
     @property
     def candidates(self) -> int:
@@ -347,10 +312,10 @@ class Grown:
         return sum(step.seconds for step in self.planned.steps)
 
 
-Grew = Sequence[Grown]
+Grew = Sequence[GrowthWall]
 
 
-def by_stones(context: Context, sizes: Sizes | None = None) -> tuple[Grown, ...]:
+def by_stones(context: Context, sizes: Sizes | None = None) -> tuple[GrowthWall, ...]:
     """Plan walls: variant and full over the stones, then variant over the clusters."""
     sizes = sizes or (QUICK if context.quick else Sizes())
     usual = method_settings("paper").clusters.distance
@@ -361,21 +326,21 @@ def by_stones(context: Context, sizes: Sizes | None = None) -> tuple[Grown, ...]
     return tuple(_grown(context, *one) for one in asked)
 
 
-def _grown(context: Context, sampling: Sampling, distance: float, count: int) -> Grown:
+def _grown(context: Context, sampling: Sampling, distance: float, count: int) -> GrowthWall:
     wall = rubble(count, context.seed, WALL_PX)
     changes = {"sampling": sampling, "clusters": {"distance": distance}}
     settings = method_settings("paper").updated(changes).clusters
     clusters = cluster_stones(wall.source.stones(None), PoseBook(), settings)
-    return Grown(
+    return GrowthWall(
         sampling, distance, count, len({*clusters.values()}), timed(context, wall, changes)
     )
 
 
-def _of(walls: Grew, sampling: Sampling) -> list[Grown]:
+def _of(walls: Grew, sampling: Sampling) -> list[GrowthWall]:
     return [wall for wall in walls if wall.sampling == sampling]
 
 
-def counts(walls: Grew) -> tuple[Finding, ...]:
+def counts(walls: Grew) -> tuple[ClaimCheck, ...]:
     """Compare numbers of candidates with §6.2."""
     variant, full = _of(walls, "variant"), _of(walls, "full")
     return (
@@ -386,7 +351,7 @@ def counts(walls: Grew) -> tuple[Finding, ...]:
     )  # fmt: skip
 
 
-def seconds(walls: Grew) -> tuple[Finding, ...]:
+def seconds(walls: Grew) -> tuple[ClaimCheck, ...]:
     """Compare times with §6.2."""
     variant, full = _of(walls, "variant"), _of(walls, "full")
     return (
@@ -409,14 +374,14 @@ def _power(
     expected: float,
     *,
     bound: bool = False,
-) -> Finding:
+) -> ClaimCheck:
     """Compare an exponent with an expected one; a smaller one agrees too for a `bound`."""
     power = exponent(points)
     if power is None:
-        return Finding(claim, f"{what}: too few sizes.", None)
+        return ClaimCheck(claim, f"{what}: too few sizes.", None)
     words = f"exponent of the {what}: {power:.2f}, of {len(points)} walls (expected {expected:g})."
     off = power - expected
-    return Finding(claim, words, off <= LIMIT if bound else abs(off) <= LIMIT)
+    return ClaimCheck(claim, words, off <= LIMIT if bound else abs(off) <= LIMIT)
 
 
 def _counted(walls: Grew) -> Table:
@@ -444,7 +409,7 @@ def _timed(walls: Grew) -> Table:
     )
 
 
-def _growth_picture(walls: Grew) -> Picture:
+def _growth_picture(walls: Grew) -> ItemPicture:
     figure = Figure(figsize=(8.4, 3.4), layout="constrained")
     axes = figure.subplots(1, 2, squeeze=False)[0]
     variant = tuple((float(w.Q * w.K), w.stepping) for w in _of(walls, "variant"))
@@ -454,30 +419,16 @@ def _growth_picture(walls: Grew) -> Picture:
         ax=axes[0], size="stones Q x clusters K",
     )  # fmt: skip
     plot_growth((Series("full batch sampling", full, fitted(full)),), ax=axes[1], size="stones Q")
-    return Picture(
+    return ItemPicture(
         "growth", figure,
         "Time of all steps of a wall: with variant sampling over Q K, with the full batch over Q, "
         "with the power laws fitted to them. The paper derives exponents of 1 and 2.",
     )  # fmt: skip
 
 
-GROWTH = Item(
-    title="time against stones and clusters",
-    section="§6.2",
-    paper=(
-        "§6.2: initial rotation is O(Q) in the number of stones Q, clustering O(Q^2 log Q); "
-        "placement, stabilisation and selection of a step are O(K) in the number of clusters K "
-        "with variant sampling and O(Q) with the full batch. 'For the entire wall construction, "
-        "the time complexity using variant sampling is O(QK), and using full batch sampling is "
-        "O(Q^2).' It is derived, not measured, and takes the cost of a candidate as constant.",
-    ),
+GROWTH = PaperItem(
+    **paper("growth"),
     study=by_stones,
-    notes=(
-        f"Generated rubble for a wall of {WALL_PX[0]} x {WALL_PX[1]} px, smaller stones the more "
-        "there are. A count of candidates is the same on every machine: what the paper derives is "
-        "that count.",
-        HOW_TIMED,
-    ),
     claims=counts,
     tables={"walls": _counted},
     times={

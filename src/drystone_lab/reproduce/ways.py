@@ -6,11 +6,11 @@ from statistics import median
 
 from drystone_lab.pictures.charts import group_panels, plot_two_figures
 from drystone_lab.reproduce import cells
-from drystone_lab.reproduce.cells import METRICS, Finding, rounded
-from drystone_lab.reproduce.item import Item, Picture
+from drystone_lab.reproduce.cells import METRICS, ClaimCheck, rounded
+from drystone_lab.reproduce.item import ItemPicture, PaperItem, paper
 from drystone_lab.reproduce.study import (
-    Built,
     Study,
+    StudyWalls,
     Trials,
     pairs_table,
     sheet,
@@ -29,7 +29,7 @@ PAPERS = "0.7"
 """The threshold that the paper found best."""
 
 
-def _beta_picture(found: Built) -> Picture:
+def _beta_picture(found: StudyWalls) -> ItemPicture:
     panels = {
         f"{group.name}, {figure}": {one.way: one.values(figure) for one in group}
         for group in found.by_wall
@@ -40,23 +40,12 @@ def _beta_picture(found: Built) -> Picture:
         "A point a wall, a row a set of stones. F_AH is better when lower, the others when higher; "
         "F_AV and F_AH in percent."
     )
-    return Picture("beta", group_panels(panels, title=title), caption)
+    return ItemPicture("beta", group_panels(panels, title=title), caption)
 
 
-BETA = Item(
-    title="The threshold of GDS in Eq. 12",
-    section="§3.6",
-    paper=(
-        "§3.6: in the majority of the cases evaluated, beta = 0.7 in H(GDS, beta) of Eq. 12 "
-        "resulted in better outcomes than GDS alone or beta = 0, 0.5 or 0.9. Neither the cases "
-        "nor the numbers are given.",
-    ),
+BETA = PaperItem(
+    **paper("beta"),
     study=Study(walls=MASONS, ways={beta: (("placement.beta", float(beta)),) for beta in BETAS}),
-    notes=(
-        "GDS alone and beta = 0 are one function, as GDS is never below 0: H(x, 0) = x. The paper "
-        "names both; perhaps its GDS alone is an objective without LFR and without the distance "
-        "from the end.",
-    ),
     tables={
         "beta": ways_table(
             "Walls by the threshold of GDS",
@@ -80,10 +69,10 @@ SAMPLED: dict[str, Changes] = {name: (("sampling", name),) for name in SAMPLINGS
 PARTS = ("placement", "stabilisation", "contacts", "limit analysis", "indices")
 
 
-def _sampling_claims(found: Built) -> Iterator[Finding]:
+def _sampling_claims(found: StudyWalls) -> Iterator[ClaimCheck]:
     counts = {one.way: one.median("candidates") or 0.0 for one in found}
     times = {way: count / counts["variant"] for way, count in counts.items()}
-    yield Finding(
+    yield ClaimCheck(
         "Two-fold sampling is twice as expensive as variant sampling.",
         "candidates of a wall over those of variant sampling, medians: "
         f"{', '.join(f'{way} {ratio:.2f}' for way, ratio in times.items())}.",
@@ -92,7 +81,7 @@ def _sampling_claims(found: Built) -> Iterator[Finding]:
     whole = {one.way: _whole(one) for one in found}
     ends = Counter(outcome.plan["stopped"] for one in found for outcome in one.outcomes)
     stopped = ", ".join(f"'{reason}' {count} times" for reason, count in ends.most_common())
-    yield Finding(
+    yield ClaimCheck(
         "All methods stack stones to fill the wall.",
         f"all stones are placed by {', '.join(f'{way} {n}' for way, n in whole.items())} of "
         f"{len(found.seeds)} walls each; construction ended with {stopped}.",
@@ -101,7 +90,7 @@ def _sampling_claims(found: Built) -> Iterator[Finding]:
     (full,) = found.of("full")
     plans = [outcome.plan["steps"] for outcome in full.outcomes]
     kinds = sum(plan not in plans[:place] for place, plan in enumerate(plans))
-    yield Finding(
+    yield ClaimCheck(
         "Full batch has nothing to choose at random.",
         f"its seeds give {kinds} different walls.",
         kinds == 1,
@@ -112,7 +101,7 @@ def _whole(trials: Trials) -> int:
     return sum(o.figures["placed"] == o.figures["stones"] for o in trials.outcomes)
 
 
-def _sampling_times(found: Built) -> Table:
+def _sampling_times(found: StudyWalls) -> Table:
     return Table(
         "Seconds a wall by the sampling of candidates, medians",
         ("sampling", "wall, s", *(f"{part}, s" for part in PARTS)),
@@ -129,19 +118,9 @@ def _sampling_times(found: Built) -> Table:
     )
 
 
-SAMPLING = Item(
-    title="Sampling: uniform, two-fold, full batch beside variant",
-    section="§5.1, Fig. 16",
-    paper=(
-        "§5.1, Fig. 16: uniform sampling (of 7 stones) gives a more irregular layout than "
-        "variant sampling, above all at the ends and in the fourth course. Two-fold sampling "
-        "fills the right end better and has straighter courses, and costs twice as much. Full "
-        "batch has straighter courses too, but for the last. No metrics are given, and 'For "
-        "all sampling methods, the algorithm is able to complete the construction process by "
-        "stacking stones to fill the target wall volume'.",
-    ),
+SAMPLING = PaperItem(
+    **paper("fig16"),
     study=Study(walls=(PR,), ways=SAMPLED),
-    notes=("Which filling the paper calls complete is not said; Algorithm 1 ends above .99.",),
     claims=_sampling_claims,
     tables={
         "fig16": ways_table(
@@ -171,18 +150,18 @@ def _wedge_share(trials: Trials) -> tuple[float | None, ...]:
     )
 
 
-def _stabilised_claims(found: Built) -> Iterator[Finding]:
+def _stabilised_claims(found: StudyWalls) -> Iterator[ClaimCheck]:
     for group in found.by_wall:
         medians = {one.way: one.median("F_SF") or 0.0 for one in group}
         best = max(medians, key=lambda way: medians[way])
-        yield Finding(
+        yield ClaimCheck(
             f"Rotation and wedging together fill a wall best ({group.name}).",
             f"the median filling is largest with {best}.",
             best == "both",
         )
 
 
-def _wedges_picture(group: Built, number: int) -> Picture:
+def _wedges_picture(group: StudyWalls, number: int) -> ItemPicture:
     points = {
         one.way: tuple(zip(_wedge_share(one), one.values("F_SF"), strict=True)) for one in group
     }
@@ -190,7 +169,7 @@ def _wedges_picture(group: Built, number: int) -> Picture:
     across = f"{group.name}: area of wedges, % of the wall"
     figure = plot_two_figures(points, across=across, up="F_SF").get_figure(root=True)
     assert figure is not None  # noqa: S101 - it was made for the axes
-    return Picture(f"fig20_{number}", figure, f"{group.name}: a point a wall, medians large.")
+    return ItemPicture(f"fig20_{number}", figure, f"{group.name}: a point a wall, medians large.")
 
 
 def _wedge_cells(one: Trials) -> tuple[float | None, ...]:
@@ -198,7 +177,7 @@ def _wedge_cells(one: Trials) -> tuple[float | None, ...]:
     return one.median("wedges"), rounded(median(shares))
 
 
-def _pairs_of_wall(number: int, found: Built) -> Table:
+def _pairs_of_wall(number: int, found: StudyWalls) -> Table:
     table = pairs_table(
         "{wall}: both against other ways to stabilise, pairs of one seed",
         "both",
@@ -208,24 +187,14 @@ def _pairs_of_wall(number: int, found: Built) -> Table:
     return table(found.by_wall[number])
 
 
-STABILISATION = Item(
-    title="Stabilisation: filling against area of wedges",
-    section="§5.2, Fig. 20",
-    paper=(
-        "§5.2, Fig. 20: walls of the fifth set, a point each, by filling and area of wedges: "
-        "'combining rotation and wedging techniques enhances the algorithm's performance in "
-        "optimizing the stone filling ratio'. Its numbers are in the picture only.",
-    ),
+STABILISATION = PaperItem(
+    **paper("fig20"),
     study=Study(
         walls=(LIU_5, IR),
         ways={method: (("stabilise.method", method),) for method in STABILISED},
         quick_seeds=4,
         quick_walls=(coarser(LIU_5, 0.2), coarser(IR, 0.2)),
         at_hand=True,
-    ),
-    notes=(
-        "The stones of Liu et al. (2018) are not public: a stand-in is a set of generated polygons "
-        "of much noise, not theirs.",
     ),
     claims=_stabilised_claims,
     tables={
@@ -250,16 +219,8 @@ SIDES: dict[str, Changes] = {ONE: (), TWO: TWO_SIDED}
 FLUSH = (*METRICS, "E_FLUSH")
 
 
-BOTH_ENDS = Item(
-    title="Walls built from both ends",
-    section="§5.2, Fig. 21",
-    paper=(
-        "§5.2, Fig. 21: built from both ends (Eq. 29), stones are aligned with both ends of "
-        "the walls R, PR and IR, and the weak region with voids moves from the right end to "
-        "the middle, where both halves meet. No metrics are given.",
-    ),
+BOTH_ENDS = PaperItem(**paper("fig21"),
     study=Study(walls=MASONS, ways=SIDES, quick_seeds=4),
-    notes=("Where the voids are was not measured: the picture shows it for one seed.",),
     tables={
         "fig21": ways_table(
             "Walls built from one end and from both",
@@ -289,20 +250,13 @@ BOTH_ENDS = Item(
 NUMBERS = {"R": "B.30", "PR": "B.31", "IR": "B.32"}
 
 
-def _methods_picture(group: Built) -> Picture:
+def _methods_picture(group: StudyWalls) -> ItemPicture:
     number = NUMBERS.get(group.name, "B.1")
     caption = f"Fig. {number}, stones {group.name}: left from one end, right from both."
     return sheet(group, f"fig{number.replace('.', '')}", len(SIDES), lambda one: one.way, caption)
 
 
-ALL_METHODS = Item(
-    title="Walls of the stones of Fig. 18 by other methods",
-    section="B.1, Figs. B.30 to B.32",
-    paper=(
-        "B.1, Figs. B.30 to B.32: walls of the regular, partially regular and irregular "
-        "stones by various methods of construction, on images of 289 x 79, 280 x 80 and "
-        "433 x 115 px. No numbers, and no names of the methods, are in the text.",
-    ),
+ALL_METHODS = PaperItem(**paper("figB30-32"),
     study=Study(
         walls=MASONS,
         ways={
@@ -313,10 +267,6 @@ ALL_METHODS = Item(
         seeds=1,
         quick_seeds=1,
         quick_walls=(coarser(R, 0.1), coarser(PR, 0.25)),  # the many stones of IR take longest
-    ),
-    notes=(
-        "One seed a method; how much walls of one method differ from seed to seed is seen in "
-        "table2, fig16 and fig21. The quick version has coarser walls, and none of IR.",
     ),
     tables={
         "figB30_32": walls_table(

@@ -8,10 +8,7 @@ import numpy as np
 from numpy.random import Generator
 
 from drystone.errors import UsageError
-from drystone.generate.brick import BrickSettings, brick_stones
-from drystone.generate.fourier import FourierSettings, fourier_stones
-from drystone.generate.polygon import PolygonSettings, polygon_stones
-from drystone.generate.rubble import RubbleSettings, rubble_stones
+from drystone.generate import GENERATORS
 from drystone.model.site import Site
 from drystone.model.stone import Stone, StoneSet
 
@@ -55,14 +52,14 @@ class DrawSettings:
 def draw_wall(settings: DrawSettings, rng: Generator) -> tuple[StoneSet, Site]:
     """Draw stones, numbered from 1 in the order in which they arrive, and the site of their wall.
 
-    Examples
-    --------
     >>> stones, site = draw_wall(DrawSettings(kinds=("brick",)), np.random.default_rng(1))
     >>> len(stones), site
     (20, Site(width_px=118, height_px=47, scale=1.0, px_per_m=None))
     """
     kind = settings.kinds[int(rng.integers(len(settings.kinds)))]
-    stones = in_order(KINDS[kind](settings, rng), rng)
+    kind_settings, make = GENERATORS[kind]
+    numbers = {"count": settings.stones} | KINDS[kind](settings, rng)
+    stones = in_order(make(kind_settings(**numbers), rng), rng)
     area = stones.total_area_px / settings.surplus
     height = max(1, round((area / settings.aspect) ** 0.5))
     return stones, Site(max(1, round(settings.aspect * height)), height)
@@ -78,68 +75,48 @@ def in_order(stones: StoneSet, rng: Generator) -> StoneSet:
     )
 
 
-def _fourier(settings: DrawSettings, rng: Generator) -> StoneSet:
+def _fourier(settings: DrawSettings, rng: Generator) -> dict[str, float]:
     """Round to elongated, the largest almost twice as large as the smallest."""
     radius = settings.size_px / np.pi**0.5
-    return fourier_stones(
-        FourierSettings(
-            count=settings.stones,
-            smallest_radius_px=0.7 * radius,
-            largest_radius_px=1.25 * radius,
-            D2=float(rng.uniform(0.0, 0.2)),
-        ),
-        rng,
-    )
+    return {
+        "smallest_radius_px": 0.7 * radius, "largest_radius_px": 1.25 * radius,
+        "D2": float(rng.uniform(0.0, 0.2)),
+    }  # fmt: skip
 
 
-def _polygon(settings: DrawSettings, rng: Generator) -> StoneSet:
+def _polygon(settings: DrawSettings, rng: Generator) -> dict[str, float]:
     """Bricks whose corners are moved a little or much."""
-    return polygon_stones(
-        PolygonSettings(
-            count=settings.stones,
-            width_px=1.2 * settings.size_px,
-            height_px=settings.size_px / 1.2,
-            noise=float(rng.uniform(0.1, 0.4)),
-        ),
-        rng,
-    )
+    return {
+        "width_px": 1.2 * settings.size_px, "height_px": settings.size_px / 1.2,
+        "noise": float(rng.uniform(0.1, 0.4)),
+    }  # fmt: skip
 
 
-def _brick(settings: DrawSettings, rng: Generator) -> StoneSet:
+def _brick(settings: DrawSettings, rng: Generator) -> dict[str, float]:
     """Bricks, a third of them halves."""
     halves = settings.stones // 3
     # The mean area is that of the set, halves among them.
     share = 1.0 - 0.5 * halves / settings.stones
     aspect = float(rng.uniform(1.6, 3.0))
     height = max(2, round(settings.size_px / (share * aspect) ** 0.5))
-    return brick_stones(
-        BrickSettings(
-            count=settings.stones - halves, height_px=height, aspect=aspect, halves=halves
-        ),
-        rng,
-    )
+    count = settings.stones - halves
+    return {"count": count, "halves": halves, "height_px": height, "aspect": aspect}
 
 
-def _rubble(settings: DrawSettings, rng: Generator) -> StoneSet:
+def _rubble(settings: DrawSettings, _: Generator) -> dict[str, float]:
     """Stones of a few course heights."""
     ratio = 0.9
     height = settings.size_px * (settings.stones / ratio / settings.aspect) ** 0.5
-    return rubble_stones(
-        RubbleSettings(
-            count=settings.stones,
-            width_px=settings.aspect * height,
-            height_px=height,
-            area_ratio=ratio,
-            courses=min(3, settings.stones),
-        ),
-        rng,
-    )
+    return {
+        "width_px": settings.aspect * height, "height_px": height, "area_ratio": ratio,
+        "courses": min(3, settings.stones),
+    }  # fmt: skip
 
 
-KINDS: Mapping[str, Callable[[DrawSettings, Generator], StoneSet]] = types.MappingProxyType(
+KINDS: Mapping[str, Callable[[DrawSettings, Generator], dict[str, float]]] = types.MappingProxyType(
     {"fourier": _fourier, "polygon": _polygon, "brick": _brick, "rubble": _rubble}
 )
-"""What makes stones of each kind."""
+"""Settings of the generator of each kind, beside the number of stones."""
 
 
 def _refused(what: str, cure: str) -> UsageError:

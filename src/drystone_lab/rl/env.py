@@ -26,14 +26,14 @@ from drystone_lab.rl.draw import DrawSettings, draw_wall
 from drystone_lab.rl.episode import ARRIVING, Episode, prepared
 
 Floats32 = NDArray[np.float32]
-Observation = dict[str, Floats32]
+WallObservation = dict[str, Floats32]
 
 STONE = ("area", "width", "height")
 """Of an offer, beside its features: of the stone over the wall's, the same for all its offers but
 for how it lies."""
 
 
-def observation_space(offers: int, columns: int) -> spaces.Space[Observation]:
+def observation_space(offers: int, columns: int) -> spaces.Space[WallObservation]:
     """Return the space of :func:`observation`."""
     shape = (offers, len(FEATURES) + len(STONE))
     space: Any = spaces.Dict(
@@ -43,21 +43,17 @@ def observation_space(offers: int, columns: int) -> spaces.Space[Observation]:
             "left": spaces.Box(0.0, 1.0, (2,), np.float32),
         }
     )
-    found: spaces.Space[Observation] = space  # a Dict does not know of what its values are
+    found: spaces.Space[WallObservation] = space  # a Dict does not know of what its values are
     return found
 
 
-def observation(episode: Episode, offers: int, columns: int) -> Observation:
+def observation(episode: Episode, offers: int, columns: int) -> WallObservation:
     """Return what is seen.
 
-    Returns
-    -------
-    dict of str to float32 arrays
-        ``"offers"``, (offers, F): a row an offer (:data:`FEATURES`, then :data:`STONE`), zeros
-        where there is none.  ``"profile"``, (columns,): height of the wall's top from its left to
-        its right end, over the height that it is to have; means of equal parts of its width.
-        ``"left"``, (2,): the share of the stones that have not arrived yet, and of the wall that
-        is still to be filled.
+    ``"offers"``, (offers, F): a row an offer (:data:`FEATURES`, then :data:`STONE`), zeros where
+    there is none.  ``"profile"``, (columns,): height of the wall's top from left to right over the
+    height that it is to have, means of equal parts of its width.  ``"left"``, (2,): the share of
+    the stones that have not arrived yet, and of the wall that is still to be filled.
     """
     fitting = max(1, len(episode.workshop.fitting))
     left = np.array([episode.waiting / fitting, 1.0 - episode.build.wall.filling])
@@ -121,7 +117,7 @@ OPTIONS = ("stones", "site", "order")
 """What :meth:`WallEnv.reset` may be told."""
 
 
-class WallEnv(gymnasium.Env[Observation, np.int64]):
+class WallEnv(gymnasium.Env[WallObservation, np.int64]):
     """Build a wall from stones that arrive in a random order.
 
     An action says which of the places offered for the stone that has arrived it is built in.  A
@@ -192,22 +188,12 @@ class WallEnv(gymnasium.Env[Observation, np.int64]):
 
     def reset(
         self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
-    ) -> tuple[Observation, dict[str, Any]]:
+    ) -> tuple[WallObservation, dict[str, Any]]:
         """Begin a wall.
 
-        Parameters
-        ----------
-        seed : int, optional
-            Of the stones and their order, in this episode and those after it.
-        options : mapping, optional
-            ``"stones"``: a StoneSet, with ``"site"``: a Site, to build with instead of stones
-            that are drawn; and ``"order"``: ids in the order of arrival, random when missing.
-
-        Raises
-        ------
-        UsageError
-            E123: other options, or an order that is none; E126: there are no stones; E201: an id
-            of the order is no stone's.
+        Options: ``"stones"`` (a StoneSet) with ``"site"`` (a Site) instead of stones that are
+        drawn; and ``"order"``, ids in the order of arrival, random when missing.  E123: other
+        options, or an order that is none; E126: there are no stones; E201: an id is no stone's.
         """
         super().reset(seed=seed)
         stones, site, order = self._given(options or {})
@@ -218,14 +204,11 @@ class WallEnv(gymnasium.Env[Observation, np.int64]):
         self._ended = False
         return self._seen(), self._info(illegal=False)
 
-    def step(self, action: np.int64) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
+    def step(self, action: np.int64) -> tuple[WallObservation, float, bool, bool, dict[str, Any]]:
         """Build the stone that has arrived; see :class:`gymnasium.Env`.
 
-        Raises
-        ------
-        UsageError
-            E151: there is no such action, the episode is over, or with ``illegal="error"`` the
-            place is not offered.
+        E151: there is no such action, the episode is over, or with ``illegal="error"`` the place is
+        not offered.
         """
         episode = self._running()
         if self._ended:
@@ -299,7 +282,7 @@ class WallEnv(gymnasium.Env[Observation, np.int64]):
             raise _no_action("no wall was begun", "Call `reset` first.")
         return self._episode
 
-    def _seen(self) -> Observation:
+    def _seen(self) -> WallObservation:
         return observation(self._running(), self._offers, self._columns)
 
     def _info(self, *, illegal: bool) -> dict[str, Any]:

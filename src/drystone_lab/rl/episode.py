@@ -28,42 +28,15 @@ quarter turns, from both ends, the first of four places at which the stone can b
 
 
 def prepared(stones: StoneSet, site: Site, settings: PlannerSettings = ARRIVING) -> Workshop:
-    """Return the workshop of some episodes.
-
-    Raises
-    ------
-    UsageError
-        E126: there are no stones; E120, E145: see :class:`drystone.planner.workshop.Workshop`.
-    """
+    """Return the workshop of some episodes."""
     return Workshop.prepare(stones, site, settings)
 
 
 class Episode:
     """One wall: stones arrive, each is built in one of the places offered, or put aside.
 
-    Parameters
-    ----------
-    workshop : Workshop
-        Stones and site, as :func:`prepared`; may be used for several episodes.
-    order : sequence of int, optional
-        Ids in the order of arrival; ascending when missing.  Stones that fit in no pose, or are
-        not in it, never arrive.
-    settings : PlannerSettings
-        How stones are placed, the same as of the workshop; its `goal` says what a wall is worth.
-    most : int or None
-        How many places are offered at most: the lowest, by centroid.
-
-    Attributes
-    ----------
-    build : Build
-        What is built.
-    offers : tuple of Offer
-        Places of the stone that has arrived, after each of which the wall stands; empty when the
-        episode is over.
-    stone_id : int or None
-        The stone that has arrived; None when the episode is over.
-    aside : int
-        How many stones were put aside.
+    Stones arrive in `order`, ascending when missing; those that fit in no pose never do.  At most
+    `most` places are offered: the lowest, by centroid.
     """
 
     def __init__(
@@ -102,13 +75,7 @@ class Episode:
         return len(self._waiting)
 
     def take(self, position: int | None) -> None:
-        """Build the stone that has arrived, and let the next come that can be built.
-
-        Raises
-        ------
-        IndexError
-            When nothing is offered under this number.
-        """
+        """Build the stone that has arrived, and let the next come that can be built."""
         if position is None:
             self.aside += 1
         else:

@@ -35,31 +35,21 @@ FREE = replace(ARRIVING, order="free", sampling="variant")
 COVERED = 0.95
 """Of the intervals."""
 
-Walls = Mapping[str, Sequence[float]]
+PolicyFigures = Mapping[str, Sequence[float]]
 """The figures of some walls by their names."""
 
 
 @dataclass(frozen=True)
 class Interval:
-    """A mean, and where that of all walls of their kind lies.
-
-    Parameters
-    ----------
-    mean : float
-        Of the differences.
-    half : float
-        Half the width of the interval by Student's t; infinite for a single difference.
-    """
+    """A mean, and where that of all walls of their kind lies."""
 
     mean: float
-    half: float
+    half: float  # Half the width of the interval by Student's t; infinite for a single difference
 
     @classmethod
     def of(cls, differences: Sequence[float]) -> "Interval":
         """Return the interval of some differences.
 
-        Examples
-        --------
         >>> Interval.of([1.0, 1.0, 1.0])
         Interval(mean=1.0, half=0.0)
         """
@@ -86,13 +76,7 @@ def held_out_wall(kind: str, number: int, draw: DrawSettings) -> Workshop:
 def figures_by(
     policy: str, workshops: Sequence[Workshop], settings: PlannerSettings = ARRIVING
 ) -> dict[str, list[float]]:
-    """Return the figures of the walls that a policy builds.
-
-    Raises
-    ------
-    UsageError
-        E146: there is no such policy.
-    """
+    """Return the figures of the walls that a policy builds."""
     found: dict[str, list[float]] = {name: [] for name in FIGURES}
     rule = replace(settings, selection_rule=rule_of(policy))
     for number, workshop in enumerate(workshops):
@@ -110,7 +94,7 @@ def figures_by(
     return found
 
 
-def differences(first: Walls, second: Walls) -> dict[str, Interval]:
+def differences(first: PolicyFigures, second: PolicyFigures) -> dict[str, Interval]:
     """Return what the walls of one policy have more than those of another, wall by wall."""
     return {name: Interval.of(np.subtract(first[name], second[name]).tolist()) for name in FIGURES}
 
@@ -121,7 +105,7 @@ def table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-def report(found: Mapping[str, Walls], title: str) -> str:
+def report(found: Mapping[str, PolicyFigures], title: str) -> str:
     """Return the means of each policy, and what the first has more than each of the others."""
     first, *others = found
     means = [

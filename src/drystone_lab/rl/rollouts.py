@@ -33,15 +33,7 @@ def at_random(offers: Sequence[Offer], rng: Generator) -> int:
 
 @dataclass(frozen=True, eq=False)
 class Branching:
-    """The places of one stone, and the walls that were finished from each.
-
-    Parameters
-    ----------
-    features : (n, f) float array
-        Of the places.
-    merits : (n,) float array
-        Of the finished walls.
-    """
+    """The places of one stone, and the walls that were finished from each."""
 
     features: Floats
     merits: Floats
@@ -62,19 +54,8 @@ def finished(episode: Episode, choose: Choose, rng: Generator) -> float:
 def branching(workshop: Workshop, choose: Choose, seed: Sequence[int]) -> Branching | None:
     """Build a wall up to a random stone, and finish it from each of the places of that stone.
 
-    Parameters
-    ----------
-    workshop : Workshop
-        Stones in the order of arrival, and site.
-    choose : callable
-        The policy that finishes the walls.
-    seed : sequence of int
-        Of all random choices; those of the walls that are finished are the same for all places.
-
-    Returns
-    -------
-    branching : Branching or None
-        None when no stone has a choice of places.
+    The walls that are finished have the same random numbers for all places.  None when no stone has
+    a choice of places.
     """
     rng = np.random.default_rng([*seed, 0])
     episode = Episode(workshop)
@@ -100,20 +81,6 @@ def fitted(branchings: Sequence[Branching], scale: Floats, strength: float) -> F
     """Return the weights that say best which places lead to better walls.
 
     Least squares on the differences within each branching, drawn towards 0 (ridge regression).
-
-    Parameters
-    ----------
-    branchings : sequence of Branching
-        Places and walls.
-    scale : (f,) float array
-        Spread of each feature (:func:`spread_of`).
-    strength : float
-        How many places that make no difference the walls are outweighed by, positive.
-
-    Returns
-    -------
-    weights : (f,) float array
-        Of features over their scale, in units of merit.
     """
     pairs = [one.centred for one in branchings]
     x = np.concatenate([rows for rows, _ in pairs]) / scale

@@ -49,29 +49,14 @@ Say = Callable[[str], None]
 
 @dataclass(frozen=True, kw_only=True)
 class TrainSettings:
-    """A training run; equal settings give the same weights.
-
-    Parameters
-    ----------
-    seed : int
-        Of everything, not negative.
-    rounds : int
-        How many times the value is fitted, and the policy with it.
-    walls : int
-        Of a round, of the kinds in turn; each is finished from all places of one stone.
-    strength : float
-        Of the ridge of the fit (:func:`drystone_lab.rl.rollouts.fitted`).
-    validation : int
-        Walls on which start and result are compared.
-    draw : DrawSettings
-        What walls, of which kinds.
-    """
+    """A training run; equal settings give the same weights."""
 
     seed: int = 1
-    rounds: int = 2
+    rounds: int = 2  # How many times the value is fitted, and the policy with it
+    # Of a round, of the kinds in turn; each is finished from all places of one stone
     walls: int = 100
-    strength: float = 50.0
-    validation: int = 24
+    strength: float = 50.0  # Of the ridge of the fit (:func:`drystone_lab.rl.rollouts.fitted`)
+    validation: int = 24  # Walls on which start and result are compared
     draw: DrawSettings = field(default_factory=lambda: DrawSettings(kinds=TRAINED_ON))
 
 
@@ -80,20 +65,8 @@ def train(
 ) -> ValueModel:
     """Return the model that a training run finds.
 
-    Parameters
-    ----------
-    settings : TrainSettings
-        The run.
-    say : callable
-        Told of every round.
-    seconds : float
-        No round is begun after this time.  A run that it cut short is repeated by the number of
-        rounds that the model says.
-
-    Raises
-    ------
-    UsageError
-        E123: no stone of the walls of the first round has more than one place.
+    No round is begun after `seconds`; a run that it cut short is repeated by the number of rounds
+    that the model says.
     """
     start = time.monotonic()
     found: list[Branching] = []

@@ -12,8 +12,8 @@ from typing import Any
 
 from drystone.errors import DrystoneError, UsageError
 from drystone.model.stone import StoneSet
-from drystone_lab.runs.outcome import Outcome, execute
-from drystone_lab.runs.runner import Work, died
+from drystone_lab.runs.outcome import RunOutcome, execute
+from drystone_lab.runs.runner import RunWorker, died
 from drystone_lab.runs.spec import RunSpec
 
 PATIENCE_S = 5.0
@@ -23,7 +23,7 @@ OPTION = "--dask"
 
 
 @contextmanager
-def cluster_at_work(address: str, *, patience_s: float = PATIENCE_S) -> Iterator[Work]:
+def cluster_at_work(address: str, *, patience_s: float = PATIENCE_S) -> Iterator[RunWorker]:
     """Have runs done by a Dask cluster, as long as the block lasts.
 
     The runs of a worker that dies are done by others; one at which so many workers died that the
@@ -35,19 +35,6 @@ def cluster_at_work(address: str, *, patience_s: float = PATIENCE_S) -> Iterator
     Published stones are read by the workers: from the folder that is given here if it is there on
     the worker's machine, else from the folder that ``DRYSTONE_DATA`` names there.  A file of
     one's own is read here, and its stones are sent.
-
-    Yields
-    ------
-    Work
-        An interrupt (Ctrl-C) goes to the caller after the outcomes of the runs that have ended,
-        and so does the error of a run; runs that have not begun are then called off.
-
-    Raises
-    ------
-    UsageError
-        E403: Dask is not installed; E404: nobody answers at the address, or there is no worker;
-        E405: the scheduler or a worker has another version of this package.  While it works, E404
-        is raised when the connection is lost, and E405 by a worker that joined later.
     """
     distributed = _distributed()
     client = _client(distributed, address, patience_s)
@@ -59,13 +46,7 @@ def cluster_at_work(address: str, *, patience_s: float = PATIENCE_S) -> Iterator
 
 
 def check_versions(client: Any) -> None:
-    """Compare the versions of this package on a cluster.
-
-    Raises
-    ------
-    UsageError
-        E405: they are not all this one, which would plan other walls under the same names.
-    """
+    """Compare the versions of this package on a cluster."""
     found = dict(client.run(version, "drystone", on_error="return"))
     try:
         found["scheduler"] = client.run_on_scheduler(version, "drystone")
@@ -82,18 +63,10 @@ def check_versions(client: Any) -> None:
         raise _other_version(f"drystone is {here} here, and {listed}.")
 
 
-def execute_there(spec: RunSpec, data: Path | None, stones: StoneSet | None) -> Outcome:
+def execute_there(spec: RunSpec, data: Path | None, stones: StoneSet | None) -> RunOutcome:
     """Plan the wall of a run, on a worker.
 
-    Parameters
-    ----------
-    spec : RunSpec
-        The run.
-    data : Path or None
-        Folder of the published data where the run is asked for; if it is not there on this
-        machine, that of ``DRYSTONE_DATA``.
-    stones : StoneSet or None
-        Those of a file.
+    `data` is the folder here; if it is not there on this machine, that of ``DRYSTONE_DATA``.
     """
     if data is not None and not data.is_dir():
         data = Path(os.environ.get("DRYSTONE_DATA", data))
@@ -115,26 +88,23 @@ def _distributed() -> Any:
 def _client(distributed: Any, address: str, patience_s: float) -> Any:
     """Return a client of a cluster that has a worker."""
     cure = "Start `dask scheduler` and `dask worker`, and give the address that they name."
+    what = f"no Dask scheduler answers at {address}."
+    client = None
     try:
         client = distributed.Client(address, timeout=patience_s, set_as_default=False)
+        what = f"the Dask cluster at {address} has no workers."
+        client.wait_for_workers(1, timeout=patience_s)
     except (OSError, ValueError, AssertionError) as error:
         # A timeout is an OSError; Dask asserts that its own loop began within ten seconds.
-        raise UsageError(
-            "E404", f"no Dask scheduler answers at {address}.", where=OPTION, cure=cure
-        ) from error
-    try:
-        client.wait_for_workers(1, timeout=patience_s)
-    except TimeoutError as error:
-        client.close()
-        raise UsageError(
-            "E404", f"the Dask cluster at {address} has no workers.", where=OPTION, cure=cure
-        ) from error
+        if client is not None:
+            client.close()
+        raise UsageError("E404", what, where=OPTION, cure=cure) from error
     return client
 
 
 def _outcomes(
     distributed: Any, client: Any, specs: Sequence[RunSpec], data: Path | None
-) -> Iterator[Outcome]:
+) -> Iterator[RunOutcome]:
     """Do runs."""
     if not specs:
         return
@@ -160,16 +130,10 @@ def _outcomes(
         client.cancel(list(asked.values()))
 
 
-def _outcome(distributed: Any, future: Any, spec: RunSpec) -> Outcome:
-    """Return the outcome of a run that has ended.
-
-    Raises
-    ------
-    DrystoneError
-        See :func:`cluster_at_work`; or what the run raised.
-    """
+def _outcome(distributed: Any, future: Any, spec: RunSpec) -> RunOutcome:
+    """Return the outcome of a run that has ended."""
     try:
-        outcome: Outcome = future.result()
+        outcome: RunOutcome = future.result()
     except distributed.KilledWorker as error:
         raise died(spec, "workers, one after the other,") from error
     except CancelledError as error:

@@ -11,7 +11,6 @@ from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.model.plan import Plan, StoneStep, WedgeStep
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
-from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
 from drystone.verify.replay import replay_plan
 from drystone.whole_files import write_whole
@@ -25,27 +24,16 @@ FIGURES = (
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
-    """A planned wall, as it is kept.
-
-    Parameters
-    ----------
-    key : str
-        Of the run (:attr:`RunSpec.key`).
-    figures : dict of str to float, int or None
-        By the names of :data:`FIGURES`; lengths and areas in source px; None where a figure is not
-        defined.
-    plan : dict
-        Contents of its plan.json.
-    times : dict of str to float
-        Seconds on the machine where it ran: ``"wall"`` from the stones to the last step, and the
-        parts of the work (:mod:`drystone.planner.profile`).  Nothing else differs between
-        machines.
-    """
+class RunOutcome:
+    """A planned wall, as it is kept."""
 
     key: str
+    # By the names of :data:`FIGURES`; lengths and areas in source px; None where a figure is not
+    # defined
     figures: Mapping[str, float | int | None]
-    plan: Mapping[str, Any]
+    plan: Mapping[str, Any]  # Contents of its plan.json
+    # Seconds on the machine where it ran: ``"wall"`` from the stones to the last step, and the
+    # parts of the work (:mod:`drystone.planner.profile`).  Nothing else differs between machines
     times: Mapping[str, float]
 
     @property
@@ -67,16 +55,9 @@ class Outcome:
         return replay.stages[-1].after
 
 
-def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) -> Outcome:
+def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) -> RunOutcome:
     """Plan the wall of a run, in this process.
 
-    Raises
-    ------
-    KeyboardInterrupt
-        Ctrl-C: the part of the wall that is built is no outcome.
-
-    Examples
-    --------
     >>> from drystone_lab.runs.spec import generated
     >>> spec = RunSpec(source=generated("brick", 1, count=6, height_px=10, aspect=2),
     ...                width=60, height=20)
@@ -88,18 +69,17 @@ def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) ->
 
         return packed(spec, data)
     stones = spec.source.stones(data) if stones is None else stones
-    settings = spec.settings()
-    result = uninterrupted(
-        plan_wall(
-            stones,
-            spec.width or float(stones.source.width_px),
-            spec.height or float(stones.source.height_px),
-            seed=spec.seed,
-            method=spec.method,
-            settings=settings,
-            scale=spec.scale,
-        )
+    result = plan_wall(
+        stones,
+        spec.width or float(stones.source.width_px),
+        spec.height or float(stones.source.height_px),
+        seed=spec.seed,
+        method=spec.method,
+        settings=spec.settings(),
+        scale=spec.scale,
     )
+    if result.status == "interrupted":  # planning takes Ctrl-C for the end of its time
+        raise KeyboardInterrupt
     plan, metrics = result.plan, result.metrics
     figures: dict[str, float | int | None] = {
         "placed": sum(isinstance(step, StoneStep) for step in plan.steps),
@@ -113,42 +93,17 @@ def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) ->
         name: sum(step.parts.get(name, 0.0) for step in result.profile.steps)
         for name in ("placement", "stabilisation", "contacts", "limit analysis", "indices")
     }
-    return Outcome(spec.key, figures, plan_to_json(plan), times)
-
-
-def uninterrupted(result: PlanResult) -> PlanResult:
-    """Return a result; raise the interrupt again that it was the end of, as no run is half a wall.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        Planning takes an interrupt for the end of its time, and says what it has.
-    """
-    if result.status == "interrupted":
-        raise KeyboardInterrupt
-    return result
+    return RunOutcome(spec.key, figures, plan_to_json(plan), times)
 
 
 class RunStore:
-    """Outcomes as files, one a run.
-
-    Parameters
-    ----------
-    folder : Path
-        Made when the first outcome is kept.
-    """
+    """Outcomes as files, one a run."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
 
-    def get(self, key: str) -> Outcome | None:
-        """Return the outcome of a run; None when it is not there.
-
-        Raises
-        ------
-        InputError
-            E401: its file is no outcome; it was cut short or changed.
-        """
+    def get(self, key: str) -> RunOutcome | None:
+        """Return the outcome of a run; None when it is not there."""
         path = self._path(key)
         try:
             return _outcome(key, json.loads(path.read_text(encoding="utf-8")))
@@ -162,7 +117,7 @@ class RunStore:
                 cure="Delete the file: its run is then done again.",
             ) from error
 
-    def put(self, outcome: Outcome) -> None:
+    def put(self, outcome: RunOutcome) -> None:
         """Keep an outcome; the file is whole or not there."""
         self.folder.mkdir(parents=True, exist_ok=True)
         data = {"figures": outcome.figures, "plan": outcome.plan, "times": outcome.times}
@@ -173,9 +128,9 @@ class RunStore:
         return self.folder / f"{key}.json"
 
 
-def _outcome(key: str, data: Any) -> Outcome:
+def _outcome(key: str, data: Any) -> RunOutcome:
     """Return what a file holds; anything else is one of the errors of plain Python."""
     figures, plan, times = (dict(data[name]) for name in ("figures", "plan", "times"))
     if not {"wall"} <= times.keys() or not set(FIGURES) <= figures.keys() or "steps" not in plan:
         raise KeyError(key)
-    return Outcome(key, figures, plan, times)
+    return RunOutcome(key, figures, plan, times)

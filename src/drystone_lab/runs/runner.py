@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from drystone.errors import DrystoneError, InputError
-from drystone_lab.runs.outcome import Outcome, RunStore, execute
+from drystone_lab.runs.outcome import RunOutcome, RunStore, execute
 from drystone_lab.runs.spec import RunSpec
 
 
@@ -23,8 +23,6 @@ def died(spec: RunSpec | str, who: str) -> DrystoneError:
 def absent_data(absent: Sequence[str], *, known: bool) -> InputError:
     """Return the error about published stones that are not there (E100).
 
-    Examples
-    --------
     >>> absent_data(["almeida/R.png", "almeida/PR.png"], known=True).where
     'almeida/R.png, almeida/PR.png'
     """
@@ -39,11 +37,11 @@ def absent_data(absent: Sequence[str], *, known: bool) -> InputError:
     )
 
 
-Work = Callable[[Sequence[RunSpec], Path | None], Iterator[Outcome]]
+RunWorker = Callable[[Sequence[RunSpec], Path | None], Iterator[RunOutcome]]
 """Does runs, and gives their outcomes in whatever order they end."""
 
 
-def one_by_one(specs: Sequence[RunSpec], data: Path | None) -> Iterator[Outcome]:
+def one_by_one(specs: Sequence[RunSpec], data: Path | None) -> Iterator[RunOutcome]:
     """Do runs in this process, one after the other."""
     for spec in specs:
         yield execute(spec, data)
@@ -51,28 +49,18 @@ def one_by_one(specs: Sequence[RunSpec], data: Path | None) -> Iterator[Outcome]
 
 @dataclass(frozen=True)
 class Runner:
-    """Does runs and keeps their outcomes.
-
-    Parameters
-    ----------
-    store : RunStore
-        Of the outcomes.
-    data : Path or None
-        Folder of the published data.
-    work : callable
-        Who does what is not there yet; never changes an outcome but for its times.
-    say : callable
-        Told of progress, a line each.
-    """
+    """Does runs and keeps their outcomes."""
 
     store: RunStore
-    data: Path | None = None
-    work: Work = one_by_one
-    say: Callable[[str], None] = lambda _: None
+    data: Path | None = None  # Folder of the published data
+    # Who does what is not there yet; never changes an outcome but for its times
+    work: RunWorker = one_by_one
+    say: Callable[[str], None] = lambda _: None  # Told of progress, a line each
+    again: bool = False  # Do runs again that are kept
 
-    def run(self, specs: Sequence[RunSpec]) -> tuple[Outcome, ...]:
+    def run(self, specs: Sequence[RunSpec]) -> tuple[RunOutcome, ...]:
         """Return the outcomes of runs, in their order; what ended is kept at once."""
-        found = {spec.key: self.store.get(spec.key) for spec in specs}
+        found = {spec.key: None if self.again else self.store.get(spec.key) for spec in specs}
         missing = {spec.key: spec for spec in specs if found[spec.key] is None}
         for count, outcome in enumerate(self.work(tuple(missing.values()), self.data), 1):
             self.store.put(outcome)

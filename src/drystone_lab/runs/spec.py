@@ -25,8 +25,6 @@ Changes = tuple[tuple[str, Scalar], ...]
 def flat(settings: Mapping[str, Any]) -> Changes:
     """Return nested settings with their names in full, in order.
 
-    Examples
-    --------
     >>> flat({"sampling": "full", "placement": {"beta": 0.5}})
     (('placement.beta', 0.5), ('sampling', 'full'))
     """
@@ -46,8 +44,6 @@ def _pairs(settings: Mapping[str, Any], prefix: str) -> list[tuple[str, Scalar]]
 def nested(changes: Changes) -> dict[str, Any]:
     """Return what :meth:`drystone.planner.settings.PlannerSettings.updated` takes.
 
-    Examples
-    --------
     >>> nested((("placement.beta", 0.5), ("sampling", "full")))
     {'placement': {'beta': 0.5}, 'sampling': 'full'}
     """
@@ -64,40 +60,24 @@ def nested(changes: Changes) -> dict[str, Any]:
 def told(changes: Changes) -> str:
     """Return them for people.
 
-    Examples
-    --------
     >>> told((("goal.F_AH", 3.6), ("goal.F_AV", 24.0)))
     'goal.F_AH = 3.6, goal.F_AV = 24.0'
     """
     return ", ".join(f"{name} = {value}" for name, value in changes)
 
 
-Kind = Literal["published", "file", "fourier", "polygon", "brick", "rubble"]
+SourceKind = Literal["published", "file", "fourier", "polygon", "brick", "rubble"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class StoneSource:
-    """Stones by name: published ones, a file, or what a generator makes from a seed.
+    """Stones by name: published ones, a file, or what a generator makes from a seed."""
 
-    Parameters
-    ----------
-    kind : {"published", "file", "fourier", "polygon", "brick", "rubble"}
-        Of the source.
-    name : str
-        Path in the folder of published data (``"almeida/PR.png"``), or of the file.
-    seed : int
-        Of the generator.
-    settings : tuple of (str, value)
-        Of the generator; see :func:`generated`.
-    sha256 : str
-        Of the file, see :func:`from_file`; empty if it may be any.
-    """
-
-    kind: Kind
-    name: str = ""
+    kind: SourceKind  # Of the source
+    name: str = ""  # Path in the folder of published data (``"almeida/PR.png"``), or of the file
     seed: int = 0
     settings: tuple[tuple[str, Scalar], ...] = ()
-    sha256: str = ""
+    sha256: str = ""  # Of the file, see :func:`from_file`; empty if it may be any
 
     def __str__(self) -> str:
         """Return a few words for messages."""
@@ -108,27 +88,12 @@ class StoneSource:
         return self.kind != "published" or (data is not None and (data / self.name).is_file())
 
     def check(self, data: Path | None) -> None:
-        """Refuse other stones in the place of published ones.
-
-        Raises
-        ------
-        InputError
-            E160: the file in the folder has other contents than the one that was released.
-        """
+        """Refuse other stones in the place of published ones."""
         if self.kind == "published" and data is not None:
             published_file(data, self.name)
 
     def stones(self, data: Path | None) -> StoneSet:
-        """Return the stones.
-
-        Raises
-        ------
-        FileNotFoundError
-            Published data that are not there (:meth:`is_there`).
-        InputError
-            E100 ... E111, see :func:`drystone.read_stones`; E100 also for a file that is no longer
-            the one that was meant; E160 for another file in the place of a published one.
-        """
+        """Return the stones."""
         if self.kind == "published":
             if data is None:
                 raise FileNotFoundError(self.name)
@@ -161,8 +126,6 @@ def _same(stones: StoneSet, source: StoneSource) -> StoneSet:
 def published(name: str) -> StoneSource:
     """Return the source of a published set.
 
-    Examples
-    --------
     >>> published("almeida/PR.png").is_there(None)
     False
     """
@@ -173,20 +136,13 @@ def from_file(path: Path) -> StoneSource:
     """Return the source of stones in a file or a folder of masks, as it is now.
 
     Runs of it are found again as long as its contents are the same.
-
-    Raises
-    ------
-    InputError
-        E100 ... E111, see :func:`drystone.read_stones`.
     """
     return StoneSource(kind="file", name=str(path), sha256=read_stones(path).source.sha256)
 
 
-def generated(kind: Kind, seed: int, **settings: Scalar) -> StoneSource:
+def generated(kind: SourceKind, seed: int, **settings: Scalar) -> StoneSource:
     """Return the source of stones that a generator makes.
 
-    Examples
-    --------
     >>> len(generated("brick", 1, count=6).stones(None))
     6
     """
@@ -201,24 +157,6 @@ STRIPS = "spyrrow"
 class RunSpec:
     """A wall to be planned.
 
-    Parameters
-    ----------
-    source : StoneSource
-        Of the stones.
-    width, height : float
-        Of the wall, source px; 0 for those of the source image.
-    scale : float
-        Working resolution over source resolution.
-    method : str
-        Of the planner, or :data:`STRIPS`.
-    changes : tuple of (str, value)
-        Settings that replace the method's, by names such as ``"placement.beta"``
-        (docs/settings.md).
-    seed : int
-        Of the plan.
-
-    Examples
-    --------
     >>> from drystone_lab.runs.spec import generated
     >>> spec = RunSpec(source=generated("brick", 1, count=6), width=60, height=20, scale=1.0,
     ...                changes=(("placement.beta", 0.5),))
@@ -227,10 +165,11 @@ class RunSpec:
     """
 
     source: StoneSource
-    width: float = 0.0
+    width: float = 0.0  # width, height: Of the wall, source px; 0 for those of the source image
     height: float = 0.0
-    scale: float = 1.0
+    scale: float = 1.0  # Working resolution over source resolution
     method: str = "paper"
+    # Settings that replace the method's, by names such as ``"placement.beta"`` (docs/settings.md)
     changes: Changes = ()
     seed: int = 0
 

@@ -12,8 +12,8 @@ from typing import Any, TypeVar
 from drystone.errors import UsageError
 from drystone.search.processes import MUCH_MEMORY, process_pool
 from drystone_lab.runs.cluster import cluster_at_work
-from drystone_lab.runs.outcome import Outcome, execute
-from drystone_lab.runs.runner import Work, died, one_by_one
+from drystone_lab.runs.outcome import RunOutcome, execute
+from drystone_lab.runs.runner import RunWorker, died, one_by_one
 from drystone_lab.runs.spec import RunSpec
 
 ONE_THREAD = (
@@ -33,20 +33,14 @@ Process = Any
 
 
 @contextmanager
-def processes_at_work(jobs: int) -> Iterator[Work]:
-    """Start processes that do runs; they end with the block, whatever they do then.
-
-    Yields
-    ------
-    Work
-        Fails and is interrupted as :meth:`Crew.work`.
-    """
+def processes_at_work(jobs: int) -> Iterator[RunWorker]:
+    """Start processes that do runs; they end with the block, whatever they do then."""
     if jobs == 1:
         yield one_by_one
         return
     with crew(jobs) as found:
 
-        def work(specs: Sequence[RunSpec], data: Path | None) -> Iterator[Outcome]:
+        def work(specs: Sequence[RunSpec], data: Path | None) -> Iterator[RunOutcome]:
             return found.work(partial(execute, data=data), specs)
 
         yield work
@@ -56,12 +50,7 @@ def processes_at_work(jobs: int) -> Iterator[Work]:
 def crew(jobs: int, *, fresh: bool = False) -> Iterator["Crew"]:
     """Start processes; they end with the block, whatever they do then.
 
-    Parameters
-    ----------
-    jobs : int
-        How many.
-    fresh : bool
-        Whether each task has a new process, so that what one remembers takes no time from another.
+    With `fresh` each task has a new process: what one remembers takes no time from another.
     """
     found = Crew(jobs, fresh)
     try:
@@ -84,13 +73,6 @@ class Crew:
         When a task fails, those that are being done are done to their end, no other is begun, and
         the error of the first in order that failed is raised: its own, or E402 when its process
         died.
-
-        Parameters
-        ----------
-        do : callable
-            What is done with a task, in a process of its own; found there by its name.
-        tasks : sequence
-            Their words (``str``) tell where a process died.
         """
         waiting = deque(enumerate(tasks))
         busy: dict[Future[Done], tuple[int, Process]] = {}
@@ -162,27 +144,11 @@ def _told(error: BaseException, task: str) -> BaseException:
 
 
 @contextmanager
-def work_of(jobs: int | None, dask_address: str | None) -> Iterator[Work]:
+def work_of(jobs: int | None, dask_address: str | None) -> Iterator[RunWorker]:
     """Have runs done by whom the options say, as long as the block lasts.
 
     Whoever works, outcomes differ in their times alone.
 
-    Parameters
-    ----------
-    jobs : int or None
-        Processes on this machine, 1 or more (``--jobs``); None when the option is not given,
-        which is 1.
-    dask_address : str or None
-        Of the scheduler of a Dask cluster (``--dask``); None when the option is not given.
-
-    Raises
-    ------
-    UsageError
-        E138: both are given, or `jobs` is below 1; E403, E404, E405 of
-        :func:`~drystone_lab.runs.cluster.cluster_at_work`.
-
-    Examples
-    --------
     >>> from drystone_lab.runs.spec import generated
     >>> from drystone_lab.runs.spec import RunSpec
     >>> bricks = generated("brick", 1, count=6, height_px=10, aspect=2)

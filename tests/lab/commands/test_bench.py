@@ -63,29 +63,6 @@ def test_a_miss_is_a_failed_check(run: Run, monkeypatch: pytest.MonkeyPatch) -> 
     assert run("bench", "statics", "--markdown").out.startswith("**Cases**")
 
 
-def test_searches_go_by_time_seeds_and_names(run: Run) -> None:
-    ran = run(
-        "bench",
-        "search",
-        "--quick",
-        "--seconds",
-        ".01",
-        "--seeds",
-        "1",
-        "--only",
-        "br",
-        "--policy",
-        "restarts",
-        "search",
-    )
-    assert ran.code == 0
-    assert ran.out.startswith("Best walls after 0.01 s of CPU time, medians of 1 seeds")
-    assert [line.split(":")[0] for line in ran.err.splitlines()] == [
-        "bricks, restarts, seed 0, 0.01 s",
-        "bricks, search, seed 0, 0.01 s",
-    ]
-
-
 def test_searches_are_kept_and_not_done_again(run: Run, tmp_path: Path) -> None:
     table = tmp_path / "runs.csv"
     options = (
@@ -93,6 +70,7 @@ def test_searches_are_kept_and_not_done_again(run: Run, tmp_path: Path) -> None:
         "bricks", "--policy", "restarts", "--runs", table,
     )  # fmt: skip
     first, again = run(*options), run(*options)
+    assert first.out.startswith("Best walls after 0.01 s of CPU time, medians of 1 seeds")
     assert (first.code, again.code) == (0, 0)
     assert first.out == again.out
     assert (len(first.err.splitlines()), again.err) == (2, "")

@@ -18,31 +18,17 @@ def test_suites_and_policies_are_named_one_a_line(run: Run) -> None:
     assert len(set(names)) == len(names)
 
 
-def test_methods_are_compared(run: Run) -> None:
-    ran = run(*BRICKS)
-    assert ran.code == 0
-    assert ran.out.startswith("Walls: mean over seeds")
-    assert "Ranking" in ran.out
-    assert "2 of 2 walls" in ran.err
-
-
 def test_both_spellings_are_the_same(run: Run) -> None:
-    named = run(*BRICKS, "--json").json()
+    ran = run(*BRICKS, "--json")
+    assert (ran.code, "2 of 2 walls" in ran.err) == (0, True)
+    named = ran.json()
+    assert any(title.startswith("Ranking") for title in named)
     positional = run("bench", "bricks", *BRICKS[3:], "--json").json()
     seconds = next(title for title in named if title.startswith("Seconds"))
     del named[seconds], positional[seconds]
     assert named == positional
     walls = named["Walls: mean over seeds, standard deviation (±), best"]
     assert walls[0]["placed share"] == 1.0
-
-
-def test_processes_change_nothing(run: Run) -> None:
-    one, two = (run(*BRICKS, "--jobs", jobs, "--markdown").out for jobs in (1, 2))
-    assert _without_seconds(one) == _without_seconds(two)
-
-
-def _without_seconds(text: str) -> list[str]:
-    return [table for table in text.split("\n\n**") if not table.startswith("Seconds")]
 
 
 def test_settings_hold_for_all(run: Run, tmp_path: Path) -> None:
@@ -99,12 +85,6 @@ def test_options_that_make_no_sense(options: tuple[str, ...], named: str, run: R
     assert named in ran.err
 
 
-def test_a_policy_that_is_none(run: Run) -> None:
-    said = run("bench", "bricks", "--policy", "nobody").err
-    assert "E146" in said
-    assert "best" in said
-
-
 @pytest.mark.parametrize("suite", ["masons", "walls"])
 def test_other_stones_in_the_place_of_the_masons(suite: str, run: Run, tmp_path: Path) -> None:
     data, store = tmp_path / "data", tmp_path / "store"
@@ -116,10 +96,3 @@ def test_other_stones_in_the_place_of_the_masons(suite: str, run: Run, tmp_path:
     assert "drystone fetch almeida" in ran.err
     assert ran.out == ""
     assert not [path for path in store.rglob("*") if path.is_file()]
-
-
-def test_masons_need_their_stones(run: Run, tmp_path: Path) -> None:
-    ran = run("bench", "masons", "--data", tmp_path)
-    assert ran.code == 3
-    assert "E100" in ran.err
-    assert "drystone fetch almeida" in ran.err

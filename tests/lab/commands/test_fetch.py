@@ -21,10 +21,7 @@ def test_the_sets_are_listed_one_a_line(run: Run) -> None:
     assert (
         [line.split(":")[0] for line in ran.out.splitlines()]
         == list(SETS)
-        == [
-            "almeida",
-            "thangavelu",
-        ]
+        == ["almeida", "thangavelu"]
     )
 
 

@@ -10,12 +10,11 @@ from drystone.cli.parser import build_parser
 from drystone.errors import ExitCode, InputError, UsageError
 from drystone.io.folder_lock import LOCK, locked
 from drystone_lab.commands import reproduce
-from drystone_lab.reproduce.driver import Made
-from drystone_lab.reproduce.item import Item
+from drystone_lab.reproduce.driver import MadeItem
+from drystone_lab.reproduce.item import PaperItem
 from drystone_lab.reproduce.items import ITEMS
 from tests.cli.conftest import Ran, Run
 from tests.lab.reproduce import fakes
-from tests.lab.runs.bricks import picture
 
 RunItems = Callable[..., Ran]
 
@@ -29,7 +28,7 @@ def _no_data_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 def run_items(capsys: pytest.CaptureFixture[str]) -> RunItems:
     """Call the command on small items."""
 
-    def call(*arguments: object, items: Mapping[str, Item] = fakes.ITEMS) -> Ran:
+    def call(*arguments: object, items: Mapping[str, PaperItem] = fakes.ITEMS) -> Ran:
         capsys.readouterr()
         parsed = build_parser().parse_args(["reproduce", *map(str, arguments)])
         return Ran(int(reproduce.run(parsed, items)), *capsys.readouterr())
@@ -55,11 +54,7 @@ def test_items_are_named_one_a_line(run: Run) -> None:
     ],
 )
 def test_what_is_not_said_well(
-    options: tuple[str, ...],
-    said: str,
-    run: Run,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    options: tuple[str, ...], said: str, run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     ran = run("reproduce", *options)
@@ -96,20 +91,6 @@ def test_json(run_items: RunItems, tmp_path: Path) -> None:
     assert (missed["status"], missed["error"]["code"]) == ("missing data", "E100")
 
 
-def test_missing_stones(run_items: RunItems, tmp_path: Path) -> None:
-    ran = run_items("fig13", "-o", tmp_path / "out")
-    assert ran.code == 3
-    assert "E100 almeida/PR.png" in ran.err
-    assert "drystone fetch almeida" in ran.err
-
-
-def test_other_stones_in_the_place_of_published_ones(run: Run, tmp_path: Path) -> None:
-    path = picture(tmp_path / "data" / "almeida" / "PR.png")
-    ran = run("reproduce", "fig5", "--data", tmp_path / "data", "-o", tmp_path / "out")
-    assert ran.code == 3
-    assert f"fig5: E160 {path}" in ran.err
-
-
 def test_all_goes_on_without_some_stones(run_items: RunItems, tmp_path: Path) -> None:
     items = dict.fromkeys(ITEMS, fakes.NEEDY) | {"beta": fakes.WORDS}
     ran = run_items("all", "-o", tmp_path / "out", items=items)
@@ -119,7 +100,7 @@ def test_all_goes_on_without_some_stones(run_items: RunItems, tmp_path: Path) ->
 
 def test_all_without_any(tmp_path: Path) -> None:
     error = InputError("E100", "none")
-    missed = Made("fig5", "missing data", None, error, tmp_path)
+    missed = MadeItem("fig5", "missing data", None, error, tmp_path)
     assert reproduce.exit_code([missed, missed], every=True) == ExitCode.BAD_INPUT
     assert reproduce.exit_code([missed, replace(missed, status="kept")], every=True) == 0
 
@@ -141,27 +122,6 @@ def test_published_data_named_by_the_option(run_items: RunItems, tmp_path: Path)
 def test_who_works(run_items: RunItems, tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="E138"):
         run_items("fig5", "-o", tmp_path / "out", "--jobs", 2, "--dask", "tcp://127.0.0.1:1")
-
-
-def test_a_folder_of_others_and_a_file(run: Run, tmp_path: Path) -> None:
-    (tmp_path / "mine.txt").write_text("mine")
-    for place in (tmp_path, tmp_path / "mine.txt"):
-        ran = run("reproduce", "fig5", "-o", place)
-        assert ran.code == 2
-        assert "E129" in ran.err
-
-
-def test_an_interrupt(tmp_path: Path, run_items: RunItems) -> None:
-    with pytest.raises(KeyboardInterrupt):
-        run_items("fig17", "-o", tmp_path / "out")
-    assert len(list((tmp_path / "out" / "runs").iterdir())) == 2
-
-
-def test_an_item_of_the_paper(run: Run, tmp_path: Path) -> None:
-    ran = run("reproduce", "fig5", "--quick", "-o", tmp_path / "out")
-    assert ran.code == 3
-    assert "fig5: E100 almeida/PR.png" in ran.err
-    assert "clusters of the stones PR" in (tmp_path / "out" / "index.html").read_text("utf-8")
 
 
 def test_two_runs_do_not_write_into_one_folder(run_items: RunItems, tmp_path: Path) -> None:

@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
@@ -8,7 +6,7 @@ from drystone.model.landscape import Box
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
 from drystone_lab.pictures import action as drawing
-from drystone_lab.pictures.action import Action, Beside, plot_action
+from drystone_lab.pictures.action import ActionView, NeighbourBox, plot_action
 
 LABELS = np.zeros((10, 20), np.uint32)
 LABELS[6:, :6] = 1
@@ -22,9 +20,9 @@ SWEPT[3:6, :5] = SWEPT[6:, 5:9] = True
 
 @pytest.fixture
 def action():
-    return Action(
-        LABELS, POSED, 3, 5, SWEPT, 8, Beside(3, Box(0, 5, 4, 8)),
-        (Beside(1, Box(0, 6, 0, 4)), Beside(2, Box(6, 12, 0, 4))), (0, 3),
+    return ActionView(
+        LABELS, POSED, 3, 5, SWEPT, 8, NeighbourBox(3, Box(0, 5, 4, 8)),
+        (NeighbourBox(1, Box(0, 6, 0, 4)), NeighbourBox(2, Box(6, 12, 0, 4))), (0, 3),
     )  # fmt: skip
 
 
@@ -62,10 +60,3 @@ def test_rays_box_and_slope(action):
     assert patches["box"].get_bbox().bounds == (5, 4, 4, 3)
     assert patches["begun"].get_bbox().bounds == (0, 0, 20, 8)
     assert drawn(ax, "slope") == [[[5.5, 7], [8.5, 7]]]
-
-
-def test_what_is_not_there_is_not_drawn(action):
-    alone = replace(action, neighbour=None, below=(None, None), peaks=None)
-    ax = plot_action(alone, {"neighbour", "joints", "slope"})
-    assert not any(drawn(ax, gid) for gid in ("top", "joint", "offset", "slope"))
-    assert [text.get_text() for text in ax.texts] == ["stone"]

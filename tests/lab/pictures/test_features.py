@@ -17,18 +17,6 @@ def test_stones_are_at_their_features_in_the_colour_of_their_cluster():
     assert lines["stone-3"].get_marker() != lines["stone-5"].get_marker()
 
 
-def test_ids_are_apart_though_points_are_close():
-    ax = plot_features(FEATURES, [3, 5, 8], {3: 1, 5: 2, 8: 2})
-    ax.figure.draw_without_rendering()
-    boxes = [text.get_window_extent() for text in ax.texts]
-    assert [text.get_text() for text in ax.texts] == ["3", "5", "8"]
-    assert not any(a.overlaps(b) for k, a in enumerate(boxes) for b in boxes[:k])
-
-
-def test_one_stone_has_its_id():
-    assert [text.get_text() for text in plot_features(FEATURES[:1], [7], {7: 1}).texts] == ["7"]
-
-
 def test_counts_and_what_somebody_else_found():
     ax = plot_counts({"PR": [(0.1, 12), (0.2, 7)]}, claim=(0.2, 7, "the paper"))
     lines = {line.get_gid(): line.get_xydata().tolist() for line in ax.lines}

@@ -5,15 +5,15 @@ from drystone.model.placement import Wedge
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
 from drystone.stabilise.support import Support
-from drystone_lab.pictures.support import Standing, plot_standing, window_around
+from drystone_lab.pictures.support import SupportedStone, plot_standing
 
 LABELS = np.zeros((10, 20), np.uint32)
 LABELS[6:, :8] = 1
 MASK = np.ones((3, 12), bool)
 POSED = PosedStone(Stone(9, MASK), 0.0, 1.0, MASK, (6.0, 1.5))
-TRIAL = Standing((POSED, 3, 4), Support(4, 8, 6, 6), 1, (), 10)
+TRIAL = SupportedStone((POSED, 3, 4), Support(4, 8, 6, 6), 1, (), 10)
 WEDGE = Wedge(10, 9, np.ones((4, 2), bool), 6, 13)
-WEDGED = Standing((POSED, 3, 4), Support(4, 15, 6, 6), 0, (WEDGE,), 10)
+WEDGED = SupportedStone((POSED, 3, 4), Support(4, 15, 6, 6), 0, (WEDGE,), 10)
 
 
 def lines(ax):
@@ -46,11 +46,3 @@ def test_a_wedge_has_its_sizes_and_leaves_the_supported_side_alone():
     assert (box.x0, box.y0, box.x1, box.y1) == (13, 0, 15, 4)
     assert patches["supported"].get_bbox().bounds == (4, 4, 4, 3)
     assert "h 4, w 2" in [text.get_text() for text in ax.texts]
-
-
-def test_the_window_shows_the_stones():
-    left, bottom, right, top = window_around([TRIAL, WEDGED])
-    assert left < 4
-    assert right > 16
-    assert -3 < bottom <= 0
-    assert top > 7

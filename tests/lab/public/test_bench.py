@@ -7,14 +7,19 @@ import pytest
 from drystone.errors import InputError
 from drystone.physics.shake import ShakeTrial
 from drystone_lab.public import bench
-from drystone_lab.public.bench import PublicSettings, run_public
 from drystone_lab.public.store import BenchStore, Stamp
+from drystone_lab.runs import workers
 from drystone_lab.runs.outcome import execute
 from drystone_lab.runs.runner import one_by_one
 from drystone_lab.runs.spec import RunSpec, generated
+from drystone_lab.table import BenchSettings
 
 STAMP = Stamp("1.0", "2026-01-01T00:00:00+00:00", "Linux x86_64")
-SETTINGS = PublicSettings(suite="bricks", policies=("paper", "random"), stamp=STAMP, quick=True)
+SETTINGS = BenchSettings(policies=("paper", "random"), quick=True)
+
+
+def run_public(settings, suite="bricks"):
+    return bench.run_public(suite, settings, STAMP)
 
 
 @pytest.fixture
@@ -26,7 +31,7 @@ def counted(monkeypatch):
         done.extend(specs)
         return one_by_one(specs, data)
 
-    monkeypatch.setattr(bench, "one_by_one", work)
+    monkeypatch.setattr(workers, "one_by_one", work)
     return done
 
 
@@ -76,12 +81,12 @@ def test_settings_are_in_the_store(tmp_path):
 
 
 def test_walls_without_data_are_named():
-    settings = replace(SETTINGS, suite="all", only=("R", "bricks 2:1"), quick=False, seeds=1)
-    tables = run_public(settings)
+    settings = replace(SETTINGS, only=("R", "bricks 2:1"), quick=False, seeds=1)
+    tables = run_public(settings, "all")
     assert {row["wall"] for row in tables[0].records()} == {"bricks 2:1"}
     assert any("DIR): R." in note for note in tables[0].notes)
     with pytest.raises(InputError) as caught:
-        run_public(replace(settings, suite="masons", only=()))
+        run_public(replace(settings, only=()), "masons")
     assert caught.value.code == "E100"
     assert caught.value.where == "almeida/PR.png, almeida/R.png, almeida/IR.png"
 

@@ -4,12 +4,12 @@ from statistics import fmean, stdev
 
 import pytest
 
-from drystone_lab.public.tables import SHAKE, Results, comparison
+from drystone_lab.public.tables import SHAKE, BenchResults, comparison
 from tests.lab.public.test_pairs import WALLS, result
 
 
 def made(**columns):
-    return Results(
+    return BenchResults(
         tuple(
             result(wall, "one", seed, **{name: column[wall.name][seed]
                                          for name, column in columns.items()})

@@ -3,7 +3,7 @@
 import pytest
 
 from drystone.errors import UsageError
-from drystone_lab.public.suites import flat_changes, known_methods, method_named, walls_of
+from drystone_lab.public.suites import flat_changes, method_named, walls_of
 
 WALL = walls_of("bricks")[0]
 
@@ -19,12 +19,6 @@ def test_only_the_choice_differs():
 def test_best_is_one_pass_on_outlines():
     best = method_named("best").run(WALL, 3).settings()
     assert (best.geometry, best.search.budget, best.selection_rule) == ("exact", 1, "score")
-
-
-def test_runs_are_of_the_wall():
-    run = method_named("lowest").run(WALL, 3)
-    assert (run.source, run.width, run.height, run.scale) == (WALL.source, 120, 84, 1.0)
-    assert run.seed == 3
 
 
 def test_settings_are_replaced_for_all_alike():
@@ -48,8 +42,3 @@ def test_what_does_not_exist():
     with pytest.raises(UsageError) as caught:
         method_named("paper", (("placement.gamma", 1.0),))
     assert caught.value.code == "E123"
-
-
-def test_all_that_are_known_can_be_named():
-    for name in known_methods():
-        assert method_named(name).name == name

@@ -8,7 +8,7 @@ from importlib.util import find_spec
 
 import pytest
 
-from drystone.errors import InputError, PlanError, UsageError
+from drystone.errors import PlanError, UsageError
 from drystone_lab.public.history import drawn_history, history_table, medians_of
 from drystone_lab.public.store import COLUMNS, BenchStore, KeptRun
 
@@ -28,15 +28,6 @@ def test_runs_come_back_as_they_were(tmp_path):
     assert store.runs() == (later, RUN)
     store.put([replace(RUN, seconds=9.0)])
     assert [run.seconds for run in store.runs()] == [0.5, 9.0]
-
-
-def test_tables_are_plain(tmp_path):
-    """Other programs read it: table `runs`, columns by name, NULL where nothing is defined."""
-    BenchStore(tmp_path).put([RUN])
-    with sqlite3.connect(tmp_path / "bench.sqlite") as connection:
-        row = connection.execute("SELECT F_SF, F_LR, typeof(seed) FROM runs").fetchone()
-    connection.close()
-    assert row == (0.8, None, "integer")
 
 
 def test_exports_hold_all_runs(tmp_path):
@@ -63,13 +54,6 @@ def test_parquet_has_types(tmp_path):
     assert str(table.schema.field("F_LR").type) == "double"
     assert table.to_pylist()[0]["F_LR"] is None
     assert table.to_pylist()[0]["stones"] == 40
-
-
-def test_a_file_that_is_no_database(tmp_path):
-    (tmp_path / "bench.sqlite").write_bytes(b"no database at all" * 100)
-    with pytest.raises(InputError) as caught:
-        BenchStore(tmp_path).runs()
-    assert caught.value.code == "E401"
 
 
 def test_a_database_that_another_run_writes_to(tmp_path, monkeypatch):

@@ -10,9 +10,7 @@ from drystone_lab.walls import Target
 
 GENERATED = [wall for wall in walls_of("all") if wall.source.kind != "published"]
 
-FIXED = {
-    1: "5a630340fd2a3ede",
-}
+FIXED = {1: "5a630340fd2a3ede"}
 """By version: of everything that makes the walls of all suites.  A new version is a new line."""
 
 
@@ -28,27 +26,14 @@ def test_nothing_changes_without_a_new_version():
 
 
 AREAS_PX = {
-    "fourier 20 round": 56659,
-    "fourier 20 long": 57760,
-    "fourier 60 round": 169969,
-    "fourier 60 long": 173296,
-    "fourier 120 round": 339983,
-    "fourier 120 long": 346587,
-    "polygons 20 %": 467992,
-    "polygons 50 %": 467968,
-    "polygons 80 %": 468062,
-    "rubble 30": 76177,
-    "rubble 60": 151960,
-    "rubble 120": 304648,
-    "bricks 2:1": 8640,
-    "bricks 3:1": 20736,
-    "bricks 3:1 and halves": 15552,
-    "sizes 20": 58492,
-    "sizes 50": 146257,
-    "sizes 100": 292558,
-    "sizes 200": 585197,
+    "fourier 20 round": 56659, "fourier 20 long": 57760, "fourier 60 round": 169969,
+    "fourier 60 long": 173296, "fourier 120 round": 339983, "fourier 120 long": 346587,
+    "polygons 20 %": 467992, "polygons 50 %": 467968, "polygons 80 %": 468062,
+    "rubble 30": 76177, "rubble 60": 151960, "rubble 120": 304648,
+    "bricks 2:1": 8640, "bricks 3:1": 20736, "bricks 3:1 and halves": 15552,
+    "sizes 20": 58492, "sizes 50": 146257, "sizes 100": 292558, "sizes 200": 585197,
     "sizes 500": 1462495,
-}
+}  # fmt: skip
 """Of all stones, source px: the generators make the same ones as before."""
 
 
@@ -86,9 +71,3 @@ def test_some_walls_alone():
         walls_of("sizes", ["sizes 20", "rubble"])
     assert caught.value.code == "E138"
     assert "rubble" in str(caught.value)
-
-
-def test_sizes_are_of_one_kind():
-    walls = walls_of("sizes")
-    means = [AREAS_PX[wall.name] / dict(wall.source.settings)["count"] for wall in walls]
-    assert max(means) - min(means) < 0.01 * means[0]

@@ -8,11 +8,12 @@ import pytest
 from drystone.errors import UsageError
 from drystone_lab import packing
 from drystone_lab.public import bench
-from drystone_lab.public.bench import PublicSettings, run_public
+from drystone_lab.public.bench import run_public
 from drystone_lab.public.history import history_table, medians_of
 from drystone_lab.public.store import BenchStore, Stamp
-from drystone_lab.public.suites import known_methods, method_named, walls_of
+from drystone_lab.public.suites import method_named, walls_of
 from drystone_lab.runs.outcome import FIGURES, execute
+from drystone_lab.table import BenchSettings
 
 STAMP = Stamp("0.1.0", "2026-01-01T00:00:00+00:00", "Linux x86_64")
 WALL = walls_of("bricks")[0]
@@ -48,11 +49,9 @@ def test_it_fills_a_strip_as_high_as_the_wall(
 
 def test_it_is_in_tables_but_in_no_pairs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     packing_into(monkeypatch, 150.0)
-    settings = PublicSettings(
-        suite="bricks", policies=("paper", "spyrrow", "lowest"), stamp=STAMP, quick=True, seeds=1,
-        store=tmp_path,
-    )  # fmt: skip
-    walls, everything, seconds, *others = run_public(settings)
+    policies = ("paper", "spyrrow", "lowest")
+    settings = BenchSettings(policies=policies, quick=True, seeds=1, store=tmp_path)
+    walls, everything, seconds, *others = run_public("bricks", settings, STAMP)
     for table, column in ((walls, 1), (everything, 0), (seconds, 1)):
         assert "spyrrow" in [row[column] for row in table.rows]
     (row,) = (row for row in walls.rows if row[1] == "spyrrow")
@@ -68,7 +67,7 @@ def test_it_is_in_tables_but_in_no_pairs(monkeypatch: pytest.MonkeyPatch, tmp_pa
     assert shares["paper"] > 0.5
     # What is kept is not packed again.
     monkeypatch.setattr(packing, "packed_width_px", None)
-    assert run_public(settings)[0].rows == walls.rows
+    assert run_public("bricks", settings, STAMP)[0].rows == walls.rows
 
 
 def history(folder: Path) -> list[dict[str, Any]]:
@@ -90,12 +89,7 @@ def test_what_is_missing_is_said_before_anything_is_done(monkeypatch: pytest.Mon
         raise ImportError(name)
 
     monkeypatch.setattr(packing, "import_module", absent)
-    monkeypatch.setattr(bench, "_workers", None)
+    monkeypatch.setattr(bench, "work_of", None)
     with pytest.raises(UsageError) as caught:
-        run_public(PublicSettings(suite="bricks", policies=("paper", "spyrrow"), stamp=STAMP))
+        run_public("bricks", BenchSettings(policies=("paper", "spyrrow")), STAMP)
     assert caught.value.code == "E305"
-
-
-def test_it_is_listed_with_its_extra() -> None:
-    assert "`bench`" in known_methods()["spyrrow"]
-    assert "no policy" in known_methods()["spyrrow"]

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from matplotlib.figure import Figure
 
 from drystone.errors import InputError
-from drystone_lab.reproduce.item import Context, Item, Picture
-from drystone_lab.runs.outcome import Outcome
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem
+from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.spec import RunSpec, generated
 from drystone_lab.table import Table
 
@@ -19,7 +19,7 @@ class Walls:
     """Runs and what came out of them."""
 
     runs: tuple[RunSpec, ...]
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[RunOutcome, ...]
 
 
 def walls(context: Context) -> Walls:
@@ -42,11 +42,11 @@ def _times(found: Walls) -> Table:
     return Table("Seconds", ("seed", "s"), rows)
 
 
-def _picture(found: Walls) -> Picture:
+def _picture(found: Walls) -> ItemPicture:
     figure = Figure(figsize=(2, 1))
     filled = [outcome.figures["F_SF"] for outcome in found.outcomes]
     figure.add_subplot().plot([run.seed for run in found.runs], filled, marker="o")
-    return Picture("filling", figure, "Filling over the seed.")
+    return ItemPicture("filling", figure, "Filling over the seed.")
 
 
 def broken(context: Context) -> Walls:
@@ -61,7 +61,7 @@ def interrupted(context: Context) -> Walls:
     raise KeyboardInterrupt
 
 
-FILLING = Item(
+FILLING = PaperItem(
     title="filling of bricks",
     section="§3.4",
     paper=("Walls & <joints>.",),
@@ -71,7 +71,7 @@ FILLING = Item(
     times={"walls": _times},
     pictures=lambda found: (_picture(found),),
 )
-WORDS = Item(
+WORDS = PaperItem(
     title="words",
     section="5.1",
     paper=("Words.",),
@@ -83,12 +83,12 @@ NEEDY = replace(WORDS, title="published stones", section="§5.1",
 BROKEN = replace(FILLING, title="no stones", section="B.1", study=broken)
 INTERRUPTED = replace(FILLING, title="interrupted", section="§5.2", study=interrupted)
 
-ITEMS: Mapping[str, Item] = {
+ITEMS: Mapping[str, PaperItem] = {
     "fig5": FILLING, "fig13": NEEDY, "beta": WORDS, "fig17": INTERRUPTED, "figB33": BROKEN,
 }  # fmt: skip
 
 
-def counted(item: Item) -> tuple[Item, list[Context]]:
+def counted(item: PaperItem) -> tuple[PaperItem, list[Context]]:
     """An item, and the contexts that it is made with."""
     contexts: list[Context] = []
 

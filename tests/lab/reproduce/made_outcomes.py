@@ -1,8 +1,10 @@
 """Outcomes with figures that a test chooses."""
 
-from drystone_lab.runs.outcome import FIGURES, Outcome
+from drystone_lab.runs.outcome import FIGURES, RunOutcome
 
 
-def outcome(key: str = "", **figures: float | None) -> Outcome:
+def outcome(key: str = "", **figures: float | None) -> RunOutcome:
     """An outcome of 10 stones with everything else 1, but for the figures that are named."""
-    return Outcome(key, {**dict.fromkeys(FIGURES, 1), "stones": 10, **figures}, {"steps": []}, {})
+    return RunOutcome(
+        key, {**dict.fromkeys(FIGURES, 1), "stones": 10, **figures}, {"steps": []}, {}
+    )

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from drystone_lab.reproduce.construction import Construction, construction
-from drystone_lab.reproduce.item import Context, Item, Output
+from drystone_lab.reproduce.item import Context, Output, PaperItem
 from drystone_lab.runs.outcome import RunStore
 from drystone_lab.runs.runner import Runner
 from drystone_lab.runs.spec import generated
@@ -30,7 +30,7 @@ def built(folder: Path, wall: Target) -> Construction:
     return construction(context(folder), wall.run(1))
 
 
-def on(item: Item, *walls: Target, seeds: int = 2) -> Item:
+def on(item: PaperItem, *walls: Target, seeds: int = 2) -> PaperItem:
     """An item that builds walls, of these and from so many seeds."""
     study: Any = item.study
     inner = study.keywords["study"] if isinstance(study, partial) else study
@@ -39,7 +39,7 @@ def on(item: Item, *walls: Target, seeds: int = 2) -> Item:
     return replace(item, study=changed)
 
 
-def of(item: Item, *given: object, **named: object) -> Item:
+def of(item: PaperItem, *given: object, **named: object) -> PaperItem:
     """An item whose study takes these instead of what it usually takes."""
     return replace(item, study=lambda context: item.study(context, *given, **named))  # type: ignore[call-arg]
 

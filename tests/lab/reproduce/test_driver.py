@@ -1,6 +1,5 @@
 """Items are made, kept, reported; walls that were planned are not planned again."""
 
-import csv
 import json
 from collections.abc import Mapping
 from dataclasses import replace
@@ -11,9 +10,9 @@ from typing import Any
 import pytest
 
 from drystone.errors import InputError, UsageError
-from drystone_lab.reproduce.driver import EVERY_S, Made, Options, Progress, reproduce
-from drystone_lab.reproduce.folder import csv_text, write_tables
-from drystone_lab.reproduce.item import Item, Output
+from drystone_lab.reproduce.driver import EVERY_S, ItemProgress, MadeItem, Options, reproduce
+from drystone_lab.reproduce.folder import write_tables
+from drystone_lab.reproduce.item import Output, PaperItem
 from drystone_lab.runs.runner import one_by_one
 from drystone_lab.table import Table
 from tests.lab.reproduce import fakes
@@ -25,8 +24,8 @@ def make(
     folder: Path,
     *names: str,
     options: Options = OPTIONS,
-    items: Mapping[str, Item] = fakes.ITEMS,
-) -> list[Made]:
+    items: Mapping[str, PaperItem] = fakes.ITEMS,
+) -> list[MadeItem]:
     return list(reproduce(names, folder, options, items))
 
 
@@ -79,23 +78,10 @@ def test_equal_seeds_give_equal_tables_and_pictures(tmp_path: Path) -> None:
         ).read_bytes()
 
 
-def test_tables_read_back_to_the_last_digit(tmp_path: Path) -> None:
-    (made,) = make(tmp_path, "fig5")
-    assert made.record is not None
-    text = (tmp_path / "fig5" / "walls.csv").read_bytes().decode()
-    assert "\r" not in text
-    head, *rows = csv.reader(text.splitlines())
-    assert head == ["seed", "F_SF", "F_AV"]
-    kept = made.record["tables"][0]["rows"]
-    assert [(int(seed), float(filling), rest) for seed, filling, rest in rows] == [
-        (seed, filling, "") for seed, filling, _ in kept
-    ]
-
-
 def test_cells_of_all_kinds() -> None:
     np_float = type("float64", (float,), {"__repr__": lambda _: "np.float64(1.5)"})
     table = Table("x", ("a", "b"), ((True, np_float(1.5)), ('say "a, b"', 0.1 + 0.2), (None, 3)))
-    assert csv_text(table) == 'a,b\nyes,1.5\n"say ""a, b""",0.30000000000000004\n,3\n'
+    assert table.csv() == 'a,b\nyes,1.5\n"say ""a, b""",0.30000000000000004\n,3\n'
 
 
 def test_faulty_tables_are_refused(tmp_path: Path) -> None:
@@ -199,15 +185,6 @@ def test_published_stones_that_are_not_there(tmp_path: Path) -> None:
     assert "Not made" not in (tmp_path / "out" / "index.html").read_text("utf-8")
 
 
-def test_more_published_stones_are_a_reason_to_make_it_again(tmp_path: Path) -> None:
-    assert make(tmp_path / "out", "beta")[0].status == "made"
-    (tmp_path / "data" / "almeida").mkdir(parents=True)
-    (tmp_path / "data" / "almeida" / "R.png").touch()
-    given = replace(OPTIONS, data=tmp_path / "data")
-    assert make(tmp_path / "out", "beta", options=given)[0].status == "made"
-    assert make(tmp_path / "out", "beta", options=given)[0].status == "kept"
-
-
 def test_your_own_stones_are_known_by_their_contents(tmp_path: Path) -> None:
     out, image = tmp_path / "out", tmp_path / "stones"
     given = replace(OPTIONS, image=image)
@@ -255,19 +232,10 @@ def test_folders_of_others_are_refused(mark: str | None, tmp_path: Path) -> None
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
-def test_progress_says_which_item_and_how_many_walls(tmp_path: Path) -> None:
-    said: list[str] = []
-    make(tmp_path, "fig5", "beta", options=replace(OPTIONS, say=said.append))
-    assert said[0] == "[0:00:00] 1 of 2, fig5"
-    assert "1 of 2, fig5: 1 of 2 walls" in said[1]
-    assert said[-2].endswith("2 of 2, beta")
-    assert said[-1].endswith("2 of 2, beta: made")
-
-
 def test_walls_are_told_of_now_and_then() -> None:
     said: list[str] = []
     now = [0.0]
-    progress = Progress(said.append, 1, lambda: now[0])
+    progress = ItemProgress(said.append, 1, lambda: now[0])
     progress.begin("fig5")
     for text, step in (("1", 0.0), ("2", EVERY_S / 2), ("3", EVERY_S), ("4", 3661.0)):
         now[0] += step

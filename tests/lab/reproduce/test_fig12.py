@@ -3,17 +3,9 @@ import pytest
 
 from drystone.contacts.blocks import model_from_labels
 from drystone_lab.reproduce import fig12
-from tests.lab.reproduce.small_walls import RUBBLE, built, context, gids, of, rows
+from tests.lab.reproduce.small_walls import RUBBLE, built, gids, of, rows
 
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    return tmp_path_factory.mktemp("runs")
-
-
-@pytest.fixture(scope="module")
-def output(folder):
-    return of(fig12.PIC_TO_RI, RUBBLE).make(context(folder))
+MADE = of(fig12.PIC_TO_RI, RUBBLE)
 
 
 @pytest.fixture(scope="module")
@@ -67,15 +59,6 @@ def test_the_first_three_stones_are_taken_where_none_stands_on_two(folder):
     wall = stages[2].after
     first = {stage.stone.stone for stage in stages[:3]}
     assert set(np.unique(fig12.three_stones(wall)).tolist()) == first | {0}
-
-
-def test_blocks_are_counted_pixels(output, labels):
-    height = labels.shape[0]
-    for row in rows(output, "blocks"):
-        at = np.argwhere(labels == row["stone"])
-        assert row["area px"] == len(at)
-        x, y = at[:, 1].mean() + 0.5, height - at[:, 0].mean() - 0.5
-        assert (row["x"], row["y"]) == pytest.approx((x, y), abs=1e-4)
 
 
 def test_interfaces_end_on_corners_of_pixel_edges(output, labels):

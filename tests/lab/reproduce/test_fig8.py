@@ -1,22 +1,13 @@
 import numpy as np
 import pytest
-from scipy import ndimage
 
 from drystone_lab.reproduce import fig8
 from drystone_lab.reproduce.construction import amid_course
-from tests.lab.reproduce.small_walls import RUBBLE, built, context, gids, of, rows
+from tests.lab.reproduce.small_walls import RUBBLE, built, gids, of, rows
 from tests.naive import indices as naive
 from tests.naive.rays import local_filling_ratio
 
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    return tmp_path_factory.mktemp("runs")
-
-
-@pytest.fixture(scope="module")
-def output(folder):
-    return of(fig8.POSITIONS, RUBBLE).make(context(folder))
+MADE = of(fig8.POSITIONS, RUBBLE)
 
 
 @pytest.fixture(scope="module")
@@ -81,15 +72,6 @@ def test_the_chosen_position_is_worth_most(output, trial):
     assert best["best: Eq. 12"] == chosen["best: Eq. 12"] <= touching["best: Eq. 12"]
     others = moment.positions(posed)[::9].tolist()
     assert max(map(value, map(tuple, others))) <= value((row, col)) + 1e-12
-
-
-def test_the_landscape_is_dilated_by_one_pixel_across_edges():
-    occupied = np.zeros((5, 5), bool)
-    occupied[4, 0] = True
-    maps = fig8.PositionMaps.of(occupied, np.ones((1, 1), bool))
-    inner = ndimage.binary_dilation(occupied)
-    inner[[0, -1]] = inner[:, [0, -1]] = True
-    np.testing.assert_array_equal(maps.floating, ~inner)
 
 
 def test_the_picture_shows_all_sets(output):

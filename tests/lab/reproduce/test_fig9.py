@@ -5,18 +5,10 @@ import pytest
 
 from drystone_lab.reproduce import fig9
 from drystone_lab.reproduce.fig9 import unstable_trials
-from tests.lab.reproduce.small_walls import SHARP, built, context, gids, of, rows
-from tests.naive.support import rests_stably, support_ends
+from tests.lab.reproduce.small_walls import SHARP, built, gids, of, rows
+from tests.naive.support import rests_stably
 
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    return tmp_path_factory.mktemp("runs")
-
-
-@pytest.fixture(scope="module")
-def output(folder):
-    return of(fig9.STABILISING, SHARP).make(context(folder))
+MADE = of(fig9.STABILISING, SHARP)
 
 
 @pytest.fixture(scope="module")
@@ -74,23 +66,6 @@ def test_turned_and_wedged_stones_rest(found):
             wedged += 1
     assert turned > 5
     assert wedged > 5
-
-
-def test_points_are_those_of_the_support(found):
-    for case in found[1]:
-        posed, row, col = case.trial.pose
-        occupied = case.moment.wall.occupied
-        (x_l, row_l), (x_r, row_r) = support_ends(occupied, posed.mask, row, col)
-        x_c, y_c = case.trial.mass
-        a, b = case.trial.ends
-        height = occupied.shape[0]
-        assert {a, b} == {(x_l, height - row_l), (x_r, height - row_r)}
-        assert abs(x_c - a[0]) <= abs(x_c - b[0])
-        cross = np.cross([b[0] - a[0], b[1] - a[1], 0], [x_c - a[0], y_c - a[1], 0])[2]
-        assert case.trial.cross == pytest.approx(cross)
-        # Counter-clockwise is a fall to the left.
-        assert case.sign_agrees == ((cross < 0) == (x_c > a[0]))
-        assert case.hangs == (y_c < a[1])
 
 
 def test_counts_add_up(output, found):

@@ -7,7 +7,7 @@ import pytest
 
 from drystone.errors import UsageError
 from drystone.io.published import SETS
-from drystone_lab.reproduce.item import Item
+from drystone_lab.reproduce.item import PaperItem
 from drystone_lab.reproduce.items import ALSO, ITEMS, item_named, item_names
 
 PUBLISHED = {file.name for published in SETS.values() for file in published.files}
@@ -16,7 +16,7 @@ PUBLISHED = {file.name for published in SETS.values() for file in published.file
 @pytest.mark.parametrize("name", ITEMS)
 def test_an_item_says_what_it_is(name: str) -> None:
     item = item_named(name)
-    assert isinstance(item, Item)
+    assert isinstance(item, PaperItem)
     assert item.title.strip() == item.title != ""
     assert item.section.removeprefix("§")[0] in "3456B"
     assert item.paper

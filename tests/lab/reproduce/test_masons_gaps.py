@@ -1,7 +1,6 @@
 """Stones drawn to the corner, and dilated."""
 
 import numpy as np
-import pytest
 
 from drystone.model.wall import Labels
 from drystone_lab.reproduce.masons import dilated, drawn_together
@@ -33,21 +32,6 @@ def test_stones_keep_their_shape_and_come_nearer_until_they_are_stopped() -> Non
     assert np.argwhere(after == 5).min(axis=0).tolist() == [8, 0]
     assert np.argwhere(after == 9).min(axis=0).tolist() == [5, 0]
     assert np.argwhere(after == 2).min(axis=0).tolist() == [7, 10]
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_no_stone_can_be_moved_nearer_when_all_are_together(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    labels = np.zeros((20, 40), np.int64)
-    for block in range(1, 8):
-        row, col = rng.integers(0, 17), rng.integers(0, 34)
-        window = labels[row : row + 3, col : col + 6]
-        if not window.any():
-            window[:] = block
-    once = drawn_together(labels)
-    assert sorted(np.unique(once)) == sorted(np.unique(labels))
-    nearest = min(np.unique(once[once > 0]).tolist(), key=lambda block: _distance(labels, block))
-    assert _distance(drawn_together(once), nearest) == _distance(once, nearest)
 
 
 def test_dilation_is_by_one_pixel_and_takes_nothing_from_others() -> None:

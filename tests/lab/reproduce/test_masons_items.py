@@ -12,9 +12,9 @@ from drystone.metrics.measure import measure_labels
 from drystone.statics.limit import lateral_resistance
 from drystone_lab.reproduce import base_case, table2
 from drystone_lab.reproduce.item import Context
-from drystone_lab.reproduce.masons import FIG13, MasonsWall, masons_wall, treatments
+from drystone_lab.reproduce.masons import FIG13, TracedWall, masons_wall, treatments
 from drystone_lab.reproduce.table2 import best_trial, tenths
-from drystone_lab.runs.outcome import Outcome
+from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.spec import published
 from drystone_lab.walls import Target
 from tests.lab.reproduce.made_outcomes import outcome as made
@@ -44,11 +44,11 @@ def here(tmp_path_factory: pytest.TempPathFactory, data: Path) -> Context:
 
 
 @pytest.fixture(scope="module")
-def masons(data: Path) -> MasonsWall:
+def masons(data: Path) -> TracedWall:
     return masons_wall(BLOCKS, data)
 
 
-def test_gaps_are_closed_in_every_way(masons: MasonsWall) -> None:
+def test_gaps_are_closed_in_every_way(masons: TracedWall) -> None:
     found = {way.name: way for way in treatments(masons)}
     assert (found["as traced"].F_LR, found["as traced"].status) == (None, "unstable")
     assert found["gaps up to 1 px closed"].status == "optimal"
@@ -58,7 +58,7 @@ def test_gaps_are_closed_in_every_way(masons: MasonsWall) -> None:
     assert (masons.papers_way > 0).sum() > (masons.labels > 0).sum()
 
 
-def test_fig13(here: Context, masons: MasonsWall) -> None:
+def test_fig13(here: Context, masons: TracedWall) -> None:
     output = of(FIG13, (BLOCKS,)).make(here)
     traced, closed, papers = rows(output, "fig13")
     measured = measure_labels(masons.labels)
@@ -114,7 +114,7 @@ def test_table2(here: Context) -> None:
     assert len(output.pictures[0].figure.axes) == 4 + 3
 
 
-def _wall(resistance: float | None, filled: float) -> Outcome:
+def _wall(resistance: float | None, filled: float) -> RunOutcome:
     return made(F_LR=resistance, F_SF=filled)
 
 
@@ -133,7 +133,7 @@ def _wall(resistance: float | None, filled: float) -> Outcome:
         ([_wall(None, 0.84), _wall(0.01, 0.76)], 1),
     ],
 )
-def test_the_best_trial(walls: list[Outcome], best: int) -> None:
+def test_the_best_trial(walls: list[RunOutcome], best: int) -> None:
     assert best_trial(walls) == best
 
 

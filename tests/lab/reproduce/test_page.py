@@ -1,21 +1,12 @@
 """The report of the paper's tables and figures."""
 
-import os
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from drystone.errors import PlanError
-from drystone_lab.reproduce.page import (
-    LONG,
-    Miss,
-    duration,
-    heading,
-    shown,
-    write_item_page,
-    write_page,
-)
+from drystone_lab.reproduce.page import LONG, Miss, duration, heading, write_item_page, write_page
+from drystone_lab.table import written
 from tests.drawing.report.test_report import Page
 
 ORDER = ("fig5", "fig13", "table2")
@@ -108,23 +99,11 @@ def test_a_page_of_nothing(tmp_path: Path) -> None:
     assert "None of 3 was made so far." in path.read_text(encoding="utf-8")
 
 
-def test_a_page_is_whole_or_as_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(*_: object) -> None:
-        raise OSError(28, "No space left on device")
-
-    path = tmp_path / "index.html"
-    path.write_bytes(b"good")
-    monkeypatch.setattr(os, "replace", full)
-    with pytest.raises(PlanError, match="E206"):
-        write_page(path, [], [], ORDER)
-    assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [(path.name, b"good")]
-
-
 def test_words() -> None:
     assert heading("table2", "walls") == "Table 2: walls"
     assert heading("figB30-32", "x") == "Fig. B.30\N{EN DASH}32: x"
     assert heading("beta", "the threshold") == "The threshold"
-    assert [shown(value) for value in (0.0, False, 1e-4, 123456.7)] == [
+    assert [written(value) for value in (0.0, False, 1e-4, 123456.7)] == [
         "0", "no", "1.0e-04", "1.2346e+05",
     ]  # fmt: skip
     assert duration(59.97) == "1 min 0 s"

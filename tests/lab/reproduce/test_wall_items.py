@@ -12,9 +12,9 @@ from drystone.model.wall import Group, Wall
 from drystone.planner.profile import StepTime
 from drystone_lab.reproduce import base_case, noise, rounded, times, ways
 from drystone_lab.reproduce.item import Context, Output
-from drystone_lab.runs.outcome import Outcome
+from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.spec import generated
-from drystone_lab.timed_walls import Planned
+from drystone_lab.timed_walls import TimedWall
 from drystone_lab.walls import Target
 from tests.lab.reproduce.small_walls import context, of, on, rows
 
@@ -30,11 +30,11 @@ def here(tmp_path_factory: pytest.TempPathFactory) -> Context:
     return context(tmp_path_factory.mktemp("runs"))
 
 
-def _outcomes(here: Context, *changes: tuple[str, str | float | bool]) -> list[Outcome]:
+def _outcomes(here: Context, *changes: tuple[str, str | float | bool]) -> list[RunOutcome]:
     return list(here.run([RUBBLE.run(seed, *changes) for seed in SEEDS]))
 
 
-def _filled(outcomes: list[Outcome]) -> list[float]:
+def _filled(outcomes: list[RunOutcome]) -> list[float]:
     return [float(outcome.figures["F_SF"] or 0) for outcome in outcomes]
 
 
@@ -181,7 +181,7 @@ def test_a_gain_is_told_from_chance(more: float, agrees: bool) -> None:
 
 
 def test_rounded_stones(here: Context) -> None:
-    kinds = [rounded.Kind(0.0, 8.0, 8.0), rounded.Kind(0.0, 5.0, 12.0)]
+    kinds = [rounded.StoneKind(0.0, 8.0, 8.0), rounded.StoneKind(0.0, 5.0, 12.0)]
     quick = replace(here, quick=True)
     output = of(rounded.ROUNDED, kinds, 60, 1).make(quick)
     fixed, varied = rows(output, "kinds")
@@ -225,6 +225,6 @@ def test_steps_by_part() -> None:
     ]
     assert times.late_over_early([1.0, 1.0, 2.0, 2.0, 2.0, 2.0, 3.0, 3.0]) == 3.0
     assert sum(times.shares(steps).values()) == pytest.approx(1.0)
-    wall = Planned(Site(280, 80), 0.5, tuple(steps))
+    wall = TimedWall(Site(280, 80), 0.5, tuple(steps))
     found = times.step_findings({"variant": wall, "full": wall})
     assert [one.holds for one in found] == [True, True, True, True, False]

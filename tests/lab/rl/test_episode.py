@@ -30,17 +30,6 @@ def test_builds_the_wall_of_the_planner_with_the_same_policy() -> None:
         assert episode.aside == len(stones) - len(planner.build.actions)
 
 
-def test_stones_arrive_in_the_order_given() -> None:
-    episode = Episode(prepared(*bricks()), [5, 2, 3])
-    arrived = []
-    while not episode.over:
-        arrived.append(episode.stone_id)
-        assert {offer.stone_id for offer in episode.offers} == {episode.stone_id}
-        episode.take(0)
-    assert arrived[:2] == [5, 2]
-    assert set(arrived) <= {5, 2, 3}
-
-
 def test_put_aside_for_good() -> None:
     episode = Episode(prepared(*bricks(3)))
     first = episode.stone_id

@@ -65,21 +65,3 @@ def test_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert "All 2 walls: `learned` less each other" in out
     assert main([*arguments, "--policies", "learned", "nobody"]) == 2
     assert "E146" in capsys.readouterr().err
-
-
-def test_other_walls_give_another_comparison(capsys: pytest.CaptureFixture[str]) -> None:
-    few = ["--stones", "5", "--kinds", "brick", "--policies", "lowest", "random"]
-    said = []
-    for walls in (["--walls", "2"], ["--walls", "1"], ["--walls", "1", "--first", "1"]):
-        assert main([*few, *walls]) == 0
-        means = capsys.readouterr().out.split("| lowest | ")[1].split(" |")
-        said.append(float(means[0]))
-    assert said[1] != said[2]
-    assert said[0] == pytest.approx((said[1] + said[2]) / 2, abs=1e-3)
-    with pytest.raises(SystemExit):
-        main([*few, "--first", "-1"])
-
-
-def test_command_refuses_a_single_policy() -> None:
-    with pytest.raises(SystemExit):
-        main(["--policies", "learned"])

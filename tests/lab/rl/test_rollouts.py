@@ -7,14 +7,7 @@ from drystone.model.site import Site
 from drystone.selection.policies.learned import FEATURES
 from drystone_lab.rl.draw import draw_wall
 from drystone_lab.rl.episode import Episode, prepared
-from drystone_lab.rl.rollouts import (
-    Branching,
-    at_random,
-    branching,
-    finished,
-    fitted,
-    spread_of,
-)
+from drystone_lab.rl.rollouts import Branching, at_random, branching, finished, fitted, spread_of
 from tests.lab.rl.walls import SMALL, bricks
 
 
@@ -74,17 +67,3 @@ def test_no_branching_where_no_stone_fits() -> None:
     workshop = prepared(stones, Site(5, 5))
     assert branching(workshop, at_random, (1,)) is None
     assert finished(Episode(workshop), at_random, np.random.default_rng(0)) == 0.0
-
-
-def test_copies_go_on_by_themselves() -> None:
-    episode = Episode(prepared(*bricks()))
-    copied = episode.copy()
-    copied.take(0)
-    assert (len(episode.build.actions), len(copied.build.actions)) == (0, 1)
-    assert (episode.stone_id, copied.stone_id) == (1, 2)
-    waiting = episode.waiting
-    while not copied.over:
-        copied.take(None)
-    assert episode.waiting == waiting
-    episode.take(0)
-    assert episode.stone_id == 2

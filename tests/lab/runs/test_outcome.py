@@ -1,16 +1,13 @@
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
 
 from drystone.planner.planner import Planner
-from drystone.search import whole_search
 from drystone.search.plan_wall import plan_wall
 from drystone_lab.runs.outcome import FIGURES, execute
-from drystone_lab.runs.spec import generated
-from tests.lab.runs.bricks import SOURCE, endless, run
+from tests.lab.runs.bricks import SOURCE, run
 
 
 def test_it_is_what_plan_wall_gives() -> None:
@@ -22,12 +19,6 @@ def test_it_is_what_plan_wall_gives() -> None:
     assert outcome.figures["F_LR"] == result.metrics.F_LR
     assert outcome.figures["wedges"] == 0
     assert outcome.key == run(3).key
-
-
-def test_stones_that_were_read_already_are_taken() -> None:
-    five = generated("brick", 1, count=5, height_px=10, aspect=2)
-
-    assert execute(run(1), None, five.stones(None)).figures["stones"] == 5
 
 
 def test_the_wall_is_built_again_from_its_plan() -> None:
@@ -46,14 +37,6 @@ def test_the_image_is_the_wall_when_no_size_is_given() -> None:
     }
 
 
-def test_times_are_those_of_the_run() -> None:
-    times = execute(run(1), None).times
-    assert set(times) == {
-        "wall", "placement", "stabilisation", "contacts", "limit analysis", "indices",
-    }  # fmt: skip
-    assert 0 < sum(times.values()) - times["wall"] <= times["wall"]
-
-
 def test_an_interrupted_wall_is_no_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(_: Planner) -> Iterator[None]:
         raise KeyboardInterrupt
@@ -62,20 +45,3 @@ def test_an_interrupted_wall_is_no_outcome(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr(Planner, "steps", interrupted)
     with pytest.raises(KeyboardInterrupt):
         execute(run(1), None)
-
-
-def test_an_interrupted_search_is_no_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
-    searching = whole_search.searching
-
-    def interrupted(*args: Any, **kwargs: Any) -> Iterator[Any]:
-        yield next(searching(*args, **kwargs))
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(whole_search, "searching", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        execute(endless(), None)
-
-
-def test_a_search_that_ends_is_an_outcome() -> None:
-    spec = replace(endless(), changes=(("search.budget", 2),))
-    assert execute(spec, None).plan["settings"]["search"]["budget"] == 2

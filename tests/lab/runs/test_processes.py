@@ -11,7 +11,7 @@ import pytest
 from drystone.errors import DrystoneError
 from drystone_lab.runs import workers as module
 from drystone_lab.runs.outcome import RunStore
-from drystone_lab.runs.runner import Runner, one_by_one
+from drystone_lab.runs.runner import Runner
 from drystone_lab.runs.workers import ONE_THREAD, crew, processes_at_work
 from tests.lab.runs.bricks import NOT_SIX, deadly, endless, kept, run
 
@@ -34,11 +34,6 @@ class AtOnce(Executor):
 
 def interrupt_soon(_: str) -> None:
     threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
-
-
-def test_one_process_is_this_one() -> None:
-    with processes_at_work(1) as work:
-        assert work is one_by_one
 
 
 @pytest.mark.usefixtures("interruptible")
@@ -69,19 +64,6 @@ def test_a_run_that_fails_does_not_stop_those_that_have_begun(
     assert kept(store, run(1))
     assert kept(store, run(3))
     assert not kept(store, run(5))
-
-
-def test_what_ended_is_given_before_an_interrupt(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "_process", AtOnce)
-    with processes_at_work(3) as work:
-        outcomes = work([run(1), run(2), run(3), run(4)], None)
-        keys = {next(outcomes).key}
-        keys |= {outcomes.throw(KeyboardInterrupt).key, next(outcomes).key}
-        with pytest.raises(KeyboardInterrupt):
-            next(outcomes)
-        assert keys == {spec.key for spec in (run(1), run(2), run(3))}
-        # All processes are there for the next runs.
-        assert len(list(work([run(k) for k in range(5, 9)], None))) == 4
 
 
 @pytest.mark.parametrize("fresh", [False, True])

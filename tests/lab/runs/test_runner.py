@@ -3,11 +3,10 @@ from pathlib import Path
 
 import pytest
 
-from drystone.errors import DrystoneError
-from drystone_lab.runs.outcome import Outcome, RunStore
+from drystone_lab.runs.outcome import RunOutcome, RunStore
 from drystone_lab.runs.runner import Runner, one_by_one
 from drystone_lab.runs.spec import RunSpec
-from tests.lab.runs.bricks import NOT_SIX, kept, run
+from tests.lab.runs.bricks import kept, run
 
 
 class Book:
@@ -17,7 +16,7 @@ class Book:
         self.done: list[int] = []
         self.interrupt_after = interrupt_after
 
-    def __call__(self, specs: Sequence[RunSpec], data: Path | None) -> Iterator[Outcome]:
+    def __call__(self, specs: Sequence[RunSpec], data: Path | None) -> Iterator[RunOutcome]:
         for spec in specs:
             if len(self.done) == self.interrupt_after:
                 raise KeyboardInterrupt
@@ -26,7 +25,7 @@ class Book:
 
 
 def test_outcomes_are_in_the_order_of_the_runs(tmp_path: Path) -> None:
-    def backwards(specs: Sequence[RunSpec], data: Path | None) -> Iterator[Outcome]:
+    def backwards(specs: Sequence[RunSpec], data: Path | None) -> Iterator[RunOutcome]:
         yield from one_by_one(specs[::-1], data)
 
     specs = [run(3), run(1), run(2)]
@@ -63,18 +62,6 @@ def test_what_ended_before_an_interrupt_is_kept(tmp_path: Path) -> None:
     assert later.done == [3]
 
 
-def test_what_ended_before_an_error_is_kept(tmp_path: Path) -> None:
-    specs, store = [run(1), run(2, NOT_SIX), run(3)], RunStore(tmp_path)
-    with pytest.raises(DrystoneError) as caught:
-        Runner(store).run(specs)
-    assert caught.value.code == "E130"
-    assert [kept(store, spec) for spec in specs] == [True, False, False]
-
-
 def test_runs_that_nobody_did_are_missed(tmp_path: Path) -> None:
     with pytest.raises(RuntimeError, match="lost"):
         Runner(RunStore(tmp_path), work=lambda _specs, _data: iter(())).run([run(1)])
-
-
-def test_no_runs_at_all(tmp_path: Path) -> None:
-    assert Runner(RunStore(tmp_path)).run([]) == ()

@@ -4,7 +4,7 @@ import pytest
 
 from drystone.errors import DrystoneError, InputError
 from drystone_lab.runs.spec import GENERATORS, from_file, generated, published
-from tests.lab.runs.bricks import SOURCE, picture
+from tests.lab.runs.bricks import picture
 
 
 @pytest.mark.parametrize("kind", GENERATORS)
@@ -16,10 +16,6 @@ def test_a_generator_makes_the_same_stones_of_a_seed(kind: str) -> None:
         assert [stone.mask.tobytes() for stone in first] != [
             stone.mask.tobytes() for stone in other
         ]
-
-
-def test_the_order_of_settings_does_not_matter() -> None:
-    assert generated("brick", 1, aspect=2, height_px=10, count=6) == SOURCE
 
 
 def test_published_stones_are_read_from_their_folder(tmp_path: Path) -> None:
@@ -39,17 +35,6 @@ def test_other_stones_in_the_place_of_published_ones(tmp_path: Path) -> None:
     for refused in (source.check, source.stones):
         with pytest.raises(InputError, match="E160"):
             refused(tmp_path)
-
-
-def test_published_stones_without_their_folder() -> None:
-    with pytest.raises(FileNotFoundError, match=r"bricks\.png"):
-        published("set/bricks.png").stones(None)
-
-
-def test_a_file_of_ones_own_needs_no_folder(tmp_path: Path) -> None:
-    source = from_file(picture(tmp_path / "own.png"))
-    assert source.is_there(None)
-    assert len(source.stones(None)) == 6
 
 
 def test_a_file_that_was_changed_is_another_source(tmp_path: Path) -> None:

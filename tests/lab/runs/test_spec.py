@@ -1,4 +1,3 @@
-import json
 from dataclasses import fields, replace
 
 import pytest
@@ -63,10 +62,6 @@ def test_changes_replace_settings_and_leave_the_others() -> None:
     assert (changed.placement.beta, changed.mu) == (0.5, 0.4)
     assert replace(changed, mu=default.mu, placement=default.placement) == default
     assert SPEC.settings() == default
-
-
-def test_it_can_be_written_as_json() -> None:
-    assert json.loads(json.dumps(SPEC.as_dict())) == SPEC.as_dict()
 
 
 @pytest.mark.parametrize(

@@ -5,19 +5,12 @@ import pytest
 
 from drystone.errors import UsageError
 from drystone_lab.runs import workers
-from drystone_lab.runs.runner import one_by_one
 from drystone_lab.runs.workers import work_of
 
 
 @contextmanager
 def named(*args: object) -> Iterator[object]:
     yield args
-
-
-@pytest.mark.parametrize("jobs", [None, 1])
-def test_this_process_by_itself(jobs: int | None) -> None:
-    with work_of(jobs, None) as work:
-        assert work is one_by_one
 
 
 def test_options_name_who_works(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,149 @@
+"""Charts of many walls, of times, of predictions, and by version."""
+
+from statistics import median
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from drystone.planner.profile import StepTime
+from drystone_lab.pictures.charts import group_panels, plot_groups, plot_history, plot_two_figures
+from drystone_lab.pictures.growth import (
+    LINES,
+    PART_COLOURS,
+    REST,
+    Claim,
+    PowerLaw,
+    Series,
+    plot_growth,
+    plot_step_times,
+    step_time_panels,
+)
+from drystone_lab.pictures.validation import COLOURS, MARKERS, Prediction, plot_predictions
+
+VALUES = {"both": [0.8, 0.7, 0.9, 0.75, 0.72, 0.71], "none": [0.5, None, 0.4], "empty": [None]}
+
+
+def _line(ax: Axes, gid: str) -> Line2D:
+    (line,) = [line for line in ax.lines if line.get_gid() == gid]
+    return line
+
+
+def test_points_are_the_values_and_lines_their_medians() -> None:
+    ax = plot_groups(VALUES, figure="F_SF")
+    assert list(_line(ax, "group-both").get_ydata()) == VALUES["both"]
+    assert list(_line(ax, "group-none").get_ydata()) == [0.5, 0.4]
+    assert set(_line(ax, "median-both").get_ydata()) == {median(VALUES["both"])}
+    assert set(_line(ax, "median-none").get_ydata()) == {0.45}
+    assert [line for line in ax.lines if line.get_gid() == "median-empty"] == []
+    assert [text.get_text() for text in ax.get_xticklabels()] == list(VALUES)
+    assert ax.get_ylabel() == "F_SF"
+
+
+def test_claims_stand_in_their_groups() -> None:
+    ax = plot_groups(VALUES, claims={"none": 0.6}, claim="the paper")
+    cross = _line(ax, "claim-none")
+    assert (list(cross.get_xdata()), list(cross.get_ydata())) == ([1], [0.6])
+    legend = ax.get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()] == ["the paper"]
+    assert plot_groups(VALUES).get_legend() is None
+
+
+@pytest.mark.parametrize(("count", "columns"), [(1, 1), (4, 4), (5, 3), (8, 4), (12, 4)])
+def test_panels_fill_rows(count: int, columns: int) -> None:
+    figure = group_panels({f"figure {k}": VALUES for k in range(count)}, title="t")
+    assert [ax.get_ylabel() for ax in figure.axes] == [f"figure {k}" for k in range(count)]
+    specs = [ax.get_subplotspec() for ax in figure.axes]
+    assert {spec.get_gridspec().ncols for spec in specs if spec is not None} == {columns}
+
+
+def test_one_figure_over_another() -> None:
+    pairs = {"rotation": [(1.0, 0.5), (3.0, 0.7), (2.0, 0.1)], "wedge": [(None, 0.5), (4.0, 0.6)]}
+    ax = plot_two_figures(pairs, across="area", up="F_SF")
+    assert [value[0] for value in _line(ax, "median-rotation").get_data()] == [2.0, 0.5]
+    assert [list(value) for value in _line(ax, "group-wedge").get_data()] == [[4.0], [0.6]]
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("area", "F_SF")
+
+
+STEPS = [
+    StepTime(0, 4, 0.010, {"placement": 0.004, "limit analysis": 0.005}),
+    StepTime(1, 4, 0.020, {"placement": 0.006, "indices": 0.014}),
+]
+SERIES = (
+    Series("wall", ((10.0, 1.0), (100.0, 10.0)), PowerLaw(0.1, 1.0)),
+    Series("step", ((10.0, 0.5), (100.0, 0.7))),
+)
+CLAIMS = (Claim("paper: wall", 20.0, 9.0), Claim("paper: step", 90.0, 25.0, at_most=True))
+
+
+def test_parts_stand_on_top_of_each_other_and_reach_the_time_of_the_step():
+    ax = plot_step_times(STEPS, title="variant")
+    by_part = {bars.get_label(): bars.patches for bars in ax.containers}
+    assert list(by_part) == [*PART_COLOURS, REST]
+    for k, step in enumerate(STEPS):
+        foot = 0.0
+        for part, bars in by_part.items():
+            assert bars[k].get_y() == pytest.approx(foot)
+            if part != REST:
+                assert bars[k].get_height() == pytest.approx(1e3 * step.parts.get(part, 0.0))
+            foot += bars[k].get_height()
+        assert foot == pytest.approx(1e3 * step.seconds)
+    assert ax.get_title() == "variant"
+
+
+def test_panels_have_the_walls_beside_each_other_and_one_legend():
+    figure = step_time_panels({"variant": STEPS, "full": STEPS[:1]})
+    left, right = figure.axes
+    assert (left.get_title(), right.get_title()) == ("variant", "full")
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == [*PART_COLOURS, REST]
+    assert left.get_legend() is right.get_legend() is None
+
+
+def test_points_laws_and_claims_are_drawn_where_they_are():
+    ax = plot_growth(SERIES, CLAIMS, size="pixels")
+    points, line, bare, wall, step = ax.get_lines()
+    assert points.get_xydata().tolist() == [[10.0, 1.0], [100.0, 10.0]]
+    np.testing.assert_allclose(line.get_xydata(), [[10.0, 1.0], [100.0, 10.0]])
+    assert bare.get_xydata().tolist() == [[10.0, 0.5], [100.0, 0.7]]
+    assert [wall.get_marker(), step.get_marker()] == ["x", "v"]
+    assert step.get_xydata().tolist() == [[90.0, 25.0]]
+    assert [points.get_color(), bare.get_color()] == [colour for colour, _ in LINES[:2]]
+    words = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert words == ["wall", "exponent 1.00", "step", "paper: wall", "paper: step"]
+    assert (ax.get_xscale(), ax.get_yscale(), ax.get_xlabel()) == ("log", "log", "pixels")
+
+
+POINTS = [
+    Prediction("granite", "turns", 40.0, 30.0, 35.0, 50.0),
+    Prediction("granite", "level", 40.0, 55.0, 60.0, 80.0),
+    Prediction("sandstone", "turns", 10.0, 12.0, 12.0, 12.0),
+]
+
+
+def test_points_bands_looks_and_legend():
+    ax = plot_predictions(POINTS, band="friction")
+    for bars, point in zip(ax.containers, POINTS, strict=True):
+        line, _, (bar,) = bars
+        assert line.get_xydata().tolist() == [[point.measured, point.predicted]]
+        ends = [[point.measured, point.low], [point.measured, point.high]]
+        assert bar.get_segments()[0].tolist() == ends
+    lines = [bars[0] for bars in ax.containers]
+    assert [line.get_color() for line in lines] == [COLOURS[0], COLOURS[1], COLOURS[0]]
+    assert [line.get_marker() for line in lines] == [MARKERS[0], MARKERS[0], MARKERS[1]]
+    assert ax.get_xlim() == ax.get_ylim() == (0.0, pytest.approx(84.0))
+    (equal,) = [line for line in ax.get_lines() if line.get_gid() == "equal"]
+    np.testing.assert_array_equal(*equal.get_xydata().T)
+    words = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert words == ["turns", "level", "granite", "sandstone", "friction", "equal", "20 % off"]
+
+
+def test_versions_without_a_value_have_no_point():
+    ax = plot_history(["1", "2", "3"], {"paper": [0.5, None, 0.7]}, figure="F_SF")
+    (line,) = ax.lines
+    assert line.get_xdata().tolist() == [0, 2]
+    assert line.get_ydata().tolist() == [0.5, 0.7]
+    assert [tick.get_text() for tick in ax.get_xticklabels()] == ["1", "2", "3"]
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("version", "F_SF")
