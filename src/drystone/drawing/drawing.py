@@ -246,8 +246,6 @@ def letters_pt(text: str, width_pt: float, height_pt: float, share: float = 0.6)
 
     A digit is about .62 of its size wide.
 
-    Examples
-    --------
     >>> letters_pt("7", 100.0, 10.0), round(letters_pt("777", 18.6, 100.0), 6)
     (6.0, 6.0)
     """

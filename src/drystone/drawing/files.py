@@ -33,22 +33,6 @@ def save(figure: Figure | SubFigure, path: str | Path, dpi: float = DPI) -> None
     """Write a figure as PNG, PDF or SVG, without dates or versions in the file.
 
     The file is whole or not there at any time.
-
-    Parameters
-    ----------
-    figure : Figure or SubFigure
-        For example ``plot_wall(wall).figure``; of a subfigure, the figure it belongs to.
-    path : str or Path
-        Its ending chooses the format.
-    dpi : float
-        Pixels an inch of a PNG.
-
-    Raises
-    ------
-    ValueError
-        When the ending is another one.
-    PlanError
-        E206 when the file cannot be written; an existing one is as it was.
     """
     suffix = Path(path).suffix.lower()
     if suffix not in _UNDATED:
@@ -98,28 +82,6 @@ def write_pictures(
 
     A picture of a mechanism that an earlier run left in the folder is removed when this wall has
     none: it would belong to another wall.
-
-    Parameters
-    ----------
-    folder : str or Path
-        An existing folder.
-    wall : Wall
-        The finished wall.
-    clusters : mapping of int to int, optional
-        Cluster of each stone's id, from 1.
-    resistance : LateralResistance, optional
-        With the mechanisms, when they were asked for.
-    outlines : mapping of int to (n, 2) float array, optional
-        Drawn instead of the pixels; see :func:`drystone.drawing.plot_wall`.
-    title : str
-        Above the picture of the wall.
-    dpi : float
-        Pixels an inch.
-
-    Returns
-    -------
-    paths : tuple of Path
-        The files written.
     """
     folder = Path(folder)
     picture = folder / PICTURE

@@ -36,13 +36,7 @@ class Region:
 
 
 def label_regions(labels: Labels) -> tuple[Region, ...]:
-    """Return the regions of a label image in the order of their ids.
-
-    Examples
-    --------
-    >>> [region.centroid for region in label_regions(np.array([[0, 0], [7, 7]], np.uint32))]
-    [(1.0, 0.5)]
-    """
+    """Return the regions of a label image in the order of their ids."""
     ids, ranks = np.unique(labels, return_inverse=True)
     # Ranks instead of ids: find_objects makes a list as long as the largest id.
     ranks = ranks.reshape(labels.shape) + (0 if ids.size and ids[0] == 0 else 1)
@@ -56,11 +50,6 @@ def label_regions(labels: Labels) -> tuple[Region, ...]:
 
 def polygon_regions(polygons: Mapping[int, Loop]) -> tuple[Region, ...]:
     """Return the regions of polygons, either way round, closed or not, in the order of their ids.
-
-    Examples
-    --------
-    >>> polygon_regions({7: np.array([[0, 0], [0, 1], [2, 1], [2, 0]])})[0].centroid
-    (1.0, 0.5)
     """
     return tuple(_of_polygon(block, polygons[block]) for block in sorted(polygons))
 
@@ -83,11 +72,6 @@ def wall_regions(wall: Labels | Mapping[int, Loop]) -> tuple[Region, ...]:
 
     A label image stands on its lowest stone pixel, as in
     :func:`drystone.contacts.blocks.model_from_labels`.
-
-    Examples
-    --------
-    >>> [region.centroid for region in wall_regions(np.array([[7, 7], [0, 0]], np.uint32))]
-    [(1.0, 0.5)]
     """
     if isinstance(wall, Mapping):
         return polygon_regions(wall)
@@ -117,10 +101,7 @@ def stands_on_ground(regions: Iterable[Region]) -> bool:
 def _region(label: int, mask: Mask, window: tuple[slice, slice], height: int) -> Region:
     left, bottom = window[1].start, height - window[0].stop
     rows, cols = np.nonzero(mask)
-    centroid = (
-        left + float(cols.mean()) + 0.5,
-        bottom + mask.shape[0] - float(rows.mean()) - 0.5,
-    )
+    centroid = (left + float(cols.mean()) + 0.5, bottom + mask.shape[0] - float(rows.mean()) - 0.5)
     loops = tuple(loop + np.array([left, bottom], float) for loop in pixel_loops(mask))
     return Region(label, loops, centroid, int(rows.size))
 
@@ -129,11 +110,6 @@ def pixel_loops(mask: Mask) -> tuple[Loop, ...]:
     """Return the boundary of a mask along pixel edges, without collinear corners.
 
     The origin is its lower left corner.  Pixels that touch only at a corner get loops of their own.
-
-    Examples
-    --------
-    >>> pixel_loops(np.ones((1, 2), bool))[0].tolist()
-    [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]
     """
     outgoing: dict[tuple[int, int], list[tuple[int, int]]] = {}
     for start, end in _edges(mask):
@@ -183,11 +159,6 @@ def wall_outlines(wall: Wall) -> dict[int, Loop]:
 
     A stone's is its own outline from the source image, turned and moved; a wedge's follows its
     pixels, unless the wall is one of outlines.
-
-    Returns
-    -------
-    outlines : dict of int to (n, 2) float array
-        In the order of placement.
     """
     site = wall.site
     if wall.outlines is not None:

@@ -37,11 +37,6 @@ def cluster_colour(cluster: int) -> str:
     """Return the colour ``"#rrggbb"`` of a cluster, numbered from 1.
 
     The sixteen colours come round again in a darker tone for clusters 17 to 32, then all over.
-
-    Examples
-    --------
-    >>> cluster_colour(1), cluster_colour(17), cluster_colour(33)
-    ('#009eff', '#005f99', '#009eff')
     """
     if cluster < 1:
         raise ValueError(f"clusters are numbered from 1, not {cluster}")
@@ -53,13 +48,7 @@ def cluster_colour(cluster: int) -> str:
 
 
 def text_colour(background: str) -> str:
-    """Return black or white, whichever has more contrast (WCAG 2) on a background.
-
-    Examples
-    --------
-    >>> text_colour("#f3e79e"), text_colour("#8b0000")
-    ('#000000', '#ffffff')
-    """
+    """Return black or white, whichever has more contrast (WCAG 2) on a background."""
     luminance = relative_luminance(background)
     on_black, on_white = (luminance + 0.05) / 0.05, 1.05 / (luminance + 0.05)
     return "#000000" if on_black >= on_white else "#ffffff"
@@ -77,11 +66,5 @@ def rgb(colour: str) -> Rgb:
 
 
 def linear(part: float) -> float:
-    """Return a part of an sRGB colour as light.
-
-    Examples
-    --------
-    >>> linear(0.0), linear(1.0)
-    (0.0, 1.0)
-    """
+    """Return a part of an sRGB colour as light."""
     return part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4

@@ -87,8 +87,6 @@ def gif_bytes(
     All frames have one palette, of :func:`palette_of`: colours chosen from a picture would tint its
     black lines, and differ from frame to frame.
 
-    Examples
-    --------
     >>> two = [Image.new("RGB", (4, 4), colour) for colour in ("black", "white")]
     >>> gif_bytes(two, palette_of([[0, 0, 0], [1, 1, 1]]), 80)[:6]
     b'GIF89a'

@@ -7,12 +7,7 @@ from PIL import Image
 
 from drystone.craft import RULES, Masonry, look
 from drystone.drawing.files import save
-from drystone.drawing.pictures.craft import (
-    BESIDE,
-    FAULT,
-    plot_craft,
-    plot_finding,
-)
+from drystone.drawing.pictures.craft import BESIDE, FAULT, plot_craft, plot_finding
 from tests.craft.walls import box, courses, stack_bond
 from tests.drawing.pictures.test_contacts import lines
 

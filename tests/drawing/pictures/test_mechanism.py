@@ -184,10 +184,7 @@ def test_numbers_move_with_their_blocks():
     ]
 
 
-@given(
-    twist=st.tuples(*[st.floats(-1, 1)] * 3),
-    amplitude=st.floats(0, 1),
-)
+@given(twist=st.tuples(*[st.floats(-1, 1)] * 3), amplitude=st.floats(0, 1))
 @repeatable(30)
 def test_a_motion_keeps_every_block_rigid_and_starts_with_its_velocity(twist, amplitude):
     motion = motion_of(labels(), slide(twist))

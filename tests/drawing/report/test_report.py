@@ -13,12 +13,7 @@ from drystone.contacts.blocks import model_from_labels
 from drystone.drawing import view_of_result, view_of_wall, write_pictures, write_report
 from drystone.drawing.report.html import viewer_frame, viewer_page, viewer_script, viewer_style
 from drystone.drawing.report.notebook import Shown
-from drystone.drawing.words.content import (
-    assumptions,
-    cards,
-    number,
-    weaker_direction,
-)
+from drystone.drawing.words.content import assumptions, cards, number, weaker_direction
 from drystone.errors import Notice, PlanError
 from drystone.model.plan import PlanMetrics
 from drystone.statics.limit import lateral_resistance

@@ -90,13 +90,7 @@ def pick_to_place(assembly: Assembly, part: Part) -> Matrix | None:
 
 
 def inverse(matrix: Matrix) -> Matrix:
-    """Return the inverse of a rigid (4, 4) transform.
-
-    Examples
-    --------
-    >>> inverse(np.array([[0., -1, 0, 5], [1, 0, 0, 6], [0, 0, 1, 7], [0, 0, 0, 1]]))[:3, 3]
-    array([-6.,  5., -7.])
-    """
+    """Return the inverse of a rigid (4, 4) transform."""
     back = np.eye(4)
     back[:3, :3] = matrix[:3, :3].T
     back[:3, 3] = -matrix[:3, :3].T @ matrix[:3, 3]
@@ -137,13 +131,7 @@ def blocked_m(assembly: Assembly, part: Part) -> float:
 
 
 def swept(low: Points, lift: float) -> shapely.Geometry:
-    """Return what an outline passes when it is lifted straight up.
-
-    Examples
-    --------
-    >>> swept(np.array([[0.0, 0.0], [2.0, 0.0], [1.0, 1.0]]), 3.0).area
-    7.0
-    """
+    """Return what an outline passes when it is lifted straight up."""
     high = low + np.array([0.0, lift])
     following = np.roll(np.arange(len(low)), -1)
     sides = np.stack([low, low[following], high[following], high], axis=1)

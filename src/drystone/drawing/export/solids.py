@@ -61,12 +61,6 @@ def extruded(outline: Points, front: float, back: float, name: str = "outline") 
 
     The outline is counter-clockwise in x and z, not closed; E180 names it when it crosses or
     touches itself, or has no area.
-
-    Examples
-    --------
-    >>> box = extruded(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]), 0.0, 3.0)
-    >>> box.vertices.shape, box.triangles.shape
-    ((8, 3), (12, 3))
     """
     face = triangulated(outline, name)
     count = len(outline)
@@ -115,13 +109,7 @@ def inertia(assembly: Assembly, part: Part) -> Inertia:
 
 
 def second_moments(outline: Points) -> NDArray[np.float64]:
-    """Return the integrals of x^2, z^2 and x z over the inside of an outline, about the origin.
-
-    Examples
-    --------
-    >>> second_moments(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 3.0], [0.0, 3.0]]))
-    array([ 8., 18.,  9.])
-    """
+    """Return the integrals of x^2, z^2 and x z over the inside of an outline, about the origin."""
     x, z = outline.T
     u, v = np.roll(outline, -1, axis=0).T
     cross = x * v - u * z

@@ -11,13 +11,7 @@ from xml.etree import ElementTree as ET
 from drystone.drawing.assembly.parts import Assembly, Part
 from drystone.drawing.export.formats import ExportSettings, Files
 from drystone.drawing.export.meshes import stl_bytes
-from drystone.drawing.export.solids import (
-    colour,
-    inertia,
-    material,
-    require_solids,
-    solid_of_part,
-)
+from drystone.drawing.export.solids import colour, inertia, material, require_solids, solid_of_part
 from drystone.drawing.export.text import number
 from drystone.model.frames3d import Pose3d
 

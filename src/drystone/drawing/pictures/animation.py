@@ -38,25 +38,7 @@ def mechanism_frames(
     load: str = "",
     numbers: bool = False,
 ) -> tuple[Image.Image, ...]:
-    """Draw a mechanism from rest to the largest displacement of its picture and back.
-
-    Parameters
-    ----------
-    wall, mechanism, direction, alpha, load, numbers
-        As for :func:`drystone.drawing.plot_mechanism`.
-    frames : int
-        At least 2; the motion slows down at both ends, and the last frame leads to the first.
-
-    Returns
-    -------
-    tuple of Image
-        RGB, all of one size.  Their bytes repeat.
-
-    Raises
-    ------
-    ValueError
-        For fewer frames, or a mechanism of another wall.
-    """
+    """Draw a mechanism from rest to the largest displacement of its picture and back."""
     if frames < 2:
         raise ValueError(f"an animation has at least 2 frames, not {frames}")
     ax = plot_mechanism(wall, mechanism, direction, alpha, load=load, numbers=numbers)
@@ -83,24 +65,7 @@ def save_mechanism_animation(
     frames: int = 24,
     **options: Any,
 ) -> None:
-    """Write :func:`mechanism_frames` as a GIF that loops, without a date in the file.
-
-    Parameters
-    ----------
-    path : str or Path
-        Ends in ".gif".
-    wall, mechanism, direction, alpha, frames
-        As for :func:`mechanism_frames`.
-    **options
-        Its others: `load`, `numbers`.
-
-    Raises
-    ------
-    ValueError
-        When the path ends otherwise, and as :func:`mechanism_frames` does.
-    PlanError
-        E206 when the file cannot be written; an existing one is as it was.
-    """
+    """Write :func:`mechanism_frames` as a GIF that loops, without a date in the file."""
     if Path(path).suffix.lower() != ".gif":
         raise ValueError(f"{path}: animations end in .gif")
     pictures = mechanism_frames(wall, mechanism, direction, alpha, frames=frames, **options)

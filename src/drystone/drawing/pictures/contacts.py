@@ -35,30 +35,7 @@ def plot_contacts(
     *,
     kinds: Sequence[ContactKind] | None = None,
 ) -> Axes:
-    """Draw where blocks touch: interfaces as lines with their end points and normals.
-
-    Parameters
-    ----------
-    wall : (h, w) integer array, or mapping of int to (n, 2) float array
-        Label image, row 0 at the top, or polygons by id.
-    model : RigidBlockModel
-        Of this wall.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    kinds : sequence of {"closed", "opening", "sliding", "opening and sliding"}, optional
-        What a mechanism does at every contact point
-        (:attr:`drystone.statics.failing.mechanism.Failure.contact_kinds`); colours the points.
-
-    Returns
-    -------
-    ax : Axes
-        In px of the label image or the unit of the polygons, y up from the ground of the model.
-
-    Raises
-    ------
-    ValueError
-        When the model has a block that the wall does not have, or the kinds are not its.
-    """
+    """Draw where blocks touch: interfaces as lines with their end points and normals."""
     if kinds is not None and len(kinds) != model.contact_count:
         raise ValueError(f"{len(kinds)} kinds for {model.contact_count} contact points")
     regions = wall_regions(wall)

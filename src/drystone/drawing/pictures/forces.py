@@ -57,13 +57,6 @@ def resultants(model: RigidBlockModel, forces: Floats) -> tuple[Resultant, ...]:
 
     `forces` are normal and tangential, (m, 2), as in
     :attr:`drystone.statics.result.LimitResult.forces`.
-
-    Examples
-    --------
-    >>> from drystone.contacts.given import model_from_json
-    >>> block = model_from_json({"blocks_xywh": [[0, 0, 4, 1]]})
-    >>> resultants(block, np.array([[1.0, 0.0], [3.0, 0.0]]))[0].point.tolist()
-    [3.0, 0.0]
     """
     if len(forces) != model.contact_count:
         raise ValueError(f"{len(forces)} forces for {model.contact_count} contact points")
@@ -100,27 +93,6 @@ def plot_forces(
     A dark red line through the point of action of each resultant has its direction and, to scale,
     its length; half of it lies on either side of the joint.  A blue line joins the points of action
     with the centroids of the two blocks, as wide as the force is large, also to scale.
-
-    Parameters
-    ----------
-    wall : (h, w) integer array, or mapping of int to (n, 2) float array
-        Label image, row 0 at the top, or polygons by id.
-    model : RigidBlockModel
-        Of this wall.
-    forces : (m, 2) float array
-        See :func:`resultants`.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-
-    Returns
-    -------
-    ax : Axes
-        In px of the label image or the unit of the polygons, y up from the ground of the model.
-
-    Raises
-    ------
-    ValueError
-        When the forces or the wall are not those of the model.
     """
     acting, regions = resultants(model, forces), wall_regions(wall)
     largest = max((one.size for one in acting), default=0.0)
@@ -184,8 +156,6 @@ def _draw_scale(ax: Axes, model: RigidBlockModel, per_weight: float, largest: fl
 def round_number(most: float) -> float:
     """Return the largest of 1, 2, 5, 10, 20 ... (and .5, .2 ...) that is not above `most`.
 
-    Examples
-    --------
     >>> round_number(7.3), round_number(0.3), round_number(20.0)
     (5.0, 0.2, 20.0)
     """

@@ -41,18 +41,6 @@ def plot_scatter(scatter: Scatter, ax: Axes | None = None) -> Axes:
 
     Histograms of min alpha and of F_LR with their quantiles, and min alpha against friction when
     it was varied.  Above stands in words what was shaken and how many walls do not stand.
-
-    Parameters
-    ----------
-    scatter : Scatter
-        From :func:`drystone.statics.scatter.scatter.scatter`.
-    ax : Axes, optional
-        Where to draw: the panels become its children; None makes a figure.
-
-    Returns
-    -------
-    ax : Axes
-        With the words; the panels are its ``child_axes``.
     """
     alpha, shaken = scatter.unshaken, len(scatter.alpha) > 0
     unshaken = None

@@ -117,22 +117,7 @@ def plot_labels(labels: Labels, ax: Axes | None = None, *, title: str = "") -> A
 def plot_joint_paths(
     labels: Labels, paths: Sequence[NDArray[np.integer]], ax: Axes | None = None
 ) -> Axes:
-    """Draw the paths of the alignment factors F_AV and F_AH over the stones (Fig. 17).
-
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        The wall; row 0 at the top.
-    paths : sequence of (n, 2) integer arrays
-        Pixels (row, col) of each path; rows and columns just outside of the image are allowed.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-
-    Returns
-    -------
-    ax : Axes
-        In px, y up from the image's bottom edge.
-    """
+    """Draw the paths of the alignment factors F_AV and F_AH over the stones (Fig. 17)."""
     height, width = labels.shape
     blocks = (
         Area(f"block-{region.id}", region.loops, PALE, line=GREY, width_pt=0.4)

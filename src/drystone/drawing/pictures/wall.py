@@ -59,20 +59,7 @@ def plot_wall(
 
 
 def plot_choice(walls: Sequence[Wall], figures: Sequence[Figures]) -> Figure:
-    """Draw walls with their figures of merit, numbered from 1, and these against each other.
-
-    Parameters
-    ----------
-    walls : sequence of Wall
-        At least one, all of one size.
-    figures : sequence of mapping of str to float or None
-        F_SF, F_AV, F_AH and F_LR of each.
-
-    Returns
-    -------
-    figure : Figure
-        Its axes are those of the walls, then F_LR over F_SF and F_AH over F_AV.
-    """
+    """Draw walls with their figures of merit, numbered from 1, and these against each other."""
     rows = -(-len(walls) // COLUMNS)
     site = walls[0].site
     wall_in = max(0.6, PANEL_IN * site.height_px / site.width_px) + 0.45

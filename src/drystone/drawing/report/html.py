@@ -93,11 +93,7 @@ def _rendered(template: str, wall: View, **more: Any) -> str:
         lstrip_blocks=True,
     )  # fmt: skip
     return templates.get_template(template).render(
-        policy=POLICY,
-        data=json_in_html(wall),
-        script=viewer_script(),
-        style=viewer_style(),
-        **more,
+        policy=POLICY, data=json_in_html(wall), script=viewer_script(), style=viewer_style(), **more
     )
 
 
@@ -122,12 +118,6 @@ def viewer_style() -> Markup:
 
 
 def json_in_html(data: Any) -> Markup:
-    r"""Write JSON for a script element: nothing in it can end the element.
-
-    Examples
-    --------
-    >>> print(json_in_html({"path": "</script><img>"}))
-    {"path":"\u003c/script>\u003cimg>"}
-    """
+    """Write JSON for a script element: nothing in it can end the element."""
     text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
     return Markup(text.replace("<", "\\u003c"))  # noqa: S704

@@ -58,17 +58,7 @@ Centroids = Mapping[int, tuple[float, float]]
 def view_of_result(
     result: "PlanResult", *, photo: Path | None = None, notices: Sequence[Notice] | None = None
 ) -> View:
-    """Show a plan that was just made.
-
-    Parameters
-    ----------
-    result : PlanResult
-        From :func:`drystone.plan_wall`.
-    photo : Path, optional
-        A picture of the stones in the frame of the source image.
-    notices : sequence of Notice, optional
-        Those of reading the stones and of planning; the result's alone when missing.
-    """
+    """Show a plan that was just made."""
     return view_of_assembly(
         assembly_of_result(result, photo),
         notices=result.notices if notices is None else notices,
@@ -82,22 +72,7 @@ def view_of_assembly(
     notices: Sequence[Notice] = (),
     timings: Mapping[str, float] | None = None,
 ) -> View:
-    """Show a plan.
-
-    Parameters
-    ----------
-    assembly : Assembly
-        The plan as parts, for example from :func:`drystone.drawing.assembly.read.read_assembly`.
-    notices : sequence of Notice
-        What reading the stones and planning had to decide.
-    timings : mapping of str to float, optional
-        Seconds of each part of the work.
-
-    Returns
-    -------
-    view : dict
-        Plain JSON; equal arguments give an equal one.
-    """
+    """Show a plan."""
     plan, source = assembly.plan, assembly.plan.source
     digits = part_digits(assembly.size)
     shapes = {part.id: part.corners for part in assembly.parts}
@@ -246,8 +221,6 @@ def _metrics(cards: Iterable[content.Card], sha256: str | None) -> list[Any]:
 def part_digits(size: tuple[float, float]) -> int:
     """Return the digits of lengths at which a hundred-thousandth of a wall is left out.
 
-    Examples
-    --------
     >>> part_digits((280.0, 80.0)), part_digits((1.4, 0.4))
     (2, 4)
     """
@@ -346,8 +319,6 @@ def _words(assembly: Assembly, part: Part) -> str:
 def turned(angle_deg: float) -> str:
     """Say how far something is turned, the shorter way round.
 
-    Examples
-    --------
     >>> turned(-90.04), turned(270.0), turned(0.01)
     ('turned 90.0° clockwise', 'turned 90.0° clockwise', 'not turned')
     """

@@ -8,14 +8,7 @@ import numpy as np
 from drystone.drawing.assembly.parts import Assembly, Part
 from drystone.drawing.drawing import letters_pt
 from drystone.drawing.palette import GREY, PLAIN_COLOUR, WEDGE_COLOUR
-from drystone.drawing.sheet.page import (
-    EDGE_MM,
-    NOT_TO_SCALE,
-    PLAIN_PT,
-    PT_PER_MM,
-    SMALL_PT,
-    Page,
-)
+from drystone.drawing.sheet.page import EDGE_MM, NOT_TO_SCALE, PLAIN_PT, PT_PER_MM, SMALL_PT, Page
 from drystone.drawing.sheet.words import length_words, size_words, wedge_place
 from drystone.model.plan import StoneStep
 

@@ -20,13 +20,7 @@ CORNER = 0.03
 
 
 def turn_words(angle_deg: float) -> str:
-    """Say how to turn a stone, the angle counter-clockwise as it is seen.
-
-    Examples
-    --------
-    >>> turn_words(97.2), turn_words(-45.0), turn_words(359.5), turn_words(181.0)
-    ('turn left 97°', 'turn right 45°', 'as it lies', 'half round')
-    """
+    """Say how to turn a stone, the angle counter-clockwise as it is seen."""
     angle = shortest_turn(angle_deg)
     if abs(angle) < AS_IT_LIES_DEG:
         return "as it lies"
@@ -36,25 +30,12 @@ def turn_words(angle_deg: float) -> str:
 
 
 def shortest_turn(angle_deg: float) -> float:
-    """Return an angle in (-180, 180].
-
-    Examples
-    --------
-    >>> shortest_turn(270.0), shortest_turn(-180.0)
-    (-90.0, 180.0)
-    """
+    """Return an angle in (-180, 180]."""
     return 180.0 - (180.0 - angle_deg) % 360.0
 
 
 def length_words(assembly: Assembly, *lengths: float) -> str:
-    """Write lengths with their unit: cm, or px when there is no scale.
-
-    Examples
-    --------
-    >>> from types import SimpleNamespace
-    >>> length_words(SimpleNamespace(unit="m"), 0.1234, 1.0)
-    '12.3, 100.0 cm'
-    """
+    """Write lengths with their unit: cm, or px when there is no scale."""
     if assembly.unit == "m":
         return ", ".join(f"{100 * length:.1f}" for length in lengths) + " cm"
     return ", ".join(f"{length:.0f}" for length in lengths) + " px"

@@ -23,10 +23,7 @@ INDICES = {
     "IS": "slope of the upper edge; positive falls inwards, higher is better",
     "LLC": "limit load coefficient: min(alpha) / mu after the step; higher is better",
 }
-STONES_ARE = {
-    "exact": "their outlines",
-    "raster": "their pixels at the working resolution",
-}
+STONES_ARE = {"exact": "their outlines", "raster": "their pixels at the working resolution"}
 TOUCHING = {
     "exact": "Stones touch where their outlines are within the contact tolerance, {contact_px:g} "
     "px of the image, of each other.",
@@ -87,13 +84,7 @@ class Card:
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """Write a number, or that it is not defined: never 0 for a missing one.
-
-    Examples
-    --------
-    >>> number(0.5), number(None), number(-0.0004)
-    ('0.500', 'not defined', '0.000')
-    """
+    """Write a number, or that it is not defined: never 0 for a missing one."""
     if value is None or not math.isfinite(value):
         return UNDEFINED
     return f"{round(value, digits) + 0.0:.{digits}f}"
@@ -133,8 +124,6 @@ def assumptions(plan: Plan) -> tuple[str, ...]:
 def wall_assumptions(load_case: str = TILTING) -> tuple[str, ...]:
     """Return what the analysis of a wall that was not planned rests on, by the name of its loads.
 
-    Examples
-    --------
     >>> wall_assumptions("point loads")[-1]
     'Load case: point loads. The wall stands free on rigid ground, but for what is fixed.'
     """
@@ -168,8 +157,6 @@ def model_assumptions(model: RigidBlockModel) -> tuple[str, ...]:
 def load_words(load_case: str, side: str) -> str:
     """Name the live load to one side.
 
-    Examples
-    --------
     >>> load_words("tilting table", "left"), load_words("point loads", "left")
     ('Horizontal load to the left', 'Live load reversed')
     """
@@ -182,8 +169,6 @@ def load_words(load_case: str, side: str) -> str:
 def dead_load(load_case: str) -> str:
     """Name what acts always.
 
-    Examples
-    --------
     >>> dead_load("growing with height"), dead_load("tilting table, tilted by 5°")
     ('own weight', 'dead load')
     """
@@ -298,8 +283,6 @@ def _layout(plan: Plan) -> tuple[Card, ...]:
 def flat_settings(settings: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
     """Yield every parameter with the path of its name.
 
-    Examples
-    --------
     >>> dict(flat_settings({"mu": 0.58, "placement": {"rule": "eq12"}}))
     {'mu': '0.58', 'placement.rule': '"eq12"'}
     """

@@ -34,13 +34,7 @@ def masons_wall(sha256: str | None) -> MasonsWall | None:
 
 
 def masons_words(symbol: str, sha256: str | None) -> str | None:
-    """Say what F_SF, F_AV or F_AH is in walls of masons; None for a figure that is not known.
-
-    Examples
-    --------
-    >>> masons_words("F_AV", None)
-    '23.8 to 33.9 % in three walls of masons, of other stones'
-    """
+    """Say what F_SF, F_AV or F_AH is in walls of masons; None for a figure that is not known."""
     if symbol not in ("F_SF", "F_AV", "F_AH"):
         return None
     digits, unit = {"F_SF": (3, ""), "F_AV": (1, " %"), "F_AH": (2, " %")}[symbol]

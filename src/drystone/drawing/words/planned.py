@@ -64,15 +64,7 @@ def ending(result: PlanResult) -> str:
 
 
 def rows(result: PlanResult, folder: Path) -> list[tuple[str, str]]:
-    """Return names and values, one a line.
-
-    Parameters
-    ----------
-    result : PlanResult
-        The plan.
-    folder : Path
-        Where its pictures are.
-    """
+    """Return names and values, one a line."""
     plan, metrics, bound = result.plan, result.metrics, result.F_SF_bound
     placed, left = len(plan.stone_steps), len(plan.unused)
     unused = f", unused: {', '.join(map(str, plan.unused))}" if left else ""
