@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from drystone.drawing.photo import CROP_PX, Photo, read_photo
+from drystone.drawing.photo import CROP_PX, StonePhoto, read_photo
 from tests.drawing.export.drawn_walls import assembly
 
 
@@ -16,7 +16,7 @@ def coordinates(width, height):
 
 @pytest.mark.parametrize("zoom", [0.5, 1, 4, 20])
 def test_a_piece_shows_its_box_at_any_resolution(zoom) -> None:
-    photo = Photo(coordinates(round(200 * zoom), round(100 * zoom)), 200.0, 100.0)
+    photo = StonePhoto(coordinates(round(200 * zoom), round(100 * zoom)), 200.0, 100.0)
     piece = photo.crop((50.0, 20.0, 110.0, 60.0)).astype(float)
     height, width, _ = piece.shape
     assert max(height, width) <= CROP_PX
@@ -32,7 +32,7 @@ def test_a_piece_shows_its_box_at_any_resolution(zoom) -> None:
 
 
 def test_beyond_the_photograph_it_is_white() -> None:
-    photo = Photo(Image.new("RGB", (100, 100), "black"), 100.0, 100.0)
+    photo = StonePhoto(Image.new("RGB", (100, 100), "black"), 100.0, 100.0)
     piece = photo.crop((-20.0, 40.0, 20.0, 60.0))
     assert (piece[:, :18] == 255).all()
     assert (piece[:, 22:] == 0).all()

@@ -8,9 +8,7 @@ import matplotlib as mpl
 from matplotlib.font_manager import get_font
 from PIL import ImageFont
 
-MISSING = "\N{WHITE SQUARE}"
-"""Stands for a letter that the typeface does not have."""
-
+MISSING = "\N{WHITE SQUARE}"  # stands for a letter that the typeface does not have
 ELLIPSIS = "\N{HORIZONTAL ELLIPSIS}"
 
 
@@ -37,8 +35,7 @@ def drawable(text: str) -> str:
 
 
 def fitted(text: str, size: float, room: float, *, bold: bool = False) -> str:
-    """Return a text that is no wider than there is room for; its end is left out when it has to be.
-    """
+    """Return a text that is no wider than its room; its end is left out when it has to be."""
     # Letters are measured large: Pillow's widths of small ones are whole px.
     measure = font(100.0, bold=bold)
     room *= 100.0 / size

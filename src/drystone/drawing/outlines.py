@@ -15,9 +15,7 @@ Loop = NDArray[np.float64]
 """(n, 2) corners (x, y), y up, first corner not repeated: counter-clockwise around stone,
 clockwise around holes."""
 
-Box = tuple[float, float, float, float]
-"""x0, y0, x1, y1."""
-
+Bounds = tuple[float, float, float, float]  # x0, y0, x1, y1
 UNSEEN = 1e-3
 """Share of a wall's size that nobody sees: stones settle .01 source px above the ground."""
 
@@ -49,8 +47,7 @@ def label_regions(labels: Labels) -> tuple[Region, ...]:
 
 
 def polygon_regions(polygons: Mapping[int, Loop]) -> tuple[Region, ...]:
-    """Return the regions of polygons, either way round, closed or not, in the order of their ids.
-    """
+    """Return the regions of polygons, either way round, closed or not, ordered by id."""
     return tuple(_of_polygon(block, polygons[block]) for block in sorted(polygons))
 
 
@@ -84,7 +81,7 @@ def rectangle(x: float, y: float, width: float, height: float) -> Loop:
     return np.array([(x, y), (x + width, y), (x + width, y + height), (x, y + height)])
 
 
-def regions_box(*walls: Iterable[Iterable[Loop]]) -> Box:
+def regions_box(*walls: Iterable[Iterable[Loop]]) -> Bounds:
     """Return x0, y0, x1, y1 of the loops of regions; a unit square when there are none."""
     loops = [loop for wall in walls for loops in wall for loop in loops]
     points = np.concatenate(loops) if loops else np.array([[0.0, 0.0], [1.0, 1.0]])

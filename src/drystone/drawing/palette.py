@@ -12,9 +12,7 @@ and tritan vision, and from the wedges' red; far apart and light ones come first
 WEDGE_COLOUR = "#8b0000"
 """Dark red, as in the paper's Fig. 19."""
 
-PLAIN_COLOUR = "#cfc8bb"
-"""Stones of which no cluster is known."""
-
+PLAIN_COLOUR = "#cfc8bb"  # stones of which no cluster is known
 PALE, FIXED_COLOUR = "#efece6", "#c9c9c9"
 """Blocks below what is drawn over them, and those that cannot move."""
 

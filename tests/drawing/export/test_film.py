@@ -5,8 +5,8 @@ import pytest
 import shapely
 from PIL import Image, ImageSequence
 
-from drystone.drawing.export.film import LONGEST_S, PLACING_COLOUR, Film
 from drystone.drawing.export.formats import FORMATS, ExportSettings
+from drystone.drawing.export.frames import LONGEST_S, PLACING_COLOUR, Film
 from drystone.drawing.palette import PLAIN_COLOUR, WEDGE_COLOUR, rgb
 from drystone.errors import UsageError
 from tests.drawing.export.drawn_walls import assembly

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from drystone.drawing.export import projector
+from drystone.drawing.export import frames
 from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.errors import UsageError
 from tests.drawing.export.drawn_walls import assembly, runs
@@ -62,7 +62,7 @@ def test_what_stands_is_dim_and_what_is_to_come_dark(scene) -> None:
     around = [int(image[row, column - 2 : column + 3].max()) for image in images]
     assert around[:3] == [0, 0, 0]
     assert around[3] == 255
-    assert around[5:] == [projector.DIM] * 3
+    assert around[5:] == [frames.DIM] * 3
 
 
 def test_the_bar_is_as_long_as_it_says(scene) -> None:

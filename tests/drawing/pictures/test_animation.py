@@ -6,8 +6,8 @@ from PIL import Image
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.drawing import mechanism_frames, save_mechanism_animation
-from drystone.drawing.pictures import animation
-from drystone.drawing.pictures.animation import FRAME_MS, LONGER_SIDE_PX
+from drystone.drawing.pictures import mechanism as animation
+from drystone.drawing.pictures.mechanism import FRAME_MS, LONGER_SIDE_PX
 from drystone.errors import PlanError
 from drystone.statics.limit import limit_load
 from drystone.statics.result import Mechanism

@@ -6,7 +6,7 @@ from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.drawing import plot_contacts
 from drystone.drawing.palette import FIXED_COLOUR, PALE
-from drystone.drawing.pictures.contacts import KIND_COLOURS, NORMAL_SHARE
+from drystone.drawing.pictures.forces import KIND_COLOURS, NORMAL_SHARE
 from tests.drawing.pictures.test_stones import patches
 from tests.statics.walls import coursed, irregular, stacked
 

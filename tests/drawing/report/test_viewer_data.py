@@ -16,10 +16,9 @@ from drystone.contacts.given import model_from_json
 from drystone.drawing import view_of_assembly, view_of_result, view_of_wall, write_report
 from drystone.drawing.assembly.read import read_assembly, scaled_resistance
 from drystone.drawing.palette import cluster_colour
-from drystone.drawing.photo import VIEWER_PX, Photo
+from drystone.drawing.photo import VIEWER_PX, StonePhoto
 from drystone.drawing.report.viewer_data import PATTERNS
-from drystone.drawing.words.content import Card
-from drystone.drawing.words.masons import WALLS, masons_wall, masons_words
+from drystone.drawing.words.content import WALLS, ResultCard, masons_wall, masons_words
 from drystone.io.published_sets import SETS
 from drystone.model.plan import StoneStep
 from drystone.statics.limit import lateral_resistance
@@ -193,7 +192,7 @@ def test_what_is_not_planned_is_shown_too():
     labels = np.zeros((40, 60), np.uint32)
     labels[20:, 5:25], labels[20:, 25:45], labels[:20, 15:35] = 7, 9, 12
     model = model_from_labels(labels).model
-    cards = [Card("F_AV", "Interlocking", "33.30 %", "higher", "words")]
+    cards = [ResultCard("F_AV", "Interlocking", "33.30 %", "higher", "words")]
     shown = view_of_wall(
         labels, model, lateral_resistance(model, mechanism=True),
         title="three <b>blocks</b>", cards=cards, wedges=[12], settings={"a": {"b": 1}},
@@ -329,7 +328,7 @@ def test_crops_show_their_stone(shrink):
         9: np.array([[300, 0], [400, 0], [400, 100], [300, 100.0]]),
         11: np.array([[500, 0], [600, 0], [600, 100.0]]),
     }
-    crops = Photo(picture, 400.0, 300.0).viewer_crops(squares)
+    crops = StonePhoto(picture, 400.0, 300.0).viewer_crops(squares)
     assert sorted(crops) == [5, 9]
     for stone, colour in ((5, (224, 224, 224)), (9, (192, 32, 32))):
         data = crops[stone]["data"].removeprefix("data:image/jpeg;base64,")

@@ -11,12 +11,8 @@ from drystone.kernels.polygons import Points
 from drystone.model.frames3d import DOWN, Matrix, Pose3d, Vector
 from drystone.model.overlap import common_parts
 
-CLEARANCE_M = 0.05
-"""How far above everything else a part is when it begins to be lowered."""
-
-_APART_M = 1e-9
-"""What a part rests on is not in its way."""
-
+CLEARANCE_M = 0.05  # how far above everything else a part is when it begins to be lowered
+_APART_M = 1e-9  # what a part rests on is not in its way
 INWARD: Vector = (0.0, 1.0, 0.0)
 """How a wedge is pushed in, in W: from the front, where nothing is in the way."""
 

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-LINE = 320
-"""Characters; a matrix of 16 numbers with all digits is shorter."""
+LINE = 320  # characters; a matrix of 16 numbers with all digits is shorter
 
 
 def json_text(value: Any, depth: int = 0) -> str:

@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from drystone.drawing.canvas import MARGIN_IN, WIDTH_IN, draw
-from drystone.drawing.drawing import Area, Drawing, Item, Lines, Words, ground
+from drystone.drawing.drawing import Drawable, Drawing, Lines, Surface, Words, ground
 from drystone.drawing.files import save
-from drystone.drawing.outlines import Box, Loop, polygon_regions, rectangle, regions_box
+from drystone.drawing.outlines import Bounds, Loop, polygon_regions, rectangle, regions_box
 from drystone.drawing.palette import GREY, OUTLINE_COLOUR, PALE
 from drystone.drawing.pictures.mechanism import motion_of
 from drystone.drawing.words.checked import PICTURE, Checked
@@ -28,9 +28,7 @@ MISPLACED = ("E220", "E221", "E222", "E223", "E224", "E240")
 
 OVERLAPS, FALLS, OTHER_PIXELS, NOT_STURDY = "E221", "E230", "E236", "E237"
 
-NOTABLE = 0.02
-"""Blocks that move by this share of the largest movement belong to a mechanism."""
-
+NOTABLE = 0.02  # blocks that move by this share of the largest movement belong to a mechanism
 CONCERNED = "#f0a030"
 PLANNED = "#0050a0"
 PLANNED_PALE = "#90b0d8"
@@ -41,8 +39,7 @@ NOTICEABLE = 4e-3
 """Blocks that have moved by this share of the wall's height are shown where they were planned."""
 
 LEGEND_IN, TITLE_IN = 0.3, 0.3
-HEIGHT_IN = 5.0
-"""Largest height of one view."""
+HEIGHT_IN = 5.0  # largest height of one view
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +58,7 @@ class FailureView:
     size: tuple[float, float] | None = None
 
     @property
-    def box(self) -> Box:
+    def box(self) -> Bounds:
         """What is to be seen."""
         frame = [np.array([(0.0, 0.0), self.size])] if self.size else []
         loops = [[loop] for loop in (*self.planned.values(), *self.ended.values(), *frame)]
@@ -71,23 +68,23 @@ class FailureView:
 
 
 @dataclass(frozen=True)
-class Drawn:
+class FailurePicture:
     """A picture: its path, None when it could not be written, and the same in words."""
 
     path: str | None
     words: str
 
 
-def draw_asked(checked: Checked, path: Path) -> Drawn | None:
+def draw_asked(checked: Checked, path: Path) -> FailurePicture | None:
     """Draw what fails or, when nothing does, the wall; None for a plan without stones."""
     views = views_of(checked) or _whole_wall(checked)
     if not views:
         return None
     save(plot_failures(views), path)
-    return Drawn(str(path), str(path))
+    return FailurePicture(str(path), str(path))
 
 
-def draw_failures(checked: Checked, folder: Path) -> Drawn | None:
+def draw_failures(checked: Checked, folder: Path) -> FailurePicture | None:
     """Draw what fails beside the plan; None when nothing of it can be seen."""
     views, path = views_of(checked), folder / PICTURE
     if not views:
@@ -97,8 +94,10 @@ def draw_failures(checked: Checked, folder: Path) -> Drawn | None:
         save(plot_failures(views), path)
     except PlanError as error:
         # The check is done, and plans may lie where nothing can be written.
-        return Drawn(None, f"not written: {path}: {error.what} Give a place with --picture.")
-    return Drawn(str(path), f"{path}{replaced}")
+        return FailurePicture(
+            None, f"not written: {path}: {error.what} Give a place with --picture."
+        )
+    return FailurePicture(str(path), f"{path}{replaced}")
 
 
 def views_of(checked: Checked) -> list[FailureView]:
@@ -205,16 +204,16 @@ def plot_failure(view: FailureView, ax: Axes | None = None) -> Axes:
     Blocks are drawn where they ended; those that fail are coloured and numbered, dashed lines
     show where they, and others that have moved, were planned.
     """
-    items: list[Item] = [*ground(view.box)]
-    legend: dict[str, Area | Lines] = {}
+    items: list[Drawable] = [*ground(view.box)]
+    legend: dict[str, Surface | Lines] = {}
     if view.concerned:
-        legend["fails"] = Area("", (), CONCERNED)
+        legend["fails"] = Surface("", (), CONCERNED)
     ended = polygon_regions({**view.planned, **view.ended})
     for region in ended:
         # Blocks that fail lie over those that they have got into, and over their numbers.
         fails = region.id in view.concerned
         fill = CONCERNED if fails else PALE
-        area = Area(
+        area = Surface(
             f"block-{region.id}", region.loops, fill, OUTLINE_COLOUR if fails else GREY,
             width_pt=0.8 if fails else 0.5, z=2.0 if fails else 1.0,
         )  # fmt: skip
@@ -227,7 +226,7 @@ def plot_failure(view: FailureView, ax: Axes | None = None) -> Axes:
     if moved:
         legend["where it was planned"] = Lines("", [], PLANNED, 1.0, DASHES)
     common = [
-        Area(f"common-{number}", (loop,), COMMON, COMMON, width_pt=0.8, z=4.0)
+        Surface(f"common-{number}", (loop,), COMMON, COMMON, width_pt=0.8, z=4.0)
         for number, loop in enumerate(view.common)
     ]
     if common:
@@ -235,12 +234,12 @@ def plot_failure(view: FailureView, ax: Axes | None = None) -> Axes:
     items += [*moved, *common]
     if view.size:
         site = rectangle(0.0, 0.0, *view.size)
-        items.append(Area("site", (site,), line=GREY, width_pt=1.0, dashes=DOTS))
+        items.append(Surface("site", (site,), line=GREY, width_pt=1.0, dashes=DOTS))
         legend["wall that was to be built"] = Lines("", [], GREY, 1.5, DOTS)
     return draw(Drawing(tuple(items), view.box, title=view.title, legend=legend), ax)
 
 
-def _moved(view: FailureView) -> list[Area]:
+def _moved(view: FailureView) -> list[Surface]:
     _, y0, _, y1 = regions_box([loop] for loop in view.planned.values())
     drawn = []
     for block, loop in view.planned.items():
@@ -248,7 +247,7 @@ def _moved(view: FailureView) -> list[Area]:
         if way > NOTICEABLE * (y1 - y0):
             fails = block in view.concerned
             drawn.append(
-                Area(f"planned-{block}", (loop,), line=PLANNED if fails else PLANNED_PALE,
+                Surface(f"planned-{block}", (loop,), line=PLANNED if fails else PLANNED_PALE,
                      width_pt=1.0 if fails else 0.5, dashes=DASHES, z=3.0)
             )  # fmt: skip
     return drawn

@@ -6,19 +6,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from drystone.drawing.canvas import add, draw, fit_axes
-from drystone.drawing.drawing import Area
+from drystone.drawing.drawing import Surface
 from drystone.drawing.outlines import Loop
 from drystone.drawing.palette import CLUSTER_COLOURS
 from drystone.drawing.wall import drawing_of_wall
 from drystone.model.wall import Wall
 
 COLUMNS = 3
-PANEL_IN = 3.2
-"""Width of the picture of a wall to choose."""
-
-AXES = (("F_SF", "F_LR"), ("F_AV", "F_AH"))
-"""What is drawn against what."""
-
+PANEL_IN = 3.2  # width of the picture of a wall to choose
+AXES = (("F_SF", "F_LR"), ("F_AV", "F_AH"))  # what is drawn against what
 DIGITS = {"F_SF": 3, "F_AV": 1, "F_AH": 2, "F_LR": 2}
 
 Figures = Mapping[str, float | None]
@@ -71,7 +67,7 @@ def plot_choice(walls: Sequence[Wall], figures: Sequence[Figures]) -> Figure:
         drawing = drawing_of_wall(wall)
         x0, _, x1, y1 = drawing.box
         fit_axes(ax, (x0, -0.01 * y1, x1, y1)).set_axis_off()
-        areas = [item for item in drawing.items if isinstance(item, Area) and not item.hatch]
+        areas = [item for item in drawing.items if isinstance(item, Surface) and not item.hatch]
         add(ax, areas)
         words = "  ".join(
             f"{name} {'-' if values[name] is None else format(values[name], f'.{count}f')}"

@@ -7,11 +7,9 @@ from typing import Literal
 from drystone.drawing.assembly.read import scaled, scaled_resistance
 from drystone.drawing.files import save
 from drystone.drawing.outlines import Loop, wall_regions
-from drystone.drawing.pictures.animation import save_mechanism_animation
-from drystone.drawing.pictures.contacts import plot_contacts
-from drystone.drawing.pictures.forces import plot_forces
-from drystone.drawing.pictures.friction import plot_friction
-from drystone.drawing.pictures.mechanism import plot_mechanism
+from drystone.drawing.pictures.curves import plot_friction
+from drystone.drawing.pictures.forces import plot_contacts, plot_forces
+from drystone.drawing.pictures.mechanism import plot_mechanism, save_mechanism_animation
 from drystone.drawing.report.html import write_report
 from drystone.drawing.report.viewer_data import view_of_wall
 from drystone.drawing.words import content
@@ -96,12 +94,12 @@ def _full_names(rows: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
             yield name, value
 
 
-def _cards(card: Card) -> Iterator[content.Card]:
+def _cards(card: Card) -> Iterator[content.ResultCard]:
     """Yield what the strength of the associative analysis does not say."""
     if card.nonassociative is None:
         return
     for result in (card.nonassociative.left, card.nonassociative.right):
-        yield content.Card(
+        yield content.ResultCard(
             f"{content.ALPHA} {result.direction}",
             f"Without dilatancy, to the {result.direction}",
             content.number(result.alpha),

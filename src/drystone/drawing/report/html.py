@@ -12,7 +12,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from drystone.drawing.files import MECHANISMS, PICTURE
-from drystone.drawing.report.viewer_data import View
+from drystone.drawing.report.viewer_data import ViewerData
 from drystone.drawing.words import content
 from drystone.whole_files import write_whole
 
@@ -22,7 +22,7 @@ POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-s
 """The browser itself keeps a page with this from asking any host for anything."""
 
 
-def write_report(path: str | Path, view: View, *, pictures: str | Path | None = None) -> Path:
+def write_report(path: str | Path, view: ViewerData, *, pictures: str | Path | None = None) -> Path:
     """Write report.html: inputs, results with their meaning, the viewer, steps, settings (§2).
 
     The file needs no network and no other file: data, script and pictures are inside it.  Without
@@ -65,7 +65,7 @@ def write_report(path: str | Path, view: View, *, pictures: str | Path | None = 
     return path
 
 
-def viewer_page(view: View, options: Mapping[str, Any] | None = None) -> str:
+def viewer_page(view: ViewerData, options: Mapping[str, Any] | None = None) -> str:
     """Return a page with the viewer and nothing else.
 
     Options are those of the viewer's ``mount``: ``chart``, ``metrics``, ``about``, ``title``,
@@ -75,7 +75,7 @@ def viewer_page(view: View, options: Mapping[str, Any] | None = None) -> str:
     return _rendered("viewer_page.html", view, title=view["title"], options=chosen)
 
 
-def viewer_frame(view: View, options: Mapping[str, Any] | None = None) -> str:
+def viewer_frame(view: ViewerData, options: Mapping[str, Any] | None = None) -> str:
     """Return an element, in one line, that shows the viewer in a page of others: a notebook.
 
     The page in the frame has its own styles, and is as high as it needs to be.
@@ -86,7 +86,7 @@ def viewer_frame(view: View, options: Mapping[str, Any] | None = None) -> str:
     return f'<iframe title="{title}" style="{look}" srcdoc="{page}"></iframe>'
 
 
-def _rendered(template: str, wall: View, **more: Any) -> str:
+def _rendered(template: str, wall: ViewerData, **more: Any) -> str:
     loader = FileSystemLoader(HERE)
     templates = Environment(
         loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True,

@@ -6,9 +6,16 @@ from textwrap import wrap
 import numpy as np
 
 from drystone.drawing.assembly.parts import Assembly, Part
-from drystone.drawing.drawing import letters_pt
+from drystone.drawing.drawing import Surface, letters_pt
 from drystone.drawing.palette import GREY, PLAIN_COLOUR, WEDGE_COLOUR
-from drystone.drawing.sheet.page import EDGE_MM, NOT_TO_SCALE, PLAIN_PT, PT_PER_MM, SMALL_PT, Page
+from drystone.drawing.sheet.page import (
+    EDGE_MM,
+    NOT_TO_SCALE,
+    PLAIN_PT,
+    PT_PER_MM,
+    SMALL_PT,
+    SheetPage,
+)
 from drystone.drawing.sheet.words import length_words, size_words, wedge_place
 from drystone.model.plan import StoneStep
 
@@ -17,15 +24,12 @@ LINE_MM = 5.6
 COLUMNS = 2
 GAP_MM = 8.0
 
-CARD_MM = (62.0, 45.0)
-"""Room for a wedge to cut; its drawing is at most as large as `SHAPE_MM`."""
-
+CARD_MM = (62.0, 45.0)  # room for a wedge to cut; its drawing is at most as large as `SHAPE_MM`
 SHAPE_MM = (44.0, 25.0)
 CARDS_ACROSS, WEDGE_HEAD_MM = 3, 13.0
 LEFT_OVER_LINES = 3
 USUAL_FACTORS = (10.0, 5.0, 2.0, 1.0, 1 / 2, 1 / 5, 1 / 10, 1 / 20, 1 / 50, 1 / 100)
-SMALLEST_MM = 8.0
-"""Wedges smaller than this are drawn larger than they are."""
+SMALLEST_MM = 8.0  # wedges smaller than this are drawn larger than they are
 
 
 def in_photo_order(assembly: Assembly) -> list[Part]:
@@ -46,7 +50,7 @@ def in_photo_order(assembly: Assembly) -> list[Part]:
     return [part for row in rows for part in sorted(row, key=lambda part: _place(part)[0])]
 
 
-def list_pages(assembly: Assembly) -> list[Page]:
+def list_pages(assembly: Assembly) -> list[SheetPage]:
     """Draw where the stones lie, list them, and draw the wedges to cut.
 
     The wedges are below the list when all of them have room there, else on pages of their own.
@@ -57,7 +61,7 @@ def list_pages(assembly: Assembly) -> list[Page]:
         _draw_wedges(pages[-1], assembly, wedges, foot)
         return pages
     while wedges:
-        page = Page()
+        page = SheetPage()
         count = _wedge_room(page.top)
         _draw_wedges(page, assembly, wedges[:count], page.top)
         pages.append(page)
@@ -65,11 +69,11 @@ def list_pages(assembly: Assembly) -> list[Page]:
     return pages
 
 
-def _fetch_pages(assembly: Assembly) -> tuple[list[Page], float]:
+def _fetch_pages(assembly: Assembly) -> tuple[list[SheetPage], float]:
     """Return pages with the stones in the order in which one walks past them, and their foot."""
-    stones, pages, foot = in_photo_order(assembly), list[Page](), 0.0
+    stones, pages, foot = in_photo_order(assembly), list[SheetPage](), 0.0
     while stones or not pages:
-        page = Page()
+        page = SheetPage()
         page.write(EDGE_MM, page.top - 4.5, "Fetch list", 13.0, weight="bold")
         top = page.top - 11.0
         if not pages:
@@ -98,7 +102,7 @@ def _wedge_room(top: float) -> int:
     return CARDS_ACROSS * max(0, int((top - WEDGE_HEAD_MM - EDGE_MM) // CARD_MM[1]))
 
 
-def _draw_wedges(page: Page, assembly: Assembly, wedges: Sequence[Part], top: float) -> None:
+def _draw_wedges(page: SheetPage, assembly: Assembly, wedges: Sequence[Part], top: float) -> None:
     page.write(EDGE_MM, top - 4.5, "Wedges to cut", 13.0, weight="bold")
     said = (
         "Each at the scale that stands below it, as it is seen from the front; mm."
@@ -128,7 +132,7 @@ def _place(part: Part) -> tuple[float, float]:
     return step.source_centroid if isinstance(step, StoneStep) else (0.0, 0.0)
 
 
-def _map(page: Page, assembly: Assembly, top: float) -> float:
+def _map(page: SheetPage, assembly: Assembly, top: float) -> float:
     """Draw the photograph's frame with the outlines and steps of the stones; return its foot."""
     outlines = {part.step: assembly.source_corners(part) for part in assembly.stones}
     reach = np.concatenate([*outlines.values(), [[1.0, 1.0]]]).max(axis=0).tolist()
@@ -137,7 +141,7 @@ def _map(page: Page, assembly: Assembly, top: float) -> float:
     height = float(source.get("height_px") or reach[1])
     scale = min(MAP_MM[0] / width, MAP_MM[1] / height)
     left, foot = (page.width - width * scale) / 2, top - height * scale
-    page.box(left, foot, width * scale, height * scale, edgecolor=GREY, gid="map")
+    page.box(left, foot, width * scale, height * scale, line=GREY)
     room = {}
     for step, outline in outlines.items():
         wide, high = (np.ptp(outline, axis=0) * scale * PT_PER_MM).tolist()
@@ -145,7 +149,7 @@ def _map(page: Page, assembly: Assembly, top: float) -> float:
     usual = float(np.median([*room.values()])) if room else 0.0
     for step, outline in outlines.items():
         drawn = outline * scale + (left, foot)
-        page.polygon(drawn, facecolor=PLAIN_COLOUR, linewidth=0.4)
+        page.draw(Surface("", (drawn,), PLAIN_COLOUR, width_pt=0.4))
         x, y = ((drawn.min(axis=0) + drawn.max(axis=0)) / 2).tolist()
         page.write(x, y, str(step), min(usual, room[step]), ha="center",
                    va="center", zorder=5)  # fmt: skip
@@ -153,7 +157,11 @@ def _map(page: Page, assembly: Assembly, top: float) -> float:
 
 
 def _list(
-    page: Page, assembly: Assembly, stones: Sequence[Part], at: tuple[float, float], wide: float
+    page: SheetPage,
+    assembly: Assembly,
+    stones: Sequence[Part],
+    at: tuple[float, float],
+    wide: float,
 ) -> None:
     x, y = at
     if not stones:
@@ -161,7 +169,7 @@ def _list(
     columns = (x + 7.0, x + 19.0, x + 33.0, x + 64.0)
     for place, name in zip(columns, ("step", "stone", "across, down", "long, wide"), strict=True):
         page.write(place, y, name, SMALL_PT, weight="bold")
-    page.line([(x, y - 1.6), (x + wide, y - 1.6)], color=GREY)
+    page.line([(x, y - 1.6), (x + wide, y - 1.6)], colour=GREY)
     height = float(assembly.plan.source.get("height_px") or 0.0)
     for row, part in enumerate(stones):
         base = y - (row + 1) * LINE_MM
@@ -186,7 +194,7 @@ def _sides(part: Part) -> tuple[float, float]:
     return float(length), width
 
 
-def _left_over(page: Page, assembly: Assembly, top: float) -> float:
+def _left_over(page: SheetPage, assembly: Assembly, top: float) -> float:
     """Name the stones that the wall is built without; return the foot."""
     unused = assembly.plan.unused
     if not unused:
@@ -201,10 +209,10 @@ def _left_over(page: Page, assembly: Assembly, top: float) -> float:
     return top - 5.0 - 4.0 * len(lines)
 
 
-def _card(page: Page, assembly: Assembly, wedge: Part, corner: tuple[float, float]) -> None:
+def _card(page: SheetPage, assembly: Assembly, wedge: Part, corner: tuple[float, float]) -> None:
     """Draw a wedge with its dimensions, the steps it belongs to, and a box for a tick."""
     x, y = corner
-    page.box(x, y, *CARD_MM, edgecolor=GREY, linewidth=0.4)
+    page.box(x, y, *CARD_MM, line=GREY, width_pt=0.4)
     stone = assembly.part(wedge.under or 0)
     size = [float(side) for side in np.ptp(wedge.corners, axis=0)]
     page.write(x + 2.0, y + CARD_MM[1] - 6.0, str(wedge.step), 13.0, weight="bold",
@@ -217,7 +225,8 @@ def _card(page: Page, assembly: Assembly, wedge: Part, corner: tuple[float, floa
     shown = [side * per_unit for side in size]
     left, foot = x + 12.0 + (SHAPE_MM[0] - shown[0]) / 2, y + 11.0 + (SHAPE_MM[1] - shown[1]) / 2
     low = wedge.corners.min(axis=0)
-    page.polygon((wedge.corners - low) * per_unit + (left, foot), facecolor="#f3d9d9")
+    shape = (wedge.corners - low) * per_unit + (left, foot)
+    page.draw(Surface("", (shape,), "#f3d9d9"))
     texts = [f"{1000 * side:.0f}" if assembly.unit == "m" else f"{side:.0f}" for side in size]
     page.dimension((left, foot - 4.0), (left + shown[0], foot - 4.0), texts[0])
     page.dimension((left - 4.5, foot), (left - 4.5, foot + shown[1]), texts[1], upright=True)

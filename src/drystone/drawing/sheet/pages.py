@@ -7,16 +7,24 @@ import hashlib
 import json
 from dataclasses import dataclass
 
+import numpy as np
+
 from drystone.drawing.assembly.parts import Assembly
-from drystone.drawing.canvas import add
 from drystone.drawing.drawing import placed
 from drystone.drawing.export.formats import ExportSettings
 from drystone.drawing.palette import GREY, WEDGE_COLOUR
-from drystone.drawing.photo import Photo
+from drystone.drawing.photo import StonePhoto
 from drystone.drawing.sheet.lists import list_pages
-from drystone.drawing.sheet.page import EDGE_MM, LARGE_PT, NOT_TO_SCALE, PLAIN_PT, SMALL_PT, Page
+from drystone.drawing.sheet.page import (
+    EDGE_MM,
+    LARGE_PT,
+    NOT_TO_SCALE,
+    PLAIN_PT,
+    SMALL_PT,
+    SheetPage,
+)
 from drystone.drawing.sheet.rows import Rows
-from drystone.drawing.wall import drawing_of_assembly
+from drystone.drawing.wall import FRAME_DASHES, drawing_of_assembly
 from drystone.io.plan_json import plan_to_json
 
 USUAL_SCALES = (1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 50.0, 100.0, 200.0, 250.0, 500.0, 1000.0)
@@ -24,11 +32,8 @@ USUAL_SCALES = (1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 50.0, 100.0, 200.0, 250.0, 500.
 DRAWING_MM = (297.0 - 2 * EDGE_MM - 18.0, 110.0)
 """Room for the wall itself on the first page; beside it are dimension lines, above it words."""
 
-SCALE_MM = 60.0
-"""Room for the scale at the right end of the head."""
-
-BLOCK_MM = 33.0
-"""Height of the title block."""
+SCALE_MM = 60.0  # room for the scale at the right end of the head
+BLOCK_MM = 33.0  # height of the title block
 
 
 @dataclass(frozen=True)
@@ -58,7 +63,9 @@ def paper_scale(assembly: Assembly, wished: float) -> Scale:
     return Scale(chosen, 1000.0 / chosen)
 
 
-def sheet(assembly: Assembly, settings: ExportSettings, photo: Photo | None) -> list[Page]:
+def sheet(
+    assembly: Assembly, settings: ExportSettings, photo: StonePhoto | None
+) -> list[SheetPage]:
     """Draw the pages: the wall, a line a stone, the fetch list, wedges to cut."""
     source = str(assembly.plan.source.get("path") or "")
     title = settings.title or (f"Build sheet for {source}" if source else "Build sheet")
@@ -76,9 +83,9 @@ def sheet(assembly: Assembly, settings: ExportSettings, photo: Photo | None) -> 
     return pages
 
 
-def _first_page(assembly: Assembly, settings: ExportSettings, title: str, sha256: str) -> Page:
+def _first_page(assembly: Assembly, settings: ExportSettings, title: str, sha256: str) -> SheetPage:
     """Draw the wall with the numbers of the steps, its dimensions and the title block."""
-    page = Page(landscape=True)
+    page = SheetPage(landscape=True)
     scale = paper_scale(assembly, settings.paper_scale)
     width, height = (side * scale.mm_per_unit for side in assembly.size)
     left = (page.width - width) / 2 + 5.0
@@ -94,9 +101,9 @@ def _first_page(assembly: Assembly, settings: ExportSettings, title: str, sha256
     page.write(page.right, page.top - 6.0, scale.words, 14.0, ha="right", weight="bold",
                color=WEDGE_COLOUR if loud else "black")  # fmt: skip
     _earth(page, left, bottom, width)
-    page.box(left, bottom, width, height, edgecolor=GREY, linestyle=(0, (5, 4)), gid="frame")
+    page.box(left, bottom, width, height, name="frame", line=GREY, dashes=FRAME_DASHES)
     blocks = drawing_of_assembly(assembly).layers("STONES", "WEDGES", "NUMBERS")
-    add(page.ax, placed(blocks, scale.mm_per_unit, (left, bottom)))
+    page.draw(*placed(blocks, scale.mm_per_unit, (left, bottom)))
     across, up = (
         f"{side:.2f} m" if assembly.unit == "m" else f"{side:.0f} px" for side in assembly.size
     )
@@ -106,18 +113,16 @@ def _first_page(assembly: Assembly, settings: ExportSettings, title: str, sha256
     return page
 
 
-def _earth(page: Page, left: float, bottom: float, width: float) -> None:
+def _earth(page: SheetPage, left: float, bottom: float, width: float) -> None:
     """Draw the ground: a line, and strokes below it."""
     ends = max(EDGE_MM, left - 10.0), min(page.right, left + width + 10.0)
-    page.line([(ends[0], bottom), (ends[1], bottom)], linewidth=1.2, zorder=4)
-    x = ends[0] + 3.0
-    while x <= ends[1]:
-        page.line([(x, bottom), (x - 2.5, bottom - 2.5)], color=GREY, linewidth=0.5)
-        x += 3.0
+    page.line([(ends[0], bottom), (ends[1], bottom)], width_pt=1.2, z=4.0)
+    for x in np.arange(ends[0] + 3.0, ends[1] + 1e-9, 3.0):
+        page.line([(x, bottom), (x - 2.5, bottom - 2.5)], colour=GREY)
 
 
 def _title_block(
-    page: Page, assembly: Assembly, settings: ExportSettings, scale: Scale, sha256: str
+    page: SheetPage, assembly: Assembly, settings: ExportSettings, scale: Scale, sha256: str
 ) -> None:
     plan = assembly.plan
     stones, wedges = len(plan.stone_steps), len(plan.wedge_steps)
@@ -140,19 +145,19 @@ def _title_block(
         y = EDGE_MM + BLOCK_MM - (row + 1) * high + 2.0
         for column, (name, value) in enumerate(cells):
             x = EDGE_MM + column * wide
-            page.box(x, y, wide, high, linewidth=0.5)
+            page.box(x, y, wide, high, width_pt=0.5)
             page.write(x + 1.5, y + high - 3.4, name, 6.5, color="#555555")
             page.write(x + 1.5, y + 2.2, value, PLAIN_PT + 1, room=wide - 3.0)
     _ruler(page, EDGE_MM + BLOCK_MM + 7.0, scale)
 
 
-def _ruler(page: Page, y: float, scale: Scale) -> None:
+def _ruler(page: SheetPage, y: float, scale: Scale) -> None:
     """Draw 100 mm, to find out whether a printer has made the page smaller."""
     x = EDGE_MM
-    page.line([(x, y), (x + 100.0, y)], linewidth=0.8, gid="ruler")
+    page.line([(x, y), (x + 100.0, y)], width_pt=0.8)
     for step in range(11):
         tick = 2.5 if step % 5 == 0 else 1.4
-        page.line([(x + 10.0 * step, y), (x + 10.0 * step, y + tick)], linewidth=0.5)
+        page.line([(x + 10.0 * step, y), (x + 10.0 * step, y + tick)])
     said = "100 mm on paper: print at 100 %"
     if scale.denominator is not None:
         said += f"; {scale.denominator / 10:g} m of wall"

@@ -1,16 +1,17 @@
 """The pages of a build sheet with a line a stone, in order."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from textwrap import wrap
 
 import numpy as np
 
 from drystone.drawing.assembly.handling import wedges_after
 from drystone.drawing.assembly.parts import Assembly, Part
+from drystone.drawing.drawing import Surface
 from drystone.drawing.palette import GREY, PLAIN_COLOUR, WEDGE_COLOUR
-from drystone.drawing.photo import Photo
-from drystone.drawing.sheet.page import A4_MM, EDGE_MM, PLAIN_PT, SMALL_PT, Page
+from drystone.drawing.photo import StonePhoto
+from drystone.drawing.sheet.page import A4_MM, EDGE_MM, PLAIN_PT, SMALL_PT, SheetPage
 from drystone.drawing.sheet.words import (
     beside_words,
     length_words,
@@ -27,18 +28,11 @@ NUMBER, PICTURE, TURN, WHERE, BESIDE = 12.0, 31.0, 63.0, 120.0, 148.0
 """Where the columns begin, mm from the left edge of the page."""
 
 PICTURE_MM = (30.0, 23.0)
-STONE_MM = 22.0
-"""The largest stone of the wall, turned any way, is drawn this large."""
-
-WORDS = 28
-"""Letters in a line of the last column."""
-
-SEEN_DEG = 15.0
-"""Smaller turns have no arrow: it would be a dot."""
-
+STONE_MM = 22.0  # the largest stone of the wall, turned any way, is drawn this large
+WORDS = 28  # letters in a line of the last column
+SEEN_DEG = 15.0  # smaller turns have no arrow: it would be a dot
 TURN_COLOUR = "#0072b2"
-CROP_SPARE = 0.14
-"""Of the size of a stone, around it in its picture."""
+CROP_SPARE = 0.14  # of the size of a stone, around it in its picture
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,14 +40,14 @@ class Rows:
     """What all lines of a build sheet have in common."""
 
     assembly: Assembly
-    photo: Photo | None
+    photo: StonePhoto | None
 
     @property
     def per_page(self) -> int:
         """Lines that a page has room for."""
         return int((A4_MM[1] - 2 * EDGE_MM - HEAD_MM) // ROW_MM)
 
-    def pages(self) -> list[Page]:
+    def pages(self) -> list[SheetPage]:
         """Return the pages; the drawings that show how to turn a stone are all to one scale."""
         stones, count = list(self.assembly.stones), self.per_page
         spans = [float(np.hypot(*np.ptp(part.corners, axis=0))) for part in stones]
@@ -63,8 +57,8 @@ class Rows:
             for first in range(0, len(stones), count)
         ]
 
-    def _page(self, stones: Sequence[Part], scale: float) -> Page:
-        page = Page()
+    def _page(self, stones: Sequence[Part], scale: float) -> SheetPage:
+        page = SheetPage()
         last = max(step for part in stones for step in
                    (part.step, *(wedge.step for wedge in self._wedges(part))))  # fmt: skip
         head = f"Steps {stones[0].step} to {last}"
@@ -85,20 +79,20 @@ class Rows:
             page.write(WHERE, top - 3.1 * (row + 1), meaning, 6.0, color="#555555")
         for row, part in enumerate(stones):
             y = page.top - HEAD_MM - (row + 1) * ROW_MM
-            page.line([(EDGE_MM, y + ROW_MM), (page.right, y + ROW_MM)], color=GREY)
+            page.line([(EDGE_MM, y + ROW_MM), (page.right, y + ROW_MM)], colour=GREY)
             page.write(NUMBER, y + ROW_MM - 9.5, str(part.step), 19.0, weight="bold")
             page.write(NUMBER, y + ROW_MM - 14.0, f"stone {part.id}", SMALL_PT, color="#555555")
             page.tick_box(NUMBER, y + 4.0)
             self._picture(page, part, y)
             self._turn(page, part, y, scale)
             self._words(page, part, y)
-        page.line([(EDGE_MM, y), (page.right, y)], color=GREY)
+        page.line([(EDGE_MM, y), (page.right, y)], colour=GREY)
         return page
 
     def _wedges(self, stone: Part) -> tuple[Part, ...]:
         return wedges_after(self.assembly, stone)
 
-    def _picture(self, page: Page, part: Part, y: float) -> None:
+    def _picture(self, page: SheetPage, part: Part, y: float) -> None:
         """Draw a stone as it lies, with what is around it in the photograph."""
         outline = self.assembly.source_corners(part)
         low, high = outline.min(axis=0), outline.max(axis=0)
@@ -110,24 +104,26 @@ class Rows:
             (x0, y0), (x1, y1) = (middle - half).tolist(), (middle + half).tolist()
             (left, bottom), (wide, high) = (at - half * scale).tolist(), (2 * half * scale).tolist()
             page.picture(self.photo.crop((x0, y0, x1, y1)), left, bottom, wide, high)
-        style = {"edgecolor": WEDGE_COLOUR, "linewidth": 0.9} if self.photo else {}
-        fill = "none" if self.photo else PLAIN_COLOUR
-        page.polygon((outline - middle) * scale + at, facecolor=fill, zorder=3, **style)
+        shape = Surface("", ((outline - middle) * scale + at,), PLAIN_COLOUR, z=3.0)
+        over = replace(shape, fill="none", line=WEDGE_COLOUR, width_pt=0.9)
+        page.draw(over if self.photo else shape)
 
-    def _turn(self, page: Page, part: Part, y: float, scale: float) -> None:
+    def _turn(self, page: SheetPage, part: Part, y: float, scale: float) -> None:
         """Draw how a stone lies beside how it is in the wall."""
         angle, middle = shortest_turn(part.angle_deg), y + ROW_MM / 2 + 2.2
         lying, standing = (TURN + 12.5, middle), (TURN + 39.5, middle)
         own = part.own_corners * scale
         placed = (part.corners - np.array(part.centroid)) * scale
-        page.polygon(own + lying, facecolor="#f4f1ec", edgecolor=GREY)
-        page.polygon(placed + standing, facecolor=PLAIN_COLOUR)
+        page.draw(
+            Surface("", (own + lying,), "#f4f1ec", GREY),
+            Surface("", (placed + standing,), PLAIN_COLOUR),
+        )
         reach = _reach_up(own)
         for centre, turned in ((lying, 0.0), (standing, angle)):
             up = np.radians(90.0 + turned)
             out = np.array([np.cos(up), np.sin(up)])
-            page.line([centre + 0.62 * reach * out, centre + reach * out], color=TURN_COLOUR,
-                      linewidth=2.2, zorder=5)  # fmt: skip
+            mark = [centre + 0.62 * reach * out, centre + reach * out]
+            page.line(mark, colour=TURN_COLOUR, width_pt=2.2, z=5.0)
         if abs(angle) >= SEEN_DEG:
             radius = min(4.5, 0.55 * reach)
             page.turn_arrow(lying, radius, angle, TURN_COLOUR)
@@ -136,7 +132,7 @@ class Rows:
             TURN + 26.0, y + 1.6, turn_words(angle), PLAIN_PT + 1, ha="center", weight="bold"
         )
 
-    def _words(self, page: Page, part: Part, y: float) -> None:
+    def _words(self, page: SheetPage, part: Part, y: float) -> None:
         corner, top = lowest_corner(part), y + ROW_MM - 5.0
         for row, (name, point) in enumerate((("middle", part.centroid), ("lowest corner", corner))):
             at = top - 11.0 * row

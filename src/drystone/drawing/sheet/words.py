@@ -9,12 +9,8 @@ from drystone.kernels.polygons import Points
 from drystone.model.plan import Point
 from drystone.statics.model import GROUND
 
-AS_IT_LIES_DEG = 2.5
-"""Nobody turns a stone by less."""
-
-STEEP = 0.5
-"""Share of a normal that is upright: what touches with more of it is below or above."""
-
+AS_IT_LIES_DEG = 2.5  # nobody turns a stone by less
+STEEP = 0.5  # share of a normal that is upright: what touches with more of it is below or above
 CORNER = 0.03
 """Share of its width that a part has over another one when no more than corners of them meet."""
 

@@ -13,13 +13,10 @@ from drystone.verify.engine import check_engine
 from drystone.verify.outlines import Group
 from drystone.verify.report import CheckReport, Problem
 
-PICTURE = "check.png"
-"""Beside a plan of which something fails."""
-
+PICTURE = "check.png"  # beside a plan of which something fails
 NOT_BUILT = "not built there, as a step of the plan places nothing"
 
-NOTEWORTHY_PX = 0.01
-"""Overlaps below this, in source px, round to nothing and are not spoken of."""
+NOTEWORTHY_PX = 0.01  # overlaps below this, in source px, round to nothing and are not spoken of
 
 
 @dataclass(frozen=True, eq=False)

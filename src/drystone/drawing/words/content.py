@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from drystone.io.published_sets import SETS
 from drystone.model.plan import Plan, PlanMetrics
 from drystone.settle.settings import SettleSettings
 from drystone.statics.model import RigidBlockModel
@@ -30,9 +31,7 @@ TOUCHING = {
     "raster": "Stones touch where their pixels have edges or corners in common; by their real "
     "outlines they may overlap, or not touch.",
 }
-TILTING = "tilting table"
-"""Name of the load case of a plan."""
-
+TILTING = "tilting table"  # name of the load case of a plan
 LIVE_LOAD = (
     "The live load is horizontal, acts at the centroids and is the same share of every stone's "
     "weight, as on a tilting table; the wall stands free on rigid ground."
@@ -68,12 +67,11 @@ class Resisted:
         return cls(resistance.value, resistance.left.alpha, resistance.right.alpha)
 
 
-Strength = PlanMetrics | Resisted
-"""What is said of a wall's strength."""
+Strength = PlanMetrics | Resisted  # what is said of a wall's strength
 
 
 @dataclass(frozen=True)
-class Card:
+class ResultCard:
     """A result, its name and one sentence that explains it."""
 
     symbol: str
@@ -189,12 +187,12 @@ def summary(plan: Plan) -> str:
     return f"{placed} of {of} stones placed{with_wedges}; stopped because: {plan.stopped}."
 
 
-def cards(plan: Plan) -> tuple[Card, ...]:
+def cards(plan: Plan) -> tuple[ResultCard, ...]:
     """Return the results, the ones to look at first at the front."""
     return (*strength_cards(plan.metrics), *_layout(plan))
 
 
-def strength_cards(metrics: Strength, load_case: str = TILTING) -> tuple[Card, ...]:
+def strength_cards(metrics: Strength, load_case: str = TILTING) -> tuple[ResultCard, ...]:
     """Return what is said of a wall's strength under the loads of a case."""
     sides = (("left", metrics.alpha_left), ("right", metrics.alpha_right))
     of_one = "At 1 the whole wall would slide on the ground before it comes apart."
@@ -204,12 +202,13 @@ def strength_cards(metrics: Strength, load_case: str = TILTING) -> tuple[Card, .
     if is_horizontal(load_case):
         weaker = "Where the wall fails first when it is pushed from the side."
     return (
-        Card("F_LR", "Lateral resistance", number(metrics.F_LR), "higher",
+        ResultCard("F_LR", "Lateral resistance", number(metrics.F_LR), "higher",
              "The smaller load multiplier over the coefficient of friction. "
              f"{of_one}{_by_other_rules(metrics)}"),
-        *(Card(f"{ALPHA} {side}", f"Load multiplier (adequacy factor) to the {side}", number(alpha),
-               "higher", _multiplier_means(load_case, side)) for side, alpha in sides),
-        Card("", "Weaker direction", weaker_direction(metrics), "", weaker),
+        *(ResultCard(f"{ALPHA} {side}", f"Load multiplier (adequacy factor) to the {side}",
+                     number(alpha), "higher", _multiplier_means(load_case, side))
+          for side, alpha in sides),
+        ResultCard("", "Weaker direction", weaker_direction(metrics), "", weaker),
     )  # fmt: skip
 
 
@@ -248,7 +247,7 @@ def weaker_direction(metrics: Strength) -> str:
     return "left" if left < right else "right"
 
 
-def _layout(plan: Plan) -> tuple[Card, ...]:
+def _layout(plan: Plan) -> tuple[ResultCard, ...]:
     metrics, unit = plan.metrics, plan.length_unit
     placed, of = len(plan.stone_steps), len(plan.stone_steps) + len(plan.unused)
     area = number(metrics.wedge_area, 4 if unit == "m" else 1)
@@ -257,25 +256,25 @@ def _layout(plan: Plan) -> tuple[Card, ...]:
         for share in (metrics.F_AV, metrics.F_AH)
     )
     return (
-        Card("F_SF", "Filling", number(metrics.F_SF), "higher",
+        ResultCard("F_SF", "Filling", number(metrics.F_SF), "higher",
              "Area of the placed stones, without wedges, over the area of the wall. "
              "1 leaves no gaps."),
-        Card("F_AV", "Interlocking", longer, "higher",
+        ResultCard("F_AV", "Interlocking", longer, "higher",
              "How much longer than a straight line the shortest ways along joints from top to "
              "ground are. The more, the less joints run through."),
-        Card("F_AH", "Waviness of courses", wavy, "lower",
+        ResultCard("F_AH", "Waviness of courses", wavy, "lower",
              "How much longer than a straight line the shortest ways along joints from end to end "
              "are. 0 means straight courses."),
-        Card("", "Stones placed", f"{placed} of {of}", "higher",
+        ResultCard("", "Stones placed", f"{placed} of {of}", "higher",
              "Stones of the input that found a place. Some may be left over when the wall is "
              "full."),
-        Card("T_LEVEL", "Unevenness of the top", number(metrics.T_LEVEL), "lower",
+        ResultCard("T_LEVEL", "Unevenness of the top", number(metrics.T_LEVEL), "lower",
              "Mean deviation of the top from its mean height, in mean heights of a stone. "
              "0 is a level top."),
-        Card("E_FLUSH", "Gaps at the ends", number(metrics.E_FLUSH), "lower",
+        ResultCard("E_FLUSH", "Gaps at the ends", number(metrics.E_FLUSH), "lower",
              "Mean gap between the wall and its two end lines, in mean widths of a stone. "
              "0 means upright ends on the lines."),
-        Card("", "Wedges", f"{len(plan.wedge_steps)} ({area} {unit}²)", "lower",
+        ResultCard("", "Wedges", f"{len(plan.wedge_steps)} ({area} {unit}²)", "lower",
              "Small stones pushed in under others, and their area. Each has to be found or cut."),
     )  # fmt: skip
 
@@ -291,3 +290,45 @@ def flat_settings(settings: Mapping[str, Any], prefix: str = "") -> Iterator[tup
             yield from flat_settings(value, f"{prefix}{name}.")
         else:
             yield f"{prefix}{name}", json.dumps(value, ensure_ascii=False)
+
+
+@dataclass(frozen=True)
+class MasonsWall:
+    """A wall of Almeida et al. (2021) as it was traced: F_SF, and F_AV and F_AH in per cent.
+
+    Stones are regular, partly regular or irregular; they do not touch there, so no F_LR.
+    """
+
+    name: str
+    F_SF: float
+    F_AV: float
+    F_AH: float
+
+
+WALLS = (
+    MasonsWall("R", 0.846, 33.9, 0.59),
+    MasonsWall("PR", 0.808, 29.5, 1.50),
+    MasonsWall("IR", 0.850, 23.8, 3.69),
+)
+"""Measured as docs/paper.md has them."""
+
+
+def masons_wall(sha256: str | None) -> MasonsWall | None:
+    """Return the mason's wall of the same stones, known by the hash of their file."""
+    names = {file.sha256: file.name for file in SETS["almeida"].files}
+    found = names.get(sha256 or "")
+    return next((wall for wall in WALLS if found == f"almeida/{wall.name}.png"), None)
+
+
+def masons_words(symbol: str, sha256: str | None) -> str | None:
+    """Say what F_SF, F_AV or F_AH is in walls of masons; None for a figure that is not known."""
+    if symbol not in ("F_SF", "F_AV", "F_AH"):
+        return None
+    digits, unit = {"F_SF": (3, ""), "F_AV": (1, " %"), "F_AH": (2, " %")}[symbol]
+    same = masons_wall(sha256)
+    if same is not None:
+        own = getattr(same, symbol)
+        return f"{own:.{digits}f}{unit} in the mason's own wall of these stones ({same.name})"
+    values = [getattr(wall, symbol) for wall in WALLS]
+    least, most = (f"{value:.{digits}f}" for value in (min(values), max(values)))
+    return f"{least} to {most}{unit} in three walls of masons, of other stones"

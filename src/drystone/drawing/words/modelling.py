@@ -1,18 +1,22 @@
-"""From a wall file to the rigid block model that is asked for."""
+"""From a wall file to the rigid block model that is asked for; its size and scarce contacts."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
+
+import numpy as np
 
 from drystone.contacts.blocks import ImageModel, model_from_labels
 from drystone.contacts.gap_spread import closed_gap_spread
 from drystone.contacts.gaps import model_with_closed_gaps, settle_gaps
 from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.contacts.outlines import model_from_outlines, outlines_of_labels
+from drystone.contacts.scarce import scarce_contacts
 from drystone.contacts.settled import SETBACK
-from drystone.drawing.words.analysis import ModelledWall
-from drystone.errors import InputError, UsageError
+from drystone.drawing.words.analysis import ModelledWall, Shapes
+from drystone.errors import InputError, Notice, UsageError
 from drystone.io.walls import GivenWall
 from drystone.model.wall import Labels
 from drystone.statics.joints import with_head_friction
@@ -166,3 +170,43 @@ def _reach(text: str) -> float | None:
     if not 0 < reach < math.inf:
         raise UsageError("E138", f"{text!r} is no width in px, nor 'settle'.", where="--close-gaps")
     return reach
+
+
+LISTED = 8  # so many stones are named
+
+
+def size_words(shapes: Shapes, per_unit_m: float | None) -> str | None:
+    """Say how wide and high a wall is, in metres; None without a scale or a block."""
+    if per_unit_m is None or not len(shapes):
+        return None
+    if isinstance(shapes, Mapping):
+        corners = np.concatenate(list(shapes.values()))
+        width, height = np.ptp(corners, axis=0).tolist()
+    else:
+        rows, cols = np.nonzero(shapes)
+        width, height = float(np.ptp(cols) + 1), float(np.ptp(rows) + 1)
+    return f"{width * per_unit_m:.2f} m wide, {height * per_unit_m:.2f} m high"
+
+
+def scarcity(wall: ModelledWall, per_unit_m: float | None) -> Notice | None:
+    """Name the stones with fewer than two contact points (W305)."""
+    few = scarce_contacts(wall.model, wall.shapes)
+    if not few:
+        return None
+    named = ", ".join(str(one.block) for one in few[:LISTED])
+    more = ", …" if len(few) > LISTED else ""
+    gaps = [one.gap for one in few if np.isfinite(one.gap)]
+    noun = wall.noun if len(few) == 1 else f"{wall.noun}s"
+    have = "has" if len(few) == 1 else "have"
+    said = f"{len(few)} {noun} {have} fewer than two contact points: {named}{more}."
+    if not gaps:
+        return Notice("W305", said)
+    pixels = not isinstance(wall.shapes, Mapping)
+    unit = " px" if pixels else ""
+    metres = "" if per_unit_m is None else f" ({1000.0 * per_unit_m * min(gaps):.0f} mm)"
+    said += f" The narrowest gap beside them is {min(gaps):.3g}{unit}{metres}."
+    if not pixels:
+        return Notice("W305", said)
+    reach = int(np.ceil(np.median(gaps)))
+    which = "it" if len(few) == 1 else "half of them"
+    return Notice("W305", said, f"--close-gaps {reach}px lets {which} bear on the next one.")
