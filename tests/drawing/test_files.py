@@ -4,12 +4,10 @@ import sys
 import matplotlib as mpl
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from PIL import Image
 
 from drystone.contacts.settled import model_of_outlines
 from drystone.drawing import files, plot_mechanism, plot_wall, save, write_pictures
-from drystone.errors import PlanError
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from tests.drawing import examples
@@ -37,28 +35,6 @@ def test_other_endings_are_refused(tmp_path):
         save(plot_wall(examples.wall()).figure, tmp_path / "wall.bmp")
 
 
-@pytest.mark.parametrize("name", ["wall.png", "wall.pdf", "wall.svg"])
-def test_a_picture_is_whole_or_as_it_was(tmp_path, monkeypatch, name):
-    def half(_, file, **__):
-        file.write(b"ten bytes.")
-        raise OSError(28, "No space left on device")
-
-    path = tmp_path / name
-    path.write_bytes(b"good")
-    ax = plot_wall(examples.wall())
-    monkeypatch.setattr(Figure, "savefig", half)
-    with pytest.raises(OSError, match="No space left"):
-        save(ax.figure, path, dpi=50)
-    assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [(name, b"good")]
-
-
-def test_a_picture_that_cannot_be_written_is_named(tmp_path):
-    path = tmp_path / "nowhere" / "wall.png"
-    with pytest.raises(PlanError, match="E206") as caught:
-        save(plot_wall(examples.wall()).figure, path, dpi=50)
-    assert caught.value.where == str(path)
-
-
 def test_pictures_are_written_where_a_mechanism_exists(tmp_path):
     stale = tmp_path / "mechanism_right.png"
     stale.write_bytes(b"of another wall")
@@ -67,11 +43,6 @@ def test_pictures_are_written_where_a_mechanism_exists(tmp_path):
     )
     assert [path.name for path in written] == ["picture.png", "mechanism_left.png"]
     assert {path.name for path in tmp_path.iterdir()} == {"picture.png", "mechanism_left.png"}
-
-
-def test_without_statics_there_is_only_the_picture(tmp_path):
-    (path,) = write_pictures(tmp_path, examples.wall(), dpi=50)
-    assert path == tmp_path / "picture.png"
 
 
 def test_the_fall_of_a_wall_is_not_drawn_as_a_live_load(tmp_path, monkeypatch):

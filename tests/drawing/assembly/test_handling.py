@@ -8,22 +8,7 @@ import shapely
 from shapely import affinity
 
 from drystone.drawing.assembly import handling
-from tests.drawing.export.robot_plans import METRIC, PX_PER_M, THICKNESS_M, assembly
-
-
-@pytest.mark.parametrize("name", METRIC)
-def test_the_jaws_close_on_the_part_in_every_frame(name: str) -> None:
-    wall = assembly(name)
-    for part in wall.parts:
-        held = handling.grasp(wall, part)
-        across = np.array(held.direction_wall)[[0, 2]]
-        assert np.ptp(part.corners @ across) == pytest.approx(held.width_m, rel=1e-9)
-        assert held.direction_wall[1] == 0.0
-        if held.direction_photo is not None:
-            corners = wall.source_corners(part) / PX_PER_M
-            flat = np.array(held.direction_photo)
-            assert np.ptp(corners @ flat[:2]) == pytest.approx(held.width_m, rel=1e-9)
-            assert flat[2] == pytest.approx(0.0, abs=1e-15)
+from tests.drawing.export.robot_plans import PX_PER_M, THICKNESS_M, assembly
 
 
 def test_stones_begin_above_everything_that_stands() -> None:
@@ -87,25 +72,6 @@ def test_a_stone_under_another_one_cannot_be_lowered() -> None:
     covered = min(right, overlap[2]) - max(left, overlap[0])
     assert covered > 0.0
     assert handling.blocked_m(wall, late) >= covered - 1e-9
-
-
-def test_neighbours_when_placed_are_there_already() -> None:
-    wall = assembly("exact")
-    seen = {0}
-    for part in wall.parts:
-        touched = set(handling.touched_when_placed(wall, part))
-        assert touched <= seen
-        assert touched == set(wall.neighbours(part.id)) & seen
-        assert touched, "a stone that touches nothing would fall"
-        seen.add(part.id)
-
-
-def test_wedges_come_after_their_stone() -> None:
-    wall = assembly("exact")
-    after = {part.id: [w.id for w in handling.wedges_after(wall, part)] for part in wall.stones}
-    assert after.pop(8) == [10]
-    assert not any(after.values())
-    assert wall.part(10).step == wall.part(8).step + 1
 
 
 @pytest.mark.parametrize("overlap_m", [0.0, 1e-12, -1e-12])

@@ -10,7 +10,7 @@ from drystone.drawing.assembly import handling
 from drystone.drawing.assembly.parts import Part
 from drystone.errors import UsageError
 from drystone.model.plan import StoneStep
-from tests.drawing.export.robot_plans import METRIC, PX_PER_M, THICKNESS_M, assembly, source_stones
+from tests.drawing.export.robot_plans import METRIC, PX_PER_M, assembly, source_stones
 
 
 @pytest.mark.parametrize("name", METRIC)
@@ -82,13 +82,6 @@ def test_neighbours_are_mutual_and_near() -> None:
                 assert gap * PX_PER_M < 0.11
             else:
                 assert part.corners[:, 1].min() * PX_PER_M < 0.11
-
-
-def test_masses_are_area_times_thickness_times_density() -> None:
-    wall = assembly("exact")
-    for part in wall.parts:
-        area = shapely.Polygon(part.corners).area
-        assert wall.mass_kg(part) == pytest.approx(area * THICKNESS_M * 2450.0, rel=1e-12)
 
 
 def test_wedges_are_in_no_photo() -> None:

@@ -6,13 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pypdfium2
 import pytest
-from PIL import Image
 
 from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.drawing.sheet.lists import drawn_factor, in_photo_order
 from drystone.drawing.sheet.pages import DRAWING_MM, Scale, paper_scale, sheet
-from drystone.drawing.sheet.rows import Rows
-from drystone.errors import InputError
 from drystone.io.plan_json import write_plan
 from tests.drawing.export.drawn_walls import assembly, photo_colour, photograph, runs
 
@@ -151,22 +148,6 @@ def test_wedges_are_drawn_at_usual_scales(wall) -> None:
     assert drawn_factor(wall, wedge) == 1 / 5  # 150 mm x 30 mm in 44 mm x 25 mm
     small = next(assembly(px_per_m=3000.0).wedges)
     assert drawn_factor(wall, small) == 1.0  # 10 mm x 2 mm
-
-
-def test_sixty_stones_take_seven_pages_of_lines() -> None:
-    assert Rows(assembly(columns=10, rows=6), None).per_page == 9
-
-
-def test_a_photograph_of_something_else_is_refused(wall, tmp_path) -> None:
-    other = tmp_path / "photo.png"
-    Image.new("RGB", (300, 200)).save(other)
-    with pytest.raises(InputError, match="something else") as caught:
-        FORMATS["pdf"].write(replace(wall, photo=other), tmp_path, ExportSettings())
-    assert caught.value.code == "E189"
-    other.write_bytes(b"no picture")
-    with pytest.raises(InputError, match="cannot be read") as caught:
-        FORMATS["pdf"].write(replace(wall, photo=other), tmp_path, ExportSettings())
-    assert caught.value.code == "E189"
 
 
 @pytest.mark.parametrize("px_per_m", [200.0, None])

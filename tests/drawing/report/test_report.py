@@ -1,6 +1,5 @@
 import base64
 import json
-import os
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -14,7 +13,7 @@ from drystone.drawing import view_of_result, view_of_wall, write_pictures, write
 from drystone.drawing.report.html import viewer_frame, viewer_page, viewer_script, viewer_style
 from drystone.drawing.report.notebook import Shown
 from drystone.drawing.words.content import assumptions, cards, number, weaker_direction
-from drystone.errors import Notice, PlanError
+from drystone.errors import Notice
 from drystone.model.plan import PlanMetrics
 from drystone.statics.limit import lateral_resistance
 from tests.drawing import examples
@@ -195,32 +194,6 @@ def test_missing_metrics_are_not_defined_and_never_zero(tmp_path):
     page = Page(path.read_text(encoding="utf-8"))
     assert page.texts.count("not defined") == 5
     assert "no picture of the wall" in page.text
-
-
-def test_same_arguments_same_bytes(tmp_path, pictures):
-    first, second = (
-        write_report(tmp_path / name, example_view(), pictures=pictures).read_bytes()
-        for name in ("one.html", "two.html")
-    )
-    assert first == second
-
-
-def test_a_report_is_whole_or_as_it_was(tmp_path, monkeypatch):
-    def full(*_):
-        raise OSError(28, "No space left on device")
-
-    path = tmp_path / "report.html"
-    path.write_bytes(b"good")
-    monkeypatch.setattr(os, "replace", full)
-    for write in (
-        lambda: write_report(path, example_view()),
-        lambda: Shown(example_view()).write(path),
-    ):
-        with pytest.raises(PlanError, match="E206"):
-            write()
-        assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [
-            (path.name, b"good")
-        ]
 
 
 def test_half_a_pair_of_characters_ends_no_report(tmp_path):

@@ -132,7 +132,8 @@ def forces(assembly: Assembly, result: LimitResult) -> tuple[Lines | None, float
     seen = [one for one in acting if one.size >= SMALLEST_SHARE * largest]
     arrows = Lines(
         f"forces-{result.direction}",
-        [one.line(length) for one in seen], RESULTANT, head=True, layer=f"FORCES-{result.direction.upper()}",
+        [one.line(length) for one in seen], RESULTANT, head=True,
+        layer=f"FORCES-{result.direction.upper()}",
         notes=[f"{one.size / mean:.6g} mean weights" for one in seen],
     )  # fmt: skip
     return arrows, length * mean

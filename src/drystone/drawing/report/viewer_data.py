@@ -171,8 +171,9 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
     parts = [
         _part(
             region.id, "wedge" if region.id in wedges else "stone", region.loops, region.centroid,
-            digits, number=region.id, neighbours=sorted(touching[region.id]),
+            digits, number=region.id,
             size=rounded(np.ptp(np.concatenate(region.loops), axis=0), digits),
+            neighbours=sorted(touching[region.id]),
         )
         for region in regions
     ]  # fmt: skip
