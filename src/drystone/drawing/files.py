@@ -9,7 +9,7 @@ import matplotlib as mpl
 from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure, SubFigure
 
-from drystone.drawing.outlines import Loop, source_outlines
+from drystone.drawing.outlines import Loop
 from drystone.drawing.pictures.mechanism import plot_mechanism
 from drystone.drawing.pictures.wall import plot_wall
 from drystone.model.wall import Wall
@@ -30,9 +30,10 @@ _UNDATED: dict[str, dict[str, None]] = {
 
 
 def save(figure: Figure | SubFigure, path: str | Path, dpi: float = DPI) -> None:
-    """Write a figure as PNG, PDF or SVG, without dates or versions in the file.
+    """Write a figure as PNG, PDF or SVG by the ending, without dates or versions in the file.
 
-    The file is whole or not there at any time.
+    The file is whole or as it was at any time; E206 when it cannot be written.  A subfigure is
+    written with the figure that it belongs to.
     """
     suffix = Path(path).suffix.lower()
     if suffix not in _UNDATED:
@@ -45,15 +46,8 @@ def figure_bytes(figure: Figure | SubFigure, suffix: str, dpi: float = DPI) -> b
     whole = figure.get_figure(root=True)
     # SVG files name their parts by a hash with a random salt unless one is given.
     with mpl.rc_context({"svg.hashsalt": "drystone"}), BytesIO() as file:
-        whole.savefig(
-            file,
-            format=suffix[1:],
-            dpi=dpi,
-            bbox_inches="tight",
-            pad_inches=0.08,
-            facecolor="white",
-            metadata=_UNDATED[suffix],
-        )
+        whole.savefig(file, format=suffix[1:], dpi=dpi, bbox_inches="tight", pad_inches=0.08,
+                      facecolor="white", metadata=_UNDATED[suffix])  # fmt: skip
         return file.getvalue()
 
 
@@ -95,7 +89,7 @@ def write_pictures(
             path.unlink(missing_ok=True)
             continue
         side = None if result.status is LimitStatus.UNSTABLE else result.direction
-        shown = wall.labels if wall.outlines is None else source_outlines(wall.outlines)
+        shown = wall.labels if wall.outlines is None else dict(wall.outlines.blocks)
         ax = plot_mechanism(shown, result.mechanism, side, result.alpha)
         save(ax.figure, path, dpi)
         written.append(path)

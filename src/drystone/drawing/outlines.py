@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from drystone.kernels.raster import Mask, turn
-from drystone.model.outlines import Outlines
 from drystone.model.wall import Labels, Wall
 
 Loop = NDArray[np.float64]
@@ -160,7 +159,7 @@ def wall_outlines(wall: Wall) -> dict[int, Loop]:
     site = wall.site
     if wall.outlines is not None:
         px_per_m = site.px_per_m or 1.0
-        return {block: loop / px_per_m for block, loop in source_outlines(wall.outlines).items()}
+        return {block: loop / px_per_m for block, loop in wall.outlines.blocks}
     outlines: dict[int, Loop] = {}
     for group in wall.groups:
         placement = group.placement
@@ -172,8 +171,3 @@ def wall_outlines(wall: Wall) -> dict[int, Loop]:
             loop = max(pixel_loops(wedge.mask), key=len) + corner
             outlines[wedge.id] = loop * site.units_per_px
     return outlines
-
-
-def source_outlines(outlines: Outlines) -> dict[int, Loop]:
-    """Return outlines by id, in source px."""
-    return dict(outlines.blocks)

@@ -1,23 +1,31 @@
+"""The report and the viewer as HTML; the Python of docs/viewer.md runs."""
+
 import base64
 import json
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from PIL import Image
 
+import drystone as ds
 from drystone.contacts.blocks import model_from_labels
 from drystone.drawing import view_of_result, view_of_wall, write_pictures, write_report
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.drawing.report.html import viewer_frame, viewer_page, viewer_script, viewer_style
 from drystone.drawing.report.notebook import Shown
 from drystone.drawing.words.content import assumptions, cards, number, weaker_direction
-from drystone.errors import Notice
+from drystone.errors import InputError, Notice
+from drystone.generate import BrickSettings, brick_stones, lay_out
+from drystone.io.wall_image import write_labels
 from drystone.model.plan import PlanMetrics
 from drystone.statics.limit import lateral_resistance
 from tests.drawing import examples
-from tests.drawing.report.walls import result
+from tests.drawing.report.walls import result, written
 from tests.verify.exact_examples import exact_example
 
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
@@ -253,3 +261,54 @@ def test_numbers(value, text):
 def test_weaker_direction(left, right, weaker):
     metrics = replace(examples.plan().metrics, alpha_left=left, alpha_right=right)
     assert weaker_direction(metrics) == weaker
+
+
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "viewer.md"
+
+
+@pytest.fixture
+def programs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The programs of the page, in a folder where they can run."""
+    monkeypatch.chdir(tmp_path)
+    return re.findall(r"```python\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
+
+
+def test_a_wall_that_was_not_planned_is_shown(programs: list[str]) -> None:
+    bricks = BrickSettings(count=3, height_px=10, aspect=2)
+    write_labels(lay_out(brick_stones(bricks, np.random.default_rng(1))), Path("wall.png"))
+    exec(programs[1], {})  # noqa: S102 - our own page
+    assert "Wall in the garden" in Path("report.html").read_text("utf-8")
+
+
+def unfitting(path: Path) -> None:
+    source = result().plan.source
+    Image.new("RGB", (2 * source["width_px"], source["height_px"])).save(path)
+
+
+def broken(path: Path) -> None:
+    path.write_bytes(b"no picture")
+
+
+def cut_short(path: Path) -> None:
+    source = result().plan.source
+    Image.new("RGB", (source["width_px"], source["height_px"])).save(path)
+    path.write_bytes(path.read_bytes()[:-200])
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [(unfitting, "something else"), (broken, "cannot be read"), (cut_short, "cannot be read")],
+)
+def test_both_refuse_alike(spoil, said: str, tmp_path: Path) -> None:
+    folder = written(tmp_path)
+    spoil(folder / "photo.jpg")
+    refusals = []
+    for use in (
+        ds.view,
+        lambda plan: FORMATS["pdf"].files(ds.read_assembly(plan), ExportSettings()),
+    ):
+        with pytest.raises(InputError, match=said) as caught:
+            use(folder)
+        refusals.append((caught.value.code, str(caught.value)))
+    assert refusals[0] == refusals[1]
+    assert refusals[0][0] == "E189"

@@ -48,12 +48,8 @@ def grasp(assembly: Assembly, part: Part) -> Grasp:
     width_m, across_deg = part.grip
     across = math.radians(across_deg)
     own = np.array([math.cos(across), 0.0, math.sin(across)])
-    return Grasp(
-        width_m,
-        _vector(own),
-        _vector(place.rotation @ own),
-        None if pick is None else _vector(pick.rotation @ own),
-    )
+    photo = None if pick is None else _vector(pick.rotation @ own)
+    return Grasp(width_m, _vector(own), _vector(place.rotation @ own), photo)
 
 
 def place_approach(assembly: Assembly, part: Part) -> Approach:
@@ -118,12 +114,8 @@ def blocked_m(assembly: Assembly, part: Part) -> float:
     lift = place_approach(assembly, part).stand_off_m
     way = swept(part.corners + np.array([0.0, _APART_M]), lift)
     others = [shapely.Polygon(other.corners) for other in before(assembly, part)]
-    widest = 0.0
-    for other in others:
-        for piece in common_parts(way, other):
-            left, _, right, _ = piece.bounds
-            widest = max(widest, right - left)
-    return widest
+    boxes = [piece.bounds for other in others for piece in common_parts(way, other)]
+    return max((right - left for left, _, right, _ in boxes), default=0.0)
 
 
 def swept(low: Points, lift: float) -> shapely.Geometry:

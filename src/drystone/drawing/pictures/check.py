@@ -102,80 +102,63 @@ def draw_failures(checked: Checked, folder: Path) -> FailurePicture | None:
 
 def views_of(checked: Checked) -> list[FailureView]:
     """Return what is to be drawn: nothing when nothing that can be seen fails."""
-    planned, problems = _planned(checked), checked.report.problems
+    planned, problems = checked.planned, checked.report.problems
     if not planned:
         return []
     views = []
     misplaced = [problem for problem in problems if problem.code in MISPLACED]
     # What lies elsewhere has other pixels too; that alone means another image.
-    pixels = [p for p in problems if p.code == OTHER_PIXELS and p.step is not None]
-    lying = misplaced or pixels
+    lying = misplaced or [p for p in problems if p.code == OTHER_PIXELS and p.step is not None]
     if lying:
         more = f" ... and {len(lying) - 1} more" if len(lying) > 1 else ""
         ids = _ids(checked, {problem.step for problem in lying})
-        overlapping = _ids(checked, {p.step for p in lying if p.code == OVERLAPS})
-        common = common_areas(planned, overlapping)
+        common = common_areas(planned, _ids(checked, {p.step for p in lying if p.code == OVERLAPS}))
         title = f"{_short(lying[0])}{more}"
-        views.append(FailureView(title, planned, ids, common=common, size=_size(checked)))
+        views.append(FailureView(title, planned, ids, common=common, size=checked.size))
     falling = next((p for p in problems if p.code in (FALLS, NOT_STURDY)), None)
     if falling is not None:
-        views.append(_unstable(checked, planned, falling))
+        views.append(_unstable(checked, falling))
     return [*views, *_whole_wall(checked)] if checked.falls else views
 
 
 def _whole_wall(checked: Checked) -> list[FailureView]:
     """Return the wall where the engine left it, or as it was planned."""
-    planned, physics = _planned(checked), checked.physics
+    planned, physics = checked.planned, checked.physics
     if not planned:
         return []
     if physics is None:
-        return [FailureView(f"The plan {checked.verdict}", planned, size=_size(checked))]
+        return [FailureView(f"The plan {checked.verdict}", planned, size=checked.size)]
     name, outcome = physics.rows()[0]
     title = f"{name[0].upper()}{name[1:]}: {outcome}"
     built = physics.built
-    return [FailureView(title, planned, built.fallen, built.outlines, size=_size(checked))]
+    return [FailureView(title, planned, built.fallen, built.outlines, size=checked.size)]
 
 
-def _unstable(checked: Checked, planned: Mapping[int, Loop], problem: Problem) -> FailureView:
+def _unstable(checked: Checked, problem: Problem) -> FailureView:
     """Return the first wall on the way that does not stand, and how it begins to fall."""
     replay = replay_plan(checked.plan, checked.stones)
     stage = next(stage for stage in replay.stages if stage.last.step == problem.step)
     groups, title = stage.after.groups, _short(problem)
     there = {group.placement.stone_id for group in groups}
     there |= {wedge.id for group in groups for wedge in group.wedges}
-    standing = {block: loop for block, loop in planned.items() if block in there}
+    standing = {block: loop for block, loop in checked.planned.items() if block in there}
     # With all its friction a wall that is not sturdy does not begin to fall.
     model = wall_model(stage.after, replay.settings) if problem.code == FALLS else None
     mechanism = None if model is None else lateral_resistance(model, mechanism=True).left.mechanism
     if mechanism is None:
-        last = _ids(checked, {stage.stone.step})
-        return FailureView(title, standing, last, size=_size(checked))
+        return FailureView(title, standing, _ids(checked, {stage.stone.step}), size=checked.size)
     motion = motion_of(standing, mechanism)
     blocks = list(zip(motion.regions, motion.at(1.0), motion.share.tolist(), strict=True))
-    return FailureView(
-        f"{title} How it begins to fall, enlarged",
-        standing,
-        [region.id for region, _, share in blocks if share > NOTABLE],
-        {region.id: loops[0] for region, loops, _ in blocks},
-        size=_size(checked),
-    )
-
-
-def _planned(checked: Checked) -> dict[int, Loop]:
-    return {block: corners for group in checked.groups for block, corners in group}
+    moving = [region.id for region, _, share in blocks if share > NOTABLE]
+    ended = {region.id: loops[0] for region, loops, _ in blocks}
+    title = f"{title} How it begins to fall, enlarged"
+    return FailureView(title, standing, moving, ended, size=checked.size)
 
 
 def _ids(checked: Checked, steps: set[int | None]) -> list[int]:
     """Return the ids that some steps place, as far as they can be drawn."""
-    chosen = (step for step in checked.plan.steps if step.step in steps)
-    ids, planned = dict.fromkeys(map(piece_id, chosen)), _planned(checked)
-    return [block for block in ids if block in planned]
-
-
-def _size(checked: Checked) -> tuple[float, float]:
-    """Return width and height of the wall that is to be built, source px."""
-    source_px = checked.plan.px_per_m or 1.0
-    return checked.plan.width * source_px, checked.plan.height * source_px
+    chosen, planned = (s for s in checked.plan.steps if s.step in steps), checked.planned
+    return [block for block in dict.fromkeys(map(piece_id, chosen)) if block in planned]
 
 
 def _short(problem: Problem, most: int = 100) -> str:

@@ -5,7 +5,8 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from drystone.drawing.words.content import number
-from drystone.model.plan import Plan, PlanMetrics
+from drystone.kernels.polygons import Points
+from drystone.model.plan import Plan, PlanMetrics, Point
 from drystone.model.stone import StoneSet
 from drystone.physics.building import BlockMove, BuildUp
 from drystone.physics.scatter import TiltResult
@@ -142,6 +143,17 @@ class Checked:
     groups: Sequence[Group]
     asked_physics: bool = False
     physics: PhysicsCard | None = None
+
+    @property
+    def planned(self) -> dict[int, Points]:
+        """Corners of what was planned, by id; source px, wall frame."""
+        return {block: corners for group in self.groups for block, corners in group}
+
+    @property
+    def size(self) -> Point:
+        """Width and height of the wall that is to be built, source px."""
+        source_px = self.plan.px_per_m or 1.0
+        return self.plan.width * source_px, self.plan.height * source_px
 
     @property
     def falls(self) -> bool:
