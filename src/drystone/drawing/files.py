@@ -9,7 +9,6 @@ import matplotlib as mpl
 from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure, SubFigure
 
-from drystone.drawing.outlines import Loop
 from drystone.drawing.pictures.mechanism import plot_mechanism
 from drystone.drawing.pictures.wall import plot_wall
 from drystone.model.wall import Wall
@@ -68,8 +67,6 @@ def write_pictures(
     clusters: Mapping[int, int] | None = None,
     *,
     resistance: LateralResistance | None = None,
-    outlines: Mapping[int, Loop] | None = None,
-    title: str = "",
     dpi: float = DPI,
 ) -> tuple[Path, ...]:
     """Write picture.png, and mechanism_left.png and mechanism_right.png where they exist (§2).
@@ -79,7 +76,7 @@ def write_pictures(
     """
     folder = Path(folder)
     picture = folder / PICTURE
-    save(plot_wall(wall, clusters, outlines=outlines, title=title).figure, picture, dpi)
+    save(plot_wall(wall, clusters).figure, picture, dpi)
     written = [picture]
     results = () if resistance is None else (resistance.left, resistance.right)
     with_mechanism = {r.direction: r for r in results if r.mechanism is not None}

@@ -1,7 +1,5 @@
 """Colours that stay apart for colour-blind readers, and text that stays readable on them."""
 
-from typing import NamedTuple
-
 CLUSTER_COLOURS = (
     "#009eff", "#e7c261", "#c2e7c2", "#db619e", "#9ee7ff", "#79aa61", "#aaaa92", "#f3e79e",
     "#ff9ece", "#9eb6ff", "#aa9224", "#8679c2", "#008655", "#4961c2", "#6d616d", "#9e3d92",
@@ -23,12 +21,7 @@ SECOND_TONE = 0.6
 """Lightness of the colours of cluster 17 and on, as a share of the first sixteen's."""
 
 
-class Rgb(NamedTuple):
-    """A colour in sRGB, each part in [0, 1]."""
-
-    red: float
-    green: float
-    blue: float
+Rgb = tuple[float, float, float]  # sRGB, each part in [0, 1]
 
 
 def cluster_colour(cluster: int) -> str:
@@ -60,7 +53,8 @@ def relative_luminance(colour: str) -> float:
 
 def rgb(colour: str) -> Rgb:
     """Read ``"#rrggbb"``."""
-    return Rgb(*(int(colour[start : start + 2], 16) / 255 for start in (1, 3, 5)))
+    red, green, blue = (int(colour[start : start + 2], 16) / 255 for start in (1, 3, 5))
+    return red, green, blue
 
 
 def linear(part: float) -> float:

@@ -48,7 +48,11 @@ def paint(
 
     for item in items:
         if isinstance(item, Surface) and item.hatch:
-            _hatch(draw, view.pixels(item.loops[0]), item.line, view.finer)
+            corners = view.pixels(item.loops[0])
+            (left, top), (right, low) = np.min(corners, axis=0), np.max(corners, axis=0)
+            deep = low - top
+            for x in np.arange(left, right - deep, HATCH_PX * view.finer):
+                draw.line([(x, low), (x + deep, top)], item.line, view.finer)
         elif isinstance(item, Surface):
             for loop in item.loops:
                 points = view.pixels(loop)
@@ -63,13 +67,6 @@ def paint(
             chosen = font(float(np.clip(size, SMALLEST_PX, LARGEST_PX)))
             (at,) = view.pixels(item.at)
             draw.text(at, item.text, OUTLINE_COLOUR, chosen, anchor="mm")
-
-
-def _hatch(draw: ImageDraw.ImageDraw, corners: list[Point], colour: str, finer: int) -> None:
-    (left, top), (right, low) = np.min(corners, axis=0), np.max(corners, axis=0)
-    deep = low - top
-    for x in np.arange(left, right - deep, HATCH_PX * finer):
-        draw.line([(x, low), (x + deep, top)], colour, finer)
 
 
 def palette_of(colours: ArrayLike) -> Image.Image:

@@ -61,22 +61,21 @@ def test_placed_stones_are_where_the_plan_has_them(tmp_path, px_per_m) -> None:
     assert len(uses) == 12
     for part in wall.stones:
         use = uses[f"placed-{part.name}"]
+        (path,) = (p for p in root.iter(f"{SVG}path") if p.get("id") == part.name)
+        lying = wall.source_corners(part) - np.array(part.plan_step.source_centroid)
+        px_per_unit = 0.2 if px_per_m else 1.0  # 5 mm are a px
+        assert np.abs(corners(path) * (1, -1) * px_per_unit - lying).max() < 1e-6
         here = np.array([(x / unit, (height - y) / unit) for x, y in placed(root, use)])
         assert np.abs(here - part.corners).max() < 1e-6
         assert use.get("data-step") == str(part.step)
         assert f"step {part.step}" in use.find(f"{SVG}title").text
+    assert root.get("width").endswith("mm" if px_per_m else "px")
+    assert ("no scale" in root.find(f"{SVG}desc").text) == (px_per_m is None)
+    ids = [element.get("id") for element in root.iter() if element.get("id")]
+    assert len(ids) == len(set(ids))
     (wedge,) = layer(root, "WEDGES").iter(f"{SVG}path")
     here = corners(wedge) * (1, -1) + (0, height)
     assert np.abs(here / unit - next(wall.wedges).corners).max() < 1e-6
-
-
-def test_stones_are_defined_as_they_lie_in_the_source_image(tmp_path) -> None:
-    wall = assembly()
-    root = drawing(wall, tmp_path)
-    for part in wall.stones:
-        (path,) = (p for p in root.iter(f"{SVG}path") if p.get("id") == part.name)
-        lying = wall.source_corners(part) - np.array(part.plan_step.source_centroid)
-        assert np.abs(corners(path) * (1, -1) / 5.0 - lying).max() < 1e-6  # 5 mm are a px
 
 
 def test_sizes_are_millimetres_and_the_view_box_has_the_same(tmp_path) -> None:
@@ -88,12 +87,6 @@ def test_sizes_are_millimetres_and_the_view_box_has_the_same(tmp_path) -> None:
     assert np.ptp(corners(frame), axis=0) == pytest.approx((900.0, 300.0))
     assert box[0] < 0
     assert box[0] + box[2] > 900
-
-
-def test_without_a_scale_it_is_in_px_and_says_so(tmp_path) -> None:
-    root = drawing(assembly(px_per_m=None), tmp_path)
-    assert root.get("width").endswith("px")
-    assert "no scale" in root.find(f"{SVG}desc").text
 
 
 def test_layers_are_there_and_statics_are_not_shown_at_first(tmp_path) -> None:
@@ -121,11 +114,6 @@ def test_the_mechanism_keeps_the_areas_of_what_it_moves(tmp_path) -> None:
             area = shapely.Polygon(corners(path)).area
             assert area == pytest.approx(1e6 * shapely.Polygon(part.corners).area, rel=1e-6)
             assert np.abs(corners(path) * (1, -1) + (0, 300) - 1000 * part.corners).max() > 0.09
-
-
-def test_all_ids_are_different(tmp_path) -> None:
-    ids = [e.get("id") for e in drawing(assembly(), tmp_path).iter() if e.get("id")]
-    assert len(ids) == len(set(ids))
 
 
 SETTINGS = ExportSettings(title="A wall")
@@ -220,16 +208,6 @@ def test_forces_on_the_ground_carry_the_wall(doc, wall) -> None:
         assert weights[1] == pytest.approx(7.0, rel=0.02)
         result = wall.resistance.left if sign < 0 else wall.resistance.right
         assert weights[0] == pytest.approx(-sign * result.alpha * 7.0, rel=0.04)
-
-
-def test_the_mechanism_is_on_layers_of_its_own(doc, wall) -> None:
-    areas = {part.name: shapely.Polygon(part.corners).area for part in wall.parts}
-    for direction in ("LEFT", "RIGHT"):
-        moved = on_layer(doc, f"MECHANISM-{direction}")
-        assert moved
-        for outline in moved:
-            assert outline.closed
-            assert polygon(outline).area == pytest.approx(areas[told(outline)[0]], rel=1e-9)
 
 
 def test_numbers_are_the_steps_at_the_centroids(doc, wall) -> None:

@@ -1,5 +1,6 @@
 """build.gif, build.mp4 and pictures for a projector, read with Pillow, PyAV and NumPy."""
 
+from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
@@ -44,6 +45,7 @@ def test_there_is_a_frame_a_step_and_one_of_the_wall_that_stays(tmp_path) -> Non
     read = frames(path)
     assert len(read) == len(wall.parts) + 1
     assert [duration for _, duration in read] == [300] * 7 + [3000]
+    assert read[0][0].shape[1::-1] == Film(wall, SETTINGS.film_px).size_px
 
 
 def test_every_part_is_white_then_bright_and_then_stays(tmp_path) -> None:
@@ -61,16 +63,6 @@ def test_every_part_is_white_then_bright_and_then_stays(tmp_path) -> None:
                 assert near(colour, PLACING_COLOUR), (part.name, frame, colour)
             else:
                 assert near(colour, after), (part.name, frame, colour)
-
-
-def test_the_last_frame_is_the_finished_wall(tmp_path) -> None:
-    wall = assembly(px_per_m=None)
-    (path,) = FORMATS["gif"].write(wall, tmp_path, SETTINGS)
-    *_, last = Film(wall, SETTINGS.film_px).frames()
-    picture = frames(path)[-1][0]
-    assert picture.shape[1::-1] == last.size == Film(wall, SETTINGS.film_px).size_px
-    # Smoothed edges are reduced to few tints.
-    assert np.abs(picture - np.asarray(last)).mean() < 1.0
 
 
 def test_tall_walls_keep_their_shape() -> None:
@@ -192,15 +184,8 @@ def test_a_wall_that_is_not_in_the_picture_is_refused_with_the_cure(tmp_path, se
         FORMATS["projector"].write(assembly(), tmp_path, settings)
     assert caught.value.code == "E187"
     assert list(tmp_path.iterdir()) == []
-
-
-def test_the_cure_is_one(tmp_path) -> None:
-    settings = replace(PROJECTOR, projector_px_per_m=2000.0)
-    with pytest.raises(UsageError) as caught:
-        FORMATS["projector"].write(assembly(), tmp_path, settings)
     found = float(caught.value.cure.split("@")[1].split()[0])
-    FORMATS["projector"].write(assembly(), tmp_path, replace(settings, projector_px_per_m=found))
-    with pytest.raises(UsageError):
-        FORMATS["projector"].write(
-            assembly(), tmp_path, replace(settings, projector_px_per_m=found + 1)
-        )
+    for per_m, fits in ((found, True), (found + 1, False)):
+        told = replace(settings, projector_px_per_m=per_m, projector_offset_px=None)
+        with nullcontext() if fits else pytest.raises(UsageError):
+            FORMATS["projector"].files(assembly(), told)

@@ -8,8 +8,14 @@ import pypdfium2
 import pytest
 
 from drystone.drawing.export.formats import FORMATS, ExportSettings
-from drystone.drawing.sheet.lists import drawn_factor, in_photo_order
-from drystone.drawing.sheet.pages import DRAWING_MM, Scale, paper_scale, sheet
+from drystone.drawing.sheet.pages import (
+    DRAWING_MM,
+    Scale,
+    drawn_factor,
+    in_photo_order,
+    paper_scale,
+    sheet,
+)
 from drystone.drawing.sheet.words import (
     beside,
     beside_words,

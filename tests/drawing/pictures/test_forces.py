@@ -97,16 +97,6 @@ def test_polygons_and_fixed_blocks():
     assert [[1, 0], [1, 2]] in np.sort(lines(ax, "interfaces"), axis=1).tolist()
 
 
-def test_everything_is_in_view():
-    labels = coursed(3, 4, 90)
-    ax = plot_contacts(labels, model_from_labels(labels).model)
-    (x0, x1), (y0, y1) = ax.get_xlim(), ax.get_ylim()
-    assert x0 < 0
-    assert y0 < 0
-    assert x1 > 90
-    assert y1 > labels.shape[0]
-
-
 def test_a_model_of_another_wall_is_refused():
     with pytest.raises(ValueError, match=r"lacks: \[2\]"):
         plot_contacts(stacked((5, 5, 0)), model_from_labels(CORNERED).model)

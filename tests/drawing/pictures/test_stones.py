@@ -116,12 +116,6 @@ def test_paths_run_through_the_centres_of_their_pixels():
     assert set(patches(ax)) == {f"block-{i}" for i in np.unique(labels) if i}
 
 
-def test_no_path_leaves_the_stones():
-    ax = plot_joint_paths(examples.wall().labels, [])
-    assert not ax.collections
-    assert len(ax.patches) == 6
-
-
 def test_every_stone_wedge_frame_and_ground_is_drawn_once():
     ax = plot_wall(examples.wall(), examples.CLUSTERS)
     stones = {f"stone-{i}" for i in examples.CLUSTERS}

@@ -259,8 +259,7 @@ def test_numbers(value, text):
     [(0.3, 0.4, "left"), (0.4, 0.3, "right"), (0.3, 0.3, "both alike"), (None, 0.3, "not defined")],
 )
 def test_weaker_direction(left, right, weaker):
-    metrics = replace(examples.plan().metrics, alpha_left=left, alpha_right=right)
-    assert weaker_direction(metrics) == weaker
+    assert weaker_direction(left, right) == weaker
 
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "viewer.md"

@@ -18,7 +18,7 @@ from drystone.drawing.assembly.read import read_assembly, scaled_resistance
 from drystone.drawing.palette import cluster_colour
 from drystone.drawing.photo import VIEWER_PX, StonePhoto
 from drystone.drawing.report.viewer_data import PATTERNS
-from drystone.drawing.words.content import WALLS, ResultCard, masons_wall, masons_words
+from drystone.drawing.words.content import MASONS_WALLS, ResultCard, masons_wall, masons_words
 from drystone.io.published_sets import SETS
 from drystone.model.plan import StoneStep
 from drystone.statics.limit import lateral_resistance
@@ -293,9 +293,8 @@ def test_a_scaled_analysis_is_that_of_the_scaled_wall():
 
 
 def test_masons_walls_are_known_by_the_hash_of_their_stones(data_dir):
-    for wall in WALLS:
-        found = masons_wall(sha256(data_dir / "almeida" / f"{wall.name}.png"))
-        assert found == wall
+    for wall in MASONS_WALLS:
+        assert masons_wall(sha256(data_dir / "almeida" / f"{wall}.png")) == wall
     assert masons_wall("0" * 64) is None
 
 

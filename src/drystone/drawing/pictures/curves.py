@@ -54,7 +54,7 @@ def plot_scatter(scatter: Scatter, ax: Axes | None = None) -> Axes:
     if ax is None:
         ax = Figure(figsize=(PANEL_IN * widths, PANEL_IN)).add_axes((0, 0, 1, 1))
     ax.set_axis_off()
-    for number, panel in enumerate(panels or [_nothing]):
+    for number in range(count):
         left = number * (1 + GAP) / widths
         inset = ax.inset_axes((left, 0, 1 / widths, 1), gid=f"panel-{number + 1}")
         inset.tick_params(labelsize=7, length=2.5, width=0.5)
@@ -62,16 +62,15 @@ def plot_scatter(scatter: Scatter, ax: Axes | None = None) -> Axes:
             axis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 5, 10]))
         inset.spines[["top", "right"]].set_visible(False)
         inset.spines[["left", "bottom"]].set_linewidth(0.5)
-        panel(inset)
+        if panels:
+            panels[number](inset)
+        else:
+            inset.set_axis_off()
+            inset.text(0.5, 0.5, "no wall stands", transform=inset.transAxes, ha="center", size=9)
     ax.set_title("\n".join(_words(scatter)), fontsize=8, loc="left", pad=22)
     if shaken:
         _legend(ax)
     return ax
-
-
-def _nothing(ax: Axes) -> None:
-    ax.set_axis_off()
-    ax.text(0.5, 0.5, "no wall stands", transform=ax.transAxes, ha="center", size=9)
 
 
 def _words(scatter: Scatter) -> list[str]:
@@ -151,21 +150,14 @@ def _legend(ax: Axes) -> None:
     )  # fmt: skip
 
 
-def plot_friction(
-    curve: Sequence[AtFriction],
-    mu: float | None = None,
-    ax: Axes | None = None,
-    *,
-    slides_at_mu: bool = True,
-) -> Axes:
+def plot_friction(curve: Sequence[AtFriction], mu: float, *, slides_at_mu: bool = True) -> Axes:
     """Draw what a wall carries in both directions at several coefficients of friction, ascending.
 
     Where there is no load multiplier the line is broken.  `mu` is the coefficient of the analysis,
     marked.  On a level tilting table the whole wall slides at a load multiplier of mu; that is
     drawn too.
     """
-    if ax is None:
-        ax = Figure(figsize=(4.2, 2.9), layout="constrained").add_subplot()
+    ax = Figure(figsize=(4.2, 2.9), layout="constrained").add_subplot()
     mus = [at.mu for at in curve]
     if slides_at_mu:
         words = "the whole wall slides"
@@ -177,12 +169,11 @@ def plot_friction(
         values = [getattr(at, f"alpha_{name}") for at in curve]
         drawn = [float("nan") if value is None else value for value in values]
         ax.plot(mus, drawn, color=colour, marker=marker, markersize=5, label=f"to the {name}")
-    if mu is not None:
-        ax.axvline(mu, color=GREY, linewidth=0.8)
-        ax.annotate(
-            f"mu = {mu:g}", (mu, 0.02), xycoords=("data", "axes fraction"), fontsize=7,
-            xytext=(3, 0), textcoords="offset points",
-        )  # fmt: skip
+    ax.axvline(mu, color=GREY, linewidth=0.8)
+    ax.annotate(
+        f"mu = {mu:g}", (mu, 0.02), xycoords=("data", "axes fraction"), fontsize=7,
+        xytext=(3, 0), textcoords="offset points",
+    )  # fmt: skip
     ax.set_ylim(bottom=0.0)
     ax.set_xlabel("coefficient of friction", fontsize=8)
     ax.set_ylabel("load multiplier", fontsize=8)

@@ -161,7 +161,9 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
     size = (x1 - x0, y1 - min(y0, 0.0))
     digits = part_digits(size)
     many = f"{len(regions)} {noun}{'' if len(regions) == 1 else 's'}"
-    strength = content.strength_cards(content.Resisted.of(resistance), load_case)
+    strength = content.strength_cards(
+        resistance.value, resistance.left.alpha, resistance.right.alpha, load_case=load_case
+    )
     if assumptions is None:
         assumptions = (*content.wall_assumptions(load_case), *content.model_assumptions(model))
     touching: dict[int, set[int]] = {region.id: set() for region in regions}

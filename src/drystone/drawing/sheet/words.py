@@ -83,7 +83,10 @@ def beside(assembly: Assembly, part: Part) -> Beside:
         if other == GROUND:
             continue
         neighbour = assembly.part(other)
-        side = _side(push, upright=_shared_width(part, neighbour) > CORNER)
+        (a, b), (c, d) = ((p.corners[:, 0].min(), p.corners[:, 0].max()) for p in (part, neighbour))
+        # How much of the narrower one is above or below the other one, 0 to 1.
+        shared = (min(b, d) - max(a, c)) / min(b - a, d - c)
+        side = _side(push, upright=shared > CORNER)
         # Nobody sets a stone by a wedge beside it.
         if neighbour.step < part.step and (side == "on" or neighbour.kind == "stone"):
             found[side].append(neighbour.step)
@@ -124,12 +127,6 @@ def wedge_place(assembly: Assembly, wedge: Part) -> str:
     if share < 1 / 3:
         return "left end"
     return "middle" if share <= 2 / 3 else "right end"
-
-
-def _shared_width(part: Part, other: Part) -> float:
-    """Return how much of the narrower of two parts is above or below the other one, 0 to 1."""
-    (a, b), (c, d) = ((one.corners[:, 0].min(), one.corners[:, 0].max()) for one in (part, other))
-    return float((min(b, d) - max(a, c)) / min(b - a, d - c))
 
 
 def _side(push: Points, *, upright: bool) -> str:

@@ -10,7 +10,6 @@ from drystone.io.published_sets import SETS
 from drystone.model.plan import Plan, PlanMetrics
 from drystone.settle.settings import SettleSettings
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.result import LateralResistance
 
 UNDEFINED = "not defined"
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
@@ -47,27 +46,6 @@ ASSUMPTIONS = (
 )
 
 Better = Literal["higher", "lower", ""]
-
-
-@dataclass(frozen=True)
-class Resisted:
-    """The strength of a wall that was not planned."""
-
-    F_LR: float | None
-    alpha_left: float | None
-    alpha_right: float | None
-    F_LR_half: float | None = None
-    F_LR_double: float | None = None
-    F_LR_no_setback: float | None = None
-    F_LR_coulomb: float | None = None
-
-    @classmethod
-    def of(cls, resistance: LateralResistance) -> "Resisted":
-        """Take it from a limit analysis."""
-        return cls(resistance.value, resistance.left.alpha, resistance.right.alpha)
-
-
-Strength = PlanMetrics | Resisted  # what is said of a wall's strength
 
 
 @dataclass(frozen=True)
@@ -189,12 +167,19 @@ def summary(plan: Plan) -> str:
 
 def cards(plan: Plan) -> tuple[ResultCard, ...]:
     """Return the results, the ones to look at first at the front."""
-    return (*strength_cards(plan.metrics), *_layout(plan))
+    metrics = plan.metrics
+    ends = (metrics.alpha_left, metrics.alpha_right)
+    return (*strength_cards(metrics.F_LR, *ends, _by_other_rules(metrics)), *_layout(plan))
 
 
-def strength_cards(metrics: Strength, load_case: str = TILTING) -> tuple[ResultCard, ...]:
-    """Return what is said of a wall's strength under the loads of a case."""
-    sides = (("left", metrics.alpha_left), ("right", metrics.alpha_right))
+def strength_cards(
+    ratio: float | None,
+    left: float | None,
+    right: float | None,
+    by_other_rules: str = "",
+    load_case: str = TILTING,
+) -> tuple[ResultCard, ...]:
+    """Return what is said of a wall's strength, F_LR and alphas, under the loads of a case."""
     of_one = "At 1 the whole wall would slide on the ground before it comes apart."
     if load_case != TILTING:
         of_one = f"The load case is: {load_case}."
@@ -202,13 +187,13 @@ def strength_cards(metrics: Strength, load_case: str = TILTING) -> tuple[ResultC
     if is_horizontal(load_case):
         weaker = "Where the wall fails first when it is pushed from the side."
     return (
-        ResultCard("F_LR", "Lateral resistance", number(metrics.F_LR), "higher",
+        ResultCard("F_LR", "Lateral resistance", number(ratio), "higher",
              "The smaller load multiplier over the coefficient of friction. "
-             f"{of_one}{_by_other_rules(metrics)}"),
+             f"{of_one}{by_other_rules}"),
         *(ResultCard(f"{ALPHA} {side}", f"Load multiplier (adequacy factor) to the {side}",
                      number(alpha), "higher", _multiplier_means(load_case, side))
-          for side, alpha in sides),
-        ResultCard("", "Weaker direction", weaker_direction(metrics), "", weaker),
+          for side, alpha in (("left", left), ("right", right))),
+        ResultCard("", "Weaker direction", weaker_direction(left, right), "", weaker),
     )  # fmt: skip
 
 
@@ -224,7 +209,7 @@ def _multiplier_means(load_case: str, side: str) -> str:
     )
 
 
-def _by_other_rules(metrics: Strength) -> str:
+def _by_other_rules(metrics: PlanMetrics) -> str:
     """Say what it is without dilatancy and with other contacts, where that is known."""
     said = ""
     if metrics.F_LR_coulomb is not None:
@@ -237,9 +222,8 @@ def _by_other_rules(metrics: Strength) -> str:
     return said
 
 
-def weaker_direction(metrics: Strength) -> str:
+def weaker_direction(left: float | None, right: float | None) -> str:
     """Return the direction of the smaller load multiplier."""
-    left, right = metrics.alpha_left, metrics.alpha_right
     if left is None or right is None:
         return UNDEFINED
     if math.isclose(left, right, rel_tol=1e-9, abs_tol=1e-9):
@@ -292,32 +276,20 @@ def flat_settings(settings: Mapping[str, Any], prefix: str = "") -> Iterator[tup
             yield f"{prefix}{name}", json.dumps(value, ensure_ascii=False)
 
 
-@dataclass(frozen=True)
-class MasonsWall:
-    """A wall of Almeida et al. (2021) as it was traced: F_SF, and F_AV and F_AH in per cent.
-
-    Stones are regular, partly regular or irregular; they do not touch there, so no F_LR.
-    """
-
-    name: str
-    F_SF: float
-    F_AV: float
-    F_AH: float
+MASONS_WALLS = {
+    "R": {"F_SF": 0.846, "F_AV": 33.9, "F_AH": 0.59},
+    "PR": {"F_SF": 0.808, "F_AV": 29.5, "F_AH": 1.50},
+    "IR": {"F_SF": 0.850, "F_AV": 23.8, "F_AH": 3.69},
+}
+"""Walls of Almeida et al. (2021), of regular, partly regular and irregular stones, as docs/paper.md
+has them traced: F_AV and F_AH in per cent.  Stones do not touch there, so there is no F_LR."""
 
 
-WALLS = (
-    MasonsWall("R", 0.846, 33.9, 0.59),
-    MasonsWall("PR", 0.808, 29.5, 1.50),
-    MasonsWall("IR", 0.850, 23.8, 3.69),
-)
-"""Measured as docs/paper.md has them."""
-
-
-def masons_wall(sha256: str | None) -> MasonsWall | None:
-    """Return the mason's wall of the same stones, known by the hash of their file."""
+def masons_wall(sha256: str | None) -> str | None:
+    """Return the name of the mason's wall of the same stones, known by the hash of their file."""
     names = {file.sha256: file.name for file in SETS["almeida"].files}
     found = names.get(sha256 or "")
-    return next((wall for wall in WALLS if found == f"almeida/{wall.name}.png"), None)
+    return next((name for name in MASONS_WALLS if found == f"almeida/{name}.png"), None)
 
 
 def masons_words(symbol: str, sha256: str | None) -> str | None:
@@ -327,8 +299,8 @@ def masons_words(symbol: str, sha256: str | None) -> str | None:
     digits, unit = {"F_SF": (3, ""), "F_AV": (1, " %"), "F_AH": (2, " %")}[symbol]
     same = masons_wall(sha256)
     if same is not None:
-        own = getattr(same, symbol)
-        return f"{own:.{digits}f}{unit} in the mason's own wall of these stones ({same.name})"
-    values = [getattr(wall, symbol) for wall in WALLS]
+        own = MASONS_WALLS[same][symbol]
+        return f"{own:.{digits}f}{unit} in the mason's own wall of these stones ({same})"
+    values = [wall[symbol] for wall in MASONS_WALLS.values()]
     least, most = (f"{value:.{digits}f}" for value in (min(values), max(values)))
     return f"{least} to {most}{unit} in three walls of masons, of other stones"

@@ -19,6 +19,7 @@ from drystone.drawing.words.analysis import ModelledWall, Shapes
 from drystone.errors import InputError, Notice, UsageError
 from drystone.io.walls import GivenWall
 from drystone.model.wall import Labels
+from drystone.statics.failing.wording import Noun
 from drystone.statics.joints import with_head_friction
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.load_case import LoadCase, load_case
@@ -28,26 +29,12 @@ from drystone.statics.result import LateralResistance
 
 @dataclass(frozen=True)
 class ModelRequest:
-    """What touches what, how rough it is, and what it carries, as it is asked for.
+    """What touches what, how rough it is, and what it carries, as it is asked for."""
 
-    Parameters
-    ----------
-    mu : (float, float) or None
-        Range of the coefficient of friction; None for that of the wall.
-    mu_head : float or None
-        That of head joints, when it is another.
-    contacts : {"pixels", "outlines"}
-        What they are taken from.
-    close_gaps : str or None
-        How wide gaps may be that bear, or "settle".
-    case : LoadCase
-        The loads.
-    """
-
-    mu: tuple[float, float] | None
-    mu_head: float | None
-    contacts: str
-    close_gaps: str | None
+    mu: tuple[float, float] | None  # range of the coefficient of friction; None: the wall's
+    mu_head: float | None  # that of head joints, when it is another
+    contacts: str  # taken from "pixels" or "outlines"
+    close_gaps: str | None  # how wide gaps may be that bear, or "settle"
     case: LoadCase
 
     @property
@@ -95,13 +82,9 @@ def _given(wall: GivenWall, blocks: dict[str, Any], mu: float, asked: ModelReque
     bare = None if wall.plan is None else wall.plan.metrics.F_LR_no_setback
     if bare is not None and asked.mu is None and asked.as_planned:
         remarks["contacts"] = f"set back; F_LR {bare:.3f} with contacts up to the ends of faces"
-    return ModelledWall(
-        model_from_json(blocks),
-        polygons_from_json(blocks),
-        "block" if wall.plan is None else "stone",
-        wall.wedge_ids,
-        remarks=remarks,
-    )
+    model, shapes = model_from_json(blocks), polygons_from_json(blocks)
+    noun: Noun = "block" if wall.plan is None else "stone"
+    return ModelledWall(model, shapes, noun, wall.wedge_ids, remarks=remarks)
 
 
 def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> ModelledWall:
@@ -119,14 +102,8 @@ def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> M
         strength = lateral_resistance(bare).value
         with_ends = "falls" if strength is None else f"F_LR {strength:.3f}"
         said += f"; {with_ends} with contacts up to the ends of faces"
-    return ModelledWall(
-        replace(bare, interfaces=found.interfaces),
-        outlines,
-        "stone",
-        wall.wedge_ids,
-        picture.notices,
-        {"contacts": said},
-    )
+    model, remarks = replace(bare, interfaces=found.interfaces), {"contacts": said}
+    return ModelledWall(model, outlines, "stone", wall.wedge_ids, picture.notices, remarks)
 
 
 def _with_closed_gaps(

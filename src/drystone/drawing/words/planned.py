@@ -129,11 +129,14 @@ def profile_rows(summary: dict[str, Any]) -> list[tuple[str, str]]:
     whole = sum(summary["parts"].values()) or 1.0
     jobs, searched = summary["jobs"], summary["parts"]["search"] > 0
     without = " (without those of the search)" if searched else ""
-    rows = [
-        (part, f"{seconds:8.3f} s {100 * seconds / whole:5.1f} %{_each(part, seconds, summary)}")
-        for part, seconds in summary["parts"].items()
-        if searched or part != "search"
-    ]
+    rows = []
+    for part, seconds in summary["parts"].items():
+        if not searched and part == "search":
+            continue
+        said = f"{seconds:8.3f} s {100 * seconds / whole:5.1f} %"
+        if summary["candidates"] and part != "search":  # whose candidates are not counted
+            said += f" {1e6 * seconds / summary['candidates']:9.0f}"
+        rows.append((part, said))
     longest = f"the longest {1000 * summary['longest_step']:.1f} ms"
     return [
         *rows,
@@ -145,9 +148,3 @@ def profile_rows(summary: dict[str, Any]) -> list[tuple[str, str]]:
         if searched
         else ("threads", "1" if jobs == 1 else f"{jobs}; parts are summed over them"),
     ]
-
-
-def _each(part: str, seconds: float, summary: dict[str, Any]) -> str:
-    if not summary["candidates"] or part == "search":  # whose candidates are not counted
-        return ""
-    return f" {1e6 * seconds / summary['candidates']:9.0f}"
