@@ -3,7 +3,7 @@
 Figures are made without pyplot, so nothing global changes and no window opens.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from drystone.drawing.drawing import (
     Dots,
     Drawable,
     Drawing,
+    Legend,
     Lines,
     Surface,
     Words,
@@ -186,9 +187,7 @@ def draw_ground(ax: Axes, x0: float, x1: float, depth: float) -> None:
     add(ax, ground((x0, -depth, x1, 0.0)))
 
 
-def draw_legend(
-    ax: Axes, entries: Mapping[str, Surface | Lines | Dots], columns: int = 9, size: float = 7.0
-) -> None:
+def draw_legend(ax: Axes, entries: Legend, size: float = 7.0) -> None:
     """Write the meaning of colours and lines in rows under all that belongs to the axes."""
     if not entries:
         return
@@ -196,12 +195,12 @@ def draw_legend(
     ends = ax.transAxes.inverted().transform((around.x0, around.y0 - 4))
     ax.legend(
         handles=legend_handles(entries), loc="upper left", bbox_to_anchor=(0.0, ends[1]),
-        ncols=columns, fontsize=size, frameon=False, borderaxespad=0.0, handlelength=1.4,
+        ncols=9, fontsize=size, frameon=False, borderaxespad=0.0, handlelength=1.4,
         handleheight=1.0, columnspacing=1.3,
     )  # fmt: skip
 
 
-def legend_handles(entries: Mapping[str, Surface | Lines | Dots]) -> list[Patch | Line2D]:
+def legend_handles(entries: Legend) -> list[Patch | Line2D]:
     """Return samples of areas, lines and dots with what they mean."""
     handles: list[Patch | Line2D] = []
     for label, item in entries.items():

@@ -92,7 +92,7 @@ def test_wedges_are_in_no_photo() -> None:
     assert wall.pick_pose(wedge) is None
     assert handling.pick_to_place(wall, wedge) is None
     assert handling.pick_approach(wall, wedge) is None
-    assert handling.grasp(wall, wedge).direction_photo is None
+    assert handling.grasp(wall, wedge)["direction_photo"] is None
     assert (wedge.kind, wedge.name, wedge.angle_deg) == ("wedge", "wedge_010", 0.0)
     assert wedge.under == 8
     with pytest.raises(TypeError, match="wedge_010 is in no image"):
@@ -127,15 +127,15 @@ def test_stones_begin_above_everything_that_stands() -> None:
     for part in wall.parts:
         way = handling.place_approach(wall, part)
         pose = wall.place_pose(part)
-        lift = np.array(way.start) - [pose.x_m, pose.y_m, pose.z_m]
-        assert lift == pytest.approx(-way.stand_off_m * np.array(way.direction))
+        lift = np.array([*way["start"].values()]) - [pose.x_m, pose.y_m, pose.z_m]
+        assert lift == pytest.approx(-way["stand_off_m"] * np.array([*way["direction"].values()]))
         if part.kind == "stone":
-            assert way.direction == (0.0, 0.0, -1.0)
+            assert tuple(way["direction"].values()) == (0.0, 0.0, -1.0)
             lowest = part.corners[:, 1].min() + lift[2]
             assert lowest == pytest.approx(max(top, part.corners[:, 1].min()) + 0.05)
         else:
-            assert way.direction == (0.0, 1.0, 0.0)
-            assert way.start[1] + THICKNESS_M / 2 == pytest.approx(-0.05)
+            assert tuple(way["direction"].values()) == (0.0, 1.0, 0.0)
+            assert way["start"]["y"] + THICKNESS_M / 2 == pytest.approx(-0.05)
         top = max(top, part.corners[:, 1].max())
 
 
@@ -145,8 +145,10 @@ def test_a_tool_comes_to_the_photo_from_above_all_stones() -> None:
         way, pose = handling.pick_approach(wall, part), wall.pick_pose(part)
         assert way is not None
         assert pose is not None
-        assert way.direction == (0.0, 0.0, -1.0)
-        assert way.start == pytest.approx((pose.x_m, pose.y_m, 1.5 * THICKNESS_M + 0.05))
+        assert tuple(way["direction"].values()) == (0.0, 0.0, -1.0)
+        assert [*way["start"].values()] == pytest.approx(
+            (pose.x_m, pose.y_m, 1.5 * THICKNESS_M + 0.05)
+        )
 
 
 @pytest.mark.parametrize("name", ["exact", "raster"])
@@ -157,7 +159,7 @@ def test_what_is_in_the_way_down_is_what_small_steps_down_run_into(name: str) ->
         outline = shapely.Polygon(part.corners)
         there = shapely.union_all([shapely.Polygon(p.corners)
                                    for p in wall.parts if p.step < part.step])  # fmt: skip
-        lift_m = handling.place_approach(wall, part).stand_off_m
+        lift_m = handling.place_approach(wall, part)["stand_off_m"]
         widest = 0.0
         for lift in np.linspace(1e-6, lift_m, 60):
             for piece in shapely.get_parts(affinity.translate(outline, 0, lift) & there):

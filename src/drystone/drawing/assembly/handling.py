@@ -1,7 +1,7 @@
 """What a robot does with a part: where it holds it and how it comes to its place."""
 
 import math
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import shapely
@@ -17,42 +17,28 @@ INWARD: Vector = (0.0, 1.0, 0.0)
 """How a wedge is pushed in, in W: from the front, where nothing is in the way."""
 
 
-@dataclass(frozen=True)
-class Approach:
-    """A straight move of a part to its place: `direction` is in the frame of the pose it leads to.
+Named = dict[str, Any]
+"""As poses.json has it: vectors by x, y and z."""
 
-    The origin of the part is at `start` (metres) when the move begins; the part does not turn.
+
+def grasp(assembly: Assembly, part: Part) -> Named:
+    """Return how two parallel jaws hold a part across its least width; E131 without a scale.
+
+    Unit vectors across them are in S, W and P; only a stone has one in the photo (P).
     """
-
-    direction: Vector
-    stand_off_m: float
-    start: Vector
-
-
-@dataclass(frozen=True)
-class Grasp:
-    """Two parallel jaws across the least width of a part; unit vectors across them in S, W and P.
-
-    Only a stone has one in the photo (P).
-    """
-
-    width_m: float
-    direction_part: Vector
-    direction_wall: Vector
-    direction_photo: Vector | None
-
-
-def grasp(assembly: Assembly, part: Part) -> Grasp:
-    """Return how to hold a part; E131 without a scale."""
     place, pick = assembly.place_pose(part), assembly.pick_pose(part)
     width_m, across_deg = part.grip
     across = math.radians(across_deg)
     own = np.array([math.cos(across), 0.0, math.sin(across)])
-    photo = None if pick is None else _vector(pick.rotation @ own)
-    return Grasp(width_m, _vector(own), _vector(place.rotation @ own), photo)
+    return {
+        "width_m": width_m,
+        "direction_part": _xyz(own),
+        "direction_wall": _xyz(place.rotation @ own),
+        "direction_photo": None if pick is None else _xyz(pick.rotation @ own),
+    }
 
 
-def place_approach(assembly: Assembly, part: Part) -> Approach:
+def place_approach(assembly: Assembly, part: Part) -> Named:
     """Return how a part comes to its place.
 
     A stone comes from above: it is lowered from where its lowest point is CLEARANCE_M above the
@@ -66,7 +52,7 @@ def place_approach(assembly: Assembly, part: Part) -> Approach:
     return _approach(pose, DOWN, max(top - lowest, 0.0) + CLEARANCE_M)
 
 
-def pick_approach(assembly: Assembly, part: Part) -> Approach | None:
+def pick_approach(assembly: Assembly, part: Part) -> Named | None:
     """Return how a tool comes to a stone in the photo: from above all others; None for a wedge."""
     pose = assembly.pick_pose(part)
     return None if pose is None else _approach(pose, DOWN, assembly.thickness + CLEARANCE_M)
@@ -111,7 +97,7 @@ def blocked_m(assembly: Assembly, part: Part) -> float:
     With ``reach = "above"`` stones were lowered along this way and then settled, which moves them
     by a fraction of a px; with ``reach = "any"`` they may have come from the side.
     """
-    lift = place_approach(assembly, part).stand_off_m
+    lift = place_approach(assembly, part)["stand_off_m"]
     way = swept(part.corners + np.array([0.0, _APART_M]), lift)
     others = [shapely.Polygon(other.corners) for other in before(assembly, part)]
     boxes = [piece.bounds for other in others for piece in common_parts(way, other)]
@@ -127,11 +113,11 @@ def swept(low: Points, lift: float) -> shapely.Geometry:
     return shapely.union_all([shape for shape in whole if shape.area > 0.0])
 
 
-def _approach(pose: Pose3d, direction: Vector, length_m: float) -> Approach:
+def _approach(pose: Pose3d, direction: Vector, length_m: float) -> Named:
+    """Return a straight move to a pose, from `start` in the frame of it; the part does not turn."""
     start = np.array([pose.x_m, pose.y_m, pose.z_m]) - length_m * np.array(direction)
-    return Approach(direction, length_m, _vector(start))
+    return {"direction": _xyz(direction), "stand_off_m": length_m, "start": _xyz(start)}
 
 
-def _vector(values: Matrix) -> Vector:
-    x, y, z = (float(value) + 0.0 for value in values)
-    return x, y, z
+def _xyz(values: Matrix | Vector) -> dict[str, float]:
+    return {name: float(value) + 0.0 for name, value in zip("xyz", values, strict=True)}

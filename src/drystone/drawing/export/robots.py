@@ -9,13 +9,11 @@ places.  Its meshes are binary STL in metres, named relative to it.
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict
 from functools import partial
 from typing import Any
 from xml.etree import ElementTree as ET
 
 from drystone.drawing.assembly import handling
-from drystone.drawing.assembly.handling import Approach, Grasp
 from drystone.drawing.assembly.parts import Assembly, Part
 from drystone.drawing.export.formats import ExportSettings, Files
 from drystone.drawing.export.solids import (
@@ -95,16 +93,16 @@ def _handled(assembly: Assembly, part: Part) -> dict[str, Any]:
     width_m, height_m = part.size
     pick, down = assembly.pick_pose(part), handling.pick_approach(assembly, part)
     blocked_m = handling.blocked_m(assembly, part) if part.kind == "stone" else 0.0
-    approach = {**_named(handling.place_approach(assembly, part)), "blocked_m": blocked_m}
+    approach = {**handling.place_approach(assembly, part), "blocked_m": blocked_m}
     return {
         **_names(part),
         "under": part.under,
         "angle_deg": part.angle_deg,
         "flipped": False,
         "place": {**_posed(assembly.place_pose(part)), "approach": approach},
-        "pick": pick and down and {**_posed(pick), "approach": _named(down)},
+        "pick": pick and down and {**_posed(pick), "approach": down},
         "pick_to_place": handling.pick_to_place(assembly, part),
-        "grasp": {**_named(handling.grasp(assembly, part)), "thickness_m": assembly.thickness},
+        "grasp": {**handling.grasp(assembly, part), "thickness_m": assembly.thickness},
         "mass_kg": assembly.mass_kg(part),
         "size_m": {"x": width_m, "y": assembly.thickness, "z": height_m},
         "neighbours": handling.touched_when_placed(assembly, part),
@@ -123,14 +121,6 @@ def _posed(pose: Pose3d) -> dict[str, Any]:
         "point": {"x": pose.x_m, "y": pose.y_m, "z": pose.z_m},
         "quaternion": {"x": turn.x, "y": turn.y, "z": turn.z, "w": turn.w},
         "matrix": pose.matrix,
-    }
-
-
-def _named(thing: Approach | Grasp) -> dict[str, Any]:
-    """Return its fields by name, and the parts of its vectors by x, y and z."""
-    return {
-        name: dict(zip("xyz", value, strict=True)) if isinstance(value, tuple) else value
-        for name, value in asdict(thing).items()
     }
 
 

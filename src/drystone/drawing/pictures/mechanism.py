@@ -245,7 +245,11 @@ def mechanism_frames(
     load: str = "",
     numbers: bool = False,
 ) -> tuple[Image.Image, ...]:
-    """Draw a mechanism from rest to the largest displacement of its picture and back."""
+    """Draw a mechanism from rest to the largest displacement of its picture and back.
+
+    Parameters as for :func:`plot_mechanism`.  There are at least 2 frames, RGB and of one size; the
+    motion slows down at both ends, and the last frame leads to the first.
+    """
     if frames < 2:
         raise ValueError(f"an animation has at least 2 frames, not {frames}")
     ax = plot_mechanism(wall, mechanism, direction, alpha, load=load, numbers=numbers)
@@ -272,7 +276,10 @@ def save_mechanism_animation(
     frames: int = 24,
     **options: Any,
 ) -> None:
-    """Write :func:`mechanism_frames` as a GIF that loops, without a date in the file."""
+    """Write :func:`mechanism_frames` as a GIF that loops, without a date in the file.
+
+    Another ending than ".gif" is a ValueError; E206 when the file cannot be written.
+    """
     if Path(path).suffix.lower() != ".gif":
         raise ValueError(f"{path}: animations end in .gif")
     pictures = mechanism_frames(wall, mechanism, direction, alpha, frames=frames, **options)

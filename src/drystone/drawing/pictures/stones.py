@@ -117,7 +117,11 @@ def plot_labels(labels: Labels, ax: Axes | None = None, *, title: str = "") -> A
 def plot_joint_paths(
     labels: Labels, paths: Sequence[NDArray[np.integer]], ax: Axes | None = None
 ) -> Axes:
-    """Draw the paths of the alignment factors F_AV and F_AH over the stones (Fig. 17)."""
+    """Draw the paths of the alignment factors F_AV and F_AH over the stones (Fig. 17).
+
+    A path is the pixels (row, col) that it goes through, (n, 2); they may be just outside of the
+    image.  The axes are in px, y up from the image's bottom edge.
+    """
     height, width = labels.shape
     blocks = (
         Surface(f"block-{region.id}", region.loops, PALE, line=GREY, width_pt=0.4)

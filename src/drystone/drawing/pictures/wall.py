@@ -17,7 +17,7 @@ PANEL_IN = 3.2  # width of the picture of a wall to choose
 AXES = (("F_SF", "F_LR"), ("F_AV", "F_AH"))  # what is drawn against what
 DIGITS = {"F_SF": 3, "F_AV": 1, "F_AH": 2, "F_LR": 2}
 
-Figures = Mapping[str, float | None]
+WallFigures = Mapping[str, float | None]
 
 
 def plot_wall(
@@ -54,8 +54,11 @@ def plot_wall(
     return draw(drawing_of_wall(wall, clusters, outlines, title), ax)
 
 
-def plot_choice(walls: Sequence[Wall], figures: Sequence[Figures]) -> Figure:
-    """Draw walls with their figures of merit, numbered from 1, and these against each other."""
+def plot_choice(walls: Sequence[Wall], figures: Sequence[WallFigures]) -> Figure:
+    """Draw walls with their figures of merit, numbered from 1, and these against each other.
+
+    The walls are of one size; F_LR is drawn over F_SF and F_AH over F_AV.
+    """
     rows = -(-len(walls) // COLUMNS)
     site = walls[0].site
     wall_in = max(0.6, PANEL_IN * site.height_px / site.width_px) + 0.45
@@ -81,7 +84,7 @@ def plot_choice(walls: Sequence[Wall], figures: Sequence[Figures]) -> Figure:
     return figure
 
 
-def _draw_figures(ax: Axes, figures: Sequence[Figures], across: str, up: str) -> None:
+def _draw_figures(ax: Axes, figures: Sequence[WallFigures], across: str, up: str) -> None:
     for number, values in enumerate(figures, 1):
         x, y = values[across], values[up]
         if x is None or y is None:

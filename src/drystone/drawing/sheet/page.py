@@ -25,10 +25,10 @@ NOT_TO_SCALE = "NOT TO SCALE"
 
 
 class SheetPage:
-    """One sheet of A4, lying or standing; lengths are mm from its lower left corner."""
+    """One sheet of paper; lengths are mm from its lower left corner."""
 
-    def __init__(self, *, landscape: bool = False) -> None:
-        self.width, self.height = A4_MM[::-1] if landscape else A4_MM
+    def __init__(self, size_mm: tuple[float, float] = A4_MM) -> None:
+        self.width, self.height = size_mm
         inches = (self.width / MM_PER_INCH, self.height / MM_PER_INCH)
         self.figure = Figure(figsize=inches)
         self.ax = self.figure.add_axes((0.0, 0.0, 1.0, 1.0))

@@ -101,7 +101,7 @@ def sheet(
 
 def _first_page(assembly: Assembly, settings: ExportSettings, title: str, sha256: str) -> SheetPage:
     """Draw the wall with the numbers of the steps, its dimensions and the title block."""
-    page = SheetPage(landscape=True)
+    page = SheetPage(A4_MM[::-1])
     scale = paper_scale(assembly, settings.paper_scale)
     width, height = (side * scale.mm_per_unit for side in assembly.size)
     left = (page.width - width) / 2 + 5.0

@@ -314,9 +314,10 @@ def _last_rows(card: Card | RangeCard, ends: Mapping[str, LimitResult]) -> list[
 
 
 def _certificate(ends: Mapping[str, LimitResult]) -> dict[str, float | None]:
-    known = [end.certificate for end in ends.values() if end.certificate is not None]
+    found = {name: end.certificate for name, end in ends.items()}
+    known = [one for one in found.values() if one is not None]
     return {
-        **{f"gap_{name}": end.certificate and end.certificate.gap for name, end in ends.items()},
+        **{f"gap_{name}": None if one is None else one.gap for name, one in found.items()},
         "residual": max((c.residual for c in known), default=None),
         "violation": max((c.violation for c in known), default=None),
         "inadmissible": max((c.inadmissible for c in known), default=None),
