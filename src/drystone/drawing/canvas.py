@@ -102,11 +102,9 @@ def _add_lines(ax: Axes, item: Lines) -> None:
 
 
 def _marker(item: Dots) -> dict[str, Any]:
-    style: dict[str, Any] = {"color": item.colour, "marker": item.marker}
-    style |= {"markersize": item.size_pt, "markeredgewidth": 0.0}
-    if item.open or item.marker in "x+":
-        style |= {"markerfacecolor": "none", "markeredgewidth": 1.6}
-    return style
+    edge = {"markerfacecolor": "none", "markeredgewidth": 1.6} if item.open else {}
+    return {"color": item.colour, "marker": "o", "markersize": item.size_pt,
+            "markeredgewidth": 0.0, **edge}  # fmt: skip
 
 
 def _write(ax: Axes, words: Words) -> None:

@@ -61,13 +61,12 @@ class Lines:
 
 @dataclass(frozen=True, eq=False)
 class Dots:
-    """Points with a marker of Matplotlib's."""
+    """Points, as discs or open rings."""
 
     name: str
     points: Loop
     colour: str = OUTLINE_COLOUR
     size_pt: float = 3.0
-    marker: str = "o"
     open: bool = False
     z: float = 4.0
     layer: str = ""

@@ -21,15 +21,11 @@ UNSEEN = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """What a label or a polygon covers, in the wall frame: on pixel edges, px, or as it was given.
-
-    `area_px` is the number of its pixels, or the area of a polygon in squares of its unit.
-    """
+    """What a label covers along pixel edges, px, or a polygon, as given; in the wall frame."""
 
     id: int
     loops: tuple[Loop, ...]
     centroid: tuple[float, float]
-    area_px: float
 
 
 def label_regions(labels: Labels) -> tuple[Region, ...]:
@@ -60,7 +56,7 @@ def _of_polygon(block: int, corners: Loop) -> Region:
     area = float(cross.sum()) / 2.0
     middle = np.array([(x + np.roll(x, -1)) @ cross, (y + np.roll(y, -1)) @ cross]) / (6.0 * area)
     cx, cy = (loop[0] + middle).tolist()
-    return Region(block, (loop if area > 0 else loop[::-1],), (cx, cy), abs(area))
+    return Region(block, (loop if area > 0 else loop[::-1],), (cx, cy))
 
 
 def wall_regions(wall: Labels | Mapping[int, Loop]) -> tuple[Region, ...]:
@@ -99,7 +95,7 @@ def _region(label: int, mask: Mask, window: tuple[slice, slice], height: int) ->
     rows, cols = np.nonzero(mask)
     centroid = (left + float(cols.mean()) + 0.5, bottom + mask.shape[0] - float(rows.mean()) - 0.5)
     loops = tuple(loop + np.array([left, bottom], float) for loop in pixel_loops(mask))
-    return Region(label, loops, centroid, int(rows.size))
+    return Region(label, loops, centroid)
 
 
 def pixel_loops(mask: Mask) -> tuple[Loop, ...]:

@@ -71,19 +71,10 @@ def test_forces_are_in_equilibrium_with_weight_and_load():
     left, right = (shown["mechanisms"][side]["alpha"] for side in ("left", "right"))
     for case, load in (("left", -left), ("right", right), ("self", 0.0)):
         assert unbalanced(shown, case, load) < 2e-4
+        for normal, along in np.concatenate([c["forces"][case] for c in shown["contacts"]]):
+            assert abs(along) <= shown["mu"] * normal + 2e-6
     # The check sees a load that is not the one of the forces.
     assert unbalanced(shown, "right", 0.9 * right) > 2e-3
-
-
-@pytest.mark.parametrize(("method", "px_per_m"), CASES)
-def test_forces_stay_within_friction(method, px_per_m):
-    shown = view(method, px_per_m)
-    for contact in shown["contacts"]:
-        assert list(contact["forces"]) == ["self", "left", "right"]
-        for forces in contact["forces"].values():
-            for n, t in forces:
-                assert n >= -1e-6
-                assert abs(t) <= shown["mu"] * n + 2e-6
 
 
 @pytest.mark.parametrize(("method", "px_per_m"), CASES)

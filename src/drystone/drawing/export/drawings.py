@@ -5,6 +5,8 @@ without a unit.  Both have layers: SITE, STONES, WEDGES, NUMBERS, and, not shown
 CONTACTS, FORCES-LEFT and -RIGHT, MECHANISM-LEFT and -RIGHT.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from drystone.drawing import dxf as dxf_end
@@ -40,10 +42,7 @@ def svg(assembly: Assembly, settings: ExportSettings) -> Files:
 
     def made() -> bytes:
         drawing = with_statics(assembly)
-        there = Drawing(
-            tuple(placed(drawing.items, factor)), drawing.box, hidden=drawing.hidden,
-            notes=drawing.notes,
-        )  # fmt: skip
+        there = replace(drawing, items=tuple(placed(drawing.items, factor)))
         unit = "mm" if metric else "px"
         return svg_end.svg_bytes(there, (width, height), unit, _name(assembly, settings), about)
 

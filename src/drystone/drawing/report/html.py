@@ -75,12 +75,12 @@ def viewer_page(view: ViewerData, options: Mapping[str, Any] | None = None) -> s
     return _rendered("viewer_page.html", view, title=view["title"], options=chosen)
 
 
-def viewer_frame(view: ViewerData, options: Mapping[str, Any] | None = None) -> str:
+def viewer_frame(view: ViewerData) -> str:
     """Return an element, in one line, that shows the viewer in a page of others: a notebook.
 
     The page in the frame has its own styles, and is as high as it needs to be.
     """
-    page = html.escape(viewer_page(view, options)).replace("\n", "&#10;")
+    page = html.escape(viewer_page(view)).replace("\n", "&#10;")
     title = html.escape(str(view["title"]))
     look = "width:100%;height:640px;border:0;color-scheme:normal"
     return f'<iframe title="{title}" style="{look}" srcdoc="{page}"></iframe>'
