@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from drystone.drawing.words.times import profile_rows, profile_summary
+from drystone.drawing.words.planned import profile_rows, profile_summary
 from drystone.generate import RubbleSettings, rubble_stones
 from drystone.planner.settings import method_settings
 from drystone.search.plan_result import PlanResult

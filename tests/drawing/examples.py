@@ -76,56 +76,27 @@ def plan(built: Wall | None = None, metrics: PlanMetrics | None = None) -> Plan:
         placement = group.placement
         x, y = placement.centroid(built.site.height_px)
         done = not group.wedges
+        source = stones.by_id(placement.stone_id).centroid
         steps.append(
             StoneStep(
-                step=len(steps) + 1,
-                stone=placement.stone_id,
-                angle_deg=-12.5,
-                source_centroid=stones.by_id(placement.stone_id).centroid,
-                centroid=(x * units, y * units),
-                side=placement.side,
-                cluster=CLUSTERS[placement.stone_id],
-                rotation_moves=placement.rotation_moves,
-                indices=indices,
-                course_height=None,
-                alpha_left=0.41 if done else None,
-                alpha_right=0.39 if done else None,
+                len(steps) + 1, placement.stone_id, -12.5, source, (x * units, y * units),
+                placement.side, CLUSTERS[placement.stone_id], placement.rotation_moves, indices,
+                None, 0.41 if done else None, 0.39 if done else None,
             )
-        )
+        )  # fmt: skip
         for wedge in group.wedges:
             box = ((20, 6), (23, 6), (23, 8), (20, 8))
             polygon = tuple((x * units, y * units) for x, y in box)
             steps.append(WedgeStep(len(steps) + 1, wedge.id, wedge.under, polygon, 0.41, 0.39))
+    source = {
+        "path": "<b>PR.png", "sha256": "0" * 64, "stones": len(stones),
+        "width_px": stones.source.width_px, "height_px": stones.source.height_px,
+    }  # fmt: skip
+    usual = PlanMetrics(0.4773, None, 4.25, 0.6724, 0.31, 0.12, 0.41, 0.39, 6.0 * units**2)
     return Plan(
-        version="0.1.0",
-        method="paper",
-        seed=7,
-        settings={"mu": 0.58, "placement": {"rule": "eq12", "note": "<script>alert(1)</script>"}},
-        length_unit="m" if built.site.px_per_m else "px",
-        px_per_m=built.site.px_per_m,
-        working_scale=built.site.scale,
-        source={
-            "path": "<b>PR.png",
-            "sha256": "0" * 64,
-            "stones": len(stones),
-            "width_px": stones.source.width_px,
-            "height_px": stones.source.height_px,
-        },
-        width=built.site.width_px * units,
-        height=built.site.height_px * units,
-        steps=tuple(steps),
-        unused=(UNUSED,),
-        stopped="no acceptable place was found five times in a row",
-        metrics=metrics
-        or PlanMetrics(
-            F_SF=0.4773,
-            F_AV=None,
-            F_AH=4.25,
-            F_LR=0.6724,
-            T_LEVEL=0.31,
-            E_FLUSH=0.12,
-            alpha_left=0.41,
-            alpha_right=0.39,
-            wedge_area=6.0 * units**2,
-        ),
-    )
+        "0.1.0", "paper", 7,
+        {"mu": 0.58, "placement": {"rule": "eq12", "note": "<script>alert(1)</script>"}},
+        "m" if built.site.px_per_m else "px", built.site.px_per_m, built.site.scale, source,
+        built.site.width_px * units, built.site.height_px * units, tuple(steps), (UNUSED,),
+        "no acceptable place was found five times in a row", metrics or usual,
+    )  # fmt: skip

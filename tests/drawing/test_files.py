@@ -1,19 +1,35 @@
+"""Pictures as files, whole and with the same bytes; pieces of a photograph."""
+
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from PIL import Image
 
 from drystone.contacts.settled import model_of_outlines
-from drystone.drawing import files, plot_mechanism, plot_wall, save, write_pictures
-from drystone.errors import PlanError
+from drystone.drawing import (
+    files,
+    plot_mechanism,
+    plot_wall,
+    save,
+    save_mechanism_animation,
+    write_pictures,
+    write_report,
+)
+from drystone.drawing.photo import CROP_PX, StonePhoto, read_photo
+from drystone.drawing.pictures.marker_sheet import MarkerSheets, write_marker_sheets
+from drystone.drawing.report.notebook import Shown
+from drystone.errors import PlanError, UsageError
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from tests.drawing import examples
+from tests.drawing.export.drawn_walls import assembly
 from tests.drawing.pictures.test_stones import patches
+from tests.drawing.report.test_report import example_view
 from tests.verify.exact_examples import exact_example
 
 
@@ -37,28 +53,6 @@ def test_other_endings_are_refused(tmp_path):
         save(plot_wall(examples.wall()).figure, tmp_path / "wall.bmp")
 
 
-@pytest.mark.parametrize("name", ["wall.png", "wall.pdf", "wall.svg"])
-def test_a_picture_is_whole_or_as_it_was(tmp_path, monkeypatch, name):
-    def half(_, file, **__):
-        file.write(b"ten bytes.")
-        raise OSError(28, "No space left on device")
-
-    path = tmp_path / name
-    path.write_bytes(b"good")
-    ax = plot_wall(examples.wall())
-    monkeypatch.setattr(Figure, "savefig", half)
-    with pytest.raises(OSError, match="No space left"):
-        save(ax.figure, path, dpi=50)
-    assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [(name, b"good")]
-
-
-def test_a_picture_that_cannot_be_written_is_named(tmp_path):
-    path = tmp_path / "nowhere" / "wall.png"
-    with pytest.raises(PlanError, match="E206") as caught:
-        save(plot_wall(examples.wall()).figure, path, dpi=50)
-    assert caught.value.where == str(path)
-
-
 def test_pictures_are_written_where_a_mechanism_exists(tmp_path):
     stale = tmp_path / "mechanism_right.png"
     stale.write_bytes(b"of another wall")
@@ -67,11 +61,6 @@ def test_pictures_are_written_where_a_mechanism_exists(tmp_path):
     )
     assert [path.name for path in written] == ["picture.png", "mechanism_left.png"]
     assert {path.name for path in tmp_path.iterdir()} == {"picture.png", "mechanism_left.png"}
-
-
-def test_without_statics_there_is_only_the_picture(tmp_path):
-    (path,) = write_pictures(tmp_path, examples.wall(), dpi=50)
-    assert path == tmp_path / "picture.png"
 
 
 def test_the_fall_of_a_wall_is_not_drawn_as_a_live_load(tmp_path, monkeypatch):
@@ -121,3 +110,70 @@ def test_mechanisms_of_a_wall_of_outlines_are_drawn_of_its_outlines(tmp_path, mo
     # Those of a wall of outlines do not stay beside one that has none.
     written = write_pictures(tmp_path, examples.wall(), dpi=20)
     assert [path.name for path in tmp_path.iterdir()] == [files.PICTURE]
+
+
+WRITERS = {
+    "wall.png": lambda path: save(plot_wall(examples.wall()).figure, path, dpi=20),
+    "wall.pdf": lambda path: save(plot_wall(examples.wall()).figure, path),
+    "wall.svg": lambda path: save(plot_wall(examples.wall()).figure, path),
+    "fall.gif": lambda path: save_mechanism_animation(
+        path, examples.wall().labels, examples.mechanism(), None, frames=2
+    ),
+    "report.html": lambda path: write_report(path, example_view()),
+    "view.html": lambda path: Shown(example_view()).write(path),
+    "sheets.pdf": lambda path: write_marker_sheets(MarkerSheets((0, 1, 2, 3), 0.05), path),
+}
+
+
+@pytest.mark.parametrize("name", WRITERS)
+def test_a_file_is_whole_or_as_it_was(name: str, tmp_path: Path, monkeypatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    path = tmp_path / name
+    path.write_bytes(b"good")
+    monkeypatch.setattr(os, "replace", full)
+    with pytest.raises(PlanError, match=r"E206.*No space left") as caught:
+        WRITERS[name](path)
+    assert caught.value.where == str(path)
+    assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [(name, b"good")]
+
+
+def test_markers_that_do_not_fit_are_refused(tmp_path):
+    with pytest.raises(UsageError, match="E174"):
+        write_marker_sheets(MarkerSheets((0, 1, 2, 3), 0.5), tmp_path / "sheets.pdf")
+    assert not list(tmp_path.iterdir())
+
+
+def coordinates(width, height):
+    """Return a picture whose red is its column and whose green is its row from the top."""
+    red, green = np.meshgrid(np.linspace(0, 255, width), np.linspace(0, 255, height))
+    return Image.fromarray(np.dstack([red, green, 0 * red]).astype(np.uint8))
+
+
+@pytest.mark.parametrize("zoom", [0.5, 1, 4, 20])
+def test_a_piece_shows_its_box_at_any_resolution(zoom) -> None:
+    photo = StonePhoto(coordinates(round(200 * zoom), round(100 * zoom)), 200.0, 100.0)
+    piece = photo.crop((50.0, 20.0, 110.0, 60.0)).astype(float)
+    height, width, _ = piece.shape
+    assert max(height, width) <= CROP_PX
+    assert width / height == pytest.approx(1.5, abs=0.05)
+    # Source px of the middles of the first and last px of the piece.
+    step = 60.0 / width
+    left, right = 50 + step / 2, 110 - step / 2
+    top, bottom = 40 + step / 2, 80 - step / 2
+    assert piece[height // 2, 0, 0] / 255 * 200 == pytest.approx(left, abs=1.8)
+    assert piece[height // 2, -1, 0] / 255 * 200 == pytest.approx(right, abs=1.8)
+    assert piece[0, width // 2, 1] / 255 * 100 == pytest.approx(top, abs=1.8)
+    assert piece[-1, width // 2, 1] / 255 * 100 == pytest.approx(bottom, abs=1.8)
+
+
+def test_beyond_the_photograph_it_is_white() -> None:
+    photo = StonePhoto(Image.new("RGB", (100, 100), "black"), 100.0, 100.0)
+    piece = photo.crop((-20.0, 40.0, 20.0, 60.0))
+    assert (piece[:, :18] == 255).all()
+    assert (piece[:, 22:] == 0).all()
+
+
+def test_there_may_be_none() -> None:
+    assert read_photo(assembly()) is None

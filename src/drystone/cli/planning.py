@@ -28,8 +28,7 @@ from drystone.cli.progress import step_bar
 from drystone.cli.request import PlanOutput, PlanRequest
 from drystone.cli.resuming import earlier_run, made_of, tell_finished
 from drystone.cli.scale import picture_size_px, refuse_outside, scale_notice
-from drystone.drawing.words.planned import ending, rows, summary
-from drystone.drawing.words.times import profile_rows, profile_summary
+from drystone.drawing.words.planned import ending, profile_rows, profile_summary, rows, summary
 from drystone.errors import DrystoneError, ExitCode, UsageError
 from drystone.io.checkpoint import CHECKPOINT
 from drystone.io.photo_beside import check_place, photo_beside, place_photo

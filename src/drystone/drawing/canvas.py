@@ -3,7 +3,7 @@
 Figures are made without pyplot, so nothing global changes and no window opens.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -16,17 +16,25 @@ from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
-from drystone.drawing.drawing import Area, Dots, Drawing, Item, Lines, Words, ground, letters_pt
+from drystone.drawing.drawing import (
+    Dots,
+    Drawable,
+    Drawing,
+    Legend,
+    Lines,
+    Surface,
+    Words,
+    ground,
+    letters_pt,
+)
 from drystone.drawing.lettering import drawable, fitted
-from drystone.drawing.outlines import Box, Loop
+from drystone.drawing.outlines import Bounds, Loop
 from drystone.drawing.palette import OUTLINE_COLOUR, text_colour
 
 WIDTH_IN = 9.0
 """Width of the drawing area; a picture with margins then fits the text width of a page."""
 
-HEIGHT_IN = 9.0
-"""Largest height of the drawing area."""
-
+HEIGHT_IN = 9.0  # largest height of the drawing area
 MARGIN_IN = 0.6
 LARGEST_PT, SMALLEST_PT, TITLE_PT = 10.0, 3.5, 9.0
 BESIDE_PT = ((10.0, 9.0), (-10.0, 9.0), (10.0, -9.0), (-10.0, -9.0))
@@ -50,11 +58,11 @@ def draw(drawing: Drawing, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def add(ax: Axes, items: Iterable[Item]) -> None:
+def add(ax: Axes, items: Iterable[Drawable]) -> None:
     """Draw items on axes that show them already; their names become gids."""
     words: list[Words] = []
     for item in items:
-        if isinstance(item, Area):
+        if isinstance(item, Surface):
             dashes: dict[str, Any] = {"linestyle": (0, item.dashes)} if item.dashes else {}
             draw_block(ax, item.loops, item.name, fill=item.fill, edgecolor=item.line,
                        linewidth=item.width_pt, hatch=item.hatch or None, zorder=item.z,
@@ -94,11 +102,9 @@ def _add_lines(ax: Axes, item: Lines) -> None:
 
 
 def _marker(item: Dots) -> dict[str, Any]:
-    style: dict[str, Any] = {"color": item.colour, "marker": item.marker}
-    style |= {"markersize": item.size_pt, "markeredgewidth": 0.0}
-    if item.open or item.marker in "x+":
-        style |= {"markerfacecolor": "none", "markeredgewidth": 1.6}
-    return style
+    edge = {"markerfacecolor": "none", "markeredgewidth": 1.6} if item.open else {}
+    return {"color": item.colour, "marker": "o", "markersize": item.size_pt,
+            "markeredgewidth": 0.0, **edge}  # fmt: skip
 
 
 def _write(ax: Axes, words: Words) -> None:
@@ -139,7 +145,7 @@ def _write_beside(ax: Axes, words: Words, all_words: Iterable[Words]) -> None:
     )  # fmt: skip
 
 
-def fit_axes(ax: Axes | None, box: Box) -> Axes:
+def fit_axes(ax: Axes | None, box: Bounds) -> Axes:
     """Return axes of equal scales that show the box; on a figure of its own when ax is None."""
     width, height = box[2] - box[0], box[3] - box[1]
     if ax is None:
@@ -179,9 +185,7 @@ def draw_ground(ax: Axes, x0: float, x1: float, depth: float) -> None:
     add(ax, ground((x0, -depth, x1, 0.0)))
 
 
-def draw_legend(
-    ax: Axes, entries: Mapping[str, Area | Lines | Dots], columns: int = 9, size: float = 7.0
-) -> None:
+def draw_legend(ax: Axes, entries: Legend, size: float = 7.0) -> None:
     """Write the meaning of colours and lines in rows under all that belongs to the axes."""
     if not entries:
         return
@@ -189,16 +193,16 @@ def draw_legend(
     ends = ax.transAxes.inverted().transform((around.x0, around.y0 - 4))
     ax.legend(
         handles=legend_handles(entries), loc="upper left", bbox_to_anchor=(0.0, ends[1]),
-        ncols=columns, fontsize=size, frameon=False, borderaxespad=0.0, handlelength=1.4,
+        ncols=9, fontsize=size, frameon=False, borderaxespad=0.0, handlelength=1.4,
         handleheight=1.0, columnspacing=1.3,
     )  # fmt: skip
 
 
-def legend_handles(entries: Mapping[str, Area | Lines | Dots]) -> list[Patch | Line2D]:
+def legend_handles(entries: Legend) -> list[Patch | Line2D]:
     """Return samples of areas, lines and dots with what they mean."""
     handles: list[Patch | Line2D] = []
     for label, item in entries.items():
-        if isinstance(item, Area):
+        if isinstance(item, Surface):
             handles.append(
                 Patch(facecolor=item.fill, edgecolor=item.line, hatch=item.hatch or None,
                       linewidth=0.4, label=label)

@@ -7,68 +7,33 @@ A :class:`Drawing` is made once and drawn by a back end: :mod:`~drystone.drawing
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
 
 import numpy as np
 
-from drystone.drawing.outlines import Box, Loop, rectangle
+from drystone.drawing.outlines import Bounds, Loop, rectangle
 from drystone.drawing.palette import GREY, OUTLINE_COLOUR
+from drystone.model.plan import Point
 
-Point = tuple[float, float]
 Dashes = tuple[float, ...]
 """Lengths of strokes and gaps by turns, in widths of the line; empty for a line without gaps."""
 
 
-class Pose(NamedTuple):
-    """Where a thing is: a point of it, and how far it is turned about this point."""
-
-    x: float
-    y: float
-    angle_deg: float
-
-
 @dataclass(frozen=True, eq=False)
-class Area:
-    """A stone, a wedge, a frame.
+class Surface:
+    """A stone, a wedge, a frame.  Colours are "#rrggbb" or "none", widths of lines pt."""
 
-    Parameters
-    ----------
-    name : str
-        Unique in its layer; files keep it.
-    loops : tuple of (n, 2) float arrays
-        Clockwise ones are holes.
-    fill, line : str
-        Colours "#rrggbb", or "none".
-    width_pt : float
-        Of the line.
-    dashes : tuple of float
-        Of the line.
-    hatch : str
-        Strokes over the area, as Matplotlib writes them; files for other programs leave hatched
-        areas out.
-    z : float
-        What is higher lies over what is lower.
-    layer : str
-        Of files that have layers.
-    pose : Pose or None
-        Of a stone; drawings that define a stone as it lay put it there.
-    step : int or None
-        Of the plan.
-    note : str
-        What there is to say of it.
-    """
-
-    name: str
-    loops: tuple[Loop, ...]
+    name: str  # unique in its layer; files keep it
+    loops: tuple[Loop, ...]  # clockwise ones are holes
     fill: str = "none"
     line: str = OUTLINE_COLOUR
     width_pt: float = 0.6
     dashes: Dashes = ()
-    hatch: str = ""
-    z: float = 1.0
-    layer: str = ""
-    pose: Pose | None = None
-    step: int | None = None
+    hatch: str = ""  # as Matplotlib writes it; files for other programs leave hatched areas out
+    z: float = 1.0  # what is higher lies over what is lower
+    layer: str = ""  # of files that have layers
+    pose: tuple[float, float, float] | None = None
+    """x, y and degrees of a stone: a drawing that defines it as it lay turns it about (x, y)."""
+    step: int | None = None  # of the plan
     note: str = ""
 
     @property
@@ -77,52 +42,31 @@ class Area:
         width, height = np.ptp(np.concatenate(self.loops), axis=0).tolist()
         return width, height
 
-    @property
-    def middle(self) -> Point:
-        """Of its corners."""
-        x, y = np.concatenate(self.loops).mean(axis=0).tolist()
-        return x, y
-
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """Lines of one kind; parameters as for :class:`Area`.
-
-    Parameters
-    ----------
-    lines : sequence of (n, 2) float arrays
-        Their points.
-    width_pt : float or sequence of float
-        One of each, or of all.
-    head : bool
-        Whether they end in the head of an arrow.
-    halo : bool
-        Whether there is a white line below, to be seen on anything.
-    notes : sequence of str
-        What there is to say of each.
-    """
+    """Lines of one kind, each (n, 2)."""
 
     name: str
     lines: Sequence[Loop]
     colour: str = OUTLINE_COLOUR
-    width_pt: float | Sequence[float] = 0.6
+    width_pt: float | Sequence[float] = 0.6  # of each, or of all
     dashes: Dashes = ()
-    head: bool = False
-    halo: bool = False
+    head: bool = False  # of an arrow, at the end
+    halo: bool = False  # a white line below, to be seen on anything
     z: float = 3.0
     layer: str = ""
-    notes: Sequence[str] = ()
+    notes: Sequence[str] = ()  # of each
 
 
 @dataclass(frozen=True, eq=False)
 class Dots:
-    """Points with a marker; parameters as for :class:`Area`."""
+    """Points, as discs or open rings."""
 
     name: str
     points: Loop
     colour: str = OUTLINE_COLOUR
     size_pt: float = 3.0
-    marker: str = "o"
     open: bool = False
     z: float = 4.0
     layer: str = ""
@@ -130,79 +74,42 @@ class Dots:
 
 @dataclass(frozen=True, eq=False)
 class Words:
-    """A number or a few words; parameters as for :class:`Area`.
-
-    Parameters
-    ----------
-    at : (float, float)
-        The middle.
-    room : (float, float) or None
-        Width and height of what they are written on, which says how large they are.
-    on : str
-        Colour of what is below; the words are black or white, and have a halo of it.
-    colour : str
-        Instead of black or white.
-    size_pt : float
-        Where no room says it.
-    beside : bool
-        The thing is too small to hold them: they are written where there is room, with a line.
-    """
+    """A number or a few words, black or white with a halo of the colour below."""
 
     name: str
     text: str
-    at: Point
-    room: Point | None = None
-    on: str = "#ffffff"
-    colour: str = ""
-    size_pt: float = 8.0
-    beside: bool = False
+    at: Point  # the middle
+    room: Point | None = None  # width and height of what they are on, which says how large they are
+    on: str = "#ffffff"  # colour of what is below
+    colour: str = ""  # instead of black or white
+    size_pt: float = 8.0  # where no room says it
+    beside: bool = False  # too small to hold them: they are where there is room, with a line
     z: float = 5.0
     layer: str = "NUMBERS"
 
 
-Item = Area | Lines | Dots | Words
+Drawable = Surface | Lines | Dots | Words
+Legend = Mapping[str, Surface | Lines | Dots]  # what colours and lines mean
 
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """A picture of a wall.
+    """A picture of a wall: later items over earlier ones of the same `z`."""
 
-    Parameters
-    ----------
-    items : tuple of Area, Lines, Dots or Words
-        What is drawn, later ones over earlier ones of the same `z`.
-    box : (x0, y0, x1, y1)
-        What is in view.
-    unit : str
-        Of lengths, where a scale is drawn; "" for a picture without one.
-    title : str
-        Above it.
-    legend : mapping of str to Area, Lines or Dots
-        What colours and lines mean.
-    hidden : tuple of str
-        Layers that are not shown at first.
-    notes : mapping of str to str
-        What there is to say of a layer.
-    """
-
-    items: tuple[Item, ...]
-    box: Box
-    unit: str = ""
+    items: tuple[Drawable, ...]
+    box: Bounds  # what is in view
+    unit: str = ""  # of lengths, where a scale is drawn
     title: str = ""
-    legend: Mapping[str, Area | Lines | Dots] = field(default_factory=dict)
-    hidden: tuple[str, ...] = ()
-    notes: Mapping[str, str] = field(default_factory=dict)
+    legend: Legend = field(default_factory=dict)
+    hidden: tuple[str, ...] = ()  # layers that are not shown at first
+    notes: Mapping[str, str] = field(default_factory=dict)  # what there is to say of a layer
 
-    def layers(self, *names: str) -> tuple[Item, ...]:
+    def layers(self, *names: str) -> tuple[Drawable, ...]:
         """Return what is on some layers."""
         return tuple(item for item in self.items if item.layer in names)
 
-    def with_items(self, items: Iterable[Item]) -> "Drawing":
-        """Return it with more drawn over it."""
-        return replace(self, items=(*self.items, *items))
 
-
-def placed(items: Iterable[Item], factor: float, origin: Point = (0.0, 0.0)) -> list[Item]:
+def placed(items: Iterable[Drawable], factor: float, origin: Point = (0.0, 0.0)) -> list[Drawable]:
     """Return items in another unit of length, the wall's lower left corner moved to `origin`.
 
     `factor` is new units in an old one.
@@ -211,13 +118,10 @@ def placed(items: Iterable[Item], factor: float, origin: Point = (0.0, 0.0)) -> 
     def there(points: Loop | Point) -> Loop:
         return np.asarray(np.asarray(points, float) * factor + np.asarray(origin))
 
-    moved: list[Item] = []
+    moved: list[Drawable] = []
     for item in items:
-        if isinstance(item, Area):
-            pose = item.pose
-            if pose is not None:
-                x, y = there(pose[:2]).tolist()
-                pose = Pose(x, y, pose.angle_deg)
+        if isinstance(item, Surface):
+            pose = item.pose and (*there(item.pose[:2]).tolist(), item.pose[2])
             moved.append(replace(item, loops=tuple(map(there, item.loops)), pose=pose))
         elif isinstance(item, Lines):
             moved.append(replace(item, lines=[there(line) for line in item.lines]))
@@ -230,12 +134,12 @@ def placed(items: Iterable[Item], factor: float, origin: Point = (0.0, 0.0)) -> 
     return moved
 
 
-def ground(box: Box) -> tuple[Area, Lines]:
+def ground(box: Bounds) -> tuple[Surface, Lines]:
     """Return the ground below a picture: a line at y = 0 and hatching down to its lower edge."""
     x0, y0, x1, _ = box
     earth = rectangle(x0, y0, x1 - x0, -y0)
     return (
-        Area("ground", (earth,), line=GREY, width_pt=0.0, hatch="/////", z=0.0, layer="SITE"),
+        Surface("ground", (earth,), line=GREY, width_pt=0.0, hatch="/////", z=0.0, layer="SITE"),
         Lines("ground-line", [np.array([(x0, 0.0), (x1, 0.0)])], width_pt=1.2, z=4.0,
               layer="SITE"),
     )  # fmt: skip
@@ -246,8 +150,6 @@ def letters_pt(text: str, width_pt: float, height_pt: float, share: float = 0.6)
 
     A digit is about .62 of its size wide.
 
-    Examples
-    --------
     >>> letters_pt("7", 100.0, 10.0), round(letters_pt("777", 18.6, 100.0), 6)
     (6.0, 6.0)
     """

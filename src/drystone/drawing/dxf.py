@@ -12,14 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from drystone.drawing.drawing import Area, Dots, Drawing, Item, Lines, Point, arrow_head
+from drystone.drawing.drawing import Dots, Drawable, Drawing, Lines, Surface, arrow_head
 from drystone.drawing.outlines import Loop
+from drystone.model.plan import Point
 
 APPLICATION = "DRYSTONE"
 
-_METRES, _NO_UNIT = 6, 0
-"""Of the header variable $INSUNITS."""
-
+_METRES, _NO_UNIT = 6, 0  # of the header variable $INSUNITS
 _RED, _CYAN, _BLUE, _MAGENTA, _ORANGE, _GREY, _INK = 1, 4, 5, 6, 30, 8, 7
 _LAYERS = {
     "SITE": _GREY, "STONES": _INK, "WEDGES": _RED, "NUMBERS": _INK, "CONTACTS": _BLUE,
@@ -72,12 +71,12 @@ def _undated(ezdxf: Any) -> Iterator[None]:
         ezdxf.options.write_fixed_meta_data_for_testing = before
 
 
-def _add(space: Any, item: Item, letter: float) -> None:
+def _add(space: Any, item: Drawable, letter: float) -> None:
     style = {"layer": item.layer}
-    if isinstance(item, Area):
+    if isinstance(item, Surface):
         for loop in () if item.hatch else item.loops:
             drawn = space.add_lwpolyline(loop.tolist(), close=True, dxfattribs=style)
-            _tell(drawn, item.name, item.step, item.pose.angle_deg if item.pose else 0.0)
+            _tell(drawn, item.name, item.step, item.pose[2] if item.pose else 0.0)
     elif isinstance(item, Lines):
         for number, line in enumerate(item.lines):
             drawn = _line(space, item, line, letter)

@@ -9,7 +9,6 @@ import matplotlib as mpl
 from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure, SubFigure
 
-from drystone.drawing.outlines import Loop, source_outlines
 from drystone.drawing.pictures.mechanism import plot_mechanism
 from drystone.drawing.pictures.wall import plot_wall
 from drystone.model.wall import Wall
@@ -30,25 +29,10 @@ _UNDATED: dict[str, dict[str, None]] = {
 
 
 def save(figure: Figure | SubFigure, path: str | Path, dpi: float = DPI) -> None:
-    """Write a figure as PNG, PDF or SVG, without dates or versions in the file.
+    """Write a figure as PNG, PDF or SVG by the ending, without dates or versions in the file.
 
-    The file is whole or not there at any time.
-
-    Parameters
-    ----------
-    figure : Figure or SubFigure
-        For example ``plot_wall(wall).figure``; of a subfigure, the figure it belongs to.
-    path : str or Path
-        Its ending chooses the format.
-    dpi : float
-        Pixels an inch of a PNG.
-
-    Raises
-    ------
-    ValueError
-        When the ending is another one.
-    PlanError
-        E206 when the file cannot be written; an existing one is as it was.
+    The file is whole or as it was at any time; E206 when it cannot be written.  A subfigure is
+    written with the figure that it belongs to.
     """
     suffix = Path(path).suffix.lower()
     if suffix not in _UNDATED:
@@ -61,15 +45,8 @@ def figure_bytes(figure: Figure | SubFigure, suffix: str, dpi: float = DPI) -> b
     whole = figure.get_figure(root=True)
     # SVG files name their parts by a hash with a random salt unless one is given.
     with mpl.rc_context({"svg.hashsalt": "drystone"}), BytesIO() as file:
-        whole.savefig(
-            file,
-            format=suffix[1:],
-            dpi=dpi,
-            bbox_inches="tight",
-            pad_inches=0.08,
-            facecolor="white",
-            metadata=_UNDATED[suffix],
-        )
+        whole.savefig(file, format=suffix[1:], dpi=dpi, bbox_inches="tight", pad_inches=0.08,
+                      facecolor="white", metadata=_UNDATED[suffix])  # fmt: skip
         return file.getvalue()
 
 
@@ -90,40 +67,16 @@ def write_pictures(
     clusters: Mapping[int, int] | None = None,
     *,
     resistance: LateralResistance | None = None,
-    outlines: Mapping[int, Loop] | None = None,
-    title: str = "",
     dpi: float = DPI,
 ) -> tuple[Path, ...]:
     """Write picture.png, and mechanism_left.png and mechanism_right.png where they exist (§2).
 
     A picture of a mechanism that an earlier run left in the folder is removed when this wall has
     none: it would belong to another wall.
-
-    Parameters
-    ----------
-    folder : str or Path
-        An existing folder.
-    wall : Wall
-        The finished wall.
-    clusters : mapping of int to int, optional
-        Cluster of each stone's id, from 1.
-    resistance : LateralResistance, optional
-        With the mechanisms, when they were asked for.
-    outlines : mapping of int to (n, 2) float array, optional
-        Drawn instead of the pixels; see :func:`drystone.drawing.plot_wall`.
-    title : str
-        Above the picture of the wall.
-    dpi : float
-        Pixels an inch.
-
-    Returns
-    -------
-    paths : tuple of Path
-        The files written.
     """
     folder = Path(folder)
     picture = folder / PICTURE
-    save(plot_wall(wall, clusters, outlines=outlines, title=title).figure, picture, dpi)
+    save(plot_wall(wall, clusters).figure, picture, dpi)
     written = [picture]
     results = () if resistance is None else (resistance.left, resistance.right)
     with_mechanism = {r.direction: r for r in results if r.mechanism is not None}
@@ -133,7 +86,7 @@ def write_pictures(
             path.unlink(missing_ok=True)
             continue
         side = None if result.status is LimitStatus.UNSTABLE else result.direction
-        shown = wall.labels if wall.outlines is None else source_outlines(wall.outlines)
+        shown = wall.labels if wall.outlines is None else dict(wall.outlines.blocks)
         ax = plot_mechanism(shown, result.mechanism, side, result.alpha)
         save(ax.figure, path, dpi)
         written.append(path)

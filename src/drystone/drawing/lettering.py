@@ -8,9 +8,7 @@ import matplotlib as mpl
 from matplotlib.font_manager import get_font
 from PIL import ImageFont
 
-MISSING = "\N{WHITE SQUARE}"
-"""Stands for a letter that the typeface does not have."""
-
+MISSING = "\N{WHITE SQUARE}"  # stands for a letter that the typeface does not have
 ELLIPSIS = "\N{HORIZONTAL ELLIPSIS}"
 
 
@@ -23,11 +21,6 @@ def one_line(text: str) -> str:
     """Return what somebody calls a thing without breaks and control characters.
 
     XML may not hold them, and a drawing would have a line too many.
-
-    Examples
-    --------
-    >>> one_line("garden" + chr(10) + "wall")
-    'garden wall'
     """
     return "".join(
         " " if unicodedata.category(letter) in ("Cc", "Cs", "Zl", "Zp") else letter
@@ -36,25 +29,13 @@ def one_line(text: str) -> str:
 
 
 def drawable(text: str) -> str:
-    """Return a text in letters that the typeface has, regular and bold, on one line.
-
-    Examples
-    --------
-    >>> drawable("wall " + chr(0x6F22))
-    'wall □'
-    """
+    """Return a text in letters that the typeface has, regular and bold, on one line."""
     known = _letters()
     return "".join(letter if ord(letter) in known else MISSING for letter in one_line(text))
 
 
 def fitted(text: str, size: float, room: float, *, bold: bool = False) -> str:
-    """Return a text that is no wider than there is room for; its end is left out when it has to be.
-
-    Examples
-    --------
-    >>> fitted("wall", 10.0, 100.0), fitted("wall" * 9, 10.0, 50.0)
-    ('wall', 'wallwall…')
-    """
+    """Return a text that is no wider than its room; its end is left out when it has to be."""
     # Letters are measured large: Pillow's widths of small ones are whole px.
     measure = font(100.0, bold=bold)
     room *= 100.0 / size

@@ -8,41 +8,28 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from drystone.kernels.raster import Mask, turn
-from drystone.model.outlines import Outlines
 from drystone.model.wall import Labels, Wall
 
 Loop = NDArray[np.float64]
 """(n, 2) corners (x, y), y up, first corner not repeated: counter-clockwise around stone,
 clockwise around holes."""
 
-Box = tuple[float, float, float, float]
-"""x0, y0, x1, y1."""
-
+Bounds = tuple[float, float, float, float]  # x0, y0, x1, y1
 UNSEEN = 1e-3
 """Share of a wall's size that nobody sees: stones settle .01 source px above the ground."""
 
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """What a label or a polygon covers, in the wall frame: on pixel edges, px, or as it was given.
-
-    `area_px` is the number of its pixels, or the area of a polygon in squares of its unit.
-    """
+    """What a label covers along pixel edges, px, or a polygon, as given; in the wall frame."""
 
     id: int
     loops: tuple[Loop, ...]
     centroid: tuple[float, float]
-    area_px: float
 
 
 def label_regions(labels: Labels) -> tuple[Region, ...]:
-    """Return the regions of a label image in the order of their ids.
-
-    Examples
-    --------
-    >>> [region.centroid for region in label_regions(np.array([[0, 0], [7, 7]], np.uint32))]
-    [(1.0, 0.5)]
-    """
+    """Return the regions of a label image in the order of their ids."""
     ids, ranks = np.unique(labels, return_inverse=True)
     # Ranks instead of ids: find_objects makes a list as long as the largest id.
     ranks = ranks.reshape(labels.shape) + (0 if ids.size and ids[0] == 0 else 1)
@@ -55,13 +42,7 @@ def label_regions(labels: Labels) -> tuple[Region, ...]:
 
 
 def polygon_regions(polygons: Mapping[int, Loop]) -> tuple[Region, ...]:
-    """Return the regions of polygons, either way round, closed or not, in the order of their ids.
-
-    Examples
-    --------
-    >>> polygon_regions({7: np.array([[0, 0], [0, 1], [2, 1], [2, 0]])})[0].centroid
-    (1.0, 0.5)
-    """
+    """Return the regions of polygons, either way round, closed or not, ordered by id."""
     return tuple(_of_polygon(block, polygons[block]) for block in sorted(polygons))
 
 
@@ -75,7 +56,7 @@ def _of_polygon(block: int, corners: Loop) -> Region:
     area = float(cross.sum()) / 2.0
     middle = np.array([(x + np.roll(x, -1)) @ cross, (y + np.roll(y, -1)) @ cross]) / (6.0 * area)
     cx, cy = (loop[0] + middle).tolist()
-    return Region(block, (loop if area > 0 else loop[::-1],), (cx, cy), abs(area))
+    return Region(block, (loop if area > 0 else loop[::-1],), (cx, cy))
 
 
 def wall_regions(wall: Labels | Mapping[int, Loop]) -> tuple[Region, ...]:
@@ -83,11 +64,6 @@ def wall_regions(wall: Labels | Mapping[int, Loop]) -> tuple[Region, ...]:
 
     A label image stands on its lowest stone pixel, as in
     :func:`drystone.contacts.blocks.model_from_labels`.
-
-    Examples
-    --------
-    >>> [region.centroid for region in wall_regions(np.array([[7, 7], [0, 0]], np.uint32))]
-    [(1.0, 0.5)]
     """
     if isinstance(wall, Mapping):
         return polygon_regions(wall)
@@ -100,7 +76,7 @@ def rectangle(x: float, y: float, width: float, height: float) -> Loop:
     return np.array([(x, y), (x + width, y), (x + width, y + height), (x, y + height)])
 
 
-def regions_box(*walls: Iterable[Iterable[Loop]]) -> Box:
+def regions_box(*walls: Iterable[Iterable[Loop]]) -> Bounds:
     """Return x0, y0, x1, y1 of the loops of regions; a unit square when there are none."""
     loops = [loop for wall in walls for loops in wall for loop in loops]
     points = np.concatenate(loops) if loops else np.array([[0.0, 0.0], [1.0, 1.0]])
@@ -117,23 +93,15 @@ def stands_on_ground(regions: Iterable[Region]) -> bool:
 def _region(label: int, mask: Mask, window: tuple[slice, slice], height: int) -> Region:
     left, bottom = window[1].start, height - window[0].stop
     rows, cols = np.nonzero(mask)
-    centroid = (
-        left + float(cols.mean()) + 0.5,
-        bottom + mask.shape[0] - float(rows.mean()) - 0.5,
-    )
+    centroid = (left + float(cols.mean()) + 0.5, bottom + mask.shape[0] - float(rows.mean()) - 0.5)
     loops = tuple(loop + np.array([left, bottom], float) for loop in pixel_loops(mask))
-    return Region(label, loops, centroid, int(rows.size))
+    return Region(label, loops, centroid)
 
 
 def pixel_loops(mask: Mask) -> tuple[Loop, ...]:
     """Return the boundary of a mask along pixel edges, without collinear corners.
 
     The origin is its lower left corner.  Pixels that touch only at a corner get loops of their own.
-
-    Examples
-    --------
-    >>> pixel_loops(np.ones((1, 2), bool))[0].tolist()
-    [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]
     """
     outgoing: dict[tuple[int, int], list[tuple[int, int]]] = {}
     for start, end in _edges(mask):
@@ -183,16 +151,11 @@ def wall_outlines(wall: Wall) -> dict[int, Loop]:
 
     A stone's is its own outline from the source image, turned and moved; a wedge's follows its
     pixels, unless the wall is one of outlines.
-
-    Returns
-    -------
-    outlines : dict of int to (n, 2) float array
-        In the order of placement.
     """
     site = wall.site
     if wall.outlines is not None:
         px_per_m = site.px_per_m or 1.0
-        return {block: loop / px_per_m for block, loop in source_outlines(wall.outlines).items()}
+        return {block: loop / px_per_m for block, loop in wall.outlines.blocks}
     outlines: dict[int, Loop] = {}
     for group in wall.groups:
         placement = group.placement
@@ -204,8 +167,3 @@ def wall_outlines(wall: Wall) -> dict[int, Loop]:
             loop = max(pixel_loops(wedge.mask), key=len) + corner
             outlines[wedge.id] = loop * site.units_per_px
     return outlines
-
-
-def source_outlines(outlines: Outlines) -> dict[int, Loop]:
-    """Return outlines by id, in source px."""
-    return dict(outlines.blocks)

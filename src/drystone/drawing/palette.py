@@ -1,7 +1,5 @@
 """Colours that stay apart for colour-blind readers, and text that stays readable on them."""
 
-from typing import NamedTuple
-
 CLUSTER_COLOURS = (
     "#009eff", "#e7c261", "#c2e7c2", "#db619e", "#9ee7ff", "#79aa61", "#aaaa92", "#f3e79e",
     "#ff9ece", "#9eb6ff", "#aa9224", "#8679c2", "#008655", "#4961c2", "#6d616d", "#9e3d92",
@@ -12,9 +10,7 @@ and tritan vision, and from the wedges' red; far apart and light ones come first
 WEDGE_COLOUR = "#8b0000"
 """Dark red, as in the paper's Fig. 19."""
 
-PLAIN_COLOUR = "#cfc8bb"
-"""Stones of which no cluster is known."""
-
+PLAIN_COLOUR = "#cfc8bb"  # stones of which no cluster is known
 PALE, FIXED_COLOUR = "#efece6", "#c9c9c9"
 """Blocks below what is drawn over them, and those that cannot move."""
 
@@ -25,23 +21,13 @@ SECOND_TONE = 0.6
 """Lightness of the colours of cluster 17 and on, as a share of the first sixteen's."""
 
 
-class Rgb(NamedTuple):
-    """A colour in sRGB, each part in [0, 1]."""
-
-    red: float
-    green: float
-    blue: float
+Rgb = tuple[float, float, float]  # sRGB, each part in [0, 1]
 
 
 def cluster_colour(cluster: int) -> str:
     """Return the colour ``"#rrggbb"`` of a cluster, numbered from 1.
 
     The sixteen colours come round again in a darker tone for clusters 17 to 32, then all over.
-
-    Examples
-    --------
-    >>> cluster_colour(1), cluster_colour(17), cluster_colour(33)
-    ('#009eff', '#005f99', '#009eff')
     """
     if cluster < 1:
         raise ValueError(f"clusters are numbered from 1, not {cluster}")
@@ -53,13 +39,7 @@ def cluster_colour(cluster: int) -> str:
 
 
 def text_colour(background: str) -> str:
-    """Return black or white, whichever has more contrast (WCAG 2) on a background.
-
-    Examples
-    --------
-    >>> text_colour("#f3e79e"), text_colour("#8b0000")
-    ('#000000', '#ffffff')
-    """
+    """Return black or white, whichever has more contrast (WCAG 2) on a background."""
     luminance = relative_luminance(background)
     on_black, on_white = (luminance + 0.05) / 0.05, 1.05 / (luminance + 0.05)
     return "#000000" if on_black >= on_white else "#ffffff"
@@ -73,15 +53,10 @@ def relative_luminance(colour: str) -> float:
 
 def rgb(colour: str) -> Rgb:
     """Read ``"#rrggbb"``."""
-    return Rgb(*(int(colour[start : start + 2], 16) / 255 for start in (1, 3, 5)))
+    red, green, blue = (int(colour[start : start + 2], 16) / 255 for start in (1, 3, 5))
+    return red, green, blue
 
 
 def linear(part: float) -> float:
-    """Return a part of an sRGB colour as light.
-
-    Examples
-    --------
-    >>> linear(0.0), linear(1.0)
-    (0.0, 1.0)
-    """
+    """Return a part of an sRGB colour as light."""
     return part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4

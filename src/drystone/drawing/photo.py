@@ -14,16 +14,14 @@ from drystone.drawing.assembly.parts import Assembly
 from drystone.io.photo_file import read_photo_picture
 from drystone.kernels.polygons import Points
 
-CROP_PX = 240
-"""Longer side of a piece: 200 px an inch on paper, and small files."""
-
+CROP_PX = 240  # longer side of a piece: 200 px an inch on paper, and small files
 VIEWER_PX, VIEWER_MARGIN, QUALITY = 96, 0.08, 72
 """Of the viewer's pieces: enough to know a stone by, and 100 of them are a few hundred kB; what is
 around the box of an outline over its longer side."""
 
 
 @dataclass(frozen=True, eq=False)
-class Photo:
+class StonePhoto:
     """A photograph, RGB, that shows all of a source image of some size."""
 
     image: Image.Image
@@ -82,14 +80,14 @@ class Photo:
         return crops
 
 
-def read_photo(assembly: Assembly) -> Photo | None:
+def read_photo(assembly: Assembly) -> StonePhoto | None:
     """Read the photograph of the stones; None when there is none, E189 when it cannot be used."""
     if assembly.photo is None:
         return None
     width, height = (float(assembly.plan.source.get(f"{side}_px") or 0) for side in
                      ("width", "height"))  # fmt: skip
     image = read_photo_picture(assembly.photo, (width, height))
-    return Photo(image, width, height)
+    return StonePhoto(image, width, height)
 
 
 def _reduced(

@@ -8,19 +8,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 from PIL import Image, ImageDraw
 
-from drystone.drawing.drawing import Area, Item, Lines, Point, Words, letters_pt
+from drystone.drawing.drawing import Drawable, Lines, Surface, Words, letters_pt
 from drystone.drawing.lettering import font
 from drystone.drawing.palette import OUTLINE_COLOUR
+from drystone.model.plan import Point
 
-HATCH_PX = 8
-"""Between the strokes of a hatched area."""
-
-SMALLEST_PX, LARGEST_PX = 7.0, 20.0
-"""Of numbers."""
+HATCH_PX = 8  # between the strokes of a hatched area
+SMALLEST_PX, LARGEST_PX = 7.0, 20.0  # of numbers
 
 
 @dataclass(frozen=True)
-class View:
+class PixelView:
     """Where a wall is in a picture.
 
     Its lower left corner is so many px from the picture's upper left one.  The picture is drawn
@@ -39,7 +37,9 @@ class View:
         return [(float(x), float(y)) for x, y in there]
 
 
-def paint(picture: Image.Image, items: Iterable[Item], view: View, px_per_pt: float = 1.0) -> None:
+def paint(
+    picture: Image.Image, items: Iterable[Drawable], view: PixelView, px_per_pt: float = 1.0
+) -> None:
     """Draw areas, lines and numbers on a picture; what is written beside things is left out."""
     draw = ImageDraw.Draw(picture)
 
@@ -47,9 +47,13 @@ def paint(picture: Image.Image, items: Iterable[Item], view: View, px_per_pt: fl
         return max(1, round(points * px_per_pt))
 
     for item in items:
-        if isinstance(item, Area) and item.hatch:
-            _hatch(draw, view.pixels(item.loops[0]), item.line, view.finer)
-        elif isinstance(item, Area):
+        if isinstance(item, Surface) and item.hatch:
+            corners = view.pixels(item.loops[0])
+            (left, top), (right, low) = np.min(corners, axis=0), np.max(corners, axis=0)
+            deep = low - top
+            for x in np.arange(left, right - deep, HATCH_PX * view.finer):
+                draw.line([(x, low), (x + deep, top)], item.line, view.finer)
+        elif isinstance(item, Surface):
             for loop in item.loops:
                 points = view.pixels(loop)
                 if item.fill != "none":
@@ -63,13 +67,6 @@ def paint(picture: Image.Image, items: Iterable[Item], view: View, px_per_pt: fl
             chosen = font(float(np.clip(size, SMALLEST_PX, LARGEST_PX)))
             (at,) = view.pixels(item.at)
             draw.text(at, item.text, OUTLINE_COLOUR, chosen, anchor="mm")
-
-
-def _hatch(draw: ImageDraw.ImageDraw, corners: list[Point], colour: str, finer: int) -> None:
-    (left, top), (right, low) = np.min(corners, axis=0), np.max(corners, axis=0)
-    deep = low - top
-    for x in np.arange(left, right - deep, HATCH_PX * finer):
-        draw.line([(x, low), (x + deep, top)], colour, finer)
 
 
 def palette_of(colours: ArrayLike) -> Image.Image:
@@ -87,8 +84,6 @@ def gif_bytes(
     All frames have one palette, of :func:`palette_of`: colours chosen from a picture would tint its
     black lines, and differ from frame to frame.
 
-    Examples
-    --------
     >>> two = [Image.new("RGB", (4, 4), colour) for colour in ("black", "white")]
     >>> gif_bytes(two, palette_of([[0, 0, 0], [1, 1, 1]]), 80)[:6]
     b'GIF89a'

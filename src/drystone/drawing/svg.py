@@ -8,12 +8,11 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from drystone.drawing.drawing import (
-    Area,
     Dots,
+    Drawable,
     Drawing,
-    Item,
     Lines,
-    Point,
+    Surface,
     Words,
     arrow_head,
     letters_pt,
@@ -21,6 +20,7 @@ from drystone.drawing.drawing import (
 from drystone.drawing.lettering import one_line
 from drystone.drawing.outlines import Loop
 from drystone.kernels.raster import turn
+from drystone.model.plan import Point
 
 LAYERS = (
     "SITE", "STONES", "WEDGES", "CONTACTS", "FORCES-LEFT", "MECHANISM-LEFT", "FORCES-RIGHT",
@@ -28,14 +28,9 @@ LAYERS = (
 )  # fmt: skip
 """From the lowest."""
 
-MARGIN = 0.05
-"""Around the wall, over its width; some stones reach beyond its ends."""
-
-PER_PT = 0.002
-"""Width of a line of 1 pt over the width of the wall."""
-
-LARGEST_LETTER = 0.025
-"""Over the width of the wall."""
+MARGIN = 0.05  # around the wall, over its width; some stones reach beyond its ends
+PER_PT = 0.002  # width of a line of 1 pt over the width of the wall
+LARGEST_LETTER = 0.025  # over the width of the wall
 
 
 def svg_bytes(drawing: Drawing, size: Point, unit: str, title: str, description: str) -> bytes:
@@ -83,8 +78,8 @@ class _Sheet:
         ET.indent(self.root, " ")
         return b'<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(self.root) + b"\n"
 
-    def _add(self, layer: ET.Element, item: Item) -> None:
-        if isinstance(item, Area) and not item.hatch:
+    def _add(self, layer: ET.Element, item: Drawable) -> None:
+        if isinstance(item, Surface) and not item.hatch:
             self._area(layer, item)
         elif isinstance(item, Lines):
             width = float(np.max(item.width_pt))
@@ -106,7 +101,7 @@ class _Sheet:
                      "text-anchor": "middle", "dominant-baseline": "central"}  # fmt: skip
             ET.SubElement(layer, "text", place).text = item.text
 
-    def _area(self, layer: ET.Element, area: Area) -> None:
+    def _area(self, layer: ET.Element, area: Surface) -> None:
         style = {"fill": area.fill, **self._stroke(area.line, area.width_pt)}
         if area.dashes:
             gaps = (dash * area.width_pt * PER_PT * self.width for dash in area.dashes)

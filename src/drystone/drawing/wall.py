@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from drystone.drawing.assembly.parts import Assembly
-from drystone.drawing.drawing import Area, Drawing, Item, Lines, Pose, Words, ground
+from drystone.drawing.drawing import Drawable, Drawing, Lines, Surface, Words, ground
 from drystone.drawing.outlines import (
     Loop,
     Region,
@@ -34,12 +34,12 @@ its width."""
 
 
 def wall_drawing(
-    items: Iterable[Item], size: tuple[float, float], unit: str, title: str = ""
+    items: Iterable[Drawable], size: tuple[float, float], unit: str, title: str = ""
 ) -> Drawing:
     """Return stones, wedges and numbers on the ground, in the frame of what was ordered."""
     width, height = size
     margin, depth = MARGIN * width, GROUND * max(height, 0.2 * width)
-    frame = Area(
+    frame = Surface(
         "frame", (rectangle(0.0, 0.0, width, height),), line=GREY, width_pt=0.9,
         dashes=FRAME_DASHES, z=3.0, layer="SITE",
     )  # fmt: skip
@@ -59,25 +59,25 @@ def drawing_of_wall(
     """
     site = wall.site
     loops = loops_of_wall(wall, outlines)
-    items: list[Item] = []
+    items: list[Drawable] = []
     step = 1
     for group in wall.groups:
         stone, (x, y) = group.placement.stone_id, group.placement.centroid(site.height_px)
         fill = PLAIN_COLOUR if clusters is None else cluster_colour(clusters[stone])
-        area = Area(f"stone-{stone}", loops[stone], fill, layer="STONES", step=step)
+        area = Surface(f"stone-{stone}", loops[stone], fill, layer="STONES", step=step)
         at = x * site.units_per_px, y * site.units_per_px
         items += [area, Words(f"number-{stone}", str(step), at, area.room, fill)]
         for wedge in group.wedges:
             step += 1
             items.append(
-                Area(f"wedge-{wedge.id}", loops[wedge.id], WEDGE_COLOUR, z=2.0, layer="WEDGES",
+                Surface(f"wedge-{wedge.id}", loops[wedge.id], WEDGE_COLOUR, z=2.0, layer="WEDGES",
                      step=step)
             )  # fmt: skip
         step += 1
     used = {clusters[placement.stone_id] for placement in wall.placements} if clusters else set()
     legend = cluster_legend(used)
     if wall.wedges:
-        legend["wedge"] = Area("", (), WEDGE_COLOUR)
+        legend["wedge"] = Surface("", (), WEDGE_COLOUR)
     size = site.width_px * site.units_per_px, site.height_px * site.units_per_px
     made = wall_drawing(items, size, "m" if site.px_per_m else "px", title)
     return Drawing(made.items, made.box, made.unit, title, legend)
@@ -98,25 +98,25 @@ def loops_of_wall(
     }
 
 
-def cluster_legend(clusters: Iterable[int]) -> dict[str, Area | Lines]:
+def cluster_legend(clusters: Iterable[int]) -> dict[str, Surface | Lines]:
     """Return what the colours of some clusters mean."""
-    return {f"cluster {one}": Area("", (), cluster_colour(one)) for one in sorted(set(clusters))}
+    return {f"cluster {one}": Surface("", (), cluster_colour(one)) for one in sorted(set(clusters))}
 
 
 def drawing_of_assembly(assembly: Assembly, title: str = "") -> Drawing:
     """Describe a planned wall in one colour, with the step of every stone and wedge."""
-    items: list[Item] = []
+    items: list[Drawable] = []
     for part in assembly.parts:
         step, at = part.plan_step, part.centroid
         if isinstance(step, StoneStep):
             note = f"step {part.step}: stone {part.id}, turned {part.angle_deg:.1f}\N{DEGREE SIGN}"
-            area = Area(
+            area = Surface(
                 part.name, (part.corners,), PLAIN_COLOUR, layer="STONES", step=part.step,
-                pose=Pose(*at, part.angle_deg), note=note,
+                pose=(*at, part.angle_deg), note=note,
             )  # fmt: skip
             number = Words(f"number-{part.name}", str(part.step), at, area.room, PLAIN_COLOUR)
         else:
-            area = Area(
+            area = Surface(
                 part.name, (part.corners,), WEDGE_COLOUR, z=2.0, layer="WEDGES", step=part.step,
                 note=f"step {part.step}: wedge {part.id} under stone {step.under}",
             )  # fmt: skip
@@ -152,7 +152,7 @@ def pale_wall(
     bottom = min(y0 - 0.01 * size, -depth if grounded else y0 - pad)
     fixed = {block.id for block in model.blocks if block.fixed}
     blocks = tuple(
-        Area(f"block-{region.id}", region.loops, FIXED_COLOUR if region.id in fixed else PALE,
+        Surface(f"block-{region.id}", region.loops, FIXED_COLOUR if region.id in fixed else PALE,
              line=GREY, width_pt=0.4)
         for region in regions
     )  # fmt: skip

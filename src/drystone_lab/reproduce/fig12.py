@@ -16,7 +16,7 @@ from drystone.drawing.canvas import draw_block, draw_ground, draw_legend, fit_ax
 from drystone.drawing.drawing import Lines
 from drystone.drawing.outlines import label_regions
 from drystone.drawing.palette import GREY, PALE
-from drystone.drawing.pictures.contacts import JOINT, NORMAL, plot_contacts
+from drystone.drawing.pictures.forces import JOINT, NORMAL, plot_contacts
 from drystone.drawing.pictures.stones import plot_labels
 from drystone.kernels.boundary import EMPTY, boundary_of
 from drystone.model.wall import Labels, Wall

@@ -1,11 +1,16 @@
-"""What all formats have in common: names, bytes that repeat, scales and extras that are missing."""
+"""What all formats have in common: names, bytes that repeat, scales, extras that are missing."""
 
+import re
 import sys
+from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.errors import UsageError
+from tests.drawing.export import robot_plans
 from tests.drawing.export.drawn_walls import assembly
 
 SETTINGS = ExportSettings()
@@ -47,3 +52,26 @@ def test_an_extra_that_is_missing_is_named(name, module, code, extra, monkeypatc
         FORMATS[name].files(assembly(), SETTINGS)
     assert caught.value.code == code
     assert f"drystone[{extra}]" in caught.value.cure
+
+
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "for-robotics.md"
+
+
+def test_the_programs_of_the_page_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    wall = robot_plans.assembly("exact")
+    for name in ("poses", "compas"):
+        FORMATS[name].write(wall, tmp_path / "out", ExportSettings())
+    monkeypatch.chdir(tmp_path)
+    programs = re.findall(r"^```py\n(.*?)^```$", PAGE.read_text("utf-8"), re.MULTILINE | re.DOTALL)
+    assert len(programs) == 2
+    names: dict[str, Any] = {}
+    for program in programs:
+        exec(compile(program, PAGE.name, "exec"), names)  # noqa: S102 - our own document
+    printed = capsys.readouterr().out.split()
+    assert [word for word in printed if "_" in word] == [part.name for part in wall.stones]
+    standing = names["standing"]
+    last = np.array([standing.vertex_coordinates(key) for key in standing.vertices()])
+    count = len(wall.parts[-1].corners)
+    assert last[:count, [0, 2]] == pytest.approx(wall.parts[-1].corners, abs=1e-9)

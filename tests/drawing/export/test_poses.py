@@ -34,7 +34,13 @@ def test_pick_and_place_follow_the_formula_of_the_plan(name: str, tmp_path: Path
     unit = PX_PER_M if plan.length_unit == "px" else 1.0
     assert len(read["parts"]) == len(plan.steps)
     for part, step in zip(read["parts"], plan.steps, strict=True):
-        assert (part["step"], part["kind"]) == (step.step, step.kind)
+        assert (part["step"], part["kind"], part["flipped"]) == (step.step, step.kind, False)
+        for pose in filter(None, (part["place"], part["pick"])):
+            matrix, turned = np.array(pose["matrix"]), pose["quaternion"]
+            assert list(turned) == ["x", "y", "z", "w"]
+            expected = Rotation.from_quat(list(turned.values())).as_matrix()
+            assert matrix[:3, :3] == pytest.approx(expected, abs=1e-14)
+            assert matrix[:, 3].tolist() == [*xyz(pose["point"]), 1.0]
         if not isinstance(step, StoneStep):
             assert part["pick"] is part["pick_to_place"] is None
             continue
@@ -46,21 +52,6 @@ def test_pick_and_place_follow_the_formula_of_the_plan(name: str, tmp_path: Path
         moved = np.array(part["place"]["matrix"]) @ np.linalg.inv(part["pick"]["matrix"]) @ photo
         assert moved == pytest.approx([q[0], THICKNESS_M - 0.03, q[1], 1.0], abs=1e-9)
         assert np.array(part["pick_to_place"]) @ photo == pytest.approx(moved, abs=1e-12)
-
-
-@pytest.mark.parametrize("name", METRIC)
-def test_matrix_and_named_quaternion_say_the_same(name: str, tmp_path: Path) -> None:
-    for part in written(name, tmp_path)["parts"]:
-        assert part["flipped"] is False
-        for pose in filter(None, (part["place"], part["pick"])):
-            turn = pose["quaternion"]
-            assert list(turn) == ["x", "y", "z", "w"]
-            matrix = np.array(pose["matrix"])
-            assert matrix.shape == (4, 4)
-            expected = Rotation.from_quat(list(turn.values())).as_matrix()
-            assert matrix[:3, :3] == pytest.approx(expected, abs=1e-14)
-            assert np.linalg.det(matrix) == pytest.approx(1.0, abs=1e-12)
-            assert matrix[:3, 3].tolist() == xyz(pose["point"])
 
 
 def test_approaches_end_at_their_poses(tmp_path: Path) -> None:

@@ -8,8 +8,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from drystone.contacts.blocks import model_from_labels
-from drystone.drawing.pictures.friction import plot_friction
-from drystone.drawing.pictures.scatter import plot_scatter
+from drystone.drawing.pictures.curves import plot_friction, plot_scatter
 from drystone.statics.result import LimitStatus
 from drystone.statics.scatter.scatter import scatter
 from drystone.statics.scatter.shaking import ScatterSettings

@@ -1,4 +1,4 @@
-"""Stones, label images and ways along joints."""
+"""Stones, label images, ways along joints, planned walls and walls to choose from."""
 
 from dataclasses import replace
 
@@ -7,10 +7,23 @@ import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from drystone.drawing import plot_joint_paths, plot_labels, plot_stones
-from drystone.drawing.palette import PLAIN_COLOUR, cluster_colour, text_colour
+from drystone.drawing import (
+    plot_choice,
+    plot_joint_paths,
+    plot_labels,
+    plot_stones,
+    plot_wall,
+    wall_outlines,
+)
+from drystone.drawing.palette import PLAIN_COLOUR, WEDGE_COLOUR, cluster_colour, text_colour
+from drystone.drawing.pictures.wall import COLUMNS
+from drystone.model.site import Site
 from drystone.model.stone import Source, StoneSet
+from drystone.model.wall import Wall
+from drystone.planner.planner import Planner
 from tests.drawing import examples
+from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble
+from tests.verify.exact_examples import exact_example
 
 CLUSTERS = examples.CLUSTERS | {examples.UNUSED: 3}
 
@@ -103,7 +116,109 @@ def test_paths_run_through_the_centres_of_their_pixels():
     assert set(patches(ax)) == {f"block-{i}" for i in np.unique(labels) if i}
 
 
-def test_no_path_leaves_the_stones():
-    ax = plot_joint_paths(examples.wall().labels, [])
-    assert not ax.collections
-    assert len(ax.patches) == 6
+def test_every_stone_wedge_frame_and_ground_is_drawn_once():
+    ax = plot_wall(examples.wall(), examples.CLUSTERS)
+    stones = {f"stone-{i}" for i in examples.CLUSTERS}
+    drawn, plain = patches(ax), patches(plot_wall(examples.wall()))
+    assert set(drawn) == set(plain) == stones | {f"wedge-{examples.WEDGE}", "frame", "ground"}
+    assert len(ax.patches) == len(stones) + 3
+    for stone, cluster in examples.CLUSTERS.items():
+        assert to_hex(drawn[f"stone-{stone}"].get_facecolor()) == cluster_colour(cluster)
+        assert to_hex(plain[f"stone-{stone}"].get_facecolor()) == PLAIN_COLOUR
+    assert to_hex(drawn[f"wedge-{examples.WEDGE}"].get_facecolor()) == WEDGE_COLOUR
+
+
+@pytest.mark.parametrize("px_per_m", [None, 50.0])
+def test_numbers_are_steps_of_the_plan_at_the_centroids(px_per_m):
+    wall = examples.wall(px_per_m)
+    ax = plot_wall(wall, examples.CLUSTERS)
+    written = numbers(ax)
+    plan = examples.plan(wall)
+    assert set(written) == {str(step.step) for step in plan.stone_steps}
+    for step in plan.stone_steps:
+        assert written[str(step.step)].get_position() == pytest.approx(step.centroid)
+    assert ax.get_xlabel() == ("px" if px_per_m is None else "m")
+
+
+def test_a_step_is_counted_for_each_wedge():
+    wall = examples.wall()
+    groups = (wall.groups[-1], *wall.groups[:-1])
+    written = numbers(plot_wall(Wall(wall.site, wall.labels.copy(), groups)))
+    assert set(written) == {"1", "3", "4", "5", "6"}
+
+
+def test_stones_stand_at_their_place_inside_the_frame():
+    wall = examples.wall(px_per_m=50.0)
+    drawn = patches(plot_wall(wall))
+    units = wall.site.units_per_px
+    corners = drawn["stone-12"].get_path().vertices
+    l_shape = np.array([[0, 8], [12, 8], [12, 12], [6, 12], [6, 16], [0, 16], [0, 8]]) * units
+    np.testing.assert_allclose(corners, l_shape)
+    frame = drawn["frame"].get_path().get_extents()
+    assert (frame.x0, frame.y0) == (0, 0)
+    assert (frame.x1, frame.y1) == pytest.approx((44 * units, 20 * units))
+    assert drawn["frame"].get_linestyle() not in ("-", "solid")
+
+
+def test_outlines_replace_pixels():
+    wall = examples.wall()
+    outlines = wall_outlines(wall)
+    outlines[3] = np.array([[0, 0], [14, 0], [7, 8]], float)
+    drawn = patches(plot_wall(wall, outlines=outlines))
+    vertices = drawn["stone-3"].get_path().vertices
+    np.testing.assert_allclose(vertices, [[0, 0], [14, 0], [7, 8], [0, 0]])
+
+
+def test_an_empty_wall_is_a_frame_on_the_ground():
+    ax = plot_wall(Wall.empty(Site(30, 10)), {}, title="nothing yet")
+    assert set(patches(ax)) == {"frame", "ground"}
+    assert ax.get_title(loc="left") == "nothing yet"
+    assert not ax.texts
+
+
+@pytest.mark.parametrize(("scale", "px_per_m"), [(1.0, None), (0.5, None), (0.5, 50.0)])
+def test_a_wall_of_outlines_is_drawn_by_its_outlines(scale, px_per_m):
+    made = exact_example(scale, px_per_m)
+    units = 1.0 / (px_per_m or 1.0)
+    drawn = patches(plot_wall(made.wall))
+    assert {name for name in drawn if name not in ("frame", "ground")} == {
+        *(f"stone-{step.stone}" for step in made.plan.stone_steps),
+        *(f"wedge-{step.id}" for step in made.plan.wedge_steps),
+    }
+    for block, corners in made.wall.outlines.blocks:
+        name = next(gid for gid in drawn if gid.endswith(f"-{block}"))
+        np.testing.assert_allclose(drawn[name].get_path().vertices[:-1], corners * units)
+    frame = drawn["frame"].get_path().get_extents()
+    assert (frame.x1, frame.y1) == pytest.approx((84 * units, 30 * units))
+    written = numbers(plot_wall(made.wall))
+    for step in made.plan.stone_steps:
+        assert written[str(step.step)].get_position() == pytest.approx(step.centroid)
+
+
+FIGURES = {"F_SF": 0.8, "F_AV": 20.0, "F_AH": 2.0, "F_LR": 0.5}
+
+
+@pytest.fixture(scope="module")
+def wall() -> Wall:
+    return finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=greedy())).build.wall
+
+
+@pytest.mark.parametrize("count", [1, COLUMNS, COLUMNS + 1])
+def test_every_wall_has_its_picture_and_its_points(wall: Wall, count: int) -> None:
+    values = [{**FIGURES, "F_SF": 0.8 + 0.01 * k} for k in range(count)]
+    figure = plot_choice([wall] * count, values)
+    *walls, one, two = figure.axes
+    assert len(walls) == count
+    blocks = len(wall.placements) + len(wall.wedges)
+    assert [len(ax.patches) for ax in walls] == [blocks + 1] * count
+    assert walls[0].get_title(loc="left") == "01  F_SF 0.800  F_AV 20.0  F_AH 2.00  F_LR 0.50"
+    assert (one.get_xlabel(), one.get_ylabel()) == ("F_SF", "F_LR")
+    assert (two.get_xlabel(), two.get_ylabel()) == ("F_AV", "F_AH")
+    assert [line.get_xdata()[0] for line in one.lines] == [v["F_SF"] for v in values]
+    assert [text.get_text() for text in one.texts] == [f"{k:02}" for k in range(1, count + 1)]
+
+
+def test_what_is_not_defined_is_left_out(wall: Wall) -> None:
+    figure = plot_choice([wall, wall], [{**FIGURES, "F_AV": None}, FIGURES])
+    assert "F_AV -" in figure.axes[0].get_title(loc="left")
+    assert [len(ax.lines) for ax in figure.axes[-2:]] == [2, 1]

@@ -1,29 +1,31 @@
+"""The report and the viewer as HTML; the Python of docs/viewer.md runs."""
+
 import base64
 import json
-import os
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from PIL import Image
 
+import drystone as ds
 from drystone.contacts.blocks import model_from_labels
 from drystone.drawing import view_of_result, view_of_wall, write_pictures, write_report
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.drawing.report.html import viewer_frame, viewer_page, viewer_script, viewer_style
 from drystone.drawing.report.notebook import Shown
-from drystone.drawing.words.content import (
-    assumptions,
-    cards,
-    number,
-    weaker_direction,
-)
-from drystone.errors import Notice, PlanError
+from drystone.drawing.words.content import assumptions, cards, number, weaker_direction
+from drystone.errors import InputError, Notice
+from drystone.generate import BrickSettings, brick_stones, lay_out
+from drystone.io.wall_image import write_labels
 from drystone.model.plan import PlanMetrics
 from drystone.statics.limit import lateral_resistance
 from tests.drawing import examples
-from tests.drawing.report.walls import result
+from tests.drawing.report.walls import result, written
 from tests.verify.exact_examples import exact_example
 
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
@@ -114,22 +116,13 @@ def test_every_stone_and_step_is_in_the_table(report):
 def test_results_inputs_and_notices_are_said(report):
     text = Page(report).text
     for said in (
-        "5 of 6 stones placed with 1 wedge",
-        "no acceptable place was found five times in a row",
-        "0.672",
-        "4.25 %",
-        "Load multiplier (adequacy factor) to the left",
-        "in three walls of masons, of other stones",
-        f"44.0 {TIMES} 20.0 px",
-        "0" * 64,
-        "W112",
-        "3.46 s",
-        "upper bound",
-        "placement.rule",
-        "1 (6.0 px²)",
+        "5 of 6 stones placed with 1 wedge", "no acceptable place was found five times in a row",
+        "0.672", "4.25 %", "Load multiplier (adequacy factor) to the left",
+        "in three walls of masons, of other stones", f"44.0 {TIMES} 20.0 px", "0" * 64, "W112",
+        "3.46 s", "upper bound", "placement.rule", "1 (6.0 px²)",
         "Stones are their pixels at the working resolution",
         "Stones touch where their pixels have edges or corners in common",
-    ):
+    ):  # fmt: skip
         assert said in text
     assert "contact tolerance" not in text
 
@@ -202,32 +195,6 @@ def test_missing_metrics_are_not_defined_and_never_zero(tmp_path):
     assert "no picture of the wall" in page.text
 
 
-def test_same_arguments_same_bytes(tmp_path, pictures):
-    first, second = (
-        write_report(tmp_path / name, example_view(), pictures=pictures).read_bytes()
-        for name in ("one.html", "two.html")
-    )
-    assert first == second
-
-
-def test_a_report_is_whole_or_as_it_was(tmp_path, monkeypatch):
-    def full(*_):
-        raise OSError(28, "No space left on device")
-
-    path = tmp_path / "report.html"
-    path.write_bytes(b"good")
-    monkeypatch.setattr(os, "replace", full)
-    for write in (
-        lambda: write_report(path, example_view()),
-        lambda: Shown(example_view()).write(path),
-    ):
-        with pytest.raises(PlanError, match="E206"):
-            write()
-        assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [
-            (path.name, b"good")
-        ]
-
-
 def test_half_a_pair_of_characters_ends_no_report(tmp_path):
     """Bytes of a file name that are no UTF-8 come as such, from whoever forgot them."""
     notice = {"code": "W117", "message": "left aside: \udcdcbersicht.", "cure": ""}
@@ -283,5 +250,55 @@ def test_numbers(value, text):
     [(0.3, 0.4, "left"), (0.4, 0.3, "right"), (0.3, 0.3, "both alike"), (None, 0.3, "not defined")],
 )
 def test_weaker_direction(left, right, weaker):
-    metrics = replace(examples.plan().metrics, alpha_left=left, alpha_right=right)
-    assert weaker_direction(metrics) == weaker
+    assert weaker_direction(left, right) == weaker
+
+
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "viewer.md"
+
+
+@pytest.fixture
+def programs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The programs of the page, in a folder where they can run."""
+    monkeypatch.chdir(tmp_path)
+    return re.findall(r"```python\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
+
+
+def test_a_wall_that_was_not_planned_is_shown(programs: list[str]) -> None:
+    bricks = BrickSettings(count=3, height_px=10, aspect=2)
+    write_labels(lay_out(brick_stones(bricks, np.random.default_rng(1))), Path("wall.png"))
+    exec(programs[1], {})  # noqa: S102 - our own page
+    assert "Wall in the garden" in Path("report.html").read_text("utf-8")
+
+
+def unfitting(path: Path) -> None:
+    source = result().plan.source
+    Image.new("RGB", (2 * source["width_px"], source["height_px"])).save(path)
+
+
+def broken(path: Path) -> None:
+    path.write_bytes(b"no picture")
+
+
+def cut_short(path: Path) -> None:
+    source = result().plan.source
+    Image.new("RGB", (source["width_px"], source["height_px"])).save(path)
+    path.write_bytes(path.read_bytes()[:-200])
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [(unfitting, "something else"), (broken, "cannot be read"), (cut_short, "cannot be read")],
+)
+def test_both_refuse_alike(spoil, said: str, tmp_path: Path) -> None:
+    folder = written(tmp_path)
+    spoil(folder / "photo.jpg")
+    refusals = []
+    for use in (
+        ds.view,
+        lambda plan: FORMATS["pdf"].files(ds.read_assembly(plan), ExportSettings()),
+    ):
+        with pytest.raises(InputError, match=said) as caught:
+            use(folder)
+        refusals.append((caught.value.code, str(caught.value)))
+    assert refusals[0] == refusals[1]
+    assert refusals[0][0] == "E189"

@@ -15,12 +15,18 @@ from drystone.cli.output import prepare_files, print_json, print_table
 from drystone.cli.progress import counting_bar
 from drystone.cli.reading import add_wall
 from drystone.cli.scale import add_scale, refuse_outside, scale_with, wall_picture_px
-from drystone.drawing.words.analysis import Card, ModelledWall, RangeCard, analysis_of
-from drystone.drawing.words.modelling import ModelRequest, modelled
-from drystone.drawing.words.shaken import ScatterCard, Unit, noise_unit
+from drystone.drawing.words.analysis import (
+    Card,
+    ModelledWall,
+    NoiseUnit,
+    RangeCard,
+    ScatterCard,
+    analysis_of,
+    noise_unit,
+)
+from drystone.drawing.words.modelling import ModelRequest, modelled, scarcity, size_words
 from drystone.drawing.words.tables import NAMES as TABLES
 from drystone.drawing.words.tables import write_tables
-from drystone.drawing.words.wall_size import scarcity, size_words
 from drystone.errors import ExitCode, Notice, UsageError
 from drystone.io.walls import GivenWall, read_wall, unsupported
 from drystone.statics.limit import lateral_resistance, load_range
@@ -282,7 +288,7 @@ def _wants_scatter(arguments: argparse.Namespace) -> bool:
 
 
 def _scatter_of(
-    wall: ModelledWall, arguments: argparse.Namespace, unit: Unit, folder: Path | None
+    wall: ModelledWall, arguments: argparse.Namespace, unit: NoiseUnit, folder: Path | None
 ) -> ScatterCard:
     """Shake the wall and analyse it each time; draw the distribution into the folder."""
     settings = ScatterSettings(

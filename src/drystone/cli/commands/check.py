@@ -24,7 +24,7 @@ from drystone.verify.lengths import plan_settings
 from drystone.verify.outlines import plan_polygons
 
 if TYPE_CHECKING:
-    from drystone.drawing.pictures.check import Drawn
+    from drystone.drawing.pictures.check import FailurePicture
 
 
 def add(command: argparse.ArgumentParser) -> None:
@@ -81,7 +81,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     return ExitCode.DONE if checked.ok else ExitCode.CHECK_FAILED
 
 
-def _picture(checked: Checked, arguments: argparse.Namespace, folder: Path) -> "Drawn | None":
+def _picture(
+    checked: Checked, arguments: argparse.Namespace, folder: Path
+) -> "FailurePicture | None":
     """Draw what fails beside the plan, or whatever there is where it was asked for."""
     if checked.ok and not arguments.picture:
         return None

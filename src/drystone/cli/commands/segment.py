@@ -151,7 +151,7 @@ def _moved(result: SegmentedPhoto, scale: Ruled) -> tuple[tuple[float, float], t
 def _write(folder: Path, photo: Photo, result: SegmentedPhoto, doubts: tuple[Doubt, ...]) -> None:
     """Write stones.png, photo.jpg, stones.json and preview.png."""
     from drystone.drawing.files import save  # noqa: PLC0415 - matplotlib is slow
-    from drystone.drawing.pictures.photo import plot_photo  # noqa: PLC0415
+    from drystone.drawing.pictures.stones import plot_photo  # noqa: PLC0415
 
     _save_image(Image.fromarray(result.found.labels), folder / LABELS, "PNG")
     _save_image(Image.fromarray(result.picture), folder / PHOTO, "JPEG", quality=QUALITY)

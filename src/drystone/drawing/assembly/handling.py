@@ -1,7 +1,7 @@
 """What a robot does with a part: where it holds it and how it comes to its place."""
 
 import math
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import shapely
@@ -11,56 +11,34 @@ from drystone.kernels.polygons import Points
 from drystone.model.frames3d import DOWN, Matrix, Pose3d, Vector
 from drystone.model.overlap import common_parts
 
-CLEARANCE_M = 0.05
-"""How far above everything else a part is when it begins to be lowered."""
-
-_APART_M = 1e-9
-"""What a part rests on is not in its way."""
-
+CLEARANCE_M = 0.05  # how far above everything else a part is when it begins to be lowered
+_APART_M = 1e-9  # what a part rests on is not in its way
 INWARD: Vector = (0.0, 1.0, 0.0)
 """How a wedge is pushed in, in W: from the front, where nothing is in the way."""
 
 
-@dataclass(frozen=True)
-class Approach:
-    """A straight move of a part to its place: `direction` is in the frame of the pose it leads to.
+Named = dict[str, Any]
+"""As poses.json has it: vectors by x, y and z."""
 
-    The origin of the part is at `start` (metres) when the move begins; the part does not turn.
+
+def grasp(assembly: Assembly, part: Part) -> Named:
+    """Return how two parallel jaws hold a part across its least width; E131 without a scale.
+
+    Unit vectors across them are in S, W and P; only a stone has one in the photo (P).
     """
-
-    direction: Vector
-    stand_off_m: float
-    start: Vector
-
-
-@dataclass(frozen=True)
-class Grasp:
-    """Two parallel jaws across the least width of a part; unit vectors across them in S, W and P.
-
-    Only a stone has one in the photo (P).
-    """
-
-    width_m: float
-    direction_part: Vector
-    direction_wall: Vector
-    direction_photo: Vector | None
-
-
-def grasp(assembly: Assembly, part: Part) -> Grasp:
-    """Return how to hold a part; E131 without a scale."""
     place, pick = assembly.place_pose(part), assembly.pick_pose(part)
     width_m, across_deg = part.grip
     across = math.radians(across_deg)
     own = np.array([math.cos(across), 0.0, math.sin(across)])
-    return Grasp(
-        width_m,
-        _vector(own),
-        _vector(place.rotation @ own),
-        None if pick is None else _vector(pick.rotation @ own),
-    )
+    return {
+        "width_m": width_m,
+        "direction_part": _xyz(own),
+        "direction_wall": _xyz(place.rotation @ own),
+        "direction_photo": None if pick is None else _xyz(pick.rotation @ own),
+    }
 
 
-def place_approach(assembly: Assembly, part: Part) -> Approach:
+def place_approach(assembly: Assembly, part: Part) -> Named:
     """Return how a part comes to its place.
 
     A stone comes from above: it is lowered from where its lowest point is CLEARANCE_M above the
@@ -74,7 +52,7 @@ def place_approach(assembly: Assembly, part: Part) -> Approach:
     return _approach(pose, DOWN, max(top - lowest, 0.0) + CLEARANCE_M)
 
 
-def pick_approach(assembly: Assembly, part: Part) -> Approach | None:
+def pick_approach(assembly: Assembly, part: Part) -> Named | None:
     """Return how a tool comes to a stone in the photo: from above all others; None for a wedge."""
     pose = assembly.pick_pose(part)
     return None if pose is None else _approach(pose, DOWN, assembly.thickness + CLEARANCE_M)
@@ -90,13 +68,7 @@ def pick_to_place(assembly: Assembly, part: Part) -> Matrix | None:
 
 
 def inverse(matrix: Matrix) -> Matrix:
-    """Return the inverse of a rigid (4, 4) transform.
-
-    Examples
-    --------
-    >>> inverse(np.array([[0., -1, 0, 5], [1, 0, 0, 6], [0, 0, 1, 7], [0, 0, 0, 1]]))[:3, 3]
-    array([-6.,  5., -7.])
-    """
+    """Return the inverse of a rigid (4, 4) transform."""
     back = np.eye(4)
     back[:3, :3] = matrix[:3, :3].T
     back[:3, 3] = -matrix[:3, :3].T @ matrix[:3, 3]
@@ -125,25 +97,15 @@ def blocked_m(assembly: Assembly, part: Part) -> float:
     With ``reach = "above"`` stones were lowered along this way and then settled, which moves them
     by a fraction of a px; with ``reach = "any"`` they may have come from the side.
     """
-    lift = place_approach(assembly, part).stand_off_m
+    lift = place_approach(assembly, part)["stand_off_m"]
     way = swept(part.corners + np.array([0.0, _APART_M]), lift)
     others = [shapely.Polygon(other.corners) for other in before(assembly, part)]
-    widest = 0.0
-    for other in others:
-        for piece in common_parts(way, other):
-            left, _, right, _ = piece.bounds
-            widest = max(widest, right - left)
-    return widest
+    boxes = [piece.bounds for other in others for piece in common_parts(way, other)]
+    return max((right - left for left, _, right, _ in boxes), default=0.0)
 
 
 def swept(low: Points, lift: float) -> shapely.Geometry:
-    """Return what an outline passes when it is lifted straight up.
-
-    Examples
-    --------
-    >>> swept(np.array([[0.0, 0.0], [2.0, 0.0], [1.0, 1.0]]), 3.0).area
-    7.0
-    """
+    """Return what an outline passes when it is lifted straight up."""
     high = low + np.array([0.0, lift])
     following = np.roll(np.arange(len(low)), -1)
     sides = np.stack([low, low[following], high[following], high], axis=1)
@@ -151,11 +113,11 @@ def swept(low: Points, lift: float) -> shapely.Geometry:
     return shapely.union_all([shape for shape in whole if shape.area > 0.0])
 
 
-def _approach(pose: Pose3d, direction: Vector, length_m: float) -> Approach:
+def _approach(pose: Pose3d, direction: Vector, length_m: float) -> Named:
+    """Return a straight move to a pose, from `start` in the frame of it; the part does not turn."""
     start = np.array([pose.x_m, pose.y_m, pose.z_m]) - length_m * np.array(direction)
-    return Approach(direction, length_m, _vector(start))
+    return {"direction": _xyz(direction), "stand_off_m": length_m, "start": _xyz(start)}
 
 
-def _vector(values: Matrix) -> Vector:
-    x, y, z = (float(value) + 0.0 for value in values)
-    return x, y, z
+def _xyz(values: Matrix | Vector) -> dict[str, float]:
+    return {name: float(value) + 0.0 for name, value in zip("xyz", values, strict=True)}

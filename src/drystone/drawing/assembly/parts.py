@@ -18,8 +18,7 @@ from drystone.model.steps import piece_id
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
 
-DENSITY_KG_M3 = 2600.0
-"""Of limestone and sandstone, about; said with every mass."""
+DENSITY_KG_M3 = 2600.0  # of limestone and sandstone, about; said with every mass
 
 
 @dataclass(frozen=True, eq=False)

@@ -107,11 +107,11 @@ def scaled(model: RigidBlockModel, factor: float) -> RigidBlockModel:
     return RigidBlockModel(
         tuple(
             replace(
-                block,
-                area=block.area * factor**2,
-                centroid=(block.centroid[0] * factor, block.centroid[1] * factor),
+                b,
+                area=b.area * factor**2,
+                centroid=(b.centroid[0] * factor, b.centroid[1] * factor),
             )
-            for block in model.blocks
+            for b in model.blocks
         ),
         tuple(replace(face, points=face.points * factor) for face in model.interfaces),
         model.mu,

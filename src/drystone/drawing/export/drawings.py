@@ -5,30 +5,27 @@ without a unit.  Both have layers: SITE, STONES, WEDGES, NUMBERS, and, not shown
 CONTACTS, FORCES-LEFT and -RIGHT, MECHANISM-LEFT and -RIGHT.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from drystone.drawing import dxf as dxf_end
 from drystone.drawing import svg as svg_end
 from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.canvas import draw
-from drystone.drawing.drawing import Area, Dots, Drawing, Item, Lines, placed
+from drystone.drawing.drawing import Dots, Drawable, Drawing, Lines, Surface, placed
 from drystone.drawing.export.formats import ExportSettings, Files, load_extra
 from drystone.drawing.files import figure_bytes, pdf_bytes
 from drystone.drawing.lettering import one_line
 from drystone.drawing.photo import read_photo
-from drystone.drawing.pictures.contacts import JOINT
-from drystone.drawing.pictures.forces import LONGEST_SHARE, RESULTANT, resultants
+from drystone.drawing.pictures.forces import JOINT, LONGEST_SHARE, RESULTANT, resultants
 from drystone.drawing.pictures.mechanism import motion_of
 from drystone.drawing.sheet.pages import sheet
 from drystone.drawing.wall import drawing_of_assembly
 from drystone.statics.result import LimitResult
 
-SMALLEST_SHARE = 0.005
-"""Arrows of smaller forces over the largest one would be dots."""
-
-STILL = 1e-4
-"""Motions of less than this share of the wall's width are none that is seen."""
-
+SMALLEST_SHARE = 0.005  # arrows of smaller forces over the largest one would be dots
+STILL = 1e-4  # motions of less than this share of the wall's width are none that is seen
 MOVED_COLOUR = "#d55e00"
 
 
@@ -45,10 +42,7 @@ def svg(assembly: Assembly, settings: ExportSettings) -> Files:
 
     def made() -> bytes:
         drawing = with_statics(assembly)
-        there = Drawing(
-            tuple(placed(drawing.items, factor)), drawing.box, hidden=drawing.hidden,
-            notes=drawing.notes,
-        )  # fmt: skip
+        there = replace(drawing, items=tuple(placed(drawing.items, factor)))
         unit = "mm" if metric else "px"
         return svg_end.svg_bytes(there, (width, height), unit, _name(assembly, settings), about)
 
@@ -108,10 +102,10 @@ def with_statics(assembly: Assembly) -> Drawing:
     return Drawing((*drawing.items, *items), drawing.box, hidden=hidden, notes=notes)
 
 
-def contacts(assembly: Assembly) -> list[Item]:
+def contacts(assembly: Assembly) -> list[Drawable]:
     """Return where parts touch."""
     names = {0: "ground"} | {part.id: part.name for part in assembly.parts}
-    items: list[Item] = []
+    items: list[Drawable] = []
     for face in assembly.model.interfaces:
         note = f"{names[face.block]} on {names[face.other]}"
         if len(face.points) > 1:
@@ -135,23 +129,22 @@ def forces(assembly: Assembly, result: LimitResult) -> tuple[Lines | None, float
     width, height = assembly.size
     length = LONGEST_SHARE * max(height, 0.2 * width) / largest
     seen = [one for one in acting if one.size >= SMALLEST_SHARE * largest]
-    halves = [0.5 * length * one.force for one in seen]
     arrows = Lines(
         f"forces-{result.direction}",
-        [np.array([r.point - half, r.point + half]) for r, half in zip(seen, halves, strict=True)],
-        RESULTANT, head=True, layer=f"FORCES-{result.direction.upper()}",
+        [one.line(length) for one in seen], RESULTANT, head=True,
+        layer=f"FORCES-{result.direction.upper()}",
         notes=[f"{one.size / mean:.6g} mean weights" for one in seen],
     )  # fmt: skip
     return arrows, length * mean
 
 
-def failed(assembly: Assembly, result: LimitResult) -> list[Area]:
+def failed(assembly: Assembly, result: LimitResult) -> list[Surface]:
     """Return the parts that a mechanism moves, after its motion, which is scaled for pictures."""
     if result.mechanism is None:
         return []
     motion = motion_of({part.id: part.corners for part in assembly.parts}, result.mechanism)
     return [
-        Area(assembly.part(region.id).name, loops, line=MOVED_COLOUR,
+        Surface(assembly.part(region.id).name, loops, line=MOVED_COLOUR,
              layer=f"MECHANISM-{result.direction.upper()}")
         for region, loops in zip(motion.regions, motion.at(1.0), strict=True)
         if np.abs(loops[0] - region.loops[0]).max() > STILL * assembly.size[0]

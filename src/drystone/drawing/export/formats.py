@@ -106,16 +106,16 @@ def load_extra(module: str, extra: str, code: str, where: str) -> Any:
 
 
 FORMATS: Mapping[str, Format] = {
-    "poses": Format("poses:poses", ("poses.json",), "pick and place poses, grasps, masses", True),
-    "compas": Format("compas:compas", ("assembly.compas.json",), "COMPAS frames and meshes", True),
+    "poses": Format("robots:poses", ("poses.json",), "pick and place poses, grasps, masses", True),
+    "compas": Format("robots:compas", ("assembly.compas.json",), "COMPAS frames and meshes", True),
     "moveit": Format(
-        "moveit:moveit", ("scene.yaml", "wall.scene"),
+        "robots:moveit", ("scene.yaml", "wall.scene"),
         "collision objects for MoveIt, in order", True,
     ),
-    "urdf": Format("urdf:urdf", ("urdf/",), "a URDF with mesh and inertia of every part", True),
-    "obj": Format("meshes:obj", ("wall.obj", "wall.mtl"), "extruded stones, named objects", True),
-    "glb": Format("meshes:glb", ("wall.glb",), "the same as glTF", True),
-    "stl": Format("meshes:stl", ("stl/",), "one file a part", True),
+    "urdf": Format("robots:urdf", ("urdf/",), "a URDF with mesh and inertia of every part", True),
+    "obj": Format("solids:obj", ("wall.obj", "wall.mtl"), "extruded stones, named objects", True),
+    "glb": Format("solids:glb", ("wall.glb",), "the same as glTF", True),
+    "stl": Format("solids:stl", ("stl/",), "one file a part", True),
     "csv": Format("tables:csv", ("steps.csv",), "the build list"),
     "parquet": Format("tables:parquet", ("steps.parquet",), "the build list"),
     "geojson": Format("tables:geojson", ("wall.geojson",), "polygons with their steps"),
@@ -126,13 +126,13 @@ FORMATS: Mapping[str, Format] = {
         "drawings:svg", ("wall.svg",), "every stone defined once and placed by a transform"
     ),
     "png": Format("drawings:png", ("wall-numbered.png",), "the wall with step numbers"),
-    "gif": Format("film:gif", ("build.gif",), "the construction"),
-    "mp4": Format("film:mp4", ("build.mp4",), "the construction"),
+    "gif": Format("frames:gif", ("build.gif",), "the construction"),
+    "mp4": Format("frames:mp4", ("build.mp4",), "the construction"),
     "pdf": Format(
         "drawings:pdf", ("build-sheet.pdf",),
         "drawing to scale, every stone in order, fetch list",
     ),
     "projector": Format(
-        "projector:projector", ("projector/",), "a frame a step, 1:1 on the wall", True
+        "frames:projector", ("projector/",), "a frame a step, 1:1 on the wall", True
     ),
 }  # fmt: skip

@@ -1,17 +1,25 @@
-"""Parts as solids: outlines extruded through the wall, as triangles, with mass and inertia."""
+"""Parts as prisms of triangles, in metres: mass and inertia, wall.obj, wall.glb and stl/, Z up.
 
+glTF has Y up.  The node ``wall`` turns it, so the nodes below have the poses of poses.json in W,
+and their meshes are in S; what a viewer shows is (x, z, -y) of W.
+"""
+
+import struct
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
 from drystone.drawing.assembly.parts import Assembly, Part
-from drystone.drawing.palette import PLAIN_COLOUR, WEDGE_COLOUR, Rgb, cluster_colour, rgb
+from drystone.drawing.export.formats import ExportSettings, Files, load_extra
+from drystone.drawing.export.text import number
+from drystone.drawing.palette import PLAIN_COLOUR, WEDGE_COLOUR, Rgb, cluster_colour, linear, rgb
 from drystone.errors import InputError
 from drystone.kernels.polygons import Points, area_and_centroid
 
-Corners = NDArray[np.float64]
+Vertices = NDArray[np.float64]
 Triangles = NDArray[np.int64]
 
 
@@ -19,11 +27,11 @@ Triangles = NDArray[np.int64]
 class Solid:
     """A closed surface in metres; triangles are counter-clockwise as seen from outside."""
 
-    vertices: Corners
+    vertices: Vertices
     triangles: Triangles
 
     @property
-    def normals(self) -> Corners:
+    def normals(self) -> Vertices:
         """(m, 3) unit vectors out of the triangles."""
         first, second, third = (self.vertices[self.triangles[:, i]] for i in range(3))
         across = np.cross(second - first, third - first)
@@ -61,12 +69,6 @@ def extruded(outline: Points, front: float, back: float, name: str = "outline") 
 
     The outline is counter-clockwise in x and z, not closed; E180 names it when it crosses or
     touches itself, or has no area.
-
-    Examples
-    --------
-    >>> box = extruded(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]), 0.0, 3.0)
-    >>> box.vertices.shape, box.triangles.shape
-    ((8, 3), (12, 3))
     """
     face = triangulated(outline, name)
     count = len(outline)
@@ -115,13 +117,7 @@ def inertia(assembly: Assembly, part: Part) -> Inertia:
 
 
 def second_moments(outline: Points) -> NDArray[np.float64]:
-    """Return the integrals of x^2, z^2 and x z over the inside of an outline, about the origin.
-
-    Examples
-    --------
-    >>> second_moments(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 3.0], [0.0, 3.0]]))
-    array([ 8., 18.,  9.])
-    """
+    """Return the integrals of x^2, z^2 and x z over the inside of an outline, about the origin."""
     x, z = outline.T
     u, v = np.roll(outline, -1, axis=0).T
     cross = x * v - u * z
@@ -156,3 +152,89 @@ def materials(assembly: Assembly) -> dict[str, Rgb]:
 def _thickness_m(assembly: Assembly) -> float:
     assembly.require_scale("a solid")
     return assembly.thickness
+
+
+_Y_UP = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+_FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+def obj(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
+    """Return wall.obj, an object a part in the order of building, and wall.mtl."""
+    require_solids(assembly)
+    return {
+        "wall.obj": lambda: obj_text(assembly),
+        "wall.mtl": lambda: "".join(
+            f"newmtl {name}\nKd {' '.join(map(number, colour))}\nillum 1\n"
+            for name, colour in materials(assembly).items()
+        ),
+    }
+
+
+def obj_text(assembly: Assembly) -> str:
+    """Return the wall as Wavefront OBJ, with all digits."""
+    lines = [
+        f"# drystone {assembly.plan.version}: metres, X along the wall, Y into it, Z up",
+        "mtllib wall.mtl",
+    ]
+    first = 1
+    for part in assembly.parts:
+        solid = solid_in_wall(assembly, part)
+        lines += [f"o {part.name}", f"usemtl {material(part)}"]
+        lines += ["v " + " ".join(map(number, point)) for point in solid.vertices.tolist()]
+        lines += [f"f {a} {b} {c}" for a, b, c in (solid.triangles + first).tolist()]
+        first += len(solid.vertices)
+    return "\n".join(lines) + "\n"
+
+
+def glb(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
+    """Return wall.glb; E182 when trimesh is not installed."""
+    require_solids(assembly)
+    load_extra("trimesh", "mesh", "E182", "wall.glb")
+    return {"wall.glb": lambda: glb_bytes(assembly)}
+
+
+def glb_bytes(assembly: Assembly) -> bytes:
+    """Return the wall as binary glTF 2.0, every part a node with its pose."""
+    import trimesh  # noqa: PLC0415 - an extra
+
+    scene = trimesh.Scene()
+    scene.graph.update("wall", scene.graph.base_frame, matrix=_Y_UP)
+    paint = {
+        name: trimesh.visual.material.PBRMaterial(
+            name=name, baseColorFactor=[*map(linear, colour), 1.0], metallicFactor=0.0,
+            roughnessFactor=1.0,
+        )
+        for name, colour in materials(assembly).items()
+    }  # fmt: skip
+    for part in assembly.parts:
+        solid = solid_of_part(assembly, part)
+        mesh = trimesh.Trimesh(solid.vertices, solid.triangles, process=False)
+        mesh.visual = trimesh.visual.TextureVisuals(material=paint[material(part)])
+        scene.add_geometry(
+            mesh, node_name=part.name, geom_name=part.name, parent_node_name="wall",
+            transform=assembly.place_pose(part).matrix, metadata={"step": part.step},
+        )  # fmt: skip
+    # Without normals a viewer shades every triangle flat, as the standard says.
+    made: bytes = trimesh.exchange.gltf.export_glb(scene, include_normals=False)
+    return made
+
+
+def stl(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
+    """Return every part as a binary STL where it stands in the wall."""
+    require_solids(assembly)
+    return {
+        f"stl/{part.name}.stl": partial(
+            stl_bytes, solid_in_wall(assembly, part), f"{part.name}, frame W"
+        )
+        for part in assembly.parts
+    }
+
+
+def stl_bytes(solid: Solid, title: str) -> bytes:
+    """Return a solid as binary STL; its 80 bytes of header hold a title."""
+    facets = np.zeros(len(solid.triangles), _FACET)
+    facets["normal"] = solid.normals
+    facets["corners"] = solid.vertices[solid.triangles]
+    # A header that begins with "solid" is taken for a text file.
+    header = f"drystone, metres: {title}".encode("ascii")[:80].ljust(80)
+    return header + struct.pack("<I", len(facets)) + facets.tobytes()

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-LINE = 320
-"""Characters; a matrix of 16 numbers with all digits is shorter."""
+LINE = 320  # characters; a matrix of 16 numbers with all digits is shorter
 
 
 def json_text(value: Any, depth: int = 0) -> str:
@@ -15,14 +14,6 @@ def json_text(value: Any, depth: int = 0) -> str:
 
     Floats have all digits; a list of rows, such as a matrix, counts as plain.  What is longer
     than 320 characters is broken up all the same.  NaN and infinities are refused (ValueError).
-
-    Examples
-    --------
-    >>> print(json_text({"a": {"x": -0.0, "y": 1.5}, "m": [[1, 0], [0, 1]]}))
-    {
-     "a": {"x": 0.0, "y": 1.5},
-     "m": [[1, 0], [0, 1]]
-    }
     """
     value = _plain(value)
     line = json.dumps(value, ensure_ascii=False, allow_nan=False)
@@ -46,11 +37,6 @@ def number(value: float) -> str:
     """Write a number for text formats: all digits, a point always, no minus before zero.
 
     YAML 1.1 takes ``1e-05`` for a word; with a point before the e it is a number everywhere.
-
-    Examples
-    --------
-    >>> number(-0.0), number(1e-5), number(0.25)
-    ('0.0', '1.0e-05', '0.25')
     """
     text = repr(float(value) + 0.0)
     head, e, tail = text.partition("e")

@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from drystone.drawing.canvas import MARGIN_IN, WIDTH_IN, draw
-from drystone.drawing.drawing import Area, Drawing, Item, Lines, Words, ground
+from drystone.drawing.drawing import Drawable, Drawing, Lines, Surface, Words, ground
 from drystone.drawing.files import save
-from drystone.drawing.outlines import Box, Loop, polygon_regions, rectangle, regions_box
+from drystone.drawing.outlines import Bounds, Loop, polygon_regions, rectangle, regions_box
 from drystone.drawing.palette import GREY, OUTLINE_COLOUR, PALE
 from drystone.drawing.pictures.mechanism import motion_of
 from drystone.drawing.words.checked import PICTURE, Checked
@@ -28,9 +28,7 @@ MISPLACED = ("E220", "E221", "E222", "E223", "E224", "E240")
 
 OVERLAPS, FALLS, OTHER_PIXELS, NOT_STURDY = "E221", "E230", "E236", "E237"
 
-NOTABLE = 0.02
-"""Blocks that move by this share of the largest movement belong to a mechanism."""
-
+NOTABLE = 0.02  # blocks that move by this share of the largest movement belong to a mechanism
 CONCERNED = "#f0a030"
 PLANNED = "#0050a0"
 PLANNED_PALE = "#90b0d8"
@@ -41,8 +39,7 @@ NOTICEABLE = 4e-3
 """Blocks that have moved by this share of the wall's height are shown where they were planned."""
 
 LEGEND_IN, TITLE_IN = 0.3, 0.3
-HEIGHT_IN = 5.0
-"""Largest height of one view."""
+HEIGHT_IN = 5.0  # largest height of one view
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +58,7 @@ class FailureView:
     size: tuple[float, float] | None = None
 
     @property
-    def box(self) -> Box:
+    def box(self) -> Bounds:
         """What is to be seen."""
         frame = [np.array([(0.0, 0.0), self.size])] if self.size else []
         loops = [[loop] for loop in (*self.planned.values(), *self.ended.values(), *frame)]
@@ -71,23 +68,23 @@ class FailureView:
 
 
 @dataclass(frozen=True)
-class Drawn:
+class FailurePicture:
     """A picture: its path, None when it could not be written, and the same in words."""
 
     path: str | None
     words: str
 
 
-def draw_asked(checked: Checked, path: Path) -> Drawn | None:
+def draw_asked(checked: Checked, path: Path) -> FailurePicture | None:
     """Draw what fails or, when nothing does, the wall; None for a plan without stones."""
     views = views_of(checked) or _whole_wall(checked)
     if not views:
         return None
     save(plot_failures(views), path)
-    return Drawn(str(path), str(path))
+    return FailurePicture(str(path), str(path))
 
 
-def draw_failures(checked: Checked, folder: Path) -> Drawn | None:
+def draw_failures(checked: Checked, folder: Path) -> FailurePicture | None:
     """Draw what fails beside the plan; None when nothing of it can be seen."""
     views, path = views_of(checked), folder / PICTURE
     if not views:
@@ -97,86 +94,71 @@ def draw_failures(checked: Checked, folder: Path) -> Drawn | None:
         save(plot_failures(views), path)
     except PlanError as error:
         # The check is done, and plans may lie where nothing can be written.
-        return Drawn(None, f"not written: {path}: {error.what} Give a place with --picture.")
-    return Drawn(str(path), f"{path}{replaced}")
+        return FailurePicture(
+            None, f"not written: {path}: {error.what} Give a place with --picture."
+        )
+    return FailurePicture(str(path), f"{path}{replaced}")
 
 
 def views_of(checked: Checked) -> list[FailureView]:
     """Return what is to be drawn: nothing when nothing that can be seen fails."""
-    planned, problems = _planned(checked), checked.report.problems
+    planned, problems = checked.planned, checked.report.problems
     if not planned:
         return []
     views = []
     misplaced = [problem for problem in problems if problem.code in MISPLACED]
     # What lies elsewhere has other pixels too; that alone means another image.
-    pixels = [p for p in problems if p.code == OTHER_PIXELS and p.step is not None]
-    lying = misplaced or pixels
+    lying = misplaced or [p for p in problems if p.code == OTHER_PIXELS and p.step is not None]
     if lying:
         more = f" ... and {len(lying) - 1} more" if len(lying) > 1 else ""
         ids = _ids(checked, {problem.step for problem in lying})
-        overlapping = _ids(checked, {p.step for p in lying if p.code == OVERLAPS})
-        common = common_areas(planned, overlapping)
+        common = common_areas(planned, _ids(checked, {p.step for p in lying if p.code == OVERLAPS}))
         title = f"{_short(lying[0])}{more}"
-        views.append(FailureView(title, planned, ids, common=common, size=_size(checked)))
+        views.append(FailureView(title, planned, ids, common=common, size=checked.size))
     falling = next((p for p in problems if p.code in (FALLS, NOT_STURDY)), None)
     if falling is not None:
-        views.append(_unstable(checked, planned, falling))
+        views.append(_unstable(checked, falling))
     return [*views, *_whole_wall(checked)] if checked.falls else views
 
 
 def _whole_wall(checked: Checked) -> list[FailureView]:
     """Return the wall where the engine left it, or as it was planned."""
-    planned, physics = _planned(checked), checked.physics
+    planned, physics = checked.planned, checked.physics
     if not planned:
         return []
     if physics is None:
-        return [FailureView(f"The plan {checked.verdict}", planned, size=_size(checked))]
+        return [FailureView(f"The plan {checked.verdict}", planned, size=checked.size)]
     name, outcome = physics.rows()[0]
     title = f"{name[0].upper()}{name[1:]}: {outcome}"
     built = physics.built
-    return [FailureView(title, planned, built.fallen, built.outlines, size=_size(checked))]
+    return [FailureView(title, planned, built.fallen, built.outlines, size=checked.size)]
 
 
-def _unstable(checked: Checked, planned: Mapping[int, Loop], problem: Problem) -> FailureView:
+def _unstable(checked: Checked, problem: Problem) -> FailureView:
     """Return the first wall on the way that does not stand, and how it begins to fall."""
     replay = replay_plan(checked.plan, checked.stones)
     stage = next(stage for stage in replay.stages if stage.last.step == problem.step)
     groups, title = stage.after.groups, _short(problem)
     there = {group.placement.stone_id for group in groups}
     there |= {wedge.id for group in groups for wedge in group.wedges}
-    standing = {block: loop for block, loop in planned.items() if block in there}
+    standing = {block: loop for block, loop in checked.planned.items() if block in there}
     # With all its friction a wall that is not sturdy does not begin to fall.
     model = wall_model(stage.after, replay.settings) if problem.code == FALLS else None
     mechanism = None if model is None else lateral_resistance(model, mechanism=True).left.mechanism
     if mechanism is None:
-        last = _ids(checked, {stage.stone.step})
-        return FailureView(title, standing, last, size=_size(checked))
+        return FailureView(title, standing, _ids(checked, {stage.stone.step}), size=checked.size)
     motion = motion_of(standing, mechanism)
     blocks = list(zip(motion.regions, motion.at(1.0), motion.share.tolist(), strict=True))
-    return FailureView(
-        f"{title} How it begins to fall, enlarged",
-        standing,
-        [region.id for region, _, share in blocks if share > NOTABLE],
-        {region.id: loops[0] for region, loops, _ in blocks},
-        size=_size(checked),
-    )
-
-
-def _planned(checked: Checked) -> dict[int, Loop]:
-    return {block: corners for group in checked.groups for block, corners in group}
+    moving = [region.id for region, _, share in blocks if share > NOTABLE]
+    ended = {region.id: loops[0] for region, loops, _ in blocks}
+    title = f"{title} How it begins to fall, enlarged"
+    return FailureView(title, standing, moving, ended, size=checked.size)
 
 
 def _ids(checked: Checked, steps: set[int | None]) -> list[int]:
     """Return the ids that some steps place, as far as they can be drawn."""
-    chosen = (step for step in checked.plan.steps if step.step in steps)
-    ids, planned = dict.fromkeys(map(piece_id, chosen)), _planned(checked)
-    return [block for block in ids if block in planned]
-
-
-def _size(checked: Checked) -> tuple[float, float]:
-    """Return width and height of the wall that is to be built, source px."""
-    source_px = checked.plan.px_per_m or 1.0
-    return checked.plan.width * source_px, checked.plan.height * source_px
+    chosen, planned = (s for s in checked.plan.steps if s.step in steps), checked.planned
+    return [block for block in dict.fromkeys(map(piece_id, chosen)) if block in planned]
 
 
 def _short(problem: Problem, most: int = 100) -> str:
@@ -205,16 +187,16 @@ def plot_failure(view: FailureView, ax: Axes | None = None) -> Axes:
     Blocks are drawn where they ended; those that fail are coloured and numbered, dashed lines
     show where they, and others that have moved, were planned.
     """
-    items: list[Item] = [*ground(view.box)]
-    legend: dict[str, Area | Lines] = {}
+    items: list[Drawable] = [*ground(view.box)]
+    legend: dict[str, Surface | Lines] = {}
     if view.concerned:
-        legend["fails"] = Area("", (), CONCERNED)
+        legend["fails"] = Surface("", (), CONCERNED)
     ended = polygon_regions({**view.planned, **view.ended})
     for region in ended:
         # Blocks that fail lie over those that they have got into, and over their numbers.
         fails = region.id in view.concerned
         fill = CONCERNED if fails else PALE
-        area = Area(
+        area = Surface(
             f"block-{region.id}", region.loops, fill, OUTLINE_COLOUR if fails else GREY,
             width_pt=0.8 if fails else 0.5, z=2.0 if fails else 1.0,
         )  # fmt: skip
@@ -227,7 +209,7 @@ def plot_failure(view: FailureView, ax: Axes | None = None) -> Axes:
     if moved:
         legend["where it was planned"] = Lines("", [], PLANNED, 1.0, DASHES)
     common = [
-        Area(f"common-{number}", (loop,), COMMON, COMMON, width_pt=0.8, z=4.0)
+        Surface(f"common-{number}", (loop,), COMMON, COMMON, width_pt=0.8, z=4.0)
         for number, loop in enumerate(view.common)
     ]
     if common:
@@ -235,12 +217,12 @@ def plot_failure(view: FailureView, ax: Axes | None = None) -> Axes:
     items += [*moved, *common]
     if view.size:
         site = rectangle(0.0, 0.0, *view.size)
-        items.append(Area("site", (site,), line=GREY, width_pt=1.0, dashes=DOTS))
+        items.append(Surface("site", (site,), line=GREY, width_pt=1.0, dashes=DOTS))
         legend["wall that was to be built"] = Lines("", [], GREY, 1.5, DOTS)
     return draw(Drawing(tuple(items), view.box, title=view.title, legend=legend), ax)
 
 
-def _moved(view: FailureView) -> list[Area]:
+def _moved(view: FailureView) -> list[Surface]:
     _, y0, _, y1 = regions_box([loop] for loop in view.planned.values())
     drawn = []
     for block, loop in view.planned.items():
@@ -248,7 +230,7 @@ def _moved(view: FailureView) -> list[Area]:
         if way > NOTICEABLE * (y1 - y0):
             fails = block in view.concerned
             drawn.append(
-                Area(f"planned-{block}", (loop,), line=PLANNED if fails else PLANNED_PALE,
+                Surface(f"planned-{block}", (loop,), line=PLANNED if fails else PLANNED_PALE,
                      width_pt=1.0 if fails else 0.5, dashes=DASHES, z=3.0)
             )  # fmt: skip
     return drawn

@@ -12,11 +12,11 @@ from drystone.craft.finding import Finding, Verdict
 from drystone.craft.look import UNSEEN, CraftReport
 from drystone.craft.masonry import Masonry
 from drystone.drawing.canvas import add, draw_legend, fit_axes, legend_handles
-from drystone.drawing.drawing import Area, Item, Lines, Words, ground
+from drystone.drawing.drawing import Drawable, Lines, Surface, Words, ground
 from drystone.drawing.palette import GREY, OUTLINE_COLOUR, PALE, WEDGE_COLOUR
 
-FAULT = Area("", (), "#f0a848", "#8a5a10", hatch="////")
-BESIDE = Area("", (), "#dcebf7", "#7fa6c4", hatch="....")
+FAULT = Surface("", (), "#f0a848", "#8a5a10", hatch="////")
+BESIDE = Surface("", (), "#dcebf7", "#7fa6c4", hatch="....")
 MARK = "#0b3d66"
 """Stones that do not keep a rule, stones beside a joint that does not, and the joint or edge."""
 
@@ -28,8 +28,7 @@ INKS: Mapping[Verdict, str] = {
 PANEL_IN, TITLE_IN, EDGE_IN, LEGEND_IN = 6.0, 0.42, 0.15, 0.35
 TALLEST_IN = 5.0
 
-NEAR = 0.01
-"""Stones of a plan settle a little above the ground, mean stone heights."""
+NEAR = 0.01  # stones of a plan settle a little above the ground, mean stone heights
 
 
 def plot_finding(report: CraftReport, name: str, ax: Axes | None = None) -> Axes:
@@ -88,15 +87,15 @@ def _view(masonry: Masonry) -> tuple[float, float, float, float]:
     return x0 - pad, y0 - pad, x1 + pad, y1 + pad
 
 
-def _stones(masonry: Masonry, finding: Finding) -> list[Item]:
+def _stones(masonry: Masonry, finding: Finding) -> list[Drawable]:
     fault = {i for case in finding.cases for i in case.stones[: case.at_fault]}
     beside = {i for case in finding.cases for i in case.stones if not case.at_fault}
-    items: list[Item] = []
+    items: list[Drawable] = []
     for stone, loop in masonry.loops.items():
         found = FAULT if stone in fault else BESIDE if stone in beside else None
         wedge = stone in masonry.wedge_ids
         fill = WEDGE_COLOUR if wedge and stone not in fault else found.fill if found else PALE
-        area = Area(f"stone-{stone}", (loop,), fill, OUTLINE_COLOUR if found else GREY,
+        area = Surface(f"stone-{stone}", (loop,), fill, OUTLINE_COLOUR if found else GREY,
                     width_pt=0.5, z=4.0 if wedge else 2.0)  # fmt: skip
         items.append(area)
         if found:
@@ -120,12 +119,12 @@ def _title(finding: Finding) -> str:
     return f"{said}, {finding.amount}   {limits}"
 
 
-def _legend(masonry: Masonry) -> dict[str, Area | Lines]:
-    legend: dict[str, Area | Lines] = {
+def _legend(masonry: Masonry) -> dict[str, Surface | Lines]:
+    legend: dict[str, Surface | Lines] = {
         "does not keep the rule": FAULT,
         "beside such a joint": BESIDE,
         "the joint, lap, bed or edge": Lines("", [], MARK, 1.9),
     }
     if masonry.wedge_ids:
-        legend["wedge"] = Area("", (), WEDGE_COLOUR)
+        legend["wedge"] = Surface("", (), WEDGE_COLOUR)
     return legend

@@ -1,36 +1,84 @@
-"""The forces between blocks: the thrust that carries a wall."""
+"""The contacts of a rigid block model (Pic-to-Ri), and the thrust that carries a wall."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import floor, log10
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.transforms import ScaledTranslation
-from numpy.typing import NDArray
 
 from drystone.drawing.canvas import draw, draw_legend
-from drystone.drawing.drawing import Dots, Drawing, Lines
+from drystone.drawing.drawing import Dots, Drawing, Lines, Surface
 from drystone.drawing.outlines import Loop, wall_regions
 from drystone.drawing.wall import pale_wall, size_of
+from drystone.kernels.raster import Floats
 from drystone.model.wall import Labels
+from drystone.statics.failing.bodies import ContactKind
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 
-Floats = NDArray[np.float64]
+JOINT, NORMAL, POINT = "#0072b2", "#d55e00", "#8b0000"
+
+KIND_COLOURS: dict[ContactKind, str] = {
+    "closed": JOINT,
+    "opening": "#e69f00",
+    "sliding": "#cc79a7",
+    "opening and sliding": "#000000",
+}
+"""Okabe and Ito's colours, apart for colour-blind readers."""
+
+NORMAL_SHARE = 0.03
+"""Length of a normal over the height of the wall, at most; that of a short interface is half as
+long as the interface, but no less than a third of this."""
+
+
+def plot_contacts(
+    wall: Labels | Mapping[int, Loop],
+    model: RigidBlockModel,
+    ax: Axes | None = None,
+    *,
+    kinds: Sequence[ContactKind] | None = None,
+) -> Axes:
+    """Draw where blocks touch: interfaces as lines with their end points and normals.
+
+    The wall is a label image, row 0 at the top, or polygons by id, and the model is of it; the axes
+    are in px of the image or the unit of the polygons, y up from the ground.  `kinds` are what a
+    mechanism does at every contact point, and colour the points.  ValueError when the model has a
+    block that the wall does not have, or the kinds are not its.
+    """
+    if kinds is not None and len(kinds) != model.contact_count:
+        raise ValueError(f"{len(kinds)} kinds for {model.contact_count} contact points")
+    regions = wall_regions(wall)
+    pale = pale_wall(regions, model)
+    lines = [interface.points for interface in model.interfaces if len(interface.points) > 1]
+    longest, normals = NORMAL_SHARE * size_of(regions), []
+    for face in model.interfaces:
+        middle, length = face.points.mean(axis=0), max(0.5 * face.length, longest / 3.0)
+        normals.append(np.array([middle, middle + min(longest, length) * np.array(face.normal)]))
+    points = np.concatenate([np.empty((0, 2)), *(i.points for i in model.interfaces)])
+    counts = np.array([len(interface.points) for interface in model.interfaces], np.int64)
+    alone = np.repeat(counts == 1, counts)
+    if kinds is None:
+        dots = [
+            Dots("end of an interface", points[~alone], JOINT, 2.4),
+            Dots("contact at a point", points[alone], POINT, 4.0),
+        ]
+    else:
+        told = np.array(kinds, str)
+        dots = [Dots(kind, points[told == kind], c, 3.6) for kind, c in KIND_COLOURS.items()]
+    faces, inward = Lines("interfaces", lines, JOINT, 1.3), Lines("normals", normals, NORMAL, 0.8)
+    legend: dict[str, Surface | Lines | Dots]
+    legend = {"interface": faces, "normal": inward, **{one.name: one for one in dots}}
+    return draw(Drawing((*pale.items, faces, inward, *dots), pale.box, legend=legend), ax)
+
 
 RESULTANT, NETWORK = "#8b0000", "#56b4e9"
 
-LONGEST_SHARE = 0.22
-"""Length of the largest resultant over the height of the wall."""
-
-WIDEST_PT = 9.0
-"""Width of the line of thrust that carries the largest resultant."""
-
+LONGEST_SHARE = 0.22  # length of the largest resultant over the height of the wall
+WIDEST_PT = 9.0  # width of the line of thrust that carries the largest resultant
 RESULTANT_PT = 1.2
 
-LEAST_SHARE = 1e-6
-"""Smaller resultants over the largest one are none."""
-
+LEAST_SHARE = 1e-6  # smaller resultants over the largest one are none
 VISIBLE_SHARE = 0.01
 """The points of action of smaller resultants are not marked: dots would look like forces."""
 
@@ -51,19 +99,17 @@ class Resultant:
         """Length of the force."""
         return float(np.hypot(*self.force))
 
+    def line(self, per_weight: float) -> Loop:
+        """Return both ends of the force, drawn to a scale with its middle at the point."""
+        half = 0.5 * per_weight * self.force
+        return np.array([self.point - half, self.point + half])
+
 
 def resultants(model: RigidBlockModel, forces: Floats) -> tuple[Resultant, ...]:
     """Add up the forces at the contact points of every interface that carries anything.
 
     `forces` are normal and tangential, (m, 2), as in
     :attr:`drystone.statics.result.LimitResult.forces`.
-
-    Examples
-    --------
-    >>> from drystone.contacts.given import model_from_json
-    >>> block = model_from_json({"blocks_xywh": [[0, 0, 4, 1]]})
-    >>> resultants(block, np.array([[1.0, 0.0], [3.0, 0.0]]))[0].point.tolist()
-    [3.0, 0.0]
     """
     if len(forces) != model.contact_count:
         raise ValueError(f"{len(forces)} forces for {model.contact_count} contact points")
@@ -99,38 +145,16 @@ def plot_forces(
 
     A dark red line through the point of action of each resultant has its direction and, to scale,
     its length; half of it lies on either side of the joint.  A blue line joins the points of action
-    with the centroids of the two blocks, as wide as the force is large, also to scale.
-
-    Parameters
-    ----------
-    wall : (h, w) integer array, or mapping of int to (n, 2) float array
-        Label image, row 0 at the top, or polygons by id.
-    model : RigidBlockModel
-        Of this wall.
-    forces : (m, 2) float array
-        See :func:`resultants`.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-
-    Returns
-    -------
-    ax : Axes
-        In px of the label image or the unit of the polygons, y up from the ground of the model.
-
-    Raises
-    ------
-    ValueError
-        When the forces or the wall are not those of the model.
+    with the centroids of the two blocks, as wide as the force is large, also to scale.  Wall and
+    axes are as in :func:`plot_contacts`, the (m, 2) forces as in :func:`resultants`; ValueError
+    when they are not those of the model.
     """
     acting, regions = resultants(model, forces), wall_regions(wall)
     largest = max((one.size for one in acting), default=0.0)
     if largest == 0.0:
         return draw(pale_wall(regions, model), ax)
     per_weight = LONGEST_SHARE * size_of(regions) / largest
-    halves = [0.5 * per_weight * one.force for one in acting]
-    lines = [
-        np.array([r.point - half, r.point + half]) for r, half in zip(acting, halves, strict=True)
-    ]
+    lines = [one.line(per_weight) for one in acting]
     pale = pale_wall(regions, model, lines)
     # From centroid to point of action to centroid.
     middle = {block.id: np.array(block.centroid) for block in model.blocks}
@@ -184,8 +208,6 @@ def _draw_scale(ax: Axes, model: RigidBlockModel, per_weight: float, largest: fl
 def round_number(most: float) -> float:
     """Return the largest of 1, 2, 5, 10, 20 ... (and .5, .2 ...) that is not above `most`.
 
-    Examples
-    --------
     >>> round_number(7.3), round_number(0.3), round_number(20.0)
     (5.0, 0.2, 20.0)
     """

@@ -5,15 +5,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.patches import PathPatch
 from numpy.typing import NDArray
-from shapely import Polygon, box, union_all
-from shapely.geometry.polygon import orient
 
-from drystone.drawing.canvas import block_path
+from drystone.drawing.drawing import Surface
 from drystone.drawing.files import pdf_bytes
+from drystone.drawing.outlines import pixel_loops
+from drystone.drawing.sheet.page import SheetPage
 from drystone.photo.dictionaries import FAMILIES, marker_modules
 from drystone.photo.layout import (
     CHECK_LINE_MM,
@@ -25,10 +22,6 @@ from drystone.photo.layout import (
     single_position_m,
 )
 from drystone.whole_files import write_whole
-
-_MM_PER_INCH = 25.4
-_LINE_MM = 5.5
-_GREY = "#444444"
 
 
 @dataclass(frozen=True)
@@ -58,56 +51,42 @@ def write_marker_sheets(sheets: MarkerSheets, path: str | Path) -> None:
     E174 when they do not fit on the page, or the family has no such markers; E305 without OpenCV;
     E206 when the file cannot be written.
     """
-    write_whole(Path(path), pdf_bytes(marker_page(sheets, ids) for ids in sheets.pages))
+    write_whole(Path(path), pdf_bytes(marker_page(sheets, ids).figure for ids in sheets.pages))
 
 
-def marker_page(sheets: MarkerSheets, ids: Sequence[int]) -> Figure:
-    """Draw one page; the axes are millimetres from its upper left corner, y down."""
-    width, height = page_mm(sheets.page)
+def marker_page(sheets: MarkerSheets, ids: Sequence[int]) -> SheetPage:
+    """Draw one page; places of markers are mm from its upper left corner, y down."""
+    page, size = SheetPage(page_mm(sheets.page)), sheets.size_m * 1000.0
     if sheets.single:
         places = single_position_m(sheets.page, sheets.size_m)[None] * 1000.0
     else:
         places = sheet_positions_m(sheets.page, sheets.size_m) * 1000.0
-    figure = Figure(figsize=(width / _MM_PER_INCH, height / _MM_PER_INCH))
-    ax = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    ax.set_xlim(0.0, width)
-    ax.set_ylim(height, 0.0)
-    ax.set_axis_off()
-    size = sheets.size_m * 1000.0
-    for marker_id, place in zip(ids, places, strict=True):
-        _draw_marker(ax, marker_modules(sheets.dictionary, marker_id), place, size)
+    for marker_id, (x, y) in zip(ids, places.tolist(), strict=True):
+        black = marker_modules(sheets.dictionary, marker_id)
+        # One area: printers and viewers leave hairlines between squares.
+        step, corner = size / len(black), (x, page.height - y - size)
+        loops = tuple(loop * step + corner for loop in pixel_loops(black))
+        page.draw(Surface("", loops, "#000000", "none", width_pt=0.0))
         # Its number is beyond its white border, toward the page's middle.
-        upper, away = place[1] + size / 2 < height / 2, margin_mm(size) * 0.92
-        ax.text(
-            place[0] + size / 2, place[1] + size + away if upper else place[1] - away,
-            f"marker {marker_id}", size=8, color=_GREY, ha="center",
-            va="top" if upper else "bottom",
-        )  # fmt: skip
+        upper, away = y + size / 2 < page.height / 2, margin_mm(size) * 0.92
+        below = y + size + away if upper else y - away
+        page.write(x + size / 2, page.height - below, f"marker {marker_id}", 8.0, color="#444444",
+                   ha="center", va="top" if upper else "bottom")  # fmt: skip
     below = places[0, 1] + size + margin_mm(size)
-    lower = height if sheets.single else places[-1, 1] - margin_mm(size)
+    lower = page.height if sheets.single else places[-1, 1] - margin_mm(size)
     middle = below + MIDDLE_MM / 2 if sheets.single else (below + lower) / 2
-    _write_text(ax, _lines(sheets, ids, places, size), (width / 2, middle))
-    return figure
-
-
-def _draw_marker(
-    ax: Axes, black: NDArray[np.bool_], place: NDArray[np.float64], size: float
-) -> None:
-    """Draw the black squares as one area: printers and viewers leave hairlines between squares."""
-    step = size / len(black)
-    squares = [
-        box(x + column * step, y + row * step, x + (column + 1) * step, y + (row + 1) * step)
-        for (x, y) in [place]
-        for row, column in np.argwhere(black)
-    ]
-    area = union_all(squares, grid_size=1e-6)
-    parts = [area] if isinstance(area, Polygon) else list(area.geoms)
-    loops = [
-        np.asarray(ring.coords)[:-1]
-        for part in map(orient, parts)
-        for ring in (part.exterior, *part.interiors)
-    ]
-    ax.add_patch(PathPatch(block_path(loops), facecolor="black", edgecolor="none", linewidth=0))
+    x, top = page.width / 2, page.height - middle + MIDDLE_MM / 2 - 10.0
+    left, right = x - CHECK_LINE_MM / 2, x + CHECK_LINE_MM / 2
+    page.line([(left, top), (right, top)], colour="#000000")
+    for end in (left, right):
+        page.line([(end, top - 2.5), (end, top + 2.5)], colour="#000000")
+    said = f"measure me: {CHECK_LINE_MM:g} mm"
+    page.write(x, top + 1.5, said, 9.0, ha="center", va="bottom", color="black")
+    for i, line in enumerate(_lines(sheets, ids, places, size)):
+        weight = "bold" if i == 0 else "normal"
+        page.write(x - 72.0, top - 8.0 - i * 5.5, line, 9.0, va="center", weight=weight,
+                   color="black")  # fmt: skip
+    return page
 
 
 def _lines(
@@ -132,18 +111,3 @@ def _lines(
         f"Outer corners of the black squares: {across:.1f} mm across, {down:.1f} mm down, "
         f"{np.hypot(across, down):.1f} mm diagonally.",
     ]
-
-
-def _write_text(ax: Axes, lines: Sequence[str], middle: tuple[float, float]) -> None:
-    x, y = middle
-    top = y - MIDDLE_MM / 2 + 10.0
-    left, right = x - CHECK_LINE_MM / 2, x + CHECK_LINE_MM / 2
-    ax.plot([left, right], [top, top], color="black", linewidth=0.5, solid_capstyle="butt")
-    for end in (left, right):
-        ax.plot([end, end], [top - 2.5, top + 2.5], color="black", linewidth=0.5)
-    ax.text(x, top - 1.5, f"measure me: {CHECK_LINE_MM:g} mm", size=9, ha="center", va="bottom")
-    for i, line in enumerate(lines):
-        ax.text(
-            x - 72.0, top + 8.0 + i * _LINE_MM, line, size=9, ha="left", va="center",
-            weight="bold" if i == 0 else "normal",
-        )  # fmt: skip

@@ -1,29 +1,32 @@
-"""The failure mechanism of a wall (Fig. 15)."""
+"""The failure mechanism of a wall (Fig. 15), and in motion as a GIF that loops."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, Normalize, to_hex
-from numpy.typing import NDArray
+from matplotlib.patches import PathPatch
+from PIL import Image, PngImagePlugin
 
-from drystone.drawing.canvas import draw
-from drystone.drawing.drawing import Area, Drawing, Item, Lines, Words, ground
+from drystone.drawing.canvas import block_path, draw
+from drystone.drawing.drawing import Drawable, Drawing, Lines, Surface, Words, ground
 from drystone.drawing.outlines import Loop, Region, regions_box, stands_on_ground, wall_regions
 from drystone.drawing.palette import GREY
+from drystone.drawing.pixels import gif_bytes, palette_of
 from drystone.drawing.wall import size_of
+from drystone.kernels.raster import Floats
 from drystone.model.wall import Labels
 from drystone.statics.model import Direction
 from drystone.statics.result import Mechanism
+from drystone.whole_files import write_whole
 
-Floats = NDArray[np.float64]
-
-LARGEST_SHARE = 0.12
-"""Largest displacement in the picture over the height of the wall."""
-
+LARGEST_SHARE = 0.12  # largest displacement in the picture over the height of the wall
 LARGEST_TURN = 0.35
 """Largest angle in the picture, rad: a small stone that turns alone must not spin."""
 
@@ -35,7 +38,7 @@ light enough for outlines to show."""
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class MechanismMotion:
     """The blocks of a wall on their way from rest to the picture of a mechanism.
 
     `displacement` is to the right, up, and the angle (rad, counter-clockwise) at the centroid of
@@ -71,7 +74,7 @@ class Motion:
         return tuple((float(x), float(y)) for x, y in moved)
 
 
-def motion_of(wall: Labels | Mapping[int, Loop], mechanism: Mechanism) -> Motion:
+def motion_of(wall: Labels | Mapping[int, Loop], mechanism: Mechanism) -> MechanismMotion:
     """Scale a mechanism of a wall, a label image or polygons, for pictures.
 
     No point moves by more than `LARGEST_SHARE` of the wall's height (or of a fifth of its length,
@@ -92,9 +95,11 @@ def motion_of(wall: Labels | Mapping[int, Loop], mechanism: Mechanism) -> Motion
         fastest = max(fastest, float(speed.max()))
     turning = float(np.abs(velocities[:, 2]).max(initial=0.0))
     if fastest == 0.0:
-        return Motion(regions, velocities)
+        return MechanismMotion(regions, velocities)
     factor = largest / fastest
-    return Motion(regions, velocities * min(factor, LARGEST_TURN / turning if turning else factor))
+    return MechanismMotion(
+        regions, velocities * min(factor, LARGEST_TURN / turning if turning else factor)
+    )
 
 
 def plot_mechanism(
@@ -109,9 +114,9 @@ def plot_mechanism(
 ) -> Axes:
     """Draw how a wall fails: every block moved by its velocity, coloured by displacement (Fig. 15).
 
-    Blocks turn about their centres of rotation and keep their size (see :class:`Motion`); the
-    largest displacement in the picture is some 12 % of the wall's height.  Thin grey lines show
-    the wall before.  Blocks without a velocity stay where they are.
+    Blocks turn about their centres of rotation and keep their size; the largest displacement in
+    the picture is some 12 % of the wall's height.  Thin grey lines show the wall before.  Blocks
+    without a velocity stay where they are.
 
     Parameters
     ----------
@@ -149,7 +154,7 @@ def plot_mechanism(
     pad = 0.02 * (x1 - x0)
     depth = 0.035 * max(y1 - y0, 0.2 * (x1 - x0))
     box = (x0 - pad, y0 - depth, x1 + pad, y1 + 3.5 * depth)
-    items: list[Item] = []
+    items: list[Drawable] = []
     if stands_on_ground(motion.regions):
         items += ground((box[0], -depth, box[2], 0.0))
     items += _blocks(motion, moved, numbers=numbers)
@@ -177,19 +182,21 @@ def plot_mechanism(
     return ax
 
 
-def _blocks(motion: Motion, moved: tuple[tuple[Loop, ...], ...], *, numbers: bool) -> list[Item]:
+def _blocks(
+    motion: MechanismMotion, moved: tuple[tuple[Loop, ...], ...], *, numbers: bool
+) -> list[Drawable]:
     share, centroids = motion.share, motion.centroids(1.0)
-    items: list[Item] = []
+    items: list[Drawable] = []
     # The blocks that move most are drawn last: dilatancy opens joints, rounding may close some.
     for index in np.argsort(share, kind="stable"):
         fill, number = to_hex(COLOURS(float(share[index]))), motion.regions[index].id
-        area = Area(f"moved-{number}", moved[index], fill)
+        area = Surface(f"moved-{number}", moved[index], fill)
         items.append(area)
         if numbers:
             at = centroids[index]
             items.append(Words(f"number-{number}", str(number), at, area.room, fill))
     items += [
-        Area(f"before-{region.id}", region.loops, line=GREY, width_pt=0.5, z=2.0)
+        Surface(f"before-{region.id}", region.loops, line=GREY, width_pt=0.5, z=2.0)
         for region in motion.regions
     ]
     return items
@@ -221,3 +228,74 @@ def _draw_scale(ax: Axes) -> None:
     bar.set_label("displacement / largest", size=7)
     bar.ax.tick_params(labelsize=7, length=2, width=0.5)
     bar.outline.set_linewidth(0.5)
+
+
+FRAME_MS = 80  # how long a frame is shown
+LONGER_SIDE_PX = 640  # width or height of a frame, the longer one, about
+GREY_COUNT, COLOUR_COUNT = 8, 32
+
+
+def mechanism_frames(
+    wall: Labels | Mapping[int, Loop],
+    mechanism: Mechanism,
+    direction: Direction | None,
+    alpha: float | None = None,
+    *,
+    frames: int = 24,
+    load: str = "",
+    numbers: bool = False,
+) -> tuple[Image.Image, ...]:
+    """Draw a mechanism from rest to the largest displacement of its picture and back.
+
+    Parameters as for :func:`plot_mechanism`.  There are at least 2 frames, RGB and of one size; the
+    motion slows down at both ends, and the last frame leads to the first.
+    """
+    if frames < 2:
+        raise ValueError(f"an animation has at least 2 frames, not {frames}")
+    ax = plot_mechanism(wall, mechanism, direction, alpha, load=load, numbers=numbers)
+    figure, motion = ax.figure.get_figure(root=True), motion_of(wall, mechanism)
+    box = figure.get_tightbbox().padded(0.08)
+    dpi = LONGER_SIDE_PX / max(box.width, box.height)
+    drawn: list[Image.Image] = []
+    for step in range(frames // 2 + 1):
+        _move(ax, motion, (1.0 - np.cos(2.0 * np.pi * step / frames)) / 2.0)
+        with BytesIO() as file:
+            figure.savefig(file, format="png", dpi=dpi, bbox_inches=box, facecolor="white")
+            file.seek(0)
+            drawn.append(PngImagePlugin.PngImageFile(file).convert("RGB"))
+    return tuple(drawn[min(step, frames - step)] for step in range(frames))
+
+
+def save_mechanism_animation(
+    path: str | Path,
+    wall: Labels | Mapping[int, Loop],
+    mechanism: Mechanism,
+    direction: Direction | None,
+    alpha: float | None = None,
+    *,
+    frames: int = 24,
+    **options: Any,
+) -> None:
+    """Write :func:`mechanism_frames` as a GIF that loops, without a date in the file.
+
+    Another ending than ".gif" is a ValueError; E206 when the file cannot be written.
+    """
+    if Path(path).suffix.lower() != ".gif":
+        raise ValueError(f"{path}: animations end in .gif")
+    pictures = mechanism_frames(wall, mechanism, direction, alpha, frames=frames, **options)
+    # The same few for every GIF: greys, and the colours of the displacements.
+    greys = np.linspace(0.0, 1.0, GREY_COUNT)[:, None].repeat(3, axis=1)
+    few = palette_of(np.vstack((greys, COLOURS(np.linspace(0.0, 1.0, COLOUR_COUNT))[:, :3])))
+    write_whole(Path(path), gif_bytes(pictures, few, FRAME_MS))
+
+
+def _move(ax: Axes, motion: MechanismMotion, amplitude: float) -> None:
+    """Put the blocks and their numbers where they are after a share of the motion."""
+    blocks = {patch.get_gid(): patch for patch in ax.patches if isinstance(patch, PathPatch)}
+    numbers = {text.get_gid(): text for text in ax.texts}
+    moved, centroids = motion.at(amplitude), motion.centroids(amplitude)
+    for region, loops, centroid in zip(motion.regions, moved, centroids, strict=True):
+        blocks[f"moved-{region.id}"].set_path(block_path(loops))
+        number = numbers.get(f"number-{region.id}")
+        if number is not None:
+            number.set_position(centroid)

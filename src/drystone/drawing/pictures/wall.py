@@ -6,22 +6,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from drystone.drawing.canvas import add, draw, fit_axes
-from drystone.drawing.drawing import Area
+from drystone.drawing.drawing import Surface
 from drystone.drawing.outlines import Loop
 from drystone.drawing.palette import CLUSTER_COLOURS
 from drystone.drawing.wall import drawing_of_wall
 from drystone.model.wall import Wall
 
 COLUMNS = 3
-PANEL_IN = 3.2
-"""Width of the picture of a wall to choose."""
-
-AXES = (("F_SF", "F_LR"), ("F_AV", "F_AH"))
-"""What is drawn against what."""
-
+PANEL_IN = 3.2  # width of the picture of a wall to choose
+AXES = (("F_SF", "F_LR"), ("F_AV", "F_AH"))  # what is drawn against what
 DIGITS = {"F_SF": 3, "F_AV": 1, "F_AH": 2, "F_LR": 2}
 
-Figures = Mapping[str, float | None]
+WallFigures = Mapping[str, float | None]
 
 
 def plot_wall(
@@ -58,20 +54,10 @@ def plot_wall(
     return draw(drawing_of_wall(wall, clusters, outlines, title), ax)
 
 
-def plot_choice(walls: Sequence[Wall], figures: Sequence[Figures]) -> Figure:
+def plot_choice(walls: Sequence[Wall], figures: Sequence[WallFigures]) -> Figure:
     """Draw walls with their figures of merit, numbered from 1, and these against each other.
 
-    Parameters
-    ----------
-    walls : sequence of Wall
-        At least one, all of one size.
-    figures : sequence of mapping of str to float or None
-        F_SF, F_AV, F_AH and F_LR of each.
-
-    Returns
-    -------
-    figure : Figure
-        Its axes are those of the walls, then F_LR over F_SF and F_AH over F_AV.
+    The walls are of one size; F_LR is drawn over F_SF and F_AH over F_AV.
     """
     rows = -(-len(walls) // COLUMNS)
     site = walls[0].site
@@ -84,7 +70,7 @@ def plot_choice(walls: Sequence[Wall], figures: Sequence[Figures]) -> Figure:
         drawing = drawing_of_wall(wall)
         x0, _, x1, y1 = drawing.box
         fit_axes(ax, (x0, -0.01 * y1, x1, y1)).set_axis_off()
-        areas = [item for item in drawing.items if isinstance(item, Area) and not item.hatch]
+        areas = [item for item in drawing.items if isinstance(item, Surface) and not item.hatch]
         add(ax, areas)
         words = "  ".join(
             f"{name} {'-' if values[name] is None else format(values[name], f'.{count}f')}"
@@ -98,7 +84,7 @@ def plot_choice(walls: Sequence[Wall], figures: Sequence[Figures]) -> Figure:
     return figure
 
 
-def _draw_figures(ax: Axes, figures: Sequence[Figures], across: str, up: str) -> None:
+def _draw_figures(ax: Axes, figures: Sequence[WallFigures], across: str, up: str) -> None:
     for number, values in enumerate(figures, 1):
         x, y = values[across], values[up]
         if x is None or y is None:

@@ -7,11 +7,9 @@ from typing import Literal
 from drystone.drawing.assembly.read import scaled, scaled_resistance
 from drystone.drawing.files import save
 from drystone.drawing.outlines import Loop, wall_regions
-from drystone.drawing.pictures.animation import save_mechanism_animation
-from drystone.drawing.pictures.contacts import plot_contacts
-from drystone.drawing.pictures.forces import plot_forces
-from drystone.drawing.pictures.friction import plot_friction
-from drystone.drawing.pictures.mechanism import plot_mechanism
+from drystone.drawing.pictures.curves import plot_friction
+from drystone.drawing.pictures.forces import plot_contacts, plot_forces
+from drystone.drawing.pictures.mechanism import plot_mechanism, save_mechanism_animation
 from drystone.drawing.report.html import write_report
 from drystone.drawing.report.viewer_data import view_of_wall
 from drystone.drawing.words import content
@@ -54,23 +52,13 @@ def write_analysis(
          f"right {content.number(at.alpha_right)}")
         for at in curve
     ]  # fmt: skip
+    rows = [*_full_names(card.rows()), *friction]
+    cite = CITATION.format(version=card.version, sha256=card.sha256)
     view = view_of_wall(
-        shapes,
-        model,
-        resistance,
-        title="Limit analysis of a wall",
-        unit=unit,
-        noun=wall.noun,
-        wedges=wall.wedge_ids,
-        cards=_cards(card),
-        inputs=[
-            *_full_names(card.rows()),
-            *friction,
-            ("cite", CITATION.format(version=card.version, sha256=card.sha256)),
-        ],
-        notices=wall.notices,
-        load_case=card.load_case,
-    )
+        shapes, model, resistance, title="Limit analysis of a wall", unit=unit, noun=wall.noun,
+        wedges=wall.wedge_ids, cards=_cards(card), inputs=[*rows, ("cite", cite)],
+        notices=wall.notices, load_case=card.load_case,
+    )  # fmt: skip
     return write_report(path, view, pictures=path.parent)
 
 
@@ -96,28 +84,36 @@ def _full_names(rows: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
             yield name, value
 
 
-def _cards(card: Card) -> Iterator[content.Card]:
+def _cards(card: Card) -> Iterator[content.ResultCard]:
     """Yield what the strength of the associative analysis does not say."""
-    if card.nonassociative is None:
-        return
-    for result in (card.nonassociative.left, card.nonassociative.right):
-        yield content.Card(
-            f"{content.ALPHA} {result.direction}",
-            f"Without dilatancy, to the {result.direction}",
-            content.number(result.alpha),
-            "higher",
-            f"Joints slide without opening (Coulomb). {result.message}",
-        )
+    both = card.nonassociative
+    for result in () if both is None else (both.left, both.right):
+        side, value = result.direction, content.number(result.alpha)
+        said = f"Joints slide without opening (Coulomb). {result.message}"
+        name = f"Without dilatancy, to the {side}"
+        yield content.ResultCard(f"{content.ALPHA} {side}", name, value, "higher", said)
 
 
 def draw_analysis(
     paths: list[Path], wall: ModelledWall, loads: Loads, ends: Sequence[LimitResult]
 ) -> None:
     """Draw the contacts, and forces, mechanism and its motion for both ends, left first."""
-    contacts, *others = paths
-    save(plot_contacts(wall.shapes, wall.model).figure, contacts)
-    for end, files in zip(ends, (others[:3], others[3:]), strict=True):
-        _draw_direction(files, wall, loads, end)
+    save(plot_contacts(wall.shapes, wall.model).figure, paths[0])
+    for end, files in zip(ends, (paths[1:4], paths[4:]), strict=True):
+        for path in files:
+            # One that an earlier run left would belong to another wall.
+            path.unlink(missing_ok=True)
+        mechanism, forces, motion = files
+        if end.forces is not None:
+            save(plot_forces(wall.shapes, wall.model, end.forces).figure, forces)
+        if end.mechanism is None:
+            continue
+        falls = end.status is LimitStatus.UNSTABLE
+        load = "" if falls or loads.name.startswith("tilting table") else loads.name.split(" (")[0]
+        moving = (wall.shapes, end.mechanism, None if falls else end.direction, end.alpha)
+        # The card names blocks by their ids.
+        save(plot_mechanism(*moving, load=load, numbers=True).figure, mechanism)
+        save_mechanism_animation(motion, *moving, load=load, numbers=True)
 
 
 def draw_friction(folder: Path, model: RigidBlockModel, loads: Loads) -> tuple[AtFriction, ...]:
@@ -126,23 +122,3 @@ def draw_friction(folder: Path, model: RigidBlockModel, loads: Loads) -> tuple[A
     axes = plot_friction(curve, model.mu, slides_at_mu=loads.name == content.TILTING)
     save(axes.figure, folder / FRICTION)
     return curve
-
-
-def _draw_direction(
-    files: list[Path], wall: ModelledWall, loads: Loads, result: LimitResult
-) -> None:
-    for path in files:
-        # One that an earlier run left would belong to another wall.
-        path.unlink(missing_ok=True)
-    mechanism, forces, motion = files
-    if result.forces is not None:
-        save(plot_forces(wall.shapes, wall.model, result.forces).figure, forces)
-    if result.mechanism is None:
-        return
-    falls = result.status is LimitStatus.UNSTABLE
-    direction = None if falls else result.direction
-    load = "" if falls or loads.name.startswith("tilting table") else loads.name.split(" (")[0]
-    moving = (wall.shapes, result.mechanism, direction, result.alpha)
-    # The card names blocks by their ids.
-    save(plot_mechanism(*moving, load=load, numbers=True).figure, mechanism)
-    save_mechanism_animation(motion, *moving, load=load, numbers=True)

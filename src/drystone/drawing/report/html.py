@@ -12,7 +12,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from drystone.drawing.files import MECHANISMS, PICTURE
-from drystone.drawing.report.viewer_data import View
+from drystone.drawing.report.viewer_data import ViewerData
 from drystone.drawing.words import content
 from drystone.whole_files import write_whole
 
@@ -22,7 +22,7 @@ POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-s
 """The browser itself keeps a page with this from asking any host for anything."""
 
 
-def write_report(path: str | Path, view: View, *, pictures: str | Path | None = None) -> Path:
+def write_report(path: str | Path, view: ViewerData, *, pictures: str | Path | None = None) -> Path:
     """Write report.html: inputs, results with their meaning, the viewer, steps, settings (§2).
 
     The file needs no network and no other file: data, script and pictures are inside it.  Without
@@ -65,7 +65,7 @@ def write_report(path: str | Path, view: View, *, pictures: str | Path | None = 
     return path
 
 
-def viewer_page(view: View, options: Mapping[str, Any] | None = None) -> str:
+def viewer_page(view: ViewerData, options: Mapping[str, Any] | None = None) -> str:
     """Return a page with the viewer and nothing else.
 
     Options are those of the viewer's ``mount``: ``chart``, ``metrics``, ``about``, ``title``,
@@ -75,29 +75,25 @@ def viewer_page(view: View, options: Mapping[str, Any] | None = None) -> str:
     return _rendered("viewer_page.html", view, title=view["title"], options=chosen)
 
 
-def viewer_frame(view: View, options: Mapping[str, Any] | None = None) -> str:
+def viewer_frame(view: ViewerData) -> str:
     """Return an element, in one line, that shows the viewer in a page of others: a notebook.
 
     The page in the frame has its own styles, and is as high as it needs to be.
     """
-    page = html.escape(viewer_page(view, options)).replace("\n", "&#10;")
+    page = html.escape(viewer_page(view)).replace("\n", "&#10;")
     title = html.escape(str(view["title"]))
     look = "width:100%;height:640px;border:0;color-scheme:normal"
     return f'<iframe title="{title}" style="{look}" srcdoc="{page}"></iframe>'
 
 
-def _rendered(template: str, wall: View, **more: Any) -> str:
+def _rendered(template: str, wall: ViewerData, **more: Any) -> str:
     loader = FileSystemLoader(HERE)
     templates = Environment(
         loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True,
         lstrip_blocks=True,
     )  # fmt: skip
     return templates.get_template(template).render(
-        policy=POLICY,
-        data=json_in_html(wall),
-        script=viewer_script(),
-        style=viewer_style(),
-        **more,
+        policy=POLICY, data=json_in_html(wall), script=viewer_script(), style=viewer_style(), **more
     )
 
 
@@ -122,12 +118,6 @@ def viewer_style() -> Markup:
 
 
 def json_in_html(data: Any) -> Markup:
-    r"""Write JSON for a script element: nothing in it can end the element.
-
-    Examples
-    --------
-    >>> print(json_in_html({"path": "</script><img>"}))
-    {"path":"\u003c/script>\u003cimg>"}
-    """
+    """Write JSON for a script element: nothing in it can end the element."""
     text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
     return Markup(text.replace("<", "\\u003c"))  # noqa: S704

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from drystone.drawing.assembly.read import read_assembly
 from drystone.drawing.report.html import viewer_frame, viewer_page
-from drystone.drawing.report.viewer_data import View, view_of_assembly, view_of_result
+from drystone.drawing.report.viewer_data import ViewerData, view_of_assembly, view_of_result
 from drystone.search.plan_result import PlanResult
 from drystone.whole_files import write_whole
 
@@ -20,7 +20,7 @@ class Shown:
         Plain JSON of the schema "drystone-view/1".
     """
 
-    data: View = field(repr=False)
+    data: ViewerData = field(repr=False)
 
     def _repr_html_(self) -> str:
         return viewer_frame(self.data)

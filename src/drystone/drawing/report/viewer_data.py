@@ -21,11 +21,10 @@ from drystone.drawing.photo import read_photo
 from drystone.drawing.pictures.mechanism import motion_of
 from drystone.drawing.words import content
 from drystone.drawing.words.analysis import ModelledWall
-from drystone.drawing.words.content import number
-from drystone.drawing.words.masons import masons_words
+from drystone.drawing.words.content import masons_words, number
 from drystone.errors import Notice
 from drystone.kernels.polygons import Points
-from drystone.model.plan import StoneStep
+from drystone.model.plan import Point, StoneStep
 from drystone.model.wall import Labels
 from drystone.statics.failing.mechanism import Failure, Noun
 from drystone.statics.model import RigidBlockModel
@@ -36,9 +35,7 @@ if TYPE_CHECKING:
 
 SCHEMA = "drystone-view/1"
 
-View = dict[str, Any]
-"""See docs/viewer.md for its keys."""
-
+ViewerData = dict[str, Any]  # see docs/viewer.md for its keys
 FORCES = (
     "Forces at the limit loads are those of the analysis; those under {} alone are one of "
     "many possible states, mixed of both so that the loads from the side cancel."
@@ -51,22 +48,14 @@ OUTCOMES = {
 PATTERNS = ("none", "rising", "falling", "dots", "level", "upright", "crossed", "grid")
 """Clusters that are apart in their colour only by a little are apart in their pattern."""
 
-Centroids = Mapping[int, tuple[float, float]]
-
 
 def view_of_result(
     result: "PlanResult", *, photo: Path | None = None, notices: Sequence[Notice] | None = None
-) -> View:
-    """Show a plan that was just made.
+) -> ViewerData:
+    """Show a plan that was just made; see :func:`view_of_assembly`.
 
-    Parameters
-    ----------
-    result : PlanResult
-        From :func:`drystone.plan_wall`.
-    photo : Path, optional
-        A picture of the stones in the frame of the source image.
-    notices : sequence of Notice, optional
-        Those of reading the stones and of planning; the result's alone when missing.
+    `photo` shows the stones in the frame of the source image; `notices` are those of the result
+    alone when missing.
     """
     return view_of_assembly(
         assembly_of_result(result, photo),
@@ -80,27 +69,16 @@ def view_of_assembly(
     *,
     notices: Sequence[Notice] = (),
     timings: Mapping[str, float] | None = None,
-) -> View:
-    """Show a plan.
+) -> ViewerData:
+    """Show a plan, with what reading stones and planning had to decide, and seconds by part.
 
-    Parameters
-    ----------
-    assembly : Assembly
-        The plan as parts, for example from :func:`drystone.drawing.assembly.read.read_assembly`.
-    notices : sequence of Notice
-        What reading the stones and planning had to decide.
-    timings : mapping of str to float, optional
-        Seconds of each part of the work.
-
-    Returns
-    -------
-    view : dict
-        Plain JSON; equal arguments give an equal one.
+    Plain JSON; equal arguments give an equal one.
     """
     plan, source = assembly.plan, assembly.plan.source
     digits = part_digits(assembly.size)
     shapes = {part.id: part.corners for part in assembly.parts}
     wedges = frozenset(part.id for part in assembly.wedges)
+    wall = ModelledWall(assembly.model, shapes, "stone", wedges, tuple(notices))
     # The wall as ordered, and all that sticks out of it.
     corners = np.concatenate([[(0.0, 0.0), assembly.size], *shapes.values()])
     return {
@@ -115,19 +93,12 @@ def view_of_assembly(
         "steps": len(plan.steps),
         "parts": _planned_parts(assembly, digits),
         "unused": list(plan.unused),
-        **_of_statics(
-            ModelledWall(assembly.model, shapes, "stone", wedges, tuple(notices)),
-            assembly.resistance,
-            {part.id: part.centroid for part in assembly.parts},
-            digits,
-            timings,
-        ),
+        **_of_statics(wall, assembly.resistance, digits, timings,
+                      {part.id: part.centroid for part in assembly.parts}),
         "index_meanings": dict(content.INDICES),
-        "metrics": _metrics(content.cards(plan), source.get("sha256")),
-        "inputs": [list(pair) for pair in content.inputs(plan)],
-        "settings": [list(pair) for pair in content.flat_settings(plan.settings)],
-        "assumptions": list(content.assumptions(plan)),
-    }
+        **_about(content.cards(plan), source.get("sha256"), content.inputs(plan), plan.settings,
+                 content.assumptions(plan)),
+    }  # fmt: skip
 
 
 def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
@@ -139,14 +110,14 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
     unit: Literal["px", "m", "units"] = "px",
     noun: Noun = "stone",
     wedges: Collection[int] = (),
-    cards: Iterable[content.Card] = (),
+    cards: Iterable[content.ResultCard] = (),
     inputs: Iterable[tuple[str, str]] = (),
     settings: Mapping[str, Any] | None = None,
     notices: Sequence[Notice] = (),
     timings: Mapping[str, float] | None = None,
     load_case: str = content.TILTING,
     assumptions: Sequence[str] | None = None,
-) -> View:
+) -> ViewerData:
     """Show a wall that was not planned: its blocks have ids and no steps.
 
     Parameters
@@ -189,7 +160,9 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
     size = (x1 - x0, y1 - min(y0, 0.0))
     digits = part_digits(size)
     many = f"{len(regions)} {noun}{'' if len(regions) == 1 else 's'}"
-    strength = content.strength_cards(content.Resisted.of(resistance), load_case)
+    strength = content.strength_cards(
+        resistance.value, resistance.left.alpha, resistance.right.alpha, load_case=load_case
+    )
     if assumptions is None:
         assumptions = (*content.wall_assumptions(load_case), *content.model_assumptions(model))
     touching: dict[int, set[int]] = {region.id: set() for region in regions}
@@ -198,17 +171,14 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
         touching.setdefault(face.other, set()).add(face.block)
     parts = [
         _part(
-            region.id,
-            "wedge" if region.id in wedges else "stone",
-            region.loops,
-            region.centroid,
-            digits,
-            number=region.id,
+            region.id, "wedge" if region.id in wedges else "stone", region.loops, region.centroid,
+            digits, number=region.id,
             size=rounded(np.ptp(np.concatenate(region.loops), axis=0), digits),
             neighbours=sorted(touching[region.id]),
         )
         for region in regions
-    ]
+    ]  # fmt: skip
+    shown = ModelledWall(model, wall, noun, frozenset(wedges), tuple(notices))
     return {
         "title": title,
         "unit": unit,
@@ -221,32 +191,34 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
         "steps": 0,
         "parts": parts,
         "unused": [],
-        **_of_statics(
-            ModelledWall(model, wall, noun, frozenset(wedges), tuple(notices)),
-            resistance,
-            {region.id: region.centroid for region in regions},
-            digits,
-            timings,
-            load_case,
-        ),
+        **_of_statics(shown, resistance, digits, timings,
+                      {region.id: region.centroid for region in regions}, load_case),
         "index_meanings": {},
-        "metrics": _metrics((*strength, *cards), None),
+        **_about((*strength, *cards), None, inputs, settings or {}, assumptions),
+    }  # fmt: skip
+
+
+def _about(
+    cards: Iterable[content.ResultCard],
+    sha256: str | None,
+    inputs: Iterable[tuple[str, str]],
+    settings: Mapping[str, Any],
+    assumptions: Sequence[str],
+) -> ViewerData:
+    """Return results with their meaning and what walls of masons have, and what they rest on."""
+    return {
+        "metrics": [
+            {**asdict(card), "masons": masons_words(card.symbol, sha256)} for card in cards
+        ],
         "inputs": [list(pair) for pair in inputs],
-        "settings": [list(pair) for pair in content.flat_settings(settings or {})],
+        "settings": [list(pair) for pair in content.flat_settings(settings)],
         "assumptions": list(assumptions),
     }
-
-
-def _metrics(cards: Iterable[content.Card], sha256: str | None) -> list[Any]:
-    """Return results with their meaning, and what walls of masons have."""
-    return [{**asdict(card), "masons": masons_words(card.symbol, sha256)} for card in cards]
 
 
 def part_digits(size: tuple[float, float]) -> int:
     """Return the digits of lengths at which a hundred-thousandth of a wall is left out.
 
-    Examples
-    --------
     >>> part_digits((280.0, 80.0)), part_digits((1.4, 0.4))
     (2, 4)
     """
@@ -254,7 +226,7 @@ def part_digits(size: tuple[float, float]) -> int:
     return max(0, 4 - int(np.floor(np.log10(longest))))
 
 
-def _planned_parts(assembly: Assembly, digits: int) -> list[View]:
+def _planned_parts(assembly: Assembly, digits: int) -> list[ViewerData]:
     """Return the parts of a plan in the order of its steps."""
     source = assembly.plan.source
     photo = read_photo(assembly) if source.get("width_px") and source.get("height_px") else None
@@ -267,24 +239,13 @@ def _planned_parts(assembly: Assembly, digits: int) -> list[View]:
     for part in assembly.parts:
         step = part.plan_step
         shown = _part(
-            part.id,
-            part.kind,
-            [part.corners],
-            part.centroid,
-            digits,
-            cluster=part.cluster,
-            step=part.step,
-            number=part.step if part.kind == "stone" else None,
-            angle_deg=round(part.angle_deg, 3) + 0.0,
-            size=rounded(part.size, digits),
-            neighbours=list(assembly.neighbours(part.id)),
-            under=part.under,
-            wedges=under.get(part.id, []),
-            words=_words(assembly, part),
-            crop=crops.get(part.id),
-            alpha_left=_short(step.alpha_left),
-            alpha_right=_short(step.alpha_right),
-        )
+            part.id, part.kind, [part.corners], part.centroid, digits, part.cluster,
+            step=part.step, number=part.step if part.kind == "stone" else None,
+            angle_deg=round(part.angle_deg, 3) + 0.0, size=rounded(part.size, digits),
+            neighbours=list(assembly.neighbours(part.id)), under=part.under,
+            wedges=under.get(part.id, []), words=_words(assembly, part), crop=crops.get(part.id),
+            alpha_left=_short(step.alpha_left), alpha_right=_short(step.alpha_right),
+        )  # fmt: skip
         if isinstance(step, StoneStep):
             shown["side"] = step.side
             shown["indices"] = {name: _short(value) for name, value in step.indices.items()}
@@ -297,11 +258,11 @@ def _part(
     part_id: int,
     kind: str,
     loops: Iterable[Points],
-    centroid: tuple[float, float],
+    centroid: Point,
     digits: int,
     cluster: int | None = None,
     **known: Any,
-) -> View:
+) -> ViewerData:
     """Return a stone or wedge; of what was not planned there is no step and no source."""
     colour, pattern = WEDGE_COLOUR if kind == "wedge" else PLAIN_COLOUR, PATTERNS[0]
     if cluster is not None:
@@ -345,8 +306,6 @@ def _words(assembly: Assembly, part: Part) -> str:
 def turned(angle_deg: float) -> str:
     """Say how far something is turned, the shorter way round.
 
-    Examples
-    --------
     >>> turned(-90.04), turned(270.0), turned(0.01)
     ('turned 90.0° clockwise', 'turned 90.0° clockwise', 'not turned')
     """
@@ -359,25 +318,26 @@ def turned(angle_deg: float) -> str:
 def _of_statics(
     wall: ModelledWall,
     resistance: LateralResistance,
-    centroids: Centroids,
     digits: int,
     timings: Mapping[str, float] | None,
+    centroids: Mapping[int, Point],
     load_case: str = content.TILTING,
-) -> View:
+) -> ViewerData:
     ends = (resistance.left, resistance.right)
     failures, dead = wall.failures(ends), content.dead_load(load_case)
+    mechanisms = {
+        end.direction: {
+            **_mechanism(wall, end, failures.get(end.direction), centroids),
+            "load": content.load_words(load_case, end.direction),
+        }
+        for end in ends
+    }
     return {
         "schema": SCHEMA,
         "noun": wall.noun,
         "mu": wall.model.mu,
         "contacts": _contacts(wall.model, _forces_by_case(*ends), failures, digits + 1),
-        "mechanisms": {
-            end.direction: {
-                **_mechanism(wall, end, failures.get(end.direction), centroids),
-                "load": content.load_words(load_case, end.direction),
-            }
-            for end in ends
-        },
+        "mechanisms": mechanisms,
         "dead_load": dead,
         "forces_words": FORCES.format(dead),
         "notices": [asdict(notice) for notice in wall.notices],
@@ -406,7 +366,7 @@ def _contacts(
     cases: Mapping[str, NDArray[np.float64]],
     failures: Mapping[str, Failure],
     digits: int,
-) -> list[View]:
+) -> list[ViewerData]:
     """Return where blocks touch, what the joints carry, and what they do in the mechanisms.
 
     The normal points into the first block of ``between``.  Forces are [normal, tangential] at
@@ -430,8 +390,8 @@ def _contacts(
 
 
 def _mechanism(
-    wall: ModelledWall, end: LimitResult, failure: Failure | None, centroids: Centroids
-) -> View:
+    wall: ModelledWall, end: LimitResult, failure: Failure | None, centroids: Mapping[int, Point]
+) -> ViewerData:
     """Return how the wall fails to one side.
 
     ``velocity`` by id is that of the centroids: to the right, up, turning counter-clockwise, rad.
@@ -440,7 +400,7 @@ def _mechanism(
     said = (OUTCOMES.get(end.status), failure.words if failure else "")
     words = " ".join(filter(None, said))
     alpha = None if end.alpha is None else round(end.alpha, 6) + 0.0
-    found: View = {"status": str(end.status), "alpha": alpha, "words": words}
+    found: ViewerData = {"status": str(end.status), "alpha": alpha, "words": words}
     mechanism = end.mechanism
     if mechanism is None:
         return {**found, "velocity": None, "scale": 0.0}

@@ -5,31 +5,30 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.patches import Arc, FancyArrowPatch, Polygon, Rectangle
+from matplotlib.patches import FancyArrowPatch
 from numpy.typing import ArrayLike, NDArray
 
+from drystone.drawing.canvas import add
+from drystone.drawing.drawing import Drawable, Lines, Surface
 from drystone.drawing.lettering import drawable, fitted
+from drystone.drawing.outlines import rectangle
 from drystone.drawing.palette import GREY, OUTLINE_COLOUR
 
 MM_PER_INCH = 25.4
 PT_PER_MM = 72.0 / MM_PER_INCH
 
 A4_MM = (210.0, 297.0)
-EDGE_MM = 12.0
-"""Of paper that printers do not print on, and a hole punch."""
-
-PAGE_NUMBER_MM = 30.0
-"""Room for it at the right end of the foot."""
-
+EDGE_MM = 12.0  # of paper that printers do not print on, and a hole punch
+PAGE_NUMBER_MM = 30.0  # room for it at the right end of the foot
 SMALL_PT, PLAIN_PT, LARGE_PT = 7.0, 8.5, 12.0
 NOT_TO_SCALE = "NOT TO SCALE"
 
 
-class Page:
-    """One sheet of A4, lying or standing; lengths are mm from its lower left corner."""
+class SheetPage:
+    """One sheet of paper; lengths are mm from its lower left corner."""
 
-    def __init__(self, *, landscape: bool = False) -> None:
-        self.width, self.height = A4_MM[::-1] if landscape else A4_MM
+    def __init__(self, size_mm: tuple[float, float] = A4_MM) -> None:
+        self.width, self.height = size_mm
         inches = (self.width / MM_PER_INCH, self.height / MM_PER_INCH)
         self.figure = Figure(figsize=inches)
         self.ax = self.figure.add_axes((0.0, 0.0, 1.0, 1.0))
@@ -60,23 +59,18 @@ class Page:
         # What users call things is text, also with dollar signs in it.
         self.ax.text(x, y, text, size=size, parse_math=False, **chosen)
 
+    def draw(self, *items: Drawable) -> None:
+        """Draw what has its lengths in mm from the page's corner."""
+        add(self.ax, items)
+
     def line(self, points: ArrayLike, **style: Any) -> None:
         """Draw a line through points, (n, 2)."""
-        chosen = {"color": OUTLINE_COLOUR, "linewidth": 0.5, "solid_capstyle": "butt", **style}
-        self.ax.plot(*np.asarray(points, float).T, **chosen)
-
-    def polygon(self, points: ArrayLike, **style: Any) -> None:
-        """Draw a closed outline, (n, 2)."""
-        chosen = {
-            "facecolor": "none", "edgecolor": OUTLINE_COLOUR, "linewidth": 0.6,
-            "joinstyle": "round", **style,
-        }  # fmt: skip
-        self.ax.add_patch(Polygon(np.asarray(points, float), closed=True, **chosen))
+        chosen = {"name": "", "width_pt": 0.5, "z": 2.0, "layer": "SITE", **style}
+        self.draw(Lines(lines=[np.asarray(points, float)], **chosen))
 
     def box(self, x: float, y: float, width: float, height: float, **style: Any) -> None:
         """Draw a rectangle from its lower left corner."""
-        chosen = {"fill": False, "edgecolor": OUTLINE_COLOUR, "linewidth": 0.6, **style}
-        self.ax.add_patch(Rectangle((x, y), width, height, **chosen))
+        self.draw(Surface(style.pop("name", ""), (rectangle(x, y, width, height),), **style))
 
     def arrow(self, start: Sequence[float], end: Sequence[float], **style: Any) -> None:
         """Draw a line with a head at its end, or of another `arrowstyle`."""
@@ -90,20 +84,16 @@ class Page:
         self, centre: Sequence[float], radius: float, angle_deg: float, colour: str
     ) -> None:
         """Draw an arc from straight up by an angle, counter-clockwise, with a head at its end."""
-        first, last = sorted((90.0, 90.0 + angle_deg))
-        self.ax.add_patch(
-            Arc((centre[0], centre[1]), 2 * radius, 2 * radius, theta1=first, theta2=last,
-                color=colour, linewidth=1.1, zorder=6)
-        )  # fmt: skip
-        end = np.radians(90.0 + angle_deg)
-        out = np.array([np.cos(end), np.sin(end)])
+        turned = np.radians(np.linspace(90.0, 90.0 + angle_deg, 60))
+        arc = np.asarray(centre, float) + radius * np.column_stack([np.cos(turned), np.sin(turned)])
+        out, tip = (arc[-1] - centre) / radius, arc[-1]
         along = np.sign(angle_deg) * np.array([-out[1], out[0]])
-        tip = np.asarray(centre, float) + radius * out
         # As long as an arc has room for.
         size = min(1.8, 0.6 * radius * abs(np.radians(angle_deg)))
         head = [tip + 0.5 * size * along, tip - 0.5 * size * along + 0.4 * size * out,
                 tip - 0.5 * size * along - 0.4 * size * out]  # fmt: skip
-        self.polygon(head, facecolor=colour, edgecolor="none", zorder=6)
+        self.line(arc, colour=colour, width_pt=1.1, z=6.0)
+        self.draw(Surface("", (np.array(head),), colour, "none", z=6.0))
 
     def picture(
         self, image: NDArray[np.uint8], x: float, y: float, width: float, height: float
@@ -124,7 +114,7 @@ class Page:
         self.arrow(start, end, arrowstyle=style, linewidth=0.45)
         for x, y in (start, end):
             ends = [(x - 1.5, y), (x + 1.5, y)] if upright else [(x, y - 1.5), (x, y + 1.5)]
-            self.line(ends, linewidth=0.45)
+            self.line(ends, width_pt=0.45)
         x, y = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
         self.write(
             x, y, text, SMALL_PT, ha="center", va="center", rotation=90 if upright else 0,
@@ -133,11 +123,11 @@ class Page:
 
     def tick_box(self, x: float, y: float, size: float = 4.5) -> None:
         """Draw an empty box for a tick."""
-        self.box(x, y, size, size, linewidth=0.7)
+        self.box(x, y, size, size, width_pt=0.7)
 
     def foot(self, left: str, number: int, count: int) -> None:
         """Write what the page belongs to and its number."""
-        self.line([(EDGE_MM, EDGE_MM - 1.5), (self.right, EDGE_MM - 1.5)], color=GREY)
+        self.line([(EDGE_MM, EDGE_MM - 1.5), (self.right, EDGE_MM - 1.5)], colour=GREY)
         self.write(
             EDGE_MM, EDGE_MM - 5.0, left, SMALL_PT, color="#555555",
             room=self.right - EDGE_MM - PAGE_NUMBER_MM,

@@ -1,34 +1,55 @@
 """build-sheet.pdf: what a mason needs on the scaffold, on A4.
 
-The first page has the wall to scale and the title block.
+The first page has the wall to scale and the title block; then come a line a stone, in order, where
+the stones lie, wedges to cut, and what is left over.
 """
 
 import hashlib
 import json
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from textwrap import wrap
 
-from drystone.drawing.assembly.parts import Assembly
-from drystone.drawing.canvas import add
-from drystone.drawing.drawing import placed
+import numpy as np
+
+from drystone.drawing.assembly.handling import wedges_after
+from drystone.drawing.assembly.parts import Assembly, Part
+from drystone.drawing.drawing import Surface, letters_pt, placed
 from drystone.drawing.export.formats import ExportSettings
-from drystone.drawing.palette import GREY, WEDGE_COLOUR
-from drystone.drawing.photo import Photo
-from drystone.drawing.sheet.lists import list_pages
-from drystone.drawing.sheet.page import EDGE_MM, LARGE_PT, NOT_TO_SCALE, PLAIN_PT, SMALL_PT, Page
-from drystone.drawing.sheet.rows import Rows
-from drystone.drawing.wall import drawing_of_assembly
+from drystone.drawing.palette import GREY, PLAIN_COLOUR, WEDGE_COLOUR
+from drystone.drawing.photo import StonePhoto
+from drystone.drawing.sheet.page import (
+    A4_MM,
+    EDGE_MM,
+    LARGE_PT,
+    NOT_TO_SCALE,
+    PLAIN_PT,
+    PT_PER_MM,
+    SMALL_PT,
+    SheetPage,
+)
+from drystone.drawing.sheet.words import (
+    beside_words,
+    length_words,
+    lowest_corner,
+    shortest_turn,
+    size_words,
+    turn_words,
+    wedge_place,
+    wedge_words,
+)
+from drystone.drawing.wall import FRAME_DASHES, drawing_of_assembly
 from drystone.io.plan_json import plan_to_json
+from drystone.kernels.polygons import Points
+from drystone.model.plan import StoneStep
 
 USUAL_SCALES = (1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 50.0, 100.0, 200.0, 250.0, 500.0, 1000.0)
 
 DRAWING_MM = (297.0 - 2 * EDGE_MM - 18.0, 110.0)
 """Room for the wall itself on the first page; beside it are dimension lines, above it words."""
 
-SCALE_MM = 60.0
-"""Room for the scale at the right end of the head."""
-
-BLOCK_MM = 33.0
-"""Height of the title block."""
+SCALE_MM = 60.0  # room for the scale at the right end of the head
+BLOCK_MM = 33.0  # height of the title block
 
 
 @dataclass(frozen=True)
@@ -58,7 +79,9 @@ def paper_scale(assembly: Assembly, wished: float) -> Scale:
     return Scale(chosen, 1000.0 / chosen)
 
 
-def sheet(assembly: Assembly, settings: ExportSettings, photo: Photo | None) -> list[Page]:
+def sheet(
+    assembly: Assembly, settings: ExportSettings, photo: StonePhoto | None
+) -> list[SheetPage]:
     """Draw the pages: the wall, a line a stone, the fetch list, wedges to cut."""
     source = str(assembly.plan.source.get("path") or "")
     title = settings.title or (f"Build sheet for {source}" if source else "Build sheet")
@@ -76,9 +99,9 @@ def sheet(assembly: Assembly, settings: ExportSettings, photo: Photo | None) -> 
     return pages
 
 
-def _first_page(assembly: Assembly, settings: ExportSettings, title: str, sha256: str) -> Page:
+def _first_page(assembly: Assembly, settings: ExportSettings, title: str, sha256: str) -> SheetPage:
     """Draw the wall with the numbers of the steps, its dimensions and the title block."""
-    page = Page(landscape=True)
+    page = SheetPage(A4_MM[::-1])
     scale = paper_scale(assembly, settings.paper_scale)
     width, height = (side * scale.mm_per_unit for side in assembly.size)
     left = (page.width - width) / 2 + 5.0
@@ -93,10 +116,14 @@ def _first_page(assembly: Assembly, settings: ExportSettings, title: str, sha256
     loud = scale.denominator is None
     page.write(page.right, page.top - 6.0, scale.words, 14.0, ha="right", weight="bold",
                color=WEDGE_COLOUR if loud else "black")  # fmt: skip
-    _earth(page, left, bottom, width)
-    page.box(left, bottom, width, height, edgecolor=GREY, linestyle=(0, (5, 4)), gid="frame")
+    # The ground: a line, and strokes below it.
+    ends = max(EDGE_MM, left - 10.0), min(page.right, left + width + 10.0)
+    page.line([(ends[0], bottom), (ends[1], bottom)], width_pt=1.2, z=4.0)
+    for x in np.arange(ends[0] + 3.0, ends[1] + 1e-9, 3.0):
+        page.line([(x, bottom), (x - 2.5, bottom - 2.5)], colour=GREY)
+    page.box(left, bottom, width, height, name="frame", line=GREY, dashes=FRAME_DASHES)
     blocks = drawing_of_assembly(assembly).layers("STONES", "WEDGES", "NUMBERS")
-    add(page.ax, placed(blocks, scale.mm_per_unit, (left, bottom)))
+    page.draw(*placed(blocks, scale.mm_per_unit, (left, bottom)))
     across, up = (
         f"{side:.2f} m" if assembly.unit == "m" else f"{side:.0f} px" for side in assembly.size
     )
@@ -106,18 +133,8 @@ def _first_page(assembly: Assembly, settings: ExportSettings, title: str, sha256
     return page
 
 
-def _earth(page: Page, left: float, bottom: float, width: float) -> None:
-    """Draw the ground: a line, and strokes below it."""
-    ends = max(EDGE_MM, left - 10.0), min(page.right, left + width + 10.0)
-    page.line([(ends[0], bottom), (ends[1], bottom)], linewidth=1.2, zorder=4)
-    x = ends[0] + 3.0
-    while x <= ends[1]:
-        page.line([(x, bottom), (x - 2.5, bottom - 2.5)], color=GREY, linewidth=0.5)
-        x += 3.0
-
-
 def _title_block(
-    page: Page, assembly: Assembly, settings: ExportSettings, scale: Scale, sha256: str
+    page: SheetPage, assembly: Assembly, settings: ExportSettings, scale: Scale, sha256: str
 ) -> None:
     plan = assembly.plan
     stones, wedges = len(plan.stone_steps), len(plan.wedge_steps)
@@ -140,19 +157,19 @@ def _title_block(
         y = EDGE_MM + BLOCK_MM - (row + 1) * high + 2.0
         for column, (name, value) in enumerate(cells):
             x = EDGE_MM + column * wide
-            page.box(x, y, wide, high, linewidth=0.5)
+            page.box(x, y, wide, high, width_pt=0.5)
             page.write(x + 1.5, y + high - 3.4, name, 6.5, color="#555555")
             page.write(x + 1.5, y + 2.2, value, PLAIN_PT + 1, room=wide - 3.0)
     _ruler(page, EDGE_MM + BLOCK_MM + 7.0, scale)
 
 
-def _ruler(page: Page, y: float, scale: Scale) -> None:
+def _ruler(page: SheetPage, y: float, scale: Scale) -> None:
     """Draw 100 mm, to find out whether a printer has made the page smaller."""
     x = EDGE_MM
-    page.line([(x, y), (x + 100.0, y)], linewidth=0.8, gid="ruler")
+    page.line([(x, y), (x + 100.0, y)], width_pt=0.8)
     for step in range(11):
         tick = 2.5 if step % 5 == 0 else 1.4
-        page.line([(x + 10.0 * step, y), (x + 10.0 * step, y + tick)], linewidth=0.5)
+        page.line([(x + 10.0 * step, y), (x + 10.0 * step, y + tick)])
     said = "100 mm on paper: print at 100 %"
     if scale.denominator is not None:
         said += f"; {scale.denominator / 10:g} m of wall"
@@ -162,3 +179,356 @@ def _ruler(page: Page, y: float, scale: Scale) -> None:
             page.right, y - 0.5, "The size of a px is not known: all lengths are in px.",
             LARGE_PT - 2, ha="right", color=WEDGE_COLOUR,
         )  # fmt: skip
+
+
+ROW_MM = 27.0
+HEAD_MM = 19.0
+NUMBER, PICTURE, TURN, WHERE, BESIDE = 12.0, 31.0, 63.0, 120.0, 148.0
+"""Where the columns begin, mm from the left edge of the page."""
+
+PICTURE_MM = (30.0, 23.0)
+STONE_MM = 22.0  # the largest stone of the wall, turned any way, is drawn this large
+WORDS = 28  # letters in a line of the last column
+SEEN_DEG = 15.0  # smaller turns have no arrow: it would be a dot
+TURN_COLOUR = "#0072b2"
+CROP_SPARE = 0.14  # of the size of a stone, around it in its picture
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """What all lines of a build sheet have in common."""
+
+    assembly: Assembly
+    photo: StonePhoto | None
+
+    def pages(self) -> list[SheetPage]:
+        """Return the pages; the drawings that show how to turn a stone are all to one scale."""
+        stones = list(self.assembly.stones)
+        count = int((A4_MM[1] - 2 * EDGE_MM - HEAD_MM) // ROW_MM)
+        spans = [float(np.hypot(*np.ptp(part.corners, axis=0))) for part in stones]
+        scale = STONE_MM / max(spans, default=1.0)
+        return [
+            self._page(stones[first : first + count], scale)
+            for first in range(0, len(stones), count)
+        ]
+
+    def _page(self, stones: Sequence[Part], scale: float) -> SheetPage:
+        page = SheetPage()
+        last = max(step for part in stones for step in
+                   (part.step, *(w.step for w in wedges_after(self.assembly, part))))  # fmt: skip
+        head = f"Steps {stones[0].step} to {last}"
+        page.write(EDGE_MM, page.top - 4.5, head, 13.0, weight="bold")
+        page.write(
+            page.right, page.top - 4.5,
+            "seen from the front; a mark on top of the stone as it lies shows how it turns",
+            SMALL_PT, ha="right", color="#555555",
+        )  # fmt: skip
+        top = page.top - HEAD_MM + 8.0
+        taken = "in the photo" if self.photo else "as it lies"
+        for x, name in ((NUMBER, "step"), (PICTURE, taken), (TURN, "how to turn it"),
+                        (WHERE, "where"), (BESIDE, "rests on, beside")):  # fmt: skip
+            page.write(x, top, name, SMALL_PT, weight="bold")
+        for row, meaning in enumerate(
+            ("\N{RIGHTWARDS ARROW} from the left end", "\N{UPWARDS ARROW} above the ground")
+        ):
+            page.write(WHERE, top - 3.1 * (row + 1), meaning, 6.0, color="#555555")
+        for row, part in enumerate(stones):
+            y = page.top - HEAD_MM - (row + 1) * ROW_MM
+            page.line([(EDGE_MM, y + ROW_MM), (page.right, y + ROW_MM)], colour=GREY)
+            page.write(NUMBER, y + ROW_MM - 9.5, str(part.step), 19.0, weight="bold")
+            page.write(NUMBER, y + ROW_MM - 14.0, f"stone {part.id}", SMALL_PT, color="#555555")
+            page.tick_box(NUMBER, y + 4.0)
+            self._picture(page, part, y)
+            self._turn(page, part, y, scale)
+            self._words(page, part, y)
+        page.line([(EDGE_MM, y), (page.right, y)], colour=GREY)
+        return page
+
+    def _picture(self, page: SheetPage, part: Part, y: float) -> None:
+        """Draw a stone as it lies, with what is around it in the photograph."""
+        outline = self.assembly.source_corners(part)
+        low, high = outline.min(axis=0), outline.max(axis=0)
+        spare = CROP_SPARE * float((high - low).max())
+        middle, half = (low + high) / 2, (high - low) / 2 + spare
+        scale = min(PICTURE_MM[0] / (2 * half[0]), PICTURE_MM[1] / (2 * half[1]))
+        at = np.array([PICTURE + PICTURE_MM[0] / 2, y + ROW_MM / 2])
+        if self.photo is not None:
+            (x0, y0), (x1, y1) = (middle - half).tolist(), (middle + half).tolist()
+            (left, bottom), (wide, high) = (at - half * scale).tolist(), (2 * half * scale).tolist()
+            page.picture(self.photo.crop((x0, y0, x1, y1)), left, bottom, wide, high)
+        shape = Surface("", ((outline - middle) * scale + at,), PLAIN_COLOUR, z=3.0)
+        over = replace(shape, fill="none", line=WEDGE_COLOUR, width_pt=0.9)
+        page.draw(over if self.photo else shape)
+
+    def _turn(self, page: SheetPage, part: Part, y: float, scale: float) -> None:
+        """Draw how a stone lies beside how it is in the wall."""
+        angle, middle = shortest_turn(part.angle_deg), y + ROW_MM / 2 + 2.2
+        lying, standing = (TURN + 12.5, middle), (TURN + 39.5, middle)
+        own = part.own_corners * scale
+        placed = (part.corners - np.array(part.centroid)) * scale
+        page.draw(
+            Surface("", (own + lying,), "#f4f1ec", GREY),
+            Surface("", (placed + standing,), PLAIN_COLOUR),
+        )
+        reach = _reach_up(own)
+        for centre, turned in ((lying, 0.0), (standing, angle)):
+            up = np.radians(90.0 + turned)
+            out = np.array([np.cos(up), np.sin(up)])
+            mark = [centre + 0.62 * reach * out, centre + reach * out]
+            page.line(mark, colour=TURN_COLOUR, width_pt=2.2, z=5.0)
+        if abs(angle) >= SEEN_DEG:
+            radius = min(4.5, 0.55 * reach)
+            page.turn_arrow(lying, radius, angle, TURN_COLOUR)
+        page.arrow((TURN + 24.0, middle), (TURN + 28.0, middle))
+        page.write(
+            TURN + 26.0, y + 1.6, turn_words(angle), PLAIN_PT + 1, ha="center", weight="bold"
+        )
+
+    def _words(self, page: SheetPage, part: Part, y: float) -> None:
+        corner, top = lowest_corner(part), y + ROW_MM - 5.0
+        for row, (name, point) in enumerate((("middle", part.centroid), ("lowest corner", corner))):
+            at = top - 11.0 * row
+            page.write(WHERE, at, name, SMALL_PT, color="#555555")
+            # The grip of a rule: how far from the left end, then how high.
+            for line, (sign, length) in enumerate(
+                (("\N{RIGHTWARDS ARROW}", point[0]), ("\N{UPWARDS ARROW}", point[1]))
+            ):
+                said = f"{sign} {length_words(self.assembly, length)}"
+                page.write(WHERE, at - 3.7 * (line + 1), said, PLAIN_PT)
+        lines = wrap(beside_words(self.assembly, part), WORDS)
+        told = [(line, "black") for line in lines]
+        for wedge in wedges_after(self.assembly, part):
+            told += [
+                (line, WEDGE_COLOUR) for line in wrap(wedge_words(self.assembly, wedge), WORDS)
+            ]
+        # Lines come closer where there are many, such as three wedges.
+        pitch = min(3.9, (ROW_MM - 4.0) / max(len(told), 1))
+        size = min(PLAIN_PT, 2.15 * pitch)
+        for place, (words, colour) in enumerate(told):
+            page.write(BESIDE, top - pitch * place, words, size, color=colour)
+
+
+def _reach_up(outline: Points) -> float:
+    """Return how far an outline reaches straight up from the origin."""
+    following = np.roll(outline, -1, axis=0)
+    crossing = (outline[:, 0] <= 0.0) != (following[:, 0] <= 0.0)
+    (x0, y0), (x1, y1) = outline[crossing].T, following[crossing].T
+    heights = y0 - x0 * (y1 - y0) / (x1 - x0)
+    return float(heights.max(initial=1.0))
+
+
+MAP_MM = (186.0, 96.0)
+LINE_MM = 5.6
+COLUMNS = 2
+GAP_MM = 8.0
+
+CARD_MM = (62.0, 45.0)  # room for a wedge to cut; its drawing is at most as large as `SHAPE_MM`
+SHAPE_MM = (44.0, 25.0)
+CARDS_ACROSS, WEDGE_HEAD_MM = 3, 13.0
+LEFT_OVER_LINES = 3
+USUAL_FACTORS = (10.0, 5.0, 2.0, 1.0, 1 / 2, 1 / 5, 1 / 10, 1 / 20, 1 / 50, 1 / 100)
+SMALLEST_MM = 8.0  # wedges smaller than this are drawn larger than they are
+
+
+def in_photo_order(assembly: Assembly) -> list[Part]:
+    """Return the stones as they lie: rows of the photograph from the top, each from the left.
+
+    A row ends where the next stone lies lower than the first of the row by more than half of the
+    usual height of a stone.
+    """
+    waiting = sorted(assembly.stones, key=lambda part: -_place(part)[1])
+    heights = [part.size[1] * assembly.px_per_unit for part in waiting]
+    half = 0.5 * float(np.median(heights)) if heights else 0.0
+    rows: list[list[Part]] = []
+    for part in waiting:
+        if rows and _place(rows[-1][0])[1] - _place(part)[1] <= half:
+            rows[-1].append(part)
+        else:
+            rows.append([part])
+    return [part for row in rows for part in sorted(row, key=lambda part: _place(part)[0])]
+
+
+def list_pages(assembly: Assembly) -> list[SheetPage]:
+    """Draw where the stones lie, list them, and draw the wedges to cut.
+
+    The wedges are below the list when all of them have room there, else on pages of their own.
+    """
+    pages, foot = _fetch_pages(assembly)
+    wedges = list(assembly.wedges)
+    if wedges and _wedge_room(foot) >= len(wedges):
+        _draw_wedges(pages[-1], assembly, wedges, foot)
+        return pages
+    while wedges:
+        page = SheetPage()
+        count = _wedge_room(page.top)
+        _draw_wedges(page, assembly, wedges[:count], page.top)
+        pages.append(page)
+        wedges = wedges[count:]
+    return pages
+
+
+def _fetch_pages(assembly: Assembly) -> tuple[list[SheetPage], float]:
+    """Return pages with the stones in the order in which one walks past them, and their foot."""
+    stones, pages, foot = in_photo_order(assembly), list[SheetPage](), 0.0
+    while stones or not pages:
+        page = SheetPage()
+        page.write(EDGE_MM, page.top - 4.5, "Fetch list", 13.0, weight="bold")
+        top = page.top - 11.0
+        if not pages:
+            page.write(
+                EDGE_MM, top,
+                "The stones as they lie in the picture that they were found in, from the top "
+                "left. Chalk on each the number of its step.", PLAIN_PT,
+            )  # fmt: skip
+            top = _map(page, assembly, top - 4.0) - 8.0
+        rows = int((top - EDGE_MM - 20.0) // LINE_MM)
+        here, stones = stones[: COLUMNS * rows], stones[COLUMNS * rows :]
+        # Columns of the same length, when there is room.
+        rows = min(rows, -(-len(here) // COLUMNS))
+        wide = (page.right - EDGE_MM - GAP_MM * (COLUMNS - 1)) / COLUMNS
+        for column in range(COLUMNS):
+            _list(page, assembly, here[column * rows : (column + 1) * rows],
+                  (EDGE_MM + column * (wide + GAP_MM), top), wide)  # fmt: skip
+        foot = top - (rows + 1) * LINE_MM - 3.0
+        if not stones:
+            foot = _left_over(page, assembly, foot)
+        pages.append(page)
+    return pages, foot
+
+
+def _wedge_room(top: float) -> int:
+    return CARDS_ACROSS * max(0, int((top - WEDGE_HEAD_MM - EDGE_MM) // CARD_MM[1]))
+
+
+def _draw_wedges(page: SheetPage, assembly: Assembly, wedges: Sequence[Part], top: float) -> None:
+    page.write(EDGE_MM, top - 4.5, "Wedges to cut", 13.0, weight="bold")
+    said = (
+        "Each at the scale that stands below it, as it is seen from the front; mm."
+        if assembly.unit == "m" else f"{NOT_TO_SCALE}: each as large as there is room; px."
+    )  # fmt: skip
+    page.write(EDGE_MM, top - 10.5, said, PLAIN_PT)
+    for place, wedge in enumerate(wedges):
+        row, column = divmod(place, CARDS_ACROSS)
+        corner = (EDGE_MM + column * CARD_MM[0], top - WEDGE_HEAD_MM - (row + 1) * CARD_MM[1])
+        _card(page, assembly, wedge, corner)
+
+
+def drawn_factor(assembly: Assembly, wedge: Part) -> float:
+    """Return mm on paper for a mm of a wedge (for a px without a scale): 1, or a usual factor."""
+    width, height = (float(side) for side in np.ptp(wedge.corners, axis=0))
+    if assembly.unit != "m":
+        return min(SHAPE_MM[0] / width, SHAPE_MM[1] / height)
+    width, height = 1000.0 * width, 1000.0 * height
+    if width <= SHAPE_MM[0] and height <= SHAPE_MM[1] and max(width, height) >= SMALLEST_MM:
+        return 1.0
+    fitting = [f for f in USUAL_FACTORS if f * width <= SHAPE_MM[0] and f * height <= SHAPE_MM[1]]
+    return fitting[0] if fitting else min(SHAPE_MM[0] / width, SHAPE_MM[1] / height)
+
+
+def _place(part: Part) -> tuple[float, float]:
+    step = part.plan_step
+    return step.source_centroid if isinstance(step, StoneStep) else (0.0, 0.0)
+
+
+def _map(page: SheetPage, assembly: Assembly, top: float) -> float:
+    """Draw the photograph's frame with the outlines and steps of the stones; return its foot."""
+    outlines = {part.step: assembly.source_corners(part) for part in assembly.stones}
+    reach = np.concatenate([*outlines.values(), [[1.0, 1.0]]]).max(axis=0).tolist()
+    source = assembly.plan.source
+    width = float(source.get("width_px") or reach[0])
+    height = float(source.get("height_px") or reach[1])
+    scale = min(MAP_MM[0] / width, MAP_MM[1] / height)
+    left, foot = (page.width - width * scale) / 2, top - height * scale
+    page.box(left, foot, width * scale, height * scale, line=GREY)
+    room = {}
+    for step, outline in outlines.items():
+        wide, high = (np.ptp(outline, axis=0) * scale * PT_PER_MM).tolist()
+        room[step] = float(np.clip(letters_pt(str(step), wide, high), 3.5, 12.0))
+    usual = float(np.median([*room.values()])) if room else 0.0
+    for step, outline in outlines.items():
+        drawn = outline * scale + (left, foot)
+        page.draw(Surface("", (drawn,), PLAIN_COLOUR, width_pt=0.4))
+        x, y = ((drawn.min(axis=0) + drawn.max(axis=0)) / 2).tolist()
+        page.write(x, y, str(step), min(usual, room[step]), ha="center",
+                   va="center", zorder=5)  # fmt: skip
+    return foot
+
+
+def _list(
+    page: SheetPage,
+    assembly: Assembly,
+    stones: Sequence[Part],
+    at: tuple[float, float],
+    wide: float,
+) -> None:
+    x, y = at
+    if not stones:
+        return
+    columns = (x + 7.0, x + 19.0, x + 33.0, x + 64.0)
+    for place, name in zip(columns, ("step", "stone", "across, down", "long, wide"), strict=True):
+        page.write(place, y, name, SMALL_PT, weight="bold")
+    page.line([(x, y - 1.6), (x + wide, y - 1.6)], colour=GREY)
+    height = float(assembly.plan.source.get("height_px") or 0.0)
+    for row, part in enumerate(stones):
+        base = y - (row + 1) * LINE_MM
+        across, up = _place(part)
+        down = (height - up) / assembly.px_per_unit
+        page.tick_box(x + 1.0, base - 0.8, 3.6)
+        texts = (
+            str(part.step), str(part.id),
+            length_words(assembly, across / assembly.px_per_unit, down),
+            length_words(assembly, *_sides(part)),
+        )  # fmt: skip
+        for place, text, weight in zip(columns, texts, ("bold", "normal", "normal", "normal"),
+                                       strict=True):  # fmt: skip
+            page.write(place, base, text, PLAIN_PT, weight=weight)
+
+
+def _sides(part: Part) -> tuple[float, float]:
+    """Return length and least width of a part, which do not depend on how it lies."""
+    width, across_deg = part.grip
+    along = np.radians(across_deg + 90.0)
+    length = np.ptp(part.own_corners @ np.array([np.cos(along), np.sin(along)]))
+    return float(length), width
+
+
+def _left_over(page: SheetPage, assembly: Assembly, top: float) -> float:
+    """Name the stones that the wall is built without; return the foot."""
+    unused = assembly.plan.unused
+    if not unused:
+        return top
+    page.write(EDGE_MM, top - 4.0, "Left over", PLAIN_PT, weight="bold")
+    named = ", ".join(str(stone) for stone in unused)
+    lines = wrap(f"stones {named}: the wall is built without them.", 105)
+    if len(lines) > LEFT_OVER_LINES:
+        lines = [*lines[:LEFT_OVER_LINES], f"and others: {len(unused)} in all."]
+    for row, line in enumerate(lines):
+        page.write(EDGE_MM + 20.0, top - 4.0 - 4.0 * row, line, PLAIN_PT)
+    return top - 5.0 - 4.0 * len(lines)
+
+
+def _card(page: SheetPage, assembly: Assembly, wedge: Part, corner: tuple[float, float]) -> None:
+    """Draw a wedge with its dimensions, the steps it belongs to, and a box for a tick."""
+    x, y = corner
+    page.box(x, y, *CARD_MM, line=GREY, width_pt=0.4)
+    stone = assembly.part(wedge.under or 0)
+    size = [float(side) for side in np.ptp(wedge.corners, axis=0)]
+    page.write(x + 2.0, y + CARD_MM[1] - 6.0, str(wedge.step), 13.0, weight="bold",
+               color=WEDGE_COLOUR)  # fmt: skip
+    words = f"under {stone.step}, {wedge_place(assembly, wedge)}"
+    page.write(x + 13.0, y + CARD_MM[1] - 5.6, words, SMALL_PT)
+    page.tick_box(x + CARD_MM[0] - 7.0, y + CARD_MM[1] - 7.0)
+    factor = drawn_factor(assembly, wedge)
+    per_unit = factor * (1000.0 if assembly.unit == "m" else 1.0)
+    shown = [side * per_unit for side in size]
+    left, foot = x + 12.0 + (SHAPE_MM[0] - shown[0]) / 2, y + 11.0 + (SHAPE_MM[1] - shown[1]) / 2
+    low = wedge.corners.min(axis=0)
+    shape = (wedge.corners - low) * per_unit + (left, foot)
+    page.draw(Surface("", (shape,), "#f3d9d9"))
+    texts = [f"{1000 * side:.0f}" if assembly.unit == "m" else f"{side:.0f}" for side in size]
+    page.dimension((left, foot - 4.0), (left + shown[0], foot - 4.0), texts[0])
+    page.dimension((left - 4.5, foot), (left - 4.5, foot + shown[1]), texts[1], upright=True)
+    page.write(x + 2.0, y + 2.0, size_words(assembly, *size), SMALL_PT)
+    if assembly.unit == "m":
+        scale = f"{factor:g}:1" if factor > 1.0 else f"1:{1 / factor:g}"
+        page.write(x + CARD_MM[0] - 2.0, y + 2.0, f"drawn {scale}", SMALL_PT, ha="right")

@@ -9,24 +9,14 @@ from drystone.kernels.polygons import Points
 from drystone.model.plan import Point
 from drystone.statics.model import GROUND
 
-AS_IT_LIES_DEG = 2.5
-"""Nobody turns a stone by less."""
-
-STEEP = 0.5
-"""Share of a normal that is upright: what touches with more of it is below or above."""
-
+AS_IT_LIES_DEG = 2.5  # nobody turns a stone by less
+STEEP = 0.5  # share of a normal that is upright: what touches with more of it is below or above
 CORNER = 0.03
 """Share of its width that a part has over another one when no more than corners of them meet."""
 
 
 def turn_words(angle_deg: float) -> str:
-    """Say how to turn a stone, the angle counter-clockwise as it is seen.
-
-    Examples
-    --------
-    >>> turn_words(97.2), turn_words(-45.0), turn_words(359.5), turn_words(181.0)
-    ('turn left 97°', 'turn right 45°', 'as it lies', 'half round')
-    """
+    """Say how to turn a stone, the angle counter-clockwise as it is seen."""
     angle = shortest_turn(angle_deg)
     if abs(angle) < AS_IT_LIES_DEG:
         return "as it lies"
@@ -36,25 +26,12 @@ def turn_words(angle_deg: float) -> str:
 
 
 def shortest_turn(angle_deg: float) -> float:
-    """Return an angle in (-180, 180].
-
-    Examples
-    --------
-    >>> shortest_turn(270.0), shortest_turn(-180.0)
-    (-90.0, 180.0)
-    """
+    """Return an angle in (-180, 180]."""
     return 180.0 - (180.0 - angle_deg) % 360.0
 
 
 def length_words(assembly: Assembly, *lengths: float) -> str:
-    """Write lengths with their unit: cm, or px when there is no scale.
-
-    Examples
-    --------
-    >>> from types import SimpleNamespace
-    >>> length_words(SimpleNamespace(unit="m"), 0.1234, 1.0)
-    '12.3, 100.0 cm'
-    """
+    """Write lengths with their unit: cm, or px when there is no scale."""
     if assembly.unit == "m":
         return ", ".join(f"{100 * length:.1f}" for length in lengths) + " cm"
     return ", ".join(f"{length:.0f}" for length in lengths) + " px"
@@ -106,7 +83,10 @@ def beside(assembly: Assembly, part: Part) -> Beside:
         if other == GROUND:
             continue
         neighbour = assembly.part(other)
-        side = _side(push, upright=_shared_width(part, neighbour) > CORNER)
+        (a, b), (c, d) = ((p.corners[:, 0].min(), p.corners[:, 0].max()) for p in (part, neighbour))
+        # How much of the narrower one is above or below the other one, 0 to 1.
+        shared = (min(b, d) - max(a, c)) / min(b - a, d - c)
+        side = _side(push, upright=shared > CORNER)
         # Nobody sets a stone by a wedge beside it.
         if neighbour.step < part.step and (side == "on" or neighbour.kind == "stone"):
             found[side].append(neighbour.step)
@@ -147,12 +127,6 @@ def wedge_place(assembly: Assembly, wedge: Part) -> str:
     if share < 1 / 3:
         return "left end"
     return "middle" if share <= 2 / 3 else "right end"
-
-
-def _shared_width(part: Part, other: Part) -> float:
-    """Return how much of the narrower of two parts is above or below the other one, 0 to 1."""
-    (a, b), (c, d) = ((one.corners[:, 0].min(), one.corners[:, 0].max()) for one in (part, other))
-    return float((min(b, d) - max(a, c)) / min(b - a, d - c))
 
 
 def _side(push: Points, *, upright: bool) -> str:

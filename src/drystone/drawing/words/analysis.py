@@ -1,6 +1,6 @@
-"""What `drystone analyse` says: a card that an engineer can quote, or JSON."""
+"""What `drystone analyse` says: cards that an engineer can quote, or JSON."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from math import atan, degrees, isfinite
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from drystone.drawing.words.content import number
 from drystone.errors import Notice
+from drystone.io.walls import GivenWall
 from drystone.model.wall import Labels
 from drystone.statics.failing.mechanism import Failure, Names, Noun, describe_mechanism
 from drystone.statics.flow.nonassociative import (
@@ -22,6 +23,7 @@ from drystone.statics.loads import Loads
 from drystone.statics.lp.extremes import Solver
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus, LoadRange
+from drystone.statics.scatter.scatter import Scatter
 from drystone.statics.sensitivity import friction_sensitivity
 from drystone.statics.squeeze import held_by_upright_faces
 
@@ -89,50 +91,51 @@ class Card:
     version: str
     remarks: Mapping[str, str]
 
+    @property
+    def _ends(self) -> dict[str, LimitResult]:
+        return {"left": self.resistance.left, "right": self.resistance.right}
+
+    @property
+    def _without(self) -> dict[str, NonassociativeResult]:
+        found = self.nonassociative
+        return {} if found is None else {"left": found.left, "right": found.right}
+
     def rows(self) -> list[tuple[str, str]]:
         """Return names and values, one a line."""
-        both = self.resistance
-        rows = [
-            ("load case", self.load_case),
-            ("own weight", self._standing()),
-            *self._of_side(both.left),
-            *self._of_side(both.right),
-            ("F_LR", self._ratio()),
-        ]
-        alphas = [end.alpha for end in (both.left, both.right) if end.alpha is not None]
+        rows = [("load case", self.load_case), ("own weight", self._standing())]
+        for side, result in self._ends.items():
+            rows += self._of_side(side, result)
+        ratio = f"{number(self.resistance.value)}  min(alpha) / mu, mu = {self.model.mu:g}"
+        if self.nonassociative is not None and self.nonassociative.value is not None:
+            ratio += f"; without dilatancy {self.nonassociative.value:.3f}"
+        rows.append(("F_LR", ratio))
+        alphas = [end.alpha for end in self._ends.values() if end.alpha is not None]
         if self.stands and alphas and self.load_case == "tilting table":
             angle = degrees(atan(min(alphas)))
             rows.append(("falls on a table", f"tilted by {angle:.1f} degrees, by associated flow"))
-        return [*rows, *self.remarks.items(), *_last_rows(self, both.left, both.right)]
+        return rows + _last_rows(self, self._ends)
 
     def report(self) -> dict[str, Any]:
         """Return the same as what `--json` prints (DESIGN 2)."""
-        both = self.resistance
+        moving = {s: end.mechanism for s, end in self._ends.items() if end.mechanism is not None}
         return {
-            **_alphas(both.left, both.right),
-            "F_LR": both.value,
+            **_alphas(self._ends),
+            "F_LR": self.resistance.value,
             "held_by_upright_faces": None if self.upright is None else list(self.upright),
             "mu": self.model.mu,
             "blocks": len(self.model.blocks),
             "contacts": self.model.contact_count,
-            "nonassociative": None if self.nonassociative is None else self._without_dilatancy(),
-            "certificate": _certificate(both.left, both.right),
+            "nonassociative": self._without_dilatancy(),
+            "certificate": _certificate(self._ends),
             "sensitivity": dict(self.sensitivity),
             "load_case": self.load_case,
             "mechanism": {
-                result.direction: {
-                    str(block): [float(v) for v in velocity]
-                    for block, velocity in zip(
-                        result.mechanism.block_ids, result.mechanism.velocity, strict=True
-                    )
-                }
-                for result in (both.left, both.right)
-                if result.mechanism is not None
+                side: dict(zip(map(str, found.block_ids), found.velocity.tolist(), strict=True))
+                for side, found in moving.items()
             },
-            "words": {direction: failure.words for direction, failure in self.failures.items()},
+            "words": {side: failure.words for side, failure in self.failures.items()},
             "joints": {
-                direction: _moving_joints(self.model, failure)
-                for direction, failure in self.failures.items()
+                side: _moving_joints(self.model, failure) for side, failure in self.failures.items()
             },
             "remarks": dict(self.remarks),
             "sha256": self.sha256,
@@ -147,9 +150,7 @@ class Card:
     @property
     def _can_fall(self) -> bool:
         """Whether a fall without dilatancy was found."""
-        without = self.nonassociative
-        ends = () if without is None else (without.left, without.right)
-        return LimitStatus.UNSTABLE in [end.status for end in ends]
+        return LimitStatus.UNSTABLE in [end.status for end in self._without.values()]
 
     def _standing(self) -> str:
         """Say whether the dead load alone is carried, and by what."""
@@ -168,12 +169,11 @@ class Card:
             return f"{said}; let go, nothing was found to fall"
         return said
 
-    def _of_side(self, result: LimitResult) -> list[tuple[str, str]]:
+    def _of_side(self, side: str, result: LimitResult) -> list[tuple[str, str]]:
         """Tell the load to one side, and under it what belongs to this side."""
-        side = result.direction
         rows = [(f"load to the {side}", _alpha(result))]
-        if self.nonassociative is not None:
-            without: NonassociativeResult = getattr(self.nonassociative, side)
+        if self._without:
+            without = self._without[side]
             words = without.message[:1].lower() + without.message[1:].rstrip(".")
             rows.append(("  without dilatancy", _alpha(without, words)))
         if side in self.loose:
@@ -184,22 +184,14 @@ class Card:
             rows.append(("  sensitivity", f"d alpha / d mu = {self.sensitivity[side]:.3f}"))
         return rows
 
-    def _ratio(self) -> str:
-        said = f"{number(self.resistance.value)}  min(alpha) / mu, mu = {self.model.mu:g}"
-        if self.nonassociative is not None and self.nonassociative.value is not None:
-            said += f"; without dilatancy {self.nonassociative.value:.3f}"
-        return said
-
-    def _without_dilatancy(self) -> dict[str, Any]:
-        assert self.nonassociative is not None  # noqa: S101 - asked for only then
-        left, right = self.nonassociative.left, self.nonassociative.right
+    def _without_dilatancy(self) -> dict[str, Any] | None:
+        if not self._without:
+            return None
         return {
-            **_alphas(left, right),
-            "message_left": left.message,
-            "message_right": right.message,
-            "answers_left": list(left.answers),
-            "answers_right": list(right.answers),
-            "words": {direction: failure.words for direction, failure in self.loose.items()},
+            **_alphas(self._without),
+            **{f"message_{side}": end.message for side, end in self._without.items()},
+            **{f"answers_{side}": list(end.answers) for side, end in self._without.items()},
+            "words": {side: failure.words for side, failure in self.loose.items()},
         }
 
 
@@ -246,7 +238,7 @@ def analysis_of(
 
 @dataclass(frozen=True, eq=False)
 class RangeCard:
-    """A case whose answer is a range of alpha; parameters as for :class:`Card`."""
+    """A case whose answer is a range of alpha; fields as those of :class:`Card`."""
 
     found: LoadRange
     mu: float
@@ -256,30 +248,29 @@ class RangeCard:
     version: str
     remarks: Mapping[str, str]
 
+    @property
+    def _ends(self) -> dict[str, LimitResult]:
+        return {"least": self.found.least, "greatest": self.found.greatest}
+
     def rows(self) -> list[tuple[str, str]]:
         """Return names and values, one a line."""
         rows = [("load case", self.load_case), ("friction", f"mu = {self.mu:g}")]
-        for name, end in (("least", self.found.least), ("greatest", self.found.greatest)):
+        for name, end in self._ends.items():
             rows.append((f"{name} alpha", _alpha(end)))
             if end.direction in self.failures:
                 rows.append(("  mechanism", self.failures[end.direction].words))
-        last = _last_rows(self, self.found.least, self.found.greatest)
-        return [*rows, *self.remarks.items(), *last]
+        return rows + _last_rows(self, self._ends)
 
     def report(self) -> dict[str, Any]:
         """Return the same as what `--json` prints."""
-        least, greatest = self.found.least, self.found.greatest
         return {
             "load_case": self.load_case,
-            "status_least": str(least.status),
-            "status_greatest": str(greatest.status),
-            "alpha_least": least.alpha,
-            "alpha_greatest": greatest.alpha,
+            **_alphas(self._ends),
             "mu": self.mu,
-            "certificate": _certificate(least, greatest, ("least", "greatest")),
+            "certificate": _certificate(self._ends),
             "words": {
                 name: self.failures[end.direction].words
-                for name, end in (("least", least), ("greatest", greatest))
+                for name, end in self._ends.items()
                 if end.direction in self.failures
             },
             "remarks": dict(self.remarks),
@@ -290,26 +281,17 @@ class RangeCard:
 
 def _moving_joints(model: RigidBlockModel, failure: Failure) -> dict[str, list[list[int]]]:
     """Name the pairs of blocks whose contacts open, and those whose contacts slide."""
-    kinds = iter(failure.contact_kinds)
-    found: dict[str, set[tuple[int, int]]] = {"opening": set(), "sliding": set()}
-    for interface in model.interfaces:
-        for _ in interface.points:
-            kind = next(kinds)
-            for name, pairs in found.items():
-                if name in kind:
-                    pairs.add((interface.block, interface.other))
-    return {name: [list(pair) for pair in sorted(pairs)] for name, pairs in found.items()}
-
-
-def _alphas(
-    left: LimitResult | NonassociativeResult, right: LimitResult | NonassociativeResult
-) -> dict[str, Any]:
+    pairs = [(face.block, face.other) for face in model.interfaces for _ in face.points]
+    told = [*zip(pairs, failure.contact_kinds, strict=True)]
     return {
-        "status_left": str(left.status),
-        "status_right": str(right.status),
-        "alpha_left": left.alpha,
-        "alpha_right": right.alpha,
+        name: [list(pair) for pair in sorted({pair for pair, kind in told if name in kind})]
+        for name in ("opening", "sliding")
     }
+
+
+def _alphas(ends: Mapping[str, LimitResult] | Mapping[str, NonassociativeResult]) -> dict[str, Any]:
+    found = {f"status_{name}": str(end.status) for name, end in ends.items()}
+    return found | {f"alpha_{name}": end.alpha for name, end in ends.items()}
 
 
 def _alpha(
@@ -321,25 +303,20 @@ def _alpha(
     return f"alpha = {round(result.alpha, 4) + 0.0:.4f}  {words}"
 
 
-def _last_rows(
-    card: "Card | RangeCard", one: LimitResult, other: LimitResult
-) -> list[tuple[str, str]]:
+def _last_rows(card: Card | RangeCard, ends: Mapping[str, LimitResult]) -> list[tuple[str, str]]:
     return [
-        ("certificate", _certified(one, other)),
+        *card.remarks.items(),
+        ("certificate", _certified([*ends.values()])),
         ("assumptions", ASSUMPTIONS),
         ("input", f"sha256 {card.sha256[:16]}, drystone {card.version}"),
     ]
 
 
-def _certificate(
-    one: LimitResult, other: LimitResult, names: tuple[str, str] = ("left", "right")
-) -> dict[str, float | None]:
-    ends = (one.certificate, other.certificate)
-    known = [c for c in ends if c is not None]
-    gaps = [None if c is None else c.gap for c in ends]
+def _certificate(ends: Mapping[str, LimitResult]) -> dict[str, float | None]:
+    found = {name: end.certificate for name, end in ends.items()}
+    known = [one for one in found.values() if one is not None]
     return {
-        f"gap_{names[0]}": gaps[0],
-        f"gap_{names[1]}": gaps[1],
+        **{f"gap_{name}": None if one is None else one.gap for name, one in found.items()},
         "residual": max((c.residual for c in known), default=None),
         "violation": max((c.violation for c in known), default=None),
         "inadmissible": max((c.inadmissible for c in known), default=None),
@@ -347,15 +324,94 @@ def _certificate(
     }
 
 
-def _certified(one: LimitResult, other: LimitResult) -> str:
+def _certified(ends: Sequence[LimitResult]) -> str:
     """Say how well the answers are proved."""
-    known = [r.certificate for r in (one, other) if r.certificate is not None]
+    known = [end.certificate for end in ends if end.certificate is not None]
     if len(known) < 2:
         return "none"
-    solvers = " and ".join(dict.fromkeys(r.solver for r in (one, other)))
+    solvers = " and ".join(dict.fromkeys(end.solver for end in ends))
     if any(c.fall_work is not None for c in known):
         return f"a mechanism on which the dead load does work, by {solvers}"
     residual = max(c.residual for c in known)
     gaps = [c.gap for c in known if c.gap is not None and isfinite(c.gap)]
     gap = f", forces and mechanism give the same alpha to {max(gaps):.0e}" if gaps else ""
     return f"equilibrium to {residual:.0e}{gap}, by {solvers}"
+
+
+@dataclass(frozen=True)
+class NoiseUnit:
+    """What noise is given in: a name, and how many lengths of the model it is."""
+
+    name: str
+    lengths: float = 1.0
+
+    def words(self, noise: float) -> str:
+        """Say how large a noise is that is known in lengths of the model."""
+        return f"{noise / self.lengths:g} {self.name}"
+
+
+@dataclass(frozen=True, eq=False)
+class ScatterCard:
+    """What the shaken walls carry, with the unit in which the noise was given."""
+
+    scatter: Scatter
+    unit: NoiseUnit
+
+    def rows(self) -> list[tuple[str, str]]:
+        """Return names and values, one a line."""
+        found, counts = self.scatter, self.scatter.counts
+        rows = [("scatter", self._shaken())]
+        both = (("min alpha", found.alpha_quantiles), ("F_LR", found.value_quantiles))
+        for name, quantiles in both:
+            if quantiles is not None:
+                low, median, high = quantiles
+                rows.append((f"  {name}", f"{median:.3f} (5 % to 95 %: {low:.3f} to {high:.3f})"))
+        share = found.falling_share
+        if share is not None:
+            said = f"{counts[LimitStatus.UNSTABLE]} walls, {100 * share:.0f} %"
+            which = "have a limit" if counts[LimitStatus.UNBOUNDED] else "stand"
+            rows.append(("  do not stand", f"{said}; the figures above are of those that {which}"))
+        for status, name in ((LimitStatus.UNBOUNDED, "unbounded"), (LimitStatus.FAILED, "failed")):
+            if counts[status]:
+                rows.append((f"  {name}", f"{counts[status]} walls, without a number"))
+        return rows
+
+    def report(self) -> dict[str, Any]:
+        """Return the same as JSON, with every sample."""
+        found, value = self.scatter, self.scatter.value
+        return {
+            "samples": found.settings.samples,
+            "seed": found.seed,
+            "mu": found.mu.tolist(),
+            "status": [str(status) for status in found.status],
+            "alpha_left": found.alpha_left.tolist(),
+            "alpha_right": found.alpha_right.tolist(),
+            "F_LR": None if value is None else value.tolist(),
+            "alpha_5_50_95": found.alpha_quantiles,
+            "F_LR_5_50_95": found.value_quantiles,
+        }
+
+    def _shaken(self) -> str:
+        made = self.scatter.settings
+        parts = [f"{made.samples} walls, seed {self.scatter.seed}"]
+        if made.mu is not None:
+            parts.append(f"mu {made.mu[0]:g} to {made.mu[1]:g}")
+        if made.outline_noise:
+            parts.append(f"outlines +- {self.unit.words(made.outline_noise)}")
+        if made.placement_noise:
+            parts.append(f"placement +- {self.unit.words(made.placement_noise)}")
+        return ", ".join(parts)
+
+
+def noise_unit(wall: GivenWall) -> NoiseUnit:
+    """Return the unit of ``--outline-noise`` and ``--placement-noise``: px where there are any.
+
+    They are those of the source image: a plan on outlines in metres has a model in metres, one on
+    pixels has one in working px.
+    """
+    if wall.blocks is None:
+        return NoiseUnit("px", 1.0 if wall.plan is None else wall.plan.working_scale)
+    if wall.plan is None:
+        return NoiseUnit("lengths of the block model")
+    px_per_m = wall.plan.px_per_m if wall.plan.length_unit == "m" else None
+    return NoiseUnit("px", 1.0 / (px_per_m or 1.0))

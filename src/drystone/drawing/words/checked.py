@@ -5,7 +5,8 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from drystone.drawing.words.content import number
-from drystone.model.plan import Plan, PlanMetrics
+from drystone.kernels.polygons import Points
+from drystone.model.plan import Plan, PlanMetrics, Point
 from drystone.model.stone import StoneSet
 from drystone.physics.building import BlockMove, BuildUp
 from drystone.physics.scatter import TiltResult
@@ -13,13 +14,10 @@ from drystone.verify.engine import check_engine
 from drystone.verify.outlines import PolygonGroup
 from drystone.verify.report import CheckReport, Problem
 
-PICTURE = "check.png"
-"""Beside a plan of which something fails."""
-
+PICTURE = "check.png"  # beside a plan of which something fails
 NOT_BUILT = "not built there, as a step of the plan places nothing"
 
-NOTEWORTHY_PX = 0.01
-"""Overlaps below this, in source px, round to nothing and are not spoken of."""
+NOTEWORTHY_PX = 0.01  # overlaps below this, in source px, round to nothing and are not spoken of
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,6 +143,17 @@ class Checked:
     groups: Sequence[PolygonGroup]
     asked_physics: bool = False
     physics: PhysicsCard | None = None
+
+    @property
+    def planned(self) -> dict[int, Points]:
+        """Corners of what was planned, by id; source px, wall frame."""
+        return {block: corners for group in self.groups for block, corners in group}
+
+    @property
+    def size(self) -> Point:
+        """Width and height of the wall that is to be built, source px."""
+        source_px = self.plan.px_per_m or 1.0
+        return self.plan.width * source_px, self.plan.height * source_px
 
     @property
     def falls(self) -> bool:

@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from drystone.io.published import SETS
 from drystone.model.plan import Plan, PlanMetrics
 from drystone.settle.settings import SettleSettings
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.result import LateralResistance
 
 UNDEFINED = "not defined"
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
@@ -23,19 +23,14 @@ INDICES = {
     "IS": "slope of the upper edge; positive falls inwards, higher is better",
     "LLC": "limit load coefficient: min(alpha) / mu after the step; higher is better",
 }
-STONES_ARE = {
-    "exact": "their outlines",
-    "raster": "their pixels at the working resolution",
-}
+STONES_ARE = {"exact": "their outlines", "raster": "their pixels at the working resolution"}
 TOUCHING = {
     "exact": "Stones touch where their outlines are within the contact tolerance, {contact_px:g} "
     "px of the image, of each other.",
     "raster": "Stones touch where their pixels have edges or corners in common; by their real "
     "outlines they may overlap, or not touch.",
 }
-TILTING = "tilting table"
-"""Name of the load case of a plan."""
-
+TILTING = "tilting table"  # name of the load case of a plan
 LIVE_LOAD = (
     "The live load is horizontal, acts at the centroids and is the same share of every stone's "
     "weight, as on a tilting table; the wall stands free on rigid ground."
@@ -54,29 +49,7 @@ Better = Literal["higher", "lower", ""]
 
 
 @dataclass(frozen=True)
-class Resisted:
-    """The strength of a wall that was not planned."""
-
-    F_LR: float | None
-    alpha_left: float | None
-    alpha_right: float | None
-    F_LR_half: float | None = None
-    F_LR_double: float | None = None
-    F_LR_no_setback: float | None = None
-    F_LR_coulomb: float | None = None
-
-    @classmethod
-    def of(cls, resistance: LateralResistance) -> "Resisted":
-        """Take it from a limit analysis."""
-        return cls(resistance.value, resistance.left.alpha, resistance.right.alpha)
-
-
-Strength = PlanMetrics | Resisted
-"""What is said of a wall's strength."""
-
-
-@dataclass(frozen=True)
-class Card:
+class ResultCard:
     """A result, its name and one sentence that explains it."""
 
     symbol: str
@@ -87,13 +60,7 @@ class Card:
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """Write a number, or that it is not defined: never 0 for a missing one.
-
-    Examples
-    --------
-    >>> number(0.5), number(None), number(-0.0004)
-    ('0.500', 'not defined', '0.000')
-    """
+    """Write a number, or that it is not defined: never 0 for a missing one."""
     if value is None or not math.isfinite(value):
         return UNDEFINED
     return f"{round(value, digits) + 0.0:.{digits}f}"
@@ -133,8 +100,6 @@ def assumptions(plan: Plan) -> tuple[str, ...]:
 def wall_assumptions(load_case: str = TILTING) -> tuple[str, ...]:
     """Return what the analysis of a wall that was not planned rests on, by the name of its loads.
 
-    Examples
-    --------
     >>> wall_assumptions("point loads")[-1]
     'Load case: point loads. The wall stands free on rigid ground, but for what is fixed.'
     """
@@ -168,8 +133,6 @@ def model_assumptions(model: RigidBlockModel) -> tuple[str, ...]:
 def load_words(load_case: str, side: str) -> str:
     """Name the live load to one side.
 
-    Examples
-    --------
     >>> load_words("tilting table", "left"), load_words("point loads", "left")
     ('Horizontal load to the left', 'Live load reversed')
     """
@@ -182,8 +145,6 @@ def load_words(load_case: str, side: str) -> str:
 def dead_load(load_case: str) -> str:
     """Name what acts always.
 
-    Examples
-    --------
     >>> dead_load("growing with height"), dead_load("tilting table, tilted by 5°")
     ('own weight', 'dead load')
     """
@@ -204,14 +165,21 @@ def summary(plan: Plan) -> str:
     return f"{placed} of {of} stones placed{with_wedges}; stopped because: {plan.stopped}."
 
 
-def cards(plan: Plan) -> tuple[Card, ...]:
+def cards(plan: Plan) -> tuple[ResultCard, ...]:
     """Return the results, the ones to look at first at the front."""
-    return (*strength_cards(plan.metrics), *_layout(plan))
+    metrics = plan.metrics
+    ends = (metrics.alpha_left, metrics.alpha_right)
+    return (*strength_cards(metrics.F_LR, *ends, _by_other_rules(metrics)), *_layout(plan))
 
 
-def strength_cards(metrics: Strength, load_case: str = TILTING) -> tuple[Card, ...]:
-    """Return what is said of a wall's strength under the loads of a case."""
-    sides = (("left", metrics.alpha_left), ("right", metrics.alpha_right))
+def strength_cards(
+    ratio: float | None,
+    left: float | None,
+    right: float | None,
+    by_other_rules: str = "",
+    load_case: str = TILTING,
+) -> tuple[ResultCard, ...]:
+    """Return what is said of a wall's strength, F_LR and alphas, under the loads of a case."""
     of_one = "At 1 the whole wall would slide on the ground before it comes apart."
     if load_case != TILTING:
         of_one = f"The load case is: {load_case}."
@@ -219,12 +187,13 @@ def strength_cards(metrics: Strength, load_case: str = TILTING) -> tuple[Card, .
     if is_horizontal(load_case):
         weaker = "Where the wall fails first when it is pushed from the side."
     return (
-        Card("F_LR", "Lateral resistance", number(metrics.F_LR), "higher",
+        ResultCard("F_LR", "Lateral resistance", number(ratio), "higher",
              "The smaller load multiplier over the coefficient of friction. "
-             f"{of_one}{_by_other_rules(metrics)}"),
-        *(Card(f"{ALPHA} {side}", f"Load multiplier (adequacy factor) to the {side}", number(alpha),
-               "higher", _multiplier_means(load_case, side)) for side, alpha in sides),
-        Card("", "Weaker direction", weaker_direction(metrics), "", weaker),
+             f"{of_one}{by_other_rules}"),
+        *(ResultCard(f"{ALPHA} {side}", f"Load multiplier (adequacy factor) to the {side}",
+                     number(alpha), "higher", _multiplier_means(load_case, side))
+          for side, alpha in (("left", left), ("right", right))),
+        ResultCard("", "Weaker direction", weaker_direction(left, right), "", weaker),
     )  # fmt: skip
 
 
@@ -240,7 +209,7 @@ def _multiplier_means(load_case: str, side: str) -> str:
     )
 
 
-def _by_other_rules(metrics: Strength) -> str:
+def _by_other_rules(metrics: PlanMetrics) -> str:
     """Say what it is without dilatancy and with other contacts, where that is known."""
     said = ""
     if metrics.F_LR_coulomb is not None:
@@ -253,9 +222,8 @@ def _by_other_rules(metrics: Strength) -> str:
     return said
 
 
-def weaker_direction(metrics: Strength) -> str:
+def weaker_direction(left: float | None, right: float | None) -> str:
     """Return the direction of the smaller load multiplier."""
-    left, right = metrics.alpha_left, metrics.alpha_right
     if left is None or right is None:
         return UNDEFINED
     if math.isclose(left, right, rel_tol=1e-9, abs_tol=1e-9):
@@ -263,7 +231,7 @@ def weaker_direction(metrics: Strength) -> str:
     return "left" if left < right else "right"
 
 
-def _layout(plan: Plan) -> tuple[Card, ...]:
+def _layout(plan: Plan) -> tuple[ResultCard, ...]:
     metrics, unit = plan.metrics, plan.length_unit
     placed, of = len(plan.stone_steps), len(plan.stone_steps) + len(plan.unused)
     area = number(metrics.wedge_area, 4 if unit == "m" else 1)
@@ -272,25 +240,25 @@ def _layout(plan: Plan) -> tuple[Card, ...]:
         for share in (metrics.F_AV, metrics.F_AH)
     )
     return (
-        Card("F_SF", "Filling", number(metrics.F_SF), "higher",
+        ResultCard("F_SF", "Filling", number(metrics.F_SF), "higher",
              "Area of the placed stones, without wedges, over the area of the wall. "
              "1 leaves no gaps."),
-        Card("F_AV", "Interlocking", longer, "higher",
+        ResultCard("F_AV", "Interlocking", longer, "higher",
              "How much longer than a straight line the shortest ways along joints from top to "
              "ground are. The more, the less joints run through."),
-        Card("F_AH", "Waviness of courses", wavy, "lower",
+        ResultCard("F_AH", "Waviness of courses", wavy, "lower",
              "How much longer than a straight line the shortest ways along joints from end to end "
              "are. 0 means straight courses."),
-        Card("", "Stones placed", f"{placed} of {of}", "higher",
+        ResultCard("", "Stones placed", f"{placed} of {of}", "higher",
              "Stones of the input that found a place. Some may be left over when the wall is "
              "full."),
-        Card("T_LEVEL", "Unevenness of the top", number(metrics.T_LEVEL), "lower",
+        ResultCard("T_LEVEL", "Unevenness of the top", number(metrics.T_LEVEL), "lower",
              "Mean deviation of the top from its mean height, in mean heights of a stone. "
              "0 is a level top."),
-        Card("E_FLUSH", "Gaps at the ends", number(metrics.E_FLUSH), "lower",
+        ResultCard("E_FLUSH", "Gaps at the ends", number(metrics.E_FLUSH), "lower",
              "Mean gap between the wall and its two end lines, in mean widths of a stone. "
              "0 means upright ends on the lines."),
-        Card("", "Wedges", f"{len(plan.wedge_steps)} ({area} {unit}²)", "lower",
+        ResultCard("", "Wedges", f"{len(plan.wedge_steps)} ({area} {unit}²)", "lower",
              "Small stones pushed in under others, and their area. Each has to be found or cut."),
     )  # fmt: skip
 
@@ -298,8 +266,6 @@ def _layout(plan: Plan) -> tuple[Card, ...]:
 def flat_settings(settings: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
     """Yield every parameter with the path of its name.
 
-    Examples
-    --------
     >>> dict(flat_settings({"mu": 0.58, "placement": {"rule": "eq12"}}))
     {'mu': '0.58', 'placement.rule': '"eq12"'}
     """
@@ -308,3 +274,33 @@ def flat_settings(settings: Mapping[str, Any], prefix: str = "") -> Iterator[tup
             yield from flat_settings(value, f"{prefix}{name}.")
         else:
             yield f"{prefix}{name}", json.dumps(value, ensure_ascii=False)
+
+
+MASONS_WALLS = {
+    "R": {"F_SF": 0.846, "F_AV": 33.9, "F_AH": 0.59},
+    "PR": {"F_SF": 0.808, "F_AV": 29.5, "F_AH": 1.50},
+    "IR": {"F_SF": 0.850, "F_AV": 23.8, "F_AH": 3.69},
+}
+"""Walls of Almeida et al. (2021), of regular, partly regular and irregular stones, as docs/paper.md
+has them traced: F_AV and F_AH in per cent.  Stones do not touch there, so there is no F_LR."""
+
+
+def masons_wall(sha256: str | None) -> str | None:
+    """Return the name of the mason's wall of the same stones, known by the hash of their file."""
+    names = {file.sha256: file.name for file in SETS["almeida"].files}
+    found = names.get(sha256 or "")
+    return next((name for name in MASONS_WALLS if found == f"almeida/{name}.png"), None)
+
+
+def masons_words(symbol: str, sha256: str | None) -> str | None:
+    """Say what F_SF, F_AV or F_AH is in walls of masons; None for a figure that is not known."""
+    if symbol not in ("F_SF", "F_AV", "F_AH"):
+        return None
+    digits, unit = {"F_SF": (3, ""), "F_AV": (1, " %"), "F_AH": (2, " %")}[symbol]
+    same = masons_wall(sha256)
+    if same is not None:
+        own = MASONS_WALLS[same][symbol]
+        return f"{own:.{digits}f}{unit} in the mason's own wall of these stones ({same})"
+    values = [wall[symbol] for wall in MASONS_WALLS.values()]
+    least, most = (f"{value:.{digits}f}" for value in (min(values), max(values)))
+    return f"{least} to {most}{unit} in three walls of masons, of other stones"

@@ -1,19 +1,24 @@
-"""From a wall file to the rigid block model that is asked for."""
+"""From a wall file to the rigid block model that is asked for; its size and scarce contacts."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
+
+import numpy as np
 
 from drystone.contacts.blocks import ImageModel, model_from_labels
 from drystone.contacts.gaps import gap_spread, model_with_closed_gaps, settle_gaps
 from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.contacts.outlines import model_from_outlines, outlines_of_labels
+from drystone.contacts.scarce import scarce_contacts
 from drystone.contacts.settled import SETBACK
-from drystone.drawing.words.analysis import ModelledWall
-from drystone.errors import InputError, UsageError
+from drystone.drawing.words.analysis import ModelledWall, Shapes
+from drystone.errors import InputError, Notice, UsageError
 from drystone.io.walls import GivenWall
 from drystone.model.wall import Labels
+from drystone.statics.failing.mechanism import Noun
 from drystone.statics.joints import with_head_friction
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import LoadCase, load_case
@@ -23,26 +28,12 @@ from drystone.statics.result import LateralResistance
 
 @dataclass(frozen=True)
 class ModelRequest:
-    """What touches what, how rough it is, and what it carries, as it is asked for.
+    """What touches what, how rough it is, and what it carries, as it is asked for."""
 
-    Parameters
-    ----------
-    mu : (float, float) or None
-        Range of the coefficient of friction; None for that of the wall.
-    mu_head : float or None
-        That of head joints, when it is another.
-    contacts : {"pixels", "outlines"}
-        What they are taken from.
-    close_gaps : str or None
-        How wide gaps may be that bear, or "settle".
-    case : LoadCase
-        The loads.
-    """
-
-    mu: tuple[float, float] | None
-    mu_head: float | None
-    contacts: str
-    close_gaps: str | None
+    mu: tuple[float, float] | None  # range of the coefficient of friction; None: the wall's
+    mu_head: float | None  # that of head joints, when it is another
+    contacts: str  # taken from "pixels" or "outlines"
+    close_gaps: str | None  # how wide gaps may be that bear, or "settle"
     case: LoadCase
 
     @property
@@ -90,13 +81,9 @@ def _given(wall: GivenWall, blocks: dict[str, Any], mu: float, asked: ModelReque
     bare = None if wall.plan is None else wall.plan.metrics.F_LR_no_setback
     if bare is not None and asked.mu is None and asked.as_planned:
         remarks["contacts"] = f"set back; F_LR {bare:.3f} with contacts up to the ends of faces"
-    return ModelledWall(
-        model_from_json(blocks),
-        polygons_from_json(blocks),
-        "block" if wall.plan is None else "stone",
-        wall.wedge_ids,
-        remarks=remarks,
-    )
+    model, shapes = model_from_json(blocks), polygons_from_json(blocks)
+    noun: Noun = "block" if wall.plan is None else "stone"
+    return ModelledWall(model, shapes, noun, wall.wedge_ids, remarks=remarks)
 
 
 def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> ModelledWall:
@@ -114,14 +101,8 @@ def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> M
         strength = lateral_resistance(bare).value
         with_ends = "falls" if strength is None else f"F_LR {strength:.3f}"
         said += f"; {with_ends} with contacts up to the ends of faces"
-    return ModelledWall(
-        replace(bare, interfaces=found.interfaces),
-        outlines,
-        "stone",
-        wall.wedge_ids,
-        picture.notices,
-        {"contacts": said},
-    )
+    model, remarks = replace(bare, interfaces=found.interfaces), {"contacts": said}
+    return ModelledWall(model, outlines, "stone", wall.wedge_ids, picture.notices, remarks)
 
 
 def _with_closed_gaps(
@@ -165,3 +146,43 @@ def _reach(text: str) -> float | None:
     if not 0 < reach < math.inf:
         raise UsageError("E138", f"{text!r} is no width in px, nor 'settle'.", where="--close-gaps")
     return reach
+
+
+LISTED = 8  # so many stones are named
+
+
+def size_words(shapes: Shapes, per_unit_m: float | None) -> str | None:
+    """Say how wide and high a wall is, in metres; None without a scale or a block."""
+    if per_unit_m is None or not len(shapes):
+        return None
+    if isinstance(shapes, Mapping):
+        corners = np.concatenate(list(shapes.values()))
+        width, height = np.ptp(corners, axis=0).tolist()
+    else:
+        rows, cols = np.nonzero(shapes)
+        width, height = float(np.ptp(cols) + 1), float(np.ptp(rows) + 1)
+    return f"{width * per_unit_m:.2f} m wide, {height * per_unit_m:.2f} m high"
+
+
+def scarcity(wall: ModelledWall, per_unit_m: float | None) -> Notice | None:
+    """Name the stones with fewer than two contact points (W305)."""
+    few = scarce_contacts(wall.model, wall.shapes)
+    if not few:
+        return None
+    named = ", ".join(str(one.block) for one in few[:LISTED])
+    more = ", …" if len(few) > LISTED else ""
+    gaps = [one.gap for one in few if np.isfinite(one.gap)]
+    noun = wall.noun if len(few) == 1 else f"{wall.noun}s"
+    have = "has" if len(few) == 1 else "have"
+    said = f"{len(few)} {noun} {have} fewer than two contact points: {named}{more}."
+    if not gaps:
+        return Notice("W305", said)
+    pixels = not isinstance(wall.shapes, Mapping)
+    unit = " px" if pixels else ""
+    metres = "" if per_unit_m is None else f" ({1000.0 * per_unit_m * min(gaps):.0f} mm)"
+    said += f" The narrowest gap beside them is {min(gaps):.3g}{unit}{metres}."
+    if not pixels:
+        return Notice("W305", said)
+    reach = int(np.ceil(np.median(gaps)))
+    which = "it" if len(few) == 1 else "half of them"
+    return Notice("W305", said, f"--close-gaps {reach}px lets {which} bear on the next one.")

@@ -6,14 +6,29 @@ from dataclasses import replace
 import numpy as np
 import pypdfium2
 import pytest
-from PIL import Image
 
 from drystone.drawing.export.formats import FORMATS, ExportSettings
-from drystone.drawing.sheet.lists import drawn_factor, in_photo_order
-from drystone.drawing.sheet.pages import DRAWING_MM, Scale, paper_scale, sheet
-from drystone.drawing.sheet.rows import Rows
-from drystone.errors import InputError
+from drystone.drawing.sheet.pages import (
+    DRAWING_MM,
+    Scale,
+    drawn_factor,
+    in_photo_order,
+    paper_scale,
+    sheet,
+)
+from drystone.drawing.sheet.words import (
+    beside,
+    beside_words,
+    length_words,
+    lowest_corner,
+    shortest_turn,
+    size_words,
+    turn_words,
+    wedge_place,
+    wedge_words,
+)
 from drystone.io.plan_json import write_plan
+from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from tests.drawing.export.drawn_walls import assembly, photo_colour, photograph, runs
 
 STONE = (0xCF, 0xC8, 0xBB)
@@ -153,22 +168,6 @@ def test_wedges_are_drawn_at_usual_scales(wall) -> None:
     assert drawn_factor(wall, small) == 1.0  # 10 mm x 2 mm
 
 
-def test_sixty_stones_take_seven_pages_of_lines() -> None:
-    assert Rows(assembly(columns=10, rows=6), None).per_page == 9
-
-
-def test_a_photograph_of_something_else_is_refused(wall, tmp_path) -> None:
-    other = tmp_path / "photo.png"
-    Image.new("RGB", (300, 200)).save(other)
-    with pytest.raises(InputError, match="something else") as caught:
-        FORMATS["pdf"].write(replace(wall, photo=other), tmp_path, ExportSettings())
-    assert caught.value.code == "E189"
-    other.write_bytes(b"no picture")
-    with pytest.raises(InputError, match="cannot be read") as caught:
-        FORMATS["pdf"].write(replace(wall, photo=other), tmp_path, ExportSettings())
-    assert caught.value.code == "E189"
-
-
 @pytest.mark.parametrize("px_per_m", [200.0, None])
 def test_no_words_of_the_first_page_lie_over_others_or_the_wall(px_per_m) -> None:
     # As high as its frame may be, with a title that is much too long.
@@ -187,3 +186,95 @@ def test_no_words_of_the_first_page_lie_over_others_or_the_wall(px_per_m) -> Non
         assert paper.x0 < box.x0 < box.x1 < paper.x1, text.get_text()
         assert not box.overlaps(inside), text.get_text()
     assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
+
+
+@pytest.fixture(scope="module")
+def small():
+    """Steps 1 (wedge: 2), 3, 4 on the ground, then 5, 6, 7 upon them."""
+    return assembly()
+
+
+def part(small, step):
+    return small.parts[step - 1]
+
+
+@pytest.mark.parametrize(("angle_deg", "words"), [
+    (0.0, "as it lies"), (-2.4, "as it lies"), (362.0, "as it lies"), (3.0, "turn left 3°"),
+    (97.4, "turn left 97°"), (-97.4, "turn right 97°"), (262.6, "turn right 97°"),
+    (180.0, "half round"), (-178.0, "half round"), (177.0, "turn left 177°"),
+    (-540.0, "half round"),
+])  # fmt: skip
+def test_turns_are_the_short_way_round(angle_deg, words) -> None:
+    assert turn_words(angle_deg) == words
+
+
+def test_the_shortest_turn_is_the_same_turn() -> None:
+    for angle in np.arange(-1000.0, 1000.0, 7.5):
+        short = shortest_turn(float(angle))
+        assert -180.0 < short <= 180.0
+        assert (short - angle) % 360.0 == pytest.approx(0.0, abs=1e-9)
+
+
+def test_neighbours_are_those_that_stand_already(small) -> None:
+    first = beside(small, part(small, 1))
+    assert first.ground
+    assert (first.on, first.left_of, first.right_of) == ((), (), ())
+    last = beside(small, part(small, 7))
+    assert (last.on, last.right_of, last.left_of, last.ground) == ((4,), (6,), (), False)
+
+
+def test_neighbours_in_words(small) -> None:
+    assert beside_words(small, part(small, 1)) == "on the ground"
+    # The wedge touches it too, and nobody sets a stone by a wedge beside it.
+    assert beside_words(small, part(small, 3)) == "on the ground, right of 1"
+    assert beside_words(small, part(small, 5)) == "on 1"
+    assert beside_words(small, part(small, 6)) == "on 3, right of 5"
+
+
+def test_wedges_in_words(small) -> None:
+    wedge = part(small, 2)
+    assert (
+        wedge_words(small, wedge)
+        == "wedge 2: 150 \N{MULTIPLICATION SIGN} 30 mm, under its right end"
+    )
+    assert wedge_place(small, wedge) == "right end"
+    assert beside_words(small, wedge) == "on the ground, under 1"
+
+
+def test_lengths_have_units(small) -> None:
+    assert length_words(small, 0.1234, 2.0) == "12.3, 200.0 cm"
+    assert length_words(assembly(px_per_m=None), 12.3) == "12 px"
+    assert size_words(assembly(px_per_m=None), 12.3, 4.0) == "12 \N{MULTIPLICATION SIGN} 4 px"
+
+
+def test_the_lowest_corner_is_the_left_one_of_two(small) -> None:
+    assert lowest_corner(part(small, 3)) == pytest.approx((0.3, 0.0))
+    assert lowest_corner(part(small, 7)) == pytest.approx((0.6, 0.15))
+
+
+def test_it_does_not_matter_which_part_of_a_pair_an_interface_names_first(small) -> None:
+    turned = tuple(
+        replace(face, block=face.other, other=face.block, normal=(-face.normal[0], -face.normal[1]))
+        for face in small.model.interfaces
+        if face.other != GROUND
+    )
+    ground = tuple(face for face in small.model.interfaces if face.other == GROUND)
+    model = RigidBlockModel(small.model.blocks, turned + ground)
+    for part in small.parts:
+        assert beside(replace(small, model=model), part) == beside(small, part)
+
+
+def test_stones_side_by_side_that_meet_at_a_corner_are_not_upon_each_other(small) -> None:
+    left, right = part(small, 3), part(small, 4)
+    normal = {True: (0.8, 0.6), False: (-0.8, -0.6)}
+    for first in (True, False):
+        pair = (right.id, left.id) if first else (left.id, right.id)
+        corner = Interface(*pair, np.array([[0.6, 0.15]]), normal[first])
+        meeting = replace(small, model=RigidBlockModel(small.model.blocks, (corner,)))
+        found = beside(meeting, right)
+        assert (found.on, found.right_of) == ((), (left.step,))
+    # A stone that a contact of the same slope carries over its width is on it.
+    above = part(small, 6)
+    slope = Interface(above.id, left.id, np.array([[0.4, 0.15]]), (0.8, 0.6))
+    carried = replace(small, model=RigidBlockModel(small.model.blocks, (slope,)))
+    assert beside(carried, above).on == (left.step,)

@@ -1,6 +1,6 @@
-"""The scatter of the load multiplier: histograms, and alpha against friction."""
+"""The load multiplier over friction, and of shaken walls."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -9,23 +9,16 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
 from drystone.drawing.palette import CLUSTER_COLOURS, GREY, OUTLINE_COLOUR, WEDGE_COLOUR
+from drystone.kernels.raster import Floats
 from drystone.statics.result import LimitStatus
 from drystone.statics.scatter.scatter import Quantiles, Scatter
+from drystone.statics.sensitivity import AtFriction
 
-Floats = NDArray[np.float64]
-
-PANEL_IN = 3.2
-"""Width and height of a panel."""
-
-GAP = 0.28
-"""Between panels, in widths of a panel."""
-
-LEAST_SPAN = 0.02
-"""A histogram of equal values still shows this much."""
-
+PANEL_IN = 3.2  # width and height of a panel
+GAP = 0.28  # between panels, in widths of a panel
+LEAST_SPAN = 0.02  # A histogram of equal values still shows this much
 BARS = CLUSTER_COLOURS[0]
 
 _Style = dict[str, Any]
@@ -40,19 +33,8 @@ def plot_scatter(scatter: Scatter, ax: Axes | None = None) -> Axes:
     """Draw what the shaken walls carry, beside each other in the place of one picture.
 
     Histograms of min alpha and of F_LR with their quantiles, and min alpha against friction when
-    it was varied.  Above stands in words what was shaken and how many walls do not stand.
-
-    Parameters
-    ----------
-    scatter : Scatter
-        From :func:`drystone.statics.scatter.scatter.scatter`.
-    ax : Axes, optional
-        Where to draw: the panels become its children; None makes a figure.
-
-    Returns
-    -------
-    ax : Axes
-        With the words; the panels are its ``child_axes``.
+    it was varied.  Above stands in words what was shaken and how many walls do not stand.  The
+    panels are ``child_axes`` of the axes.
     """
     alpha, shaken = scatter.unshaken, len(scatter.alpha) > 0
     unshaken = None
@@ -72,7 +54,7 @@ def plot_scatter(scatter: Scatter, ax: Axes | None = None) -> Axes:
     if ax is None:
         ax = Figure(figsize=(PANEL_IN * widths, PANEL_IN)).add_axes((0, 0, 1, 1))
     ax.set_axis_off()
-    for number, panel in enumerate(panels or [_nothing]):
+    for number in range(count):
         left = number * (1 + GAP) / widths
         inset = ax.inset_axes((left, 0, 1 / widths, 1), gid=f"panel-{number + 1}")
         inset.tick_params(labelsize=7, length=2.5, width=0.5)
@@ -80,16 +62,15 @@ def plot_scatter(scatter: Scatter, ax: Axes | None = None) -> Axes:
             axis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 5, 10]))
         inset.spines[["top", "right"]].set_visible(False)
         inset.spines[["left", "bottom"]].set_linewidth(0.5)
-        panel(inset)
+        if panels:
+            panels[number](inset)
+        else:
+            inset.set_axis_off()
+            inset.text(0.5, 0.5, "no wall stands", transform=inset.transAxes, ha="center", size=9)
     ax.set_title("\n".join(_words(scatter)), fontsize=8, loc="left", pad=22)
     if shaken:
         _legend(ax)
     return ax
-
-
-def _nothing(ax: Axes) -> None:
-    ax.set_axis_off()
-    ax.text(0.5, 0.5, "no wall stands", transform=ax.transAxes, ha="center", size=9)
 
 
 def _words(scatter: Scatter) -> list[str]:
@@ -157,14 +138,46 @@ def _legend(ax: Axes) -> None:
         Patch(color=BARS, label="walls that stand"),
         Line2D([], [], color=OUTLINE_COLOUR, label="quantiles", **_QUANTILE),
     ]
-    for gid, label, style in (
-        ("unshaken", "not shaken", {**_UNSHAKEN, "linestyle": "solid"}),
-        ("falling", "does not stand", _FALLING),
-        ("sliding", "alpha = mu: sliding", _SLIDING),
-    ):
-        if gid in drawn:
-            entries.append(Line2D([], [], label=label, **style))
+    styles = (("unshaken", "not shaken", {**_UNSHAKEN, "linestyle": "solid"}),
+              ("falling", "does not stand", _FALLING),
+              ("sliding", "alpha = mu: sliding", _SLIDING))  # fmt: skip
+    entries += [
+        Line2D([], [], label=label, **style) for gid, label, style in styles if gid in drawn
+    ]
     ax.legend(
         handles=entries, loc="upper left", bbox_to_anchor=(0.0, -0.14), ncols=len(entries),
         fontsize=7, frameon=False, borderaxespad=0.0, columnspacing=1.4,
     )  # fmt: skip
+
+
+def plot_friction(curve: Sequence[AtFriction], mu: float, *, slides_at_mu: bool = True) -> Axes:
+    """Draw what a wall carries in both directions at several coefficients of friction, ascending.
+
+    Where there is no load multiplier the line is broken.  `mu` is the coefficient of the analysis,
+    marked.  On a level tilting table the whole wall slides at a load multiplier of mu; that is
+    drawn too.
+    """
+    ax = Figure(figsize=(4.2, 2.9), layout="constrained").add_subplot()
+    mus = [at.mu for at in curve]
+    if slides_at_mu:
+        words = "the whole wall slides"
+        ax.plot(mus, mus, color=GREY, linestyle="dotted", linewidth=1.0, label=words)
+    for name, colour, marker in (
+        ("left", CLUSTER_COLOURS[0], "<"),
+        ("right", CLUSTER_COLOURS[1], ">"),
+    ):
+        values = [getattr(at, f"alpha_{name}") for at in curve]
+        drawn = [float("nan") if value is None else value for value in values]
+        ax.plot(mus, drawn, color=colour, marker=marker, markersize=5, label=f"to the {name}")
+    ax.axvline(mu, color=GREY, linewidth=0.8)
+    ax.annotate(
+        f"mu = {mu:g}", (mu, 0.02), xycoords=("data", "axes fraction"), fontsize=7,
+        xytext=(3, 0), textcoords="offset points",
+    )  # fmt: skip
+    ax.set_ylim(bottom=0.0)
+    ax.set_xlabel("coefficient of friction", fontsize=8)
+    ax.set_ylabel("load multiplier", fontsize=8)
+    ax.tick_params(labelsize=7)
+    ax.legend(fontsize=7, frameon=False)
+    ax.spines[["top", "right"]].set_visible(False)
+    return ax

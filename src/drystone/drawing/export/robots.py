@@ -1,0 +1,302 @@
+"""What robots read: poses.json, assembly.compas.json, scene.yaml and wall.scene, urdf/.
+
+assembly.compas.json is plain JSON that ``compas.json_load`` reads.  scene.yaml is a
+``moveit_msgs/PlanningScene`` message that adds the parts (is_diff), wall.scene the text format that
+MoveIt and its RViz plugin import; objects come in the order of building.  In the URDF links have
+the frame S of their part; fixed joints to the link ``wall``, whose frame is W, hold them at their
+places.  Its meshes are binary STL in metres, named relative to it.
+"""
+
+import math
+from collections.abc import Iterable, Iterator
+from functools import partial
+from typing import Any
+from xml.etree import ElementTree as ET
+
+from drystone.drawing.assembly import handling
+from drystone.drawing.assembly.parts import Assembly, Part
+from drystone.drawing.export.formats import ExportSettings, Files
+from drystone.drawing.export.solids import (
+    Solid,
+    colour,
+    inertia,
+    material,
+    require_solids,
+    solid_of_part,
+    stl_bytes,
+)
+from drystone.drawing.export.text import json_text, number
+from drystone.model.frames3d import Pose3d
+
+FRAMES = {
+    "convention": "Right-handed, metres. A matrix is 4x4, rows first, and maps points of the part "
+    "(S) to the frame of the pose; its columns are the axes and the origin. The quaternion is the "
+    "same turn, by name.",
+    "W": "Wall. X along the wall to the right, Y into it, Z up; origin at its bottom-left-front "
+    "corner. The front face is y = 0. Poses called `place` are in W.",
+    "P": "Photo. X to the right and Y up in the picture that the stones were read from, Z out of "
+    "it, towards the camera; origin at the picture's bottom-left corner, on the ground that the "
+    "stones lie on. Poses called `pick` are in P.",
+    "S": "Part. Origin in the middle of its thickness at the centroid that the plan gives; X "
+    "and Z as the picture's x and y in the source image, Y into the wall.",
+    "pick and place": "A stone lies on its back under the camera: the face that the camera sees "
+    "is the one that is seen in the wall's front. It is tilted up by 90 degrees about X, then "
+    "turned by -angle_deg about Y of W, which is angle_deg counter-clockwise as seen from the "
+    "front, and moved. `pick_to_place` is all of it, P to W: place.matrix times the inverse of "
+    "pick.matrix. No part is mirrored.",
+    "approach": "The part moves straight along `direction`, over `stand_off_m`, from `start` "
+    "(where its origin is then) to its pose. Stones come from above, from clearance_m over "
+    "everything that stands there before; wedges are pushed in from the front. `blocked_m` is the "
+    "longest horizontal piece of the way down that stones take up which stand already; 0 when the "
+    "way is free. Settling moves a stone by a fraction of a px after it was let down, which "
+    "shows here.",
+    "grasp": "Two parallel jaws across the least width of the outline: how far apart, and the unit "
+    "vector across them in S, W and P. `thickness_m` is the other way to hold it, along Y of S.",
+    "neighbours": "Ids of what is there already and touches the part when it is placed; 0 is the "
+    "ground.",
+    "alpha": "Load multipliers of the wall after the step, for a load to the left and to the "
+    "right; null when wedges of the stone are still to come.",
+}
+
+BASE = "wall"  # name of the frame W, which in ROS a static transform places
+AT_THE_ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+
+
+def poses(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
+    """Return poses.json: where every part is picked and placed, how it is held, its mass."""
+    return {"poses.json": lambda: json_text(poses_json(assembly)) + "\n"}
+
+
+def poses_json(assembly: Assembly) -> dict[str, Any]:
+    """Return what poses.json holds, matrices as arrays; E131 without a scale."""
+    plan = assembly.plan
+    width_m, height_m = assembly.size
+    return {
+        "schema": "drystone-poses/1",
+        "version": plan.version,
+        "source": {key: plan.source.get(key) for key in ("path", "sha256")},
+        "method": plan.method,
+        "seed": plan.seed,
+        "units": {"length": "m", "mass": "kg", "angle": "degree in names with _deg"},
+        "px_per_m": assembly.require_scale("poses"),
+        "frames": FRAMES,
+        "wall": {"width_m": width_m, "height_m": height_m},
+        "thickness_m": assembly.thickness,
+        "density_kg_m3": assembly.density_kg_m3,
+        "clearance_m": handling.CLEARANCE_M,
+        "parts": [_handled(assembly, part) for part in assembly.parts],
+        "unused": list(plan.unused),
+    }
+
+
+def _handled(assembly: Assembly, part: Part) -> dict[str, Any]:
+    width_m, height_m = part.size
+    pick, down = assembly.pick_pose(part), handling.pick_approach(assembly, part)
+    blocked_m = handling.blocked_m(assembly, part) if part.kind == "stone" else 0.0
+    approach = {**handling.place_approach(assembly, part), "blocked_m": blocked_m}
+    return {
+        **_names(part),
+        "under": part.under,
+        "angle_deg": part.angle_deg,
+        "flipped": False,
+        "place": {**_posed(assembly.place_pose(part)), "approach": approach},
+        "pick": pick and down and {**_posed(pick), "approach": down},
+        "pick_to_place": handling.pick_to_place(assembly, part),
+        "grasp": {**handling.grasp(assembly, part), "thickness_m": assembly.thickness},
+        "mass_kg": assembly.mass_kg(part),
+        "size_m": {"x": width_m, "y": assembly.thickness, "z": height_m},
+        "neighbours": handling.touched_when_placed(assembly, part),
+        "wedges_after": [wedge.name for wedge in handling.wedges_after(assembly, part)],
+        "alpha": {"left": part.plan_step.alpha_left, "right": part.plan_step.alpha_right},
+    }
+
+
+def _names(part: Part) -> dict[str, Any]:
+    return {name: getattr(part, name) for name in ("step", "kind", "id", "name")}
+
+
+def _posed(pose: Pose3d) -> dict[str, Any]:
+    turn = pose.quaternion
+    return {
+        "point": {"x": pose.x_m, "y": pose.y_m, "z": pose.z_m},
+        "quaternion": {"x": turn.x, "y": turn.y, "z": turn.z, "w": turn.w},
+        "matrix": pose.matrix,
+    }
+
+
+def compas(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
+    """Return assembly.compas.json; E180 without a solid."""
+    require_solids(assembly)
+    return {"assembly.compas.json": lambda: json_text(compas_json(assembly)) + "\n"}
+
+
+def compas_json(assembly: Assembly) -> dict[str, Any]:
+    """Return a mapping whose frames and meshes COMPAS makes objects of; E131 without a scale.
+
+    An element's `mesh` is in its own frame S, `place` and `pick` are where S is in W and in P.
+    """
+    return {
+        "schema": "drystone-compas/1",
+        "version": assembly.plan.version,
+        "units": "m",
+        "thickness_m": assembly.thickness,
+        "density_kg_m3": assembly.density_kg_m3,
+        "elements": [
+            {
+                **_names(part),
+                "place": compas_frame(assembly.place_pose(part)),
+                "pick": (pick := assembly.pick_pose(part)) and compas_frame(pick),
+                "mesh": compas_mesh(solid_of_part(assembly, part), part.name),
+                "mass_kg": assembly.mass_kg(part),
+                "neighbours": handling.touched_when_placed(assembly, part),
+            }
+            for part in assembly.parts
+        ],
+    }
+
+
+def compas_frame(pose: Pose3d) -> dict[str, Any]:
+    """Return a pose as the data of a ``compas.geometry.Frame``."""
+    point = [pose.x_m, pose.y_m, pose.z_m]
+    axes = {"xaxis": list(pose.xaxis), "yaxis": list(pose.yaxis)}
+    return {"dtype": "compas.geometry/Frame", "data": {"point": point, **axes}}
+
+
+def compas_mesh(solid: Solid, name: str) -> dict[str, Any]:
+    """Return a solid as the data of a ``compas.datastructures.Mesh``."""
+    points, faces = solid.vertices.tolist(), solid.triangles.tolist()
+    data = {
+        "attributes": {},
+        "default_vertex_attributes": {"x": 0.0, "y": 0.0, "z": 0.0},
+        "default_edge_attributes": {},
+        "default_face_attributes": {},
+        "vertex": {str(i): dict(zip("xyz", p, strict=True)) for i, p in enumerate(points)},
+        "face": {str(i): face for i, face in enumerate(faces)},
+        "facedata": {str(i): {} for i in range(len(faces))},
+        "edgedata": {},
+        "max_vertex": len(points) - 1,
+        "max_face": len(faces) - 1,
+    }
+    return {"dtype": "compas.datastructures/Mesh", "data": data, "name": name}
+
+
+def moveit(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
+    """Return both files of a planning scene; E180 without a solid."""
+    require_solids(assembly)
+    return {
+        "scene.yaml": lambda: "\n".join(yaml_lines(assembly)) + "\n",
+        "wall.scene": lambda: "\n".join(scene_lines(assembly)) + "\n",
+    }
+
+
+def yaml_lines(assembly: Assembly) -> Iterator[str]:
+    """Return the message; a block subset of YAML with floats that every reader takes for floats.
+
+    `operation` is left out: its default, 0, adds an object.
+    """
+    yield f"# drystone {assembly.plan.version}: moveit_msgs/PlanningScene, metres, frame W"
+    yield from ("name: drystone_wall", "is_diff: true", "robot_state: {is_diff: true}", "world:")
+    yield "  collision_objects:"
+    for part in assembly.parts:
+        solid = solid_of_part(assembly, part)
+        yield f"  # step {part.step}"
+        yield f"  - header: {{frame_id: {BASE}}}"
+        yield f"    id: {part.name}"
+        yield f"    pose: {_yaml_pose(*_seven(assembly.place_pose(part)))}"
+        yield from ("    meshes:", "    - triangles:")
+        for corners in solid.triangles.tolist():
+            yield f"      - {{vertex_indices: {corners}}}"
+        yield "      vertices:"
+        for vertex in solid.vertices.tolist():
+            yield f"      - {_fields('xyz', vertex)}"
+        yield "    mesh_poses:"
+        yield f"    - {_yaml_pose(*AT_THE_ORIGIN)}"
+    yield "object_colors:"
+    for part in assembly.parts:
+        yield f"- {{id: {part.name}, color: {_fields('rgba', (*colour(part), 1.0))}}}"
+
+
+def scene_lines(assembly: Assembly) -> Iterator[str]:
+    """Return the wall in MoveIt's text format with object poses and subframes (none)."""
+    yield "drystone_wall"
+    for part in assembly.parts:
+        pose, solid = _seven(assembly.place_pose(part)), solid_of_part(assembly, part)
+        yield from (f"* {part.name}", _row(*pose[:3]), _row(*pose[3:]), "1", "mesh")
+        yield f"{len(solid.vertices)} {len(solid.triangles)}"
+        yield from (_row(*vertex) for vertex in solid.vertices.tolist())
+        yield from (f"{a} {b} {c}" for a, b, c in solid.triangles.tolist())
+        yield from (_row(*AT_THE_ORIGIN[:3]), _row(*AT_THE_ORIGIN[3:]))
+        yield from (_row(*colour(part), 1.0), "0")
+    yield "."
+
+
+def _seven(pose: Pose3d) -> tuple[float, ...]:
+    turn = pose.quaternion
+    return pose.x_m, pose.y_m, pose.z_m, turn.x, turn.y, turn.z, turn.w
+
+
+def _yaml_pose(*seven: float) -> str:
+    at, turn = _fields("xyz", seven[:3]), _fields("xyzw", seven[3:])
+    return f"{{position: {at}, orientation: {turn}}}"
+
+
+def _fields(names: str, values: Iterable[float]) -> str:
+    pairs = zip(names, values, strict=True)
+    return "{" + ", ".join(f"{name}: {number(value)}" for name, value in pairs) + "}"
+
+
+def urdf(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
+    """Return the description and a mesh a part; E180 without a solid."""
+    require_solids(assembly)
+    head = '<?xml version="1.0"?>\n'
+    meshes = {
+        f"urdf/{_mesh_file(part)}": partial(
+            stl_bytes, solid_of_part(assembly, part), f"{part.name}, frame S"
+        )
+        for part in assembly.parts
+    }
+    text = ET.tostring(robot(assembly), encoding="unicode")
+    return {"urdf/wall.urdf": lambda: f"{head}{text}\n", **meshes}
+
+
+def robot(assembly: Assembly) -> ET.Element:
+    """Return the description as an XML element; E131 without a scale."""
+    root = ET.Element("robot", name="drystone_wall")
+    ET.SubElement(root, "link", name=BASE)
+    for part in assembly.parts:
+        _link(root, assembly, part)
+        pose, joint = assembly.place_pose(part), ET.SubElement(
+            root, "joint", name=f"place_{part.name}", type="fixed"
+        )  # fmt: skip
+        ET.SubElement(joint, "parent", link=BASE)
+        ET.SubElement(joint, "child", link=part.name)
+        # Parts are turned about Y only, which is the pitch.
+        turn = _row(0.0, -math.radians(part.angle_deg), 0.0)
+        ET.SubElement(joint, "origin", xyz=_row(pose.x_m, pose.y_m, pose.z_m), rpy=turn)
+    ET.indent(root, " ")
+    return root
+
+
+def _link(root: ET.Element, assembly: Assembly, part: Part) -> None:
+    link, found = ET.SubElement(root, "link", name=part.name), inertia(assembly, part)
+    inertial = ET.SubElement(link, "inertial")
+    ET.SubElement(inertial, "origin", xyz=_row(*found.centre), rpy=_row(0.0, 0.0, 0.0))
+    ET.SubElement(inertial, "mass", value=number(found.mass_kg))
+    tensor = {
+        f"i{'xyz'[i]}{'xyz'[j]}": number(found.tensor[i, j]) for i in range(3) for j in range(i, 3)
+    }
+    ET.SubElement(inertial, "inertia", tensor)
+    for name in ("visual", "collision"):
+        body = ET.SubElement(link, name)
+        ET.SubElement(ET.SubElement(body, "geometry"), "mesh", filename=_mesh_file(part))
+        if name == "visual":
+            paint = ET.SubElement(body, "material", name=material(part))
+            ET.SubElement(paint, "color", rgba=_row(*colour(part), 1.0))
+
+
+def _mesh_file(part: Part) -> str:
+    return f"meshes/{part.name}.stl"
+
+
+def _row(*values: float) -> str:
+    return " ".join(map(number, values))

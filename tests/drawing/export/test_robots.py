@@ -1,0 +1,267 @@
+"""Solids for robots and meshes: what other programs read is every part, closed and in its place."""
+
+import json
+import struct
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as ET
+
+import compas
+import numpy as np
+import pytest
+import trimesh
+import yaml
+from compas.geometry import Frame, Transformation
+from compas_robots import RobotModel
+from compas_robots.resources import DefaultMeshLoader
+from scipy.spatial.transform import Rotation
+
+from drystone.drawing.assembly.parts import Assembly
+from drystone.drawing.export.formats import FORMATS, ExportSettings
+from drystone.drawing.export.solids import inertia, material, materials, solid_of_part
+from tests.drawing.export.robot_plans import METRIC, THICKNESS_M, assembly, assert_in_place
+
+SETTINGS = ExportSettings()
+Meshes = Iterator[tuple[str, Any]]
+
+Y_DOWN = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
+"""From glTF, where (x, y, z) of the wall is (x, z, -y)."""
+
+
+def mesh_of(points: Any, faces: Any, matrix: Any = None) -> Any:
+    mesh = trimesh.Trimesh(points, faces, process=False)
+    return mesh.apply_transform(np.eye(4) if matrix is None else matrix)
+
+
+def obj(paths: tuple[Path, ...]) -> Meshes:
+    scene = trimesh.load_scene(paths[0], split_objects=True, group_material=False, process=False)
+    lines = paths[0].read_text(encoding="utf-8").splitlines()
+    for name in [line[2:] for line in lines if line.startswith("o ")]:
+        yield name, scene.geometry[name]
+    assert paths[1].name == "wall.mtl"
+
+
+def glb(paths: tuple[Path, ...]) -> Meshes:
+    scene = trimesh.load_scene(paths[0])
+    for node in scene.graph.nodes_geometry:
+        matrix, geometry = scene.graph[node]
+        yield node, scene.geometry[geometry].copy().apply_transform(Y_DOWN @ matrix)
+
+
+def stl(paths: tuple[Path, ...]) -> Meshes:
+    for path in paths:
+        yield path.stem, trimesh.load_mesh(path)
+
+
+def seven(pose: dict[str, Any]) -> list[float]:
+    assert [[*one] for one in pose.values()] == [["x", "y", "z"], ["x", "y", "z", "w"]]
+    found = [value for one in pose.values() for value in one.values()]
+    # A message field of floats takes no whole numbers and no words.
+    assert all(type(value) is float for value in found)
+    return found
+
+
+def matrix_of(pose: list[float]) -> Any:
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = Rotation.from_quat(pose[3:]).as_matrix(), pose[:3]
+    return matrix
+
+
+def scene_yaml(paths: tuple[Path, ...]) -> Meshes:
+    read = yaml.safe_load(paths[0].read_text(encoding="utf-8"))
+    assert read["is_diff"] is True
+    objects = read["world"]["collision_objects"]
+    assert [one["id"] for one in read["object_colors"]] == [one["id"] for one in objects]
+    for paint in (one["color"] for one in read["object_colors"]):
+        assert [*paint] == ["r", "g", "b", "a"]
+        assert all(0.0 <= value <= 1.0 for value in paint.values())
+        assert paint["a"] == 1.0
+    for one in objects:
+        # Of moveit_msgs/CollisionObject; all other fields keep their defaults.
+        assert set(one) == {"header", "id", "pose", "meshes", "mesh_poses"}
+        assert one["header"] == {"frame_id": "wall"}
+        assert [seven(pose) for pose in one["mesh_poses"]] == [[0.0] * 6 + [1.0]]
+        (mesh,) = one["meshes"]
+        vertices = [list(vertex.values()) for vertex in mesh["vertices"]]
+        assert all(type(value) is float for vertex in vertices for value in vertex)
+        faces = [corner["vertex_indices"] for corner in mesh["triangles"]]
+        yield one["id"], mesh_of(vertices, faces, matrix_of(seven(one["pose"])))
+
+
+def scene_text(paths: tuple[Path, ...]) -> Meshes:
+    """Read what PlanningScene::loadGeometryFromStream of MoveIt reads, word by word."""
+    name, _, rest = paths[1].read_text(encoding="utf-8").partition("\n")
+    assert name == "drystone_wall"
+    # The line after the first object's name tells the new format, with object poses, by a blank.
+    assert " " in rest.splitlines()[1].strip()
+    words = iter(rest.split())
+
+    def numbers(count: int) -> list[float]:
+        return [float(next(words)) for _ in range(count)]
+
+    while (marker := next(words)) == "*":
+        object_id, pose = next(words), numbers(7)
+        assert (next(words), next(words)) == ("1", "mesh")
+        vertices, triangles = int(next(words)), int(next(words))
+        points = np.array(numbers(3 * vertices)).reshape(-1, 3)
+        faces = np.array([int(next(words)) for _ in range(3 * triangles)]).reshape(-1, 3)
+        assert numbers(7) == [0.0] * 6 + [1.0]
+        assert numbers(4)[3] == 1.0
+        assert next(words) == "0"
+        yield object_id, mesh_of(points, faces, matrix_of(pose))
+    assert marker == "."
+    assert next(words, None) is None
+
+
+def urdf(paths: tuple[Path, ...]) -> Meshes:
+    robot = RobotModel.from_urdf_file(str(paths[0]))
+    assert robot.root.name == "wall"
+    assert not robot.get_configurable_joints()
+    for link in [*robot.iter_links()][1:]:
+        joint = robot.find_parent_joint(link)
+        assert joint.type.name == "FIXED"
+        place = np.array(Transformation.from_frame(joint.current_origin).matrix)
+        for shown in (*link.visual, *link.collision):
+            path = paths[0].parent / shown.geometry.shape.filename
+            yield link.name, trimesh.load_mesh(path).apply_transform(place)
+
+
+def compas_json(paths: tuple[Path, ...]) -> Meshes:
+    read = compas.json_load(str(paths[0]))
+    assert read["units"] == "m"
+    for element in read["elements"]:
+        mesh = element["mesh"]
+        assert (mesh.name, mesh.is_manifold(), mesh.is_closed()) == (element["name"], True, True)
+        moved = mesh.transformed(Transformation.from_frame(element["place"]))
+        yield element["name"], mesh_of(*moved.to_vertices_and_faces())
+
+
+READERS: dict[str, tuple[str, Callable[[tuple[Path, ...]], Meshes], float]] = {
+    "obj": ("obj", obj, 1e-8), "glb": ("glb", glb, 1e-6), "stl": ("stl", stl, 1e-7),
+    "scene.yaml": ("moveit", scene_yaml, 1e-9), "wall.scene": ("moveit", scene_text, 1e-9),
+    "urdf": ("urdf", urdf, 1e-7), "compas": ("compas", compas_json, 1e-9),
+}  # fmt: skip
+"""Names of formats, their readers, and how many metres a mesh may be beside its place."""
+
+
+@pytest.fixture(scope="module")
+def exact() -> Assembly:
+    """A plan with a wedge."""
+    return assembly("exact")
+
+
+@pytest.mark.parametrize("name", METRIC)
+@pytest.mark.parametrize("reader", READERS)
+def test_every_part_is_closed_and_at_its_place_in_order(reader, name, tmp_path) -> None:
+    wall, (written, read, off) = assembly(name), READERS[reader]
+    found = list(read(FORMATS[written].write(wall, tmp_path, SETTINGS)))
+    order = [part.name for part in wall.parts]
+    names = [one for one, _ in found]
+    if written == "glb":
+        names.sort(key=order.index)
+    each = 2 if written == "urdf" else 1  # seen and touched
+    assert names == [part for part in order for _ in range(each)]
+    for part_name, mesh in found:
+        assert_in_place(mesh, wall.parts[order.index(part_name)], off)
+
+
+def test_colours_of_obj_are_those_of_the_clusters(exact, tmp_path) -> None:
+    path, _ = FORMATS["obj"].write(exact, tmp_path, SETTINGS)
+    scene = trimesh.load_scene(path, split_objects=True, group_material=False, process=False)
+    for part in exact.parts:
+        expected = "wedge" if part.kind == "wedge" else f"cluster_{part.cluster}"
+        assert scene.geometry[part.name].visual.material.name == expected
+    (wedge,) = exact.wedges
+    assert scene.geometry[wedge.name].visual.material.diffuse.tolist() == [0x8B, 0, 0, 255]
+    # Numbers have all digits.
+    lines = [line.split()[1:] for line in path.read_text().splitlines() if line.startswith("v ")]
+    first = exact.parts[0].corners
+    assert (np.array(lines[: len(first)], float)[:, [0, 2]] == first).all()
+
+
+def test_nodes_of_glb_have_the_poses_steps_and_colours_of_the_wall(exact, tmp_path) -> None:
+    (path,) = FORMATS["glb"].write(exact, tmp_path, SETTINGS)
+    data = path.read_bytes()
+    assert struct.unpack("<4sII", data[:12]) == (b"glTF", 2, len(data))
+    size, kind = struct.unpack("<I4s", data[12:20])
+    assert kind == b"JSON"
+    gltf = json.loads(data[20 : 20 + size])
+    nodes = {node["name"]: node for node in gltf["nodes"]}
+    colours = materials(exact)
+    for part in exact.parts:
+        node = nodes[part.name]
+        matrix = np.reshape(node["matrix"], (4, 4)).T
+        assert matrix == pytest.approx(exact.place_pose(part).matrix, abs=1e-12)
+        assert node["extras"] == {"step": part.step}
+        (mesh,) = gltf["meshes"][node["mesh"]]["primitives"]
+        paint = gltf["materials"][mesh["material"]]
+        assert paint["name"] == material(part)
+        light = [((one + 0.055) / 1.055) ** 2.4 if one > 0.04 else one / 12.92
+                 for one in colours[material(part)]]  # fmt: skip
+        factor = paint["pbrMetallicRoughness"]["baseColorFactor"]
+        assert factor == pytest.approx([*light, 1.0], abs=0.003)
+
+
+def test_the_header_of_stl_says_unit_and_frame_and_is_no_text_file(exact, tmp_path) -> None:
+    header = FORMATS["stl"].write(exact, tmp_path, SETTINGS)[0].read_bytes()[:80]
+    assert header.rstrip() == b"drystone, metres: stone_005, frame W"
+
+
+def test_poses_of_scene_yaml_have_all_digits(exact, tmp_path) -> None:
+    path, _ = FORMATS["moveit"].write(exact, tmp_path, SETTINGS)
+    objects = yaml.safe_load(path.read_text())["world"]["collision_objects"]
+    for one, part in zip(objects, exact.parts, strict=True):
+        pose = exact.place_pose(part)
+        turn = pose.quaternion
+        expected = [pose.x_m, pose.y_m, pose.z_m, turn.x, turn.y, turn.z, turn.w]
+        assert seven(one["pose"]) == expected
+
+
+@pytest.mark.parametrize("name", METRIC)
+def test_frames_of_compas_are_those_of_the_poses(name, tmp_path) -> None:
+    wall = assembly(name)
+    (path,) = FORMATS["compas"].write(wall, tmp_path, SETTINGS)
+    read = compas.json_load(str(path))
+    for element, part in zip(read["elements"], wall.parts, strict=True):
+        pairs = ((element["place"], wall.place_pose(part)), (element["pick"], wall.pick_pose(part)))
+        for frame, pose in pairs:
+            if pose is None:
+                assert frame is None
+                continue
+            assert isinstance(frame, Frame)
+            matrix = np.array(Transformation.from_frame(frame).matrix)
+            assert matrix == pytest.approx(pose.matrix, abs=1e-9)
+    again = compas.json_loads(compas.json_dumps(read))
+    for one, other in zip(read["elements"], again["elements"], strict=True):
+        assert one["place"] == other["place"]
+        assert one["mesh"].number_of_faces() == other["mesh"].number_of_faces()
+
+
+def test_a_urdf_loads_with_mass_centre_and_inertia_of_its_meshes(exact, tmp_path) -> None:
+    path, *_ = FORMATS["urdf"].write(exact, tmp_path, SETTINGS)
+    robot = RobotModel.from_urdf_file(str(path))
+    robot.load_geometry(DefaultMeshLoader(basepath=str(path.parent)), precision=12)
+    for part in exact.parts:
+        link = robot.get_link_by_name(part.name)
+        (mesh,) = robot.get_link_collision_meshes(link)
+        assert mesh.volume() == pytest.approx(part.area * THICKNESS_M, rel=1e-6)
+        solid, found = solid_of_part(exact, part), inertia(exact, part)
+        exactly = mesh_of(solid.vertices, solid.triangles)
+        exactly.density = exact.density_kg_m3
+        assert found.mass_kg == pytest.approx(exactly.mass, rel=1e-10)
+        assert found.centre == pytest.approx(exactly.center_mass, abs=1e-12)
+        size = found.tensor.max()
+        assert found.tensor == pytest.approx(exactly.moment_inertia, abs=1e-9 * size)
+        assert link.inertial.mass.value == pytest.approx(found.mass_kg)
+        assert [*link.inertial.origin.point] == pytest.approx(found.centre, abs=1e-9)
+        said = link.inertial.inertia
+        tensor = [[said.ixx, said.ixy, said.ixz], [said.ixy, said.iyy, said.iyz],
+                  [said.ixz, said.iyz, said.izz]]  # fmt: skip
+        assert np.array(tensor) == pytest.approx(found.tensor, abs=1e-9 * size)
+    colours: dict[str, set[str]] = {}
+    for paint in ET.fromstring(path.read_text()).iter("material"):  # noqa: S314 - our own file
+        (rgba,) = paint
+        colours.setdefault(paint.attrib["name"], set()).add(rgba.attrib["rgba"])
+    assert "wedge" in colours
+    assert all(len(found) == 1 for found in colours.values())
