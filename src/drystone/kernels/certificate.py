@@ -152,15 +152,6 @@ def figures(
 class Check:
     """Forces and velocities, and what was found of all columns so far."""
 
-    forces: cython.p_double
-    velocity: cython.p_double
-    left: cython.p_double
-    loaded: cython.bint
-    force: cython.Py_ssize_t
-    violation: cython.double
-    total: cython.double
-    inadmissible: cython.double
-
     def __init__(self) -> None:
         self.force = 0
         self.violation = self.total = self.inadmissible = 0.0
@@ -169,18 +160,7 @@ class Check:
         release(self.left)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def check_columns(
-    check: Check,
-    first: cython.p_int,
-    second: cython.p_int,
-    entries: cython.p_double,
-    size: cython.Py_ssize_t,
-    start: cython.Py_ssize_t,
-    stop: cython.Py_ssize_t,
-) -> cython.void:
+def check_columns(check, first, second, entries, size, start, stop):
     """Go through some of so many columns; their forces come next."""
     velocity: cython.p_double = check.velocity
     left: cython.p_double = check.left
@@ -209,10 +189,6 @@ def check_columns(
                 left[two + k] += x * entries[(3 + k) * size + column]
 
 
-@cython.cfunc
-@cython.nogil
-@cython.inline
-@cython.exceptval(check=False)
-def larger(one: cython.double, two: cython.double) -> cython.double:
+def larger(one, two):
     """Return the larger one; what is no number counts as the largest."""
     return two if two > one or two != two else one

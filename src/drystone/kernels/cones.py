@@ -129,16 +129,6 @@ def cone_edges(
     return first, second, entries
 
 
-@cython.cfunc
-@cython.nogil
-@cython.inline
-@cython.exceptval(check=False)
-def moment(
-    x: cython.double,
-    y: cython.double,
-    length: cython.double,
-    force_x: cython.double,
-    force_y: cython.double,
-) -> cython.double:
+def moment(x, y, length, force_x, force_y):
     """Return the moment of a force on an arm, over a length."""
     return x / length * force_y - y / length * force_x

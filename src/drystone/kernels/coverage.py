@@ -96,19 +96,7 @@ def coverage(corners: Points) -> tuple[Grid, int, int]:
     return shares, int(left), int(bottom)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def cut_at_rows(
-    foot_x: cython.double,
-    foot_y: cython.double,
-    head_x: cython.double,
-    head_y: cython.double,
-    sign: cython.double,
-    out: cython.p_double,
-    width: cython.Py_ssize_t,
-    height: cython.Py_ssize_t,
-) -> cython.void:
+def cut_at_rows(foot_x, foot_y, head_x, head_y, sign, out, width, height):
     """Note an edge, from its lower to its upper end, in every row of cells that it crosses."""
     first: cython.double = floor(foot_y)
     rises: cython.double = head_y - foot_y
@@ -125,17 +113,7 @@ def cut_at_rows(
         )
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def cut_at_columns(
-    low: cython.double,
-    high: cython.double,
-    drop: cython.double,
-    sums: cython.p_double,
-    row: cython.Py_ssize_t,
-    width: cython.Py_ssize_t,
-) -> cython.void:
+def cut_at_columns(low, high, drop, sums, row, width):
     """Note a piece of an edge in every cell of its row that it crosses, and in the next one."""
     column: cython.double = floor(low)
     at: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, column)
@@ -152,12 +130,7 @@ def cut_at_columns(
         at += 1
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def add_up(
-    shares: cython.p_double, width: cython.Py_ssize_t, height: cython.Py_ssize_t
-) -> cython.void:
+def add_up(shares, width, height):
     """Sum along the rows, and leave no rounding near 0 and 1."""
     for row in range(height):
         share = 0.0

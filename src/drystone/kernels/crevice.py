@@ -89,8 +89,7 @@ def crevice(stone: Points, around: Polygons, clearance: float) -> Crevice:
     return Crevice(*_crevice(np.ascontiguousarray(stone, np.float64), around, clearance))
 
 
-@cython.cfunc
-def _crevice(stone: Points, around: Polygons, clearance: cython.double) -> tuple:
+def _crevice(stone, around, clearance):
     """Return lid and floor, moved into the free space."""
     corners: cython.p_double = doubles(stone)
     left: cython.double = corners[0]
@@ -221,9 +220,6 @@ def _line(edges: Points, x: Points) -> Points:
 class Segments:
     """Segments from left to right, x0, y0, x1, y1, one after the other."""
 
-    at: cython.p_double
-    count: cython.Py_ssize_t
-
     def __init__(self, room: int) -> None:
         self.at, self.count = new_doubles(4 * room), 0
 
@@ -234,13 +230,6 @@ class Segments:
 @cython.cclass
 class Slabs:
     """Strips between upright lines, and which segment is taken in each: -1 for none."""
-
-    x: cython.p_double
-    middle: cython.p_double
-    ceiling: cython.p_double
-    best: cython.p_double
-    which: cython.p_int
-    count: cython.Py_ssize_t
 
     def __init__(self, room: int) -> None:
         self.x, self.middle = new_doubles(room), new_doubles(room)
@@ -259,9 +248,6 @@ class Slabs:
 class Corners:
     """A chain: corners from left to right."""
 
-    at: cython.p_double
-    count: cython.Py_ssize_t
-
     def __init__(self, room: int) -> None:
         self.at, self.count = new_doubles(2 * room), 0
 
@@ -269,8 +255,7 @@ class Corners:
         release(self.at)
 
 
-@cython.cfunc
-def as_array(chain: Corners):
+def as_array(chain):
     """Return the corners of a chain."""
     points = np.empty((chain.count, 2))
     into: cython.p_double = doubles_out(points)
@@ -279,23 +264,13 @@ def as_array(chain: Corners):
     return points
 
 
-@cython.cfunc
-@cython.exceptval(check=False)
-def flip(at: cython.p_double, end: cython.Py_ssize_t) -> cython.void:
+def flip(at, end):
     """Turn points upside down."""
     for i in range(1, end, 2):
         at[i] = -at[i]
 
 
-@cython.cfunc
-@cython.exceptval(check=False)
-def add(
-    out: Segments,
-    x0: cython.double,
-    y0: cython.double,
-    x1: cython.double,
-    y1: cython.double,
-) -> cython.bint:
+def add(out, x0, y0, x1, y1):
     """Add a segment, unless it is upright or goes to the left."""
     k: cython.Py_ssize_t = 4 * out.count
     if not x1 - x0 > NEAR:
@@ -305,16 +280,13 @@ def add(
     return True
 
 
-@cython.cfunc
-@cython.exceptval(check=False)
-def line(at: cython.p_double, k: cython.Py_ssize_t, x: cython.double) -> cython.double:
+def line(at, k, x):
     """Return y of a segment at an x."""
     share: cython.double = (x - at[k]) / (at[k + 2] - at[k])
     return at[k + 1] + (at[k + 3] - at[k + 1]) * share
 
 
-@cython.cfunc
-def boundaries(stone: Points, around: Polygons, reach: cython.double) -> tuple:
+def boundaries(stone, around, reach):
     """Return lid and floor as they are, from `reach` left of the stone to so far right of it."""
     corners: cython.p_double = doubles(stone)
     others: cython.p_double = doubles(around.corners)
@@ -393,33 +365,20 @@ def boundaries(stone: Points, around: Polygons, reach: cython.double) -> tuple:
     return lid, floor
 
 
-@cython.cfunc
-@cython.exceptval(check=False)
-def put(
-    out: Segments,
-    x0: cython.double,
-    y0: cython.double,
-    x1: cython.double,
-    y1: cython.double,
-) -> cython.void:
+def put(out, x0, y0, x1, y1):
     """Add a segment as it is."""
     k: cython.Py_ssize_t = 4 * out.count
     out.at[k], out.at[k + 1], out.at[k + 2], out.at[k + 3] = x0, y0, x1, y1
     out.count += 1
 
 
-@cython.cfunc
-@cython.exceptval(check=False)
-def pick(out: Segments, one: Segments, i: cython.Py_ssize_t) -> cython.void:
+def pick(out, one, i):
     """Add one of some segments."""
     k: cython.Py_ssize_t = 4 * i
     put(out, one.at[k], one.at[k + 1], one.at[k + 2], one.at[k + 3])
 
 
-@cython.cfunc
-def raised(
-    chain: Corners, clearance: cython.double, left: cython.double, right: cython.double
-) -> Corners:
+def raised(chain, clearance, left, right):
     """Move a chain up by a clearance, along its normals, and cut it off at two places.
 
     The highest of its moved edges counts everywhere.  At corners that stand out they are made
@@ -458,8 +417,7 @@ def raised(
     return chained(picked, cuts)
 
 
-@cython.cfunc
-def moved(chain: Corners, clearance: cython.double, out: Segments):
+def moved(chain, clearance, out):
     """List the edges of a chain moved up and made longer, then those that join them."""
     edges: cython.Py_ssize_t = chain.count - 1
     joints: Segments = Segments(chain.count)
@@ -497,9 +455,7 @@ def moved(chain: Corners, clearance: cython.double, out: Segments):
         pick(out, joints, i)
 
 
-@cython.cfunc
-@cython.exceptval(check=False)
-def direction(at: cython.p_double, k: cython.Py_ssize_t, out: cython.p_double) -> cython.void:
+def direction(at, k, out):
     """Give the unit vector of an edge of a chain."""
     x: cython.double = at[k + 2] - at[k]
     y: cython.double = at[k + 3] - at[k + 1]
@@ -507,9 +463,7 @@ def direction(at: cython.p_double, k: cython.Py_ssize_t, out: cython.p_double) -
     out[0], out[1] = x / length, y / length
 
 
-@cython.cfunc
-@cython.exceptval(check=False)
-def highest(edges: Segments, cuts: Slabs) -> cython.void:
+def highest(edges, cuts):
     """Find the highest segment of each slab, not above its ceiling."""
     at: cython.p_double = edges.at
     for k in range(cuts.count):
@@ -530,8 +484,7 @@ def highest(edges: Segments, cuts: Slabs) -> cython.void:
             k += 1
 
 
-@cython.cfunc
-def chained(picked: Segments, cuts: Slabs) -> Corners:
+def chained(picked, cuts):
     """Return the chain of segments that are given for each slab."""
     out: Corners = Corners(2 * cuts.count)
     i: cython.Py_ssize_t = 0
@@ -553,11 +506,7 @@ def chained(picked: Segments, cuts: Slabs) -> Corners:
     return out
 
 
-@cython.cfunc
-@cython.exceptval(check=False)
-def slice_up(
-    cuts: Slabs, count: cython.Py_ssize_t, left: cython.double, right: cython.double
-) -> cython.void:
+def slice_up(cuts, count, left, right):
     """Make slabs between the first numbers, without those that are the same, and two limits."""
     x: cython.p_double = cuts.x
     inside: cython.Py_ssize_t = 0

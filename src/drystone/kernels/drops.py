@@ -223,79 +223,23 @@ def shown(profile: HeightProfile) -> Floats:
 class Terms:
     """The numbers of a :class:`DropTerms`, and weights of lengths and areas."""
 
-    cell: cython.double
-    width: cython.double
-    height: cython.double
-    slack: cython.double
-    clearance: cython.double
-    narrowest: cython.double
-    mean_area: cython.double
-    gap: cython.double
-    joint: cython.double
-    unbalanced: cython.double
-    of_height: cython.double
-    of_void: cython.double
-    of_slot: cython.double
-    of_headroom: cython.double
-    of_step: cython.double
-    rising: cython.bint
-    """Whether no stage of `look_around` makes a place cheaper."""
-
 
 @cython.cclass
 class Wall:
     """What stones are dropped on."""
-
-    tops: cython.p_double
-    columns: cython.Py_ssize_t
-    boxes: cython.p_double
-    """Left, bottom, right and top of each polygon that owns columns."""
-    shown: cython.Py_ssize_t
-    higher: cython.p_longlong
-    """The next column to the right that is higher, for each column."""
-    sums: cython.p_double
-    """The sum of the first k columns from each on, k = 0, 1, ..."""
-    rest_width: cython.p_longlong
-    rest_height: cython.p_longlong
-    longest_width: cython.Py_ssize_t
-    longest_height: cython.Py_ssize_t
 
 
 @cython.cclass
 class Places:
     """A stone, and the places where it was dropped."""
 
-    bottoms: cython.p_double
-    first: cython.Py_ssize_t
-    columns: cython.Py_ssize_t
-    left: cython.double
-    bottom: cython.double
-    right: cython.double
-    top: cython.double
-    count: cython.Py_ssize_t
-    lift: cython.p_double
-    lean: cython.p_double
-    stage: cython.p_uchar
-    """How far `look_around` has come at each place."""
-    cost: cython.p_double
-    """The sum of the costs that are known so far; infinite where it cannot go."""
-
 
 @cython.cclass
 class Kept:
     """The cheapest drops of all stones so far, only so many of a group."""
 
-    cost: cython.p_double
-    group: cython.p_longlong
-    count: cython.Py_ssize_t
-    most: cython.Py_ssize_t
-    each: cython.Py_ssize_t
-    limit: cython.double
-    """Drops that cost more, by more than CLOSE, are not asked for."""
 
-
-@cython.cfunc
-def terms_of(terms: DropTerms) -> Terms:
+def terms_of(terms):
     """Read the numbers of a :class:`DropTerms`."""
     read: Terms = Terms()
     read.cell, read.width, read.height = terms.cell_px, terms.width_px, terms.height_px
@@ -387,16 +331,7 @@ def _dropped(profile, stones, terms, constants, numbers, most, few):
     return rows, taken, kept.limit
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def keep(
-    kept: Kept,
-    rows: cython.p_double,
-    start: cython.Py_ssize_t,
-    count: cython.Py_ssize_t,
-    group: cython.longlong,
-) -> cython.void:
+def keep(kept, rows, start, count, group):
     """Take in the drops of a stone where they are among the cheapest; the limit may fall."""
     if kept.most <= 0:
         return
@@ -423,19 +358,7 @@ def keep(
             kept.limit = max(kept.limit, kept.cost[at])
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def take(
-    wall: Wall,
-    terms: Terms,
-    apart: cython.Py_ssize_t,
-    limit: cython.double,
-    found: Places,
-    out: cython.p_double,
-    start: cython.Py_ssize_t,
-    most: cython.Py_ssize_t,
-) -> cython.Py_ssize_t:
+def take(wall, terms, apart, limit, found, out, start, most):
     """Write the cheapest places that are so many columns apart; return how many there are."""
     taken: cython.Py_ssize_t = 0
     if not terms.rising:
@@ -457,10 +380,7 @@ def take(
     return taken
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def cheapest(wall: Wall, terms: Terms, limit: cython.double, found: Places) -> cython.Py_ssize_t:
+def cheapest(wall, terms, limit, found):
     """Return the place of the least cost; of equal ones the lower, then the first.
 
     -1 when it costs more than the limit.  Places that are dearer already than that, or than
@@ -482,10 +402,7 @@ def cheapest(wall: Wall, terms: Terms, limit: cython.double, found: Places) -> c
     return best if found.cost[best] <= limit else -1
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def least(found: Places) -> cython.Py_ssize_t:
+def least(found):
     """Return the place that costs least so far; of equal ones the lower, then the first."""
     best: cython.Py_ssize_t = 0
     cost: cython.p_double = found.cost
@@ -497,10 +414,7 @@ def least(found: Places) -> cython.Py_ssize_t:
     return best
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def rise(wall: Wall) -> cython.void:
+def rise(wall):
     """Find the next higher column to the right of each; past the last where there is none."""
     for at in range(wall.columns - 1, -1, -1):
         further = at + 1
@@ -509,10 +423,7 @@ def rise(wall: Wall) -> cython.void:
         wall.higher[at] = further
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def add_up(wall: Wall, widest: cython.Py_ssize_t) -> cython.void:
+def add_up(wall, widest):
     """Sum up as many columns as may be under a stone, but for its last one."""
     columns: cython.Py_ssize_t = wall.columns
     tops: cython.p_double = wall.tops
@@ -525,10 +436,7 @@ def add_up(wall: Wall, widest: cython.Py_ssize_t) -> cython.void:
             sums[row + columns + at] = sums[row + at] + tops[at + k]
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def lay_down(wall: Wall, terms: Terms, constant: cython.double, found: Places) -> cython.void:
+def lay_down(wall, terms, constant, found):
     """Drop the stone everywhere: what that costs without a look around."""
     before: cython.Py_ssize_t = found.columns - 1
     count: cython.Py_ssize_t = found.count
@@ -565,10 +473,7 @@ def lay_down(wall: Wall, terms: Terms, constant: cython.double, found: Places) -
         found.stage[at] = 0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def land(found: Places, tops: cython.p_double) -> cython.void:
+def land(found, tops):
     """Find where the stone touches at all places: four of its columns at a time."""
     j: cython.Py_ssize_t = 0
     count: cython.Py_ssize_t = found.count
@@ -592,12 +497,7 @@ def land(found: Places, tops: cython.p_double) -> cython.void:
         j += 1
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def look_around(
-    wall: Wall, terms: Terms, found: Places, at: cython.Py_ssize_t, stage: cython.int
-) -> cython.void:
+def look_around(wall, terms, found, at, stage):
     """Add further costs of a place, up to a stage.
 
     The first is that of what is free beside the stone, then that of the left neighbour, then
@@ -621,18 +521,7 @@ def look_around(
     found.stage[at] = stage
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def with_room(
-    cost: cython.double,
-    wall: Wall,
-    terms: Terms,
-    bottom: cython.double,
-    top: cython.double,
-    at: cython.Py_ssize_t,
-    end: cython.Py_ssize_t,
-) -> cython.double:
+def with_room(cost, wall, terms, bottom, top, at, end):
     """Add the costs of what is free on the left of a stone and on its right."""
     area: cython.double = 0.0
     middle: cython.double = (bottom + top) / 2.0
@@ -650,16 +539,7 @@ def with_room(
     return cost + terms.of_slot * (wall.rest_width[free] * (terms.cell * (top - bottom)))
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def step(
-    wall: Wall,
-    left: cython.double,
-    bottom: cython.double,
-    right: cython.double,
-    top: cython.double,
-) -> cython.double:
+def step(wall, left, bottom, right, top):
     """Return how far the top is from level with the left neighbour's (Eq. 6)."""
     boxes: cython.p_double = wall.boxes
     nearest: cython.Py_ssize_t = -1
@@ -677,17 +557,7 @@ def step(
     return 0.0 if nearest < 0 else abs(top - boxes[nearest + 3])
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def joint(
-    wall: Wall,
-    terms: Terms,
-    left: cython.double,
-    bottom: cython.double,
-    right: cython.double,
-    top: cython.double,
-) -> cython.double:
+def joint(wall, terms, left, bottom, right, top):
     """Return 1 - IWR (Eq. 9)."""
     boxes: cython.p_double = wall.boxes
     middle: cython.double = (bottom + top) / 2.0
@@ -721,10 +591,7 @@ def joint(
     return 1.0 - ratios / (2.0 if one >= 0 and two >= 0 else 1.0)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def leaning(wall: Wall, terms: Terms, found: Places, at: cython.Py_ssize_t) -> cython.double:
+def leaning(wall, terms, found, at):
     """Return how far the centroid is right of what carries the stone, in widths."""
     bottoms: cython.p_double = found.bottoms
     tops: cython.p_double = wall.tops

@@ -199,10 +199,7 @@ def measure(body):
         body.high = max(body.high, y)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def select(heap: Heap, i: cython.Py_ssize_t) -> cython.void:
+def select(heap, i):
     """Make one polygon of a heap its body."""
     heap.first = heap.starts[i]
     heap.count = heap.starts[i + 1] - heap.first
@@ -241,19 +238,7 @@ def find_gaps(stone, heap, reach, corner):
     return 0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def keep(
-    stone: Stone,
-    gap: cython.double,
-    nx: cython.double,
-    ny: cython.double,
-    x: cython.double,
-    y: cython.double,
-    away: cython.double,
-    other: cython.double,
-) -> cython.int:
+def keep(stone, gap, nx, ny, x, y, away, other):
     """Add a gap to the list."""
     k: cython.Py_ssize_t = 7 * stone.found
     if stone.found == stone.room:
@@ -266,10 +251,7 @@ def keep(
     return 0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def room_for(stone: Stone, count: cython.Py_ssize_t) -> cython.int:
+def room_for(stone, count):
     """Make room for the numbers of edges that are near."""
     if count > stone.near_room:
         stone.near = more_ints(stone.near, 2 * count)
@@ -277,18 +259,7 @@ def room_for(stone: Stone, count: cython.Py_ssize_t) -> cython.int:
     return 0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def one_way(
-    a: Body,
-    b: Body,
-    out: Stone,
-    reach: cython.double,
-    corner: cython.double,
-    sign: cython.double,
-    other: cython.double,
-) -> cython.int:
+def one_way(a, b, out, reach, corner, sign, other):
     """List the gaps of the corners of one polygon to the edges and corners of another."""
     left: cython.double = max(a.left, b.left) - reach
     low: cython.double = max(a.low, b.low) - reach
@@ -345,20 +316,7 @@ def one_way(
     return 0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def at_corner(
-    a: Body,
-    b: Body,
-    i: cython.Py_ssize_t,
-    e: cython.Py_ssize_t,
-    reach: cython.double,
-    corner: cython.double,
-    sign: cython.double,
-    other: cython.double,
-    out: Stone,
-) -> cython.int:
+def at_corner(a, b, i, e, reach, corner, sign, other, out):
     """List the gap of a corner before an edge's start to that start, if it lies in its region.
 
     Returns whether it is the same point.
@@ -397,10 +355,7 @@ def at_corner(
     return d <= SAME
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def edge_before(b: Body, e: cython.Py_ssize_t) -> cython.Py_ssize_t:
+def edge_before(b, e):
     """Return the edge before one, past those without length."""
     p: cython.Py_ssize_t = e
     for i in range(b.count):  # noqa: B007 - typed
@@ -410,12 +365,7 @@ def edge_before(b: Body, e: cython.Py_ssize_t) -> cython.Py_ssize_t:
     return p
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def face_between(
-    a: Body, b: Body, i: cython.Py_ssize_t, e: cython.Py_ssize_t, face: cython.p_double
-) -> cython.bint:
+def face_between(a, b, i, e, face):
     """Find the face that parts two corners best: its normal, out of b; False when none does."""
     before_a: cython.Py_ssize_t = edge_before(a, i)
     before_b: cython.Py_ssize_t = edge_before(b, e)
@@ -440,18 +390,12 @@ def face_between(
     return best > -SAME
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def along(a: Body, e: cython.Py_ssize_t, mx: cython.double, my: cython.double) -> cython.double:
+def along(a, e, mx, my):
     """Return the share of an edge's direction that runs along a normal."""
     return a.edges[3 * e] * mx + a.edges[3 * e + 1] * my
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def contains(body: Body, x: cython.double, y: cython.double) -> cython.bint:
+def contains(body, x, y):
     """Say whether a point lies in a polygon (even-odd rule)."""
     j: cython.Py_ssize_t = body.first + body.count - 1
     inside: cython.bint = False
@@ -473,10 +417,7 @@ def crosses(stone, heap):
     return False
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def over(a: Stone, b: Body) -> cython.int:
+def over(a, b):
     """Say whether edges of two polygons cross, or one lies in the other."""
     near: cython.Py_ssize_t = 0
     last: cython.Py_ssize_t = b.first + b.count - 1
@@ -505,18 +446,7 @@ def over(a: Stone, b: Body) -> cython.int:
     return contains(a, b.corners[2 * b.first], b.corners[2 * b.first + 1])
 
 
-@cython.cfunc
-@cython.nogil
-@cython.inline
-@cython.exceptval(check=False)
-def meets(
-    body: Body,
-    i: cython.Py_ssize_t,
-    left: cython.double,
-    low: cython.double,
-    right: cython.double,
-    high: cython.double,
-) -> cython.bint:
+def meets(body, i, left, low, right, high):
     """Say whether the box of an edge meets another box."""
     e: cython.Py_ssize_t = 2 * (body.first + i)
     f: cython.Py_ssize_t = e + 2 if i + 1 < body.count else 2 * body.first
@@ -527,34 +457,14 @@ def meets(
     return not (max(corners[e], corners[f]) < low or min(corners[e], corners[f]) > high)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def cut(
-    one: cython.p_double,
-    a: cython.Py_ssize_t,
-    b: cython.Py_ssize_t,
-    two: cython.p_double,
-    c: cython.Py_ssize_t,
-    d: cython.Py_ssize_t,
-) -> cython.bint:
+def cut(one, a, b, two, c, d):
     """Say whether two segments cross: from a to b of one polygon, from c to d of another."""
     if (side(one, a, b, two, c) > 0.0) == (side(one, a, b, two, d) > 0.0):
         return False
     return (side(two, c, d, one, a) > 0.0) != (side(two, c, d, one, b) > 0.0)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.inline
-@cython.exceptval(check=False)
-def side(
-    one: cython.p_double,
-    a: cython.Py_ssize_t,
-    b: cython.Py_ssize_t,
-    two: cython.p_double,
-    c: cython.Py_ssize_t,
-) -> cython.double:
+def side(one, a, b, two, c):
     """Return twice the area of a triangle, positive when it is counter-clockwise."""
     x: cython.double = one[2 * a]
     y: cython.double = one[2 * a + 1]

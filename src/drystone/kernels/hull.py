@@ -62,12 +62,7 @@ def pixel_hull(mask: Mask) -> NDArray[np.int64]:
     return corners[:count].copy()
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def put(
-    at: cython.p_longlong, count: cython.Py_ssize_t, x: cython.longlong, y: cython.longlong
-) -> cython.Py_ssize_t:
+def put(at, count, x, y):
     """Add a point to the chain of corners (Andrew's); return how many there are then."""
     x1: cython.longlong
     y1: cython.longlong

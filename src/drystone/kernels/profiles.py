@@ -246,18 +246,7 @@ def extremes(
     return lowest, highest
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def sweep_all(
-    at: cython.p_double,
-    size: cython.Py_ssize_t,
-    left: cython.double,
-    cell: cython.double,
-    bottoms: cython.p_double,
-    tops: cython.p_double,
-    columns: cython.Py_ssize_t,
-) -> cython.void:
+def sweep_all(at, size, left, cell, bottoms, tops, columns):
     """Take in all edges of a polygon."""
     for j in range(columns):
         bottoms[j], tops[j] = INFINITY, -INFINITY
@@ -272,20 +261,7 @@ def sweep_all(
         bottoms[j], tops[j] = bottoms[j] + 0.0, tops[j] + 0.0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.inline
-@cython.exceptval(check=False)
-def sweep(
-    start_x: cython.double,
-    start_y: cython.double,
-    end_x: cython.double,
-    end_y: cython.double,
-    cell: cython.double,
-    bottoms: cython.p_double,
-    tops: cython.p_double,
-    columns: cython.Py_ssize_t,
-) -> cython.void:
+def sweep(start_x, start_y, end_x, end_y, cell, bottoms, tops, columns):
     """Take in the edge from one corner to another that is not left of it."""
     run: cython.double = end_x - start_x
     slope: cython.double = (end_y - start_y) / run if run > 0.0 else 0.0

@@ -158,22 +158,14 @@ def solve2(rows, count, gain, most, x):
     return True
 
 
-@cython.cfunc
-@cython.nogil
-@cython.inline
-@cython.exceptval(check=False)
-def outermost(gain: cython.double, most: cython.double) -> cython.double:
+def outermost(gain, most):
     """Return the best value in [-most, most]."""
     if gain > NOTHING:
         return most
     return -most if gain < -NOTHING else 0.0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.inline
-@cython.exceptval(check=False)
-def cut(a: cython.double, b: cython.double, between: cython.p_double) -> cython.bint:
+def cut(a, b, between):
     """Narrow an interval by a x <= b; False when no x fulfils that."""
     if abs(a) < PARALLEL:
         return b >= -EMPTY

@@ -71,37 +71,10 @@ UPWARD = cython.declare(cython.double, 0.3)
 class Way:
     """What is let go, and by which rules."""
 
-    corners: cython.p_double
-    edges: cython.p_double
-    count: cython.Py_ssize_t
-    arm: cython.double
-    lean: cython.double
-    stop: cython.double
-    mu: cython.double
-    clearance: cython.double
-    tolerance: cython.double
-    corner: cython.double
-    near: cython.double
-    far: cython.double
-    most_turn: cython.double
-    most_shift: cython.double
-    gain: cython.double
-    overlap: cython.double
-    steep: cython.double
-    beyond: cython.double
-    sticks: cython.bint
-    turns: cython.bint
-    steps: cython.Py_ssize_t
-
 
 @cython.cclass
 class State(Stone):
     """A pose, and what is around the stone there; the turn in radians."""
-
-    x: cython.double
-    y: cython.double
-    turn: cython.double
-    least: cython.double
 
     def __dealloc__(self) -> None:
         release(self.corners)
@@ -177,8 +150,7 @@ def settle(
     )
 
 
-@cython.cfunc
-def state_of(way: Way) -> State:
+def state_of(way):
     """Return a state with memory of its own, nowhere yet."""
     state: State = State()
     state.first, state.count = 0, way.count
@@ -187,10 +159,7 @@ def state_of(way: Way) -> State:
     return state
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def look(state: State, way: Way, heap: Heap) -> cython.int:
+def look(state, way, heap):
     """Turn and move the outline to the pose of a state, and find the gaps there."""
     c: cython.double = cos(state.turn)
     s: cython.double = sin(state.turn)
@@ -209,10 +178,7 @@ def look(state: State, way: Way, heap: Heap) -> cython.int:
     return 0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def exchange(a: State, b: State) -> cython.void:
+def exchange(a, b):
     """Let each state be the other."""
     a.corners, b.corners = b.corners, a.corners
     a.edges, b.edges = b.edges, a.edges
@@ -225,25 +191,12 @@ def exchange(a: State, b: State) -> cython.void:
     a.turn, a.least, b.turn, b.least = b.turn, b.least, a.turn, a.least
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-2.0)
-def margin_of(way: Way, here: State, work: Work) -> cython.double:
+def margin_of(way, here, work):
     """Return how firmly a stone rests."""
     return firmness(here, here.x, here.y, way.arm, way.mu, way.tolerance, way.steep, work)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def descend(
-    way: Way,
-    heap: Heap,
-    here: State,
-    there: State,
-    work: Work,
-    made: cython.pointer[cython.Py_ssize_t],
-) -> cython.int:
+def descend(way, heap, here, there, work, made):
     """Go down step by step until nothing is gained; say why it stopped."""
     start_x: cython.double = here.x
     start_turn: cython.double = here.turn
@@ -276,19 +229,7 @@ def descend(
     return UNFINISHED
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def tried(
-    way: Way,
-    heap: Heap,
-    here: State,
-    there: State,
-    work: Work,
-    move: cython.p_double,
-    radius: cython.double,
-    gained: cython.double,
-) -> cython.int:
+def tried(way, heap, here, there, work, move, radius, gained):
     """Make a move; False when it leads nowhere."""
     half: cython.double = 0.5 * way.clearance
     back: cython.double[3] = [0.0, 0.0, 0.0]
@@ -314,12 +255,7 @@ def tried(
     return not crosses(there, heap)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def best_move(
-    state: State, way: Way, radius: cython.double, work: Work, move: cython.p_double
-) -> cython.int:
+def best_move(state, way, radius, work, move):
     """Find the move within a radius that goes down most while all gaps, linearised, stay open.
 
     The turn is given as the way of the furthest corner.
@@ -362,12 +298,6 @@ def best_move(
     return False
 
 
-@cython.cfunc
-@cython.nogil
-@cython.inline
-@cython.exceptval(check=False)
-def turning(
-    state: State, k: cython.Py_ssize_t, nx: cython.double, ny: cython.double
-) -> cython.double:
+def turning(state, k, nx, ny):
     """Return how fast a turn about the centroid moves the point of a gap along a direction."""
     return (state.gaps[k + 3] - state.x) * ny - (state.gaps[k + 4] - state.y) * nx

@@ -1,0 +1,1 @@
+cdef Py_ssize_t put(long long *at, Py_ssize_t count, long long x, long long y) noexcept nogil
