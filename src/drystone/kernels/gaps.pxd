@@ -43,10 +43,6 @@ cdef bint face_between(Body a, Body b, Py_ssize_t i, Py_ssize_t e, double *face)
 cdef double along(Body a, Py_ssize_t e, double mx, double my) noexcept nogil
 cdef bint contains(Body body, double x, double y) noexcept nogil
 cdef int over(Stone a, Body b) except -1 nogil
-cdef bint meets(
-    Body body, Py_ssize_t i, double left, double low, double right, double high
-) noexcept nogil
 cdef bint cut(
     double *one, Py_ssize_t a, Py_ssize_t b, double *two, Py_ssize_t c, Py_ssize_t d
 ) noexcept nogil
-cdef double side(double *one, Py_ssize_t a, Py_ssize_t b, double *two, Py_ssize_t c) noexcept nogil

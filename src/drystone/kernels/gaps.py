@@ -446,7 +446,18 @@ def over(a, b):
     return contains(a, b.corners[2 * b.first], b.corners[2 * b.first + 1])
 
 
-def meets(body, i, left, low, right, high):
+@cython.cfunc
+@cython.nogil
+@cython.inline
+@cython.exceptval(check=False)
+def meets(
+    body: Body,
+    i: cython.Py_ssize_t,
+    left: cython.double,
+    low: cython.double,
+    right: cython.double,
+    high: cython.double,
+) -> cython.bint:
     """Say whether the box of an edge meets another box."""
     e: cython.Py_ssize_t = 2 * (body.first + i)
     f: cython.Py_ssize_t = e + 2 if i + 1 < body.count else 2 * body.first
@@ -464,7 +475,17 @@ def cut(one, a, b, two, c, d):
     return (side(two, c, d, one, a) > 0.0) != (side(two, c, d, one, b) > 0.0)
 
 
-def side(one, a, b, two, c):
+@cython.cfunc
+@cython.nogil
+@cython.inline
+@cython.exceptval(check=False)
+def side(
+    one: cython.p_double,
+    a: cython.Py_ssize_t,
+    b: cython.Py_ssize_t,
+    two: cython.p_double,
+    c: cython.Py_ssize_t,
+) -> cython.double:
     """Return twice the area of a triangle, positive when it is counter-clockwise."""
     x: cython.double = one[2 * a]
     y: cython.double = one[2 * a + 1]

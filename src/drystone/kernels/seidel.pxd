@@ -5,5 +5,3 @@ cdef bint solve3(
 cdef bint solve2(
     const double *rows, Py_ssize_t count, const double *gain, const double *most, double *x
 ) noexcept nogil
-cdef double outermost(double gain, double most) noexcept nogil
-cdef bint cut(double a, double b, double *between) noexcept nogil

@@ -158,14 +158,22 @@ def solve2(rows, count, gain, most, x):
     return True
 
 
-def outermost(gain, most):
+@cython.cfunc
+@cython.nogil
+@cython.inline
+@cython.exceptval(check=False)
+def outermost(gain: cython.double, most: cython.double) -> cython.double:
     """Return the best value in [-most, most]."""
     if gain > NOTHING:
         return most
     return -most if gain < -NOTHING else 0.0
 
 
-def cut(a, b, between):
+@cython.cfunc
+@cython.nogil
+@cython.inline
+@cython.exceptval(check=False)
+def cut(a: cython.double, b: cython.double, between: cython.p_double) -> cython.bint:
     """Narrow an interval by a x <= b; False when no x fulfils that."""
     if abs(a) < PARALLEL:
         return b >= -EMPTY
