@@ -37,13 +37,7 @@ SECOND = cython.declare(cython.ulonglong, 0x94D049BB133111EB)
 
 @cython.cclass
 class Dice:
-    """Random whole numbers, the same everywhere: splitmix64.
-
-    Parameters
-    ----------
-    seed : int
-        Any.
-    """
+    """Random whole numbers, the same everywhere: splitmix64."""
 
     def __init__(self, seed: int) -> None:
         self.state = seed % 2**64
@@ -59,23 +53,9 @@ class Draft:
 
 
 def changed(plan: Arrangement, dice: Dice, courses: int) -> tuple[Arrangement, int]:
-    """Change an arrangement once, at random.
+    """Change an arrangement once, at random; it gets no more than so many courses.
 
-    Parameters
-    ----------
-    plan : Arrangement
-        Stones in courses.
-    dice : Dice
-        For what is drawn.
-    courses : int
-        It gets no more.
-
-    Returns
-    -------
-    plan : Arrangement
-        Changed.
-    course : int
-        The lowest one in which something changed, or -1 when nothing did.
+    Returns it, and the lowest course in which something changed, -1 when nothing did.
     """
     draft: Draft = Draft()
     start(draft, plan, courses)

@@ -40,30 +40,10 @@ INFINITY = cython.declare(cython.double, np.inf)
 
 
 def coverage(corners: Points) -> tuple[Grid, int, int]:
-    """Return the exact share of every cell that a polygon covers.
+    """Return the share of every cell that a counter-clockwise polygon (n, 2) covers, exactly.
 
-    Parameters
-    ----------
-    corners : (n, 2) float array
-        A simple polygon, counter-clockwise, in cells; x to the right, y up.
-
-    Returns
-    -------
-    shares : (h, w) float array
-        From 0 to 1, row 0 at the top: the cells that the polygon's box meets, at least one.
-    left, bottom : int
-        The cell corner of its bottom-left corner.
-
-    Raises
-    ------
-    ValueError
-        When a corner is not a finite number, or there are less than three.
-
-    Examples
-    --------
-    >>> shares, left, bottom = coverage(np.array([[0.5, 1.0], [2.0, 1.0], [0.5, 1.5]]))
-    >>> shares.round(3).tolist(), left, bottom
-    ([[0.208, 0.167]], 0, 1)
+    Shares (h, w), row 0 at the top, are those of the cells that its box meets, at least one.  Then
+    left and bottom: the cell corner of their bottom-left corner.
     """
     corners = np.ascontiguousarray(corners, np.float64)
     if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3:
@@ -147,30 +127,9 @@ def add_up(shares, width, height):
 def newly_filled(total: Grid, shares: Grid, row: int, col: int) -> tuple[Mask, int, int] | None:
     """Return the cells of a grid that a new block fills: before less than half, then at least.
 
-    Parameters
-    ----------
-    total : (h, w) float array
-        What is covered of each cell already, row 0 at the top.
-    shares : (h', w') float array
-        What the new block covers; it may reach over the edges of the grid, where nothing is
-        covered yet.
-    row, col : int
-        Where its top-left corner is in the grid.
-
-    Returns
-    -------
-    mask : (h'', w'') bool array
-        Cropped to the cells that are filled.
-    row, col : int
-        Its top-left corner in the grid.
-
-    None when there is none, or one is outside of the grid.
-
-    Examples
-    --------
-    >>> total = np.array([[0.0, 0.6, 0.2]])
-    >>> newly_filled(total, np.array([[0.1, 0.3, 0.4]]), 0, 0)
-    (array([[ True]]), 0, 2)
+    `total` (h, w) is what is covered already, `shares` what the block covers, from (row, col) on;
+    it may reach over the edges of the grid.  Returns the filled cells, cropped, and their top-left
+    corner; None when there is none, or one is outside of the grid.
     """
     total, shares = np.ascontiguousarray(total), np.ascontiguousarray(shares)
     before: cython.p_double = doubles(total)
@@ -209,25 +168,7 @@ def newly_filled(total: Grid, shares: Grid, row: int, col: int) -> tuple[Mask, i
 def windows(
     grid: tuple[int, ...], shape: tuple[int, ...], row: int, col: int
 ) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
-    """Return what a window and a grid have in common.
-
-    Parameters
-    ----------
-    grid, shape : (int, int)
-        Sizes of the grid and of the window.
-    row, col : int
-        Top-left corner of the window in the grid; it may be outside.
-
-    Returns
-    -------
-    inside, part : (slice, slice)
-        Rows and columns of the grid, and the same of the window; empty when there is nothing.
-
-    Examples
-    --------
-    >>> windows((4, 5), (2, 3), -1, 3)
-    ((slice(0, 1, None), slice(3, 5, None)), (slice(1, 2, None), slice(0, 2, None)))
-    """
+    """Return what a grid and a window of a shape at (row, col) share, as slices of both."""
     top, left = (min(max(at, 0), size) for at, size in zip((row, col), grid, strict=True))
     bottom = min(max(row + shape[0], top), grid[0])
     right = min(max(col + shape[1], left), grid[1])

@@ -54,11 +54,8 @@ INFINITY = cython.declare(cython.double, np.inf)
 class Crevice(NamedTuple):
     """The free space under a polygon, from its left end to its right end.
 
-    Parameters
-    ----------
-    lid, floor : (n, 2) float arrays
-        Chains, the clearance already taken off.  Where the lid is not above the floor there is no
-        space.
+    Chains (n, 2), the clearance already taken off.  There is no space where the lid is not above
+    the floor.
     """
 
     lid: Chain
@@ -66,25 +63,10 @@ class Crevice(NamedTuple):
 
 
 def crevice(stone: Points, around: Polygons, clearance: float) -> Crevice:
-    """Return the free space between a polygon and what is below it.
+    """Return the free space between a polygon (n, 2) and what is below, above the ground y = 0.
 
-    Parameters
-    ----------
-    stone : (n, 2) float array
-        The polygon, counter-clockwise, over the ground y = 0.
-    around : Polygons
-        The others, which it does not overlap.
-    clearance : float
-        Distance from both kept by the chains: nowhere less, at corners up to 1.42 times as much.
-        0: the boundaries themselves.
-
-    Examples
-    --------
-    >>> from drystone.kernels.polygons import no_polygons
-    >>> raised = np.array([[0.0, 3.0], [2.0, 3.0], [2.0, 4.0], [0.0, 4.0]])
-    >>> space = crevice(raised, no_polygons(), 0.25)
-    >>> space.lid.tolist(), space.floor.tolist()
-    ([[0.0, 2.75], [2.0, 2.75]], [[0.0, 0.25], [2.0, 0.25]])
+    The chains keep a clearance from both: nowhere less, at corners up to 1.42 times as much.  With
+    a clearance of 0 they are the boundaries themselves.
     """
     return Crevice(*_crevice(np.ascontiguousarray(stone, np.float64), around, clearance))
 
@@ -142,12 +124,7 @@ def gap_polygon(
 def between(space: Crevice, x_left: float, x_right: float) -> Points | None:
     """Cut the piece between two upright lines out of a crevice; None when it closes there.
 
-    Parameters
-    ----------
-    space : Crevice
-        From :func:`crevice`.
-    x_left, x_right : float
-        In order, and inside it.
+    It is simple and counter-clockwise.  The lines are in order, and inside.
     """
     x, low, high = slabs(space, x_left, x_right)
     # Both sides of a step count together: halves that meet in a point are not one simple polygon.
@@ -171,19 +148,8 @@ def between(space: Crevice, x_left: float, x_right: float) -> Points | None:
 def slabs(space: Crevice, x_left: float, x_right: float) -> tuple[Points, Points, Points]:
     """Cut a crevice at all its corners into slabs with a straight floor and lid.
 
-    Parameters
-    ----------
-    space : Crevice
-        From :func:`crevice`.
-    x_left, x_right : float
-        Where to begin and to end.
-
-    Returns
-    -------
-    x : (n + 1,) float array
-        Where the slabs begin, and the end of the last.
-    low, high : (n, 2) float arrays
-        y of floor and lid at the left and at the right of each slab.
+    Returns x (n + 1,) where slabs begin, and the end of the last; y of the floor, then of the lid,
+    (n, 2), at the left and at the right of each.
     """
     x = _distinct(np.concatenate([space.lid[:, 0], space.floor[:, 0]]), x_left, x_right)
     return x, _heights(space.floor, x), _heights(space.lid, x)

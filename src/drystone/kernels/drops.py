@@ -52,73 +52,40 @@ INFINITY = cython.declare(cython.double, np.inf)
 
 
 class DropTerms(NamedTuple):
-    """What a drop costs; lengths in source px.
+    """What a drop costs; lengths in source px."""
 
-    Parameters
-    ----------
-    cell_px : float
-        Width of a column: a px of the working resolution.
-    width_px, height_px : float
-        Of the wall.
-    slack_px : float
-        How far a stone may stand out over the wall's height: settling may sink it.
-    clearance_px : float
-        How far it is lifted from where it touches.
-    narrowest_px : float
-        Width of the narrowest stone: nearer to an end of the wall there are no joints.
-    mean_height_px, mean_area_px : float
-        Of the stones: the units of the costs.
-    height, void, gap, slot, headroom, step, joint : float
-        Weights of the costs of :func:`drystone.kernels.drops.drops`.
-    unbalanced : float
-        Weight of how far the centroid is beside what carries the stone, in widths of the stone.
-    rest_width_px, rest_height_px : int arrays
-        What the stones that are left cannot fill of a free width and of a free height, all in
-        working px; not negative.
-    """
-
-    cell_px: float
-    width_px: float
+    cell_px: float  # width of a column: a px of the working resolution
+    width_px: float  # of the wall
     height_px: float
-    slack_px: float
-    clearance_px: float
+    slack_px: float  # how far a stone may stand out over the wall's height: settling may sink it
+    clearance_px: float  # how far it is lifted from where it touches
+    # width of the narrowest stone: nearer to an end of the wall there are no joints
     narrowest_px: float
-    mean_height_px: float
+    mean_height_px: float  # of the stones: the units of the costs
     mean_area_px: float
-    height: float
+    height: float  # weights of the costs of :func:`drystone.kernels.drops.drops`
     void: float
     gap: float
     slot: float
     headroom: float
     step: float
     joint: float
+    # weight of how far the centroid is beside what carries the stone, in widths of the stone
     unbalanced: float
+    # what the stones that are left cannot fill of a free width and of a free height, all in
+    # working px; not negative
     rest_width_px: Lengths
     rest_height_px: Lengths
 
 
 class Wanted(NamedTuple):
-    """Which places are wanted.
+    """Which places are wanted."""
 
-    Parameters
-    ----------
-    spots : int
-        How many of each stone at most.
-    apart_px : (k,) float array
-        How far those of one stone are apart at least, along the wall.
-    groups : (k,) int64 array
-        Group of each stone.
-    cheapest : int
-        How many of the cheapest drops are wanted, at least; 0 for all.
-    each : int
-        How many drops of a group count as such at most; not less than 1.
-    """
-
-    spots: int
-    apart_px: Floats
-    groups: NDArray[np.int64]
-    cheapest: int = 0
-    each: int = 1
+    spots: int  # how many of each stone at most
+    apart_px: Floats  # (k,) how far those of one stone are apart at least, along the wall
+    groups: NDArray[np.int64]  # (k,) group of each stone
+    cheapest: int = 0  # how many of the cheapest drops are wanted, at least; 0 for all
+    each: int = 1  # how many drops of a group count as such at most; not less than 1
 
 
 def drops(
@@ -130,44 +97,22 @@ def drops(
 ) -> tuple[list[Floats], float]:
     """Return the best places of stones that are dropped onto a height profile, each by itself.
 
-    Parameters
-    ----------
-    profile : HeightProfile
-        Of the wall, seen so that the building side is on the left.
-    stones : StoneProfiles
-        Of posed stones, from their centroids, with columns of the same width.
-    terms : DropTerms
-        Sizes and weights.
-    constants : (k,) float array
-        Cost of each pose itself, wherever it goes.
-    wanted : Wanted
-        How many places are wanted.
+    The wall is seen so that the building side is on the left; profiles of stones are measured from
+    their centroids, with columns of the same width.  `constants` (k,) are the costs of the poses
+    themselves.
 
-    Returns
-    -------
-    places : list of (n, 4) float arrays
-        Of each stone: x of its left end, y of its centroid, cost, and lean: how far the centroid
-        is right (left when negative) of the columns that carry the stone, in widths of the stone.
-        The cheapest first, then the cheapest of those that are far enough from it, and so on; of
-        equal costs the lower one, then the one further left.  No rows when there is no place.
-    limit : float
-        Drops that cost more than this, by more than 1e-9, may be missing; infinite when all are
-        there.
+    Returns of each stone rows (n, 4): x of its left end, y of its centroid, cost, and lean, which
+    is how far the centroid is right (left when negative) of the columns that carry the stone, in
+    widths of the stone.  The cheapest comes first, then the cheapest of those that are far enough
+    from it, and so on; of equal costs the lower one, then the one further left.  Drops that cost
+    more than the limit, by more than 1e-9, may be missing; it is infinite when all are there.
 
-    Notes
-    -----
     The costs are those of :class:`DropTerms`, as the raster has them as far as a profile tells:
-    `height` of the centroid and `step` from the left neighbour's top in mean stone heights; in
-    mean stone areas `void` under the stone, `gap` to what first reaches over the middle of its
-    height on the left (at most 1), and `slot` beside and `headroom` over it that the others
-    cannot fill; `joint`, 1 - IWR.  Neighbour and joints are those of the boxes of polygons that
-    show in the profile.  At an end of the wall the joint costs as much as a level top.
-
-    Raises
-    ------
-    ValueError
-        When tops and owners differ in number, or what is said of each stone, an owner has no
-        box, or it is not known for any length what stones could fill.
+    `height` of the centroid and `step` from the left neighbour's top in mean stone heights; in mean
+    stone areas `void` under the stone, `gap` to what first reaches over the middle of its height on
+    the left (at most 1), and `slot` beside and `headroom` over it that the others cannot fill;
+    `joint`, 1 - IWR.  Neighbour and joints are those of the boxes of polygons that show in the
+    profile.  At an end of the wall the joint costs as much as a level top.
     """
     if len(profile.tops) != len(profile.owners):
         raise ValueError(f"{len(profile.tops)} tops have {len(profile.owners)} owners")
@@ -188,9 +133,10 @@ def drops(
 def _numbers(
     columns: int, stones: StoneProfiles, terms: DropTerms, wanted: Wanted
 ) -> NDArray[np.int64]:
-    """Return where each stone may be, how many columns its places are apart, and its group.
+    """Return a row for each stone; every x is on a column edge.
 
-    It may be with its left end on the first columns, so many; every x is on a column edge.
+    On how many columns, from the first on, its left end may be; how many columns its places are
+    apart; its group.
     """
     room = terms.width_px - (stones.boxes[:, 2] - stones.boxes[:, 0])
     last = np.minimum(
@@ -205,13 +151,7 @@ def _numbers(
 
 
 def shown(profile: HeightProfile) -> Floats:
-    """Return the boxes of the polygons that own columns, in their order.
-
-    Raises
-    ------
-    ValueError
-        When there is no box of an owner.
-    """
+    """Return the boxes of the polygons that own columns, in their order."""
     owners = np.unique(profile.owners)
     owners = owners[owners >= 0]
     if len(owners) and owners[-1] >= len(profile.boxes):
@@ -259,16 +199,8 @@ def terms_of(terms):
 def _dropped(profile, stones, terms, constants, numbers, most, few):
     """Drop all stones; return their places in rows, how many there are, and the limit.
 
-    Parameters
-    ----------
-    profile, stones, terms, constants
-        As for :func:`drops`.
-    numbers : (k, 3) int64 array
-        On how many columns a stone's left end may be, how many its places are apart, its group.
-    most : int
-        Rows of a stone.
-    few : (int, int)
-        How many of the cheapest are wanted, and how many of those of a group.
+    `numbers` as of :func:`_numbers`; a stone has so many rows at `most`; of `few` is how many of
+    the cheapest are wanted, and how many of those of a group.
     """
     size: cython.Py_ssize_t = len(constants)
     columns: cython.Py_ssize_t = len(profile.tops)

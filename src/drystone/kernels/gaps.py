@@ -48,29 +48,15 @@ INTO = cython.declare(cython.double, 0.03)
 
 
 class Gap(NamedTuple):
-    """One gap.
+    """One gap."""
 
-    Parameters
-    ----------
-    gap : float
-        Along the normal; below 0 where the corner lies inside.
-    normal_x, normal_y : float
-        Unit vector towards the moving polygon.
-    x, y : float
-        The corner; of two corners, that of the moving polygon.
-    away : float
-        Distance; more than the gap only where two corners meet with a face.
-    other : int
-        Number of the other polygon, or `GROUND`, or `END` for an end of the wall.
-    """
-
-    gap: float
-    normal_x: float
+    gap: float  # along the normal; below 0 where the corner lies inside
+    normal_x: float  # unit vector towards the moving polygon
     normal_y: float
-    x: float
+    x: float  # the corner; of two corners, that of the moving polygon
     y: float
-    away: float
-    other: int
+    away: float  # distance; more than the gap only where two corners meet with a face
+    other: int  # number of the other polygon, or `GROUND`, or `END` for an end of the wall
 
 
 def gaps_around(
@@ -82,33 +68,10 @@ def gaps_around(
     corner: float,
     beyond: float = 0.0,
 ) -> list[Gap]:
-    """List the gaps of a polygon to what is near: others, the ground, the ends of the wall.
+    """List the gaps, at most as wide or deep as the reach, to others, the ground, the wall's ends.
 
-    Parameters
-    ----------
-    corners : (n, 2) float array
-        Counter-clockwise.
-    edges : (n, 3) float array
-        Of it (:func:`drystone.kernels.polygons.polygon_edges`); those without length are left
-        out.
-    around : Polygons
-        What is near, and more.
-    width : float
-        Of the wall.
-    reach : float
-        Largest gap, and largest depth.
-    corner : float
-        Two corners nearer than this meet with a face.
-    beyond : float
-        How far the polygon may stand out over the ends of the wall.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from drystone.kernels.polygons import no_polygons, polygon_edges
-    >>> flat = np.array([[4.0, 1.0], [6.0, 1.0], [6.0, 2.0], [4.0, 2.0]])
-    >>> [gap.gap for gap in gaps_around(flat, polygon_edges(flat), no_polygons(), 10.0, 1.5, 0.3)]
-    [1.0, 1.0]
+    Edges are (unit vector x, y, length); those without length are left out.  Two corners nearer
+    than `corner` meet with a face.  The polygon may stand out over the ends by `beyond`.
     """
     stone: Stone = stone_of(corners, edges)
     heap: Heap = heap_of(around, width)
@@ -124,21 +87,6 @@ def crosses_any(corners: Points, around: Polygons) -> bool:
 
     Quick, for outlines that keep a clearance: no overlap is missed, and outlines that only touch
     may count.  Where they may touch, ask :mod:`drystone.model.overlap`.
-
-    Parameters
-    ----------
-    corners : (n, 2) float array
-        Of the polygon.
-    around : Polygons
-        The others.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from drystone.kernels.polygons import no_polygons
-    >>> square = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
-    >>> crosses_any(square + 1.0, no_polygons().added([square]))
-    True
     """
     stone: Stone = stone_of(corners, corners)
     return bool(crosses(stone, heap_of(around, 0.0)))

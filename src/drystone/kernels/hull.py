@@ -21,21 +21,8 @@ else:
 def pixel_hull(mask: Mask) -> NDArray[np.int64]:
     """Return the corners of the convex hull of the pixel squares of a mask.
 
-    Parameters
-    ----------
-    mask : (h, w) bool array
-        At least one pixel, row 0 at the top.
-
-    Returns
-    -------
-    corners : (n, 2) int array
-        x to the right and y up, px from the mask's bottom-left corner; counter-clockwise from the
-        right end of the lowest edge, no three of them on one line.
-
-    Examples
-    --------
-    >>> pixel_hull(np.array([[1, 0], [1, 1]], bool)).tolist()
-    [[2, 0], [2, 1], [1, 2], [0, 2], [0, 0]]
+    x to the right and y up, px from the mask's bottom-left corner; counter-clockwise from the right
+    end of the lowest edge, no three of them on one line.
     """
     mask = np.ascontiguousarray(mask)
     height: cython.Py_ssize_t = mask.shape[0]

@@ -88,24 +88,15 @@ SLOPE = cython.declare(cython.Py_ssize_t, 5)
 
 
 class Meetings(NamedTuple):
-    """Contacts of one polygon, ordered by the other one, then along the polygon.
+    """Contacts of one polygon, ordered by the other one, then along the polygon."""
 
-    Parameters
-    ----------
-    others : (k,) int32 array
-        Index of the other polygon of each contact; -1 for the ground, which comes first.
-    counts : (k,) int32 array
-        Number of points, 1 or 2.
-    points : (k, 2, 2) float array
-        (x, y) of both, on the boundary of the polygon; twice the same for a contact at a point.
-    normals : (k, 2) float array
-        Unit vectors into the polygon.
-    """
-
+    # (k,) index of the other polygon of each contact; -1 for the ground, which comes first
     others: NDArray[np.int32]
-    counts: NDArray[np.int32]
+    counts: NDArray[np.int32]  # (k,) number of points, 1 or 2
+    # (k, 2, 2) (x, y) of both, on the boundary of the polygon; twice the same for a contact
+    # at a point
     points: Points
-    normals: Points
+    normals: Points  # (k, 2) unit vectors into the polygon
 
     def __len__(self) -> int:
         """Return the number of contacts."""
@@ -115,30 +106,9 @@ class Meetings(NamedTuple):
 def meetings(corners: Points, around: Polygons, tolerance: float, setback: float = 0.0) -> Meetings:
     """Find all contacts of one placed polygon with others and with the ground, y = 0.
 
-    Parameters
-    ----------
-    corners : (n, 2) float array
-        A simple polygon, counter-clockwise, not closed, no corner twice in a row.
-    around : Polygons
-        The others.
-    tolerance : float
-        Gap or overlap up to which there is contact, above 0; edges are longer as a rule.
-    setback : float
-        Share of the size (root of the area) of the smaller polygon by which contacts stay away
-        from the ends of faces, and by the tolerance at least; 0 leaves them as they are.
+    It is simple, counter-clockwise, without a corner twice in a row.  Up to the tolerance a gap or
+    an overlap is a contact; edges are longer as a rule.
 
-    Returns
-    -------
-    Meetings
-        All of them.
-
-    Raises
-    ------
-    ValueError
-        When the corners are no polygon, or the tolerance is not above 0.
-
-    Notes
-    -----
     Edges that face each other at an angle of less than 2.9 degrees (a tangent of .05) touch on the
     part where the gap is within reach, as long as both run beside each other for more than the
     tolerance.  Reach is the tolerance for parallel edges and less the more they lean, nothing at
@@ -150,21 +120,13 @@ def meetings(corners: Points, around: Polygons, tolerance: float, setback: float
     the two at each corner; where none keeps them apart they do not.  Where faces separate them
     equally, which is common where four joints meet, it is the most level one.
 
-    The normal is that of the edge that a corner stands on; for a piece, at the end with the
-    smaller gap.
+    The normal is that of the edge that a corner stands on; for a piece, at the end with the smaller
+    gap.
 
-    Edges of stones are rounded, break and crush.  So with a set-back a piece stays away from the
-    ends of both faces, and a point counts only where one of them goes on to both sides of it: a
-    corner on a corner, or a lap of less than twice the set-back, carries nothing.
-
-    Examples
-    --------
-    >>> from drystone.kernels.polygons import no_polygons
-    >>> brick = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]])
-    >>> wall = no_polygons().added([brick])
-    >>> found = meetings(brick + [2.0, 2.01], wall, 0.1)
-    >>> found.others.tolist(), found.points[0].tolist(), found.normals[0].tolist()
-    ([0], [[2.0, 2.01], [4.0, 2.01]], [0.0, 1.0])
+    Edges of stones are rounded, break and crush.  So with a set-back, a share of the root of the
+    area of the smaller polygon and the tolerance at least, a piece stays away from the ends of both
+    faces, and a point counts only where one of them goes on to both sides of it: a corner on a
+    corner, or a lap of less than twice the set-back, carries nothing.
     """
     corners = np.ascontiguousarray(corners, np.float64)
     if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3:

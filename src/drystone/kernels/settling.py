@@ -89,27 +89,10 @@ def settle(
     width: float,
     rules: Rules,
 ) -> Settling:
-    """Settle one stone.
+    """Settle one stone that is let go at a pose: x, y of the centroid, and the turn in radians.
 
-    Parameters
-    ----------
-    outline : (n, 2) float array
-        Corners relative to the centroid, counter-clockwise.
-    edges : (n, 3) float array
-        Of the outline (:func:`drystone.kernels.polygons.polygon_edges`).
-    pose : (float, float, float)
-        Where it is let go: x, y of the centroid, and the turn in radians.
-    around : Polygons
-        What is there already.
-    width : float
-        Of the wall; its ends at x = 0 and `width` stop the stone, but carry nothing.
-    rules : Rules
-        How.
-
-    Raises
-    ------
-    ValueError
-        When mu is not positive.
+    Corners of the outline are relative to the centroid, counter-clockwise.  The ends of the wall at
+    x = 0 and `width` stop the stone, but carry nothing.
     """
     require_friction(rules.mu)
     way: Way = Way()

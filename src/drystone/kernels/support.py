@@ -22,35 +22,11 @@ Ends = tuple[int, int, int, int]
 
 
 def support_ends(occupied: Mask, mask: Mask, row: int, col: int) -> Ends | None:
-    """Return the outermost pixels on which a mask stands.
+    """Return the outermost pixels on which a mask, cropped, stands where it overlaps nothing.
 
-    A pixel stands where the mask moved down by one would overlap something or the ground.
-
-    Parameters
-    ----------
-    occupied : (h, w) bool array
-        The landscape without the mask, row 0 at the top; the ground is below its last row.
-    mask : (h', w') bool array
-        Cropped.
-    row, col : int
-        Its top-left corner; it overlaps nothing there.
-
-    Returns
-    -------
-    left_x, right_x, left_row, right_row : int
-        Outer edges of the outermost of these pixels, and the rows of the edges on which they
-        stand: of a column's pixels the lowest counts.  None when it stands on nothing.
-
-    Raises
-    ------
-    ValueError
-        When the mask leaves the landscape.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> support_ends(np.zeros((2, 5), bool), np.array([[1, 1, 1], [0, 1, 0]], bool), 0, 1)
-    (2, 3, 2, 2)
+    A pixel stands where the mask moved down by one would overlap something or the ground.  Left and
+    right edge of the outermost ones, then the rows of the edges on which they stand: of a column's
+    pixels the lowest counts.  None when it stands on nothing.
     """
     check_inside(occupied, mask, row, col)
     return ends_at(pair_of(occupied, mask), row, col)
@@ -59,27 +35,10 @@ def support_ends(occupied: Mask, mask: Mask, row: int, col: int) -> Ends | None:
 def resting_place(
     occupied: Mask, mask: Mask, row: int, col: int, reach_px: int
 ) -> tuple[int, Ends] | None:
-    """Return the row nearest to a given one at which a mask rests in its column.
+    """Return the row nearest to a given one at which a mask rests in its column, and its support.
 
-    Parameters
-    ----------
-    occupied : (h, w) bool array
-        The landscape.
-    mask : (h', w') bool array
-        Cropped.
-    row, col : int
-        Where its top-left corner should go.
-    reach_px : int
-        How far up or down it may be moved; of two rows equally far the lower one is taken.
-
-    Returns
-    -------
-    row : int
-        Where it overlaps nothing, and would one row lower or stands on the ground.
-    ends : (int, int, int, int)
-        Of its support there (:func:`support_ends`).
-
-    None when it overlaps something, leaves the landscape, or hangs in the air in all these rows.
+    There it overlaps nothing, and would one row lower or stands on the ground.  Of two rows equally
+    far the lower one is taken.  None when there is none within reach.
     """
     if col < 0 or col + mask.shape[1] > occupied.shape[1]:
         return None
