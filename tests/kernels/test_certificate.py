@@ -39,17 +39,14 @@ def some_answer(seed, built, new):
 answers = st.builds(some_answer, st.integers(0, 10**6), st.integers(0, 4), st.integers(0, 3))
 
 
-def test_figures_are_those_of_linear_algebra():
-    @repeatable(200)
-    @given(answers)
-    def check(answer):
-        *program, forces, velocity = answer
-        for carried in (forces, forces[:0]):
-            found = figures(*program, carried, velocity)
-            assert found == pytest.approx(naive.figures(*program, carried, velocity), abs=1e-12)
-            assert all(type(figure) is float for figure in found)
-
-    check()
+@repeatable(200)
+@given(answers)
+def test_figures_are_those_of_linear_algebra(answer):
+    *program, forces, velocity = answer
+    for carried in (forces, forces[:0]):
+        found = figures(*program, carried, velocity)
+        assert found == pytest.approx(naive.figures(*program, carried, velocity), abs=1e-12)
+        assert all(type(figure) is float for figure in found)
 
 
 def test_what_is_no_number_is_found_out_wherever_it_is():

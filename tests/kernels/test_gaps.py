@@ -101,26 +101,23 @@ def test_what_may_stand_out_over_the_ends_has_its_gaps_there():
     assert [gap[:3] for gap in found] == 2 * [pytest.approx((0.15, 1.0, 0.0))]
 
 
-def test_a_small_shift_along_the_normal_closes_a_gap():
-    @repeatable(60)
-    @given(scenes())
-    def check(scene):
-        corners, around = scene
-        found = gaps_around(corners, polygon_edges(corners), around, WIDTH, 3.0, 0.3)
-        for gap in found:
-            assert math.hypot(gap.normal_x, gap.normal_y) == pytest.approx(1.0)
-            assert gap.away >= gap.gap - 1e-9
-            if gap.other < 0 or not gap.away == gap.gap > 1e-6:
-                continue
-            # The corner is the moving polygon's, or the other's: one way leads to the other one.
-            own = np.hypot(*(corners - (gap.x, gap.y)).T).min() == 0.0
-            other = shapely.Polygon(around.polygon(gap.other)).exterior
-            target = other if own else shapely.Polygon(corners).exterior
-            way = -gap.gap if own else gap.gap
-            end = shapely.Point(gap.x + way * gap.normal_x, gap.y + way * gap.normal_y)
-            assert target.distance(end) == pytest.approx(0.0, abs=1e-9)
-
-    check()
+@repeatable(60)
+@given(scenes())
+def test_a_small_shift_along_the_normal_closes_a_gap(scene):
+    corners, around = scene
+    found = gaps_around(corners, polygon_edges(corners), around, WIDTH, 3.0, 0.3)
+    for gap in found:
+        assert math.hypot(gap.normal_x, gap.normal_y) == pytest.approx(1.0)
+        assert gap.away >= gap.gap - 1e-9
+        if gap.other < 0 or not gap.away == gap.gap > 1e-6:
+            continue
+        # The corner is the moving polygon's, or the other's: one way leads to the other one.
+        own = np.hypot(*(corners - (gap.x, gap.y)).T).min() == 0.0
+        other = shapely.Polygon(around.polygon(gap.other)).exterior
+        target = other if own else shapely.Polygon(corners).exterior
+        way = -gap.gap if own else gap.gap
+        end = shapely.Point(gap.x + way * gap.normal_x, gap.y + way * gap.normal_y)
+        assert target.distance(end) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_no_overlap_is_missed_and_what_is_apart_does_not_cross():

@@ -1,7 +1,6 @@
 """Turning, reducing and rasterising by coverage (DESIGN 4.2)."""
 
 import math
-from collections.abc import Iterator
 from typing import Literal
 
 import numpy as np
@@ -14,6 +13,7 @@ from drystone.kernels.backend import compiled
 from drystone.kernels.raster import (
     PHASE_STEPS,
     Mask,
+    mirrored,
     quantise,
     rasterise,
     rasterise_to_area,
@@ -21,8 +21,12 @@ from drystone.kernels.raster import (
     turn,
     turned_boxes,
 )
+from tests.kernels.twins import both_ways
 from tests.naive import raster as naive
 from tests.strategies import blobs, landscapes, masks, repeatable
+
+kernel = both_ways(raster)
+FAST = compiled("raster")
 
 L_SHAPE = np.array([[1, 0, 0], [1, 0, 0], [1, 0, 0], [1, 1, 1]], bool)
 PHASES = st.integers(0, PHASE_STEPS - 1).map(lambda n: n / PHASE_STEPS)
@@ -129,25 +133,6 @@ def test_a_whole_pixel_of_phase_moves_and_changes_nothing() -> None:
     assert (there[1] - here[1], there[2] - here[2]) == (2, 3)
 
 
-FAST = compiled("raster")
-KERNELS = [
-    pytest.param(None, id="numpy"),
-    pytest.param(
-        FAST,
-        id="compiled",
-        marks=pytest.mark.skipif(FAST is None, reason="kernels are not compiled here"),
-    ),
-]
-
-
-@pytest.fixture(scope="module", params=KERNELS)
-def kernel(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Rasterise by NumPy, then by the compiled kernel."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(raster, "_fast", request.param)
-        yield
-
-
 def pixels_of(mask: Mask, left: int, bottom: int) -> set[tuple[int, int]]:
     rows, cols = np.nonzero(mask)
     top = bottom + mask.shape[0] - 1
@@ -163,7 +148,6 @@ ANGLES = st.one_of(
 )
 
 
-@pytest.mark.usefixtures("kernel")
 @repeatable(50)
 @given(
     mask=masks(5),
@@ -181,7 +165,6 @@ def test_rasterising_is_counting_samples_one_by_one(
         assert pixels_of(*rasterise(mask, centre, angle, scale, phase)) == expected
 
 
-@pytest.mark.usefixtures("kernel")
 @repeatable(40)
 @given(
     mask=masks(4),
@@ -238,7 +221,6 @@ def test_compiled_pixels_are_those_of_numpy(
     assert found[0][1:] == found[1][1:]
 
 
-@pytest.mark.usefixtures("kernel")
 @pytest.mark.parametrize(
     ("scale", "expected"),
     [
@@ -259,7 +241,6 @@ def test_a_neck_too_thin_for_the_resolution_does_not_break(
     assert ["".join(".#"[pixel] for pixel in row) for row in turned.astype(int)] == expected
 
 
-@pytest.mark.usefixtures("kernel")
 def test_a_ring_is_one_piece() -> None:
     ring = np.pad(np.zeros((8, 8), bool), 4, constant_values=True)
     turned, _, _ = rasterise(ring, (8.0, 8.0), 10.0, 0.5, (0.0, 0.0))
@@ -267,7 +248,6 @@ def test_a_ring_is_one_piece() -> None:
     assert turned.sum() == sum(2 * count >= full for count in counts.values()) < len(counts)
 
 
-@pytest.mark.usefixtures("kernel")
 def test_a_pixel_between_the_sample_points_does_not_vanish() -> None:
     counts, _ = naive.sampled(np.ones((1, 1), bool), (0.5, 0.5), 45.0, 0.25, (0.0, 0.0))
     assert not counts
@@ -275,7 +255,6 @@ def test_a_pixel_between_the_sample_points_does_not_vanish() -> None:
     assert (turned.tolist(), left, bottom) == ([[True, True], [True, True]], -1, -1)
 
 
-@pytest.mark.usefixtures("kernel")
 @pytest.mark.parametrize(("phase", "shape"), [((0.625, 0.0), (1, 2)), ((0.0, 0.375), (2, 1))])
 def test_samples_on_an_edge_belong_to_the_pixel_right_of_or_below_it(
     phase: tuple[float, float], shape: tuple[int, int]
@@ -285,7 +264,6 @@ def test_samples_on_an_edge_belong_to_the_pixel_right_of_or_below_it(
     assert (turned.shape, left, bottom) == (shape, 0, 0)
 
 
-@pytest.mark.usefixtures("kernel")
 def test_a_mask_without_pixels_is_refused() -> None:
     with pytest.raises(ValueError, match="no pixel"):
         rasterise(np.zeros((2, 3), bool), (0.0, 0.0), 10.0, 1.0, (0.0, 0.0))
@@ -301,7 +279,6 @@ def test_numpy_takes_a_large_mask_in_bands(monkeypatch: pytest.MonkeyPatch) -> N
     assert whole[1:] == banded[1:]
 
 
-@pytest.mark.usefixtures("kernel")
 @repeatable()
 @given(
     points=st.lists(st.tuples(st.floats(-99, 99), st.floats(-99, 99)), min_size=1, max_size=9),
@@ -316,3 +293,9 @@ def test_boxes_are_those_of_the_points_turned_one_by_one(
         x = [u * cos - v * sin for u, v in points]
         y = [u * sin + v * cos for u, v in points]
         assert box == [min(x), min(y), max(x), max(y)]
+
+
+def test_a_mirror_image_is_a_copy_read_backwards() -> None:
+    image = mirrored(L_SHAPE)
+    assert image.tolist() == [row[::-1] for row in L_SHAPE.tolist()]
+    assert image.flags.c_contiguous

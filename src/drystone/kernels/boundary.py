@@ -20,17 +20,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import (
-        flags,
-        kept_flags,
-        kept_ints,
-        kept_longs,
-        longs,
-        longs_out,
-        sort_rows,
-    )
-else:
+if not cython.compiled:
     from drystone.kernels.lists import (
         flags,
         kept_flags,

@@ -10,9 +10,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import longs
-else:
+if not cython.compiled:
     from drystone.kernels.lists import longs
 
 BoxTable = NDArray[np.int64]

@@ -1,3 +1,5 @@
+from drystone.kernels.memory cimport doubles, ints, new_doubles, release
+
 ctypedef double *p_double
 
 

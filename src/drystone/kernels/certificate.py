@@ -18,9 +18,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import doubles, ints, new_doubles, release
-else:
+if not cython.compiled:
     from drystone.kernels.lists import doubles, ints, new_doubles, release
 
 Floats = NDArray[np.float64]

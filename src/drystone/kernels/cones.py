@@ -12,9 +12,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import doubles, doubles_out, ints_out
-else:
+if not cython.compiled:
     from drystone.kernels.lists import doubles, doubles_out, ints_out
 
 Floats = NDArray[np.float64]

@@ -20,16 +20,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import (
-        doubles_out,
-        kept_doubles,
-        kept_ints,
-        longs,
-        longs_out,
-    )
-    from cython.cimports.libc.math import sqrt
-else:
+if not cython.compiled:
     from math import sqrt
 
     from drystone.kernels.lists import doubles_out, kept_doubles, kept_ints, longs, longs_out

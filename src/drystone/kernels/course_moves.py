@@ -11,9 +11,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import ints, kept_ints, move_ints
-else:
+if not cython.compiled:
     from drystone.kernels.lists import ints, kept_ints, move_ints
 
 # A change that could not be made.

@@ -34,27 +34,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.course_moves import (
-        Dice,
-        Draft,
-        change,
-        copy,
-        drawn,
-        left_of,
-        parts_of,
-        start,
-        start_of,
-    )
-    from cython.cimports.drystone.kernels.memory import (
-        doubles,
-        ints,
-        kept_doubles,
-        kept_ints,
-        longs,
-        move_ints,
-    )
-else:
+if not cython.compiled:
     from drystone.kernels.course_moves import (
         Dice,
         Draft,

@@ -1,3 +1,8 @@
+from drystone.kernels.memory cimport (
+    doubles, doubles_out, ints, new_doubles, new_ints, release, sort_doubles
+)
+from libc.math cimport sqrt
+
 ctypedef double *p_double
 ctypedef int *p_int
 

@@ -18,18 +18,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import (
-        doubles,
-        doubles_out,
-        ints,
-        new_doubles,
-        new_ints,
-        release,
-        sort_doubles,
-    )
-    from cython.cimports.libc.math import sqrt
-else:
+if not cython.compiled:
     from math import sqrt
 
     from drystone.kernels.lists import (
@@ -85,40 +74,6 @@ def _crevice(stone, around, clearance):
     lid = raised(lid, clearance, left, right)
     flip(lid.at, 2 * lid.count)
     return as_array(lid), as_array(raised(floor, clearance, left, right))
-
-
-def gap_polygon(
-    stone: Points, around: Polygons, x_left: float, x_right: float, clearance: float
-) -> Points | None:
-    """Return the free space under a polygon between two upright lines.
-
-    Parameters
-    ----------
-    stone, around, clearance
-        As for :func:`crevice`.
-    x_left, x_right : float
-        The lines, below the polygon.
-
-    Returns
-    -------
-    corners : (n, 2) float array or None
-        Simple, counter-clockwise.  None when the space closes anywhere between the lines.
-
-    Raises
-    ------
-    ValueError
-        When there is no polygon above one of the lines, or they are not in order.
-
-    Examples
-    --------
-    >>> from drystone.kernels.polygons import no_polygons
-    >>> raised = np.array([[0.0, 3.0], [2.0, 3.0], [2.0, 4.0], [0.0, 4.0]])
-    >>> gap_polygon(raised, no_polygons(), 0.5, 1.5, 0.25).tolist()
-    [[0.5, 0.25], [1.5, 0.25], [1.5, 2.75], [0.5, 2.75]]
-    """
-    if not stone[:, 0].min() <= x_left < x_right <= stone[:, 0].max():
-        raise ValueError(f"lines at {x_left} and {x_right} are not in order below the polygon")
-    return between(crevice(stone, around, clearance), x_left, x_right)
 
 
 def between(space: Crevice, x_left: float, x_right: float) -> Points | None:

@@ -1,3 +1,5 @@
+from drystone.kernels.memory cimport doubles, doubles_out, flags, longs, longs_out
+
 ctypedef double *p_double
 ctypedef long long *p_long
 ctypedef unsigned char *p_uchar

@@ -19,15 +19,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import (
-        doubles,
-        doubles_out,
-        flags,
-        longs,
-        longs_out,
-    )
-else:
+if not cython.compiled:
     from drystone.kernels.lists import doubles, doubles_out, flags, longs, longs_out
 
 Lengths = NDArray[np.int64]

@@ -16,12 +16,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.gaps import Stone, find_gaps, heap_of, stone_of
-    from cython.cimports.drystone.kernels.memory import doubles, more_doubles, new_doubles, release
-    from cython.cimports.drystone.kernels.seidel import solve2, solve3
-    from cython.cimports.libc.math import sqrt
-else:
+if not cython.compiled:
     from math import sqrt
 
     from drystone.kernels.gaps import Stone, find_gaps, heap_of, stone_of

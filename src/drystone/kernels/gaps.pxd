@@ -1,3 +1,8 @@
+from drystone.kernels.memory cimport (
+    doubles, ints, more_doubles, more_ints, new_doubles, new_ints, release
+)
+from libc.math cimport sqrt
+
 ctypedef double *p_double
 ctypedef int *p_int
 

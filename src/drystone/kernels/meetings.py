@@ -19,19 +19,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import (
-        doubles,
-        doubles_out,
-        ints,
-        ints_out,
-        more_doubles,
-        new_doubles,
-        new_ints,
-        release,
-    )
-    from cython.cimports.libc.math import sqrt
-else:
+if not cython.compiled:
     from math import sqrt
 
     from drystone.kernels.lists import (

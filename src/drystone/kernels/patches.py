@@ -16,15 +16,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import (
-        flags_out,
-        labels_in,
-        longs_out,
-        pixels,
-        stride,
-    )
-else:
+if not cython.compiled:
     from drystone.kernels.lists import flags_out, labels_in, longs_out, pixels, stride
 
 GROUND = 0

@@ -25,15 +25,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import (
-        longs,
-        longs_out,
-        more_longs,
-        new_longs,
-        release,
-    )
-else:
+if not cython.compiled:
     from drystone.kernels.lists import longs, longs_out, more_longs, new_longs, release
 
 STRAIGHT, DIAGONAL = 38_613_965, 54_608_393

@@ -1,3 +1,6 @@
+from drystone.kernels.memory cimport doubles, doubles_out
+from libc.math cimport ceil, floor
+
 cdef void sweep_all(
     double *at, Py_ssize_t size, double left, double cell, double *bottoms, double *tops,
     Py_ssize_t columns

@@ -18,10 +18,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import doubles, doubles_out
-    from cython.cimports.libc.math import ceil, floor
-else:
+if not cython.compiled:
     from math import ceil, floor
 
     from drystone.kernels.lists import doubles, doubles_out

@@ -41,37 +41,22 @@ def turn(points: Floats, angle_deg: float) -> Floats:
 
 
 def turned_boxes(points: Floats, turns: Floats) -> Floats:
-    """Return the bounding boxes of points that are turned about the origin.
+    """Return left, bottom, right and top (m, 4) of points (n, 2), turned about the origin.
 
-    Parameters
-    ----------
-    points : (n, 2) float array
-        x to the right, y up.
-    turns : (m, 2) float array
-        Cosine and sine of each angle, of :func:`rotation`.
-
-    Returns
-    -------
-    boxes : (m, 4) float array
-        Left, bottom, right and top of the points turned by each angle.
-
-    Examples
-    --------
-    >>> turned_boxes(np.array([[0.0, 0.0], [2.0, 1.0]]), np.array([rotation(90.0)])).tolist()
-    [[-1.0, 0.0, 0.0, 2.0]]
+    Turns (m, 2) are cosines and sines, of :func:`rotation`.
     """
-    if _fast is None:
-        return turned_boxes_numpy(points, turns)
-    boxes: Floats = _fast.turned_boxes(points, turns)
-    return boxes
-
-
-def turned_boxes_numpy(points: Floats, turns: Floats) -> Floats:
-    """Return the boxes of :func:`turned_boxes`, by NumPy."""
+    if _fast is not None:
+        boxes: Floats = _fast.turned_boxes(points, turns)
+        return boxes
     cos, sin = turns[:, :1], turns[:, 1:]
     x = points[:, 0] * cos - points[:, 1] * sin
     y = points[:, 0] * sin + points[:, 1] * cos
     return np.column_stack([x.min(axis=1), y.min(axis=1), x.max(axis=1), y.max(axis=1)])
+
+
+def mirrored(pixels: Mask) -> Mask:
+    """Return the mirror image about a vertical line."""
+    return np.ascontiguousarray(pixels[:, ::-1])
 
 
 def quantise(value: float) -> float:

@@ -15,9 +15,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import doubles
-else:
+if not cython.compiled:
     from drystone.kernels.lists import doubles
 
 ENOUGH = cython.declare(cython.double, 1e-11)

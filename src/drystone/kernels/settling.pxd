@@ -1,5 +1,8 @@
-from drystone.kernels.firmness cimport Work
-from drystone.kernels.gaps cimport Heap, Stone
+from drystone.kernels.firmness cimport Work, arm_of, enough_rows, firmness
+from drystone.kernels.gaps cimport Heap, Stone, crosses, find_gaps, heap_of, measure
+from drystone.kernels.memory cimport doubles, new_doubles, release
+from drystone.kernels.seidel cimport solve3
+from libc.math cimport cos, isfinite, sin
 
 ctypedef double *p_double
 

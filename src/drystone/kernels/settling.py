@@ -16,37 +16,24 @@ a depth, or as edges that cross, since a whole stone is larger than a step.
 
 from __future__ import annotations
 
+from enum import IntEnum
+from typing import NamedTuple
+
 from drystone.kernels.firmness import require_friction
 from drystone.kernels.polygons import Points, Polygons
-from drystone.kernels.settling_types import Rules, Settling, Status
 
 try:
     import cython
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.firmness import Work, arm_of, enough_rows, firmness
-    from cython.cimports.drystone.kernels.gaps import (
-        Heap,
-        Stone,
-        crosses,
-        find_gaps,
-        heap_of,
-        measure,
-    )
-    from cython.cimports.drystone.kernels.memory import doubles, new_doubles, release
-    from cython.cimports.drystone.kernels.seidel import solve3
-    from cython.cimports.libc.math import cos, isfinite, sin
-else:
+if not cython.compiled:
     from math import cos, isfinite, sin
 
     from drystone.kernels.firmness import Work, arm_of, enough_rows, firmness
     from drystone.kernels.gaps import Heap, Stone, crosses, find_gaps, heap_of, measure
     from drystone.kernels.lists import doubles, new_doubles, release
     from drystone.kernels.seidel import solve3
-
-__all__ = ["Rules", "Settling", "Status", "settle"]
 
 RESTS = cython.declare(cython.int, 0)
 FALLS = cython.declare(cython.int, 1)
@@ -65,6 +52,59 @@ SMALLEST = cython.declare(cython.double, 1e-6)
 
 # A contact with a normal steeper than this supports.
 UPWARD = cython.declare(cython.double, 0.3)
+
+
+class Status(IntEnum):
+    """How settling ended."""
+
+    RESTS = 0
+    FALLS = 1
+    """Nothing is to be gained without friction, but with it the stone would move."""
+    OVERLAPS = 2
+    FAR = 3
+    """It turned or slid further than it may."""
+    UNFINISHED = 4
+    """It still moved after the last step."""
+
+
+class Rules(NamedTuple):
+    """How a stone settles; lengths in the unit of the polygons."""
+
+    lean: float  # gravity towards -x over gravity downwards
+    # stop as soon as the stone rests with this margin; below 0: only where nothing is gained
+    stop: float
+    mu: float  # coefficient of friction of the rest test, above 0
+    clearance: float  # gap that is left, above 0
+    tolerance: float  # gaps up to this one touch, in the rest test
+    corner: float  # two corners nearer than this meet with the face that parts them best
+    near: float  # first and largest radius of a step
+    far: float
+    turn: float  # largest turn, radians
+    shift: float  # largest shift aside
+    gain: float  # settling ends where a step would go down by no more; not below 0
+    overlap: float  # so deep a stone may overlap at the start; it is then brought apart first
+    # contacts whose normal goes up by less than this have no friction in the rest test; -1:
+    # all have
+    steep: float
+    beyond: float  # how far the stone may stand out over the ends of the wall
+    # the supporting point nearest to the centroid does not slide: the stone rolls about it
+    sticks: bool
+    turns: bool  # whether the stone may turn
+    steps: int  # most steps
+
+
+class Settling(NamedTuple):
+    """Outcome of settling."""
+
+    status: Status
+    x: float  # of the centroid
+    y: float
+    angle: float  # radians
+    gap: float  # smallest gap there
+    # how far gravity may lean until the stone moves, over mu; -1 when it does not rest
+    margin: float
+    steps: int
+    touching: int  # contacts
 
 
 @cython.cclass

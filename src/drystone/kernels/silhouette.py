@@ -14,9 +14,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import flags, flags_out, ints_out
-else:
+if not cython.compiled:
     from drystone.kernels.lists import flags, flags_out, ints_out
 
 Ints = NDArray[np.int32]

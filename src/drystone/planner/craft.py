@@ -3,7 +3,7 @@
 import math
 
 from drystone.indices import interlocking_width_ratio, inward_slope, is_boundary, left_neighbour
-from drystone.kernels.columns import free_below, free_beside
+from drystone.kernels.support import free_below, free_beside
 from drystone.model.landscape import Landscape, view_box
 from drystone.model.pose import PosedStone
 from drystone.planner.stock import Rest, Stock
