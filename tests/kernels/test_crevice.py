@@ -170,13 +170,6 @@ def test_only_what_is_met_first_counts() -> None:
     assert space.lid.tolist() == [[0, 6], [2, 6], [2, 9], [6, 9], [6, 6], [8, 6]]
 
 
-def test_edges_that_go_on_in_a_line_need_no_corner_more() -> None:
-    """A corner of another polygon far below leaves no trace in the chains."""
-    space = crevice(box(0, 5, 6, 8), no_polygons().added([box(0, 1, 6, 2), box(2, 0, 4, 0.5)]), 0.0)
-    assert space.lid.tolist() == [[0, 5], [6, 5]]
-    assert space.floor.tolist() == [[0, 2], [6, 2]]
-
-
 def test_no_piece_where_the_space_closes() -> None:
     stone = np.array([[0.0, 2.0], [3.0, 0.5], [6.0, 2.0], [6.0, 5.0], [0.0, 5.0]])
     assert gap_polygon(stone, no_polygons(), 0.5, 5.5, 0.1) is not None

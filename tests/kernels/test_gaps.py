@@ -64,24 +64,6 @@ def test_the_smallest_gap_is_the_distance():
     assert apart[0] > 100
 
 
-@pytest.mark.parametrize("reach", [0.3, 1.0, 4.0])
-def test_no_gap_is_wider_or_deeper_than_the_reach(reach):
-    deepest = 0.0
-
-    @repeatable(60)
-    @given(scenes())
-    def check(scene):
-        nonlocal deepest
-        corners, around = scene
-        found = gaps_around(corners, polygon_edges(corners), around, WIDTH, reach, 0.0)
-        gaps_found = [gap.gap for gap in found if gap.other >= 0]
-        assert all(abs(gap) <= reach for gap in gaps_found)
-        deepest = min([deepest, *gaps_found])
-
-    check()
-    assert deepest < -0.15
-
-
 def test_both_ends_of_flush_faces_are_seen_from_both_sides():
     """Of bricks that lie exactly over each other no end is left to rounding."""
     below, above = at(SQUARE, 4.0, 1.0), at(SQUARE, 4.0, 3.25)

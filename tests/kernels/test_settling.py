@@ -153,12 +153,6 @@ def test_of_two_supports_the_one_nearer_to_the_centroid_sticks():
         assert (abs(moved - (50.0 + away[0])) < 0.02) == sticks
 
 
-def test_without_turns_the_angle_stays():
-    tip = np.array([[50.0, 20.0], [40.0, 0.0], [60.0, 0.0]])
-    found = let_go(BRICK, (52.0, 30.0, 0.2), [tip], turns=False, shift=100.0)
-    assert found.angle == 0.2
-
-
 def test_nothing_passes_a_sliver():
     # It lies on two piers; what falls on it stays above, with its heaviest steps.
     piers = [at(box(6.0, 20.0), 22.0, 10.01), at(box(6.0, 20.0), 78.0, 10.01)]
@@ -238,19 +232,6 @@ def test_mirrored_scenes_settle_to_mirror_images(seed):
         assert (back.outline == drop.outline).all()
         mirrored = (WIDTH - seen.x, seen.y, -seen.angle)
         assert mirrored == pytest.approx(found[1:4], abs=1e-6 * size)
-
-
-def test_mirror_images_of_exact_coordinates_give_the_same_bits():
-    """Mirrored twice, coordinates that are multiples of 1/64 are what they were."""
-    low = [at(BRICK, 40.25, 5.5), at(BRICK, 70.5, 7.0)]
-    around = no_polygons().added(low)
-    twice = around.mirrored(200.0).mirrored(200.0)
-    args = BRICK, polygon_edges(BRICK), (56.5, 30.0, 0.25)
-    once = settle(*args, around, 200.0, rules(15.0))
-    # Corners are listed in reverse and in reverse again.
-    assert settle(*args, twice, 200.0, rules(15.0)) == once
-    turned = mirrored_polygon(mirrored_polygon(BRICK, 0.0), 0.0)
-    assert settle(turned, polygon_edges(turned), args[2], twice, 200.0, rules(15.0)) == once
 
 
 def test_what_is_not_a_number_does_not_rest():

@@ -44,15 +44,3 @@ def test_swept_is_what_is_left_of_the_mask_or_below_it(mask: Mask) -> None:
     assert len(swept) == len(set(swept)) == rays.area
     assert set(swept) == expected
     assert rays.left.tolist() == [int(np.argmax(row)) for row in mask]
-
-
-def test_rays_go_left_and_down_only() -> None:
-    rays = silhouette(np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]], bool)).rays
-    assert (rays.left.tolist(), rays.runs.tolist(), rays.area) == ([1, 0, 1], [[2, 2, 3]], 3)
-
-
-def test_one_pixel() -> None:
-    outline = silhouette(np.ones((1, 1), bool))
-    assert (outline.runs.tolist(), outline.bottom.tolist()) == ([[0, 0, 1]], [0])
-    assert outline.area_from.tolist() == [1, 0]
-    assert (outline.rays.left.tolist(), outline.rays.runs.tolist()) == ([0], [])

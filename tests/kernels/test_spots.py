@@ -19,7 +19,6 @@ from drystone.kernels.spots import (
     best_by_eq12,
     best_by_height,
     best_by_snugness,
-    dice_score,
     eq12_merits,
     snug_merits,
     threshold,
@@ -78,12 +77,6 @@ def test_void_gap_height_and_end_are_counted_pixel_by_pixel(scene: Posed) -> Non
 
 def test_the_threshold_itself_counts_as_below() -> None:
     assert threshold(np.array([0.0, 0.7, 0.7000001, 1.0]), 0.7).tolist() == [0, 0, 0.7000001, 1.0]
-
-
-def test_outside_between_and_inside_the_box() -> None:
-    found = dice_score(np.array([0, 4, 8], np.int32), 8, 80.0)
-    assert found == pytest.approx([0.0, 0.5 * 80 / 84, 1.0])
-    assert dice_score(np.array([0], np.int32), 8, 0.0).tolist() == [0.0]
 
 
 @st.composite

@@ -86,56 +86,6 @@ def test_one_pixel_on_a_site_of_one_pixel() -> None:
     assert resting_place(site, np.ones((2, 1), bool), 0, 0, 5) is None
 
 
-def test_the_nearest_row_that_rests_is_taken() -> None:
-    occupied = np.zeros((24, 50), bool)
-    occupied[20:, :14] = True
-
-    def row_from(row: int, col: int) -> int | None:
-        place = resting_place(occupied, np.ones((3, 5), bool), row, col, 3)
-        return None if place is None else place[0]
-
-    assert [row_from(row, 2) for row in (17, 15, 19, 13)] == [17, 17, 17, None]
-    assert [row_from(row, 20) for row in (19, 23)] == [21, 21]  # on the ground
-    assert [row_from(21, col) for col in (-1, 46)] == [None, None]
-
-
-def test_of_the_pixels_of_a_column_the_lowest_counts() -> None:
-    hook = np.array([[1, 1, 1], [0, 1, 0], [1, 1, 1]], bool)
-    occupied = np.zeros((3, 3), bool)
-    occupied[1, [0, 2]] = True
-    assert support_ends(occupied, hook, 0, 0) == (0, 3, 3, 3)
-    deeper = np.vstack([occupied, np.zeros((1, 3), bool)])
-    assert support_ends(deeper, hook, 0, 0) == (0, 3, 1, 1)
-
-
-@pytest.mark.parametrize(
-    ("occupied_rows", "row", "found"),
-    [
-        ([3, 4, 5, 6, 8], 5, 7),  # two rows down
-        ([4], 5, 3),  # two rows up, past what is in the way
-        ([3, 4, 5, 6, 7], 5, None),
-        ([1, 2, 3, 4, 5, 6, 7, 9], 5, None),  # three rows down
-    ],
-)
-def test_rows_further_away_are_reached_past_others(
-    occupied_rows: list[int], row: int, found: int | None
-) -> None:
-    occupied = np.zeros((20, 1), bool)
-    occupied[occupied_rows] = True
-    place = resting_place(occupied, np.ones((1, 1), bool), row, 0, 2)
-    assert (place and place[0]) == found
-
-
-def test_of_two_rows_equally_far_the_lower_one_is_taken() -> None:
-    occupied = np.zeros((9, 3), bool)
-    occupied[4] = True
-    pixel = np.ones((1, 3), bool)
-    assert resting_place(occupied, pixel, 4, 0, 1) == (3, (0, 3, 4, 4))
-    occupied[6] = True
-    assert resting_place(occupied, pixel, 4, 0, 1) == (5, (0, 3, 6, 6))
-    assert resting_place(occupied, pixel, 4, 0, 0) is None
-
-
 def lowest(mask: Mask) -> Longs:
     return np.asarray(mask.shape[0] - 1 - np.argmax(mask[::-1], axis=0))
 
@@ -196,16 +146,6 @@ def test_a_filling_has_the_pixels_of_the_gap_that_is_lowest(
     assert pixels.any(axis=0).all()
     assert pixels[0].any()
     assert pixels[-1].any()
-
-
-@pytest.mark.parametrize("mirror", [False, True])
-def test_wide_gaps_are_counted_to_the_pixel(mirror: bool) -> None:
-    mask = np.ones((2, 1), bool)
-    for gap in range(30):
-        occupied = np.zeros((2, 40), bool)
-        occupied[1, 34 - gap : 35 - gap] = True
-        scene = np.ascontiguousarray(occupied[:, ::-1])[:, ::-1] if mirror else occupied
-        assert free_beside(scene, mask, 0, 35) == (35 + gap, 4)
 
 
 def gap_of(*heights: int) -> Mask:
