@@ -98,22 +98,6 @@ def test_keeps_its_distance_and_gives_nothing_away(
 
 @repeatable(60)
 @given(piles())
-def test_corners_are_near_what_they_belong_to(pile: tuple[Points, Polygons]) -> None:
-    stone, around = pile
-    space = crevice(stone, around, CLEARANCE)
-    free = crevice(stone, around, 0.0)
-    for chain, body in ((space.lid, shapely.Polygon(stone)), (space.floor, bodies(around))):
-        before, after = np.roll(chain[:, 0], 1), np.roll(chain[:, 0], -1)
-        # Below an overhang a step is not at a face.
-        plain = (np.abs(before - chain[:, 0]) > 1e-6) & (np.abs(after - chain[:, 0]) > 1e-6)
-        steps = np.concatenate([c[:-1][np.diff(c[:, 0]) < 1e-9] for c in free])
-        for x, y in chain[plain][1:-1]:
-            if len(steps) == 0 or np.abs(steps[:, 0] - x).min() > 3 * CLEARANCE:
-                assert shapely.distance(body, shapely.Point(x, y)) <= 1.4143 * CLEARANCE
-
-
-@repeatable(60)
-@given(piles())
 def test_a_mirrored_scene_gives_the_mirrored_space(pile: tuple[Points, Polygons]) -> None:
     stone, around = pile
     left, right = extent(stone)

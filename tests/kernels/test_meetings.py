@@ -83,19 +83,6 @@ def nearest(solid, point):
     return shapely.get_coordinates(shapely.shortest_line(solid, shapely.Point(point)))[0]
 
 
-@given(pairs())
-@repeatable(150)
-def test_where_the_gap_is_smallest_there_is_a_contact(pair):
-    corners, other = pair
-    solid, here = shapely.Polygon(other), shapely.Polygon(corners)
-    gap = solid.distance(here)
-    if gap > 0.95 * TOLERANCE:
-        return
-    found = meetings(corners, no_polygons().added([other]), TOLERANCE)
-    points = np.concatenate([p[:n] for p, n in zip(found.points, found.counts, strict=True)])
-    assert min(shapely.distance(shapely.points(points), solid)) < gap + 0.03
-
-
 @given(pairs(), st.floats(0.0, 360.0), st.integers(0, 5))
 @repeatable(150)
 def test_contacts_move_with_the_polygons(pair, angle, first):

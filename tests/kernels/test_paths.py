@@ -63,8 +63,8 @@ def test_a_way_is_as_long_as_it_should_be_and_stays_on_open_pixels(
     assert (len(steps) - diagonal) * STRAIGHT + diagonal * DIAGONAL == length
 
 
-@pytest.mark.parametrize("share", [0.5, 0.62, 0.75, 0.95])
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("share", [0.62, 0.95])
+@pytest.mark.parametrize("seed", range(2))
 def test_lengths_in_larger_images_are_those_of_the_slow_twin(share: float, seed: int) -> None:
     image = noise((60, 110), share, seed)
     rows = np.arange(0, 60, 9)

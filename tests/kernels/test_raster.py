@@ -40,19 +40,6 @@ def test_quarter_turns_of_an_l_are_counter_clockwise_and_never_mirrored(quarters
     assert (left, bottom) == corners[quarters % 4]
 
 
-@repeatable()
-@given(mask=masks(), quarters=st.integers(0, 3), phase=st.tuples(PHASES, PHASES))
-def test_quarter_turns_are_exact_at_any_phase_up_to_half_a_pixel(
-    mask: Mask, quarters: int, phase: tuple[float, float]
-) -> None:
-    whole_px = (0.0, 0.0)
-    exact = rasterise(mask, whole_px, 90.0 * quarters, 1.0, whole_px)
-    assert np.array_equal(exact[0], np.rot90(mask, quarters))
-    shifted = rasterise(mask, whole_px, 90.0 * quarters, 1.0, (phase[0] * 0.24, phase[1] * 0.24))
-    assert np.array_equal(shifted[0], exact[0])
-    assert shifted[1:] == exact[1:]
-
-
 @given(angle=st.floats(-720, 720))
 @repeatable()
 def test_turn_is_a_rotation_by_the_angle(angle: float) -> None:
@@ -187,13 +174,6 @@ def test_a_neck_too_thin_for_the_resolution_does_not_break(
     dumbbell[4, :] = dumbbell[3, 13:15] = True
     turned, _, _ = rasterise(dumbbell, (0.0, 0.0), 0.0, scale, (0.0, 0.0))
     assert ["".join(".#"[pixel] for pixel in row) for row in turned.astype(int)] == expected
-
-
-def test_a_ring_is_one_piece() -> None:
-    ring = np.pad(np.zeros((8, 8), bool), 4, constant_values=True)
-    turned, _, _ = rasterise(ring, (8.0, 8.0), 10.0, 0.5, (0.0, 0.0))
-    counts, full = naive.sampled(ring, (8.0, 8.0), 10.0, 0.5, (0.0, 0.0))
-    assert turned.sum() == sum(2 * count >= full for count in counts.values()) < len(counts)
 
 
 def test_a_pixel_between_the_sample_points_does_not_vanish() -> None:

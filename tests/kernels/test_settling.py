@@ -170,21 +170,6 @@ def test_nothing_passes_a_sliver():
                 assert overlap_area(corners, no_polygons().added([*piers, shelf])) == 0.0
 
 
-def test_nothing_leaves_a_ring_of_slivers():
-    ring = [
-        placed(box(26.0, 1.0), (50.0 + 20.0 * math.cos(a), 60.0 + 20.0 * math.sin(a), a + 1.57))
-        for a in np.arange(6) * math.pi / 3.0
-    ]
-    pentagon = 6.0 * np.array([[math.cos(a), math.sin(a)] for a in np.arange(5) * 1.2566])
-    for x, turn, lean in ((50.0, 0.0, 0.0), (45.0, 0.4, 0.3), (55.0, 1.0, 1.0), (50.0, 0.2, 3.0)):
-        found = let_go(
-            pentagon, (x, 60.0, turn), ring, near=2.0, far=3.0, turn=9.0, lean=lean,
-            shift=90.0,
-        )  # fmt: skip
-        assert found.status in (Status.RESTS, Status.FALLS)
-        assert math.dist(found[1:3], (50.0, 60.0)) < 20.0
-
-
 def test_margins_are_those_of_statics():
     tall = box(10.0, 40.0)
     ground = no_polygons()
@@ -203,16 +188,6 @@ def test_margins_are_those_of_statics():
     over = at(slab, 0.0, 10.05)
     assert rest_margin(over, (50.0, 15.05), low, 200.0, 0.58, 0.1) == -1.0
     assert rest_margin(at(over, -0.18, 0.0), (49.82, 15.05), low, 200.0, 0.58, 0.1) > 0.0
-
-
-def test_corners_further_apart_than_contacts_do_not_stop_it():
-    # The faces are within the tolerance of .1, the corners are not.
-    low = [at(box(10.0, 10.0), 24.92, 5.0), at(box(10.0, 10.0), 75.08, 5.0)]
-    for y, steps in ((15.09, 1), (15.05, 0)):
-        slab = (50.0, y, 0.0)
-        x = 0.0 if steps else 0.06
-        near = [at(low[0], x, 0.0), at(low[1], -x, 0.0)]
-        assert let_go(box(40.0, 10.0), slab, near, stop=0.0, steps=1).steps == steps
 
 
 @repeatable(15)
