@@ -20,7 +20,7 @@ from drystone.indices import (
     neighbour_height_ratio,
     shape_factor,
 )
-from drystone.kernels.merits import dice_score
+from drystone.kernels.spots import dice_score
 from drystone.model.landscape import Box, Landscape, view_box
 from drystone.model.placement import Placement
 from drystone.model.pose import PosedStone

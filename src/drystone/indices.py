@@ -85,7 +85,7 @@ def geometrical_dice_score_at(landscape: Landscape, posed: PosedStone, row: int)
     GDS = (|S n B| / A_S) (A_B / |S u B|), B the box over the full width of the wall up to the top
     of what is placed.  1: inside B; 0: outside, and before the first stone.
 
-    For all rows at once it is :func:`drystone.kernels.merits.dice_score`, to the last bit.
+    For all rows at once it is :func:`drystone.kernels.spots.dice_score`, to the last bit.
     """
     mask, box_area = posed.silhouette, float(landscape.width_px * landscape.built_height_px)
     # Pixels of the stone from its row k downwards lie in B when B's top row is k rows below its.

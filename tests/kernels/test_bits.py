@@ -1,6 +1,5 @@
-"""Where a mask rests: compiled and packed in Python against loops over pixels (§3.6)."""
+"""Where a mask rests: packed bits against loops over pixels (§3.6)."""
 
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -8,58 +7,44 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.backend import compiled
-from drystone.kernels.bits import BitLandscape, BitLandscapeNumpy, bit_landscape
-from drystone.kernels.lowering import Positions, skyline_numpy
+from drystone.kernels import bits
+from drystone.kernels.bits import bit_landscape
+from drystone.kernels.lowering import Positions, skyline
 from drystone.kernels.raster import Mask
-from drystone.kernels.silhouette import Ints, silhouette
+from drystone.kernels.silhouette import silhouette
+from tests.kernels.twins import both_ways
 from tests.naive import placement as naive
 from tests.strategies import landscapes, masks, repeatable
 
-absent = pytest.mark.skipif(compiled("bits") is None, reason="kernels are not compiled here")
-twins = pytest.mark.parametrize(
-    "pack",
-    [
-        pytest.param(BitLandscapeNumpy, id="numpy"),
-        pytest.param(bit_landscape, id="compiled", marks=absent),
-    ],
-)
-Pack = Callable[[Mask, Ints], BitLandscape]
+kernel = both_ways(bits)
 
 
-def resting(pack: Pack, occupied: Mask, mask: Mask) -> Positions:
-    return pack(occupied, skyline_numpy(occupied)).resting(silhouette(mask))
+def resting(occupied: Mask, mask: Mask) -> Positions:
+    return bit_landscape(occupied, skyline(occupied)).resting(silhouette(mask))
 
 
-@twins
-def test_masks_rest_where_two_loops_say(pack: Pack) -> None:
-    @repeatable(200)
-    @given(occupied=landscapes(16), mask=masks(8))
-    def check(occupied: Mask, mask: Mask) -> None:
-        found = resting(pack, occupied, mask)
-        assert found.dtype == np.int64
-        assert found.flags.c_contiguous
-        assert found.tolist() == [list(at) for at in naive.resting_positions(occupied, mask)]
-
-    check()
+@repeatable(200)
+@given(occupied=landscapes(16), mask=masks(8))
+def test_masks_rest_where_two_loops_say(occupied: Mask, mask: Mask) -> None:
+    found = resting(occupied, mask)
+    assert found.dtype == np.int64
+    assert found.flags.c_contiguous
+    assert found.tolist() == [list(at) for at in naive.resting_positions(occupied, mask)]
 
 
-@twins
 @pytest.mark.parametrize("stretch", [13, 40])
-def test_rows_of_several_words_and_runs_longer_than_one(pack: Pack, stretch: int) -> None:
-    @repeatable(60)
-    @given(occupied=landscapes(9), mask=masks(5), shift=st.integers(0, 12), cut=st.integers(0, 12))
-    def check(occupied: Mask, mask: Mask, shift: int, cut: int) -> None:
-        wide = np.roll(np.repeat(occupied, stretch, axis=1), shift, axis=1)
-        stone = np.repeat(mask, stretch, axis=1)[:, : mask.shape[1] * stretch - cut]
-        expected = naive.resting_by_areas(wide, stone, slid) if fits(wide, stone) else []
-        assert resting(pack, wide, stone).tolist() == [list(at) for at in expected]
+@repeatable(60)
+@given(occupied=landscapes(9), mask=masks(5), shift=st.integers(0, 12), cut=st.integers(0, 12))
+def test_rows_of_several_words_and_runs_longer_than_one(
+    stretch: int, occupied: Mask, mask: Mask, shift: int, cut: int
+) -> None:
+    wide = np.roll(np.repeat(occupied, stretch, axis=1), shift, axis=1)
+    stone = np.repeat(mask, stretch, axis=1)[:, : mask.shape[1] * stretch - cut]
+    expected = naive.resting_by_areas(wide, stone, slid) if fits(wide, stone) else []
+    assert resting(wide, stone).tolist() == [list(at) for at in expected]
 
-    check()
 
-
-@twins
-def test_long_masks_between_thin_posts_under_a_roof(pack: Pack) -> None:
+def test_long_masks_between_thin_posts_under_a_roof() -> None:
     columns = st.integers(0, 299)
     posts = st.lists(st.tuples(columns, st.integers(1, 9)), max_size=4)
 
@@ -76,19 +61,7 @@ def test_long_masks_between_thin_posts_under_a_roof(pack: Pack) -> None:
         mask[1:, :heel] = mask[1:, heel + 3 * foot :] = False
         mask[1:, min(heel, length - 1)] = True
         expected = naive.resting_by_areas(occupied, mask, slid)
-        assert resting(pack, occupied, mask).tolist() == [list(at) for at in expected]
-
-    check()
-
-
-@twins
-def test_a_mask_fits_where_it_was_carved_out(pack: Pack) -> None:
-    @repeatable(100)
-    @given(mask=masks(8), top=st.integers(0, 3), left=st.integers(0, 70))
-    def check(mask: Mask, top: int, left: int) -> None:
-        occupied = np.ones((mask.shape[0] + top + 1, mask.shape[1] + left + 2), bool)
-        occupied[top : top + mask.shape[0], left : left + mask.shape[1]] ^= mask
-        assert [top, left] in resting(pack, occupied, mask).tolist()
+        assert resting(occupied, mask).tolist() == [list(at) for at in expected]
 
     check()
 
@@ -106,48 +79,43 @@ def slid(scene: Mask, mask: Mask) -> np.ndarray:
     return areas
 
 
-@twins
-def test_a_long_run_does_not_see_the_next_row(pack: Pack) -> None:
+def test_a_long_run_does_not_see_the_next_row() -> None:
     occupied = np.zeros((4, 9), bool)
     occupied[1:, 0] = True
-    found = resting(pack, occupied, np.ones((1, 8), bool))
+    found = resting(occupied, np.ones((1, 8), bool))
     assert found.tolist() == [[0, 0], [3, 1]]
 
 
-@twins
-def test_under_a_roof_and_on_it(pack: Pack) -> None:
+def test_under_a_roof_and_on_it() -> None:
     occupied = np.zeros((7, 200), bool)
     occupied[3, 10:190] = True
     # As wide as what is left of the roof, and a pixel wider.
-    assert [6, 0] in resting(pack, occupied, np.ones((1, 10), bool)).tolist()
-    places = resting(pack, occupied, np.ones((3, 150), bool)).tolist()
+    assert [6, 0] in resting(occupied, np.ones((1, 10), bool)).tolist()
+    places = resting(occupied, np.ones((3, 150), bool)).tolist()
     assert places == [[0, col] for col in range(51)] + [[4, col] for col in range(51)]
 
 
-@twins
-def test_a_mask_that_is_too_large_has_no_position(pack: Pack) -> None:
+def test_a_mask_that_is_too_large_has_no_position() -> None:
     occupied = np.zeros((4, 6), bool)
     for shape in ((5, 2), (4, 7)):
-        assert resting(pack, occupied, np.ones(shape, bool)).shape == (0, 2)
+        assert resting(occupied, np.ones(shape, bool)).shape == (0, 2)
 
 
-@twins
-@pytest.mark.parametrize("width", [1, 6, 8, 64, 65, 128, 200])
-def test_a_mask_as_large_as_the_image(pack: Pack, width: int) -> None:
+@pytest.mark.parametrize("width", [1, 64, 65, 200])
+def test_a_mask_as_large_as_the_image(width: int) -> None:
     occupied, mask = np.zeros((4, width), bool), np.ones((4, width), bool)
-    assert resting(pack, occupied, mask).tolist() == [[0, 0]]
+    assert resting(occupied, mask).tolist() == [[0, 0]]
     for col in (0, width // 2, width - 1):
         occupied[0, col] = True
-        assert resting(pack, occupied, mask).tolist() == []
+        assert resting(occupied, mask).tolist() == []
         occupied[0, col] = False
-    assert resting(pack, mask, np.ones((1, 1), bool)).tolist() == []
+    assert resting(mask, np.ones((1, 1), bool)).tolist() == []
 
 
-@twins
-def test_threads_may_share_a_landscape(pack: Pack) -> None:
+def test_threads_may_share_a_landscape() -> None:
     rng = np.random.default_rng(0)
     occupied = np.vstack([np.zeros((8, 150), bool), rng.random((12, 150)) < 0.1])
-    landscape = pack(occupied, skyline_numpy(occupied))
+    landscape = bit_landscape(occupied, skyline(occupied))
     outlines = [silhouette(np.ones((h, w), bool)) for h in range(1, 6) for w in range(1, 6)]
     alone = [landscape.resting(outline).tolist() for outline in outlines]
     with ThreadPoolExecutor(4) as pool:

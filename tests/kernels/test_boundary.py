@@ -1,5 +1,3 @@
-from itertools import pairwise
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -8,7 +6,7 @@ from hypothesis.extra.numpy import arrays
 
 from drystone.kernels.boundary import EMPTY, boundary_of
 from tests.naive import contacts as naive
-from tests.naive.statics import diagonal_touches, pixel_edges
+from tests.naive.statics import diagonal_touches
 from tests.strategies import label_images, repeatable
 
 pictures = arrays(
@@ -30,37 +28,6 @@ def chains_of(cells, fresh=None):
     return [(*pair, mine) for pair, mine in zip(boundary.labels.tolist(), nodes, strict=False)]
 
 
-def unit_edges(nodes, height):
-    x, y = nodes[:, 1] - 1, height + 1 - nodes[:, 0]
-    return [frozenset(pair) for pair in pairwise(zip(x.tolist(), y.tolist(), strict=True))]
-
-
-@given(labels=pictures)
-@repeatable(150)
-def test_chains_cover_every_edge_once(labels):
-    cells = cells_of(labels)
-    found = {}
-    for high, low, nodes in chains_of(cells, cells > 0):
-        for edge in unit_edges(nodes, labels.shape[0]):
-            edges = found.setdefault((high, low), set())
-            assert edge not in edges
-            edges.add(edge)
-    assert found == pixel_edges(labels)
-
-
-@given(labels=pictures)
-@repeatable()
-def test_the_higher_label_lies_to_the_left_of_every_edge(labels):
-    cells = cells_of(labels)
-    for high, low, nodes in chains_of(cells, cells > 0):
-        steps = np.diff(nodes, axis=0)
-        middle = (nodes[1:] + nodes[:-1]) / 2
-        left = np.column_stack((-steps[:, 1], steps[:, 0])) / 2  # rows grow downwards
-        for side, label in ((left, high), (-left, low)):
-            row, col = np.floor(middle + side).astype(int).T
-            assert (cells[row, col] == label).all()
-
-
 @given(labels=pictures)
 @repeatable(150)
 def test_crossing_corners_equal_their_twin(labels):
@@ -75,25 +42,12 @@ def test_crossing_corners_equal_their_twin(labels):
         assert below in cells[row, col - 1 : col + 1]
 
 
-def test_only_edges_of_fresh_cells():
-    cells = np.array([[1, 2, 3]])
-    assert boundary_of(cells, cells == 3).labels.tolist() == [[3, 2]]
-
-
 def test_an_enclosed_label_has_one_closed_chain_from_its_lowest_left_corner():
     cells = np.full((5, 5), 1)
     cells[1:4, 1:4] = 2
     ((_, _, nodes),) = chains_of(cells)
     assert nodes[0].tolist() == nodes[-1].tolist() == [4, 1]
     assert len(nodes) == 13
-
-
-def test_pixels_that_cross_give_chains_around_each_pixel():
-    cells = np.array([[2, 1], [1, 2]])
-    assert [nodes.tolist() for _, _, nodes in chains_of(cells)] == [
-        [[1, 0], [1, 1], [0, 1]],
-        [[1, 2], [1, 1], [2, 1]],
-    ]
 
 
 @pytest.mark.parametrize("shape", [(0, 0), (0, 3), (3, 0), (1, 1)])

@@ -39,17 +39,14 @@ def some_answer(seed, built, new):
 answers = st.builds(some_answer, st.integers(0, 10**6), st.integers(0, 4), st.integers(0, 3))
 
 
-def test_figures_are_those_of_linear_algebra():
-    @repeatable(200)
-    @given(answers)
-    def check(answer):
-        *program, forces, velocity = answer
-        for carried in (forces, forces[:0]):
-            found = figures(*program, carried, velocity)
-            assert found == pytest.approx(naive.figures(*program, carried, velocity), abs=1e-12)
-            assert all(type(figure) is float for figure in found)
-
-    check()
+@repeatable(200)
+@given(answers)
+def test_figures_are_those_of_linear_algebra(answer):
+    *program, forces, velocity = answer
+    for carried in (forces, forces[:0]):
+        found = figures(*program, carried, velocity)
+        assert found == pytest.approx(naive.figures(*program, carried, velocity), abs=1e-12)
+        assert all(type(figure) is float for figure in found)
 
 
 def test_what_is_no_number_is_found_out_wherever_it_is():
@@ -73,25 +70,6 @@ def test_what_is_no_number_is_found_out_wherever_it_is():
         assert math.isnan(found.largest)
     found = figures(wall, weights, added, nan, forces, velocity)
     assert math.isnan(found.residual)
-
-
-def test_every_row_and_every_column_counts():
-    wall, weights, added, _, forces, velocity = some_answer(3, 4, 2)
-    matrix, live, rhs = naive.program(wall, weights, added)
-    for column in range(matrix.shape[1]):
-        spoilt = np.zeros(len(forces))
-        spoilt[column] = -1e3
-        found = figures(wall, weights, added, 0.0, spoilt, velocity)
-        assert (found.violation, found.total) == (1e3, 1e3)
-        largest = np.abs(matrix @ spoilt - rhs).max()
-        assert found.residual == pytest.approx(largest)
-    for row in range(len(velocity)):
-        only = np.zeros(len(velocity))
-        only[row] = -2.0
-        found = figures(wall, weights, added, 0.0, forces, only)
-        assert found.largest == 2.0
-        assert found.inadmissible == pytest.approx(max(0.0, 2 * matrix[row].max(initial=0.0)))
-        assert (found.live, found.rhs) == pytest.approx((-2 * live[row], -2 * rhs[row]))
 
 
 def test_vectors_of_another_program_are_refused():

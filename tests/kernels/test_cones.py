@@ -34,21 +34,18 @@ def columns(found, length):
     return cone_edges(*parts, length)
 
 
-def test_columns_are_those_of_a_loop():
-    @repeatable(100)
-    @given(interfaces, lengths)
-    def check(found, length):
-        first, second, entries = columns(found, length)
-        parts = [list(part) for part in zip(*found, strict=True)] or [[], [], [], []]
-        expected = naive.cone_edges(*parts, length)
-        assert first.tolist() == [column[0] for column in expected]
-        assert second.tolist() == [column[1] for column in expected]
-        assert entries.shape == (6, len(expected))
-        if expected:
-            sought = np.array([column[2] for column in expected]).T
-            np.testing.assert_allclose(entries, sought, rtol=1e-12, atol=1e-9)
-
-    check()
+@repeatable(100)
+@given(interfaces, lengths)
+def test_columns_are_those_of_a_loop(found, length):
+    first, second, entries = columns(found, length)
+    parts = [list(part) for part in zip(*found, strict=True)] or [[], [], [], []]
+    expected = naive.cone_edges(*parts, length)
+    assert first.tolist() == [column[0] for column in expected]
+    assert second.tolist() == [column[1] for column in expected]
+    assert entries.shape == (6, len(expected))
+    if expected:
+        sought = np.array([column[2] for column in expected]).T
+        np.testing.assert_allclose(entries, sought, rtol=1e-12, atol=1e-9)
 
 
 def test_points_may_be_slices_of_one_array():

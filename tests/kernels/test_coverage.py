@@ -13,9 +13,8 @@ from drystone.kernels.coverage import (
     windows,
 )
 from drystone.kernels.polygons import Points
-from drystone.kernels.raster import turn
 from tests.naive import coverage as naive
-from tests.polygons import random_polygon, simple_polygons
+from tests.polygons import simple_polygons
 from tests.strategies import repeatable
 
 PLACES = st.one_of(
@@ -32,41 +31,6 @@ def test_shares_are_the_areas_in_common_with_each_cell(polygon: Points, x: float
     assert (left, bottom) == tuple(corner)
     # Far from the origin the corners themselves have fewer digits.
     np.testing.assert_allclose(shares, expected, rtol=0, atol=1e-12 + 1e-15 * abs(x + 1j * y))
-
-
-@repeatable(60)
-@given(seed=st.integers(0, 10**6), corners=st.integers(3, 60), size=st.floats(20, 90))
-def test_shares_of_large_stones_add_up_to_their_area(seed: int, corners: int, size: float) -> None:
-    polygon = random_polygon(np.random.default_rng(seed), corners, size)
-    shares, _, _ = coverage(polygon)
-    assert shares.sum() == pytest.approx(shapely.Polygon(polygon).area, rel=1e-11)
-    assert shares.min() >= 0.0
-    assert shares.max() <= 1.0
-
-
-@repeatable(60)
-@given(polygon=simple_polygons(max_size=12.0), angle=st.floats(-180, 180), at=st.floats(0.1, 0.9))
-def test_two_parts_of_a_polygon_cover_what_it_covers(
-    polygon: Points, angle: float, at: float
-) -> None:
-    """Cut along a line: nothing is counted twice, nothing is lost."""
-    whole = turn(polygon, angle)
-    low, high = whole[:, 0].min(), whole[:, 0].max()
-    x = low + at * (high - low)
-    halves = (shapely.box(low - 1, -99, x, 99), shapely.box(x, -99, high + 1, 99))
-    total, left, bottom = coverage(whole)
-    found = np.zeros_like(total)
-    for half in halves:
-        parts = shapely.intersection(shapely.Polygon(whole), half)
-        for part in shapely.get_parts(parts):
-            if part.geom_type != "Polygon":
-                continue
-            ring = shapely.get_coordinates(part.exterior)[:-1]
-            ring = ring if part.exterior.is_ccw else ring[::-1]
-            shares, col, row = coverage(ring)
-            top = len(total) - (row - bottom) - len(shares)
-            found[top : top + len(shares), col - left : col - left + shares.shape[1]] += shares
-    np.testing.assert_allclose(found, total, rtol=0, atol=1e-11)
 
 
 @pytest.mark.parametrize(("x", "y"), [(0, 0), (-7, 3), (120, -45)])
@@ -91,31 +55,11 @@ def test_a_box_on_cell_edges_fills_its_cells() -> None:
     assert (shares.tolist(), left, bottom) == ([[1.0, 1.0]] * 3, 3, -1)
 
 
-def test_row_0_is_at_the_top_and_column_0_on_the_left() -> None:
-    shares, left, bottom = coverage(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [0.0, 2.0]]))
-    assert (left, bottom) == (0, 0)
-    np.testing.assert_allclose(shares, [[1 / 3], [11 / 12]], atol=1e-15)
-    wide, _, _ = coverage(np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 0.5]]))
-    np.testing.assert_allclose(wide, [[0.375, 0.125]], atol=1e-15)
-
-
 @pytest.mark.parametrize("size", [1e-3, 1e-9, 1e-160])
 def test_a_speck_has_one_cell(size: float) -> None:
     shares, left, bottom = coverage(size * np.array([[0.1, 0.2], [0.9, 0.2], [0.5, 0.8]]))
     assert (shares.shape, left, bottom) == ((1, 1), 0, 0)
     assert shares[0, 0] == pytest.approx(0.24 * size**2, abs=1e-12)
-
-
-@pytest.mark.parametrize("swap", [False, True])
-def test_a_polygon_without_area_covers_nothing(swap: bool) -> None:
-    flat = np.array([[0.0, 2.0], [3.0, 2.0], [1.5, 2.0]])
-    shares, *_ = coverage(flat[:, ::-1] if swap else flat)
-    assert shares.shape == ((3, 1) if swap else (1, 3))
-    assert not shares.any()
-
-
-def test_integers_are_corners_too() -> None:
-    assert coverage(np.array([[0, 0], [1, 0], [1, 1], [0, 1]]))[0].tolist() == [[1.0]]
 
 
 @pytest.mark.parametrize(
@@ -179,15 +123,6 @@ def test_half_is_filled_and_what_was_half_is_not_new() -> None:
 @pytest.mark.parametrize(("row", "col"), [(-1, 0), (0, -1), (2, 0), (0, 2)])
 def test_nothing_new_when_a_cell_outside_is_filled(row: int, col: int) -> None:
     assert newly_filled(np.zeros((3, 3)), np.ones((2, 2)), row, col) is None
-
-
-@pytest.mark.parametrize(("row", "col"), [(-1, 1), (2, 1), (1, -1), (1, 2)])
-def test_a_little_outside_does_not_matter(row: int, col: int) -> None:
-    shares = np.full((2, 2), 0.4)
-    shares[int(row < 1), int(col < 1)] = 0.6
-    found = newly_filled(np.zeros((3, 3)), shares, row, col)
-    assert found is not None
-    assert (found[0].tolist(), found[1:]) == ([[True]], (max(row, 0), max(col, 0)))
 
 
 @repeatable(100)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from drystone.kernels import drops as module
 from drystone.kernels.drops import DropTerms, Wanted
-from drystone.kernels.polygons import Points, mirrored_polygon
+from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import (
     Floats,
     HeightProfile,
@@ -17,7 +17,7 @@ from drystone.kernels.profiles import (
     in_a_row,
     raised,
 )
-from tests.naive.drops import all_drops, craft
+from tests.naive.drops import all_drops
 from tests.polygons import random_polygon
 from tests.strategies import Draw, repeatable
 
@@ -247,67 +247,46 @@ def test_a_cost_is_what_one_finds_by_hand(name: str, x: float) -> None:
     assert cost == pytest.approx(0.5 + 2.0 * COSTS[x][name], abs=1e-12)
 
 
-def test_costs_of_the_slow_twin_are_those_found_by_hand() -> None:
-    profile = wall_of([A, B, C], 20, 2.0)
-    stone = hanging(block(-4, -3, 8, 6), 2.0)
-    for x, expected in COSTS.items():
-        lift = {12.0: 3.0, 16.0: 5.0, 22.0: 9.0, 0.0: 11.0}[x]
-        assert craft(profile, stone, terms_of(), int(x / 2), lift)[0] == pytest.approx(expected)
+def foot(end: float) -> list[Points]:
+    """What is 9 px high up to 14 and 2 px high from there to an end."""
+    return [np.array([[10.0, 0.0], [end, 0.0], [end, 2.0], [14.0, 2.0], [14.0, 9.0], [10.0, 9.0]])]
 
 
-def cost_at(x: float, polygons: list[Points], name: str) -> float:
-    """One cost of a block of 8 x 6 px that comes down with its left end at x."""
+LOW, HIGH, UNDER = block(0, 0, 10, 4), block(4, 4, 6, 3), block(14, 0, 20, 2)
+ONE, TWO, THREE = block(14, 0, 8, 2), block(22, 0, 4, 2), block(26, 0, 8, 2)
+
+
+@pytest.mark.parametrize(
+    ("name", "x", "polygons", "cost"),
+    [
+        # The gap ends at what is as high as the middle of the stone.
+        ("gap", 6.0, [block(0, 0, 4, 3)], 6 * 2 / 32),
+        ("gap", 6.0, [block(0, 0, 4, 2.5)], (6 * 2 + 3.5 * 4) / 32),
+        # A neighbour may end below the middle; of those that end at one place the highest counts.
+        ("step", 16.0, foot(20.0), 1.0),
+        ("step", 16.0, foot(20.1), 0.0),
+        ("step", 10.0, [LOW, HIGH], 1.0),
+        ("step", 10.0, [HIGH, LOW], 1.0),
+        ("step", 10.0, [LOW], 2.0),
+        # A stone less than half a pixel up stands on the ground.
+        ("joint", 16.0, [block(16, 0, 12, 0.9)], 0.5),
+        ("joint", 16.0, [block(16, 0, 12, 1)], 1 - (1.0 + 8 / 12) / 2),
+        # Joints up to the middle of the stone count; of equally near ones that of the first stone.
+        ("joint", 16.0, [UNDER, block(8, 0, 6, 5)], 1 - (2 / 6 + 10 / 20) / 2),
+        ("joint", 16.0, [UNDER, block(8, 0, 6, 5.1)], 1 - (18 / 20 + 10 / 20) / 2),
+        ("joint", 16.0, [ONE, TWO, THREE], 1 - (6 / 8 + 2 / 4) / 2),
+        ("joint", 16.0, [ONE, THREE, TWO], 1 - (6 / 8 + 2 / 8) / 2),
+        # What is a column and a half above something is not on it.
+        ("unbalanced", 12.0, [block(10, 0, 4, 3)], 2 / 8),
+        ("unbalanced", 12.0, [block(10, 0, 4, 2.9)], 0.0),
+    ],
+)
+def test_costs_at_their_edges(name: str, x: float, polygons: list[Points], cost: float) -> None:
+    """Of a block of 8 x 6 px that comes down with its left end at x."""
     profile, stone = wall_of(polygons, 20, 2.0), hanging(block(-4, -3, 8, 6), 2.0)
     terms = terms_of(**{name: 1.0}, mean_height_px=1.0, height_px=40.0)
-    places = {row[0]: row for row in drops(profile, stone, terms, 0.0, 20, 0.0).tolist()}
-    return float(places[x][2])
-
-
-def test_the_gap_ends_at_what_is_as_high_as_the_middle() -> None:
-    assert cost_at(6.0, [block(0, 0, 4, 3)], "gap") == 6 * 2 / 32
-    assert cost_at(6.0, [block(0, 0, 4, 2.5)], "gap") == (6 * 2 + 3.5 * 4) / 32
-
-
-def test_a_neighbour_may_end_below_the_middle() -> None:
-    def tall(foot_px: float) -> list[Points]:
-        end = 14.0 + foot_px
-        return [
-            np.array([[10.0, 0.0], [end, 0.0], [end, 2.0], [14.0, 2.0], [14.0, 9.0], [10.0, 9.0]])
-        ]
-
-    assert cost_at(16.0, tall(6.0), "step") == 1.0
-    assert cost_at(16.0, tall(6.1), "step") == 0.0
-
-
-def test_of_neighbours_that_end_at_one_place_the_highest_counts() -> None:
-    low, high = block(0, 0, 10, 4), block(4, 4, 6, 3)
-    assert cost_at(10.0, [low, high], "step") == cost_at(10.0, [high, low], "step") == 1.0
-    assert cost_at(10.0, [low], "step") == 2.0
-
-
-def test_a_stone_less_than_half_a_pixel_up_stands_on_the_ground() -> None:
-    assert cost_at(16.0, [block(16, 0, 12, 0.9)], "joint") == 0.5
-    assert cost_at(16.0, [block(16, 0, 12, 1)], "joint") == 1 - (1.0 + 8 / 12) / 2
-
-
-def test_joints_up_to_the_middle_of_the_stone_count() -> None:
-    under = block(14, 0, 20, 2)
-    assert cost_at(16.0, [under, block(8, 0, 6, 5)], "joint") == 1 - (2 / 6 + 10 / 20) / 2
-    assert cost_at(16.0, [under, block(8, 0, 6, 5.1)], "joint") == 1 - (18 / 20 + 10 / 20) / 2
-
-
-def test_of_joints_equally_near_that_of_the_first_stone_counts() -> None:
-    one, two, three = block(14, 0, 8, 2), block(22, 0, 4, 2), block(26, 0, 8, 2)
-    assert cost_at(16.0, [one, two, three], "joint") == 1 - (6 / 8 + 2 / 4) / 2
-    assert cost_at(16.0, [one, three, two], "joint") == 1 - (6 / 8 + 2 / 8) / 2
-    one, two, three = block(8, 0, 6, 2), block(14, 0, 4, 2), block(18, 0, 12, 2)
-    assert cost_at(16.0, [one, two, three], "joint") == 1 - (2 / 6 + 6 / 12) / 2
-    assert cost_at(16.0, [two, one, three], "joint") == 1 - (2 / 4 + 6 / 12) / 2
-
-
-def test_a_column_and_a_half_above_something_is_not_on_it() -> None:
-    assert cost_at(12.0, [block(10, 0, 4, 3)], "unbalanced") == 2 / 8
-    assert cost_at(12.0, [block(10, 0, 4, 2.9)], "unbalanced") == 0.0
+    places = {row[0]: row[2] for row in drops(profile, stone, terms, 0.0, 20, 0.0).tolist()}
+    assert places[x] == cost
 
 
 def test_of_equal_costs_the_lower_place_comes_first_then_the_one_further_left() -> None:
@@ -337,15 +316,6 @@ def test_equal_costs_of_different_kinds_are_in_order_too() -> None:
     assert list(rows).index(0.0) < list(rows).index(12.0)
 
 
-@pytest.mark.parametrize(("apart", "expected"), [(0.0, 17), (2.0, 17), (2.1, 9), (8.0, 5), (99, 1)])
-def test_places_are_so_far_apart(apart: float, expected: int) -> None:
-    stone = hanging(block(-4, -3, 8, 6), 2.0)
-    found = drops(bare(20), stone, terms_of(), 0.0, 99, apart)
-    assert len(found) == expected
-    assert found[:, 0].tolist() == sorted(found[:, 0].tolist())
-    assert (np.diff(found[:, 0]) >= apart).all()
-
-
 @pytest.mark.parametrize(
     ("width", "expected"), [(38.0, [0.0, 2.0]), (40.0, [0.0]), (40.0 + 1e-10, [0.0]), (40.1, [])]
 )
@@ -355,14 +325,6 @@ def test_a_stone_fits_between_the_ends_of_the_wall(width: float, expected: list[
     assert found.shape == (len(expected), 4)
     assert found[:, 0].tolist() == expected
     assert drops(bare(19), stone, terms_of(), 0.0, 9, 0.0).shape == (len(expected[1:]), 4)
-
-
-def test_the_wall_may_end_within_a_column() -> None:
-    stone = hanging(block(-4.0, -3.0, 7.5, 6.0), 2.0)
-    found = drops(bare(20), stone, terms_of(width_px=39.5), 0.0, 99, 0.0)
-    assert found[:, 0].max() == 32.0
-    found = drops(bare(20), stone, terms_of(width_px=39.4), 0.0, 99, 0.0)
-    assert found[:, 0].max() == 30.0
 
 
 @pytest.mark.parametrize(("height", "slack", "fits"), [(20, 0, 1), (21, 0, 0), (21, 1, 1)])
@@ -389,38 +351,6 @@ def test_a_stone_on_one_end_leans_to_the_other() -> None:
     found = {row[0]: row[3] for row in drops(bare(20), beside, terms, 0.0, 20, 0.0).tolist()}
     # Two columns carry it; its last half px is not over a third.
     assert set(found.values()) == {1.0 / 4.5}
-
-
-def test_of_the_last_column_only_the_part_under_the_stone_is_void() -> None:
-    profile = wall_of([block(0, 0, 4, 3)], 20, 2.0)
-    stone = hanging(block(-3.5, -3.0, 7.5, 6.0), 2.0)
-    found = drops(profile, stone, terms_of(void=1.0), 0.0, 20, 0.0).tolist()
-    assert {row[0]: row[2] for row in found}[0.0] == 3.0 * 3.5 / 32
-
-
-@repeatable(60)
-@given(seed=st.integers(0, 2**32 - 1), count=st.integers(0, 6))
-def test_the_mirrored_stone_in_the_mirrored_scene_costs_the_same(seed: int, count: int) -> None:
-    """Where costs know no building side, and the stone is so many columns wide."""
-    rng, cell, columns = np.random.default_rng(seed), 2.0, 25
-    width = columns * cell
-    polygons = []
-    for _ in range(count):
-        polygon = random_polygon(rng, 8, 20.0)
-        polygons.append(moved(polygon, rng.uniform(8.0, 42.0), rng.uniform(8.0, 20.0)))
-    corners = random_polygon(rng, 9, 20.0)
-    extent = float(np.ptp(corners[:, 0]))
-    corners = corners * [np.ceil(extent / cell) * cell / extent, 1.0]
-    weights = dict.fromkeys(("height", "void", "headroom", "joint", "unbalanced"), 1.0)
-    terms = terms_of(width_px=width, height_px=40.0, rest_height_px=np.arange(30), **weights)
-    seen = drops(wall_of(polygons, columns, cell), hanging(corners, cell), terms, 0.0, 99, 0.0)
-    turned = [mirrored_polygon(polygon, width) for polygon in polygons]
-    stone = hanging(mirrored_polygon(corners, 0.0), cell)
-    mirrored = drops(wall_of(turned, columns, cell), stone, terms, 0.0, 99, 0.0)
-    mirrored[:, 0] = width - mirrored[:, 0] - np.ceil(extent / cell) * cell
-    mirrored[:, 3] *= -1.0
-    seen, mirrored = (places[np.argsort(places[:, 0])] for places in (seen, mirrored))
-    assert mirrored == pytest.approx(seen, abs=1e-9)
 
 
 def test_what_cannot_be_is_refused() -> None:

@@ -19,8 +19,6 @@ spike = np.array([[0.0, 0.0], [5.0, 30.0], [-5.0, 30.0]])
 notch = np.array([[-40.0, 5.0], [40.0, 5.0], [40.0, 80.0], [0.0, 40.0], [-40.0, 80.0]])
 diamond = turn(np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]]), 45.0)
 
-SETBACKS = st.sampled_from([0.0, 0.01, 0.1, 0.4])
-
 
 def at(x, y):
     return np.array([x, y])
@@ -61,64 +59,28 @@ def pairs(draw: Draw):
     return near(corners, other, angle, gap) + up, other + up
 
 
-@st.composite
-def heaps(draw: Draw):
-    """Some polygons anywhere, overlapping as they like, on the ground or below it."""
-    step = st.floats(-12.0, 12.0) | st.sampled_from([-4.0, 0.0, 0.5, 5.0])
-    around = [
-        draw(simple_polygons()) + at(draw(step), 4.0 + draw(step))
-        for _ in range(draw(st.integers(0, 4)))
-    ]
-    corners = draw(simple_polygons()) + at(draw(step), 4.0 + draw(step))
-    tolerance, setback = draw(st.sampled_from([0.02, 0.1, 0.7])), draw(SETBACKS)
-    return corners, no_polygons().added(around), tolerance, setback
-
-
-def same(one, other):
-    return all(
-        a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
-        for a, b in zip(one, other, strict=True)
-    )
-
-
-def test_a_contact_is_where_the_gap_is():
-    @given(pairs())
-    @repeatable(200)
-    def check(pair):
-        corners, other = pair
-        ring, solid = shapely.LinearRing(corners), shapely.Polygon(other)
-        found = meetings(corners, no_polygons().added([other]), TOLERANCE)
-        gap = ring.distance(solid)
-        assert len(found) > 0 or gap > 0.99 * TOLERANCE
-        assert len(found) == 0 or gap < 1.01 * TOLERANCE
-        for count, points, normal in zip(found.counts, found.points, found.normals, strict=True):
-            assert np.hypot(*normal) == pytest.approx(1.0, abs=1e-12)
-            assert count == 2 or (points[0] == points[1]).all()
-            for point in points[:count]:
-                here = shapely.Point(point)
-                assert here.distance(ring) < 1e-9
-                assert here.distance(solid) < 1.01 * TOLERANCE
-                assert normal @ (point - nearest(solid, point)) > -0.051 * TOLERANCE
-
-    check()
+@given(pairs())
+@repeatable(200)
+def test_a_contact_is_where_the_gap_is(pair):
+    corners, other = pair
+    ring, solid = shapely.LinearRing(corners), shapely.Polygon(other)
+    found = meetings(corners, no_polygons().added([other]), TOLERANCE)
+    gap = ring.distance(solid)
+    assert len(found) > 0 or gap > 0.99 * TOLERANCE
+    assert len(found) == 0 or gap < 1.01 * TOLERANCE
+    for count, points, normal in zip(found.counts, found.points, found.normals, strict=True):
+        assert np.hypot(*normal) == pytest.approx(1.0, abs=1e-12)
+        assert count == 2 or (points[0] == points[1]).all()
+        for point in points[:count]:
+            here = shapely.Point(point)
+            assert here.distance(ring) < 1e-9
+            assert here.distance(solid) < 1.01 * TOLERANCE
+            assert normal @ (point - nearest(solid, point)) > -0.051 * TOLERANCE
 
 
 def nearest(solid, point):
     """The point of a polygon that is nearest to a point."""
     return shapely.get_coordinates(shapely.shortest_line(solid, shapely.Point(point)))[0]
-
-
-@given(pairs())
-@repeatable(150)
-def test_where_the_gap_is_smallest_there_is_a_contact(pair):
-    corners, other = pair
-    solid, here = shapely.Polygon(other), shapely.Polygon(corners)
-    gap = solid.distance(here)
-    if gap > 0.95 * TOLERANCE:
-        return
-    found = meetings(corners, no_polygons().added([other]), TOLERANCE)
-    points = np.concatenate([p[:n] for p, n in zip(found.points, found.counts, strict=True)])
-    assert min(shapely.distance(shapely.points(points), solid)) < gap + 0.03
 
 
 @given(pairs(), st.floats(0.0, 360.0), st.integers(0, 5))
@@ -354,11 +316,6 @@ def test_bad_input():
             meetings(brick, no_polygons(), tolerance)
 
 
-def test_any_array_will_do():
-    assert told(brick.astype(int)) == told(brick)
-    assert told(np.asfortranarray(brick)) == told(brick)
-
-
 @pytest.mark.parametrize("lean", [-0.3, 0.3])
 def test_of_edges_beyond_each_other_the_corner_that_is_nearer_decides(lean):
     """Half a brick further: one end is a corner of the upper one, the other of the lower one."""
@@ -366,9 +323,3 @@ def test_of_edges_beyond_each_other_the_corner_that_is_nearer_decides(lean):
     ((_, _, normal),) = told(leaning, brick + at(0.0, 30.0))
     across = turn(np.array([[0.0, 1.0]]), lean if lean < 0.0 else 0.0)[0]
     assert normal == pytest.approx(across.tolist(), abs=1e-6)
-
-
-def test_corners_that_overlap_have_one_contact():
-    low = brick + at(0.0, 30.0)
-    assert told(brick + at(39.92, 49.93), low) == [(0, [[39.92, 49.93]], [0.0, 1.0])]
-    assert told(brick + at(39.93, 49.92), low) == [(0, [[39.93, 49.92]], [1.0, 0.0])]

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.polygons import Points, mirrored_polygon
+from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import (
     HeightProfile,
     bare,
@@ -82,17 +82,6 @@ def test_a_hanging_polygon_starts_on_a_column_edge(polygon: Points, cell: float)
             assert span is None or stone.tops[column] >= span[1] - 1e-8
 
 
-@repeatable(40)
-@given(polygon=simple_polygons(), at=st.floats(0.0, 30.0))
-def test_the_mirror_image_has_the_mirrored_profile(polygon: Points, at: float) -> None:
-    cell, columns = 2.0, 20
-    placed = polygon + np.array([at, 20.0])
-    seen = raised(bare(columns), placed, 0, cell)
-    mirrored = raised(bare(columns), mirrored_polygon(placed, columns * cell), 0, cell)
-    assert mirrored.tops[::-1] == pytest.approx(seen.tops, abs=1e-9)
-    assert mirrored.owners[::-1].tolist() == seen.owners.tolist()
-
-
 @repeatable(20)
 @given(polygons=st.lists(simple_polygons(), max_size=4))
 def test_stones_in_a_row_are_those_one_after_the_other(polygons: list[Points]) -> None:
@@ -124,13 +113,6 @@ def test_of_equal_heights_the_first_owns_the_column() -> None:
     profile = raised(profile, block(2.0, 1.0, 2.0, 2.0), 1, 2.0)
     assert profile.owners.tolist() == [0, 0]
     assert raised(bare(1), block(0.0, -1.0, 1.0, 1.0), 0, 2.0).owners.tolist() == [-1]
-
-
-def test_polygons_may_come_in_any_order() -> None:
-    profile = raised(bare(4), block(2.0, 0.0, 4.0, 3.0), 2, 2.0)
-    profile = raised(profile, block(0.0, 0.0, 2.0, 1.0), 0, 2.0)
-    assert profile.owners.tolist() == [0, 2, 2, -1]
-    assert profile.boxes.tolist() == [[0.0, 0.0, 2.0, 1.0], [0.0] * 4, [2.0, 0.0, 6.0, 3.0]]
 
 
 def test_what_is_beside_the_columns_is_ignored() -> None:

@@ -1,7 +1,6 @@
 """Turning, reducing and rasterising by coverage (DESIGN 4.2)."""
 
 import math
-from collections.abc import Iterator
 from typing import Literal
 
 import numpy as np
@@ -14,6 +13,7 @@ from drystone.kernels.backend import compiled
 from drystone.kernels.raster import (
     PHASE_STEPS,
     Mask,
+    mirrored,
     quantise,
     rasterise,
     rasterise_to_area,
@@ -21,19 +21,15 @@ from drystone.kernels.raster import (
     turn,
     turned_boxes,
 )
+from tests.kernels.twins import both_ways
 from tests.naive import raster as naive
 from tests.strategies import blobs, landscapes, masks, repeatable
 
+kernel = both_ways(raster)
+FAST = compiled("raster")
+
 L_SHAPE = np.array([[1, 0, 0], [1, 0, 0], [1, 0, 0], [1, 1, 1]], bool)
 PHASES = st.integers(0, PHASE_STEPS - 1).map(lambda n: n / PHASE_STEPS)
-
-
-def padded_to(mask: Mask, left: int, bottom: int, window: tuple[int, int, int, int]) -> Mask:
-    """A raster at its place in a window (left, bottom, right, top)."""
-    whole = np.zeros((window[3] - window[1], window[2] - window[0]), bool)
-    row = window[3] - bottom - mask.shape[0]
-    whole[row : row + mask.shape[0], left - window[0] :][:, : mask.shape[1]] = mask
-    return whole
 
 
 @pytest.mark.parametrize("quarters", [-2, -1, 0, 1, 2, 3, 5])
@@ -42,34 +38,6 @@ def test_quarter_turns_of_an_l_are_counter_clockwise_and_never_mirrored(quarters
     assert np.array_equal(turned, np.rot90(L_SHAPE, quarters))
     corners = {0: (0, 0), 1: (-4, 0), 2: (-3, -4), 3: (0, -3)}
     assert (left, bottom) == corners[quarters % 4]
-
-
-@repeatable()
-@given(mask=masks(), quarters=st.integers(0, 3), phase=st.tuples(PHASES, PHASES))
-def test_quarter_turns_are_exact_at_any_phase_up_to_half_a_pixel(
-    mask: Mask, quarters: int, phase: tuple[float, float]
-) -> None:
-    whole_px = (0.0, 0.0)
-    exact = rasterise(mask, whole_px, 90.0 * quarters, 1.0, whole_px)
-    assert np.array_equal(exact[0], np.rot90(mask, quarters))
-    shifted = rasterise(mask, whole_px, 90.0 * quarters, 1.0, (phase[0] * 0.24, phase[1] * 0.24))
-    assert np.array_equal(shifted[0], exact[0])
-    assert shifted[1:] == exact[1:]
-
-
-def test_a_positive_angle_lifts_the_right_end_of_a_bar() -> None:
-    bar = np.ones((5, 41), bool)
-    turned, _, _ = rasterise(bar, (20.5, 2.5), 30.0, 1.0, (0.0, 0.0))
-    top, bottom = np.flatnonzero(turned[0]).mean(), np.flatnonzero(turned[-1]).mean()
-    assert top > turned.shape[1] / 2 > bottom
-
-
-@pytest.mark.parametrize("quarters", [-3, -1, 0, 1, 2, 4, 7])
-def test_rotation_is_exact_at_quarter_turns(quarters: int) -> None:
-    cos, sin = rotation(90.0 * quarters)
-    assert {abs(cos), abs(sin)} == {0.0, 1.0}
-    assert cos == pytest.approx(math.cos(math.pi / 2 * quarters), abs=1e-12)
-    assert sin == pytest.approx(math.sin(math.pi / 2 * quarters), abs=1e-12)
 
 
 @given(angle=st.floats(-720, 720))
@@ -90,28 +58,6 @@ def test_quantise_is_exact_and_nearest(value: float) -> None:
     assert abs(rounded - value) <= 0.5 / PHASE_STEPS + 1e-9
 
 
-@repeatable(80)
-@given(
-    mask=blobs(min_px=6, max_px=30),
-    angle=st.floats(-180, 180),
-    scale=st.sampled_from([1.0, 0.7, 0.5, 0.3, 0.2]),
-    phase=st.tuples(PHASES, PHASES),
-)
-def test_rasterise_takes_pixels_covered_by_half(
-    mask: Mask, angle: float, scale: float, phase: tuple[float, float]
-) -> None:
-    centre = (mask.shape[1] * 0.4, mask.shape[0] * 0.6)
-    turned, left, bottom = rasterise(mask, centre, angle, scale, phase)
-    reach = math.ceil(math.hypot(*mask.shape) * scale) + 1
-    window = (-reach, -reach, reach, reach)
-    exact = naive.coverage(mask, centre, angle, scale, phase, window)
-    got = padded_to(turned, left, bottom, window)
-    k = max(4, math.ceil(1 / scale))
-    decided = abs(exact - 0.5) > 1 / k
-    if (exact >= 0.5 + 1 / k).any():  # otherwise so thin that only the best pixel is kept
-        assert np.array_equal(got[decided], exact[decided] >= 0.5)
-
-
 @repeatable()
 @given(mask=masks(), angle=st.floats(-180, 180), scale=st.sampled_from([0.05, 0.2, 0.6, 1.0]))
 def test_a_stone_never_vanishes_and_is_cropped(mask: Mask, angle: float, scale: float) -> None:
@@ -120,32 +66,6 @@ def test_a_stone_never_vanishes_and_is_cropped(mask: Mask, angle: float, scale: 
     assert turned[-1].any()
     assert turned[:, 0].any()
     assert turned[:, -1].any()
-
-
-def test_a_whole_pixel_of_phase_moves_and_changes_nothing() -> None:
-    here = rasterise(L_SHAPE, (1.2, 0.7), 33.0, 1.0, (0.25, 0.5))
-    there = rasterise(L_SHAPE, (1.2, 0.7), 33.0, 1.0, (2.25, 3.5))
-    assert np.array_equal(here[0], there[0])
-    assert (there[1] - here[1], there[2] - here[2]) == (2, 3)
-
-
-FAST = compiled("raster")
-KERNELS = [
-    pytest.param(None, id="numpy"),
-    pytest.param(
-        FAST,
-        id="compiled",
-        marks=pytest.mark.skipif(FAST is None, reason="kernels are not compiled here"),
-    ),
-]
-
-
-@pytest.fixture(scope="module", params=KERNELS)
-def kernel(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Rasterise by NumPy, then by the compiled kernel."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(raster, "_fast", request.param)
-        yield
 
 
 def pixels_of(mask: Mask, left: int, bottom: int) -> set[tuple[int, int]]:
@@ -163,7 +83,6 @@ ANGLES = st.one_of(
 )
 
 
-@pytest.mark.usefixtures("kernel")
 @repeatable(50)
 @given(
     mask=masks(5),
@@ -181,7 +100,6 @@ def test_rasterising_is_counting_samples_one_by_one(
         assert pixels_of(*rasterise(mask, centre, angle, scale, phase)) == expected
 
 
-@pytest.mark.usefixtures("kernel")
 @repeatable(40)
 @given(
     mask=masks(4),
@@ -238,7 +156,6 @@ def test_compiled_pixels_are_those_of_numpy(
     assert found[0][1:] == found[1][1:]
 
 
-@pytest.mark.usefixtures("kernel")
 @pytest.mark.parametrize(
     ("scale", "expected"),
     [
@@ -259,15 +176,6 @@ def test_a_neck_too_thin_for_the_resolution_does_not_break(
     assert ["".join(".#"[pixel] for pixel in row) for row in turned.astype(int)] == expected
 
 
-@pytest.mark.usefixtures("kernel")
-def test_a_ring_is_one_piece() -> None:
-    ring = np.pad(np.zeros((8, 8), bool), 4, constant_values=True)
-    turned, _, _ = rasterise(ring, (8.0, 8.0), 10.0, 0.5, (0.0, 0.0))
-    counts, full = naive.sampled(ring, (8.0, 8.0), 10.0, 0.5, (0.0, 0.0))
-    assert turned.sum() == sum(2 * count >= full for count in counts.values()) < len(counts)
-
-
-@pytest.mark.usefixtures("kernel")
 def test_a_pixel_between_the_sample_points_does_not_vanish() -> None:
     counts, _ = naive.sampled(np.ones((1, 1), bool), (0.5, 0.5), 45.0, 0.25, (0.0, 0.0))
     assert not counts
@@ -275,7 +183,6 @@ def test_a_pixel_between_the_sample_points_does_not_vanish() -> None:
     assert (turned.tolist(), left, bottom) == ([[True, True], [True, True]], -1, -1)
 
 
-@pytest.mark.usefixtures("kernel")
 @pytest.mark.parametrize(("phase", "shape"), [((0.625, 0.0), (1, 2)), ((0.0, 0.375), (2, 1))])
 def test_samples_on_an_edge_belong_to_the_pixel_right_of_or_below_it(
     phase: tuple[float, float], shape: tuple[int, int]
@@ -285,7 +192,6 @@ def test_samples_on_an_edge_belong_to_the_pixel_right_of_or_below_it(
     assert (turned.shape, left, bottom) == (shape, 0, 0)
 
 
-@pytest.mark.usefixtures("kernel")
 def test_a_mask_without_pixels_is_refused() -> None:
     with pytest.raises(ValueError, match="no pixel"):
         rasterise(np.zeros((2, 3), bool), (0.0, 0.0), 10.0, 1.0, (0.0, 0.0))
@@ -301,7 +207,6 @@ def test_numpy_takes_a_large_mask_in_bands(monkeypatch: pytest.MonkeyPatch) -> N
     assert whole[1:] == banded[1:]
 
 
-@pytest.mark.usefixtures("kernel")
 @repeatable()
 @given(
     points=st.lists(st.tuples(st.floats(-99, 99), st.floats(-99, 99)), min_size=1, max_size=9),
@@ -316,3 +221,9 @@ def test_boxes_are_those_of_the_points_turned_one_by_one(
         x = [u * cos - v * sin for u, v in points]
         y = [u * sin + v * cos for u, v in points]
         assert box == [min(x), min(y), max(x), max(y)]
+
+
+def test_a_mirror_image_is_a_copy_read_backwards() -> None:
+    image = mirrored(L_SHAPE)
+    assert image.tolist() == [row[::-1] for row in L_SHAPE.tolist()]
+    assert image.flags.c_contiguous

@@ -153,12 +153,6 @@ def test_of_two_supports_the_one_nearer_to_the_centroid_sticks():
         assert (abs(moved - (50.0 + away[0])) < 0.02) == sticks
 
 
-def test_without_turns_the_angle_stays():
-    tip = np.array([[50.0, 20.0], [40.0, 0.0], [60.0, 0.0]])
-    found = let_go(BRICK, (52.0, 30.0, 0.2), [tip], turns=False, shift=100.0)
-    assert found.angle == 0.2
-
-
 def test_nothing_passes_a_sliver():
     # It lies on two piers; what falls on it stays above, with its heaviest steps.
     piers = [at(box(6.0, 20.0), 22.0, 10.01), at(box(6.0, 20.0), 78.0, 10.01)]
@@ -174,21 +168,6 @@ def test_nothing_passes_a_sliver():
                 corners = placed(outline, found[1:4])
                 assert corners[:, 1].min() > 22.0 or found.status == Status.FAR
                 assert overlap_area(corners, no_polygons().added([*piers, shelf])) == 0.0
-
-
-def test_nothing_leaves_a_ring_of_slivers():
-    ring = [
-        placed(box(26.0, 1.0), (50.0 + 20.0 * math.cos(a), 60.0 + 20.0 * math.sin(a), a + 1.57))
-        for a in np.arange(6) * math.pi / 3.0
-    ]
-    pentagon = 6.0 * np.array([[math.cos(a), math.sin(a)] for a in np.arange(5) * 1.2566])
-    for x, turn, lean in ((50.0, 0.0, 0.0), (45.0, 0.4, 0.3), (55.0, 1.0, 1.0), (50.0, 0.2, 3.0)):
-        found = let_go(
-            pentagon, (x, 60.0, turn), ring, near=2.0, far=3.0, turn=9.0, lean=lean,
-            shift=90.0,
-        )  # fmt: skip
-        assert found.status in (Status.RESTS, Status.FALLS)
-        assert math.dist(found[1:3], (50.0, 60.0)) < 20.0
 
 
 def test_margins_are_those_of_statics():
@@ -211,16 +190,6 @@ def test_margins_are_those_of_statics():
     assert rest_margin(at(over, -0.18, 0.0), (49.82, 15.05), low, 200.0, 0.58, 0.1) > 0.0
 
 
-def test_corners_further_apart_than_contacts_do_not_stop_it():
-    # The faces are within the tolerance of .1, the corners are not.
-    low = [at(box(10.0, 10.0), 24.92, 5.0), at(box(10.0, 10.0), 75.08, 5.0)]
-    for y, steps in ((15.09, 1), (15.05, 0)):
-        slab = (50.0, y, 0.0)
-        x = 0.0 if steps else 0.06
-        near = [at(low[0], x, 0.0), at(low[1], -x, 0.0)]
-        assert let_go(box(40.0, 10.0), slab, near, stop=0.0, steps=1).steps == steps
-
-
 @repeatable(15)
 @given(st.integers(0, 2**32 - 1))
 def test_mirrored_scenes_settle_to_mirror_images(seed):
@@ -238,19 +207,6 @@ def test_mirrored_scenes_settle_to_mirror_images(seed):
         assert (back.outline == drop.outline).all()
         mirrored = (WIDTH - seen.x, seen.y, -seen.angle)
         assert mirrored == pytest.approx(found[1:4], abs=1e-6 * size)
-
-
-def test_mirror_images_of_exact_coordinates_give_the_same_bits():
-    """Mirrored twice, coordinates that are multiples of 1/64 are what they were."""
-    low = [at(BRICK, 40.25, 5.5), at(BRICK, 70.5, 7.0)]
-    around = no_polygons().added(low)
-    twice = around.mirrored(200.0).mirrored(200.0)
-    args = BRICK, polygon_edges(BRICK), (56.5, 30.0, 0.25)
-    once = settle(*args, around, 200.0, rules(15.0))
-    # Corners are listed in reverse and in reverse again.
-    assert settle(*args, twice, 200.0, rules(15.0)) == once
-    turned = mirrored_polygon(mirrored_polygon(BRICK, 0.0), 0.0)
-    assert settle(turned, polygon_edges(turned), args[2], twice, 200.0, rules(15.0)) == once
 
 
 def test_what_is_not_a_number_does_not_rest():

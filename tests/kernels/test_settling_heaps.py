@@ -131,9 +131,3 @@ def test_steps_that_are_far_too_long_end_nowhere_else(seed, times):
         found = drop._replace(rules=rules).settled()
         assert found.status != Status.OVERLAPS
         assert overlap_area(placed(drop.outline, found[1:4]), drop.around) == 0.0
-
-
-def test_where_it_stands_counts_turns_in_radians():
-    square = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-    corners = placed(square, (3.0, 2.0, math.pi / 2))
-    assert corners[0] == pytest.approx([4.0, 1.0])

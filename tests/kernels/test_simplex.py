@@ -25,7 +25,7 @@ from tests.kernels.simplex_walls import (
 )
 from tests.naive import simplex as naive
 from tests.statics.walls import coursed, irregular, stacked
-from tests.strategies import label_images, repeatable
+from tests.strategies import repeatable
 
 pytestmark = needs_kernel
 
@@ -99,25 +99,6 @@ def test_degenerate_candidates_and_contacts_that_go():
     assert {status for _, status in seen} == {OPTIMAL, UNSTABLE}
 
 
-def test_stones_of_any_shape_on_each_other():
-    statuses = set()
-
-    @given(label_images())
-    @repeatable(25)
-    def check(labels):
-        if not labels.any():
-            return
-        for optima, choices in grown(labels, candidates=2):
-            for added in choices:
-                for sign in SIGNS:
-                    answer = optima[sign].solved_with(added)
-                    statuses.add(answer.status)
-                    assert_right(optima[sign], added, answer, anew=len(optima[1].weights) == 2)
-
-    check()
-    assert statuses == {OPTIMAL, UNSTABLE}
-
-
 small = st.integers(-3, 3)
 
 
@@ -174,14 +155,6 @@ def test_first_stones_are_solved_exactly(edges, alpha):
         assert answer.alpha == pytest.approx(float(exact), abs=1e-15)
         if sign == 1:
             assert exact == alpha
-
-
-def test_two_stones_are_solved_exactly():
-    optima, choices = list(grown(stacked((20, 30, 0), (18, 12, 5))))[1]
-    for sign in SIGNS:
-        _, exact = naive.exactly_solved(naive.whole(optima[sign], choices[0]), sign)
-        answer = optima[sign].solved_with(choices[0])
-        assert answer.alpha == pytest.approx(float(exact), abs=1e-14)
 
 
 def test_a_stone_on_its_edge_stands_and_carries_nothing():

@@ -1,4 +1,4 @@
-"""The best places: compiled and NumPy against sorting all of them (§3.6)."""
+"""What places are worth, one position after the other, and the best against all sorted (§3.6)."""
 
 from dataclasses import dataclass
 
@@ -9,25 +9,76 @@ from hypothesis import strategies as st
 
 from drystone.kernels.backend import compiled
 from drystone.kernels.bits import bit_landscape
-from drystone.kernels.lowering import Positions, skyline
-from drystone.kernels.merits import SnugWeights
+from drystone.kernels.lowering import Positions, lowered_positions, skyline
 from drystone.kernels.raster import Mask
-from drystone.kernels.rays import RaySums, RaySumsNumpy, ray_sums
+from drystone.kernels.rays import RaySums, ray_sums
 from drystone.kernels.silhouette import Ints, Silhouette, silhouette
 from drystone.kernels.spots import (
+    SnugWeights,
     best,
     best_by_eq12,
-    best_by_eq12_numpy,
     best_by_height,
-    best_by_height_numpy,
     best_by_snugness,
-    best_by_snugness_numpy,
+    eq12_merits,
+    snug_merits,
+    threshold,
 )
-from tests.strategies import Draw, landscapes, masks, repeatable
+from drystone.model.pose import PosedStone
+from drystone.model.wall import Wall
+from tests.naive import placement as naive
+from tests.strategies import Draw, landscapes, masks, posed_on_walls, repeatable
 
 absent = pytest.mark.skipif(compiled("spots") is None, reason="kernels are not compiled here")
 wanted = st.sampled_from([1, 2, 5, 1000])
 WEIGHTS = [(0, 0, 0, 0), (0, 0, -0.5, 0), (0, -0.5, 0, 0), (1.6, 0.5, 0.7, 0.25), (0, 1, 1, -0.5)]
+
+
+Posed = tuple[Wall, PosedStone, int, int]
+
+
+@repeatable(40)
+@given(scene=posed_on_walls())
+def test_eq12_is_that_of_every_position_on_its_own(scene: Posed) -> None:
+    wall, posed, _, _ = scene
+    at = naive.resting_positions(wall.occupied, posed.mask)[:40]
+    rays = RaySums(wall.occupied, wall.site.height_px - wall.height_px)
+    merits = eq12_merits(
+        np.array(at), silhouette(posed.mask), rays, wall.height_px, posed.anchor[0], 0.7001
+    )
+    expected = [
+        naive.eq12(wall.occupied, posed.mask, posed.anchor[0], p, 0.7001) for p in at
+    ]  # which no score is
+    assert merits == pytest.approx(expected, abs=1e-12)
+
+
+@repeatable(40)
+@given(scene=posed_on_walls())
+def test_void_gap_height_and_end_are_counted_pixel_by_pixel(scene: Posed) -> None:
+    wall, posed, _, _ = scene
+    outline, top = silhouette(posed.mask), skyline(wall.occupied)
+    positions = lowered_positions(top, outline, wall.site.height_px)
+    rays = RaySums(wall.occupied, wall.site.height_px - wall.height_px)
+    at = [(row, col) for row, col in positions.tolist()]
+    void = [naive.void_below(wall.occupied, posed.mask, p) / posed.area_px for p in at]
+    gap = [min(1.0, naive.gap_beside(wall.occupied, posed.mask, p) / posed.area_px) for p in at]
+    height = [(wall.site.height_px - p[0] - posed.height_px) / posed.height_px for p in at]
+    end = [p[1] / wall.site.width_px for p in at]
+
+    def merits(*weights: float) -> np.ndarray:
+        return snug_merits(positions, outline, top, rays, SnugWeights(*weights))
+
+    assert merits(1, 0, 0, 0) == pytest.approx([-h for h in height])
+    assert merits(0, 1, 0, 0) == pytest.approx([-v for v in void])
+    assert merits(0, 0, 1, 0) == pytest.approx([-g for g in gap])
+    assert merits(0, 0, 0, 1) == pytest.approx([-e for e in end])
+    together = zip(height, void, gap, end, strict=True)
+    assert merits(3, 1, 2, 4) == pytest.approx(
+        [-3 * h - v - 2 * g - 4 * e for h, v, g, e in together]
+    )
+
+
+def test_the_threshold_itself_counts_as_below() -> None:
+    assert threshold(np.array([0.0, 0.7, 0.7000001, 1.0]), 0.7).tolist() == [0, 0, 0.7000001, 1.0]
 
 
 @st.composite
@@ -47,7 +98,6 @@ class Scene:
 
     top: Ints
     rays: RaySums
-    slow_rays: RaySums
     outline: Silhouette
     positions: Positions
 
@@ -56,48 +106,34 @@ class Scene:
         top, outline = skyline(occupied), silhouette(mask)
         first = int(top.min())
         positions = bit_landscape(occupied, top).resting(outline)
-        rays, slow_rays = ray_sums(occupied, first), RaySumsNumpy(occupied, first)
-        return cls(top, rays, slow_rays, outline, positions)
+        return cls(top, ray_sums(occupied, first), outline, positions)
 
     @property
     def built(self) -> int:
         return self.rays.height - int(self.top.min())
 
 
-@absent
 @repeatable(200)
 @given(
     scene=scenes(),
     anchor=st.integers(0, 511),
     beta=st.sampled_from([0.0, 0.3, 0.7, 1.0]),
+    weights=st.sampled_from(WEIGHTS),
     tries=wanted,
 )
-def test_eq12_compiled_is_eq12_in_numpy(scene: Scene, anchor: int, beta: float, tries: int) -> None:
-    rest = (scene.built, anchor / 64, beta, tries)
-    assert best_by_eq12(scene.positions, scene.outline, scene.rays, *rest) == best_by_eq12_numpy(
-        scene.positions, scene.outline, scene.slow_rays, *rest
-    )
-
-
-@absent
-@repeatable(100)
-@given(scene=scenes(), tries=wanted)
-def test_lowest_compiled_is_lowest_in_numpy(scene: Scene, tries: int) -> None:
-    fast = best_by_height(scene.positions, scene.outline, scene.rays, tries)
-    assert fast == best_by_height_numpy(scene.positions, scene.outline, scene.slow_rays, tries)
-
-
-@absent
-@repeatable(200)
-@given(scene=scenes(), weights=st.sampled_from(WEIGHTS), tries=wanted)
-def test_snugness_compiled_is_snugness_in_numpy(
-    scene: Scene, weights: tuple[float, float, float, float], tries: int
+def test_the_best_by_a_rule_are_those_of_the_merits_of_all(
+    scene: Scene, anchor: int, beta: float, weights: tuple[float, float, float, float], tries: int
 ) -> None:
+    """Compiled kernels pass over most places."""
+    at, outline, rays = scene.positions, scene.outline, scene.rays
+    eq12 = (scene.built, anchor / 64, beta)
+    merits = eq12_merits(at, outline, rays, *eq12)
+    assert best_by_eq12(at, outline, rays, *eq12, tries) == best(merits, at, tries)
+    lowest = best(rays.filled_share(outline, at), at, tries, lowest_first=True)
+    assert best_by_height(at, outline, rays, tries) == lowest
     costs = SnugWeights(*weights)
-    fast = best_by_snugness(scene.positions, scene.outline, scene.top, scene.rays, costs, tries)
-    assert fast == best_by_snugness_numpy(
-        scene.positions, scene.outline, scene.top, scene.slow_rays, costs, tries
-    )
+    snug = best(snug_merits(at, outline, scene.top, rays, costs), at, tries)
+    assert best_by_snugness(at, outline, scene.top, rays, costs, tries) == snug
 
 
 def test_a_place_further_on_is_not_passed_over_when_its_rays_are_all_filled() -> None:
@@ -106,11 +142,9 @@ def test_a_place_further_on_is_not_passed_over_when_its_rays_are_all_filled() ->
     # Voids under the upper step, in whose corner is the most promising place.
     occupied[10:19, :40] = np.arange(40) % 10 == 5
     scene = Scene.of(occupied, np.ones((5, 10), bool))
-    rest = (scene.built, 5.0, 0.7, 1)
-    for choose, rays in (best_by_eq12, scene.rays), (best_by_eq12_numpy, scene.slow_rays):
-        (place,) = choose(scene.positions, scene.outline, rays, *rest)
-        assert (place.row, place.col) == (5, 50)
-        assert place.merit == round((1 + 1 - 0.55) * 1e12)
+    (place,) = best_by_eq12(scene.positions, scene.outline, scene.rays, scene.built, 5.0, 0.7, 1)
+    assert (place.row, place.col) == (5, 50)
+    assert place.merit == round((1 + 1 - 0.55) * 1e12)
 
 
 @repeatable(100)

@@ -109,13 +109,6 @@ def test_normals_of_the_grid_are_exact_and_without_negative_zeros(word, normal):
         assert list(map(repr, normal_of(path(word * count)))) == list(map(repr, normal))
 
 
-@pytest.mark.parametrize("word", ["ru", "ul", "ld", "dr", "rruu"])
-@pytest.mark.parametrize("count", [1, 7, 400])
-def test_normals_of_diagonals_have_components_of_one_size(word, count):
-    normal_x, normal_y = normal_of(path(word * count))
-    assert abs(normal_x) == abs(normal_y) == pytest.approx(0.5**0.5, abs=1e-15)
-
-
 @pytest.mark.parametrize("where", [(0, 0), (10**6, -(10**6))])
 def test_long_runs_far_away_are_fitted_as_well(where):
     # The last edge is a hook.

@@ -20,13 +20,7 @@ FOLDER = Path(__file__).parent
 
 
 def choice() -> str:
-    """Return what the environment chooses, by its present name.
-
-    Raises
-    ------
-    ImportError
-        When that is unknown.
-    """
+    """Return what the environment chooses, by its present name; ImportError when unknown."""
     chosen = os.environ.get(VARIABLE) or "auto"
     if chosen not in CHOICES:
         raise ImportError(f"{VARIABLE} is {chosen!r}; it must be one of {', '.join(CHOICES)}")
@@ -40,29 +34,15 @@ def take_sources(folder: str) -> None:
 
 
 def require_nothing_compiled() -> None:
-    """Refuse to run a kernel in Python where compiled ones were asked for.
-
-    Raises
-    ------
-    ImportError
-        When they were.
-    """
+    """Raise ImportError where a kernel runs in Python and compiled ones were asked for."""
     if choice() == "compiled":
         raise ImportError(f"{VARIABLE} is 'compiled', and kernels were not compiled here")
 
 
 def compiled(name: str) -> ModuleType | None:
-    """Return a kernel that is written in Cython; None when the one in NumPy is to be used.
+    """Return a module of :mod:`drystone.kernels.compiled`; None when NumPy is to be used instead.
 
-    Parameters
-    ----------
-    name : str
-        Of a module of :mod:`drystone.kernels.compiled`.
-
-    Raises
-    ------
-    ImportError
-        When compiled kernels are asked for and were not built, or the choice is unknown.
+    ImportError when compiled kernels are asked for and were not built, or the choice is unknown.
     """
     chosen = choice()
     if chosen == "python":

@@ -7,8 +7,6 @@ lower: two readings of one map.
 Rows above the first occupied one are never stored.
 """
 
-from typing import Protocol
-
 import numpy as np
 
 from drystone.kernels.backend import compiled
@@ -19,56 +17,16 @@ from drystone.kernels.silhouette import Ints, Silhouette
 _fast = compiled("bits")
 
 
-class BitLandscape(Protocol):
-    """A packed landscape with its dilations; never changed, so threads may share it."""
-
-    def resting(self, mask: Silhouette) -> Positions:
-        """Return all positions of a mask where it rests, by row, then column.
-
-        Parameters
-        ----------
-        mask : Silhouette
-            Of a mask in one piece.
-
-        Returns
-        -------
-        positions : (n, 2) int array
-            Row and column of its top-left corner inside the image, where no pixel of it meets
-            an occupied one and some would one row lower, or would be in the ground.
-        """
-
-
-def bit_landscape(occupied: Mask, top: Ints) -> BitLandscape:
-    """Pack a landscape.
-
-    Parameters
-    ----------
-    occupied : (h, w) bool array
-        True where something is.
-    top : (w,) int array
-        From :func:`~drystone.kernels.lowering.skyline`.
-
-    Examples
-    --------
-    >>> from drystone.kernels.silhouette import silhouette
-    >>> occupied, top = np.array([[0, 0, 0], [0, 0, 1]], bool), np.array([2, 2, 1], np.int32)
-    >>> landscape = bit_landscape(occupied, top)
-    >>> landscape.resting(silhouette(np.ones((1, 2), bool))).tolist()
-    [[0, 1], [1, 0]]
-    """
-    if _fast is None:
-        return BitLandscapeNumpy(occupied, top)
-    packed: BitLandscape = _fast.BitLandscape(occupied, top)
+def bit_landscape(occupied: Mask, top: Ints) -> "BitLandscape":
+    """Pack a landscape of a skyline (:func:`~drystone.kernels.lowering.skyline`)."""
+    packed: BitLandscape = (BitLandscape if _fast is None else _fast.BitLandscape)(occupied, top)
     return packed
 
 
-class BitLandscapeNumpy:
-    """Twin in Python: the landscape is one long integer, a bit a pixel, row after row.
+class BitLandscape:
+    """A packed landscape with its dilations; never changed, so threads may share it.
 
-    Parameters
-    ----------
-    occupied, top
-        As for :func:`bit_landscape`.
+    In Python it is one long integer, a bit a pixel, row after row.
     """
 
     def __init__(self, occupied: Mask, top: Ints) -> None:
@@ -85,7 +43,11 @@ class BitLandscapeNumpy:
         self._doubled = tuple(doubled)
 
     def resting(self, mask: Silhouette) -> Positions:
-        """Return all positions of a mask where it rests, by row, then column."""
+        """Return all positions (n, 2) of a mask in one piece where it rests, by row, then column.
+
+        That is where no pixel of it meets an occupied one and some would one row lower, or would be
+        in the ground.
+        """
         width, cols = self._width, self._width - mask.width + 1
         highest = self._first - mask.height  # any higher, it meets nothing one row lower
         count = self._height - mask.height - highest + 1

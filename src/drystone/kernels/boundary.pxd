@@ -1,3 +1,7 @@
+from drystone.kernels.memory cimport (
+    flags, kept_flags, kept_ints, kept_longs, longs, longs_out, sort_rows
+)
+
 ctypedef int *p_int
 
 

@@ -20,17 +20,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import (
-        flags,
-        kept_flags,
-        kept_ints,
-        kept_longs,
-        longs,
-        longs_out,
-        sort_rows,
-    )
-else:
+if not cython.compiled:
     from drystone.kernels.lists import (
         flags,
         kept_flags,
@@ -57,47 +47,28 @@ NOTHING = cython.declare(cython.longlong, EMPTY)
 
 @dataclass(frozen=True, eq=False)
 class Boundary:
-    """Where the regions of an array of cells touch.
+    """Where the regions of an array of cells touch."""
 
-    Parameters
-    ----------
-    labels : (n, 2) int64 array
-        The two labels of each chain of pixel edges; the first is the larger and lies to the left.
-    begins : (n + 1,) int64 array
-        Where the nodes of each chain begin; in the end the number of all nodes.
-    nodes : (m, 2) int64 array
-        Row and col of the nodes of all chains, one chain after the other.
-    corners : (k, 4) int64 array
-        Where two labels touch only diagonally, across two empty cells: label above, label below,
-        row and col of the node; from the top down.
-    """
-
+    # (n, 2) the two labels of each chain of pixel edges; the first is the larger and lies to
+    # the left
     labels: NDArray[np.int64]
+    # (n + 1,) where the nodes of each chain begin; in the end the number of all nodes
     begins: NDArray[np.int64]
-    nodes: Nodes
+    nodes: Nodes  # (m, 2) row and col of the nodes of all chains, one chain after the other
+    # (k, 4) where two labels touch only diagonally, across two empty cells: label above,
+    # label below, row and col of the node; from the top down
     corners: NDArray[np.int64]
 
 
 def boundary_of(cells: Cells, fresh: Mask | None = None) -> Boundary:
-    """Find where the regions of an array of cells touch: chains and crossing corners.
+    """Find where regions touch: chains of pixel edges and crossing corners.
+
+    `cells` (h, w) are int64 labels, EMPTY where nothing is.  Of two cells that touch at least one
+    must be `fresh` (h, w); of a label all cells are, or none.
 
     Where four edges of one pair meet (the pixels cross like a chequerboard) a chain turns left,
     around its own pixel of the higher label.  A closed chain starts at the lowest of its leftmost
-    corners.  Chains are sorted by labels, then by start: from the bottom up and from left to
-    right.
-
-    Parameters
-    ----------
-    cells : (h, w) int64 array
-        Labels; EMPTY where nothing is.  C-contiguous.
-    fresh : (h, w) bool array, optional
-        At least one side must be in here.  Of a label all cells are, or none.
-
-    Examples
-    --------
-    >>> boundary = boundary_of(np.array([[5, 5], [3, 3]]))
-    >>> boundary.labels.tolist(), boundary.nodes.tolist()
-    ([[5, 3]], [[1, 0], [1, 1], [1, 2]])
+    corners.  Chains are sorted by labels, then by start: from the bottom up and from left to right.
     """
     w: Work = Work()
     w.room = []

@@ -10,9 +10,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import longs
-else:
+if not cython.compiled:
     from drystone.kernels.lists import longs
 
 BoxTable = NDArray[np.int64]
@@ -25,28 +23,10 @@ Box = tuple[int, int, int, int]
 def nearest_joints(boxes: BoxTable, box: Box, leftmost: float, rightmost: float) -> tuple[int, int]:
     """Return the boxes whose top corners are closest to the bottom corners of a box above (Eq. 9).
 
-    Parameters
-    ----------
-    boxes : (n, 4) int array
-        Left, right, bottom, top.  Only those whose top is not above the vertical centre of the
-        box count.
-    box : (int, int, int, int)
-        Left, right, bottom, top of the box above.
-    leftmost, rightmost : float
-        Of the top left corners only those right of `leftmost` count, of the top right corners
-        only those left of `rightmost`.
-
-    Returns
-    -------
-    below1, below2 : int
-        Place of the box whose top right corner is closest to the bottom left corner, and of the
-        one whose top left corner is closest to the bottom right corner; the first of equals; -1
-        where there is none.
-
-    Examples
-    --------
-    >>> nearest_joints(np.array([[0, 5, 0, 4], [5, 9, 0, 4]]), (2, 8, 4, 6), 1, 8)
-    (0, 1)
+    First that whose top right corner, left of `rightmost`, is closest to the bottom left corner;
+    then that whose top left corner, right of `leftmost`, is closest to the bottom right corner.
+    Tops above the vertical centre of the box do not count.  Of equals the first; -1 where there is
+    none.
     """
     boxes = np.ascontiguousarray(boxes)
     at: cython.p_longlong = longs(boxes)
@@ -81,21 +61,9 @@ def nearest_joints(boxes: BoxTable, box: Box, leftmost: float, rightmost: float)
 def left_neighbour(boxes: BoxTable, box: Box) -> int:
     """Return the nearest box to the left in the same course; -1 when there is none (Eq. 6-7).
 
-    In the same course are boxes whose rows overlap those of the box by at least half the smaller
-    of the two heights; to the left are those that end left of its middle.  Of boxes that end at
-    the same place the higher one is taken, then the first.
-
-    Parameters
-    ----------
-    boxes : (n, 4) int array
-        Left, right, bottom, top.
-    box : (int, int, int, int)
-        The same of one box.
-
-    Examples
-    --------
-    >>> left_neighbour(np.array([[0, 5, 0, 4], [0, 6, 4, 8]]), (6, 9, 0, 4))
-    0
+    In the same course are boxes whose rows overlap those of the box by at least half the smaller of
+    the two heights; to the left are those that end left of its middle.  Of boxes that end at the
+    same place the higher one is taken, then the first.
     """
     boxes = np.ascontiguousarray(boxes)
     at: cython.p_longlong = longs(boxes)

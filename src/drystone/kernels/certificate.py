@@ -18,40 +18,22 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import doubles, ints, new_doubles, release
-else:
+if not cython.compiled:
     from drystone.kernels.lists import doubles, ints, new_doubles, release
 
 Floats = NDArray[np.float64]
 
 
 class Figures(NamedTuple):
-    """What an answer is worth.
+    """How far an answer is from one; NaN wherever anything that counts is not a number."""
 
-    Parameters
-    ----------
-    residual : float
-        Largest entry of sum x_j a_j + alpha live - rhs.
-    violation : float
-        By how much a force x_j is below 0 at most.
-    total : float
-        Sum of abs(x_j).
-    largest : float
-        Largest entry of the velocity v.
-    inadmissible : float
-        By how much some a_j . v is below 0 at most.
-    live, rhs : float
-        live . v and rhs . v.
-    """
-
-    residual: float
-    violation: float
-    total: float
-    largest: float
-    inadmissible: float
-    live: float
-    rhs: float
+    residual: float  # largest entry of sum x_j a_j + alpha live - rhs
+    violation: float  # by how much a force x_j is below 0 at most
+    total: float  # sum of abs(x_j)
+    largest: float  # largest entry of the velocity v
+    inadmissible: float  # by how much some a_j . v is below 0 at most
+    live: float  # live . v
+    rhs: float  # rhs . v
 
 
 def figures(
@@ -64,44 +46,8 @@ def figures(
 ) -> Figures:
     """Measure the forces and the mechanism of one answer.
 
-    Parameters
-    ----------
-    wall : Cones
-        Columns of the wall.
-    weights : (n,) float64 array
-        Of its bodies.
-    added : Added
-        What a stone adds, and which columns are gone.
-    alpha : float
-        Load multiplier of the forces.
-    forces : (columns,) float64 array
-        Of the columns of the wall that are left, then of the new ones; empty for a mechanism
-        alone, the first three figures are then 0.
-    velocity : (3 (n + k),) float64 array
-        Of all bodies.
-
-    Returns
-    -------
-    Figures
-        NaN wherever anything that counts is no number.
-
-    Raises
-    ------
-    ValueError
-        When vectors have another size than the program.
-
-    Examples
-    --------
-    A body of weight 1 on a point below its centroid, without friction, pushed by a quarter of it.
-
-    >>> def cones(columns: int) -> Cones:
-    ...     bodies = np.zeros(columns, np.int32)
-    ...     return Cones(bodies, bodies - 1, np.eye(6)[:, [1] * columns])
-    >>> nothing = Added(np.empty(0), cones(0), np.empty(0, np.int32))
-    >>> sideways = np.array([1.0, 0.0, 0.0])
-    >>> found = figures(cones(1), np.ones(1), nothing, 0.25, np.ones(1), sideways)
-    >>> found.residual, found.inadmissible, found.live
-    (0.25, 0.0, 1.0)
+    Forces are those of the columns of the wall that are left, then of the new ones; without any the
+    first three figures are 0.  Velocities, (3 (n + k),), are those of all bodies.
     """
     new = added.cones
     columns = len(wall.first) - len(added.closed) + len(new.first)
@@ -152,15 +98,6 @@ def figures(
 class Check:
     """Forces and velocities, and what was found of all columns so far."""
 
-    forces: cython.p_double
-    velocity: cython.p_double
-    left: cython.p_double
-    loaded: cython.bint
-    force: cython.Py_ssize_t
-    violation: cython.double
-    total: cython.double
-    inadmissible: cython.double
-
     def __init__(self) -> None:
         self.force = 0
         self.violation = self.total = self.inadmissible = 0.0
@@ -169,18 +106,7 @@ class Check:
         release(self.left)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def check_columns(
-    check: Check,
-    first: cython.p_int,
-    second: cython.p_int,
-    entries: cython.p_double,
-    size: cython.Py_ssize_t,
-    start: cython.Py_ssize_t,
-    stop: cython.Py_ssize_t,
-) -> cython.void:
+def check_columns(check, first, second, entries, size, start, stop):
     """Go through some of so many columns; their forces come next."""
     velocity: cython.p_double = check.velocity
     left: cython.p_double = check.left
@@ -209,10 +135,6 @@ def check_columns(
                 left[two + k] += x * entries[(3 + k) * size + column]
 
 
-@cython.cfunc
-@cython.nogil
-@cython.inline
-@cython.exceptval(check=False)
-def larger(one: cython.double, two: cython.double) -> cython.double:
+def larger(one, two):
     """Return the larger one; what is no number counts as the largest."""
     return two if two > one or two != two else one

@@ -12,9 +12,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import doubles, doubles_out, ints_out
-else:
+if not cython.compiled:
     from drystone.kernels.lists import doubles, doubles_out, ints_out
 
 Floats = NDArray[np.float64]
@@ -35,43 +33,14 @@ def cone_edges(
 ) -> tuple[Ints, Ints, Floats]:
     """List the forces along the two edges of the cone at every contact point.
 
-    A stone brings a handful of interfaces: what is told of each comes in lists, which are made
-    and read quicker than arrays of so few numbers.
+    Of each interface: the body that the normal points into (never the ground) and the other, the
+    unit normal, mu, and contact points (n, 2).  A stone brings a handful of interfaces, and lists
+    are read quicker than arrays of so few numbers.  Moments are divided by `length`.
 
-    Parameters
-    ----------
-    bodies : (i,) list of (Body, Body)
-        Of each interface the body that the normal points into, never the ground, and the other.
-    normals : (i,) list of (float, float)
-        Unit vectors.
-    frictions : (i,) list of float
-        Coefficient of friction of each interface.
-    points : (i,) list of (n, 2) float arrays
-        Contact points of each interface.
-    length : float
-        What moments are divided by.
-
-    Returns
-    -------
-    first, second : (N,) int32 arrays
-        Places of the body that the force acts on and of the one that takes the opposite force;
-        -1 for the ground.  The edges normal + mu tangent and normal - mu tangent of each contact
-        point follow each other; the tangent of a normal (x, y) is (y, -x).
-    entries : (6, N) float array
-        Horizontal force, vertical force and moment about the centroid of `first`, then those of
-        `second`, all 0 for the ground.
-
-    Raises
-    ------
-    ValueError
-        When lists are not of one length, or points have not two coordinates.
-
-    Examples
-    --------
-    >>> ends = np.array([[0.0, 0.0], [2.0, 0.0]])
-    >>> _, _, entries = cone_edges([((0, 1.0, 1.0), GROUND_BODY)], [(0.0, 1.0)], [0.5], [ends], 1.0)
-    >>> entries[:3, 0].tolist()
-    [0.5, 1.0, -0.5]
+    Returns the place of the body that each force acts on, that of the other (-1 for the ground),
+    and entries (6, N): horizontal force, vertical force and moment about the centroid of the first,
+    then those of the second, 0 for the ground.  The edges normal + mu tangent and normal - mu
+    tangent of a point follow each other; the tangent of a normal (x, y) is (y, -x).
     """
     if not len(bodies) == len(normals) == len(frictions) == len(points):
         raise ValueError("lists that tell of different interfaces")
@@ -129,16 +98,6 @@ def cone_edges(
     return first, second, entries
 
 
-@cython.cfunc
-@cython.nogil
-@cython.inline
-@cython.exceptval(check=False)
-def moment(
-    x: cython.double,
-    y: cython.double,
-    length: cython.double,
-    force_x: cython.double,
-    force_y: cython.double,
-) -> cython.double:
+def moment(x, y, length, force_x, force_y):
     """Return the moment of a force on an arm, over a length."""
     return x / length * force_y - y / length * force_x

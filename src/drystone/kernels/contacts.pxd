@@ -1,3 +1,6 @@
+from drystone.kernels.memory cimport doubles_out, kept_doubles, kept_ints, longs, longs_out
+from libc.math cimport sqrt
+
 cdef int split_chain(
     const long long *nodes, int begin, int end, int chain, int *runs, int count, int *pieces,
     int *is_cut

@@ -20,16 +20,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import (
-        doubles_out,
-        kept_doubles,
-        kept_ints,
-        longs,
-        longs_out,
-    )
-    from cython.cimports.libc.math import sqrt
-else:
+if not cython.compiled:
     from math import sqrt
 
     from drystone.kernels.lists import doubles_out, kept_doubles, kept_ints, longs, longs_out
@@ -48,51 +39,23 @@ MARGIN = cython.declare(cython.Py_ssize_t, patches.MARGIN_PX)
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """Contacts between regions: first straight runs, then single points.
+    """Contacts between regions: first straight runs, then single points."""
 
-    Parameters
-    ----------
-    high, low : (k,) int64 array
-        The two labels, the larger first.
-    ends : (k, 2, 2) float64 array
-        (x, y) of both ends, in the sense in which `high` lies to the left; twice the same for a
-        point.
-    normals : (k, 2) float64 array
-        Unit vectors into `high`.
-    run_count : int
-        The first so many are runs.
-    """
-
-    high: NDArray[np.int64]
+    high: NDArray[np.int64]  # (k,) the two labels, the larger first
     low: NDArray[np.int64]
+    # (k, 2, 2) (x, y) of both ends, in the sense in which `high` lies to the left; twice the
+    # same for a point
     ends: NDArray[np.float64]
-    normals: NDArray[np.float64]
-    run_count: int
+    normals: NDArray[np.float64]  # (k, 2) unit vectors into `high`
+    run_count: int  # the first so many are runs
 
 
 def contacts_in(patch: Patch) -> Contacts:
     """Find the contacts in a patch of which at least one side is fresh.
 
-    Parameters
-    ----------
-    patch : Patch
-        Of which all cells of a label are fresh, or none.
-
-    Returns
-    -------
-    Contacts
-        Runs sorted by labels and place, then points from the top down.
-
-    Notes
-    -----
-    A run is a connected chain of pixel edges, split where it bends.  Regions that touch only at a
-    pixel corner, across two empty cells, have a contact at that point.
-
-    Examples
-    --------
-    >>> from drystone.kernels.patches import whole_patch
-    >>> contacts_in(whole_patch(np.array([[0, 5, 5], [3, 3, 3]]))).ends.tolist()
-    [[[0.0, 0.0], [3.0, 0.0]], [[1.0, 1.0], [3.0, 1.0]]]
+    A run is a connected chain of pixel edges, split where it bends (Douglas and Peucker 1973).
+    Regions that touch only at a pixel corner, across two empty cells, have a contact at that point.
+    Runs are sorted by labels and place, points from the top down.
     """
     boundary = boundary_of(patch.cells, patch.fresh)
     x0: cython.longlong = patch.origin[0]
@@ -253,7 +216,12 @@ def is_hook(nodes, end, inwards):
 
 
 def write_normal(nodes, first, last, normals, at):
-    """Write the unit normal to the left of a run."""
+    """Write the unit normal to the left of a run.
+
+    Its line is fitted to the midpoints of its edges by total least squares: on a regular staircase
+    they lie along its slope, and one odd edge hardly turns it.  The scatter of twice the midpoints
+    is found from sums of integers, exact up to some thousand edges.
+    """
     sum_x: cython.longlong = 0
     sum_y: cython.longlong = 0
     sum_xx: cython.longlong = 0

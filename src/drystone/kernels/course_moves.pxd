@@ -1,3 +1,5 @@
+from drystone.kernels.memory cimport ints, kept_ints, move_ints
+
 ctypedef int *p_int
 
 

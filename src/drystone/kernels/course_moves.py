@@ -11,9 +11,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import ints, kept_ints, move_ints
-else:
+if not cython.compiled:
     from drystone.kernels.lists import ints, kept_ints, move_ints
 
 # A change that could not be made.
@@ -37,13 +35,7 @@ SECOND = cython.declare(cython.ulonglong, 0x94D049BB133111EB)
 
 @cython.cclass
 class Dice:
-    """Random whole numbers, the same everywhere: splitmix64.
-
-    Parameters
-    ----------
-    seed : int
-        Any.
-    """
+    """Random whole numbers, the same everywhere: splitmix64."""
 
     def __init__(self, seed: int) -> None:
         self.state = seed % 2**64
@@ -59,23 +51,9 @@ class Draft:
 
 
 def changed(plan: Arrangement, dice: Dice, courses: int) -> tuple[Arrangement, int]:
-    """Change an arrangement once, at random.
+    """Change an arrangement once, at random; it gets no more than so many courses.
 
-    Parameters
-    ----------
-    plan : Arrangement
-        Stones in courses.
-    dice : Dice
-        For what is drawn.
-    courses : int
-        It gets no more.
-
-    Returns
-    -------
-    plan : Arrangement
-        Changed.
-    course : int
-        The lowest one in which something changed, or -1 when nothing did.
+    Returns it, and the lowest course in which something changed, -1 when nothing did.
     """
     draft: Draft = Draft()
     start(draft, plan, courses)

@@ -1,4 +1,7 @@
-from drystone.kernels.course_moves cimport Dice, Draft
+from drystone.kernels.course_moves cimport (
+    Dice, Draft, change, copy, drawn, left_of, parts_of, start, start_of
+)
+from drystone.kernels.memory cimport doubles, ints, kept_doubles, kept_ints, longs, move_ints
 
 ctypedef double *p_double
 ctypedef int *p_int

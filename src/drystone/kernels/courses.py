@@ -34,27 +34,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.course_moves import (
-        Dice,
-        Draft,
-        change,
-        copy,
-        drawn,
-        left_of,
-        parts_of,
-        start,
-        start_of,
-    )
-    from cython.cimports.drystone.kernels.memory import (
-        doubles,
-        ints,
-        kept_doubles,
-        kept_ints,
-        longs,
-        move_ints,
-    )
-else:
+if not cython.compiled:
     from drystone.kernels.course_moves import (
         Dice,
         Draft,
@@ -107,24 +87,7 @@ FAR = cython.declare(cython.int, 1 << 29)
 
 
 def evaluate(poses: Poses, plan: Arrangement, ground: Ground, rules: Rules) -> Layout:
-    """Return where the stones of an arrangement lie, and what that costs.
-
-    Parameters
-    ----------
-    poses : Poses
-        Of all stones.
-    plan : Arrangement
-        Stones in courses.
-    ground : Ground
-        What they are laid on.
-    rules : Rules
-        How, and what counts.
-
-    Raises
-    ------
-    ValueError
-        When the arrays do not fit each other.
-    """
+    """Return where the stones of an arrangement lie, and what that costs."""
     check(poses, plan, ground, rules)
     courses: cython.int = len(plan.sizes)
     s: Scene = scene_on(ground, courses + 1, len(plan.order))
@@ -162,35 +125,10 @@ def anneal(
     cooling: Cooling,
     look: Callable[[], None] = lambda: None,
 ) -> tuple[Arrangement, float]:
-    """Change an arrangement at random, at a falling temperature.
+    """Change an arrangement at random, at a falling temperature; return the cheapest, and its cost.
 
-    Parameters
-    ----------
-    poses : Poses
-        Of all stones.
-    plan : Arrangement
-        Where to start.
-    ground : Ground
-        What the courses are laid on.
-    rules : Rules
-        How, and what counts.
-    cooling : Cooling
-        How long, and from which temperature.
-    look : callable
-        Called before the first evaluation and after every :data:`ROUND` of them; what it raises
-        ends the annealing.
-
-    Returns
-    -------
-    plan : Arrangement
-        The cheapest one that was met.
-    cost : float
-        As :func:`evaluate` says.
-
-    Raises
-    ------
-    ValueError
-        When the arrays do not fit each other.
+    A look is taken before the first evaluation and after every :data:`ROUND` of them; what it
+    raises ends the annealing.
     """
     check(poses, plan, ground, rules)
     most: cython.int = rules.courses
@@ -239,13 +177,7 @@ def check(poses: Poses, plan: Arrangement, ground: Ground, rules: Rules) -> None
 
 
 def path_starts(side: int) -> list[int]:
-    """Return where paths across a side start, from its first end.
-
-    Examples
-    --------
-    >>> path_starts(100 * 32)[:2]
-    [304, 624]
-    """
+    """Return where paths across a side start, from its first end."""
     room: list = []
     starts: cython.p_int = kept_ints(room, STARTS)
     count: cython.int = fill_starts(side, starts)
@@ -253,21 +185,9 @@ def path_starts(side: int) -> list[int]:
 
 
 def ways_up(joints: Joints, below: Joints, ways: Ints, width: int) -> Ints:
-    """Return how far paths from the bottom to joints go aside.
+    """Return how far paths from the bottom to the joints of a course go aside, (joints, STARTS).
 
-    Parameters
-    ----------
-    joints, below : list of (int, int)
-        Of a course and of that below it.
-    ways : (len(below), STARTS) int32 array
-        How far paths to the joints below go aside.
-    width : int
-        Of the wall.
-
-    Returns
-    -------
-    ways : (len(joints), STARTS) int32 array
-        Zeros beyond the starts.
+    `ways` are those to the joints below.  Zeros beyond the starts.
     """
     nothing = np.zeros(0, np.int32)
     under = np.array(below, np.int32).reshape(-1, 2)

@@ -18,10 +18,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import doubles, doubles_out, flags_out
-    from cython.cimports.libc.math import ceil, floor, isfinite
-else:
+if not cython.compiled:
     from math import ceil, floor, isfinite
 
     from drystone.kernels.lists import doubles, doubles_out, flags_out
@@ -40,30 +37,10 @@ INFINITY = cython.declare(cython.double, np.inf)
 
 
 def coverage(corners: Points) -> tuple[Grid, int, int]:
-    """Return the exact share of every cell that a polygon covers.
+    """Return the share of every cell that a counter-clockwise polygon (n, 2) covers, exactly.
 
-    Parameters
-    ----------
-    corners : (n, 2) float array
-        A simple polygon, counter-clockwise, in cells; x to the right, y up.
-
-    Returns
-    -------
-    shares : (h, w) float array
-        From 0 to 1, row 0 at the top: the cells that the polygon's box meets, at least one.
-    left, bottom : int
-        The cell corner of its bottom-left corner.
-
-    Raises
-    ------
-    ValueError
-        When a corner is not a finite number, or there are less than three.
-
-    Examples
-    --------
-    >>> shares, left, bottom = coverage(np.array([[0.5, 1.0], [2.0, 1.0], [0.5, 1.5]]))
-    >>> shares.round(3).tolist(), left, bottom
-    ([[0.208, 0.167]], 0, 1)
+    Shares (h, w), row 0 at the top, are those of the cells that its box meets, at least one.  Then
+    left and bottom: the cell corner of their bottom-left corner.
     """
     corners = np.ascontiguousarray(corners, np.float64)
     if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3:
@@ -96,19 +73,7 @@ def coverage(corners: Points) -> tuple[Grid, int, int]:
     return shares, int(left), int(bottom)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def cut_at_rows(
-    foot_x: cython.double,
-    foot_y: cython.double,
-    head_x: cython.double,
-    head_y: cython.double,
-    sign: cython.double,
-    out: cython.p_double,
-    width: cython.Py_ssize_t,
-    height: cython.Py_ssize_t,
-) -> cython.void:
+def cut_at_rows(foot_x, foot_y, head_x, head_y, sign, out, width, height):
     """Note an edge, from its lower to its upper end, in every row of cells that it crosses."""
     first: cython.double = floor(foot_y)
     rises: cython.double = head_y - foot_y
@@ -125,17 +90,7 @@ def cut_at_rows(
         )
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def cut_at_columns(
-    low: cython.double,
-    high: cython.double,
-    drop: cython.double,
-    sums: cython.p_double,
-    row: cython.Py_ssize_t,
-    width: cython.Py_ssize_t,
-) -> cython.void:
+def cut_at_columns(low, high, drop, sums, row, width):
     """Note a piece of an edge in every cell of its row that it crosses, and in the next one."""
     column: cython.double = floor(low)
     at: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, column)
@@ -152,12 +107,7 @@ def cut_at_columns(
         at += 1
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def add_up(
-    shares: cython.p_double, width: cython.Py_ssize_t, height: cython.Py_ssize_t
-) -> cython.void:
+def add_up(shares, width, height):
     """Sum along the rows, and leave no rounding near 0 and 1."""
     for row in range(height):
         share = 0.0
@@ -174,30 +124,9 @@ def add_up(
 def newly_filled(total: Grid, shares: Grid, row: int, col: int) -> tuple[Mask, int, int] | None:
     """Return the cells of a grid that a new block fills: before less than half, then at least.
 
-    Parameters
-    ----------
-    total : (h, w) float array
-        What is covered of each cell already, row 0 at the top.
-    shares : (h', w') float array
-        What the new block covers; it may reach over the edges of the grid, where nothing is
-        covered yet.
-    row, col : int
-        Where its top-left corner is in the grid.
-
-    Returns
-    -------
-    mask : (h'', w'') bool array
-        Cropped to the cells that are filled.
-    row, col : int
-        Its top-left corner in the grid.
-
-    None when there is none, or one is outside of the grid.
-
-    Examples
-    --------
-    >>> total = np.array([[0.0, 0.6, 0.2]])
-    >>> newly_filled(total, np.array([[0.1, 0.3, 0.4]]), 0, 0)
-    (array([[ True]]), 0, 2)
+    `total` (h, w) is what is covered already, `shares` what the block covers, from (row, col) on;
+    it may reach over the edges of the grid.  Returns the filled cells, cropped, and their top-left
+    corner; None when there is none, or one is outside of the grid.
     """
     total, shares = np.ascontiguousarray(total), np.ascontiguousarray(shares)
     before: cython.p_double = doubles(total)
@@ -236,25 +165,7 @@ def newly_filled(total: Grid, shares: Grid, row: int, col: int) -> tuple[Mask, i
 def windows(
     grid: tuple[int, ...], shape: tuple[int, ...], row: int, col: int
 ) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
-    """Return what a window and a grid have in common.
-
-    Parameters
-    ----------
-    grid, shape : (int, int)
-        Sizes of the grid and of the window.
-    row, col : int
-        Top-left corner of the window in the grid; it may be outside.
-
-    Returns
-    -------
-    inside, part : (slice, slice)
-        Rows and columns of the grid, and the same of the window; empty when there is nothing.
-
-    Examples
-    --------
-    >>> windows((4, 5), (2, 3), -1, 3)
-    ((slice(0, 1, None), slice(3, 5, None)), (slice(1, 2, None), slice(0, 2, None)))
-    """
+    """Return what a grid and a window of a shape at (row, col) share, as slices of both."""
     top, left = (min(max(at, 0), size) for at, size in zip((row, col), grid, strict=True))
     bottom = min(max(row + shape[0], top), grid[0])
     right = min(max(col + shape[1], left), grid[1])

@@ -18,18 +18,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import (
-        doubles,
-        doubles_out,
-        ints,
-        new_doubles,
-        new_ints,
-        release,
-        sort_doubles,
-    )
-    from cython.cimports.libc.math import sqrt
-else:
+if not cython.compiled:
     from math import sqrt
 
     from drystone.kernels.lists import (
@@ -54,11 +43,8 @@ INFINITY = cython.declare(cython.double, np.inf)
 class Crevice(NamedTuple):
     """The free space under a polygon, from its left end to its right end.
 
-    Parameters
-    ----------
-    lid, floor : (n, 2) float arrays
-        Chains, the clearance already taken off.  Where the lid is not above the floor there is no
-        space.
+    Chains (n, 2), the clearance already taken off.  There is no space where the lid is not above
+    the floor.
     """
 
     lid: Chain
@@ -66,31 +52,15 @@ class Crevice(NamedTuple):
 
 
 def crevice(stone: Points, around: Polygons, clearance: float) -> Crevice:
-    """Return the free space between a polygon and what is below it.
+    """Return the free space between a polygon (n, 2) and what is below, above the ground y = 0.
 
-    Parameters
-    ----------
-    stone : (n, 2) float array
-        The polygon, counter-clockwise, over the ground y = 0.
-    around : Polygons
-        The others, which it does not overlap.
-    clearance : float
-        Distance from both kept by the chains: nowhere less, at corners up to 1.42 times as much.
-        0: the boundaries themselves.
-
-    Examples
-    --------
-    >>> from drystone.kernels.polygons import no_polygons
-    >>> raised = np.array([[0.0, 3.0], [2.0, 3.0], [2.0, 4.0], [0.0, 4.0]])
-    >>> space = crevice(raised, no_polygons(), 0.25)
-    >>> space.lid.tolist(), space.floor.tolist()
-    ([[0.0, 2.75], [2.0, 2.75]], [[0.0, 0.25], [2.0, 0.25]])
+    The chains keep a clearance from both: nowhere less, at corners up to 1.42 times as much.  With
+    a clearance of 0 they are the boundaries themselves.
     """
     return Crevice(*_crevice(np.ascontiguousarray(stone, np.float64), around, clearance))
 
 
-@cython.cfunc
-def _crevice(stone: Points, around: Polygons, clearance: cython.double) -> tuple:
+def _crevice(stone, around, clearance):
     """Return lid and floor, moved into the free space."""
     corners: cython.p_double = doubles(stone)
     left: cython.double = corners[0]
@@ -106,49 +76,10 @@ def _crevice(stone: Points, around: Polygons, clearance: cython.double) -> tuple
     return as_array(lid), as_array(raised(floor, clearance, left, right))
 
 
-def gap_polygon(
-    stone: Points, around: Polygons, x_left: float, x_right: float, clearance: float
-) -> Points | None:
-    """Return the free space under a polygon between two upright lines.
-
-    Parameters
-    ----------
-    stone, around, clearance
-        As for :func:`crevice`.
-    x_left, x_right : float
-        The lines, below the polygon.
-
-    Returns
-    -------
-    corners : (n, 2) float array or None
-        Simple, counter-clockwise.  None when the space closes anywhere between the lines.
-
-    Raises
-    ------
-    ValueError
-        When there is no polygon above one of the lines, or they are not in order.
-
-    Examples
-    --------
-    >>> from drystone.kernels.polygons import no_polygons
-    >>> raised = np.array([[0.0, 3.0], [2.0, 3.0], [2.0, 4.0], [0.0, 4.0]])
-    >>> gap_polygon(raised, no_polygons(), 0.5, 1.5, 0.25).tolist()
-    [[0.5, 0.25], [1.5, 0.25], [1.5, 2.75], [0.5, 2.75]]
-    """
-    if not stone[:, 0].min() <= x_left < x_right <= stone[:, 0].max():
-        raise ValueError(f"lines at {x_left} and {x_right} are not in order below the polygon")
-    return between(crevice(stone, around, clearance), x_left, x_right)
-
-
 def between(space: Crevice, x_left: float, x_right: float) -> Points | None:
     """Cut the piece between two upright lines out of a crevice; None when it closes there.
 
-    Parameters
-    ----------
-    space : Crevice
-        From :func:`crevice`.
-    x_left, x_right : float
-        In order, and inside it.
+    It is simple and counter-clockwise.  The lines are in order, and inside.
     """
     x, low, high = slabs(space, x_left, x_right)
     # Both sides of a step count together: halves that meet in a point are not one simple polygon.
@@ -172,19 +103,8 @@ def between(space: Crevice, x_left: float, x_right: float) -> Points | None:
 def slabs(space: Crevice, x_left: float, x_right: float) -> tuple[Points, Points, Points]:
     """Cut a crevice at all its corners into slabs with a straight floor and lid.
 
-    Parameters
-    ----------
-    space : Crevice
-        From :func:`crevice`.
-    x_left, x_right : float
-        Where to begin and to end.
-
-    Returns
-    -------
-    x : (n + 1,) float array
-        Where the slabs begin, and the end of the last.
-    low, high : (n, 2) float arrays
-        y of floor and lid at the left and at the right of each slab.
+    Returns x (n + 1,) where slabs begin, and the end of the last; y of the floor, then of the lid,
+    (n, 2), at the left and at the right of each.
     """
     x = _distinct(np.concatenate([space.lid[:, 0], space.floor[:, 0]]), x_left, x_right)
     return x, _heights(space.floor, x), _heights(space.lid, x)
@@ -221,9 +141,6 @@ def _line(edges: Points, x: Points) -> Points:
 class Segments:
     """Segments from left to right, x0, y0, x1, y1, one after the other."""
 
-    at: cython.p_double
-    count: cython.Py_ssize_t
-
     def __init__(self, room: int) -> None:
         self.at, self.count = new_doubles(4 * room), 0
 
@@ -234,13 +151,6 @@ class Segments:
 @cython.cclass
 class Slabs:
     """Strips between upright lines, and which segment is taken in each: -1 for none."""
-
-    x: cython.p_double
-    middle: cython.p_double
-    ceiling: cython.p_double
-    best: cython.p_double
-    which: cython.p_int
-    count: cython.Py_ssize_t
 
     def __init__(self, room: int) -> None:
         self.x, self.middle = new_doubles(room), new_doubles(room)
@@ -259,9 +169,6 @@ class Slabs:
 class Corners:
     """A chain: corners from left to right."""
 
-    at: cython.p_double
-    count: cython.Py_ssize_t
-
     def __init__(self, room: int) -> None:
         self.at, self.count = new_doubles(2 * room), 0
 
@@ -269,8 +176,7 @@ class Corners:
         release(self.at)
 
 
-@cython.cfunc
-def as_array(chain: Corners):
+def as_array(chain):
     """Return the corners of a chain."""
     points = np.empty((chain.count, 2))
     into: cython.p_double = doubles_out(points)
@@ -279,23 +185,13 @@ def as_array(chain: Corners):
     return points
 
 
-@cython.cfunc
-@cython.exceptval(check=False)
-def flip(at: cython.p_double, end: cython.Py_ssize_t) -> cython.void:
+def flip(at, end):
     """Turn points upside down."""
     for i in range(1, end, 2):
         at[i] = -at[i]
 
 
-@cython.cfunc
-@cython.exceptval(check=False)
-def add(
-    out: Segments,
-    x0: cython.double,
-    y0: cython.double,
-    x1: cython.double,
-    y1: cython.double,
-) -> cython.bint:
+def add(out, x0, y0, x1, y1):
     """Add a segment, unless it is upright or goes to the left."""
     k: cython.Py_ssize_t = 4 * out.count
     if not x1 - x0 > NEAR:
@@ -305,16 +201,13 @@ def add(
     return True
 
 
-@cython.cfunc
-@cython.exceptval(check=False)
-def line(at: cython.p_double, k: cython.Py_ssize_t, x: cython.double) -> cython.double:
+def line(at, k, x):
     """Return y of a segment at an x."""
     share: cython.double = (x - at[k]) / (at[k + 2] - at[k])
     return at[k + 1] + (at[k + 3] - at[k + 1]) * share
 
 
-@cython.cfunc
-def boundaries(stone: Points, around: Polygons, reach: cython.double) -> tuple:
+def boundaries(stone, around, reach):
     """Return lid and floor as they are, from `reach` left of the stone to so far right of it."""
     corners: cython.p_double = doubles(stone)
     others: cython.p_double = doubles(around.corners)
@@ -393,33 +286,20 @@ def boundaries(stone: Points, around: Polygons, reach: cython.double) -> tuple:
     return lid, floor
 
 
-@cython.cfunc
-@cython.exceptval(check=False)
-def put(
-    out: Segments,
-    x0: cython.double,
-    y0: cython.double,
-    x1: cython.double,
-    y1: cython.double,
-) -> cython.void:
+def put(out, x0, y0, x1, y1):
     """Add a segment as it is."""
     k: cython.Py_ssize_t = 4 * out.count
     out.at[k], out.at[k + 1], out.at[k + 2], out.at[k + 3] = x0, y0, x1, y1
     out.count += 1
 
 
-@cython.cfunc
-@cython.exceptval(check=False)
-def pick(out: Segments, one: Segments, i: cython.Py_ssize_t) -> cython.void:
+def pick(out, one, i):
     """Add one of some segments."""
     k: cython.Py_ssize_t = 4 * i
     put(out, one.at[k], one.at[k + 1], one.at[k + 2], one.at[k + 3])
 
 
-@cython.cfunc
-def raised(
-    chain: Corners, clearance: cython.double, left: cython.double, right: cython.double
-) -> Corners:
+def raised(chain, clearance, left, right):
     """Move a chain up by a clearance, along its normals, and cut it off at two places.
 
     The highest of its moved edges counts everywhere.  At corners that stand out they are made
@@ -458,8 +338,7 @@ def raised(
     return chained(picked, cuts)
 
 
-@cython.cfunc
-def moved(chain: Corners, clearance: cython.double, out: Segments):
+def moved(chain, clearance, out):
     """List the edges of a chain moved up and made longer, then those that join them."""
     edges: cython.Py_ssize_t = chain.count - 1
     joints: Segments = Segments(chain.count)
@@ -497,9 +376,7 @@ def moved(chain: Corners, clearance: cython.double, out: Segments):
         pick(out, joints, i)
 
 
-@cython.cfunc
-@cython.exceptval(check=False)
-def direction(at: cython.p_double, k: cython.Py_ssize_t, out: cython.p_double) -> cython.void:
+def direction(at, k, out):
     """Give the unit vector of an edge of a chain."""
     x: cython.double = at[k + 2] - at[k]
     y: cython.double = at[k + 3] - at[k + 1]
@@ -507,9 +384,7 @@ def direction(at: cython.p_double, k: cython.Py_ssize_t, out: cython.p_double) -
     out[0], out[1] = x / length, y / length
 
 
-@cython.cfunc
-@cython.exceptval(check=False)
-def highest(edges: Segments, cuts: Slabs) -> cython.void:
+def highest(edges, cuts):
     """Find the highest segment of each slab, not above its ceiling."""
     at: cython.p_double = edges.at
     for k in range(cuts.count):
@@ -530,8 +405,7 @@ def highest(edges: Segments, cuts: Slabs) -> cython.void:
             k += 1
 
 
-@cython.cfunc
-def chained(picked: Segments, cuts: Slabs) -> Corners:
+def chained(picked, cuts):
     """Return the chain of segments that are given for each slab."""
     out: Corners = Corners(2 * cuts.count)
     i: cython.Py_ssize_t = 0
@@ -553,11 +427,7 @@ def chained(picked: Segments, cuts: Slabs) -> Corners:
     return out
 
 
-@cython.cfunc
-@cython.exceptval(check=False)
-def slice_up(
-    cuts: Slabs, count: cython.Py_ssize_t, left: cython.double, right: cython.double
-) -> cython.void:
+def slice_up(cuts, count, left, right):
     """Make slabs between the first numbers, without those that are the same, and two limits."""
     x: cython.p_double = cuts.x
     inside: cython.Py_ssize_t = 0

@@ -19,15 +19,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import (
-        doubles,
-        doubles_out,
-        flags,
-        longs,
-        longs_out,
-    )
-else:
+if not cython.compiled:
     from drystone.kernels.lists import doubles, doubles_out, flags, longs, longs_out
 
 Lengths = NDArray[np.int64]
@@ -52,73 +44,40 @@ INFINITY = cython.declare(cython.double, np.inf)
 
 
 class DropTerms(NamedTuple):
-    """What a drop costs; lengths in source px.
+    """What a drop costs; lengths in source px."""
 
-    Parameters
-    ----------
-    cell_px : float
-        Width of a column: a px of the working resolution.
-    width_px, height_px : float
-        Of the wall.
-    slack_px : float
-        How far a stone may stand out over the wall's height: settling may sink it.
-    clearance_px : float
-        How far it is lifted from where it touches.
-    narrowest_px : float
-        Width of the narrowest stone: nearer to an end of the wall there are no joints.
-    mean_height_px, mean_area_px : float
-        Of the stones: the units of the costs.
-    height, void, gap, slot, headroom, step, joint : float
-        Weights of the costs of :func:`drystone.kernels.drops.drops`.
-    unbalanced : float
-        Weight of how far the centroid is beside what carries the stone, in widths of the stone.
-    rest_width_px, rest_height_px : int arrays
-        What the stones that are left cannot fill of a free width and of a free height, all in
-        working px; not negative.
-    """
-
-    cell_px: float
-    width_px: float
+    cell_px: float  # width of a column: a px of the working resolution
+    width_px: float  # of the wall
     height_px: float
-    slack_px: float
-    clearance_px: float
+    slack_px: float  # how far a stone may stand out over the wall's height: settling may sink it
+    clearance_px: float  # how far it is lifted from where it touches
+    # width of the narrowest stone: nearer to an end of the wall there are no joints
     narrowest_px: float
-    mean_height_px: float
+    mean_height_px: float  # of the stones: the units of the costs
     mean_area_px: float
-    height: float
+    height: float  # weights of the costs of :func:`drystone.kernels.drops.drops`
     void: float
     gap: float
     slot: float
     headroom: float
     step: float
     joint: float
+    # weight of how far the centroid is beside what carries the stone, in widths of the stone
     unbalanced: float
+    # what the stones that are left cannot fill of a free width and of a free height, all in
+    # working px; not negative
     rest_width_px: Lengths
     rest_height_px: Lengths
 
 
 class Wanted(NamedTuple):
-    """Which places are wanted.
+    """Which places are wanted."""
 
-    Parameters
-    ----------
-    spots : int
-        How many of each stone at most.
-    apart_px : (k,) float array
-        How far those of one stone are apart at least, along the wall.
-    groups : (k,) int64 array
-        Group of each stone.
-    cheapest : int
-        How many of the cheapest drops are wanted, at least; 0 for all.
-    each : int
-        How many drops of a group count as such at most; not less than 1.
-    """
-
-    spots: int
-    apart_px: Floats
-    groups: NDArray[np.int64]
-    cheapest: int = 0
-    each: int = 1
+    spots: int  # how many of each stone at most
+    apart_px: Floats  # (k,) how far those of one stone are apart at least, along the wall
+    groups: NDArray[np.int64]  # (k,) group of each stone
+    cheapest: int = 0  # how many of the cheapest drops are wanted, at least; 0 for all
+    each: int = 1  # how many drops of a group count as such at most; not less than 1
 
 
 def drops(
@@ -130,44 +89,22 @@ def drops(
 ) -> tuple[list[Floats], float]:
     """Return the best places of stones that are dropped onto a height profile, each by itself.
 
-    Parameters
-    ----------
-    profile : HeightProfile
-        Of the wall, seen so that the building side is on the left.
-    stones : StoneProfiles
-        Of posed stones, from their centroids, with columns of the same width.
-    terms : DropTerms
-        Sizes and weights.
-    constants : (k,) float array
-        Cost of each pose itself, wherever it goes.
-    wanted : Wanted
-        How many places are wanted.
+    The wall is seen so that the building side is on the left; profiles of stones are measured from
+    their centroids, with columns of the same width.  `constants` (k,) are the costs of the poses
+    themselves.
 
-    Returns
-    -------
-    places : list of (n, 4) float arrays
-        Of each stone: x of its left end, y of its centroid, cost, and lean: how far the centroid
-        is right (left when negative) of the columns that carry the stone, in widths of the stone.
-        The cheapest first, then the cheapest of those that are far enough from it, and so on; of
-        equal costs the lower one, then the one further left.  No rows when there is no place.
-    limit : float
-        Drops that cost more than this, by more than 1e-9, may be missing; infinite when all are
-        there.
+    Returns of each stone rows (n, 4): x of its left end, y of its centroid, cost, and lean, which
+    is how far the centroid is right (left when negative) of the columns that carry the stone, in
+    widths of the stone.  The cheapest comes first, then the cheapest of those that are far enough
+    from it, and so on; of equal costs the lower one, then the one further left.  Drops that cost
+    more than the limit, by more than 1e-9, may be missing; it is infinite when all are there.
 
-    Notes
-    -----
     The costs are those of :class:`DropTerms`, as the raster has them as far as a profile tells:
-    `height` of the centroid and `step` from the left neighbour's top in mean stone heights; in
-    mean stone areas `void` under the stone, `gap` to what first reaches over the middle of its
-    height on the left (at most 1), and `slot` beside and `headroom` over it that the others
-    cannot fill; `joint`, 1 - IWR.  Neighbour and joints are those of the boxes of polygons that
-    show in the profile.  At an end of the wall the joint costs as much as a level top.
-
-    Raises
-    ------
-    ValueError
-        When tops and owners differ in number, or what is said of each stone, an owner has no
-        box, or it is not known for any length what stones could fill.
+    `height` of the centroid and `step` from the left neighbour's top in mean stone heights; in mean
+    stone areas `void` under the stone, `gap` to what first reaches over the middle of its height on
+    the left (at most 1), and `slot` beside and `headroom` over it that the others cannot fill;
+    `joint`, 1 - IWR.  Neighbour and joints are those of the boxes of polygons that show in the
+    profile.  At an end of the wall the joint costs as much as a level top.
     """
     if len(profile.tops) != len(profile.owners):
         raise ValueError(f"{len(profile.tops)} tops have {len(profile.owners)} owners")
@@ -188,9 +125,10 @@ def drops(
 def _numbers(
     columns: int, stones: StoneProfiles, terms: DropTerms, wanted: Wanted
 ) -> NDArray[np.int64]:
-    """Return where each stone may be, how many columns its places are apart, and its group.
+    """Return a row for each stone; every x is on a column edge.
 
-    It may be with its left end on the first columns, so many; every x is on a column edge.
+    On how many columns, from the first on, its left end may be; how many columns its places are
+    apart; its group.
     """
     room = terms.width_px - (stones.boxes[:, 2] - stones.boxes[:, 0])
     last = np.minimum(
@@ -205,13 +143,7 @@ def _numbers(
 
 
 def shown(profile: HeightProfile) -> Floats:
-    """Return the boxes of the polygons that own columns, in their order.
-
-    Raises
-    ------
-    ValueError
-        When there is no box of an owner.
-    """
+    """Return the boxes of the polygons that own columns, in their order."""
     owners = np.unique(profile.owners)
     owners = owners[owners >= 0]
     if len(owners) and owners[-1] >= len(profile.boxes):
@@ -223,79 +155,23 @@ def shown(profile: HeightProfile) -> Floats:
 class Terms:
     """The numbers of a :class:`DropTerms`, and weights of lengths and areas."""
 
-    cell: cython.double
-    width: cython.double
-    height: cython.double
-    slack: cython.double
-    clearance: cython.double
-    narrowest: cython.double
-    mean_area: cython.double
-    gap: cython.double
-    joint: cython.double
-    unbalanced: cython.double
-    of_height: cython.double
-    of_void: cython.double
-    of_slot: cython.double
-    of_headroom: cython.double
-    of_step: cython.double
-    rising: cython.bint
-    """Whether no stage of `look_around` makes a place cheaper."""
-
 
 @cython.cclass
 class Wall:
     """What stones are dropped on."""
-
-    tops: cython.p_double
-    columns: cython.Py_ssize_t
-    boxes: cython.p_double
-    """Left, bottom, right and top of each polygon that owns columns."""
-    shown: cython.Py_ssize_t
-    higher: cython.p_longlong
-    """The next column to the right that is higher, for each column."""
-    sums: cython.p_double
-    """The sum of the first k columns from each on, k = 0, 1, ..."""
-    rest_width: cython.p_longlong
-    rest_height: cython.p_longlong
-    longest_width: cython.Py_ssize_t
-    longest_height: cython.Py_ssize_t
 
 
 @cython.cclass
 class Places:
     """A stone, and the places where it was dropped."""
 
-    bottoms: cython.p_double
-    first: cython.Py_ssize_t
-    columns: cython.Py_ssize_t
-    left: cython.double
-    bottom: cython.double
-    right: cython.double
-    top: cython.double
-    count: cython.Py_ssize_t
-    lift: cython.p_double
-    lean: cython.p_double
-    stage: cython.p_uchar
-    """How far `look_around` has come at each place."""
-    cost: cython.p_double
-    """The sum of the costs that are known so far; infinite where it cannot go."""
-
 
 @cython.cclass
 class Kept:
     """The cheapest drops of all stones so far, only so many of a group."""
 
-    cost: cython.p_double
-    group: cython.p_longlong
-    count: cython.Py_ssize_t
-    most: cython.Py_ssize_t
-    each: cython.Py_ssize_t
-    limit: cython.double
-    """Drops that cost more, by more than CLOSE, are not asked for."""
 
-
-@cython.cfunc
-def terms_of(terms: DropTerms) -> Terms:
+def terms_of(terms):
     """Read the numbers of a :class:`DropTerms`."""
     read: Terms = Terms()
     read.cell, read.width, read.height = terms.cell_px, terms.width_px, terms.height_px
@@ -315,16 +191,8 @@ def terms_of(terms: DropTerms) -> Terms:
 def _dropped(profile, stones, terms, constants, numbers, most, few):
     """Drop all stones; return their places in rows, how many there are, and the limit.
 
-    Parameters
-    ----------
-    profile, stones, terms, constants
-        As for :func:`drops`.
-    numbers : (k, 3) int64 array
-        On how many columns a stone's left end may be, how many its places are apart, its group.
-    most : int
-        Rows of a stone.
-    few : (int, int)
-        How many of the cheapest are wanted, and how many of those of a group.
+    `numbers` as of :func:`_numbers`; a stone has so many rows at `most`; of `few` is how many of
+    the cheapest are wanted, and how many of those of a group.
     """
     size: cython.Py_ssize_t = len(constants)
     columns: cython.Py_ssize_t = len(profile.tops)
@@ -387,16 +255,7 @@ def _dropped(profile, stones, terms, constants, numbers, most, few):
     return rows, taken, kept.limit
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def keep(
-    kept: Kept,
-    rows: cython.p_double,
-    start: cython.Py_ssize_t,
-    count: cython.Py_ssize_t,
-    group: cython.longlong,
-) -> cython.void:
+def keep(kept, rows, start, count, group):
     """Take in the drops of a stone where they are among the cheapest; the limit may fall."""
     if kept.most <= 0:
         return
@@ -423,19 +282,7 @@ def keep(
             kept.limit = max(kept.limit, kept.cost[at])
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def take(
-    wall: Wall,
-    terms: Terms,
-    apart: cython.Py_ssize_t,
-    limit: cython.double,
-    found: Places,
-    out: cython.p_double,
-    start: cython.Py_ssize_t,
-    most: cython.Py_ssize_t,
-) -> cython.Py_ssize_t:
+def take(wall, terms, apart, limit, found, out, start, most):
     """Write the cheapest places that are so many columns apart; return how many there are."""
     taken: cython.Py_ssize_t = 0
     if not terms.rising:
@@ -457,10 +304,7 @@ def take(
     return taken
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def cheapest(wall: Wall, terms: Terms, limit: cython.double, found: Places) -> cython.Py_ssize_t:
+def cheapest(wall, terms, limit, found):
     """Return the place of the least cost; of equal ones the lower, then the first.
 
     -1 when it costs more than the limit.  Places that are dearer already than that, or than
@@ -482,10 +326,7 @@ def cheapest(wall: Wall, terms: Terms, limit: cython.double, found: Places) -> c
     return best if found.cost[best] <= limit else -1
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def least(found: Places) -> cython.Py_ssize_t:
+def least(found):
     """Return the place that costs least so far; of equal ones the lower, then the first."""
     best: cython.Py_ssize_t = 0
     cost: cython.p_double = found.cost
@@ -497,10 +338,7 @@ def least(found: Places) -> cython.Py_ssize_t:
     return best
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def rise(wall: Wall) -> cython.void:
+def rise(wall):
     """Find the next higher column to the right of each; past the last where there is none."""
     for at in range(wall.columns - 1, -1, -1):
         further = at + 1
@@ -509,10 +347,7 @@ def rise(wall: Wall) -> cython.void:
         wall.higher[at] = further
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def add_up(wall: Wall, widest: cython.Py_ssize_t) -> cython.void:
+def add_up(wall, widest):
     """Sum up as many columns as may be under a stone, but for its last one."""
     columns: cython.Py_ssize_t = wall.columns
     tops: cython.p_double = wall.tops
@@ -525,10 +360,7 @@ def add_up(wall: Wall, widest: cython.Py_ssize_t) -> cython.void:
             sums[row + columns + at] = sums[row + at] + tops[at + k]
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def lay_down(wall: Wall, terms: Terms, constant: cython.double, found: Places) -> cython.void:
+def lay_down(wall, terms, constant, found):
     """Drop the stone everywhere: what that costs without a look around."""
     before: cython.Py_ssize_t = found.columns - 1
     count: cython.Py_ssize_t = found.count
@@ -565,10 +397,7 @@ def lay_down(wall: Wall, terms: Terms, constant: cython.double, found: Places) -
         found.stage[at] = 0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def land(found: Places, tops: cython.p_double) -> cython.void:
+def land(found, tops):
     """Find where the stone touches at all places: four of its columns at a time."""
     j: cython.Py_ssize_t = 0
     count: cython.Py_ssize_t = found.count
@@ -592,12 +421,7 @@ def land(found: Places, tops: cython.p_double) -> cython.void:
         j += 1
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def look_around(
-    wall: Wall, terms: Terms, found: Places, at: cython.Py_ssize_t, stage: cython.int
-) -> cython.void:
+def look_around(wall, terms, found, at, stage):
     """Add further costs of a place, up to a stage.
 
     The first is that of what is free beside the stone, then that of the left neighbour, then
@@ -621,18 +445,7 @@ def look_around(
     found.stage[at] = stage
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def with_room(
-    cost: cython.double,
-    wall: Wall,
-    terms: Terms,
-    bottom: cython.double,
-    top: cython.double,
-    at: cython.Py_ssize_t,
-    end: cython.Py_ssize_t,
-) -> cython.double:
+def with_room(cost, wall, terms, bottom, top, at, end):
     """Add the costs of what is free on the left of a stone and on its right."""
     area: cython.double = 0.0
     middle: cython.double = (bottom + top) / 2.0
@@ -650,16 +463,7 @@ def with_room(
     return cost + terms.of_slot * (wall.rest_width[free] * (terms.cell * (top - bottom)))
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def step(
-    wall: Wall,
-    left: cython.double,
-    bottom: cython.double,
-    right: cython.double,
-    top: cython.double,
-) -> cython.double:
+def step(wall, left, bottom, right, top):
     """Return how far the top is from level with the left neighbour's (Eq. 6)."""
     boxes: cython.p_double = wall.boxes
     nearest: cython.Py_ssize_t = -1
@@ -677,17 +481,7 @@ def step(
     return 0.0 if nearest < 0 else abs(top - boxes[nearest + 3])
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def joint(
-    wall: Wall,
-    terms: Terms,
-    left: cython.double,
-    bottom: cython.double,
-    right: cython.double,
-    top: cython.double,
-) -> cython.double:
+def joint(wall, terms, left, bottom, right, top):
     """Return 1 - IWR (Eq. 9)."""
     boxes: cython.p_double = wall.boxes
     middle: cython.double = (bottom + top) / 2.0
@@ -721,10 +515,7 @@ def joint(
     return 1.0 - ratios / (2.0 if one >= 0 and two >= 0 else 1.0)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def leaning(wall: Wall, terms: Terms, found: Places, at: cython.Py_ssize_t) -> cython.double:
+def leaning(wall, terms, found, at):
     """Return how far the centroid is right of what carries the stone, in widths."""
     bottoms: cython.p_double = found.bottoms
     tops: cython.p_double = wall.tops

@@ -1,4 +1,8 @@
-from drystone.kernels.gaps cimport Stone
+from drystone.kernels.gaps cimport Stone, find_gaps, heap_of, stone_of
+from drystone.kernels.memory cimport doubles, more_doubles, new_doubles, release
+from drystone.kernels.seidel cimport solve2, solve3
+from libc.math cimport sqrt
+
 
 cdef class Work:
     cdef double *rows

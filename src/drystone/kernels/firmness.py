@@ -16,12 +16,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.gaps import Stone, find_gaps, heap_of, stone_of
-    from cython.cimports.drystone.kernels.memory import doubles, more_doubles, new_doubles, release
-    from cython.cimports.drystone.kernels.seidel import solve2, solve3
-    from cython.cimports.libc.math import sqrt
-else:
+if not cython.compiled:
     from math import sqrt
 
     from drystone.kernels.gaps import Stone, find_gaps, heap_of, stone_of
@@ -48,34 +43,10 @@ def rest_margin(
     corner: float = 0.3,
     steep: float = -1.0,
 ) -> float:
-    """Return how far gravity may lean, over mu, until a placed polygon moves.
+    """Return how far gravity may lean, over mu, until a placed polygon moves; at most 10.
 
-    Parameters
-    ----------
-    corners : (n, 2) float array
-        Where it is.
-    centroid : (float, float)
-        Its centre of mass.
-    around : Polygons
-        Rigid neighbours.
-    width : float
-        Of the wall; its ends carry nothing.
-    mu : float
-        Coefficient of friction, positive: margins are shares of it.
-    tolerance : float
-        Gaps up to this one touch.
-    corner, steep : float
-        See :class:`drystone.kernels.settling.Rules`.
-
-    Returns
-    -------
-    margin : float
-        -1 when it does not rest; 10 or more counts as 10.
-
-    Raises
-    ------
-    ValueError
-        When mu is not positive.
+    -1 when it does not rest.  Gaps up to the tolerance touch; the ends of the wall carry nothing.
+    `corner` and `steep` are those of :class:`drystone.kernels.settling.Rules`.
     """
     require_friction(mu)
     corners = np.ascontiguousarray(corners, np.float64)

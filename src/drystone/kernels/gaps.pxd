@@ -1,28 +1,29 @@
+from drystone.kernels.memory cimport (
+    doubles, ints, more_doubles, more_ints, new_doubles, new_ints, release
+)
+from libc.math cimport sqrt
+
+ctypedef double *p_double
+ctypedef int *p_int
+
+
 cdef class Body:
-    cdef double *corners
-    cdef double *edges
-    cdef Py_ssize_t first
-    cdef Py_ssize_t count
-    cdef double left
-    cdef double low
-    cdef double right
-    cdef double high
+    cdef p_double corners, edges
+    cdef Py_ssize_t first, count
+    cdef double left, low, right, high
 
 
 cdef class Heap(Body):
     cdef Py_ssize_t size
-    cdef int *starts
-    cdef double *boxes
-    cdef double width
-    cdef double beyond
+    cdef p_int starts
+    cdef p_double boxes
+    cdef double width, beyond
 
 
 cdef class Stone(Body):
-    cdef double *gaps
-    cdef int *near
-    cdef Py_ssize_t found
-    cdef Py_ssize_t room
-    cdef Py_ssize_t near_room
+    cdef p_double gaps
+    cdef p_int near
+    cdef Py_ssize_t found, room, near_room
 
 
 cdef Heap heap_of(object around, double width)
@@ -30,3 +31,23 @@ cdef Stone stone_of(object corners, object edges)
 cdef void measure(Body body) noexcept nogil
 cdef int find_gaps(Stone stone, Heap heap, double reach, double corner) except -1 nogil
 cdef int crosses(Stone stone, Heap heap) except -1 nogil
+cdef void select(Heap heap, Py_ssize_t i) noexcept nogil
+cdef int keep(
+    Stone stone, double gap, double nx, double ny, double x, double y, double away, double other
+) except -1 nogil
+cdef int room_for(Stone stone, Py_ssize_t count) except -1 nogil
+cdef int one_way(
+    Body a, Body b, Stone out, double reach, double corner, double sign, double other
+) except -1 nogil
+cdef int at_corner(
+    Body a, Body b, Py_ssize_t i, Py_ssize_t e, double reach, double corner, double sign,
+    double other, Stone out
+) except -1 nogil
+cdef Py_ssize_t edge_before(Body b, Py_ssize_t e) noexcept nogil
+cdef bint face_between(Body a, Body b, Py_ssize_t i, Py_ssize_t e, double *face) noexcept nogil
+cdef double along(Body a, Py_ssize_t e, double mx, double my) noexcept nogil
+cdef bint contains(Body body, double x, double y) noexcept nogil
+cdef int over(Stone a, Body b) except -1 nogil
+cdef bint cut(
+    double *one, Py_ssize_t a, Py_ssize_t b, double *two, Py_ssize_t c, Py_ssize_t d
+) noexcept nogil

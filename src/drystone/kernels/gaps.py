@@ -17,18 +17,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import (
-        doubles,
-        ints,
-        more_doubles,
-        more_ints,
-        new_doubles,
-        new_ints,
-        release,
-    )
-    from cython.cimports.libc.math import sqrt
-else:
+if not cython.compiled:
     from math import sqrt
 
     from drystone.kernels.lists import (
@@ -48,29 +37,15 @@ INTO = cython.declare(cython.double, 0.03)
 
 
 class Gap(NamedTuple):
-    """One gap.
+    """One gap."""
 
-    Parameters
-    ----------
-    gap : float
-        Along the normal; below 0 where the corner lies inside.
-    normal_x, normal_y : float
-        Unit vector towards the moving polygon.
-    x, y : float
-        The corner; of two corners, that of the moving polygon.
-    away : float
-        Distance; more than the gap only where two corners meet with a face.
-    other : int
-        Number of the other polygon, or `GROUND`, or `END` for an end of the wall.
-    """
-
-    gap: float
-    normal_x: float
+    gap: float  # along the normal; below 0 where the corner lies inside
+    normal_x: float  # unit vector towards the moving polygon
     normal_y: float
-    x: float
+    x: float  # the corner; of two corners, that of the moving polygon
     y: float
-    away: float
-    other: int
+    away: float  # distance; more than the gap only where two corners meet with a face
+    other: int  # number of the other polygon, or `GROUND`, or `END` for an end of the wall
 
 
 def gaps_around(
@@ -82,33 +57,10 @@ def gaps_around(
     corner: float,
     beyond: float = 0.0,
 ) -> list[Gap]:
-    """List the gaps of a polygon to what is near: others, the ground, the ends of the wall.
+    """List the gaps, at most as wide or deep as the reach, to others, the ground, the wall's ends.
 
-    Parameters
-    ----------
-    corners : (n, 2) float array
-        Counter-clockwise.
-    edges : (n, 3) float array
-        Of it (:func:`drystone.kernels.polygons.polygon_edges`); those without length are left
-        out.
-    around : Polygons
-        What is near, and more.
-    width : float
-        Of the wall.
-    reach : float
-        Largest gap, and largest depth.
-    corner : float
-        Two corners nearer than this meet with a face.
-    beyond : float
-        How far the polygon may stand out over the ends of the wall.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from drystone.kernels.polygons import no_polygons, polygon_edges
-    >>> flat = np.array([[4.0, 1.0], [6.0, 1.0], [6.0, 2.0], [4.0, 2.0]])
-    >>> [gap.gap for gap in gaps_around(flat, polygon_edges(flat), no_polygons(), 10.0, 1.5, 0.3)]
-    [1.0, 1.0]
+    Edges are (unit vector x, y, length); those without length are left out.  Two corners nearer
+    than `corner` meet with a face.  The polygon may stand out over the ends by `beyond`.
     """
     stone: Stone = stone_of(corners, edges)
     heap: Heap = heap_of(around, width)
@@ -124,21 +76,6 @@ def crosses_any(corners: Points, around: Polygons) -> bool:
 
     Quick, for outlines that keep a clearance: no overlap is missed, and outlines that only touch
     may count.  Where they may touch, ask :mod:`drystone.model.overlap`.
-
-    Parameters
-    ----------
-    corners : (n, 2) float array
-        Of the polygon.
-    around : Polygons
-        The others.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from drystone.kernels.polygons import no_polygons
-    >>> square = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
-    >>> crosses_any(square + 1.0, no_polygons().added([square]))
-    True
     """
     stone: Stone = stone_of(corners, corners)
     return bool(crosses(stone, heap_of(around, 0.0)))
@@ -199,10 +136,7 @@ def measure(body):
         body.high = max(body.high, y)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def select(heap: Heap, i: cython.Py_ssize_t) -> cython.void:
+def select(heap, i):
     """Make one polygon of a heap its body."""
     heap.first = heap.starts[i]
     heap.count = heap.starts[i + 1] - heap.first
@@ -241,19 +175,7 @@ def find_gaps(stone, heap, reach, corner):
     return 0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def keep(
-    stone: Stone,
-    gap: cython.double,
-    nx: cython.double,
-    ny: cython.double,
-    x: cython.double,
-    y: cython.double,
-    away: cython.double,
-    other: cython.double,
-) -> cython.int:
+def keep(stone, gap, nx, ny, x, y, away, other):
     """Add a gap to the list."""
     k: cython.Py_ssize_t = 7 * stone.found
     if stone.found == stone.room:
@@ -266,10 +188,7 @@ def keep(
     return 0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def room_for(stone: Stone, count: cython.Py_ssize_t) -> cython.int:
+def room_for(stone, count):
     """Make room for the numbers of edges that are near."""
     if count > stone.near_room:
         stone.near = more_ints(stone.near, 2 * count)
@@ -277,18 +196,7 @@ def room_for(stone: Stone, count: cython.Py_ssize_t) -> cython.int:
     return 0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def one_way(
-    a: Body,
-    b: Body,
-    out: Stone,
-    reach: cython.double,
-    corner: cython.double,
-    sign: cython.double,
-    other: cython.double,
-) -> cython.int:
+def one_way(a, b, out, reach, corner, sign, other):
     """List the gaps of the corners of one polygon to the edges and corners of another."""
     left: cython.double = max(a.left, b.left) - reach
     low: cython.double = max(a.low, b.low) - reach
@@ -345,20 +253,7 @@ def one_way(
     return 0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def at_corner(
-    a: Body,
-    b: Body,
-    i: cython.Py_ssize_t,
-    e: cython.Py_ssize_t,
-    reach: cython.double,
-    corner: cython.double,
-    sign: cython.double,
-    other: cython.double,
-    out: Stone,
-) -> cython.int:
+def at_corner(a, b, i, e, reach, corner, sign, other, out):
     """List the gap of a corner before an edge's start to that start, if it lies in its region.
 
     Returns whether it is the same point.
@@ -397,10 +292,7 @@ def at_corner(
     return d <= SAME
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def edge_before(b: Body, e: cython.Py_ssize_t) -> cython.Py_ssize_t:
+def edge_before(b, e):
     """Return the edge before one, past those without length."""
     p: cython.Py_ssize_t = e
     for i in range(b.count):  # noqa: B007 - typed
@@ -410,12 +302,7 @@ def edge_before(b: Body, e: cython.Py_ssize_t) -> cython.Py_ssize_t:
     return p
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def face_between(
-    a: Body, b: Body, i: cython.Py_ssize_t, e: cython.Py_ssize_t, face: cython.p_double
-) -> cython.bint:
+def face_between(a, b, i, e, face):
     """Find the face that parts two corners best: its normal, out of b; False when none does."""
     before_a: cython.Py_ssize_t = edge_before(a, i)
     before_b: cython.Py_ssize_t = edge_before(b, e)
@@ -440,18 +327,12 @@ def face_between(
     return best > -SAME
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def along(a: Body, e: cython.Py_ssize_t, mx: cython.double, my: cython.double) -> cython.double:
+def along(a, e, mx, my):
     """Return the share of an edge's direction that runs along a normal."""
     return a.edges[3 * e] * mx + a.edges[3 * e + 1] * my
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def contains(body: Body, x: cython.double, y: cython.double) -> cython.bint:
+def contains(body, x, y):
     """Say whether a point lies in a polygon (even-odd rule)."""
     j: cython.Py_ssize_t = body.first + body.count - 1
     inside: cython.bint = False
@@ -473,10 +354,7 @@ def crosses(stone, heap):
     return False
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def over(a: Stone, b: Body) -> cython.int:
+def over(a, b):
     """Say whether edges of two polygons cross, or one lies in the other."""
     near: cython.Py_ssize_t = 0
     last: cython.Py_ssize_t = b.first + b.count - 1
@@ -527,17 +405,7 @@ def meets(
     return not (max(corners[e], corners[f]) < low or min(corners[e], corners[f]) > high)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def cut(
-    one: cython.p_double,
-    a: cython.Py_ssize_t,
-    b: cython.Py_ssize_t,
-    two: cython.p_double,
-    c: cython.Py_ssize_t,
-    d: cython.Py_ssize_t,
-) -> cython.bint:
+def cut(one, a, b, two, c, d):
     """Say whether two segments cross: from a to b of one polygon, from c to d of another."""
     if (side(one, a, b, two, c) > 0.0) == (side(one, a, b, two, d) > 0.0):
         return False

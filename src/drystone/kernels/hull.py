@@ -12,30 +12,15 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import flags, longs_out
-else:
+if not cython.compiled:
     from drystone.kernels.lists import flags, longs_out
 
 
 def pixel_hull(mask: Mask) -> NDArray[np.int64]:
     """Return the corners of the convex hull of the pixel squares of a mask.
 
-    Parameters
-    ----------
-    mask : (h, w) bool array
-        At least one pixel, row 0 at the top.
-
-    Returns
-    -------
-    corners : (n, 2) int array
-        x to the right and y up, px from the mask's bottom-left corner; counter-clockwise from the
-        right end of the lowest edge, no three of them on one line.
-
-    Examples
-    --------
-    >>> pixel_hull(np.array([[1, 0], [1, 1]], bool)).tolist()
-    [[2, 0], [2, 1], [1, 2], [0, 2], [0, 0]]
+    x to the right and y up, px from the mask's bottom-left corner; counter-clockwise from the right
+    end of the lowest edge, no three of them on one line.
     """
     mask = np.ascontiguousarray(mask)
     height: cython.Py_ssize_t = mask.shape[0]
@@ -62,12 +47,7 @@ def pixel_hull(mask: Mask) -> NDArray[np.int64]:
     return corners[:count].copy()
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def put(
-    at: cython.p_longlong, count: cython.Py_ssize_t, x: cython.longlong, y: cython.longlong
-) -> cython.Py_ssize_t:
+def put(at, count, x, y):
     """Add a point to the chain of corners (Andrew's); return how many there are then."""
     x1: cython.longlong
     y1: cython.longlong

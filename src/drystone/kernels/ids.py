@@ -11,13 +11,7 @@ _CACHED_PX = 1 << 16
 
 
 def counted(index: NDArray[np.int32], most: int) -> NDArray[np.int64]:
-    """Return how often each of the numbers 0 ... `most` is in an image.
-
-    Examples
-    --------
-    >>> counted(np.array([[1, 3], [3, 3]], np.int32), 4)
-    array([0, 1, 0, 3, 0])
-    """
+    """Return how often each of the numbers 0 ... `most` is in an image."""
     flat = index.ravel()
     counts = np.zeros(most + 1, np.int64)
     for start in range(0, flat.size, BLOCK_PX):
@@ -28,13 +22,7 @@ def counted(index: NDArray[np.int32], most: int) -> NDArray[np.int64]:
 def looked_up(
     table: NDArray[Any], index: NDArray[Any], out: NDArray[Any] | None = None
 ) -> NDArray[Any]:
-    """Return ``table[index]`` of an image of positions; nothing but the answer takes memory.
-
-    Examples
-    --------
-    >>> looked_up(np.array([5, 6]), np.array([[1, 0]]))
-    array([[6, 5]])
-    """
+    """Return ``table[index]`` of an image of positions; nothing but the answer takes memory."""
     found = np.empty(index.shape, table.dtype) if out is None else out
     flat, places = found.ravel(), index.ravel()
     for start in range(0, flat.size, _CACHED_PX):
@@ -44,25 +32,9 @@ def looked_up(
 
 
 def numbered(ids: NDArray[Any]) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
-    """Return an image with the number of each value instead of the value.
+    """Return an image with 1 + the place of each id among its different ids, and these, ascending.
 
-    Parameters
-    ----------
-    ids : (h, w) integer array
-        At least one pixel, none of them negative.
-
-    Returns
-    -------
-    index : (h, w) int32 array
-        Pixel by pixel 1 + the position of its value in `values`.
-    values : (n,) int64 array
-        The different values, ascending.
-
-    Examples
-    --------
-    >>> numbered(np.array([[0, 7], [70000, 7]]))
-    (array([[1, 2],
-           [3, 2]], dtype=int32), array([    0,     7, 70000]))
+    At least one pixel, no id below 0.
     """
     top = int(ids.max())
     if top < max(1 << 16, 4 * ids.size):

@@ -14,20 +14,10 @@ _Side = Literal["left", "right"]
 
 @dataclass(frozen=True, eq=False)
 class LabelRuns:
-    """The longest runs of equal labels above 0, row by row.
+    """The longest runs of equal labels above 0, row by row; ends are the columns after the last."""
 
-    Parameters
-    ----------
-    width : int
-        Of the image.
-    labels : (n,) integer array
-        Label of each run.
-    rows, begins, ends : (n,) int array
-        Its row, its first column and the column after its last one.
-    """
-
-    width: int
-    labels: NDArray[np.integer]
+    width: int  # of the image
+    labels: NDArray[np.integer]  # (n,) label of each run
     rows: Ints
     begins: Ints
     ends: Ints
@@ -39,19 +29,7 @@ class LabelRuns:
 
 
 def label_runs(labels: NDArray[np.integer]) -> LabelRuns:
-    """Find the runs of an image.
-
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        0 where nothing is.
-
-    Examples
-    --------
-    >>> runs = label_runs(np.array([[7, 7, 0], [0, 2, 7]]))
-    >>> runs.labels.tolist(), runs.begins.tolist(), runs.ends.tolist()
-    ([7, 2, 7], [0, 1, 2], [2, 2, 3])
-    """
+    """Find the runs of an image; 0 where nothing is."""
     width = labels.shape[1]
     flat = labels.ravel()
     is_first = np.empty(flat.shape, bool)
@@ -65,24 +43,9 @@ def label_runs(labels: NDArray[np.integer]) -> LabelRuns:
 
 
 def runs_in_pieces(runs: LabelRuns, *, corners: bool = True) -> Ints:
-    """Return which connected piece of its label each run is in.
+    """Return for each run the number of the connected piece of its label, from 0 on without gaps.
 
-    Parameters
-    ----------
-    runs : LabelRuns
-        Of an image.
-    corners : bool
-        Pixels that meet at a corner connect, too.
-
-    Returns
-    -------
-    (n,) int array
-        For each run the number of its piece, from 0 on without gaps.
-
-    Examples
-    --------
-    >>> runs_in_pieces(label_runs(np.array([[7, 0, 0, 7], [0, 7, 2, 0]]))).tolist()
-    [0, 1, 0, 2]
+    With `corners` pixels that meet at a corner connect, too.
     """
     count = len(runs.rows)
     if not count:

@@ -14,61 +14,25 @@ _fast = compiled("lowering")
 
 
 def skyline(occupied: Mask) -> Ints:
-    """Return the row of the highest occupied pixel of each column; the height where there is none.
-
-    Examples
-    --------
-    >>> skyline(np.array([[0, 0, 1], [1, 0, 1]], bool)).tolist()
-    [1, 2, 0]
-    """
-    if _fast is None:
-        return skyline_numpy(occupied)
-    tops: Ints = _fast.skyline(occupied)
-    return tops
-
-
-def skyline_numpy(occupied: Mask) -> Ints:
-    """Twin of :func:`skyline`."""
-    tops = np.where(occupied.any(axis=0), np.argmax(occupied, axis=0), occupied.shape[0])
-    return np.asarray(tops, np.int32)
+    """Return the row of the highest occupied pixel of each column; the height for none."""
+    if _fast is not None:
+        tops: Ints = _fast.skyline(occupied)
+        return tops
+    top = np.where(occupied.any(axis=0), np.argmax(occupied, axis=0), occupied.shape[0])
+    return np.asarray(top, np.int32)
 
 
 def lowered_positions(top: Ints, mask: Silhouette, height: int, clearance: int = 0) -> Positions:
     """Return where a mask comes to rest that is lowered from above, by row, then column.
 
-    Parameters
-    ----------
-    top : (w,) int array
-        From :func:`skyline`.
-    mask : Silhouette
-        Of the mask.
-    height : int
-        Number of rows of the landscape, which is open at the top and ends on the ground.
-    clearance : int
-        Only where the mask, with so many px on both sides, can come down to one own height above.
-
-    Returns
-    -------
-    positions : (n, 2) int array
-        Row and column of the mask's top-left corner; none where it would stand out at the top.
-
-    Examples
-    --------
-    >>> from drystone.kernels.silhouette import silhouette
-    >>> block = silhouette(np.ones((1, 2), bool))
-    >>> lowered_positions(np.array([5, 3, 5, 5], np.int32), block, 5).tolist()
-    [[2, 0], [2, 1], [4, 2]]
+    The landscape has a :func:`skyline` and so many rows; it is open at the top and ends on the
+    ground.  Positions (n, 2) are row and column of the mask's top-left corner, none where it would
+    stand out at the top; with a clearance only those where the mask, with so many px on both sides,
+    can come down to one own height above.
     """
-    if _fast is None:
-        return lowered_positions_numpy(top, mask, height, clearance)
-    found: Positions = _fast.lowered_positions(top, mask.bottom, mask.height, height, clearance)
-    return found
-
-
-def lowered_positions_numpy(
-    top: Ints, mask: Silhouette, height: int, clearance: int = 0
-) -> Positions:
-    """Twin of :func:`lowered_positions`."""
+    if _fast is not None:
+        found: Positions = _fast.lowered_positions(top, mask.bottom, mask.height, height, clearance)
+        return found
     rows = _drop_rows(top, mask.bottom)
     inside = rows >= 0
     if clearance and rows.size:

@@ -19,19 +19,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import (
-        doubles,
-        doubles_out,
-        ints,
-        ints_out,
-        more_doubles,
-        new_doubles,
-        new_ints,
-        release,
-    )
-    from cython.cimports.libc.math import sqrt
-else:
+if not cython.compiled:
     from math import sqrt
 
     from drystone.kernels.lists import (
@@ -88,24 +76,15 @@ SLOPE = cython.declare(cython.Py_ssize_t, 5)
 
 
 class Meetings(NamedTuple):
-    """Contacts of one polygon, ordered by the other one, then along the polygon.
+    """Contacts of one polygon, ordered by the other one, then along the polygon."""
 
-    Parameters
-    ----------
-    others : (k,) int32 array
-        Index of the other polygon of each contact; -1 for the ground, which comes first.
-    counts : (k,) int32 array
-        Number of points, 1 or 2.
-    points : (k, 2, 2) float array
-        (x, y) of both, on the boundary of the polygon; twice the same for a contact at a point.
-    normals : (k, 2) float array
-        Unit vectors into the polygon.
-    """
-
+    # (k,) index of the other polygon of each contact; -1 for the ground, which comes first
     others: NDArray[np.int32]
-    counts: NDArray[np.int32]
+    counts: NDArray[np.int32]  # (k,) number of points, 1 or 2
+    # (k, 2, 2) (x, y) of both, on the boundary of the polygon; twice the same for a contact
+    # at a point
     points: Points
-    normals: Points
+    normals: Points  # (k, 2) unit vectors into the polygon
 
     def __len__(self) -> int:
         """Return the number of contacts."""
@@ -115,30 +94,9 @@ class Meetings(NamedTuple):
 def meetings(corners: Points, around: Polygons, tolerance: float, setback: float = 0.0) -> Meetings:
     """Find all contacts of one placed polygon with others and with the ground, y = 0.
 
-    Parameters
-    ----------
-    corners : (n, 2) float array
-        A simple polygon, counter-clockwise, not closed, no corner twice in a row.
-    around : Polygons
-        The others.
-    tolerance : float
-        Gap or overlap up to which there is contact, above 0; edges are longer as a rule.
-    setback : float
-        Share of the size (root of the area) of the smaller polygon by which contacts stay away
-        from the ends of faces, and by the tolerance at least; 0 leaves them as they are.
+    It is simple, counter-clockwise, without a corner twice in a row.  Up to the tolerance a gap or
+    an overlap is a contact; edges are longer as a rule.
 
-    Returns
-    -------
-    Meetings
-        All of them.
-
-    Raises
-    ------
-    ValueError
-        When the corners are no polygon, or the tolerance is not above 0.
-
-    Notes
-    -----
     Edges that face each other at an angle of less than 2.9 degrees (a tangent of .05) touch on the
     part where the gap is within reach, as long as both run beside each other for more than the
     tolerance.  Reach is the tolerance for parallel edges and less the more they lean, nothing at
@@ -150,21 +108,13 @@ def meetings(corners: Points, around: Polygons, tolerance: float, setback: float
     the two at each corner; where none keeps them apart they do not.  Where faces separate them
     equally, which is common where four joints meet, it is the most level one.
 
-    The normal is that of the edge that a corner stands on; for a piece, at the end with the
-    smaller gap.
+    The normal is that of the edge that a corner stands on; for a piece, at the end with the smaller
+    gap.
 
-    Edges of stones are rounded, break and crush.  So with a set-back a piece stays away from the
-    ends of both faces, and a point counts only where one of them goes on to both sides of it: a
-    corner on a corner, or a lap of less than twice the set-back, carries nothing.
-
-    Examples
-    --------
-    >>> from drystone.kernels.polygons import no_polygons
-    >>> brick = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]])
-    >>> wall = no_polygons().added([brick])
-    >>> found = meetings(brick + [2.0, 2.01], wall, 0.1)
-    >>> found.others.tolist(), found.points[0].tolist(), found.normals[0].tolist()
-    ([0], [[2.0, 2.01], [4.0, 2.01]], [0.0, 1.0])
+    Edges of stones are rounded, break and crush.  So with a set-back, a share of the root of the
+    area of the smaller polygon and the tolerance at least, a piece stays away from the ends of both
+    faces, and a point counts only where one of them goes on to both sides of it: a corner on a
+    corner, or a lap of less than twice the set-back, carries nothing.
     """
     corners = np.ascontiguousarray(corners, np.float64)
     if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3:
@@ -192,8 +142,7 @@ def meetings(corners: Points, around: Polygons, tolerance: float, setback: float
     return _told(found)
 
 
-@cython.cfunc
-def _told(found: Contacts) -> Meetings:
+def _told(found):
     """Write what was found into arrays."""
     count: cython.Py_ssize_t = found.count
     others, counts = np.empty(count, np.int32), np.empty(count, np.int32)
@@ -217,18 +166,6 @@ def _told(found: Contacts) -> Meetings:
 @cython.cclass
 class Sides:
     """The edges of a polygon and the corners at their starts: unit vectors, lengths, boxes."""
-
-    count: cython.Py_ssize_t
-    x: cython.p_double
-    y: cython.p_double
-    along_x: cython.p_double
-    along_y: cython.p_double
-    length: cython.p_double
-    left: cython.p_double
-    bottom: cython.p_double
-    right: cython.p_double
-    top: cython.p_double
-    convex: cython.p_int
 
     def __init__(self, room: int) -> None:
         self.count = 0
@@ -256,10 +193,6 @@ class Sides:
 class Contacts:
     """Contacts one after the other, :data:`NUMBERS` numbers each."""
 
-    at: cython.p_double
-    count: cython.Py_ssize_t
-    room: cython.Py_ssize_t
-
     def __init__(self, room: int) -> None:
         self.count, self.room = 0, room
         self.at = new_doubles(NUMBERS * room)
@@ -268,21 +201,7 @@ class Contacts:
         release(self.at)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def meet_all(
-    mine: Sides,
-    theirs: Sides,
-    corners: cython.p_double,
-    others: cython.p_double,
-    first: cython.p_int,
-    boxes: cython.p_double,
-    count: cython.Py_ssize_t,
-    tolerance: cython.double,
-    setback: cython.double,
-    found: Contacts,
-) -> cython.int:
+def meet_all(mine, theirs, corners, others, first, boxes, count, tolerance, setback, found):
     """Find the contacts with the ground and with every polygon that is near."""
     reach: cython.double = BESIDE * tolerance
     beyond: cython.double = 1.0 + 4.0 * tolerance
@@ -314,10 +233,7 @@ def meet_all(
     return 0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def set_sides(sides: Sides, corners: cython.p_double, first: cython.Py_ssize_t) -> cython.void:
+def set_sides(sides, corners, first):
     """Prepare the sides of a polygon."""
     n: cython.Py_ssize_t = sides.count
     before: cython.Py_ssize_t = n - 1
@@ -338,17 +254,7 @@ def set_sides(sides: Sides, corners: cython.p_double, first: cython.Py_ssize_t) 
         before = k
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def meet(
-    p: Sides,
-    q: Sides,
-    other: cython.Py_ssize_t,
-    tolerance: cython.double,
-    by: cython.double,
-    found: Contacts,
-) -> cython.int:
+def meet(p, q, other, tolerance, by, found):
     """Add the contacts of two polygons, in order along the first."""
     reach: cython.double = BESIDE * tolerance
     q_left: cython.double = q.left[0]
@@ -386,31 +292,13 @@ def meet(
     return 0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def copy(at: cython.p_double, one: cython.Py_ssize_t, to: cython.Py_ssize_t) -> cython.void:
+def copy(at, one, to):
     """Copy a contact to another place."""
     for k in range(NUMBERS):
         at[NUMBERS * to + k] = at[NUMBERS * one + k]
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def add(
-    found: Contacts,
-    edge: cython.Py_ssize_t,
-    facing: cython.Py_ssize_t,
-    start: cython.double,
-    count: cython.int,
-    x0: cython.double,
-    y0: cython.double,
-    x1: cython.double,
-    y1: cython.double,
-    normal_x: cython.double,
-    normal_y: cython.double,
-) -> cython.int:
+def add(found, edge, facing, start, count, x0, y0, x1, y1, normal_x, normal_y):
     """Add a contact of one or two points; there is always room for one more."""
     k: cython.Py_ssize_t = NUMBERS * found.count
     at: cython.p_double = found.at
@@ -424,17 +312,7 @@ def add(
     return 0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def facing_edges(
-    p: Sides,
-    i: cython.Py_ssize_t,
-    q: Sides,
-    j: cython.Py_ssize_t,
-    tolerance: cython.double,
-    found: Contacts,
-) -> cython.int:
+def facing_edges(p, i, q, j, tolerance, found):
     """Add the contact along edges that face each other; one point where it is short."""
     c: cython.double[6] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     part: cython.double[2] = [0.0, 0.0]
@@ -472,17 +350,7 @@ def facing_edges(
     )  # fmt: skip
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def corner_on_edge(
-    p: Sides,
-    i: cython.Py_ssize_t,
-    q: Sides,
-    j: cython.Py_ssize_t,
-    tolerance: cython.double,
-    found: Contacts,
-) -> cython.int:
+def corner_on_edge(p, i, q, j, tolerance, found):
     """Add the contact of corner `i` on edge `j`, away from its ends."""
     c: cython.double[6] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     if stands_on(p, i, q, j, tolerance) < 0.0:
@@ -494,17 +362,7 @@ def corner_on_edge(
     return add(found, i, j, 0.0, 1, x, y, x, y, q.along_y[j], -q.along_x[j])
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def edge_on_corner(
-    p: Sides,
-    i: cython.Py_ssize_t,
-    q: Sides,
-    j: cython.Py_ssize_t,
-    tolerance: cython.double,
-    found: Contacts,
-) -> cython.int:
+def edge_on_corner(p, i, q, j, tolerance, found):
     """Add the contact of edge `i`, away from its ends, on corner `j`."""
     c: cython.double[6] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     start: cython.double = stands_on(q, j, p, i, tolerance)
@@ -517,17 +375,7 @@ def edge_on_corner(
     return add(found, i, j, start, 1, x, y, x, y, -p.along_y[i], p.along_x[i])
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def corner_on_corner(
-    p: Sides,
-    i: cython.Py_ssize_t,
-    q: Sides,
-    j: cython.Py_ssize_t,
-    tolerance: cython.double,
-    found: Contacts,
-) -> cython.int:
+def corner_on_corner(p, i, q, j, tolerance, found):
     """Add the contact of two convex corners beside each other, where a face separates them."""
     c: cython.double[6] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     apart: cython.double[4] = [0.0, 0.0, 0.0, 0.0]
@@ -578,20 +426,12 @@ def corner_on_corner(
     return add(found, edge, j, start, 1, x, y, x, y, -p.along_y[face], p.along_x[face])
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def set_back_by(
-    size: cython.double, tolerance: cython.double, setback: cython.double
-) -> cython.double:
+def set_back_by(size, tolerance, setback):
     """Return by how much contacts are set back, by the area of the smaller polygon."""
     return max(tolerance, setback * sqrt(size)) if setback != 0.0 else 0.0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def area(s: Sides) -> cython.double:
+def area(s):
     """Return the area of a polygon."""
     doubled: cython.double = 0.0
     for k in range(1, s.count - 1):
@@ -600,17 +440,7 @@ def area(s: Sides) -> cython.double:
     return doubled / 2.0 if doubled > 0.0 else 0.0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def set_back(
-    p: Sides,
-    q: Sides,
-    at: cython.p_double,
-    k: cython.Py_ssize_t,
-    by: cython.double,
-    tolerance: cython.double,
-) -> cython.bint:
+def set_back(p, q, at, k, by, tolerance):
     """Set a contact back from the ends of faces; return whether anything is left of it."""
     edge: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, at[k + EDGE])
     facing: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, at[k + FACING])
@@ -642,10 +472,7 @@ def set_back(
     return min(runs_on(q, facing, across, by, -1), runs_on(q, facing, across, by, 1)) >= by
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def projected(s: Sides, i: cython.Py_ssize_t, x: cython.double, y: cython.double) -> cython.double:
+def projected(s, i, x, y):
     """Return how far along an edge a point is beside it; its ends for what is beyond them."""
     along: cython.double = (x - s.x[i]) * s.along_x[i] + (y - s.y[i]) * s.along_y[i]
     if along < 0.0:
@@ -653,16 +480,7 @@ def projected(s: Sides, i: cython.Py_ssize_t, x: cython.double, y: cython.double
     return s.length[i] if along > s.length[i] else along
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def runs_on(
-    s: Sides,
-    i: cython.Py_ssize_t,
-    along: cython.double,
-    enough: cython.double,
-    sense: cython.int,
-) -> cython.double:
+def runs_on(s, i, along, enough, sense):
     """Return how far a face goes on from a point of edge `i`, at most `enough`."""
     run: cython.double = s.length[i] - along if sense > 0 else along
     edge: cython.Py_ssize_t = i
@@ -681,12 +499,7 @@ def runs_on(
     return run if run < enough else enough
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def without_repeats(
-    found: Contacts, begin: cython.Py_ssize_t, tolerance: cython.double
-) -> cython.void:
+def without_repeats(found, begin, tolerance):
     """Leave out points that are told already, and sort the others, from a place on."""
     kept: cython.Py_ssize_t = begin
     at: cython.p_double = found.at
@@ -715,39 +528,19 @@ def without_repeats(
     found.count = kept
 
 
-@cython.cfunc
-@cython.nogil
-@cython.inline
-@cython.exceptval(check=False)
-def comes_before(
-    at: cython.p_double, one: cython.Py_ssize_t, other: cython.Py_ssize_t
-) -> cython.bint:
+def comes_before(at, one, other):
     """Tell whether a contact comes before another one, along the polygon."""
     if at[one + EDGE] != at[other + EDGE]:
         return at[one + EDGE] < at[other + EDGE]
     return at[one + START] < at[other + START]
 
 
-@cython.cfunc
-@cython.nogil
-@cython.inline
-@cython.exceptval(check=False)
-def before(s: Sides, i: cython.Py_ssize_t) -> cython.Py_ssize_t:
+def before(s, i):
     """Return the edge that ends where edge `i` starts."""
     return i - 1 if i else s.count - 1
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def common(
-    p: Sides,
-    i: cython.Py_ssize_t,
-    q: Sides,
-    j: cython.Py_ssize_t,
-    tolerance: cython.double,
-    c: cython.p_double,
-) -> cython.bint:
+def common(p, i, q, j, tolerance, c):
     """Find where two edges face each other; return whether they do.
 
     Along edge `i`: from where to where they are beside each other, and both ends of edge `j`; how
@@ -768,17 +561,7 @@ def common(
     return c[HIGH] - c[LOW] > tolerance
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def within(
-    low: cython.double,
-    high: cython.double,
-    at_low: cython.double,
-    at_high: cython.double,
-    reach: cython.double,
-    part: cython.p_double,
-) -> cython.bint:
+def within(low, high, at_low, at_high, reach, part):
     """Find the part from low to high on which a value is at most `reach` from 0."""
     if min(at_low, at_high) > reach or max(at_low, at_high) < -reach:
         return False
@@ -792,16 +575,7 @@ def within(
     return True
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def stands_on(
-    s: Sides,
-    i: cython.Py_ssize_t,
-    t: Sides,
-    j: cython.Py_ssize_t,
-    tolerance: cython.double,
-) -> cython.double:
+def stands_on(s, i, t, j, tolerance):
     """Return how far along edge `j` corner `i` stands on it; -1 when it does not."""
     x: cython.double = s.x[i] - t.x[j]
     y: cython.double = s.y[i] - t.y[j]
@@ -817,26 +591,14 @@ def stands_on(
     return -1.0 if t.convex[end] and are_beside(s, i, t, end, tolerance) else along
 
 
-@cython.cfunc
-@cython.nogil
-@cython.inline
-@cython.exceptval(check=False)
-def are_beside(
-    s: Sides, i: cython.Py_ssize_t, t: Sides, j: cython.Py_ssize_t, tolerance: cython.double
-) -> cython.bint:
+def are_beside(s, i, t, j, tolerance):
     """Tell whether two corners are so near that neither stands on an edge away from its ends."""
     x: cython.double = s.x[i] - t.x[j]
     y: cython.double = s.y[i] - t.y[j]
     return x * x + y * y <= 2.0 * tolerance * tolerance
 
 
-@cython.cfunc
-@cython.nogil
-@cython.inline
-@cython.exceptval(check=False)
-def clears(
-    s: Sides, i: cython.Py_ssize_t, out_x: cython.double, out_y: cython.double
-) -> cython.bint:
+def clears(s, i, out_x, out_y):
     """Tell whether both edges at a corner lead outwards, or hardly inwards."""
     coming: cython.Py_ssize_t = before(s, i)
     if s.along_x[coming] * out_x + s.along_y[coming] * out_y > LEAN:
@@ -844,15 +606,7 @@ def clears(
     return s.along_x[i] * out_x + s.along_y[i] * out_y >= -LEAN
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def best(
-    separates: cython.pointer[cython.bint],
-    apart: cython.p_double,
-    level: cython.p_double,
-    equal: cython.double,
-) -> cython.int:
+def best(separates, apart, level, equal):
     """Return which of four faces separates most, the most level of equals; -1 when none does."""
     chosen: cython.int = -1
     most: cython.double = 0.0
@@ -867,16 +621,7 @@ def best(
     return chosen
 
 
-@cython.cfunc
-@cython.nogil
-@cython.inline
-@cython.exceptval(check=False)
-def is_same(
-    at: cython.p_double,
-    one: cython.Py_ssize_t,
-    other: cython.Py_ssize_t,
-    tolerance: cython.double,
-) -> cython.bint:
+def is_same(at, one, other, tolerance):
     """Tell whether a contact at a point has the place and the normal of another contact."""
     limit: cython.double = 4.0 * tolerance * tolerance
     x: cython.double = at[one + NORMAL_X] * at[other + NORMAL_X]

@@ -11,29 +11,11 @@ _Corner = tuple[int, int]
 
 
 def pixel_polygon(mask: Mask) -> Polygon:
-    """Return the polygon along the pixel edges of a mask.
+    """Return the polygon along the pixel edges of a mask: one 4-connected piece without holes.
 
-    Parameters
-    ----------
-    mask : (h, w) bool array
-        One 4-connected piece without holes, row 0 at the top.
-
-    Returns
-    -------
-    corners : (n, 2) float array
-        Counter-clockwise from the leftmost corner of the lowest edge, no three in a row on one
-        line; x to the right and y up, px from the mask's bottom-left corner.  Where two pixels
-        touch only at a corner the polygon passes that corner twice and does not cross itself.
-
-    Raises
-    ------
-    ValueError
-        When there is no pixel, more than one piece, or a hole.
-
-    Examples
-    --------
-    >>> pixel_polygon(np.array([[1, 0], [1, 1]], bool)).tolist()
-    [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]]
+    Counter-clockwise from the leftmost corner of the lowest edge, no three corners in a row on one
+    line; x to the right and y up, px from the mask's bottom-left corner.  Where two pixels touch
+    only at a corner the polygon passes that corner twice and does not cross itself.
     """
     outgoing = _boundary(mask)
     if not outgoing:
@@ -73,26 +55,10 @@ def _boundary(mask: Mask) -> dict[_Corner, list[_Corner]]:
 
 
 def rasterise_polygon(polygon: Polygon) -> tuple[Mask, int, int]:
-    """Return the pixels whose centres lie inside a polygon.
+    """Return the pixels whose centres lie inside a polygon (n, 2), px, y up, by the even-odd rule.
 
-    Parameters
-    ----------
-    polygon : (n, 2) float array
-        Corners in either sense, px, x to the right and y up; the even-odd rule says what is
-        inside.
-
-    Returns
-    -------
-    mask : (h, w) bool array
-        Cropped to its pixels, row 0 at the top; of shape (0, 0) when no centre is inside.
-    left, bottom : int
-        Pixel corner at which its bottom-left corner lies.
-
-    Examples
-    --------
-    >>> square = np.array([[3.0, 1.0], [5.0, 1.0], [5.0, 2.0], [3.0, 2.0]])
-    >>> rasterise_polygon(square)
-    (array([[ True,  True]]), 3, 1)
+    The mask is cropped, of shape (0, 0) when no centre is inside; then left and bottom: the pixel
+    corner at which its bottom-left corner lies.
     """
     left, bottom = np.floor(polygon.min(axis=0)).astype(int).tolist()
     right, top = np.ceil(polygon.max(axis=0)).astype(int).tolist()
@@ -110,14 +76,9 @@ def rasterise_polygon(polygon: Polygon) -> tuple[Mask, int, int]:
 
 
 def _crossings(polygon: Polygon) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Return where the rows of pixel centres cross the edges of a polygon.
+    """Return the rows of pixel centres, y up, that cross edges, and the x of each crossing.
 
-    Returns
-    -------
-    row : (n,) int array
-        Numbers of rows, y up; the lower end of an edge counts to it, the upper one does not.
-    x : (n,) float array
-        Where each crosses its edge.
+    The lower end of an edge counts to it, the upper one does not.
     """
     (x0, y0), (x1, y1) = polygon.T, np.roll(polygon, -1, axis=0).T
     first = np.ceil(np.minimum(y0, y1) - 0.5).astype(np.int64)

@@ -16,15 +16,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import (
-        flags_out,
-        labels_in,
-        longs_out,
-        pixels,
-        stride,
-    )
-else:
+if not cython.compiled:
     from drystone.kernels.lists import flags_out, labels_in, longs_out, pixels, stride
 
 GROUND = 0
@@ -42,31 +34,15 @@ GROUND_LABEL = cython.declare(cython.longlong, GROUND)
 
 @dataclass(frozen=True, eq=False)
 class Patch:
-    """A piece of an image with its margin.
+    """A piece of an image with its margin."""
 
-    Parameters
-    ----------
-    cells : (h, w) int64 array
-        Labels; EMPTY where nothing is, GROUND below the image.
-    fresh : (h, w) bool array or None
-        True where something was painted; None when all is fresh.
-    origin : (int, int)
-        (x, y) of the upper left corner of the cells.
-    """
-
-    cells: Cells
-    fresh: Mask | None
-    origin: tuple[int, int]
+    cells: Cells  # (h, w) labels; EMPTY where nothing is, GROUND below the image
+    fresh: Mask | None  # (h, w) true where something was painted; None when all is fresh
+    origin: tuple[int, int]  # (x, y) of the upper left corner of the cells
 
 
 def whole_patch(labels: NDArray[np.integer]) -> Patch:
-    """Return all of an image as a patch.
-
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        0 where nothing is.
-    """
+    """Return all of an image as a patch; 0 where nothing is."""
     height, width = labels.shape
     cells = np.full((height + 2 * MARGIN_PX, width + 2 * MARGIN_PX), EMPTY, np.int64)
     inside = cells[MARGIN_PX : MARGIN_PX + height, MARGIN_PX : MARGIN_PX + width]
@@ -78,22 +54,10 @@ def whole_patch(labels: NDArray[np.integer]) -> Patch:
 def painted_patch(
     labels: NDArray[np.uint32], parts: Sequence[Part]
 ) -> tuple[Patch, list[tuple[int, int, int]]]:
-    """Return what is around new parts of an image, with the parts in it.
+    """Return what is around new parts of an image, at least one, with the parts in it.
 
-    Parameters
-    ----------
-    labels : (h, w) uint32 array
-        0 where nothing is.
-    parts : sequence of (label, row, col, mask)
-        At least one; with labels that the image does not have.
-
-    Returns
-    -------
-    patch : Patch
-        Around all parts.
-    sums : list of (int, int, int)
-        For each part: its number of pixels, and the sums of their columns and of their rows in
-        the mask.
+    Labels are new to the image.  Of each part the second value has its number of pixels, and the
+    sums of their columns and of their rows in the mask.
     """
     top = min(row for _, row, _, _ in parts) - MARGIN_PX
     left = min(col for _, _, col, _ in parts) - MARGIN_PX

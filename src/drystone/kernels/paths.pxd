@@ -1,3 +1,6 @@
+from drystone.kernels.memory cimport longs, longs_out, more_longs, new_longs, release
+
+
 cdef class Queue:
     cdef long long *entries
     cdef long long *heads

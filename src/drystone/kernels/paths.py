@@ -25,15 +25,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import (
-        longs,
-        longs_out,
-        more_longs,
-        new_longs,
-        release,
-    )
-else:
+if not cython.compiled:
     from drystone.kernels.lists import longs, longs_out, more_longs, new_longs, release
 
 STRAIGHT, DIAGONAL = 38_613_965, 54_608_393
@@ -67,80 +59,37 @@ _DETOURS = np.array(
 
 
 def row_lengths(open_px: Mask, rows: NDArray[np.intp]) -> NDArray[np.int64]:
-    """Return the length of the shortest way along each of some rows.
+    """Return the length of the shortest way from the first pixel of each row to its last.
 
-    Parameters
-    ----------
-    open_px : (h, w) bool array
-        Pixels that ways may use.
-    rows : (n,) int array
-        Ways lead from the first pixel of a row to its last.  Less than 2^62 over 109 million times
-        the open pixels: some two hundred in the largest images that are read.
-
-    Returns
-    -------
-    lengths : (n,) int array
-        In units of which a straight step has :data:`STRAIGHT`; -1 where there is no way.
-
-    Examples
-    --------
-    >>> lengths = row_lengths(np.array([[1, 1, 1], [1, 0, 1]], bool), np.array([0, 1]))
-    >>> [step_counts(length) for length in lengths.tolist()]
-    [(2, 0), (0, 2)]
+    In units of which a straight step has :data:`STRAIGHT`; -1 where there is no way.  Rows are less
+    than 2^62 over 109 million times the open pixels: some two hundred in the largest images that
+    are read.
     """
     return _searched(open_px, rows)[0]
 
 
 def row_ways(open_px: Mask, rows: NDArray[np.intp]) -> list[NDArray[np.intp] | None]:
-    """Return the pixels of the shortest way along each of some rows.
+    """Return the pixels (k, 2) of the shortest way along each row; None where there is no way.
 
-    Parameters
-    ----------
-    open_px : (h, w) bool array
-        Pixels that ways may use.
-    rows : (n,) int array
-        Ways lead from the first pixel of a row to its last.
-
-    Returns
-    -------
-    ways : list of (k, 2) int arrays or None
-        Row and column of their pixels; None where there is no way.  Of ways of one length,
-        followed back from the end, the one that goes left while it can, rather down and left than
-        up and left, then down, up, right.
-
-    Examples
-    --------
-    >>> [way.tolist() for way in row_ways(np.array([[1, 1, 1], [1, 0, 1]], bool), np.array([1]))]
-    [[[1, 0], [0, 1], [1, 2]]]
+    Of ways of one length, followed back from the end, it is the one that goes left while it can,
+    rather down and left than up and left, then down, up, right.
     """
     return [_followed_back(_searched_lengths(open_px, row), row) for row in rows.tolist()]
 
 
 def step_counts(length: int) -> tuple[int, int]:
-    """Return how many straight and how many diagonal steps make a length.
-
-    Examples
-    --------
-    >>> step_counts(3 * STRAIGHT + 5 * DIAGONAL)
-    (3, 5)
-    """
+    """Return how many straight and how many diagonal steps make a length."""
     diagonal = length * _INVERSE % STRAIGHT
     return (length - diagonal * DIAGONAL) // STRAIGHT, diagonal
 
 
 def _searched(open_px: Mask, rows: NDArray[np.intp]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Search along rows, one after the other, in one array of keys.
+    """Search along rows, one after the other, in one array of keys; return lengths and keys.
 
     The key of a cell is how much longer than :func:`_least` the shortest way through it is, as far
     as known.  Nothing is reset between rows: each row's keys begin so much lower than those of the
-    row before that older keys are as good as none.
-
-    Returns
-    -------
-    lengths : (n,) int array
-        As of :func:`row_lengths`.
-    keys : (h, w) int array
-        Of the cells that the last row's search has met, beginning at 0; final on shortest ways.
+    row before that older keys are as good as none.  The last row's begin at 0; they are final on
+    shortest ways.
     """
     height, width = open_px.shape
     cells = np.full((height + 2, width + 2), _CLOSED, np.int64)
@@ -211,18 +160,11 @@ class Queue:
 
 
 def _search_rows(cells, rows, firsts, steps, found):
-    """Search along rows.
+    """Search along rows; the keys of their last cells go into `found`.
 
-    Parameters
-    ----------
-    cells : (h + 2, w + 2) int array
-        Keys: -1 for closed cells, among them a rim of one, else above all that will be written.
-    rows, firsts : (n,) int arrays
-        Rows without the rim, and the key that each begins with, falling from row to row.
-    steps : (8,) int array
-        What each step adds to the place of a cell.
-    found : (n,) int array
-        Takes the keys of the last cells of the rows.
+    Cells (h + 2, w + 2) are keys: -1 for closed cells, among them a rim of one, else above all that
+    will be written.  Rows are counted without the rim, and begin with the keys `firsts`, which fall
+    from row to row.  `steps` (8,) is what each step adds to the place of a cell.
     """
     queue: Queue = Queue()
     keys: cython.p_longlong = longs_out(cells)

@@ -13,24 +13,13 @@ GRID = 1 << 20
 
 
 class Polygons(NamedTuple):
-    """Simple polygons, counter-clockwise, one after the other.
+    """Simple polygons, counter-clockwise and not closed, one after the other; y up."""
 
-    Parameters
-    ----------
-    corners : (n, 2) float array
-        x to the right, y up; not closed.
-    first : (k + 1,) int32 array
-        Polygon i has the corners from ``first[i]`` to before ``first[i + 1]``.
-    boxes : (k, 4) float array
-        Left, bottom, right and top of each.
-    edges : (n, 3) float array
-        Unit vector (x, y) from each corner to the next one of its polygon, and their distance.
-    """
-
-    corners: Points
+    corners: Points  # (n, 2)
+    # (k + 1,) polygon i has the corners from first[i] to before first[i + 1]
     first: NDArray[np.int32]
-    boxes: Points
-    edges: Points
+    boxes: Points  # (k, 4) left, bottom, right and top
+    edges: Points  # (n, 3) unit vector (x, y) from each corner to the next one, and their distance
 
     def __len__(self) -> int:
         """Return how many polygons there are."""
@@ -91,26 +80,14 @@ def no_polygons() -> Polygons:
 
 
 def polygon_edges(corners: Points) -> Points:
-    """Return the edges of a polygon as rows (unit vector x, y, length), from each corner on.
-
-    Examples
-    --------
-    >>> polygon_edges(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0]])).round(3).tolist()
-    [[1.0, 0.0, 2.0], [0.0, 1.0, 1.0], [-0.894, -0.447, 2.236]]
-    """
+    """Return the edges of a polygon as rows (unit vector x, y, length), from each corner on."""
     along = np.roll(corners, -1, axis=0) - corners
     length = np.sqrt(along[:, 0] * along[:, 0] + along[:, 1] * along[:, 1])
     return np.column_stack([along[:, 0] / length, along[:, 1] / length, length])
 
 
 def mirrored_polygon(corners: Points, width: float) -> Points:
-    """Return the mirror image of one polygon about the middle of a wall of a given width.
-
-    Examples
-    --------
-    >>> mirrored_polygon(np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]]), 10.0).tolist()
-    [[10.0, 1.0], [8.0, 0.0], [10.0, 0.0]]
-    """
+    """Return the mirror image of one polygon about the middle of a wall of a given width."""
     return np.column_stack([width - corners[::-1, 0], corners[::-1, 1]])
 
 

@@ -18,10 +18,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import doubles, doubles_out
-    from cython.cimports.libc.math import ceil, floor
-else:
+if not cython.compiled:
     from math import ceil, floor
 
     from drystone.kernels.lists import doubles, doubles_out
@@ -47,38 +44,22 @@ INFINITY = cython.declare(cython.double, np.inf)
 
 
 class HeightProfile(NamedTuple):
-    """How high a wall is over each column.
+    """How high a wall is over each column."""
 
-    Parameters
-    ----------
-    tops : (columns,) float array
-        The highest y of anything over the column; 0 for bare ground.
-    owners : (columns,) int32 array
-        Index of the polygon that is highest there, of equals the one that came first; -1 for the
-        ground.
-    boxes : (k, 4) float array
-        Left, bottom, right and top of the polygons, by their index; zeros where there is none.
-    """
-
-    tops: Floats
+    tops: Floats  # (columns,) the highest y of anything over the column; 0 for bare ground
+    # (columns,) index of the polygon that is highest there, of equals the one that came
+    # first; -1 for the ground
     owners: Ints
+    # (k, 4) left, bottom, right and top of the polygons, by their index; zeros where there is
+    # none
     boxes: Floats
 
 
 class StoneProfile(NamedTuple):
-    """A polygon over columns that start at its left end.
+    """A polygon over columns that start at its left end; y from the origin, a stone's centroid."""
 
-    Parameters
-    ----------
-    bottoms, tops : (n,) float arrays
-        The lowest and the highest y of the polygon over each column, measured from the origin of
-        its corners, which is a stone's centroid.
-    left, bottom, right, top : float
-        Its box, from the same origin.
-    """
-
-    bottoms: Floats
-    tops: Floats
+    bottoms: Floats  # (n,) the lowest y over each column
+    tops: Floats  # (n,) the highest
     left: float
     bottom: float
     right: float
@@ -86,32 +67,16 @@ class StoneProfile(NamedTuple):
 
 
 class StoneProfiles(NamedTuple):
-    """Stone profiles in a row.
+    """Stone profiles in a row."""
 
-    Parameters
-    ----------
-    bottoms : (n,) float array
-        Those of all stones, one stone after the other.
-    first : (k + 1,) int64 array
-        Stone i has the bottoms from ``first[i]`` to before ``first[i + 1]``.
-    boxes : (k, 4) float array
-        Left, bottom, right and top of each.
-    """
-
-    bottoms: Floats
+    bottoms: Floats  # (n,)
+    # (k + 1,) stone i has the bottoms from first[i] to before first[i + 1]
     first: NDArray[np.int64]
-    boxes: Floats
+    boxes: Floats  # (k, 4) left, bottom, right and top
 
 
 def in_a_row(stones: Sequence[StoneProfile]) -> StoneProfiles:
-    """Put stone profiles in a row.
-
-    Examples
-    --------
-    >>> one = hanging(np.array([[-1.0, -1.0], [2.0, -1.0], [-1.0, 2.0]]), 2.0)
-    >>> in_a_row([one, one])[:2]
-    (array([-1., -1., -1., -1.]), array([0, 2, 4]))
-    """
+    """Put stone profiles in a row."""
     first = np.zeros(len(stones) + 1, np.int64)
     np.cumsum([len(stone.bottoms) for stone in stones], out=first[1:])
     bottoms = np.concatenate([np.zeros(0), *(stone.bottoms for stone in stones)])
@@ -120,39 +85,14 @@ def in_a_row(stones: Sequence[StoneProfile]) -> StoneProfiles:
 
 
 def bare(columns: int) -> HeightProfile:
-    """Return the profile of the ground.
-
-    Examples
-    --------
-    >>> bare(2)[:2]
-    (array([0., 0.]), array([-1, -1], dtype=int32))
-    """
+    """Return the profile of the ground."""
     return HeightProfile(np.zeros(columns), np.full(columns, GROUND, np.int32), np.zeros((0, 4)))
 
 
 def raised(profile: HeightProfile, corners: Floats, index: int, cell_px: float) -> HeightProfile:
-    """Return a profile with one more polygon.
+    """Return a profile with one more polygon (n, 2), source px, of an index that no other has.
 
-    Parameters
-    ----------
-    profile : HeightProfile
-        Stays as it is.
-    corners : (n, 2) float array
-        Of the polygon where it is placed, source px; what is beside the profile is ignored.
-    index : int
-        Of the polygon, for `owners` and `boxes`; not negative.
-    cell_px : float
-        Width of a column, source px.
-
-    Raises
-    ------
-    ValueError
-        When the index is negative.
-
-    Examples
-    --------
-    >>> raised(bare(4), np.array([[1.0, 0.0], [4.0, 0.0], [4.0, 3.0]]), 0, 2.0)[:2]
-    (array([1., 3., 0., 0.]), array([ 0,  0, -1, -1], dtype=int32))
+    What is beside the profile is ignored.
     """
     if index < 0:
         raise ValueError(f"polygon {index}")
@@ -175,23 +115,6 @@ def hanging(corners: Floats, cell_px: float) -> StoneProfile:
     """Return the profile of a polygon that is moved so that its left end lies on a column edge.
 
     The last column is left out if the polygon reaches into it by less than `OVER`.
-
-    Parameters
-    ----------
-    corners : (n, 2) float array
-        Relative to the centroid, source px.
-    cell_px : float
-        Width of a column, source px.
-
-    Raises
-    ------
-    ValueError
-        When the polygon has no width.
-
-    Examples
-    --------
-    >>> hanging(np.array([[-1.0, -1.0], [2.0, -1.0], [-1.0, 2.0]]), 2.0)[:2]
-    (array([-1., -1.]), array([2., 0.]))
     """
     left, bottom = corners.min(axis=0).tolist()
     right, top = corners.max(axis=0).tolist()
@@ -205,28 +128,9 @@ def hanging(corners: Floats, cell_px: float) -> StoneProfile:
 def extremes(
     corners: Floats, left_px: float, cell_px: float, columns: int
 ) -> tuple[Floats, Floats]:
-    """Return the lowest and the highest y of a polygon over each of some columns.
+    """Return the lowest and the highest y of a polygon over each of some columns from `left_px` on.
 
-    Parameters
-    ----------
-    corners : (n, 2) float array
-        Of the polygon.
-    left_px : float
-        Where the first column starts.
-    cell_px : float
-        Width of a column, positive.
-    columns : int
-        How many there are.
-
-    Returns
-    -------
-    bottoms, tops : (columns,) float arrays
-        +inf and -inf where the polygon is not over a column.
-
-    Raises
-    ------
-    ValueError
-        When columns have no width, or corners are not pairs.
+    +inf and -inf where the polygon is not over a column.
     """
     if not cell_px > 0:
         raise ValueError(f"columns {cell_px} px wide")
@@ -246,18 +150,7 @@ def extremes(
     return lowest, highest
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def sweep_all(
-    at: cython.p_double,
-    size: cython.Py_ssize_t,
-    left: cython.double,
-    cell: cython.double,
-    bottoms: cython.p_double,
-    tops: cython.p_double,
-    columns: cython.Py_ssize_t,
-) -> cython.void:
+def sweep_all(at, size, left, cell, bottoms, tops, columns):
     """Take in all edges of a polygon."""
     for j in range(columns):
         bottoms[j], tops[j] = INFINITY, -INFINITY
@@ -272,20 +165,7 @@ def sweep_all(
         bottoms[j], tops[j] = bottoms[j] + 0.0, tops[j] + 0.0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.inline
-@cython.exceptval(check=False)
-def sweep(
-    start_x: cython.double,
-    start_y: cython.double,
-    end_x: cython.double,
-    end_y: cython.double,
-    cell: cython.double,
-    bottoms: cython.p_double,
-    tops: cython.p_double,
-    columns: cython.Py_ssize_t,
-) -> cython.void:
+def sweep(start_x, start_y, end_x, end_y, cell, bottoms, tops, columns):
     """Take in the edge from one corner to another that is not left of it."""
     run: cython.double = end_x - start_x
     slope: cython.double = (end_y - start_y) / run if run > 0.0 else 0.0

@@ -25,13 +25,7 @@ _fast = compiled("raster")
 
 
 def rotation(angle_deg: float) -> Pair:
-    """Return cosine and sine of an angle in degrees, exact at quarter turns.
-
-    Examples
-    --------
-    >>> rotation(90.0)
-    (0.0, 1.0)
-    """
+    """Return cosine and sine of an angle in degrees, exact at quarter turns."""
     quarter, rest = divmod(angle_deg, 90.0)
     if rest == 0.0:
         return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[int(quarter) % 4]
@@ -40,52 +34,29 @@ def rotation(angle_deg: float) -> Pair:
 
 
 def turn(points: Floats, angle_deg: float) -> Floats:
-    """Turn points counter-clockwise about the origin.
-
-    Parameters
-    ----------
-    points : (n, 2) float array
-        x to the right, y up.
-    angle_deg : float
-        Counter-clockwise angle in degrees.
-    """
+    """Turn points (n, 2), y up, counter-clockwise about the origin."""
     cos, sin = rotation(angle_deg)
     x, y = points[:, 0], points[:, 1]
     return np.column_stack([x * cos - y * sin, x * sin + y * cos])
 
 
 def turned_boxes(points: Floats, turns: Floats) -> Floats:
-    """Return the bounding boxes of points that are turned about the origin.
+    """Return left, bottom, right and top (m, 4) of points (n, 2), turned about the origin.
 
-    Parameters
-    ----------
-    points : (n, 2) float array
-        x to the right, y up.
-    turns : (m, 2) float array
-        Cosine and sine of each angle, of :func:`rotation`.
-
-    Returns
-    -------
-    boxes : (m, 4) float array
-        Left, bottom, right and top of the points turned by each angle.
-
-    Examples
-    --------
-    >>> turned_boxes(np.array([[0.0, 0.0], [2.0, 1.0]]), np.array([rotation(90.0)])).tolist()
-    [[-1.0, 0.0, 0.0, 2.0]]
+    Turns (m, 2) are cosines and sines, of :func:`rotation`.
     """
-    if _fast is None:
-        return turned_boxes_numpy(points, turns)
-    boxes: Floats = _fast.turned_boxes(points, turns)
-    return boxes
-
-
-def turned_boxes_numpy(points: Floats, turns: Floats) -> Floats:
-    """Return the boxes of :func:`turned_boxes`, by NumPy."""
+    if _fast is not None:
+        boxes: Floats = _fast.turned_boxes(points, turns)
+        return boxes
     cos, sin = turns[:, :1], turns[:, 1:]
     x = points[:, 0] * cos - points[:, 1] * sin
     y = points[:, 0] * sin + points[:, 1] * cos
     return np.column_stack([x.min(axis=1), y.min(axis=1), x.max(axis=1), y.max(axis=1)])
+
+
+def mirrored(pixels: Mask) -> Mask:
+    """Return the mirror image about a vertical line."""
+    return np.ascontiguousarray(pixels[:, ::-1])
 
 
 def quantise(value: float) -> float:
@@ -98,39 +69,16 @@ def rasterise(
 ) -> tuple[Mask, int, int]:
     """Turn a mask about a point, reduce it, and rasterise it once by coverage >= 1/2.
 
-    Parameters
-    ----------
-    mask : (h, w) bool array
-        Row 0 at the top; pixel (row, col) covers x in [col, col+1], y in [h-row-1, h-row].
-    centre : (float, float)
-        Point (x, y) about which the mask turns, in px from its bottom-left corner.
-    angle_deg : float
-        Counter-clockwise as seen in the picture.
-    scale : float
-        Size of the result over the size of the mask.
-    phase : (float, float)
-        Where the centre falls in the result, px right of and above a pixel corner.
+    Row 0 is at the top; pixel (row, col) covers x in [col, col+1], y in [h-row-1, h-row].  The
+    centre is (x, y) from the bottom-left corner of the mask; the angle is counter-clockwise as seen
+    in the picture; `phase` is where the centre falls in the result, px right of and above a pixel
+    corner. Returns the mask, cropped, and left and bottom of it from that pixel corner.
 
-    Returns
-    -------
-    turned : (h', w') bool array
-        Cropped to its pixels, row 0 at the top.
-    left, bottom : int
-        Position of its bottom-left corner relative to the pixel corner that `phase` is
-        measured from.
-
-    Notes
-    -----
     Coverage is counted on k x k sample points a pixel, k the power of two from 4 on that is at
-    least 1/scale, so every source pixel is seen; of a mask of a pixel or two that falls between
-    the points, on more.  Nothing is resampled twice.  A stone neither vanishes nor falls apart at
-    a coarse resolution: where a thin neck would break, pixels covered to a quarter are taken, or
-    all that are touched.
-
-    Examples
-    --------
-    >>> rasterise(np.ones((2, 4), bool), (2.0, 1.0), 90.0, 1.0, (0.0, 0.0))[0].shape
-    (4, 2)
+    least 1/scale, so every source pixel is seen; of a mask of a pixel or two that falls between the
+    points, on more.  Nothing is resampled twice.  A stone neither vanishes nor falls apart at a
+    coarse resolution: where a thin neck would break, pixels covered to a quarter are taken, or all
+    that are touched.
     """
     return rasterise_to_area(mask, centre, angle_deg, scale, phase, (0.0, math.inf))[:3]
 
@@ -140,24 +88,10 @@ def rasterise_to_area(
 ) -> tuple[Mask, int, int, Pair]:
     """Rasterise a mask where its area comes out right, at one of 16 sub-pixel positions.
 
-    Parameters
-    ----------
-    mask, centre, angle_deg, scale
-        As for :func:`rasterise`.
-    phase : (float, float)
-        The first position; multiples of 1/64 px.  The others are up to 3/4 px further right, then
-        further up.
-    area : (float, float)
-        The area that is wanted, px of the result, and how far off it may be; pixels covered to a
-        half count.
-
-    Returns
-    -------
-    turned, left, bottom
-        As of :func:`rasterise`, at the first position where the area is within the tolerance, or
-        else at the first of those where it comes nearest.
-    phase : (float, float)
-        That position, measured from the same pixel corner.
+    The first is `phase`, multiples of 1/64 px; the others are up to 3/4 px further right, then
+    further up.  `area` is what is wanted, px of the result covered to a half, and how far off it
+    may be.  The first position within that is taken, else the first of those where the area comes
+    nearest; it is returned, too, measured from the same pixel corner.
     """
     way = rotation(angle_deg)
     left, bottom, right, top = _box_px(mask.shape, centre, way, scale, phase)
@@ -201,30 +135,12 @@ def fitted_numpy(
     grid: tuple[int, int, int],
     area: Pair,
 ) -> tuple[Mask, int, int, int] | None:
-    """Sample a turned mask, and take its pixels where the area comes out right.
+    """Sample a turned mask, and take its pixels where the area comes out right; None for no hit.
 
-    Parameters
-    ----------
-    mask, centre, scale, area
-        As for :func:`rasterise_to_area`.
-    way : (float, float)
-        Cosine and sine of the angle.
-    corner : (float, float)
-        x and y of the top-left pixel corner of the samples, px of the result from the centre.
-    grid : (int, int, int)
-        Width and height of the samples in px of the result, and samples along a pixel.
-
-    Returns
-    -------
-    turned : (h', w') bool array
-        Cropped.
-    left, bottom : int
-        Its columns start so many px right of the corner; its last row ends so many px below a
-        line one pixel above the corner.
-    number : int
-        The sub-pixel position: n % 4 quarters of a pixel further right, n // 4 further up.
-
-    None when no sample hits.
+    `way` is cosine and sine, `corner` the top-left pixel corner of the samples, px of the result
+    from the centre; `grid` their width and height in px, and samples along a pixel.  Returns the
+    mask, cropped, how far its columns start right of the corner, how far its last row ends below a
+    line one pixel above the corner, and the position n: n % 4 quarters of a pixel right, n // 4 up.
     """
     counts = _quarter_counts(mask, centre, way, scale, corner, grid)
     full = grid[2] * grid[2]

@@ -1,7 +1,7 @@
 """What the rays meet that leave a mask to the left and downwards (Eq. 4)."""
 
 from functools import cached_property
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,67 +17,14 @@ Number = TypeVar("Number", int, Longs)
 _fast = compiled("rays")
 
 
-class RaySums(Protocol):
-    """Sums of a landscape from which any swept region is counted in a few look-ups."""
-
-    height: int
-    width: int
-
-    def filled_share(self, mask: Silhouette, positions: Positions) -> NDArray[np.float64]:
-        """Return the filled share of the swept pixels for many positions of one mask (Eq. 4).
-
-        Parameters
-        ----------
-        mask : Silhouette
-            Of the mask.
-        positions : (n, 2) int array
-            Row and column of its top-left corner, inside the image.
-
-        Returns
-        -------
-        share : (n,) float array
-            In [0, 1]; 1 where nothing is swept.
-        """
-
-    def filled_share_at(self, mask: Silhouette, row: int, col: int) -> float:
-        """Return the same for one position."""
-
-    def empty_beside(self, mask: Silhouette, positions: Positions) -> Longs:
-        """Return the pixels between a mask and the next ones to its left, for many positions."""
-
-
-def ray_sums(occupied: Mask, first: int) -> RaySums:
-    """Sum up a landscape.
-
-    Parameters
-    ----------
-    occupied : (h, w) bool array
-        The landscape, row 0 at the top.
-    first : int
-        There is nothing above this row.
-
-    Examples
-    --------
-    >>> from drystone.kernels.silhouette import silhouette
-    >>> sums = ray_sums(np.array([[0, 0, 0], [1, 0, 0], [0, 0, 1]], bool), 1)
-    >>> corner = silhouette(np.array([[1, 1], [0, 1]], bool))
-    >>> sums.filled_share_at(corner, 0, 1), sums.empty_beside(corner, np.array([[0, 1]]))
-    (0.4, array([2]))
-    """
-    if _fast is None:
-        return RaySumsNumpy(occupied, first)
-    sums: RaySums = _fast.RaySums(occupied, first)
+def ray_sums(occupied: Mask, first: int) -> "RaySums":
+    """Sum up a landscape; there is nothing above the first row."""
+    sums: RaySums = (RaySums if _fast is None else _fast.RaySums)(occupied, first)
     return sums
 
 
-class RaySumsNumpy:
-    """Twin in NumPy.
-
-    Parameters
-    ----------
-    occupied, first
-        As for :func:`ray_sums`.
-    """
+class RaySums:
+    """Sums of a landscape from which any swept region is counted in a few look-ups."""
 
     def __init__(self, occupied: Mask, first: int) -> None:
         self.height, self.width = occupied.shape
@@ -107,7 +54,10 @@ class RaySumsNumpy:
         return np.maximum.accumulate(ends, axis=1)
 
     def filled_share(self, mask: Silhouette, positions: Positions) -> NDArray[np.float64]:
-        """Return the filled share of the swept pixels for many positions of one mask (Eq. 4)."""
+        """Return the filled share of the swept pixels for positions (n, 2) of one mask (Eq. 4).
+
+        Rows and columns are those of its top-left corner.  1 where nothing is swept.
+        """
         rows, cols = positions[:, :1] - self._first, positions[:, 1:]
         at, starts, stops = mask.rays.runs.T
         under = np.maximum(rows + mask.height, 0)

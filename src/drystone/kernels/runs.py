@@ -51,31 +51,12 @@ def _runs_in_rows(cells: NDArray[np.int64]) -> _Runs:
 def narrow_gaps(
     cells: NDArray[np.int64], ground: int, reach_px: float
 ) -> tuple[Mask, NDArray[np.int64]]:
-    """Find the pixels of gaps that are no wider than a reach, and the stone nearest to each.
+    """Find the pixels of gaps no wider than a reach, and the stone nearest to each (ids, 0: empty).
 
-    Parameters
-    ----------
-    cells : (h, w) int array
-        Ids, 0 where nothing is.
-    ground : int
-        The id that no pixel is given to.
-    reach_px : float
-        Widest gap.
-
-    Returns
-    -------
-    gap : (h, w) bool array
-        Pixels that two different blocks bound in their row or column, across no more than the
-        reach: the length of that run, or h v / sqrt(h^2 + v^2) when both are bounded.
-    nearest : (h, w) int array
-        In gaps: the id of the nearest of the blocks that bound it.  Of two at one distance it is
-        the upper or the left one, all along a joint: or the joint would have steps.
-
-    Examples
-    --------
-    >>> gap, nearest = narrow_gaps(np.array([[1, 0, 0, 0, 2, 0]]), 9, 3)
-    >>> gap[0].tolist(), nearest[gap].tolist()
-    ([False, True, True, True, False, False], [1, 1, 2])
+    In a gap are pixels that two different blocks bound in their row or column, across no more than
+    the reach: the length of that run, or h v / sqrt(h^2 + v^2) when both are bounded.  Nearest is
+    the nearest of the blocks that bound it, but never the ground.  Of two at one distance it is the
+    upper or the left one, all along a joint: or the joint would have steps.
     """
     along, across = _runs_in_rows(cells.T).turned(), _runs_in_rows(cells)
     both = across.between & along.between

@@ -40,33 +40,11 @@ class Line:
 
 
 def fitted_lines(nodes: Points, tolerance: float) -> tuple[list[int], list[Line]]:
-    """Cover a chain of unit pixel edges with few fitted lines.
+    """Cover a chain of unit pixel edges, given by its nodes (n + 1, 2), with few fitted lines.
 
-    Parameters
-    ----------
-    nodes : (n + 1, 2) float array
-        Pixel corners along the chain, n >= 1.
-    tolerance : float
-        No midpoint of an edge is further from the line of its piece, px.
-
-    Returns
-    -------
-    cuts : list of int
-        Indices of the nodes between pieces, with 0 and n.
-    lines : list of Line
-        One for each piece.
-
-    Notes
-    -----
-    From its start every piece is as long as it can be; then every cut moves to where the two
-    pieces beside it fit best.
-
-    Examples
-    --------
-    >>> nodes = np.array([[0.0, 0], [1, 0], [2, 0], [3, 0], [3, 1], [3, 2], [3, 3]])
-    >>> cuts, lines = fitted_lines(nodes, 0.5)
-    >>> cuts, [line.along.tolist() for line in lines]
-    ([0, 3, 6], [[1.0, 0.0], [0.0, 1.0]])
+    No midpoint of an edge is further from the line of its piece than the tolerance, px.  Cuts are
+    the indices of the nodes between pieces, with 0 and n.  From its start every piece is as long as
+    it can be; then every cut moves to where the two pieces beside it fit best.
     """
     chain = _Chain(nodes)
     cuts = [0]
@@ -146,27 +124,10 @@ class _Chain:
 
 
 def meeting_point(lines: list[Line], near: Points) -> Points:
-    """Return the point closest to several lines, at most REACH_PX from a pixel corner.
+    """Return the point closest to several lines, at most REACH_PX from the pixel corner near it.
 
-    Parameters
-    ----------
-    lines : list of Line
-        Of the pieces that meet there.
-    near : (2,) float array
-        The pixel corner where they do.
-
-    Returns
-    -------
-    (2,) float array
-        In the sense of least squares.  A weak pull towards the pixel corner decides along lines
-        of one direction.
-
-    Examples
-    --------
-    >>> flat = Line(np.array([0.0, 0.2]), np.array([1.0, 0.0]))
-    >>> upright = Line(np.array([9.7, 0.0]), np.array([0.0, 1.0]))
-    >>> meeting_point([flat, upright], np.array([10.0, 0.0])).round(2).tolist()
-    [9.7, 0.2]
+    In the sense of least squares; a weak pull towards the pixel corner decides along lines of one
+    direction.
     """
     matrix, right = PULL * np.eye(2), np.zeros(2)
     for line in lines:
@@ -179,28 +140,11 @@ def meeting_point(lines: list[Line], near: Points) -> Points:
 
 
 def with_area(line: Points, nodes: Points, more: float = 0.0) -> Points:
-    """Move the inner corners of a simplified chain until it has the chain's area beside it.
+    """Move the inner corners of a simplified chain until it has the area of the chain beside it.
 
-    Parameters
-    ----------
-    line : (n, 2) float array
-        The simplified chain; its ends stay.
-    nodes : (m, 2) float array
-        The chain itself.
-    more : float
-        Area to be gained on the left beyond that of the chain.
-
-    Returns
-    -------
-    (n, 2) float array
-        Every corner moves across the line between its neighbours, further the longer that is, so
-        that long sides keep their directions.  Two ends alone have no corner to move.
-
-    Examples
-    --------
-    >>> chain = np.array([[0.0, 0], [0, 1], [4, 1], [4, 0]])
-    >>> with_area(np.array([[0.0, 0], [2, 1], [4, 0]]), chain)[1].tolist()
-    [2.0, 2.0]
+    `more` is to be gained on the left beyond that.  The ends stay.  Every corner moves across the
+    line between its neighbours, further the longer that is, so that long sides keep their
+    directions.
     """
     line = line.copy()
     for _ in range(MOVES):  # the area is almost linear in the moves

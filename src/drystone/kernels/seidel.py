@@ -15,9 +15,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import doubles
-else:
+if not cython.compiled:
     from drystone.kernels.lists import doubles
 
 ENOUGH = cython.declare(cython.double, 1e-11)
@@ -34,26 +32,10 @@ STEP = cython.declare(cython.ulonglong, 1442695040888963407)
 def solve(
     rows: NDArray[np.float64], gain: NDArray[np.float64], most: NDArray[np.float64]
 ) -> tuple[float, float, float] | None:
-    """Maximise a gain.
+    """Maximise a gain; None when nothing fulfils all rows.
 
-    Parameters
-    ----------
-    rows : (n, 4) float array
-        Coefficients of the three unknowns, about 1 in size, and what their sum may be at most.
-    gain : (3,) float array
-        Gain of each unknown; below 1e-12 it counts as none, and the smallest value is taken.
-    most : (3,) float array
-        Largest absolute value of each unknown.
-
-    Returns
-    -------
-    unknowns : (float, float, float) or None
-        None when nothing fulfils all rows.
-
-    Examples
-    --------
-    >>> solve(np.array([[0.0, -1.0, 0.0, 2.0]]), np.array([0.0, -1.0, 0.0]), np.full(3, 9.0))
-    (0.0, -2.0, 0.0)
+    Rows (n, 4) are coefficients, about 1 in size, and what their sum may be at most.  A gain below
+    1e-12 counts as none, and the smallest value is taken.  `most` are the largest absolute values.
     """
     if rows.ndim != 2 or rows.shape[1] != 4 or len(gain) != 3 or len(most) != 3:
         raise ValueError("rows are (n, 4), gain and most have three numbers")

@@ -16,37 +16,24 @@ a depth, or as edges that cross, since a whole stone is larger than a step.
 
 from __future__ import annotations
 
+from enum import IntEnum
+from typing import NamedTuple
+
 from drystone.kernels.firmness import require_friction
 from drystone.kernels.polygons import Points, Polygons
-from drystone.kernels.settling_types import Rules, Settling, Status
 
 try:
     import cython
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.firmness import Work, arm_of, enough_rows, firmness
-    from cython.cimports.drystone.kernels.gaps import (
-        Heap,
-        Stone,
-        crosses,
-        find_gaps,
-        heap_of,
-        measure,
-    )
-    from cython.cimports.drystone.kernels.memory import doubles, new_doubles, release
-    from cython.cimports.drystone.kernels.seidel import solve3
-    from cython.cimports.libc.math import cos, isfinite, sin
-else:
+if not cython.compiled:
     from math import cos, isfinite, sin
 
     from drystone.kernels.firmness import Work, arm_of, enough_rows, firmness
     from drystone.kernels.gaps import Heap, Stone, crosses, find_gaps, heap_of, measure
     from drystone.kernels.lists import doubles, new_doubles, release
     from drystone.kernels.seidel import solve3
-
-__all__ = ["Rules", "Settling", "Status", "settle"]
 
 RESTS = cython.declare(cython.int, 0)
 FALLS = cython.declare(cython.int, 1)
@@ -67,41 +54,67 @@ SMALLEST = cython.declare(cython.double, 1e-6)
 UPWARD = cython.declare(cython.double, 0.3)
 
 
+class Status(IntEnum):
+    """How settling ended."""
+
+    RESTS = 0
+    FALLS = 1
+    """Nothing is to be gained without friction, but with it the stone would move."""
+    OVERLAPS = 2
+    FAR = 3
+    """It turned or slid further than it may."""
+    UNFINISHED = 4
+    """It still moved after the last step."""
+
+
+class Rules(NamedTuple):
+    """How a stone settles; lengths in the unit of the polygons."""
+
+    lean: float  # gravity towards -x over gravity downwards
+    # stop as soon as the stone rests with this margin; below 0: only where nothing is gained
+    stop: float
+    mu: float  # coefficient of friction of the rest test, above 0
+    clearance: float  # gap that is left, above 0
+    tolerance: float  # gaps up to this one touch, in the rest test
+    corner: float  # two corners nearer than this meet with the face that parts them best
+    near: float  # first and largest radius of a step
+    far: float
+    turn: float  # largest turn, radians
+    shift: float  # largest shift aside
+    gain: float  # settling ends where a step would go down by no more; not below 0
+    overlap: float  # so deep a stone may overlap at the start; it is then brought apart first
+    # contacts whose normal goes up by less than this have no friction in the rest test; -1:
+    # all have
+    steep: float
+    beyond: float  # how far the stone may stand out over the ends of the wall
+    # the supporting point nearest to the centroid does not slide: the stone rolls about it
+    sticks: bool
+    turns: bool  # whether the stone may turn
+    steps: int  # most steps
+
+
+class Settling(NamedTuple):
+    """Outcome of settling."""
+
+    status: Status
+    x: float  # of the centroid
+    y: float
+    angle: float  # radians
+    gap: float  # smallest gap there
+    # how far gravity may lean until the stone moves, over mu; -1 when it does not rest
+    margin: float
+    steps: int
+    touching: int  # contacts
+
+
 @cython.cclass
 class Way:
     """What is let go, and by which rules."""
-
-    corners: cython.p_double
-    edges: cython.p_double
-    count: cython.Py_ssize_t
-    arm: cython.double
-    lean: cython.double
-    stop: cython.double
-    mu: cython.double
-    clearance: cython.double
-    tolerance: cython.double
-    corner: cython.double
-    near: cython.double
-    far: cython.double
-    most_turn: cython.double
-    most_shift: cython.double
-    gain: cython.double
-    overlap: cython.double
-    steep: cython.double
-    beyond: cython.double
-    sticks: cython.bint
-    turns: cython.bint
-    steps: cython.Py_ssize_t
 
 
 @cython.cclass
 class State(Stone):
     """A pose, and what is around the stone there; the turn in radians."""
-
-    x: cython.double
-    y: cython.double
-    turn: cython.double
-    least: cython.double
 
     def __dealloc__(self) -> None:
         release(self.corners)
@@ -116,27 +129,10 @@ def settle(
     width: float,
     rules: Rules,
 ) -> Settling:
-    """Settle one stone.
+    """Settle one stone that is let go at a pose: x, y of the centroid, and the turn in radians.
 
-    Parameters
-    ----------
-    outline : (n, 2) float array
-        Corners relative to the centroid, counter-clockwise.
-    edges : (n, 3) float array
-        Of the outline (:func:`drystone.kernels.polygons.polygon_edges`).
-    pose : (float, float, float)
-        Where it is let go: x, y of the centroid, and the turn in radians.
-    around : Polygons
-        What is there already.
-    width : float
-        Of the wall; its ends at x = 0 and `width` stop the stone, but carry nothing.
-    rules : Rules
-        How.
-
-    Raises
-    ------
-    ValueError
-        When mu is not positive.
+    Corners of the outline are relative to the centroid, counter-clockwise.  The ends of the wall at
+    x = 0 and `width` stop the stone, but carry nothing.
     """
     require_friction(rules.mu)
     way: Way = Way()
@@ -177,8 +173,7 @@ def settle(
     )
 
 
-@cython.cfunc
-def state_of(way: Way) -> State:
+def state_of(way):
     """Return a state with memory of its own, nowhere yet."""
     state: State = State()
     state.first, state.count = 0, way.count
@@ -187,10 +182,7 @@ def state_of(way: Way) -> State:
     return state
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def look(state: State, way: Way, heap: Heap) -> cython.int:
+def look(state, way, heap):
     """Turn and move the outline to the pose of a state, and find the gaps there."""
     c: cython.double = cos(state.turn)
     s: cython.double = sin(state.turn)
@@ -209,10 +201,7 @@ def look(state: State, way: Way, heap: Heap) -> cython.int:
     return 0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def exchange(a: State, b: State) -> cython.void:
+def exchange(a, b):
     """Let each state be the other."""
     a.corners, b.corners = b.corners, a.corners
     a.edges, b.edges = b.edges, a.edges
@@ -225,25 +214,12 @@ def exchange(a: State, b: State) -> cython.void:
     a.turn, a.least, b.turn, b.least = b.turn, b.least, a.turn, a.least
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-2.0)
-def margin_of(way: Way, here: State, work: Work) -> cython.double:
+def margin_of(way, here, work):
     """Return how firmly a stone rests."""
     return firmness(here, here.x, here.y, way.arm, way.mu, way.tolerance, way.steep, work)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def descend(
-    way: Way,
-    heap: Heap,
-    here: State,
-    there: State,
-    work: Work,
-    made: cython.pointer[cython.Py_ssize_t],
-) -> cython.int:
+def descend(way, heap, here, there, work, made):
     """Go down step by step until nothing is gained; say why it stopped."""
     start_x: cython.double = here.x
     start_turn: cython.double = here.turn
@@ -276,19 +252,7 @@ def descend(
     return UNFINISHED
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def tried(
-    way: Way,
-    heap: Heap,
-    here: State,
-    there: State,
-    work: Work,
-    move: cython.p_double,
-    radius: cython.double,
-    gained: cython.double,
-) -> cython.int:
+def tried(way, heap, here, there, work, move, radius, gained):
     """Make a move; False when it leads nowhere."""
     half: cython.double = 0.5 * way.clearance
     back: cython.double[3] = [0.0, 0.0, 0.0]
@@ -314,12 +278,7 @@ def tried(
     return not crosses(there, heap)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(-1)
-def best_move(
-    state: State, way: Way, radius: cython.double, work: Work, move: cython.p_double
-) -> cython.int:
+def best_move(state, way, radius, work, move):
     """Find the move within a radius that goes down most while all gaps, linearised, stay open.
 
     The turn is given as the way of the furthest corner.
@@ -362,12 +321,6 @@ def best_move(
     return False
 
 
-@cython.cfunc
-@cython.nogil
-@cython.inline
-@cython.exceptval(check=False)
-def turning(
-    state: State, k: cython.Py_ssize_t, nx: cython.double, ny: cython.double
-) -> cython.double:
+def turning(state, k, nx, ny):
     """Return how fast a turn about the centroid moves the point of a gap along a direction."""
     return (state.gaps[k + 3] - state.x) * ny - (state.gaps[k + 4] - state.y) * nx

@@ -14,9 +14,7 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import flags, flags_out, ints_out
-else:
+if not cython.compiled:
     from drystone.kernels.lists import flags, flags_out, ints_out
 
 Ints = NDArray[np.int32]
@@ -26,62 +24,35 @@ Ints = NDArray[np.int32]
 class RayPattern:
     """What the rays of a mask sweep inside its bounding box (Eq. 4), row by row.
 
-    A pixel is swept when some pixel of the mask lies to the right of it in its row, or above it
-    in its column, and none on it; rays pass through stones.
-
-    Parameters
-    ----------
-    left : (height,) int array
-        Number of swept pixels at the beginning of each row: the mask begins after them.
-    runs : (n, 3) int array
-        The other swept pixels: row, first column and the column after the last of every run.
-    area : int
-        How many pixels that is altogether.
+    A pixel is swept when some pixel of the mask lies to the right of it in its row, or above it in
+    its column, and none on it; rays pass through stones.
     """
 
+    # (height,) number of swept pixels at the beginning of each row: the mask begins after
+    # them
     left: Ints
+    # (n, 3) the other swept pixels: row, first column and the column after the last of every
+    # run
     runs: Ints
-    area: int
+    area: int  # how many pixels that is altogether
 
 
 @dataclass(frozen=True, eq=False)
 class Silhouette:
-    """A mask in one piece as rows of runs.
-
-    Parameters
-    ----------
-    height, width : int
-        Size of the mask.
-    runs : (n, 3) int array
-        Row, first column and length of every run of set pixels in a row, the lowest row first:
-        a stone that is put where it cannot be mostly meets something with its foot.
-    bottom : (width,) int array
-        Row of the lowest pixel of each column.
-    area_from : (height + 1,) int array
-        Number of set pixels from each row down.
-    rays : RayPattern
-        What its rays sweep.
-    """
+    """A mask in one piece as rows of runs."""
 
     height: int
     width: int
+    # (n, 3) row, first column and length of every run of set pixels in a row, the lowest row
+    # first: a stone that is put where it cannot be mostly meets something with its foot
     runs: Ints
-    bottom: Ints
-    area_from: Ints
+    bottom: Ints  # (width,) row of the lowest pixel of each column
+    area_from: Ints  # (height + 1,) number of set pixels from each row down
     rays: RayPattern
 
 
 def silhouette(mask: Mask) -> Silhouette:
-    """Return the runs, the underside and the rays of a mask; every row and column has a pixel.
-
-    Examples
-    --------
-    >>> outline = silhouette(np.array([[1, 1, 0, 1], [0, 1, 1, 1]], bool))
-    >>> outline.runs.tolist(), outline.bottom.tolist(), outline.area_from.tolist()
-    ([[1, 1, 3], [0, 0, 2], [0, 3, 1]], [0, 1, 1, 1], [6, 3, 0])
-    >>> outline.rays.left.tolist(), outline.rays.runs.tolist(), outline.rays.area
-    ([0, 1], [[0, 2, 3]], 2)
-    """
+    """Return the runs, the underside and the rays of a mask; every row and column has a pixel."""
     mask = np.ascontiguousarray(mask)
     height: cython.Py_ssize_t = mask.shape[0]
     width: cython.Py_ssize_t = mask.shape[1]

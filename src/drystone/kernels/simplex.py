@@ -59,41 +59,23 @@ AVAILABLE: Final = _fast is not None
 
 @dataclass(frozen=True, eq=False)
 class Cones:
-    """Edges of friction cones: forces between two bodies, or between a body and the ground.
+    """Edges of friction cones: forces between two bodies, or between a body and the ground."""
 
-    Parameters
-    ----------
-    first : (N,) int32 array
-        Body that the force acts on; never the ground.
-    second : (N,) int32 array
-        Body that takes the opposite force; -1 for the ground.
-    entries : (6, N) float64 array
-        C-contiguous: horizontal force, vertical force and moment on `first`, then the same on
-        `second`, all 0 where that is the ground.
-    """
-
-    first: Ints
-    second: Ints
+    first: Ints  # (N,) body that the force acts on; never the ground
+    second: Ints  # (N,) body that takes the opposite force; -1 for the ground
+    # (6, N) C-contiguous: horizontal force, vertical force and moment on `first`, then the
+    # same on `second`, all 0 where that is the ground
     entries: Floats
 
 
 @dataclass(frozen=True, eq=False)
 class Added:
-    """A stone and its wedges.
+    """A stone and its wedges."""
 
-    Parameters
-    ----------
-    weights : (k,) float64 array
-        Of the new bodies n ... n + k - 1, the stone first; positive.  There may be none.
-    cones : Cones
-        New columns, between any bodies.
-    closed : (c,) int32 array
-        Ascending columns of the wall that are there no more.
-    """
-
+    # (k,) of the new bodies n ... n + k - 1, the stone first; positive.  There may be none
     weights: Floats
-    cones: Cones
-    closed: Ints
+    cones: Cones  # new columns, between any bodies
+    closed: Ints  # (c,) ascending columns of the wall that are there no more
 
     def joined(self, wall: Cones) -> Cones:
         """Return the columns of the wall that are left, then the new ones."""
@@ -111,99 +93,50 @@ class Added:
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """How the program of a wall with a stone ended, in one direction.
+    """How the program of a wall with a stone ended, in one direction."""
 
-    Parameters
-    ----------
-    status : int
-        OPTIMAL, UNSTABLE or FAILED.
-    alpha : float
-        Load multiplier; NaN unless the status is OPTIMAL.
-    forces : (columns,) float array
-        One a column: those of the wall that are left, in order, then the new ones.  Not below 0
-        but for rounding (1e-9 of a weight).  Empty unless the status is OPTIMAL.
-    velocity : (3 (n + k),) float array
-        OPTIMAL: the mechanism v, with a . v >= 0 for every column a and sign live . v = 1; by
-        duality alpha = sign rhs . v.
-        UNSTABLE: a fall, with a . v >= 0 for every column, live . v = 0 and rhs . v < 0; only the
-        direction counts.  FAILED: empty.
-    pivots : int
-        Exchanges of the basis, without those of the tableau of the stone.
-    restarts : int
-        How often a start, or an inverse that had lost its digits, had to be given up.
-    """
-
-    status: int
-    alpha: float
+    status: int  # OPTIMAL, UNSTABLE or FAILED
+    alpha: float  # load multiplier; NaN unless the status is OPTIMAL
+    # (columns,) one a column: those of the wall that are left, in order, then the new ones.
+    # Not below 0 but for rounding (1e-9 of a weight).  Empty unless the status is OPTIMAL
     forces: Floats
+    # (3 (n + k),) with a . v >= 0 for every column a.  OPTIMAL: the mechanism v, sign live . v = 1;
+    # by duality alpha = sign rhs . v.  UNSTABLE: a fall, live . v = 0 and rhs . v < 0; only the
+    # direction counts.  FAILED: empty
     velocity: Floats
-    pivots: int
-    restarts: int
+    pivots: int  # exchanges of the basis, without those of the tableau of the stone
+    restarts: int  # how often a start, or an inverse that had lost its digits, had to be given up
 
 
 @dataclass(frozen=True, eq=False)
 class Basis:
-    """An optimal basis of m = 3 n rows, with its inverse; forces in a unit of their own.
+    """An optimal basis of m = 3 n rows, with its inverse; forces in a unit of their own."""
 
-    Parameters
-    ----------
-    unit : float
-        Unit of forces, a power of two, so that it costs no digit.
-    alpha_row : int
-        Where alpha is basic; -1 when there are no bodies.
-    basic : (m,) int32 array
-        What is basic in each row: a column, -1 for alpha, -2 - i for the artificial variable of
-        row i.
-    values : (m,) float64 array
-        Basic values; that of alpha is sign times alpha.
-    inverse, transposed : (m, m) float64 arrays
-        The inverse and its transpose, both C-contiguous: a pivot row needs rows of the inverse, a
-        pivot column those of the transpose.
-    reduced_costs : (N,) float64 array
-        Rate at which the mechanism opens each column, a . v; 0 if basic.
-    secondary_costs : (N,) float64 array
-        Reduced costs of the perturbation: positive, 0 if basic.
-    """
-
-    unit: float
-    alpha_row: int
+    unit: float  # unit of forces, a power of two, so that it costs no digit
+    alpha_row: int  # where alpha is basic; -1 when there are no bodies
+    # (m,) what is basic in each row: a column, -1 for alpha, -2 - i for the artificial
+    # variable of row i
     basic: Ints
-    values: Floats
+    values: Floats  # (m,) basic values; that of alpha is sign times alpha
+    # (m, m) the inverse and its transpose, both C-contiguous: a pivot row needs rows of the
+    # inverse, a pivot column those of the transpose
     inverse: Floats
     transposed: Floats
-    reduced_costs: Floats
-    secondary_costs: Floats
+    reduced_costs: Floats  # (N,) rate at which the mechanism opens each column, a . v; 0 if basic
+    secondary_costs: Floats  # (N,) reduced costs of the perturbation: positive, 0 if basic
 
 
 @dataclass(frozen=True, eq=False)
 class Optimum:
-    """The program of a wall, solved in one direction, ready for one more stone; immutable.
+    """The program of a wall, solved in one direction, ready for one more stone; immutable."""
 
-    Parameters
-    ----------
-    sign : int
-        1 for the greatest alpha, -1 for the least.
-    weights : (n,) float64 array
-        Of the bodies.
-    cones : Cones
-        All columns.
-    alpha : float
-        Load multiplier; sign times infinity when there are no bodies.
-    forces : (N,) float64 array
-        One a column.
-    velocity : (3 n,) float64 array
-        The mechanism; see :class:`Answer`.
-    basis : Basis
-        Where the next stone starts from.
-    """
-
-    sign: int
-    weights: Floats
-    cones: Cones
-    alpha: float
-    forces: Floats
-    velocity: Floats
-    basis: Basis
+    sign: int  # 1 for the greatest alpha, -1 for the least
+    weights: Floats  # (n,)
+    cones: Cones  # all columns
+    alpha: float  # load multiplier; sign times infinity when there are no bodies
+    forces: Floats  # (N,) one a column
+    velocity: Floats  # (3 n,) the mechanism; see Answer
+    basis: Basis  # where the next stone starts from
     _program: Any = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -212,13 +145,7 @@ class Optimum:
 
     @classmethod
     def of_nothing(cls, sign: int) -> "Optimum":
-        """Return that of no bodies and no columns; the first stone starts from it.
-
-        Parameters
-        ----------
-        sign : int
-            1 for the greatest alpha, -1 for the least.
-        """
+        """Return that of no bodies and no columns; the first stone starts from it."""
         nothing, none, table = np.empty(0), np.empty(0, np.int32), np.empty((0, 0))
         cones = Cones(none, none, np.empty((6, 0)))
         basis = Basis(1.0, -1, none, nothing, table, table, nothing, nothing)
@@ -228,29 +155,14 @@ class Optimum:
         """Solve the program of the wall with a stone; nothing changes.
 
         The answer depends on the wall and the stone alone.  Threads may ask at the same time.
-
-        Parameters
-        ----------
-        added : Added
-            The stone and its wedges.
-        max_pivots : int
-            Gives up after so many.  Candidates at 60 stones need 10, those that change the
-            mechanism of a wall of 100 up to 300.
+        Candidates at 60 stones need 10 pivots, those that change the mechanism of a wall of 100 up
+        to 300.
         """
         return Answer(*self._program.solve_added(added, max_pivots))
 
     def extended(self, added: Added, answer: Answer) -> "Optimum":
-        """Return the optimum of the wall with the stone.
+        """Return the optimum of the wall with a stone, of which the answer is OPTIMAL.
 
-        Parameters
-        ----------
-        added : Added
-            The stone and its wedges.
-        answer : Answer
-            What :meth:`solved_with` says of them; OPTIMAL.
-
-        Notes
-        -----
         It goes the way to the answer once more, so that answers need not keep their basis.
         """
         if answer.status != OPTIMAL:

@@ -1,14 +1,16 @@
-"""The best of many positions by the rules of placement (§3.6)."""
+"""What places are worth by the rules of placement, and the best of many (§3.6; Eq. 5, 12, 13)."""
 
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from drystone.kernels.backend import compiled
 from drystone.kernels.lowering import Positions
-from drystone.kernels.merits import Floats, SnugWeights, eq12_merits, snug_merits
 from drystone.kernels.rays import RaySums
 from drystone.kernels.silhouette import Ints, Silhouette
+
+Floats = NDArray[np.float64]
 
 UNITS = 1e12
 """Merits are compared in units of 1 / UNITS: rounding must not decide between equal places."""
@@ -17,19 +19,76 @@ _fast = compiled("spots")
 
 
 class Place(NamedTuple):
-    """A position and what it is worth.
-
-    Parameters
-    ----------
-    merit : float
-        In units of 1 / :data:`UNITS`, a whole number.
-    row, col : int
-        Top-left corner of the mask.
-    """
+    """A position and what it is worth: a whole number of units."""
 
     merit: float
-    row: int
+    row: int  # of the top-left corner of the mask
     col: int
+
+
+class SnugWeights(NamedTuple):
+    """Weights of the costs of :func:`snug_merits`."""
+
+    height: float
+    void: float
+    gap: float
+    end: float
+
+
+def dice_score(inside: Ints, area: int, box_area: float) -> Floats:
+    """Return GDS (n,) of a stone, of whose area so much is inside the box B (Eq. 5)."""
+    return np.asarray((inside / area) * (box_area / (box_area + area - inside)))
+
+
+def threshold(x: Floats, beta: float) -> Floats:
+    """Return H(x, beta): x where it is larger than beta, otherwise 0 (Eq. 13)."""
+    return np.where(x > beta, x, 0.0)
+
+
+def eq12_merits(
+    positions: Positions,
+    mask: Silhouette,
+    rays: RaySums,
+    built_height: int,
+    anchor_x: float,
+    beta: float,
+) -> Floats:
+    """Return LFR + H(GDS, beta) - x_c / w for every position (Eq. 12a).
+
+    The box B of Eq. 5 is as high as what is built; `anchor_x` is that of the stone's centroid from
+    the left edge of its mask.
+    """
+    filling = rays.filled_share(mask, positions)
+    from_row = np.clip(rays.height - built_height - positions[:, 0], 0, mask.height)
+    dice = dice_score(
+        mask.area_from[from_row], int(mask.area_from[0]), float(rays.width * built_height)
+    )
+    x_c = positions[:, 1] + anchor_x
+    return np.asarray(filling + threshold(dice, beta) - x_c / rays.width)
+
+
+def snug_merits(
+    positions: Positions, mask: Silhouette, top: Ints, rays: RaySums, weights: SnugWeights
+) -> Floats:
+    """Return minus a weighted sum of four costs, each about 0 to 1, for every position.
+
+    Height of the mask's underside over its own height; void below it, down to the skyline `top`,
+    over its area; void beside it, up to what is to its left, over its area, at most 1; distance
+    from the left end over the width of the landscape.
+    """
+    rows, cols = positions[:, :1], positions[:, 1:]
+    under = top[cols + np.arange(mask.width)].astype(np.int64) - (rows + mask.bottom + 1)
+    area = int(mask.area_from[0])
+    void = np.maximum(under, 0).sum(axis=1) / area
+    gap = rays.empty_beside(mask, positions) / area
+    underside = rays.height - rows[:, 0] - mask.height
+    cost = (
+        weights.height * underside / mask.height
+        + weights.void * void
+        + weights.gap * np.minimum(gap, 1.0)
+        + weights.end * (cols[:, 0] / rays.width)
+    )
+    return np.asarray(-cost)
 
 
 def best_by_eq12(
@@ -41,56 +100,25 @@ def best_by_eq12(
     beta: float,
     tries: int,
 ) -> list[Place]:
-    """Return the positions of the largest merit by Eq. 12, the best first.
+    """Return the positions of the largest :func:`eq12_merits`, the best first, so many at most.
 
-    Parameters
-    ----------
-    positions, mask, rays, built_height, anchor_x, beta
-        As for :func:`~drystone.kernels.merits.eq12_merits`; positions by row, then column.
-    tries : int
-        How many are wanted at most.  Of equal ones the lower comes first, then the one further
-        to the left.
+    Positions are by row, then column.  Of equal ones the lower comes first, then the one further to
+    the left.
     """
     if _fast is None:
-        return best_by_eq12_numpy(positions, mask, rays, built_height, anchor_x, beta, tries)
+        merits = eq12_merits(positions, mask, rays, built_height, anchor_x, beta)
+        return best(merits, positions, tries)
     found = _fast.best_by_eq12(positions, mask, rays, built_height, anchor_x, beta, tries)
     return [Place(*place) for place in found]
-
-
-def best_by_eq12_numpy(
-    positions: Positions,
-    mask: Silhouette,
-    rays: RaySums,
-    built_height: int,
-    anchor_x: float,
-    beta: float,
-    tries: int,
-) -> list[Place]:
-    """Twin of :func:`best_by_eq12`."""
-    merits = eq12_merits(positions, mask, rays, built_height, anchor_x, beta)
-    return best(merits, positions, tries)
 
 
 def best_by_height(
     positions: Positions, mask: Silhouette, rays: RaySums, tries: int
 ) -> list[Place]:
-    """Return the lowest positions; of equal ones the best filled, then the one further left.
-
-    Parameters
-    ----------
-    positions, mask, rays, tries
-        As for :func:`best_by_eq12`; the merit is the filled share of the rays.
-    """
+    """Return the lowest positions; of equal ones the best filled, then the one further left."""
     if _fast is None:
-        return best_by_height_numpy(positions, mask, rays, tries)
+        return best(rays.filled_share(mask, positions), positions, tries, lowest_first=True)
     return [Place(*place) for place in _fast.best_by_height(positions, mask, rays, tries)]
-
-
-def best_by_height_numpy(
-    positions: Positions, mask: Silhouette, rays: RaySums, tries: int
-) -> list[Place]:
-    """Twin of :func:`best_by_height`."""
-    return best(rays.filled_share(mask, positions), positions, tries, lowest_first=True)
 
 
 def best_by_snugness(
@@ -101,31 +129,11 @@ def best_by_snugness(
     weights: SnugWeights,
     tries: int,
 ) -> list[Place]:
-    """Return the positions of the largest merit by :func:`snug_merits`, the best first.
-
-    Parameters
-    ----------
-    positions, mask, top, rays, weights
-        As for :func:`~drystone.kernels.merits.snug_merits`; positions by row, then column.
-    tries : int
-        As for :func:`best_by_eq12`.
-    """
+    """Return the positions of the largest :func:`snug_merits`, as :func:`best_by_eq12`."""
     if _fast is None:
-        return best_by_snugness_numpy(positions, mask, top, rays, weights, tries)
+        return best(snug_merits(positions, mask, top, rays, weights), positions, tries)
     found = _fast.best_by_snugness(positions, mask, top, rays, weights, tries)
     return [Place(*place) for place in found]
-
-
-def best_by_snugness_numpy(
-    positions: Positions,
-    mask: Silhouette,
-    top: Ints,
-    rays: RaySums,
-    weights: SnugWeights,
-    tries: int,
-) -> list[Place]:
-    """Twin of :func:`best_by_snugness`."""
-    return best(snug_merits(positions, mask, top, rays, weights), positions, tries)
 
 
 def best(
@@ -133,21 +141,7 @@ def best(
 ) -> list[Place]:
     """Return the positions of the largest merits; of equal ones the lowest, then the leftmost.
 
-    Parameters
-    ----------
-    merits : (n,) float array
-        Of the positions.
-    positions : (n, 2) int array
-        Row and column.
-    tries : int
-        How many are wanted at most.
-    lowest_first : bool
-        The lowest, and of equal ones those of the largest merit.
-
-    Examples
-    --------
-    >>> best(np.array([0.1, 0.3, 0.1]), np.array([[1, 2], [1, 5], [2, 7]]), 2)
-    [Place(merit=300000000000.0, row=1, col=5), Place(merit=100000000000.0, row=2, col=7)]
+    With `lowest_first` the lowest, and of equal ones those of the largest merit.
     """
     rows, cols, units = positions[:, 0], positions[:, 1], np.rint(merits * UNITS)
     keys = (cols, -units, -rows) if lowest_first else (cols, -rows, -units)

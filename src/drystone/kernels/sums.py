@@ -7,25 +7,10 @@ from numpy.typing import NDArray
 
 
 def unfillable(counts: Mapping[tuple[int, ...], int], limit: int) -> NDArray[np.int64]:
-    """Return for every length up to a limit what is left over at best.
+    """Return for every length f up to a limit f minus the largest sum of lengths that is at most f.
 
-    Parameters
-    ----------
-    counts : mapping of tuples of int to int
-        How many stones there are of each kind, a kind being the lengths of a stone, of which one
-        may be used, once; positive.
-    limit : int
-        Largest length asked for.
-
-    Returns
-    -------
-    rest : (limit + 1,) int array
-        rest[f] is f minus the largest sum of lengths that is at most f.
-
-    Examples
-    --------
-    >>> unfillable({(3,): 1, (4, 5): 1}, 8).tolist()
-    [0, 1, 2, 0, 0, 0, 1, 0, 0]
+    `counts` is how many stones there are of each kind, a kind being the lengths of a stone, of
+    which one may be used, once.
     """
     reached = 1  # bit s: the sum s can be reached
     keep = (1 << (limit + 1)) - 1

@@ -1,10 +1,13 @@
-"""Where a mask stands on a landscape: the ends of its support, and the row where it rests.
+"""Where a mask stands on a landscape, where it rests, and the free space around it.
 
 The functions take about a microsecond, less than passing the interpreter from thread to thread:
 they keep it.
 """
 
 from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
 
 from drystone.kernels.raster import Mask
 
@@ -13,44 +16,19 @@ try:
 except ImportError:
     from drystone.kernels import shim as cython
 
-if cython.compiled:
-    from cython.cimports.drystone.kernels.memory import pixels, stride
-else:
-    from drystone.kernels.lists import pixels, stride
+if not cython.compiled:
+    from drystone.kernels.lists import longs, longs_out, pixels, stride
 
 Ends = tuple[int, int, int, int]
+Longs = NDArray[np.int64]
 
 
 def support_ends(occupied: Mask, mask: Mask, row: int, col: int) -> Ends | None:
-    """Return the outermost pixels on which a mask stands.
+    """Return the outermost pixels on which a mask, cropped, stands where it overlaps nothing.
 
-    A pixel stands where the mask moved down by one would overlap something or the ground.
-
-    Parameters
-    ----------
-    occupied : (h, w) bool array
-        The landscape without the mask, row 0 at the top; the ground is below its last row.
-    mask : (h', w') bool array
-        Cropped.
-    row, col : int
-        Its top-left corner; it overlaps nothing there.
-
-    Returns
-    -------
-    left_x, right_x, left_row, right_row : int
-        Outer edges of the outermost of these pixels, and the rows of the edges on which they
-        stand: of a column's pixels the lowest counts.  None when it stands on nothing.
-
-    Raises
-    ------
-    ValueError
-        When the mask leaves the landscape.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> support_ends(np.zeros((2, 5), bool), np.array([[1, 1, 1], [0, 1, 0]], bool), 0, 1)
-    (2, 3, 2, 2)
+    A pixel stands where the mask moved down by one would overlap something or the ground.  Left and
+    right edge of the outermost ones, then the rows of the edges on which they stand: of a column's
+    pixels the lowest counts.  None when it stands on nothing.
     """
     check_inside(occupied, mask, row, col)
     return ends_at(pair_of(occupied, mask), row, col)
@@ -59,27 +37,10 @@ def support_ends(occupied: Mask, mask: Mask, row: int, col: int) -> Ends | None:
 def resting_place(
     occupied: Mask, mask: Mask, row: int, col: int, reach_px: int
 ) -> tuple[int, Ends] | None:
-    """Return the row nearest to a given one at which a mask rests in its column.
+    """Return the row nearest to a given one at which a mask rests in its column, and its support.
 
-    Parameters
-    ----------
-    occupied : (h, w) bool array
-        The landscape.
-    mask : (h', w') bool array
-        Cropped.
-    row, col : int
-        Where its top-left corner should go.
-    reach_px : int
-        How far up or down it may be moved; of two rows equally far the lower one is taken.
-
-    Returns
-    -------
-    row : int
-        Where it overlaps nothing, and would one row lower or stands on the ground.
-    ends : (int, int, int, int)
-        Of its support there (:func:`support_ends`).
-
-    None when it overlaps something, leaves the landscape, or hangs in the air in all these rows.
+    There it overlaps nothing, and would one row lower or stands on the ground.  Of two rows equally
+    far the lower one is taken.  None when there is none within reach.
     """
     if col < 0 or col + mask.shape[1] > occupied.shape[1]:
         return None
@@ -103,6 +64,147 @@ def resting_place(
     return None
 
 
+def free_below(occupied: Mask, bottom: Longs, row: int, col: int) -> Longs:
+    """Return the free height under each column of a mask, down to what is below or the ground.
+
+    `bottom` is the row of the lowest pixel of each of its columns.
+    """
+    if min(row, col) < 0 or col + bottom.size > occupied.shape[1]:
+        raise ValueError(f"{bottom.size} columns at ({row}, {col}) leave the landscape")
+    pair: Pair = pair_of(occupied, occupied)
+    bottoms, heights = np.ascontiguousarray(bottom, np.int64), np.empty(bottom.size, np.int64)
+    lowest: cython.p_longlong = longs(bottoms)
+    out: cython.p_longlong = longs_out(heights)
+    count: cython.Py_ssize_t = bottom.size
+    below: cython.Py_ssize_t = row + 1
+    left: cython.Py_ssize_t = col
+    for at in range(count):
+        out[at] = free_height(pair, below + lowest[at], left + at, pair.rows)
+    return heights
+
+
+def free_beside(occupied: Mask, mask: Mask, row: int, col: int) -> tuple[int, int]:
+    """Return the free pixels left of a mask, and the narrowest free width right of it.
+
+    In the rows of the mask, each of which has a pixel, up to the next occupied pixel or the end.
+    """
+    check_inside(occupied, mask, row, col)
+    pair: Pair = pair_of(occupied, mask)
+    top: cython.Py_ssize_t = row
+    left: cython.Py_ssize_t = col
+    area: cython.Py_ssize_t = 0
+    narrowest: cython.Py_ssize_t = pair.columns
+    for i in range(pair.height):
+        line = (top + i) * pair.down
+        own = i * pair.stone_down
+        at = 0
+        while at < pair.width - 1 and not pair.stone[own + at * pair.stone_across]:
+            at += 1
+        first = at = left + at
+        while at > 0 and not pair.wall[line + (at - 1) * pair.across]:
+            at -= 1
+        area += first - at
+        at = pair.width
+        while at > 1 and not pair.stone[own + (at - 1) * pair.stone_across]:
+            at -= 1
+        first = at = left + at
+        while at < pair.columns and at - first < narrowest:
+            if pair.wall[line + at * pair.across]:
+                break
+            at += 1
+        narrowest = min(narrowest, at - first)
+    return area, narrowest
+
+
+def gap_filling(
+    occupied: Mask,
+    mask: Mask,
+    row: int,
+    col: int,
+    columns: tuple[int, int],
+    sizes: tuple[int, int],
+) -> tuple[Mask, int, int] | None:
+    """Return the gap under a mask where it is lowest, as a piece that fills it (§3.7, Fig. 9c).
+
+    `columns` are the first one of the mask, each of which has a pixel, that may be filled and the
+    one after the last; `sizes` the smallest height and width, and the largest height, of a column
+    of the piece.
+
+    The piece is connected by edges: the columns that touch first when the mask is lowered in
+    thought, with those beside them whose gap is a pixel higher, or more while they are fewer than
+    the smallest width.  Returned with its top-left corner; None when there is none of these sizes,
+    or it would fall apart.
+    """
+    check_inside(occupied, mask, row, col)
+    if min(columns) < 0 or columns[1] > mask.shape[1]:
+        raise ValueError(f"columns {columns} of a mask that has {mask.shape[1]}")
+    pair: Pair = pair_of(occupied, mask)
+    smallest: cython.Py_ssize_t = sizes[0]
+    largest: cython.Py_ssize_t = sizes[1]
+    first: cython.Py_ssize_t = columns[0]
+    down: cython.Py_ssize_t = row
+    left: cython.Py_ssize_t = col + columns[0]
+    count: cython.Py_ssize_t = max(0, columns[1] - columns[0])
+    tops, heights = np.empty(count, np.int64), np.empty(count, np.int64)
+    top: cython.p_longlong = longs_out(tops)
+    gap: cython.p_longlong = longs_out(heights)
+    for at in range(count):
+        i: cython.Py_ssize_t = pair.height
+        own = (first + at) * pair.stone_across
+        while i > 0 and not pair.stone[(i - 1) * pair.stone_down + own]:
+            i -= 1
+        top[at] = down + i
+        # No further down than it may be filled.
+        gap[at] = free_height(pair, down + i, left + at, largest + 1)
+    run = touching_run(gap, count, smallest, largest)
+    if run[0] >= run[1]:
+        return None
+    for at in range(run[0] + 1, run[1]):
+        # Each column is one run of pixels: neighbours must share a row.
+        if max(top[at - 1], top[at]) >= min(top[at - 1] + gap[at - 1], top[at] + gap[at]):
+            return None
+    tops, heights = tops[run[0] : run[1]], heights[run[0] : run[1]]
+    ends, highest = tops + heights, int(tops.min())
+    rows = np.arange(highest, int(ends.max()))[:, None]
+    return (rows >= tops) & (rows < ends), highest, left + run[0]
+
+
+def free_height(pair, row, col, most):
+    """Count free pixels of the landscape from a row downwards, so many at most, to the ground."""
+    end = min(pair.rows, row + most)
+    at: cython.Py_ssize_t = row
+    while at < end and not pair.wall[at * pair.down + col * pair.across]:
+        at += 1
+    return at - row
+
+
+def touching_run(gap, size, smallest, largest):
+    """Return the columns that touch first when a mask is lowered, at least the smallest number.
+
+    The run starts from the smallest gap and takes in neighbours whose gap is a pixel larger, or
+    more as long as it is narrower than wanted.  It is empty when there is none.
+    """
+    least: cython.Py_ssize_t = largest + 1
+    most: cython.Py_ssize_t = 0
+    for at in range(size):
+        if smallest <= gap[at] <= largest:
+            least, most = min(least, gap[at]), max(most, gap[at])
+    for slack in range(1, most + 1):
+        highest = min(largest, least + slack)
+        for at in range(size):
+            if gap[at] != least:
+                continue
+            start: cython.Py_ssize_t = at
+            stop: cython.Py_ssize_t = at + 1
+            while start > 0 and least <= gap[start - 1] <= highest:
+                start -= 1
+            while stop < size and least <= gap[stop] <= highest:
+                stop += 1
+            if stop - start >= smallest:
+                return start, stop
+    return 0, 0
+
+
 def check_inside(occupied: Mask, mask: Mask, row: int, col: int) -> None:
     """Raise ValueError when a mask at a position leaves the landscape."""
     height, width = mask.shape
@@ -121,7 +223,7 @@ def pair_of(occupied, mask):
     pair.wall, pair.stone = pixels(occupied), pixels(mask)
     pair.down, pair.across = stride(occupied, 0), stride(occupied, 1)
     pair.stone_down, pair.stone_across = stride(mask, 0), stride(mask, 1)
-    pair.rows = len(occupied)
+    pair.rows, pair.columns = occupied.shape
     pair.height, pair.width = mask.shape
     return pair
 

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from drystone.kernels.bits import BitLandscape, bit_landscape
 from drystone.kernels.lowering import skyline
-from drystone.kernels.mirror import mirrored
-from drystone.kernels.raster import Mask
+from drystone.kernels.raster import Mask, mirrored
 from drystone.kernels.rays import RaySums, ray_sums
 from drystone.kernels.silhouette import Ints
 from drystone.model.placement import Side

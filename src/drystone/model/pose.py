@@ -6,8 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.mirror import mirrored
-from drystone.kernels.raster import Mask
+from drystone.kernels.raster import Mask, mirrored
 from drystone.kernels.silhouette import Silhouette, silhouette
 from drystone.model.stone import Stone
 

@@ -5,8 +5,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from drystone.kernels.lowering import Positions
-from drystone.kernels.merits import SnugWeights
-from drystone.kernels.spots import Place, best_by_eq12, best_by_height, best_by_snugness
+from drystone.kernels.spots import (
+    Place,
+    SnugWeights,
+    best_by_eq12,
+    best_by_height,
+    best_by_snugness,
+)
 from drystone.model.landscape import Landscape
 from drystone.model.pose import PosedStone
 from drystone.placement.feasible import feasible_positions

@@ -18,7 +18,7 @@ class PlacementSettings(Ranged):
     rule : {"eq12", "lowest", "snug"}
         ``"eq12"``: the paper's objective; ``"lowest"``: the lowest row, then the largest LFR, then
         the building side; ``"snug"``: the least weighted sum of height, void below, void beside and
-        distance from the building side (:func:`drystone.kernels.merits.snug_merits`).
+        distance from the building side (:func:`drystone.kernels.spots.snug_merits`).
     reach : {"any", "above"}
         Every position of the image, or only those that can be reached from above.
     clearance_px : int

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.indices import interlocking_width_ratio, inward_slope, is_boundary, left_neighbour
-from drystone.kernels.columns import free_below, free_beside
+from drystone.kernels.support import free_below, free_beside
 from drystone.model.landscape import Landscape, view_box
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Group

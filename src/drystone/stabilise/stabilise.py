@@ -3,8 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from drystone.kernels.columns import gap_filling
 from drystone.kernels.raster import Mask
+from drystone.kernels.support import gap_filling
 from drystone.model.placement import Placement, Side, Wedge
 from drystone.model.wall import Group
 from drystone.poses import PoseBook

@@ -16,8 +16,8 @@ from drystone.drawing.canvas import draw_block, draw_ground, fit_axes
 from drystone.drawing.outlines import label_regions
 from drystone.drawing.palette import GREY, OUTLINE_COLOUR
 from drystone.kernels.lowering import Positions
-from drystone.kernels.merits import eq12_merits
 from drystone.kernels.raster import Mask
+from drystone.kernels.spots import eq12_merits
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Labels
 from drystone_lab.reproduce.cells import ClaimCheck

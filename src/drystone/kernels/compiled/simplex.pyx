@@ -17,6 +17,11 @@ from libc.string cimport memcpy, memset
 
 import numpy as np
 
+ctypedef double *p_double
+ctypedef const double *c_double
+ctypedef int32_t *p_int
+ctypedef const int32_t *c_int
+
 # ---- Data ----------------------------------------------------------------------------------------
 
 cdef enum:
@@ -68,36 +73,24 @@ cdef int ROUNDS = 6
 # with three zeros for the ground, and their six entries, the first ones of all columns first.
 cdef struct Columns:
     Py_ssize_t count
-    const int32_t *first
-    const int32_t *second
+    c_int first, second
     const double *entries
 
 # The optimal basis of the wall.
 cdef struct WallBasis:
-    Py_ssize_t size
-    Py_ssize_t alpha_row
+    Py_ssize_t size, alpha_row
     const int32_t *basic
-    const double *values
-    const double *inverse
-    const double *transposed
-    const double *reduced_costs
-    const double *secondary_costs
+    c_double values, inverse, transposed, reduced_costs, secondary_costs
 
 # The basis inverse: F times the inverse of the wall, bordered by an identity for the new bodies
 # and by minus the live load on them in the column of alpha.  F is an identity but for a few eta
 # columns: `eta[t * size : ...]` is that of row `eta_row[t]`, and `slot` is the way back.
 cdef struct Inverse:
-    const double *rows
-    const double *cols
-    const double *values
-    Py_ssize_t old
-    Py_ssize_t alpha_row
+    c_double rows, cols, values
+    Py_ssize_t old, alpha_row
     const double *live
-    Py_ssize_t new
-    Py_ssize_t size
-    Py_ssize_t count
-    int32_t *eta_row
-    int32_t *slot
+    Py_ssize_t new, size, count
+    p_int eta_row, slot
     double *eta
     # Scratch for sums of lines.
     double *factors
@@ -107,49 +100,30 @@ cdef struct State:
     WallBasis wall
     Columns old
     Columns new
-    Py_ssize_t columns
-    Py_ssize_t size
-    Py_ssize_t alpha_row
+    Py_ssize_t columns, size, alpha_row
     const int32_t *closed
     Py_ssize_t closed_count
     Inverse inverse
-    double speed
-    double pivot
-    int pivots
-    int restarts
+    double speed, pivot
+    int pivots, restarts
     bint reinverted
     # One number a row.  Of the basic values x at the parameter 0, x + direction at 1; `feasible`
     # are those that the next parametric phase starts near.  A basic variable that is fixed, an
     # artificial one or a closed column, has to be 0.
-    double *rhs
-    double *live
-    double *values
-    double *direction
-    double *feasible
-    double *velocity
-    double *ray
-    double *inverse_row
-    double *pivot_column
-    double *residual
-    double *secondary_values
+    p_double rhs, live, values, direction, feasible, velocity, ray, inverse_row, pivot_column
+    p_double residual, secondary_values
     int32_t *basic
     char *fixed
     # Three more than that, for the ground.
-    double *with_ground
-    double *total
+    p_double with_ground, total
     # One number a column.
-    double *reduced_costs
-    double *secondary_costs
-    double *pivot_row
-    double *opened
+    p_double reduced_costs, secondary_costs, pivot_row, opened
     char *open
     # One number a new column.
-    int32_t *new_first
-    int32_t *new_second
+    p_int new_first, new_second
     # One number a row or a column, whichever are more.
     int32_t *listed
-    double *tableau
-    double *small_ray
+    p_double tableau, small_ray
     int32_t *small_basic
     # A new inverse, when the old one is inaccurate.
     double *anew
@@ -172,8 +146,7 @@ cdef void perturbation(uint64_t seed, Py_ssize_t count, double *out) noexcept no
 cdef void price_part(const Columns *part, const double *with_ground, double *out) noexcept nogil:
     cdef Py_ssize_t j, count = part.count
     cdef const double *e = part.entries
-    cdef const double *a
-    cdef const double *b
+    cdef c_double a, b
     for j in range(count):
         a = with_ground + part.first[j]
         b = with_ground + part.second[j]
@@ -239,10 +212,7 @@ cdef void add_lines(
 ) noexcept nogil:
     """Add multiples of lines, one after the other; four in one pass save memory traffic."""
     cdef Py_ssize_t i, t = 0
-    cdef const double *a
-    cdef const double *b
-    cdef const double *c
-    cdef const double *d
+    cdef c_double a, b, c, d
     cdef double f, g, h, k
     while t + 4 <= count:
         a, b, c, d = lines[t], lines[t + 1], lines[t + 2], lines[t + 3]
@@ -1037,8 +1007,7 @@ cdef int solve_new_bodies(State *state, Py_ssize_t *count) noexcept nogil:
     cdef Py_ssize_t i, j, q, row, old = state.inverse.old, new = state.size - old
     cdef Py_ssize_t columns = state.new.count, width
     cdef double *tableau = state.tableau
-    cdef double *costs
-    cdef double *last
+    cdef p_double costs, last
     if old == 0:
         # With room for the row that is eliminated.
         width = columns + new

@@ -1,5 +1,5 @@
 # cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True, initializedcheck=False
-"""Compiled twin of :mod:`drystone.kernels.spots` and :mod:`drystone.kernels.merits`.
+"""Compiled twin of :mod:`drystone.kernels.spots`.
 
 Most positions are passed over: what a place is worth at most is known before its rays are counted.
 The bound goes through the same operations in the same order as the merit, so it is never below it.

@@ -1,0 +1,1 @@
+from drystone.kernels.memory cimport longs

@@ -1,0 +1,67 @@
+from drystone.kernels.memory cimport (
+    doubles, doubles_out, ints, ints_out, more_doubles, new_doubles, new_ints, release
+)
+from libc.math cimport sqrt
+
+ctypedef double *p_double
+ctypedef int *p_int
+
+
+cdef class Sides:
+    cdef Py_ssize_t count
+    cdef p_double x, y, along_x, along_y, length, left, bottom, right, top
+    cdef p_int convex
+
+
+cdef class Contacts:
+    cdef p_double at
+    cdef Py_ssize_t count, room
+
+
+cdef object _told(Contacts found)
+cdef int meet_all(
+    Sides mine, Sides theirs, double *corners, double *others, int *first, double *boxes,
+    Py_ssize_t count, double tolerance, double setback, Contacts found
+) except -1 nogil
+cdef void set_sides(Sides sides, double *corners, Py_ssize_t first) noexcept nogil
+cdef int meet(
+    Sides p, Sides q, Py_ssize_t other, double tolerance, double by, Contacts found
+) except -1 nogil
+cdef void copy(double *at, Py_ssize_t one, Py_ssize_t to) noexcept nogil
+cdef int add(
+    Contacts found, Py_ssize_t edge, Py_ssize_t facing, double start, int count, double x0,
+    double y0, double x1, double y1, double normal_x, double normal_y
+) except -1 nogil
+cdef int facing_edges(
+    Sides p, Py_ssize_t i, Sides q, Py_ssize_t j, double tolerance, Contacts found
+) except -1 nogil
+cdef int corner_on_edge(
+    Sides p, Py_ssize_t i, Sides q, Py_ssize_t j, double tolerance, Contacts found
+) except -1 nogil
+cdef int edge_on_corner(
+    Sides p, Py_ssize_t i, Sides q, Py_ssize_t j, double tolerance, Contacts found
+) except -1 nogil
+cdef int corner_on_corner(
+    Sides p, Py_ssize_t i, Sides q, Py_ssize_t j, double tolerance, Contacts found
+) except -1 nogil
+cdef double set_back_by(double size, double tolerance, double setback) noexcept nogil
+cdef double area(Sides s) noexcept nogil
+cdef bint set_back(
+    Sides p, Sides q, double *at, Py_ssize_t k, double by, double tolerance
+) noexcept nogil
+cdef double projected(Sides s, Py_ssize_t i, double x, double y) noexcept nogil
+cdef double runs_on(Sides s, Py_ssize_t i, double along, double enough, int sense) noexcept nogil
+cdef void without_repeats(Contacts found, Py_ssize_t begin, double tolerance) noexcept nogil
+cdef bint comes_before(double *at, Py_ssize_t one, Py_ssize_t other) noexcept nogil
+cdef Py_ssize_t before(Sides s, Py_ssize_t i) noexcept nogil
+cdef bint common(
+    Sides p, Py_ssize_t i, Sides q, Py_ssize_t j, double tolerance, double *c
+) noexcept nogil
+cdef bint within(
+    double low, double high, double at_low, double at_high, double reach, double *part
+) noexcept nogil
+cdef double stands_on(Sides s, Py_ssize_t i, Sides t, Py_ssize_t j, double tolerance) noexcept nogil
+cdef bint are_beside(Sides s, Py_ssize_t i, Sides t, Py_ssize_t j, double tolerance) noexcept nogil
+cdef bint clears(Sides s, Py_ssize_t i, double out_x, double out_y) noexcept nogil
+cdef int best(bint *separates, double *apart, double *level, double equal) noexcept nogil
+cdef bint is_same(double *at, Py_ssize_t one, Py_ssize_t other, double tolerance) noexcept nogil

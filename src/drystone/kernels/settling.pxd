@@ -1,0 +1,35 @@
+from drystone.kernels.firmness cimport Work, arm_of, enough_rows, firmness
+from drystone.kernels.gaps cimport Heap, Stone, crosses, find_gaps, heap_of, measure
+from drystone.kernels.memory cimport doubles, new_doubles, release
+from drystone.kernels.seidel cimport solve3
+from libc.math cimport cos, isfinite, sin
+
+ctypedef double *p_double
+
+
+cdef class Way:
+    cdef p_double corners, edges
+    cdef Py_ssize_t count
+    cdef double arm, lean, stop, mu, clearance, tolerance, corner, near, far, most_turn, most_shift
+    cdef double gain, overlap, steep, beyond
+    cdef bint sticks, turns
+    cdef Py_ssize_t steps
+
+
+cdef class State(Stone):
+    cdef double x, y, turn, least
+
+
+cdef State state_of(Way way)
+cdef int look(State state, Way way, Heap heap) except -1 nogil
+cdef void exchange(State a, State b) noexcept nogil
+cdef double margin_of(Way way, State here, Work work) except -2.0 nogil
+cdef int descend(
+    Way way, Heap heap, State here, State there, Work work, Py_ssize_t *made
+) except -1 nogil
+cdef int tried(
+    Way way, Heap heap, State here, State there, Work work, double *move, double radius,
+    double gained
+) except -1 nogil
+cdef int best_move(State state, Way way, double radius, Work work, double *move) except -1 nogil
+cdef double turning(State state, Py_ssize_t k, double nx, double ny) noexcept nogil
