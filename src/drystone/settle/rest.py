@@ -14,7 +14,7 @@ from drystone.kernels.polygons import (
     polygon_edges,
 )
 from drystone.kernels.raster import turn
-from drystone.kernels.settling import Rules, Settling, Status, settle
+from drystone.kernels.settling import Settling, SettlingRules, Status, settle
 from drystone.model.placement import Settled, Side
 from drystone.settle.settings import SettleSettings
 
@@ -218,7 +218,9 @@ def lay(
     return repose(stone, scene, found) if found.status == Status.RESTS else None
 
 
-def let_go(stone: Turned, scene: Scene, start: tuple[float, float], rules: Rules) -> Settling:
+def let_go(
+    stone: Turned, scene: Scene, start: tuple[float, float], rules: SettlingRules
+) -> Settling:
     """Settle a stone in one way; one that may not turn has not turned, not even by rounding."""
     found = settle(stone.corners, stone.edges, (*start, 0.0), scene.polygons, scene.width_px, rules)
     return found if rules.turns else found._replace(angle=0.0)
@@ -226,10 +228,10 @@ def let_go(stone: Turned, scene: Scene, start: tuple[float, float], rules: Rules
 
 def ways(
     stone: Turned, scene: Scene, settings: SettleSettings, *, turns: bool = True
-) -> tuple[Rules, ...]:
+) -> tuple[SettlingRules, ...]:
     """Return the ways of settling that are tried, one after the other."""
     size = stone.size_px
-    plain = Rules(
+    plain = SettlingRules(
         lean=settings.lean,
         stop=-1.0,
         mu=scene.mu,
