@@ -10,7 +10,7 @@ from benchmarks.scenes import Stock
 from drystone.kernels.drops import DropTerms
 from drystone.kernels.polygons import Points, Polygons
 from drystone.kernels.profiles import HeightProfile
-from drystone.kernels.settling import Rules, Settling, Status, settle
+from drystone.kernels.settling import Settling, SettlingRules, Status, settle
 from drystone.model.landscape import Landscape
 from drystone.planner.dropping import Drop
 from drystone.planner.planner import Planner
@@ -35,13 +35,13 @@ class LetGo:
         The stone.
     start : (float, float, float)
         Its pose.
-    rules : Rules
+    rules : SettlingRules
         How it settles.
     """
 
     hung: Hung
     start: tuple[float, float, float]
-    rules: Rules
+    rules: SettlingRules
 
 
 @dataclass(frozen=True, eq=False)

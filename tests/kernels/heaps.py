@@ -13,7 +13,7 @@ from drystone.kernels.polygons import (
     no_polygons,
     polygon_edges,
 )
-from drystone.kernels.settling import Rules, Settling, Status, settle
+from drystone.kernels.settling import Settling, SettlingRules, Status, settle
 from tests.naive.settling import Pose, placed
 from tests.polygons import centred, convex, random_polygon
 
@@ -26,16 +26,16 @@ class Drop(NamedTuple):
     outline: Points
     pose: Pose
     around: Polygons
-    rules: Rules
+    rules: SettlingRules
 
     def settled(self) -> Settling:
         edges = polygon_edges(self.outline)
         return settle(self.outline, edges, self.pose, self.around, WIDTH, self.rules)
 
 
-def rules(size: float, **changes: float) -> Rules:
+def rules(size: float, **changes: float) -> SettlingRules:
     """Those of exact settling, with lengths by a stone's size."""
-    usual = Rules(
+    usual = SettlingRules(
         lean=0.3,
         stop=-1.0,
         mu=0.58,

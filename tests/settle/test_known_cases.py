@@ -10,14 +10,14 @@ import pytest
 from scipy.optimize import brentq, minimize_scalar
 
 from drystone.kernels.polygons import no_polygons, polygon_edges
-from drystone.kernels.settling import Rules, Status, settle
+from drystone.kernels.settling import SettlingRules, Status, settle
 
 MU = 0.58
 
 
 def exact(size, **changes):
     """Rules without slack."""
-    usual = Rules(
+    usual = SettlingRules(
         lean=0.0,
         stop=-1.0,
         mu=MU,

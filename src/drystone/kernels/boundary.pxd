@@ -5,7 +5,7 @@ from drystone.kernels.memory cimport (
 ctypedef int *p_int
 
 
-cdef class Work:
+cdef class BoundaryWork:
     cdef list room
     cdef long long *cells
     cdef long long *chains
@@ -16,12 +16,12 @@ cdef class Work:
     cdef bint all_fresh
 
 
-cdef object told(Work w)
-cdef void mark_nodes(Work w) noexcept nogil
-cdef bint is_fresh(Work w, Py_ssize_t one, Py_ssize_t other) noexcept nogil
-cdef void list_edges(Work w) noexcept nogil
-cdef int put_starts_first(Work w) noexcept nogil
-cdef bint is_followed(Work w, int edge) noexcept nogil
-cdef int following(Work w, int edge) noexcept nogil
-cdef int lowest_of_leftmost(Work w, int start) noexcept nogil
-cdef void follow_chain(Work w, int start) noexcept nogil
+cdef object told(BoundaryWork w)
+cdef void mark_nodes(BoundaryWork w) noexcept nogil
+cdef bint is_fresh(BoundaryWork w, Py_ssize_t one, Py_ssize_t other) noexcept nogil
+cdef void list_edges(BoundaryWork w) noexcept nogil
+cdef int put_starts_first(BoundaryWork w) noexcept nogil
+cdef bint is_followed(BoundaryWork w, int edge) noexcept nogil
+cdef int following(BoundaryWork w, int edge) noexcept nogil
+cdef int lowest_of_leftmost(BoundaryWork w, int start) noexcept nogil
+cdef void follow_chain(BoundaryWork w, int start) noexcept nogil

@@ -70,7 +70,7 @@ def boundary_of(cells: Cells, fresh: Mask | None = None) -> Boundary:
     around its own pixel of the higher label.  A closed chain starts at the lowest of its leftmost
     corners.  Chains are sorted by labels, then by start: from the bottom up and from left to right.
     """
-    w: Work = Work()
+    w: BoundaryWork = BoundaryWork()
     w.room = []
     w.height, w.width = cells.shape
     w.stride = w.width + 1
@@ -102,7 +102,7 @@ def boundary_of(cells: Cells, fresh: Mask | None = None) -> Boundary:
 
 
 @cython.cclass
-class Work:
+class BoundaryWork:
     """Cells, marks of their nodes, and what is found; of chains labels, -row, col, begin, end."""
 
 

@@ -11,7 +11,7 @@ cdef class Terms:
     cdef bint rising  # Whether no stage of `look_around` makes a place cheaper.
 
 
-cdef class Wall:
+cdef class DropWall:
     cdef p_double tops
     cdef Py_ssize_t columns
     cdef p_double boxes  # Left, bottom, right and top of each polygon that owns columns.
@@ -44,22 +44,24 @@ cdef void keep(
     Kept kept, double *rows, Py_ssize_t start, Py_ssize_t count, long long group
 ) noexcept nogil
 cdef Py_ssize_t take(
-    Wall wall, Terms terms, Py_ssize_t apart, double limit, Places found, double *out,
+    DropWall wall, Terms terms, Py_ssize_t apart, double limit, Places found, double *out,
     Py_ssize_t start, Py_ssize_t most
 ) noexcept nogil
-cdef Py_ssize_t cheapest(Wall wall, Terms terms, double limit, Places found) noexcept nogil
+cdef Py_ssize_t cheapest(DropWall wall, Terms terms, double limit, Places found) noexcept nogil
 cdef Py_ssize_t least(Places found) noexcept nogil
-cdef void rise(Wall wall) noexcept nogil
-cdef void add_up(Wall wall, Py_ssize_t widest) noexcept nogil
-cdef void lay_down(Wall wall, Terms terms, double constant, Places found) noexcept nogil
+cdef void rise(DropWall wall) noexcept nogil
+cdef void add_up(DropWall wall, Py_ssize_t widest) noexcept nogil
+cdef void lay_down(DropWall wall, Terms terms, double constant, Places found) noexcept nogil
 cdef void land(Places found, double *tops) noexcept nogil
-cdef void look_around(Wall wall, Terms terms, Places found, Py_ssize_t at, int stage) noexcept nogil
+cdef void look_around(
+    DropWall wall, Terms terms, Places found, Py_ssize_t at, int stage
+) noexcept nogil
 cdef double with_room(
-    double cost, Wall wall, Terms terms, double bottom, double top, Py_ssize_t at,
+    double cost, DropWall wall, Terms terms, double bottom, double top, Py_ssize_t at,
     Py_ssize_t end
 ) noexcept nogil
-cdef double step(Wall wall, double left, double bottom, double right, double top) noexcept nogil
+cdef double step(DropWall wall, double left, double bottom, double right, double top) noexcept nogil
 cdef double joint(
-    Wall wall, Terms terms, double left, double bottom, double right, double top
+    DropWall wall, Terms terms, double left, double bottom, double right, double top
 ) noexcept nogil
-cdef double leaning(Wall wall, Terms terms, Places found, Py_ssize_t at) noexcept nogil
+cdef double leaning(DropWall wall, Terms terms, Places found, Py_ssize_t at) noexcept nogil

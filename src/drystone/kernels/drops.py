@@ -157,7 +157,7 @@ class Terms:
 
 
 @cython.cclass
-class Wall:
+class DropWall:
     """What stones are dropped on."""
 
 
@@ -219,7 +219,7 @@ def _dropped(profile, stones, terms, constants, numbers, most, few):
     space = np.empty((3 + widest, room))
     more_space, stages = np.empty(room, np.int64), np.empty(room, np.uint8)
     costs, groups = np.empty(max(1, few[0])), np.empty(max(1, few[0]), np.int64)
-    wall: Wall = Wall()
+    wall: DropWall = DropWall()
     wall.tops, wall.columns = doubles(tops), columns
     wall.boxes, wall.shown = doubles(boxes), len(boxes)
     wall.higher = longs(more_space)

@@ -19,7 +19,7 @@ except ImportError:
 if not cython.compiled:
     from math import sqrt
 
-    from drystone.kernels.gaps import Stone, find_gaps, heap_of, stone_of
+    from drystone.kernels.gaps import MovingStone, find_gaps, heap_of, stone_of
     from drystone.kernels.lists import doubles, more_doubles, new_doubles, release
     from drystone.kernels.seidel import solve2, solve3
 
@@ -46,16 +46,16 @@ def rest_margin(
     """Return how far gravity may lean, over mu, until a placed polygon moves; at most 10.
 
     -1 when it does not rest.  Gaps up to the tolerance touch; the ends of the wall carry nothing.
-    `corner` and `steep` are those of :class:`drystone.kernels.settling.Rules`.
+    `corner` and `steep` are those of :class:`drystone.kernels.settling.SettlingRules`.
     """
     require_friction(mu)
     corners = np.ascontiguousarray(corners, np.float64)
-    stone: Stone = stone_of(corners, polygon_edges(corners))
+    stone: MovingStone = stone_of(corners, polygon_edges(corners))
     x: cython.double = centroid[0]
     y: cython.double = centroid[1]
     find_gaps(stone, heap_of(around, width), tolerance, corner)
     arm: cython.double = arm_of(doubles(corners), stone.count, x, y)
-    return firmness(stone, x, y, arm, mu, tolerance, steep, Work())
+    return firmness(stone, x, y, arm, mu, tolerance, steep, LpRows())
 
 
 def require_friction(mu: float) -> None:
@@ -65,7 +65,7 @@ def require_friction(mu: float) -> None:
 
 
 @cython.cclass
-class Work:
+class LpRows:
     """Room for the rows of linear programs, which grows."""
 
     def __init__(self) -> None:

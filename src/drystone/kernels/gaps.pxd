@@ -20,34 +20,35 @@ cdef class Heap(Body):
     cdef double width, beyond
 
 
-cdef class Stone(Body):
+cdef class MovingStone(Body):
     cdef p_double gaps
     cdef p_int near
     cdef Py_ssize_t found, room, near_room
 
 
 cdef Heap heap_of(object around, double width)
-cdef Stone stone_of(object corners, object edges)
+cdef MovingStone stone_of(object corners, object edges)
 cdef void measure(Body body) noexcept nogil
-cdef int find_gaps(Stone stone, Heap heap, double reach, double corner) except -1 nogil
-cdef int crosses(Stone stone, Heap heap) except -1 nogil
+cdef int find_gaps(MovingStone stone, Heap heap, double reach, double corner) except -1 nogil
+cdef int crosses(MovingStone stone, Heap heap) except -1 nogil
 cdef void select(Heap heap, Py_ssize_t i) noexcept nogil
 cdef int keep(
-    Stone stone, double gap, double nx, double ny, double x, double y, double away, double other
+    MovingStone stone, double gap, double nx, double ny, double x, double y, double away,
+    double other
 ) except -1 nogil
-cdef int room_for(Stone stone, Py_ssize_t count) except -1 nogil
+cdef int room_for(MovingStone stone, Py_ssize_t count) except -1 nogil
 cdef int one_way(
-    Body a, Body b, Stone out, double reach, double corner, double sign, double other
+    Body a, Body b, MovingStone out, double reach, double corner, double sign, double other
 ) except -1 nogil
 cdef int at_corner(
     Body a, Body b, Py_ssize_t i, Py_ssize_t e, double reach, double corner, double sign,
-    double other, Stone out
+    double other, MovingStone out
 ) except -1 nogil
 cdef Py_ssize_t edge_before(Body b, Py_ssize_t e) noexcept nogil
 cdef bint face_between(Body a, Body b, Py_ssize_t i, Py_ssize_t e, double *face) noexcept nogil
 cdef double along(Body a, Py_ssize_t e, double mx, double my) noexcept nogil
 cdef bint contains(Body body, double x, double y) noexcept nogil
-cdef int over(Stone a, Body b) except -1 nogil
+cdef int over(MovingStone a, Body b) except -1 nogil
 cdef bint cut(
     double *one, Py_ssize_t a, Py_ssize_t b, double *two, Py_ssize_t c, Py_ssize_t d
 ) noexcept nogil

@@ -62,7 +62,7 @@ def gaps_around(
     Edges are (unit vector x, y, length); those without length are left out.  Two corners nearer
     than `corner` meet with a face.  The polygon may stand out over the ends by `beyond`.
     """
-    stone: Stone = stone_of(corners, edges)
+    stone: MovingStone = stone_of(corners, edges)
     heap: Heap = heap_of(around, width)
     heap.beyond = beyond
     find_gaps(stone, heap, reach, corner)
@@ -77,7 +77,7 @@ def crosses_any(corners: Points, around: Polygons) -> bool:
     Quick, for outlines that keep a clearance: no overlap is missed, and outlines that only touch
     may count.  Where they may touch, ask :mod:`drystone.model.overlap`.
     """
-    stone: Stone = stone_of(corners, corners)
+    stone: MovingStone = stone_of(corners, corners)
     return bool(crosses(stone, heap_of(around, 0.0)))
 
 
@@ -92,7 +92,7 @@ class Heap(Body):
 
 
 @cython.cclass
-class Stone(Body):
+class MovingStone(Body):
     """A polygon that moves, and the gaps that were found around it, seven numbers each."""
 
     def __init__(self) -> None:
@@ -117,7 +117,7 @@ def heap_of(around, width):
 
 def stone_of(corners, edges):
     """Return a polygon without gaps; its arrays have to outlive it."""
-    stone: Stone = Stone()
+    stone: MovingStone = MovingStone()
     stone.corners, stone.edges = doubles(corners), doubles(edges)
     stone.first, stone.count, stone.found = 0, len(corners), 0
     measure(stone)

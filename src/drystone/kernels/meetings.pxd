@@ -13,36 +13,36 @@ cdef class Sides:
     cdef p_int convex
 
 
-cdef class Contacts:
+cdef class MeetingRows:
     cdef p_double at
     cdef Py_ssize_t count, room
 
 
-cdef object _told(Contacts found)
+cdef object _told(MeetingRows found)
 cdef int meet_all(
     Sides mine, Sides theirs, double *corners, double *others, int *first, double *boxes,
-    Py_ssize_t count, double tolerance, double setback, Contacts found
+    Py_ssize_t count, double tolerance, double setback, MeetingRows found
 ) except -1 nogil
 cdef void set_sides(Sides sides, double *corners, Py_ssize_t first) noexcept nogil
 cdef int meet(
-    Sides p, Sides q, Py_ssize_t other, double tolerance, double by, Contacts found
+    Sides p, Sides q, Py_ssize_t other, double tolerance, double by, MeetingRows found
 ) except -1 nogil
 cdef void copy(double *at, Py_ssize_t one, Py_ssize_t to) noexcept nogil
 cdef int add(
-    Contacts found, Py_ssize_t edge, Py_ssize_t facing, double start, int count, double x0,
+    MeetingRows found, Py_ssize_t edge, Py_ssize_t facing, double start, int count, double x0,
     double y0, double x1, double y1, double normal_x, double normal_y
 ) except -1 nogil
 cdef int facing_edges(
-    Sides p, Py_ssize_t i, Sides q, Py_ssize_t j, double tolerance, Contacts found
+    Sides p, Py_ssize_t i, Sides q, Py_ssize_t j, double tolerance, MeetingRows found
 ) except -1 nogil
 cdef int corner_on_edge(
-    Sides p, Py_ssize_t i, Sides q, Py_ssize_t j, double tolerance, Contacts found
+    Sides p, Py_ssize_t i, Sides q, Py_ssize_t j, double tolerance, MeetingRows found
 ) except -1 nogil
 cdef int edge_on_corner(
-    Sides p, Py_ssize_t i, Sides q, Py_ssize_t j, double tolerance, Contacts found
+    Sides p, Py_ssize_t i, Sides q, Py_ssize_t j, double tolerance, MeetingRows found
 ) except -1 nogil
 cdef int corner_on_corner(
-    Sides p, Py_ssize_t i, Sides q, Py_ssize_t j, double tolerance, Contacts found
+    Sides p, Py_ssize_t i, Sides q, Py_ssize_t j, double tolerance, MeetingRows found
 ) except -1 nogil
 cdef double set_back_by(double size, double tolerance, double setback) noexcept nogil
 cdef double area(Sides s) noexcept nogil
@@ -51,7 +51,7 @@ cdef bint set_back(
 ) noexcept nogil
 cdef double projected(Sides s, Py_ssize_t i, double x, double y) noexcept nogil
 cdef double runs_on(Sides s, Py_ssize_t i, double along, double enough, int sense) noexcept nogil
-cdef void without_repeats(Contacts found, Py_ssize_t begin, double tolerance) noexcept nogil
+cdef void without_repeats(MeetingRows found, Py_ssize_t begin, double tolerance) noexcept nogil
 cdef bint comes_before(double *at, Py_ssize_t one, Py_ssize_t other) noexcept nogil
 cdef Py_ssize_t before(Sides s, Py_ssize_t i) noexcept nogil
 cdef bint common(

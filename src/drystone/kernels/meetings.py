@@ -130,7 +130,7 @@ def meetings(corners: Points, around: Polygons, tolerance: float, setback: float
         most = max(most, first[k + 1] - first[k])
     mine: Sides = Sides(len(corners))
     theirs: Sides = Sides(most)
-    found: Contacts = Contacts(4 * len(corners) + 16)
+    found: MeetingRows = MeetingRows(4 * len(corners) + 16)
     at: cython.p_double = doubles(corners)
     others: cython.p_double = doubles(around.corners)
     boxes: cython.p_double = doubles(around.boxes)
@@ -190,7 +190,7 @@ class Sides:
 
 
 @cython.cclass
-class Contacts:
+class MeetingRows:
     """Contacts one after the other, :data:`NUMBERS` numbers each."""
 
     def __init__(self, room: int) -> None:

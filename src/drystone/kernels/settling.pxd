@@ -1,5 +1,5 @@
-from drystone.kernels.firmness cimport Work, arm_of, enough_rows, firmness
-from drystone.kernels.gaps cimport Heap, Stone, crosses, find_gaps, heap_of, measure
+from drystone.kernels.firmness cimport LpRows, arm_of, enough_rows, firmness
+from drystone.kernels.gaps cimport Heap, MovingStone, crosses, find_gaps, heap_of, measure
 from drystone.kernels.memory cimport doubles, new_doubles, release
 from drystone.kernels.seidel cimport solve3
 from libc.math cimport cos, isfinite, sin
@@ -16,20 +16,20 @@ cdef class Way:
     cdef Py_ssize_t steps
 
 
-cdef class State(Stone):
+cdef class State(MovingStone):
     cdef double x, y, turn, least
 
 
 cdef State state_of(Way way)
 cdef int look(State state, Way way, Heap heap) except -1 nogil
 cdef void exchange(State a, State b) noexcept nogil
-cdef double margin_of(Way way, State here, Work work) except -2.0 nogil
+cdef double margin_of(Way way, State here, LpRows work) except -2.0 nogil
 cdef int descend(
-    Way way, Heap heap, State here, State there, Work work, Py_ssize_t *made
+    Way way, Heap heap, State here, State there, LpRows work, Py_ssize_t *made
 ) except -1 nogil
 cdef int tried(
-    Way way, Heap heap, State here, State there, Work work, double *move, double radius,
+    Way way, Heap heap, State here, State there, LpRows work, double *move, double radius,
     double gained
 ) except -1 nogil
-cdef int best_move(State state, Way way, double radius, Work work, double *move) except -1 nogil
+cdef int best_move(State state, Way way, double radius, LpRows work, double *move) except -1 nogil
 cdef double turning(State state, Py_ssize_t k, double nx, double ny) noexcept nogil

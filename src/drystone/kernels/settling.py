@@ -30,8 +30,8 @@ except ImportError:
 if not cython.compiled:
     from math import cos, isfinite, sin
 
-    from drystone.kernels.firmness import Work, arm_of, enough_rows, firmness
-    from drystone.kernels.gaps import Heap, Stone, crosses, find_gaps, heap_of, measure
+    from drystone.kernels.firmness import LpRows, arm_of, enough_rows, firmness
+    from drystone.kernels.gaps import Heap, MovingStone, crosses, find_gaps, heap_of, measure
     from drystone.kernels.lists import doubles, new_doubles, release
     from drystone.kernels.seidel import solve3
 
@@ -67,7 +67,7 @@ class Status(IntEnum):
     """It still moved after the last step."""
 
 
-class Rules(NamedTuple):
+class SettlingRules(NamedTuple):
     """How a stone settles; lengths in the unit of the polygons."""
 
     lean: float  # gravity towards -x over gravity downwards
@@ -113,7 +113,7 @@ class Way:
 
 
 @cython.cclass
-class State(Stone):
+class State(MovingStone):
     """A pose, and what is around the stone there; the turn in radians."""
 
     def __dealloc__(self) -> None:
@@ -127,7 +127,7 @@ def settle(
     pose: tuple[float, float, float],
     around: Polygons,
     width: float,
-    rules: Rules,
+    rules: SettlingRules,
 ) -> Settling:
     """Settle one stone that is let go at a pose: x, y of the centroid, and the turn in radians.
 
@@ -148,7 +148,7 @@ def settle(
     here: State = state_of(way)
     there: State = state_of(way)
     here.x, here.y, here.turn = pose
-    work: Work = Work()
+    work: LpRows = LpRows()
     made: cython.Py_ssize_t[1] = [0]
     status: cython.int = OVERLAPS
     margin: cython.double = -1.0

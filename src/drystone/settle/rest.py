@@ -14,7 +14,7 @@ from drystone.kernels.polygons import (
     polygon_edges,
 )
 from drystone.kernels.raster import turn
-from drystone.kernels.settling import Rules, Settling, Status, settle
+from drystone.kernels.settling import Settling, SettlingRules, Status, settle
 from drystone.model.placement import Settled, Side
 from drystone.settle.settings import SettleSettings
 
@@ -150,7 +150,7 @@ def lay(
 
 
 def let_go(
-    stone: Turned, scene: SettlingScene, start: tuple[float, float], rules: Rules
+    stone: Turned, scene: SettlingScene, start: tuple[float, float], rules: SettlingRules
 ) -> Settling:
     """Settle a stone in one way; one that may not turn has not turned, not even by rounding."""
     found = settle(stone.corners, stone.edges, (*start, 0.0), scene.polygons, scene.width_px, rules)
@@ -159,10 +159,10 @@ def let_go(
 
 def ways(
     stone: Turned, scene: SettlingScene, settings: SettleSettings, *, turns: bool = True
-) -> tuple[Rules, ...]:
+) -> tuple[SettlingRules, ...]:
     """Return the ways of settling that are tried, one after the other."""
     size = stone.size_px
-    plain = Rules(
+    plain = SettlingRules(
         lean=settings.lean,
         stop=-1.0,
         mu=scene.mu,
