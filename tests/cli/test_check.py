@@ -19,14 +19,7 @@ from drystone.drawing.pictures import check as check_picture
 from drystone.drawing.pictures.check import views_of
 from drystone.drawing.words.checked import NOTEWORTHY_PX, Checked, PhysicsCard
 from drystone.io.plan_json import read_plan
-from drystone.physics.building import (
-    ROUNDED,
-    BlockMove,
-    BuildSettings,
-    BuildUp,
-    build_up,
-    tilt_of,
-)
+from drystone.physics.building import ROUNDED, BlockMove, BuildSettings, BuildUp, build_up, tilt_of
 from drystone.physics.scatter import TiltResult, Variation
 from drystone.physics.tilt import TiltSettings, TiltTrial
 from drystone.verify.check import check_plan

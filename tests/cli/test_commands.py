@@ -21,13 +21,7 @@ def _tower(path: Path) -> Path:
     return path
 
 
-ANALYSED = {
-    "contacts.png",
-    "blocks.csv",
-    "contacts.csv",
-    "friction.png",
-    "report.html",
-} | {
+ANALYSED = {"contacts.png", "blocks.csv", "contacts.csv", "friction.png", "report.html"} | {
     f"{name}_{direction}{ending}"
     for direction in ("left", "right")
     for name, ending in (("mechanism", ".png"), ("mechanism", ".gif"), ("forces", ".png"))

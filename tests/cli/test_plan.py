@@ -249,8 +249,7 @@ def _listed(message: str) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    "options",
-    [("--wall", "15x8", "--skip-too-large"), ("--wall", "60x20", "--ban", *range(1, 7))],
+    "options", [("--wall", "15x8", "--skip-too-large"), ("--wall", "60x20", "--ban", *range(1, 7))]
 )
 def test_nothing_to_build_with_is_refused_at_once(
     options: tuple[object, ...], bricks: Path, tmp_path: Path, run: Run

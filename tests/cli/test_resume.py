@@ -275,11 +275,7 @@ def same(folder: Path, whole: Path) -> bool:
 @pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize(
     ("sent", "walls", "stood"),
-    [
-        (signal.SIGINT, 1, None),
-        (signal.SIGTERM, 3, 2),
-        (signal.SIGINT, 13, 11),
-    ],
+    [(signal.SIGINT, 1, None), (signal.SIGTERM, 3, 2), (signal.SIGINT, 13, 11)],
 )
 def test_a_search_that_is_interrupted_goes_on_to_the_same_plan(
     sent: int,
@@ -330,11 +326,7 @@ def test_signals_while_the_end_is_written_lose_nothing(
 
 @pytest.mark.parametrize(("walls", "stood"), [(2, None), (9, 7)])
 def test_a_search_that_is_killed_goes_on_from_its_checkpoint(
-    walls: int,
-    stood: int | None,
-    search: Search,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    walls: int, stood: int | None, search: Search, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     part = kill(search, tmp_path, walls, monkeypatch)
     assert "E129" in search(tmp_path).err

@@ -5,7 +5,7 @@ from argparse import ArgumentTypeError
 
 import pytest
 
-from drystone.cli.scale import (
+from drystone.cli.numbers import (
     picture_size_px,
     planned_picture_px,
     refuse_outside,

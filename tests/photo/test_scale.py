@@ -7,13 +7,7 @@ from drystone.photo.layout import MarkerLayout, parse_layout
 from drystone.photo.markers import FoundMarker, find_markers
 from drystone.photo.scale import MarkerLimits, scale_and_view
 from drystone.photo.view import View, apply, jacobian
-from tests.photo.scenes import (
-    camera,
-    distance_error_percent,
-    intrinsics,
-    outline,
-    photograph,
-)
+from tests.photo.scenes import camera, distance_error_percent, intrinsics, outline, photograph
 
 SIDE = 0.05
 SIZE = (1000, 750)
