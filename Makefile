@@ -6,13 +6,29 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 KERNELS := $(shell grep -rl --include=*.py "import cython" src/drystone/kernels; find src/drystone/kernels -name "*.p[yx][xd]")
 SOURCES := pyproject.toml setup.py $(KERNELS)
 
-.PHONY: demo test lint bench fuzz docs licences sbom lock clean
+.PHONY: demo test quick lint bench fuzz docs licences sbom lock clean
 
 demo: .venv/demo.stamp          ## plan a generated stone set and say where the picture is
 	$(BIN)/drystone demo -o demo --overwrite
 
 test: .venv/dev.stamp lint      ## lint, types, layers, tests
 	$(BIN)/pytest -n 2
+
+# Of src/drystone/ROOM/... and tests/ROOM/... the tests of the room, of the lab those of the lab.
+ROOMS := 's,^(src/drystone|tests)/([a-z_]+)/.*,tests/\2,p; s,^src/drystone_lab/.*,tests/lab,p; \
+	s,^src/drystone/([a-z_]+)\.py$$,tests/test_\1.py,p; s,^tests/test_[a-z_]+\.py$$,&,p'
+
+quick: .venv/dev.stamp          ## lint what differs from main and test its rooms, in under a minute
+	@changed=$$(git diff --name-only --diff-filter=d main -- '*.py'; \
+		git ls-files --others --exclude-standard -- '*.py'); \
+	[ -n "$$changed" ] || { echo "nothing differs from main"; exit 0; }; \
+	$(BIN)/ruff format --check $$changed && $(BIN)/ruff check $$changed || exit 1; \
+	rooms=$$(echo "$$changed" | sed -nE $(ROOMS) | sort -u); \
+	tests=$$([ -z "$$rooms" ] || find $$rooms -name 'test_*.py' 2>/dev/null); \
+	[ -n "$$tests" ] || { echo "no tests of what differs"; exit 0; }; \
+	timeout 45 $(BIN)/pytest -q -x --failed-first -n 2 $$tests; code=$$?; \
+	[ $$code -ne 124 ] || { echo "stopped after 45 s, nothing failed so far: make test"; exit 0; }; \
+	exit $$code
 
 lint: .venv/dev.stamp
 	$(BIN)/ruff format --check .

@@ -1,7 +1,7 @@
 """The documents say what the code does.
 
 ``python -m tests.test_documents`` from the root of the checkout writes the tables of
-docs/settings.md anew from the docstrings of the settings.
+docs/settings.md anew from the docstrings of the settings, and the meanings in docs/errors.md.
 """
 
 import dataclasses
@@ -22,6 +22,7 @@ from PIL import Image
 
 import drystone
 from drystone.cli.parser import build_parser
+from drystone.errors import CODES
 from drystone.generate import (
     BrickSettings,
     FourierSettings,
@@ -39,6 +40,7 @@ from drystone.selection.scored import Craft
 
 ROOT = Path(__file__).resolve().parents[1]
 SETTINGS = ROOT / "docs" / "settings.md"
+ERRORS = ROOT / "docs" / "errors.md"
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
 NAMES = [str(page.relative_to(ROOT)) for page in PAGES]
 
@@ -46,6 +48,7 @@ BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\(([^)#\s]+)(#[^)\s]*)?\)")
 CODE_FILE = re.compile(r"`([\w/]+/\w+\.(?:py|pyx|pxd))`")
 TOCTREE = re.compile(r"^```\{toctree\}\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+CODE_ROW = re.compile(r"^\| ([EW]\d{3}) \| (.*?) \|", re.MULTILINE)
 TABLE = re.compile(r"<!-- table (\w+) -->\n(.*?)<!-- end -->", re.DOTALL)
 
 SOURCES: dict[str, type[Any]] = {
@@ -156,6 +159,11 @@ def rewritten(text: str) -> str:
     return TABLE.sub(lambda m: f"<!-- table {m[1]} -->\n{written_table(m[1])}<!-- end -->", text)
 
 
+def with_meanings(text: str) -> str:
+    """Return docs/errors.md with what every code means as the code has it."""
+    return CODE_ROW.sub(lambda m: f"| {m[1]} | {CODES.get(m[1], m[2])} |", text)
+
+
 def blocks(page: Path, language: str) -> list[str]:
     """Return the fenced blocks of a page in one language."""
     text = page.read_text(encoding="utf-8")
@@ -182,6 +190,13 @@ def test_the_settings_are_those_of_the_code() -> None:
     names = [name for name, _ in TABLE.findall(text)]
     assert names == [*planner_tables(), *SOURCES]
     assert text == rewritten(text), "run python -m tests.test_documents"
+
+
+def test_the_codes_mean_what_the_code_says() -> None:
+    text = ERRORS.read_text(encoding="utf-8")
+    assert text == with_meanings(text), "run python -m tests.test_documents"
+    assert list(CODES) == sorted(CODES)
+    assert all(said[-1] == "." and len(said.split()) < 26 for said in CODES.values())
 
 
 @pytest.mark.parametrize("described", [*planner_tables().values(), *SOURCES.values()])
@@ -344,4 +359,5 @@ def _properties(schema: object) -> set[str]:
 
 
 if __name__ == "__main__":
-    SETTINGS.write_text(rewritten(SETTINGS.read_text(encoding="utf-8")), encoding="utf-8")
+    for page, anew in ((SETTINGS, rewritten), (ERRORS, with_meanings)):
+        page.write_text(anew(page.read_text(encoding="utf-8")), encoding="utf-8")

@@ -12,6 +12,7 @@ import pytest
 
 import drystone
 import drystone_lab
+from drystone.errors import CODES
 
 ROOT = Path(__file__).resolve().parents[1]
 CODE = re.compile(r'(?<!`)"([EW]\d{3})"')
@@ -49,10 +50,12 @@ def test_every_error_code_is_explained() -> None:
     rows = ROW.findall(text)
     codes = [code for code, _, _ in rows]
     assert len(set(codes)) == len(codes), "a code has two rows"
-    sources = (ROOT / "src").rglob("*.py")
-    used = {code for path in sources for code in CODE.findall(path.read_text(encoding="utf-8"))}
-    assert sorted(used - set(codes)) == [], "without a row in docs/errors.md"
-    assert sorted(set(codes) - used) == [], "in docs/errors.md, but nowhere raised"
+    assert sorted(codes) == list(CODES), "docs/errors.md and drystone.errors.CODES differ"
+    sources = [path.read_text(encoding="utf-8") for path in (ROOT / "src").rglob("*.py")]
+    raised = [text.partition("\nCODES = {")[0] for text in sources]
+    used = {code for text in raised for code in CODE.findall(text)}
+    assert sorted(used - set(codes)) == [], "without a meaning in drystone.errors.CODES"
+    assert sorted(set(codes) - used) == [], "with a meaning, but nowhere raised"
     assert all(meaning.strip() and cure.strip() for _, meaning, cure in rows)
 
 

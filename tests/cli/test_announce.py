@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from drystone.cli import announce
-from drystone.cli.announce import read_line
+from drystone.cli import planning
+from drystone.cli.planning import read_line
 from drystone.io.plan_json import read_plan
 from drystone.model.stone import Stone, StoneSet
 from tests.cli.conftest import WALL, Run
@@ -54,7 +54,7 @@ def test_a_plan_begins_and_ends_with_what_is_read_and_written(
 
 def test_a_long_film_is_left_to_export(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     result = argparse.Namespace(plan=argparse.Namespace(stone_steps=[None] * 3))
-    monkeypatch.setattr(announce, "FILM_STONES", 2)
+    monkeypatch.setattr(planning, "FILM_STONES", 2)
     (tmp_path / "build.gif").touch()
-    announce.write_film(result, tmp_path)  # type: ignore[arg-type]
+    planning.write_film(result, tmp_path)  # type: ignore[arg-type]
     assert list(tmp_path.iterdir()) == []

@@ -46,47 +46,6 @@ def test_what_is_banned_now_is_taken_out(
     assert run("check", tmp_path / "out", "--stones", rubble).code == 0
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (["--wall", "110x36"], "the plan is of another wall (100x36 px, not 110x36)."),
-        (["--scale", ".5"], "the plan is of another resolution. Add --scale 1."),
-        (["--geometry", "raster"], "the plan is of another geometry. Add --geometry exact."),
-        (
-            ["--scale", ".5", "--geometry", "raster"],
-            "another resolution, another geometry. Add --scale 1 --geometry exact.",
-        ),
-        (["--orientations", "sf"], "other orientations. Add --orientations quarter."),
-        (["--one-sided"], "both sides. Add --two-sided."),
-        (["--pieces", "split"], "stones that were read otherwise"),
-    ],
-)
-def test_a_plan_of_something_else_is_refused(
-    options: list[str], said: str, settled: Path, rubble: Path, tmp_path: Path, run: Run
-) -> None:
-    ran = run("plan", rubble, *EXACT, "--from", settled, *options, "-o", tmp_path / "out")
-    assert ran.code == 2
-    assert "E144" in ran.err
-    assert said in ran.err
-    assert not (tmp_path / "out").exists()
-
-
-def test_other_stones_are_refused(settled: Path, bricks: Path, tmp_path: Path, run: Run) -> None:
-    ran = run("plan", bricks, *EXACT, "--from", settled, "-o", tmp_path / "out")
-    assert ran.code == 2
-    assert "E144" in ran.err
-    assert "the plan is of other stones." in ran.err
-
-
-def test_no_plan_is_refused(rubble: Path, tmp_path: Path, run: Run) -> None:
-    ran = run("plan", rubble, *EXACT, "--from", tmp_path, "-o", tmp_path / "out")
-    assert ran.code == 3
-    assert "E202" in ran.err
-    both = run("plan", rubble, *EXACT, "--from", tmp_path, "--resume", "-o", tmp_path / "out")
-    assert both.code == 2
-    assert "E138" in both.err
-
-
 def test_single_stones_are_settings(rubble: Path, tmp_path: Path, run: Run) -> None:
     options = ["--ban", 2, "--ban", 5, 2, "--pin", 7, "--fixed-order"]
     assert run("plan", rubble, *WALL, *options, "-o", tmp_path / "out").code in (0, 4)
@@ -103,19 +62,6 @@ def test_single_stones_are_settings(rubble: Path, tmp_path: Path, run: Run) -> N
     assert (tmp_path / "again" / "plan.json").read_bytes() == (
         tmp_path / "out" / "plan.json"
     ).read_bytes()
-
-
-@pytest.mark.parametrize(
-    ("options", "code"),
-    [(["--ban", "99"], "E145"), (["--pin", "99"], "E145"), (["--ban", "2", "--pin", "2"], "E123"),
-     (["--ban", "-1"], "E138"), (["--pin", "a"], "E138")],
-)  # fmt: skip
-def test_stones_that_cannot_be_meant(
-    options: list[str], code: str, rubble: Path, tmp_path: Path, run: Run
-) -> None:
-    ran = run("plan", rubble, *WALL, *options, "-o", tmp_path / "out")
-    assert ran.code == 2
-    assert code in ran.err
 
 
 def test_a_pinned_stone_that_is_missing_is_said(rubble: Path, tmp_path: Path, run: Run) -> None:

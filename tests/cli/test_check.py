@@ -14,21 +14,13 @@ from matplotlib.image import imread
 from PIL import Image
 
 from drystone.cli.commands import check as check_command
-from drystone.cli.main import main
 from drystone.drawing.pictures import check as check_picture
 from drystone.drawing.pictures.check import views_of
 from drystone.drawing.words.checked import NOTEWORTHY_PX, Checked, PhysicsCard
 from drystone.io.plan_json import read_plan
-from drystone.physics.building import (
-    ROUNDED,
-    BlockMove,
-    BuildSettings,
-    BuildUp,
-    build_up,
-    tilt_of,
-)
-from drystone.physics.scatter import TiltResult, Variation
-from drystone.physics.tilt import TiltSettings, TiltTrial
+from drystone.physics.building import BlockMove, BuildSettings, BuildUp, build_up
+from drystone.physics.scatter import TiltResult
+from drystone.physics.tilt import TiltTrial
 from drystone.verify.check import check_plan
 from drystone.verify.outlines import plan_polygons
 from tests.cli.conftest import Run
@@ -89,23 +81,6 @@ def test_a_wall_that_stands(plan_copy: Path, run: Run) -> None:
     assert not (plan_copy / "check.png").exists()
 
 
-def test_a_wall_that_stands_in_words(
-    plan_copy: Path, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    pytest.importorskip("pymunk", reason=NO_ENGINE)
-    rough = Variation("rough", ROUNDED, TiltSettings(coarse=0.3, fine=0.3))
-    monkeypatch.setattr(check_command, "tilt_of", partial(tilt_of, variations=(rough,)))
-    ran = run("check", plan_copy, "--physics")
-    assert ran.code == 0
-    assert ": holds\n" in ran.out
-    assert "in the engine          stands; nothing moves by more than " in ran.out
-    metrics = json.loads((plan_copy / "plan.json").read_text())["metrics"]
-    for side in ("left", "right"):
-        (tilted,) = (row for row in ran.out.splitlines() if f"tilted to the {side}" in row)
-        assert "falls at alpha = 0.450; " in tilted
-        assert f"limit analysis {metrics[f'alpha_{side}']:.3f}" in tilted
-
-
 def test_a_stone_that_falls_is_named_and_drawn(
     plan_copy: Path, run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -155,15 +130,6 @@ def test_a_claim_that_the_engine_contradicts_fails(
     report = run("check", plan_copy, "--physics", "--json")
     assert (report.code, report.json()["ok"]) == (5, False)
     assert [p["code"] for p in report.json()["problems"]] == ["E242", "E242"]
-
-
-def test_what_hangs_in_the_air_falls(plan_copy: Path, run: Run) -> None:
-    pytest.importorskip("pymunk", reason=NO_ENGINE)
-    change(plan_copy, lift)
-    last = json.loads((plan_copy / "plan.json").read_text())["steps"][-1]
-    report = run("check", plan_copy, "--physics", "--json").json()
-    assert report["physics"]["fallen"] == [last["stone"]]
-    assert report["physics"]["first_fall"] == last["step"]
 
 
 def test_a_wall_with_a_stone_missing_is_not_built(plan_copy: Path, run: Run) -> None:
@@ -284,42 +250,6 @@ def test_a_folder_that_takes_no_picture(
     assert report["picture"] is None
 
 
-def test_a_plan_without_stones_has_no_picture(plan_copy: Path, tmp_path: Path, run: Run) -> None:
-    change(plan_copy, lambda plan: plan.update(steps=[]))
-    path = tmp_path / "none.png"
-    ran = run("check", plan_copy, "--picture", path)
-    assert ran.code == 5
-    assert not path.exists()
-    assert main(["check", str(plan_copy)]) == 5
-
-
-@pytest.mark.parametrize(
-    ("planned", "found", "said"),
-    [
-        (0.0, 0.46, "up to 0.46 source px deep (stone 3): others had moved there"),
-        (1.5, 1.6, "up to 1.60 source px deep (stone 3): what overlaps cannot stay where it is"),
-        (0.0, 0.009, None),
-    ],
-)
-def test_why_stones_were_pushed_apart(
-    planned: float, found: float, said: str | None, plan_copy: Path
-) -> None:
-    """Where the plan has no overlap it is the engine's doing."""
-    plan = read_plan(plan_copy)
-    move = BlockMove(3, 1, 0.2, 0.01, 0.1, found, fell=False)
-    built = BuildUp((move,), {}, {}, (0.0,), (), None, 0.58)
-    card = PhysicsCard(plan, built, None, None, overlap_px=planned)
-    assert dict(card.rows()).get("  pushed apart") == said
-
-
-def test_steps_that_did_not_come_to_rest_are_counted_right(plan_copy: Path) -> None:
-    plan = read_plan(plan_copy)
-    for restless, said in (((1,), "step 1 was"), ((1, 2), "steps 1, 2 was")):
-        built = BuildUp((), {}, {}, (0.0,), restless, None, 0.58)
-        rows = dict(PhysicsCard(plan, built, None, None).rows())
-        assert rows["  restless"] == f"blocks still moved when the time of {said} up"
-
-
 def test_the_engine_is_told_how_deep_outlines_overlap(
     plan_copy: Path, run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -330,16 +260,6 @@ def test_the_engine_is_told_how_deep_outlines_overlap(
     depth = run("check", plan_copy, "--json").json()["overlap_depth"]
     assert depth > NOTEWORTHY_PX
     assert "what overlaps cannot stay where it is" in run("check", plan_copy, "--physics").out
-
-
-def test_a_stone_that_hangs_by_friction_is_drawn_where_it_hangs() -> None:
-    hanging = hanging_example()
-    report = check_plan(hanging.plan, hanging.stones)
-    groups = plan_polygons(hanging.plan, hanging.stones)
-    (view,) = views_of(Checked(hanging.plan, hanging.stones, report, groups))
-    assert "E237" in view.title
-    assert list(view.concerned) == [3]
-    assert not view.ended
 
 
 def test_another_block_model_beside_the_plan_is_found(settled_copy: Path, run: Run) -> None:
@@ -360,12 +280,7 @@ def test_another_block_model_beside_the_plan_is_found(settled_copy: Path, run: R
         path.write_text(damaged, "utf-8")
         ran = run("check", settled_copy)
         assert (ran.code, "E238 blocks.json is no block model" in ran.out) == (5, True)
-    analysed = run("analyse", settled_copy)
-    assert (analysed.code, "E132" in analysed.err, "or plan again" in analysed.err) == (
-        3,
-        True,
-        True,
-    )
+    assert "or plan again" in run("analyse", settled_copy).err
     path.unlink()
     ran = run("check", settled_copy)
     assert ran.code == 0
@@ -388,10 +303,34 @@ def test_stones_with_other_bytes_are_named_as_such(plan_copy: Path, run: Run) ->
     assert (ran.code, "The bytes of the source were not compared" in ran.out) == (0, True)
 
 
-def test_a_stone_that_is_banned_is_found(plan_copy: Path, run: Run) -> None:
-    def ban(plan: dict[str, Any]) -> None:
-        plan["settings"]["ban"] = [plan["steps"][0]["stone"]]
+def test_words_of_the_engine(plan_copy: Path) -> None:
+    """Where the plan has no overlap it is the engine's doing that stones were pushed apart."""
+    plan = read_plan(plan_copy)
 
-    change(plan_copy, ban)
-    ran = run("check", plan_copy)
-    assert (ran.code, "E239 step 1: stone" in ran.out) == (5, True)
+    def rows(found: float = 0.0, planned: float = 0.0, restless: tuple[int, ...] = ()) -> Any:
+        move = BlockMove(3, 1, 0.2, 0.01, 0.1, found, fell=False)
+        built = BuildUp((move,), {}, {}, (0.0,), restless, None, 0.58)
+        return dict(PhysicsCard(plan, built, None, None, overlap_px=planned).rows())
+
+    apart = "  pushed apart"
+    assert rows(0.46)[apart] == "up to 0.46 source px deep (stone 3): others had moved there"
+    deep = "up to 1.60 source px deep (stone 3): what overlaps cannot stay where it is"
+    assert rows(1.6, 1.5)[apart] == deep
+    assert apart not in rows(0.009)
+    for restless, said in (((1,), "step 1 was"), ((1, 2), "steps 1, 2 was")):
+        words = f"blocks still moved when the time of {said} up"
+        assert rows(restless=restless)["  restless"] == words
+
+
+def test_a_stone_that_hangs_by_friction_is_drawn_where_it_hangs() -> None:
+    hanging = hanging_example()
+    report = check_plan(hanging.plan, hanging.stones)
+    groups = plan_polygons(hanging.plan, hanging.stones)
+    (view,) = views_of(Checked(hanging.plan, hanging.stones, report, groups))
+    assert ("E237" in view.title, list(view.concerned), bool(view.ended)) == (True, [3], False)
+
+
+def test_a_plan_without_stones_has_no_picture(plan_copy: Path, tmp_path: Path, run: Run) -> None:
+    change(plan_copy, lambda plan: plan.update(steps=[]))
+    assert run("check", plan_copy, "--picture", tmp_path / "none.png").code == 5
+    assert not (tmp_path / "none.png").exists()

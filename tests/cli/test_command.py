@@ -6,8 +6,7 @@ from typing import Any
 
 import pytest
 
-from drystone.cli.command import GROUP, STUDIES, found_commands
-from drystone.cli.parser import build_parser
+from drystone.cli.parser import GROUP, STUDIES, build_parser, found_commands
 from tests.cli.conftest import Run
 
 

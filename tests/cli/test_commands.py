@@ -21,13 +21,7 @@ def _tower(path: Path) -> Path:
     return path
 
 
-ANALYSED = {
-    "contacts.png",
-    "blocks.csv",
-    "contacts.csv",
-    "friction.png",
-    "report.html",
-} | {
+ANALYSED = {"contacts.png", "blocks.csv", "contacts.csv", "friction.png", "report.html"} | {
     f"{name}_{direction}{ending}"
     for direction in ("left", "right")
     for name, ending in (("mechanism", ".png"), ("mechanism", ".gif"), ("forces", ".png"))
@@ -62,22 +56,6 @@ def test_stones_never_draws_over_a_file(rubble: Path, tmp_path: Path, run: Run) 
     assert mine.read_bytes() != rubble.read_bytes()
 
 
-def test_analyse_an_image(tmp_path: Path, run: Run) -> None:
-    tower = _tower(tmp_path / "tower.png")
-    report = run("analyse", tower, "--json").json()
-    assert (report["status_left"], report["status_right"]) == ("optimal", "optimal")
-    assert report["alpha_left"] == pytest.approx(0.5, abs=0.005)
-    assert report["alpha_right"] == pytest.approx(0.5, abs=0.005)
-    assert report["F_LR"] == pytest.approx(0.5 / 0.58, abs=0.01)
-    assert (report["mu"], report["blocks"], report["contacts"]) == (0.58, 1, 2)
-    assert set(report["mechanism"]) == {"left", "right"}
-    slippery = run("analyse", tower, "--json", "--mu", ".3").json()
-    assert slippery["alpha_left"] == pytest.approx(0.3)
-    ran = run("analyse", tower)
-    assert "alpha = 0.5000" in ran.out
-    assert "Rocking of stone 9 about its left toe" in ran.out
-
-
 def test_analyse_a_block_model(tmp_path: Path, run: Run) -> None:
     model = tmp_path / "model.json"
     model.write_text(json.dumps({"blocks_xywh": [[0, 0, 1, 2]], "mu": 0.7}), encoding="utf-8")
@@ -89,49 +67,30 @@ def test_analyse_a_block_model(tmp_path: Path, run: Run) -> None:
     assert "E134" in run("measure", model).err
 
 
-def test_analyse_the_published_block_model(data_dir: Path, run: Run) -> None:
-    path = data_dir / "ferris" / "ferris_ex1.json"
-    report = run("analyse", path, "--json").json()
-    assert report["blocks"] == len(json.loads(path.read_text(encoding="utf-8"))["blocks_xywh"])
-    assert report["status_left"] == "optimal"
-
-
 def test_analyse_draws_and_never_over_a_file(tmp_path: Path, run: Run) -> None:
     tower, out = _tower(tmp_path / "tower.png"), tmp_path / "out"
     assert run("analyse", tower, "-o", out).code == 0
     assert {path.name for path in out.iterdir()} == ANALYSED
     assert "E129" in run("analyse", tower, "-o", out).err
     assert "E129" in run("analyse", tower, "-o", tower).err
-    # A wall that does not stand is drawn as it falls.
+    ran = run("analyse", tower)
+    assert ("alpha = 0.5000" in ran.out, "Rocking of stone 9 about its left" in ran.out) == (
+        True,
+        True,
+    )
+    # A wall that does not stand is drawn as it falls, and says why.
     before = (out / "mechanism_left.png").read_bytes()
     labels = np.zeros((20, 20), np.uint32)
     labels[15:, 2:8], labels[5:10, 2:8] = 1, 2
     write_labels(labels, tmp_path / "floating.png")
-    assert run("analyse", tmp_path / "floating.png", "-o", out, "--overwrite").code == 5
+    ran = run("analyse", tmp_path / "floating.png", "-o", out, "--overwrite")
+    assert (ran.code, "unstable" in ran.out) == (5, True)
+    assert "W302 1 of 2 blocks touch neither the ground" in ran.err
+    measured = run("measure", tmp_path / "floating.png", "--json")
+    assert (measured.json()["F_LR"], "W302" in measured.err) == (None, True)
     # There are no forces that hold it: none of another wall may stay.
     assert {path.name for path in out.iterdir()} == {n for n in ANALYSED if "forces" not in n}
     assert (out / "mechanism_left.png").read_bytes() != before
-
-
-def test_a_wall_that_does_not_stand_says_why(tmp_path: Path, run: Run) -> None:
-    labels = np.zeros((20, 20), np.uint32)
-    labels[15:, 2:8], labels[5:10, 2:8], labels[0:5, 2:8] = 4, 5, 6
-    write_labels(labels, tmp_path / "floating.png")
-    ran = run("analyse", tmp_path / "floating.png")
-    assert ran.code == 5
-    assert "unstable" in ran.out
-    assert "W302 2 of 3 blocks touch neither the ground" in ran.err
-    assert ": 5, 6." in ran.err
-    ran = run("measure", tmp_path / "floating.png", "--json")
-    assert ran.json()["F_LR"] is None
-    assert "W302" in ran.err
-
-
-def test_a_masons_wall_says_why_it_has_no_resistance(data_dir: Path, run: Run) -> None:
-    ran = run("analyse", data_dir / "almeida" / "PR.png")
-    assert ran.code == 5
-    assert "W302" in ran.err
-    assert "close the gaps" in ran.err
 
 
 def test_analyse_and_measure_a_plan(plan_copy: Path, run: Run) -> None:
@@ -169,23 +128,6 @@ def test_a_plan_needs_its_own_wall_image(plan_copy: Path, run: Run) -> None:
     assert "E133" in ran.err
 
 
-def test_measure(tmp_path: Path, run: Run) -> None:
-    tower = _tower(tmp_path / "tower.png")
-    assert run("measure", tower, "--json").json()["F_SF"] == 1.0
-    given = run("measure", tower, "--json", "--wall", "40x50").json()
-    assert given["F_SF"] == pytest.approx(20 * 40 / (40 * 50))
-    reduced = run("measure", tower, "--json", "--scale", ".5", "--wall", "40x50").json()
-    assert (reduced["width"], reduced["height"]) == (20.0, 25.0)
-    assert reduced["F_SF"] == pytest.approx(20 * 40 / (40 * 50))
-    assert "E127" in run("measure", tower, "--wall", "40").err
-    assert "E131" in run("measure", tower, "--wall", "1mx1m").err
-    metres = run("measure", tower, "--json", "--wall", ".4mx.5m", "--px-per-m", "100").json()
-    assert metres == given
-    for mu in ("-1", "nan", "inf"):
-        assert run("measure", tower, "--mu", mu).code == 2
-    assert "measured at 30 x 50 px" in run("measure", tower).out
-
-
 def test_measure_can_follow_its_own_cure(tmp_path: Path, run: Run) -> None:
     labels = np.full((60, 60), 255, np.uint16)
     labels[20:40, 10:50] = 3
@@ -199,12 +141,6 @@ def test_measure_can_follow_its_own_cure(tmp_path: Path, run: Run) -> None:
     assert run("measure", *given).json()["stones"] == 2
     assert run("analyse", *given).json()["blocks"] == 2
     assert run("craft", *given).json()["stones"] == 2
-
-
-def test_a_plan_has_no_background(finished: Path, run: Run) -> None:
-    ran = run("measure", finished, "--background", "255")
-    assert ran.code == 2
-    assert "E118" in ran.err
 
 
 def test_measure_warns_of_a_mask(tmp_path: Path, run: Run) -> None:
@@ -221,51 +157,6 @@ def test_measure_draws_and_never_over_a_file(finished: Path, tmp_path: Path, run
     assert {path.name for path in tmp_path.iterdir()} == {"paths_F_AV.png", "paths_F_AH.png"}
     assert "E129" in run("measure", finished, "-o", tmp_path).err
     assert run("measure", finished, "-o", tmp_path, "--overwrite").code == 0
-
-
-def test_check(plan_copy: Path, run: Run) -> None:
-    for given in (plan_copy, plan_copy / "plan.json"):
-        ran = run("check", given)
-        assert ran.code == 0
-        assert ": holds\n" in ran.out
-    report = run("check", plan_copy, "--json").json()
-    assert list(report)[:3] == ["ok", "problems", "overlap_depth"]
-    assert (report["ok"], report["problems"]) == (True, [])
-
-
-@pytest.mark.parametrize(
-    ("tamper", "code"),
-    [
-        (lambda plan: plan["steps"][0].update(angle_deg=plan["steps"][0]["angle_deg"] + 9), "E2"),
-        (lambda plan: plan["metrics"].update(F_LR=0.99), "E234"),
-        (lambda plan: plan["steps"][0]["centroid"].__setitem__(0, -50.0), "E220"),
-        (lambda plan: plan["source"].update(sha256="0" * 64), "E210"),
-        (lambda plan: plan["unused"].clear(), "E216"),
-    ],
-)
-def test_a_tampered_plan_does_not_hold(
-    tamper: object, code: str, plan_copy: Path, rubble: Path, run: Run
-) -> None:
-    assert callable(tamper)
-    path = plan_copy / "plan.json"
-    plan = json.loads(path.read_text(encoding="utf-8"))
-    tamper(plan)
-    path.write_text(json.dumps(plan), encoding="utf-8")
-    ran = run("check", path, "--stones", rubble)
-    assert ran.code == 5
-    assert "does not hold" in ran.out
-    assert f"problem  {code}" in ran.out
-    report = run("check", path, "--stones", rubble, "--json")
-    assert (report.code, report.json()["ok"]) == (5, False)
-    assert any(problem["code"].startswith(code) for problem in report.json()["problems"])
-
-
-def test_a_mirrored_stone_in_the_image_does_not_hold(plan_copy: Path, run: Run) -> None:
-    labels = read_wall_image(plan_copy / "wall.png").copy()
-    write_labels(labels[:, ::-1], plan_copy / "wall.png")
-    ran = run("check", plan_copy)
-    assert ran.code == 5
-    assert "E236" in ran.out
 
 
 def test_check_finds_the_stones_or_asks(
@@ -309,38 +200,9 @@ def test_generate_takes_parameters(tmp_path: Path, run: Run) -> None:
     run(
         "generate", "brick", "-o", first, "--count", 2, "--set", "height_px=6", "--set", "aspect=.5"
     )
-    run(
-        "generate",
-        "brick",
-        "-o",
-        other,
-        "--count",
-        2,
-        "--set",
-        "height_px=6",
-        "--set",
-        "aspect=0.5",
-    )
+    plain = ("--count", 2, "--set", "height_px=6", "--set", "aspect=0.5")
+    run("generate", "brick", "-o", other, *plain)
     assert first.read_bytes() == other.read_bytes()
-
-
-@pytest.mark.parametrize(
-    ("options", "code"),
-    [
-        (["--set", "wonder=1"], "E123"),
-        (["--set", "height_px"], "E135"),
-        (["--set", "height_px=tall"], "E135"),
-        (["--set", "height_px=-4"], "E130"),
-        (["--set", "aspect=1e308"], "E130"),
-    ],
-)
-def test_generate_refuses_wrong_parameters(
-    options: list[str], code: str, tmp_path: Path, run: Run
-) -> None:
-    ran = run("generate", "brick", "-o", tmp_path / "x.png", *options)
-    assert ran.code == 2
-    assert code in ran.err
-    assert not (tmp_path / "x.png").exists()
 
 
 def test_generate_never_writes_over_a_file(bricks: Path, tmp_path: Path, run: Run) -> None:
@@ -371,15 +233,26 @@ def test_demo_needs_nothing_and_can_be_checked(
     assert not (tmp_path / "other").exists()
 
 
-def test_measuring_a_plan_reduced_keeps_its_wall(finished: Path, run: Run) -> None:
-    whole = json.loads(run("measure", finished, "--json").out)
-    half = json.loads(run("measure", finished, "--scale", ".5", "--json").out)
-    assert half["F_SF"] == pytest.approx(whole["F_SF"])
-    assert (half["width"], half["height"]) == (whole["width"] / 2, whole["height"] / 2)
-
-
 def test_analyse_takes_a_plan_that_says_nothing_of_friction(plan_copy: Path, run: Run) -> None:
     plan = json.loads((plan_copy / "plan.json").read_text(encoding="utf-8"))
     del plan["settings"]["mu"]
     (plan_copy / "plan.json").write_text(json.dumps(plan), encoding="utf-8")
     assert json.loads(run("analyse", plan_copy, "--json").out)["mu"] == 0.58
+
+
+def test_measure(finished: Path, tmp_path: Path, run: Run) -> None:
+    tower = _tower(tmp_path / "tower.png")
+    assert run("measure", tower, "--json").json()["F_SF"] == 1.0
+    given = run("measure", tower, "--json", "--wall", "40x50").json()
+    assert given["F_SF"] == pytest.approx(20 * 40 / (40 * 50))
+    reduced = run("measure", tower, "--json", "--scale", ".5", "--wall", "40x50").json()
+    assert (reduced["width"], reduced["height"]) == (20.0, 25.0)
+    assert reduced["F_SF"] == pytest.approx(given["F_SF"])
+    metres = run("measure", tower, "--json", "--wall", ".4mx.5m", "--px-per-m", "100").json()
+    assert metres == given
+    assert "measured at 30 x 50 px" in run("measure", tower).out
+    # A plan keeps its wall.
+    whole = run("measure", finished, "--json").json()
+    half = run("measure", finished, "--scale", ".5", "--json").json()
+    assert half["F_SF"] == pytest.approx(whole["F_SF"])
+    assert (half["width"], half["height"]) == (whole["width"] / 2, whole["height"] / 2)

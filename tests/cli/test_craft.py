@@ -76,29 +76,6 @@ def test_limits_can_be_set(stack, run):
     assert "cross joints      fair" in said
 
 
-@pytest.mark.parametrize(
-    ("options", "code", "said"),
-    [
-        (("--limit", "laps"), 2, "E138"),
-        (("--limit", "laps=.3:.1"), 2, "E190"),
-        (("--limit", "lapse=.1:.3"), 2, "E190"),
-        (("--wedges", "77"), 2, "E191"),
-        (("--cases", "-1"), 2, "E138"),
-    ],
-)
-def test_bad_options_are_said(stack, run, options, code, said):
-    ran = run("craft", stack, *options)
-    assert ran.code == code
-    assert said in ran.err
-    assert ran.out == ""
-
-
-def test_no_stone_of_a_plan_is_turned_into_a_wedge(finished, run):
-    ran = run("craft", finished, "--wedges", "3")
-    assert (ran.code, ran.out) == (2, "")
-    assert "E138 --wedges: a plan says itself what its wedges are." in ran.err
-
-
 def test_pictures_are_drawn_and_not_replaced(tmp_path, run):
     wall, folder = tmp_path / "pair.png", tmp_path / "found"
     write_labels(painted(stack_bond(2, 1)), wall)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from drystone.cli.lengths import parse_wall
+from drystone.cli.numbers import parse_wall
 from drystone.errors import UsageError
 
 

@@ -124,27 +124,6 @@ def test_the_options_that_are_said_find_the_markers(run, tmp_path, options, said
     assert all(layout.lists(one) for one in told["ids"])
 
 
-@pytest.mark.parametrize(
-    ("options", "code"),
-    [
-        (["--size", "100mm"], "E174"),
-        (["--size", "fifty"], "E174"),
-        (["--count", "3"], "E174"),
-        (["--ids", "2"], "E174"),
-        (["--ids", "48"], "E174"),
-        (["--single", "--size", "30cm"], "E174"),
-        (["--page", "A5"], "E138"),
-        (["--count", "0"], "E138"),
-    ],
-)
-def test_sheets_that_cannot_be(run, tmp_path, options, code):
-    path = tmp_path / "sheet.pdf"
-    ran = run("markers", "-o", path, *options)
-    assert ran.code == 2
-    assert code in ran.err
-    assert not path.exists()
-
-
 def test_an_existing_file_is_kept(run, tmp_path):
     path = tmp_path / "sheet.pdf"
     path.write_text("mine")

@@ -1,6 +1,5 @@
 """`drystone measure`: sizes and scales of the wall that is measured."""
 
-import shutil
 from pathlib import Path
 
 import numpy as np
@@ -79,12 +78,3 @@ def test_another_scale_than_that_of_a_plan(metric: Path, run: Run) -> None:
             assert "plan again" in ran.err
     same = run("measure", metric, *asked, "--px-per-m", "200", "--json").json()
     assert same == run("measure", metric, "--json").json()
-
-
-def test_measure_keeps_what_it_reads(tower: Path, run: Run) -> None:
-    given = Path(shutil.copy(tower, tower.with_name("paths_F_AV.png")))
-    ran = run("measure", given, "-o", tower.parent, "--overwrite")
-    assert (ran.code, ran.out) == (2, "")
-    assert f"E129 {given}: is read here" in ran.err
-    assert given.read_bytes() == tower.read_bytes()
-    assert not tower.with_name("paths_F_AH.png").exists()

@@ -33,28 +33,6 @@ def test_a_policy_is_a_single_pass(name: str, rule: str, method: str) -> None:
         assert settings.geometry == method_settings(method).geometry
 
 
-@pytest.mark.parametrize(
-    "more", [("--time", "2"), ("--budget", "2"), ("--aim", "F_LR=.8"), ("--time", "2", "--resume")]
-)
-@pytest.mark.parametrize("name", ["paper", "random"])
-def test_it_is_not_searched_with(
-    name: str, more: tuple[str, ...], run: Run, rubble: Path, tmp_path: Path
-) -> None:
-    ran = run("plan", rubble, *SIZE, "--policy", name, "-o", tmp_path / "out", *more)
-    assert (ran.code, "E138" in ran.err) == (2, True)
-    assert not (tmp_path / "out").exists()
-
-
-@pytest.mark.parametrize("name", ["nobody", "score", "algorithm2", ""])
-def test_unknown_ones_are_refused_before_anything_is_written(
-    name: str, run: Run, rubble: Path, tmp_path: Path
-) -> None:
-    ran = run("plan", rubble, *SIZE, "--policy", name, "-o", tmp_path / "out")
-    assert ran.code == 2
-    assert f"E146 --policy: there is no policy {name!r}. Choose one of paper, random," in ran.err
-    assert not (tmp_path / "out").exists()
-
-
 def test_those_of_a_settings_file_too(run: Run, rubble: Path, tmp_path: Path) -> None:
     toml, out = tmp_path / "settings.toml", tmp_path / "out"
 

@@ -37,20 +37,14 @@ def interrupted(rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.Monk
     return folder
 
 
-def test_the_partial_plan_is_whole(interrupted: Path, rubble: Path, run: Run) -> None:
-    plan = read_plan(interrupted)
-    assert plan.stopped == "interrupted"
-    assert len(plan.stone_steps) == 3
-    assert len(plan.unused) == 5
-    assert (interrupted / "report.html").exists()
-    assert run("check", interrupted, "--stones", rubble).code == 0
-
-
 def test_resume_gives_the_plan_that_no_interrupt_would_have_changed(
     interrupted: Path, finished: Path, rubble: Path, run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    count = len(read_plan(finished).stone_steps)
+    plan, count = read_plan(interrupted), len(read_plan(finished).stone_steps)
+    assert (plan.stopped, len(plan.stone_steps), len(plan.unused)) == ("interrupted", 3, 5)
     assert count > 3
+    assert (interrupted / "report.html").exists()
+    assert run("check", interrupted, "--stones", rubble).code == 0
     told: list[int] = []
     monkeypatch.setattr(Callbacks, "on_step", lambda _, step: told.append(step.number))
     ran = run("plan", rubble, *WALL, "--seed", 1, "-o", interrupted, "--resume")
@@ -63,102 +57,21 @@ def test_resume_gives_the_plan_that_no_interrupt_would_have_changed(
     assert told == list(range(4, count + 1))  # the first three were not planned again
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (["--seed", "2"], "--seed"),
-        (["--sampling", "full"], "settings"),
-        (["--wall", "110x36"], "--wall"),
-        (["--wall", "100x37"], "--wall"),
-        (["--scale", ".9"], "--scale"),
-        (["--px-per-m", "100"], "--px-per-m"),
-    ],
-)
-def test_resume_refuses_another_command(
-    options: list[str], said: str, interrupted: Path, rubble: Path, run: Run
-) -> None:
-    before = (interrupted / "plan.json").read_bytes()
-    ran = run("plan", rubble, *WALL, "--seed", 1, "-o", interrupted, "--resume", *options)
-    assert ran.code == 2
-    assert "E136" in ran.err
-    assert said in ran.err
-    assert (interrupted / "plan.json").read_bytes() == before
-
-
-@pytest.mark.parametrize("kept", [(), ("mu", "settle")])
-def test_a_plan_without_all_settings_is_one_with_others(
-    kept: tuple[str, ...], interrupted: Path, rubble: Path, run: Run
-) -> None:
-    path = interrupted / "plan.json"
-    plan = json.loads(path.read_text(encoding="utf-8"))
-    plan["settings"] = {name: plan["settings"][name] for name in kept}
-    path.write_text(json.dumps(plan), encoding="utf-8")
-    ran = run("plan", rubble, *WALL, "--seed", 1, "-o", interrupted, "--resume")
-    assert ran.code == 2
-    assert "E136" in ran.err
-    assert "other settings" in ran.err
-
-
-def test_resume_refuses_other_stones(interrupted: Path, bricks: Path, run: Run) -> None:
-    ran = run("plan", bricks, *WALL, "--seed", 1, "-o", interrupted, "--resume")
-    assert ran.code == 2
-    assert "E136" in ran.err
-    assert "other stones" in ran.err
-
-
-def test_resume_without_a_plan_starts(
-    rubble: Path, finished: Path, tmp_path: Path, run: Run
-) -> None:
-    folder = tmp_path / "new"
-    assert run("plan", rubble, *WALL, "--seed", 1, "-o", folder, "--resume").code in (0, 4)
-    assert (folder / "plan.json").read_bytes() == (finished / "plan.json").read_bytes()
-
-
-def test_a_finished_plan_is_left_as_it_is(rubble: Path, tmp_path: Path, run: Run) -> None:
-    plan = ["plan", rubble, *WALL, "-o", tmp_path / "out"]
-    first = run(*plan)
-    assert first.code in (0, 4)
-    before = {p.name: p.read_bytes() for p in (tmp_path / "out").iterdir()}
-    ran = run(*plan, "--resume")
-    assert ran.code == first.code
-    assert "finished" in ran.err
-    assert "going on" not in ran.err
-    told = run(*plan, "--resume", "--json").json()
-    assert (told["status"], told["shortfall"], told["seconds"]) == ("finished", None, None)
-    assert told["placed"] == len(read_plan(tmp_path / "out").stone_steps)
-    assert {p.name: p.read_bytes() for p in (tmp_path / "out").iterdir()} == before
-
-
-def test_a_finished_wall_that_is_incomplete_stays_so(
-    bricks: Path, tmp_path: Path, run: Run
-) -> None:
+def test_a_finished_plan_is_left_as_it_is(bricks: Path, tmp_path: Path, run: Run) -> None:
     plan = ("plan", bricks, "--wall", "80x60", "--scale", "1", "--method", "paper")
     for code, more in ((4, ()), (0, ("--wall", "60x20"))):
-        asked = (*plan, *more, "-o", tmp_path / str(code))
-        first, again = run(*asked), run(*asked, "--resume")
-        assert (first.code, again.code) == (code, code)
+        out = tmp_path / str(code)
+        asked = (*plan, *more, "-o", out)
+        assert run(*asked).code == code
+        before = {path.name: path.read_bytes() for path in out.iterdir()}
+        again, as_json = run(*asked, "--resume"), run(*asked, "--resume", "--json")
+        assert (again.code, as_json.code) == (code, code)
+        assert "finished" in again.err
         assert ("incomplete: the top is at" in again.err) == (code == 4)
-        assert run(*asked, "--resume", "--json").code == code
-
-
-def test_a_search_goes_on_from_an_interrupted_first_wall(
-    rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Of a first wall that was interrupted no search is recorded, whatever was asked for."""
-
-    def interrupt(_: Callbacks, step: Step) -> None:
-        if step.number == 3:
-            raise KeyboardInterrupt
-
-    plan = ("plan", rubble, "--wall", "100x36", "--scale", "1", "--seed", 1, "--budget", 3)
-    with monkeypatch.context() as patch:
-        patch.setattr(Callbacks, "on_step", interrupt)
-        assert run(*plan, "-o", tmp_path / "part").code == 130
-    whole = run(*plan, "-o", tmp_path / "whole")
-    ran = run(*plan, "-o", tmp_path / "part", "--resume")
-    assert ran.code == whole.code
-    plans = [(tmp_path / name / "plan.json").read_bytes() for name in ("part", "whole")]
-    assert plans[0] == plans[1]
+        told = as_json.json()
+        assert (told["status"], told["shortfall"], told["seconds"]) == ("finished", None, None)
+        assert told["placed"] == len(read_plan(out).stone_steps)
+        assert {path.name: path.read_bytes() for path in out.iterdir()} == before
 
 
 def limit(monkeypatch: pytest.MonkeyPatch, looks: int) -> None:
@@ -275,11 +188,7 @@ def same(folder: Path, whole: Path) -> bool:
 @pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize(
     ("sent", "walls", "stood"),
-    [
-        (signal.SIGINT, 1, None),
-        (signal.SIGTERM, 3, 2),
-        (signal.SIGINT, 13, 11),
-    ],
+    [(signal.SIGINT, 1, None), (signal.SIGTERM, 3, 2), (signal.SIGINT, 13, 11)],
 )
 def test_a_search_that_is_interrupted_goes_on_to_the_same_plan(
     sent: int,
@@ -330,11 +239,7 @@ def test_signals_while_the_end_is_written_lose_nothing(
 
 @pytest.mark.parametrize(("walls", "stood"), [(2, None), (9, 7)])
 def test_a_search_that_is_killed_goes_on_from_its_checkpoint(
-    walls: int,
-    stood: int | None,
-    search: Search,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    walls: int, stood: int | None, search: Search, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     part = kill(search, tmp_path, walls, monkeypatch)
     assert "E129" in search(tmp_path).err
@@ -442,3 +347,27 @@ def test_two_runs_do_not_write_into_one_folder(
         assert [path.name for path in (tmp_path / "out").iterdir()] == [LOCK]
     assert run(*plan).code in (0, 4)
     assert (tmp_path / "out" / "plan.json").read_bytes() == (finished / "plan.json").read_bytes()
+
+
+def test_resume_refuses_what_is_of_something_else(
+    interrupted: Path, rubble: Path, bricks: Path, run: Run
+) -> None:
+    path = interrupted / "plan.json"
+    before = path.read_bytes()
+    asked = (*WALL, "--seed", 1, "-o", interrupted, "--resume")
+    for more, said in (
+        (("--seed", "2"), "--seed"),
+        (("--sampling", "full"), "settings"),
+        (("--wall", "110x36"), "--wall"),
+        (("--scale", ".9"), "--scale"),
+        (("--px-per-m", "100"), "--px-per-m"),
+    ):
+        ran = run("plan", rubble, *asked, *more)
+        assert (ran.code, "E136" in ran.err, f"other {said}" in ran.err) == (2, True, True)
+    assert "E136" in run("plan", bricks, *asked).err
+    assert path.read_bytes() == before
+    plan = json.loads(before)
+    for kept in ((), ("mu", "settle")):
+        settings = {name: plan["settings"][name] for name in kept}
+        path.write_text(json.dumps({**plan, "settings": settings}), encoding="utf-8")
+        assert "other settings" in run("plan", rubble, *asked).err

@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-import pytest
-
 from drystone.cli.parser import build_parser
 from drystone.cli.settings import search_seconds, settings_from
 from drystone.io.plan_json import read_plan
@@ -34,19 +32,6 @@ def test_the_clock_ends_a_search_unless_a_budget_does(tmp_path: Path) -> None:
     toml.write_text("[search]\nbudget = 5\n", encoding="utf-8")
     assert asked("--settings", toml) == (None, 5)
     assert asked("--settings", toml, "--time", 3) == (3.0, UNLIMITED)
-
-
-@pytest.mark.parametrize("aim", ["F_LR", "F_LR=", "F_LR=much", "T_LEVEL=1", "F_AH=0", "F_SF=-1"])
-def test_aims_that_mean_nothing_are_refused(aim: str, run: Run) -> None:
-    ran = run("plan", "stones.png", "--wall", "100x36", "-o", "out", "--aim", aim)
-    assert (ran.code, "E138" in ran.err, "--aim" in ran.err) == (2, True, True)
-    assert ("F_LR=VALUE" in ran.err) == (aim in {"F_LR", "T_LEVEL=1"})
-
-
-def test_an_aim_is_no_use_to_a_single_pass(rubble: Path, tmp_path: Path, run: Run) -> None:
-    ran = run("plan", rubble, *EXACT, "-o", tmp_path / "out", "--aim", "F_LR=.5")
-    assert (ran.code, "E138" in ran.err) == (2, True)
-    assert not (tmp_path / "out").exists()
 
 
 def test_aims_are_settings(rubble: Path, tmp_path: Path, run: Run) -> None:

@@ -5,10 +5,7 @@ import numpy as np
 
 from drystone.photo.view import apply
 
-BITS = {
-    "aruco": (cv2.aruco.DICT_4X4_50, 6),
-    "apriltag": (cv2.aruco.DICT_APRILTAG_36h11, 8),
-}
+BITS = {"aruco": (cv2.aruco.DICT_4X4_50, 6), "apriltag": (cv2.aruco.DICT_APRILTAG_36h11, 8)}
 
 
 def camera(focal_px, size_px, *, tilt_deg=0.0, turn_deg=0.0, distance_m=1.0):

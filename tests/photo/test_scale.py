@@ -7,13 +7,7 @@ from drystone.photo.layout import MarkerLayout, parse_layout
 from drystone.photo.markers import FoundMarker, find_markers
 from drystone.photo.scale import MarkerLimits, scale_and_view
 from drystone.photo.view import View, apply, jacobian
-from tests.photo.scenes import (
-    camera,
-    distance_error_percent,
-    intrinsics,
-    outline,
-    photograph,
-)
+from tests.photo.scenes import camera, distance_error_percent, intrinsics, outline, photograph
 
 SIDE = 0.05
 SIZE = (1000, 750)
@@ -51,8 +45,7 @@ def view_of(side_px, tilt_deg, placed, layout, reach):
     return scale_and_view(found, layout, size), to_photo
 
 
-@pytest.mark.parametrize("tilt_deg", [0.0, 30.0])
-@pytest.mark.parametrize(("side_px", "limit"), [(60, 0.5), (100, 0.3), (200, 0.2)])
+@pytest.mark.parametrize(("side_px", "tilt_deg", "limit"), [(60, 30.0, 0.5), (150, 0.0, 0.25)])
 def test_single_markers_measure_the_ground(side_px, limit, tilt_deg):
     placed = [(0, 10.0, -0.09, -0.06, SIDE), (7, 100.0, 0.09, 0.02, SIDE)]
     view, to_photo = view_of(side_px, tilt_deg, placed, MarkerLayout(SIDE), (0.26, 0.2))
@@ -61,8 +54,7 @@ def test_single_markers_measure_the_ground(side_px, limit, tilt_deg):
     assert view.residual_percent < 0.15
 
 
-@pytest.mark.parametrize("tilt_deg", [0.0, 30.0])
-@pytest.mark.parametrize(("side_px", "limit"), [(60, 0.2), (100, 0.1), (200, 0.05)])
+@pytest.mark.parametrize(("side_px", "tilt_deg", "limit"), [(60, 30.0, 0.2), (150, 0.0, 0.07)])
 def test_a_sheet_measures_the_ground(side_px, limit, tilt_deg):
     view, to_photo = view_of(side_px, tilt_deg, sheet_on_ground(), SHEET, (0.3, 0.4))
     assert distance_error_percent(view, to_photo, 0.25, 0.35) < limit
@@ -116,7 +108,7 @@ def lengths(points):
     return np.linalg.norm(points[one] - points[other], axis=1)
 
 
-@pytest.mark.parametrize("angle", [0.0, 80.0, 180.0, 275.0])
+@pytest.mark.parametrize("angle", [80.0, 180.0, 275.0])
 def test_the_picture_stays_upright_and_is_never_mirrored(angle):
     to_photo = camera(1000, SIZE, tilt_deg=20.0, turn_deg=angle, distance_m=0.7)
     for found, layout in (
@@ -190,12 +182,7 @@ def test_markers_of_another_sheet_are_left_out():
     assert code == "E170"
     assert "17, 18" in text
     assert "add --marker-ids 17 18. Else: Print markers" in text
-
-
-def test_one_stray_marker_is_not_named():
-    for stray in (17, 18):
-        _, text = code_of(seen(STRAIGHT, [(stray, 0.0, 0.0, 0.0, SIDE)]), SHEET)
-        assert "--marker-ids" not in text
+    assert "--marker-ids" not in code_of(seen(STRAIGHT, [stray]), SHEET)[1]
 
 
 def test_an_id_twice_is_refused():
@@ -205,8 +192,7 @@ def test_an_id_twice_is_refused():
     assert "arker 0" in text
 
 
-@pytest.mark.parametrize("tilt_deg", [0.0, 15.0, 30.0])
-@pytest.mark.parametrize("ratio", [0.96, 0.9, 0.5])
+@pytest.mark.parametrize(("ratio", "tilt_deg"), [(0.96, 0.0), (0.96, 30.0), (0.5, 15.0)])
 def test_prints_of_different_sizes_disagree(ratio, tilt_deg):
     to_photo = camera(1200, SIZE, tilt_deg=tilt_deg, distance_m=0.6)
     mixed = [APART[0], (*APART[1][:4], SIDE * ratio)]
@@ -264,6 +250,5 @@ def test_the_horizon_in_the_photo_is_refused():
 
 def test_a_flat_view_is_a_scale():
     view = View.flat(250.0)
-    assert view.is_flat
-    assert view.residual_mm is None
+    assert (view.is_flat, view.residual_mm) == (True, None)
     assert view.to_ground([[250.0, 125.0]]).tolist() == [[1.0, 0.5]]

@@ -55,11 +55,11 @@ def clear_choice(folder: Path, index: int = 1) -> None:
     """Take out what an earlier run left, from a wall on: it belongs to another search."""
     if (_place(folder, 1) / "plan.json").exists():
         (folder / PICTURE).unlink(missing_ok=True)
-    while (_place(folder, index) / "plan.json").exists():
+    while ((place := _place(folder, index)) / "plan.json").exists():
         for name in WRITTEN:
-            (_place(folder, index) / name).unlink(missing_ok=True)
-        if not any(_place(folder, index).iterdir()):
-            _place(folder, index).rmdir()
+            (place / name).unlink(missing_ok=True)
+        if not any(place.iterdir()):
+            place.rmdir()
         index += 1
     if (folder / FOLDER).is_dir() and not any((folder / FOLDER).iterdir()):
         (folder / FOLDER).rmdir()
@@ -78,11 +78,8 @@ def print_choice(result: PlanResult) -> None:
 def choice_summary(result: PlanResult, folder: Path) -> list[dict[str, Any]]:
     """Return the same for JSON."""
     return [
-        {
-            "plan": str(_place(folder, index) / "plan.json"),
-            "placed": len(one.plan.stone_steps),
-            **_figures(one),
-        }
+        {"plan": str(_place(folder, index) / "plan.json"), "placed": len(one.plan.stone_steps)}
+        | _figures(one)
         for index, one in enumerate(walls_to_choose_from(result), 1)
     ]
 

@@ -1,14 +1,13 @@
 """What is kept of a plan while it is made, so that a run that is killed loses little."""
 
-import sys
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from drystone.cli.announce import WRITTEN
 from drystone.cli.choice import clear_choice
+from drystone.cli.output import note
 from drystone.errors import DrystoneError, Notice
 from drystone.io.checkpoint import Checkpoint, remove_checkpoint, write_checkpoint
 from drystone.io.photo_beside import place_photo
@@ -18,6 +17,12 @@ from drystone.planner.events import UNFINISHED
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import SoFar
 from drystone.search.standing import Standing
+
+WRITTEN = (
+    "plan.json", "report.html", "wall.png", "wall.tif", "picture.png", "mechanism_left.png",
+    "mechanism_right.png", "settings.toml", "blocks.json", "build.gif",
+)  # fmt: skip
+"""What a plan's folder may hold, the most useful first."""
 
 EVERY_S = 4.0
 """Nothing is kept more often, but for the first wall when it is whole,"""
@@ -29,16 +34,7 @@ SHARE = 0.005
 class Keeper:
     """Keeps the best plan so far and the checkpoint of its search in the folder of the plan.
 
-    Parameters
-    ----------
-    folder : Path
-        Of the plan.
-    made_of : mapping
-        See :class:`~drystone.io.checkpoint.Checkpoint`.
-    photo : Path or None
-        Of the stones, to be put beside the plan.
-    clock : callable
-        Gives seconds.
+    `made_of`: see :class:`~drystone.io.checkpoint.Checkpoint`; `photo` is put beside the plan.
     """
 
     def __init__(
@@ -106,12 +102,9 @@ class Keeper:
     def _tell(self, error: DrystoneError | OSError) -> None:
         if not self._told:
             why = error.what.rstrip(".") if isinstance(error, DrystoneError) else error.strerror
-            notice = Notice(
-                "W130",
-                f"what is planned so far cannot be kept in {self._folder}: {why}.",
-                "Planning goes on; if it is killed, what it has found is lost.",
-            )
-            print(f"drystone: {notice}", file=sys.stderr)
+            what = f"what is planned so far cannot be kept in {self._folder}: {why}."
+            cure = "Planning goes on; if it is killed, what it has found is lost."
+            note(Notice("W130", what, cure))
         self._told = True
 
 

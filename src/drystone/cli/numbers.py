@@ -1,8 +1,36 @@
-"""Numbers on the command line; nothing slow is imported here."""
+"""Numbers, lengths and the scale of a picture on the command line; nothing slow is imported."""
 
 import argparse
 import math
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from drystone.errors import Notice, UsageError
+
+if TYPE_CHECKING:  # they would bring NumPy
+    from drystone.io.walls import GivenWall
+    from drystone.model.stone import Source
+
+_METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+_LENGTH = r"(\d+(?:\.\d*)?|\.\d+)"
+_SIDE = rf"{_LENGTH}(px|mm|cm|m|)"
+_WALL = re.compile(f"{_SIDE}[xX]{_SIDE}")
+_NUMBER = r"\s*(-?\d+(?:\.\d*)?|-?\.\d+)\s*"
+_RULER = re.compile(rf"{_NUMBER},{_NUMBER},{_NUMBER},{_NUMBER}=\s*{_LENGTH}(m|cm|mm)")
+_PICTURES = {".png", ".tif", ".tiff", ".bmp", ".gif", ".jpg", ".jpeg", ".npy"}
+_SAYS = {
+    "stones": ("the stones say", "or correct the scale beside the stones"),
+    "plan": ("the plan says", "or plan again with another scale"),
+}
+"""Who knows a scale: how that is said, and what else can be done when an option differs."""
+
+LEAST_PX = 8.0
+"""A wall without a unit is this wide and high at least: less was meant to be metres."""
+
+LEAST_M, MOST_M = 0.01, 2.0
+"""Median stones that people build with, metres."""
 
 
 def whole_from(least: int) -> Callable[[str], int]:
@@ -20,28 +48,25 @@ def whole_from(least: int) -> Callable[[str], int]:
     return read
 
 
-def finite(text: str) -> float:
-    """Read a finite number."""
-    value = _number(text)
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"{text!r} is no finite number")
-    return value
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
 
 
-def not_negative(text: str) -> float:
-    """Read a finite number from 0 on."""
-    value = _number(text)
-    if not 0 <= value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text!r} is no number from 0 on")
-    return value
+def _reader(wrong: str, fits: Callable[[float], bool]) -> Callable[[str], float]:
+    def read(text: str) -> float:
+        if not fits(value := _number(text)):
+            raise argparse.ArgumentTypeError(f"{text!r} is {wrong}")
+        return value
+
+    return read
 
 
-def positive(text: str) -> float:
-    """Read a finite number above 0."""
-    value = _number(text)
-    if not 0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text!r} is no number above 0")
-    return value
+finite = _reader("no finite number", math.isfinite)
+not_negative = _reader("no number from 0 on", lambda value: 0 <= value < math.inf)
+positive = _reader("no number above 0", lambda value: 0 < value < math.inf)
 
 
 def share(text: str) -> float:
@@ -61,8 +86,150 @@ def friction(text: str) -> tuple[float, float]:
     return low, high
 
 
-def _number(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan
+def parse_wall(text: str, px_per_m: float | None) -> tuple[float, float]:
+    """Turn ``560x160``, ``1.4mx0.4m`` or ``140cmx40cm`` into width and height in source px.
+
+    E127 for anything else, px beside metres, and a few px without a unit; E131 for metres without
+    a scale.
+    """
+    sides = _WALL.fullmatch(text.strip().replace(" ", ""))
+    if sides is None:
+        cure = "Write 560x160 (px of the source image), 1.4mx0.4m or 140cmx40cm."
+        raise _no_wall(f"{text!r} is no size of a wall.", cure)
+    values, units = (float(sides[1]), float(sides[3])), (sides[2], sides[4])
+    metric = [unit in _METRES for unit in units]
+    if metric[0] != metric[1]:
+        cure = "Give both sides a unit, as in 1.4mx0.4m, or both in px."
+        raise _no_wall(f"{text!r} is px one way and metric the other.", cure)
+    # Such a wall in px is smaller than any stone; who means it can say so.
+    if not any(units) and 0.0 < min(values) < LEAST_PX:
+        w, h = (f"{value:g}" for value in values)
+        raise _no_wall(
+            f"{text!r} has no unit, so it is px of the source image, fewer than {LEAST_PX:g}.",
+            f"Write {w}mx{h}m if it is metres, {w}pxx{h}px if it is px.",
+        )
+    if min(values) <= 0:
+        raise _no_wall("a wall has a positive width and height.")
+    if not metric[0]:
+        return values
+    if px_per_m is None:
+        raise UsageError(
+            "E131", "a wall in metres needs the scale of the image.", where="--wall",
+            cure="Say how many source pixels make a metre with --px-per-m, name a length in the "
+            "image with --ruler x1,y1,x2,y2=1.0m, or give px.",
+        )  # fmt: skip
+    return values[0] * _METRES[units[0]] * px_per_m, values[1] * _METRES[units[1]] * px_per_m
+
+
+def _no_wall(what: str, cure: str = "") -> UsageError:
+    return UsageError("E127", what, where="--wall", cure=cure)
+
+
+class Ruled(float):
+    """Px in a metre that were measured with a ruler, and where it lay."""
+
+    ends_px: tuple[tuple[float, float], ...] = ()  # its two points, x and y in the image
+
+
+def add_scale(command: argparse.ArgumentParser) -> None:
+    """Add the options that say how large a px is."""
+    group = command.add_argument_group("scale").add_mutually_exclusive_group()
+    group.add_argument("--px-per-m", type=positive, metavar="N", help="source px in a metre")
+    group.add_argument(
+        "--ruler", type=ruler, dest="px_per_m", metavar="X1,Y1,X2,Y2=LENGTH",
+        help="two points of the source image, px, and how far apart they are: 20,30,220,30=1.0m",
+    )  # fmt: skip
+
+
+def ruler(text: str) -> Ruled:
+    """Read `--ruler`; return px in a metre."""
+    found = _RULER.fullmatch(text)
+    if found is None:
+        message = f"{text!r} is not like 20,30,220,30=1.0m (or cm, mm)"
+        raise argparse.ArgumentTypeError(message)
+    x1, y1, x2, y2, length = (float(number) for number in found.groups()[:5])
+    px, metres = math.hypot(x2 - x1, y2 - y1), length * _METRES[found[6]]
+    if px == 0.0 or metres == 0.0:
+        raise argparse.ArgumentTypeError(f"{text!r} has no length")
+    scale = Ruled(px / metres)
+    scale.ends_px = (x1, y1), (x2, y2)
+    return scale
+
+
+def option_of(px_per_m: float) -> str:
+    """Return the name of the option that gave a scale: both are stored as one."""
+    return "--ruler" if isinstance(px_per_m, Ruled) else "--px-per-m"
+
+
+def picture_size_px(source: "Source") -> tuple[int, int]:
+    """Return width and height of the picture that stones came from; 0 where it is not known.
+
+    Files of outlines and folders of masks say how far the stones reach, and a ruler lies beside
+    them.
+    """
+    return _size_px(source.path, source.files, (source.width_px, source.height_px))
+
+
+def planned_picture_px(source: Mapping[str, Any]) -> tuple[int, int]:
+    """Return the same of what a plan says of its stones."""
+    size_px = source["width_px"], source["height_px"]
+    return _size_px(source["path"], source.get("files", ()), size_px)
+
+
+def wall_picture_px(wall: "GivenWall") -> tuple[int, int]:
+    """Return the size of the picture in which a wall is measured: of a plan that of its stones."""
+    if wall.plan is not None:
+        return planned_picture_px(wall.plan.source)
+    height, width = (0, 0) if wall.labels is None else wall.labels.shape
+    return width, height
+
+
+def _size_px(path: str, files: Sequence[str], size_px: tuple[int, int]) -> tuple[int, int]:
+    return (0, 0) if files or Path(path).suffix.lower() not in _PICTURES else size_px
+
+
+def refuse_outside(px_per_m: float | None, size_px: tuple[int, int]) -> None:
+    """Refuse a ruler that lies beyond the picture it was measured in (E138).
+
+    Width and height are 0 when they are not known.
+    """
+    if not isinstance(px_per_m, Ruled) or not all(size_px):
+        return
+    width, height = size_px
+    for x, y in px_per_m.ends_px:
+        if not (0.0 <= x <= width and 0.0 <= y <= height):
+            raise UsageError(
+                "E138",
+                f"the point {x:g},{y:g} is outside the picture, which is {width} x {height} px.",
+                where="--ruler",
+                cure="Give two points of this picture in its full size, x1,y1,x2,y2 in px.",
+            )
+
+
+def scale_with(
+    px_per_m: float | None, of_source: float | None, who: Literal["stones", "plan"] = "stones"
+) -> float | None:
+    """Return the scale of the options, or that of the source; refuse two that differ (E131)."""
+    if px_per_m is None or of_source is None:
+        return px_per_m or of_source
+    if abs(px_per_m / of_source - 1.0) > 0.01:
+        says, or_else = _SAYS[who]
+        raise UsageError(
+            "E131",
+            f"{says} {of_source:.6g} px a metre, the option {px_per_m:.6g}.",
+            where=option_of(px_per_m),
+            cure=f"Leave the option out, {or_else}.",
+        )
+    return px_per_m
+
+
+def scale_notice(median_px: float, px_per_m: float | None) -> Notice | None:
+    """Say when a scale makes median stones that nobody builds with (W123); None else."""
+    if px_per_m is None or LEAST_M <= (length := median_px / px_per_m) <= MOST_M:
+        return None
+    said = f"{1000 * length:.2g} mm" if length < LEAST_M else f"{length:.3g} m"
+    return Notice(
+        "W123",
+        f"the median stone is {said} long with {px_per_m:g} px in a metre.",
+        "Is that scale right? All lengths go by it.",
+    )

@@ -1,22 +1,90 @@
-"""Commands and options."""
+"""Commands and options, also the commands of other packages, by their entry points."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
-from typing import Any, NoReturn
+from typing import Any, NamedTuple, NoReturn
 
-from drystone.cli.command import found_commands
 from drystone.errors import UsageError
+
+GROUP = "drystone.commands"
+"""Of entry points; each names a :class:`Command`."""
+
+STUDIES = ("bench", "reproduce", "fetch")
+"""Commands that every installation has, and whose code is not in this package."""
+
+_COMMANDS = {
+    "plan": "Plan a wall from an image of stones.",
+    "demo": "Plan a generated stone set; no arguments needed, works offline.",
+    "stones": "Say what is read from an image of stones.",
+    "analyse": "Limit analysis of a wall: load multipliers and mechanism.",
+    "measure": "Measure filling, arrangement and lateral resistance of a wall.",
+    "check": "Re-derive a wall from stones and plan and verify every claim.",
+    "export": "Write a plan for robots, drawings and films: see --list.",
+    "craft": "Look at a wall as a mason does: rules by name, stones and steps.",
+    "markers": "Print a sheet of markers that give photographs a scale.",
+    "segment": "Find stones in a photograph.",
+    "generate": "Make a synthetic stone set.",
+}
+
+
+class Command(NamedTuple):
+    """A command of another package: what it does in a sentence, its options, and its run.
+
+    `add` adds its options to a parser; `run` does it and returns the exit code.
+    """
+
+    text: str
+    add: Callable[[argparse.ArgumentParser], None]
+    run: Callable[[argparse.Namespace], int]
+
+
+def run_of(module: str) -> Callable[[argparse.Namespace], int]:
+    """Return the `run` of a module that is imported when it is called.
+
+    Help must not wait for NumPy.
+    """
+    return lambda arguments: int(import_module(module).run(arguments))
+
+
+def found_commands() -> dict[str, Command]:
+    """Return the commands that entry points name, those of :data:`STUDIES` first.
+
+    One that is missing or cannot be loaded is there too, and says so when it is run.
+    """
+    from importlib.metadata import entry_points  # noqa: PLC0415 - costs start-up time
+
+    commands = {name: _broken(name, "it is not installed") for name in STUDIES}
+    for entry in sorted(entry_points(group=GROUP)):
+        try:
+            commands[entry.name] = entry.load()
+        except Exception as error:
+            why = f"{entry.value}: {type(error).__name__}: {error}"
+            commands[entry.name] = _broken(entry.name, why)
+    return commands
+
+
+def _broken(name: str, why: str) -> Command:
+    def add(command: argparse.ArgumentParser) -> None:
+        command.prefix_chars = "\0"  # its options are not known: all that follows is taken
+        command.add_argument("options", nargs="*")
+
+    def run(_: argparse.Namespace) -> NoReturn:
+        raise UsageError(
+            "E154",
+            f"the command cannot be loaded: {why}.",
+            where=name,
+            cure="Install drystone again, or the package that the command is of.",
+        )
+
+    return Command("(cannot be loaded)", add, run)
 
 
 def build_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
     """Return the parser of the command line.
 
-    Parameters
-    ----------
-    words : sequence of str, optional
-        That are to be parsed.  Only the command that they name is loaded, and help none: it must
-        not wait for NumPy.  Without them all commands are.
+    Only the command that `words` name is loaded, and none for help, which must not wait for NumPy.
+    Without words all commands are.
     """
     parser = _Parser(
         prog="drystone",
@@ -44,7 +112,6 @@ class _Listed(argparse.HelpFormatter):
     """Has room for names of commands, whose indentation argparse forgets, beside their texts."""
 
     def add_argument(self, action: argparse.Action) -> None:
-        """Add an option, or all commands."""
         super().add_argument(action)
         self._action_max_length = max(self._action_max_length, 13)
 
@@ -53,7 +120,6 @@ class _Parser(argparse.ArgumentParser):
     """Says what is wrong in one line, with a code (E138), and where help is."""
 
     def error(self, message: str) -> NoReturn:
-        """End the program: the options cannot be understood."""
         coded = UsageError("E138", f"{message}.", cure=f"`{self.prog} --help` explains.")
         self.exit(int(coded.exit_code), f"drystone: {coded}\n")
 
@@ -61,29 +127,10 @@ class _Parser(argparse.ArgumentParser):
 class _Version(argparse.Action):
     """Looks the version up only when it is asked for."""
 
-    def __call__(
-        self,
-        parser: argparse.ArgumentParser,
-        *_: object,
-    ) -> None:
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
         from importlib.metadata import version  # noqa: PLC0415 - costs start-up time
 
         from drystone.kernels.backend import describe  # noqa: PLC0415
 
         print(f"drystone {version('drystone')} (kernels: {describe()})")
         parser.exit()
-
-
-_COMMANDS = {
-    "plan": "Plan a wall from an image of stones.",
-    "demo": "Plan a generated stone set; no arguments needed, works offline.",
-    "stones": "Say what is read from an image of stones.",
-    "analyse": "Limit analysis of a wall: load multipliers and mechanism.",
-    "measure": "Measure filling, arrangement and lateral resistance of a wall.",
-    "check": "Re-derive a wall from stones and plan and verify every claim.",
-    "export": "Write a plan for robots, drawings and films: see --list.",
-    "craft": "Look at a wall as a mason does: rules by name, stones and steps.",
-    "markers": "Print a sheet of markers that give photographs a scale.",
-    "segment": "Find stones in a photograph.",
-    "generate": "Make a synthetic stone set.",
-}

@@ -2,18 +2,10 @@
 
 import argparse
 import math
-import sys
 from contextlib import nullcontext
 from dataclasses import replace
+from pathlib import Path
 
-from drystone.cli.announce import (
-    WRITTEN,
-    exports_notice,
-    read_line,
-    say_written,
-    write_film,
-)
-from drystone.cli.beginning import plan_to_begin_with
 from drystone.cli.choice import (
     PLACES,
     choice_summary,
@@ -22,14 +14,15 @@ from drystone.cli.choice import (
     print_choice,
     write_choice,
 )
-from drystone.cli.keeping import Keeper
-from drystone.cli.output import print_json, print_table, working_in
+from drystone.cli.keeping import WRITTEN, Keeper
+from drystone.cli.numbers import picture_size_px, refuse_outside, scale_notice
+from drystone.cli.output import note, print_json, print_table, working_in
 from drystone.cli.progress import step_bar
-from drystone.cli.request import PlanOutput, PlanRequest
-from drystone.cli.resuming import earlier_run, made_of, tell_finished
-from drystone.cli.scale import picture_size_px, refuse_outside, scale_notice
+from drystone.cli.resuming import earlier_run, made_of, plan_to_begin_with, tell_finished
+from drystone.cli.settings import PlanRequest
+from drystone.drawing.export.formats import FORMATS
 from drystone.drawing.words.planned import ending, profile_rows, profile_summary, rows, summary
-from drystone.errors import DrystoneError, ExitCode, UsageError
+from drystone.errors import DrystoneError, ExitCode, Notice, UsageError
 from drystone.io.checkpoint import CHECKPOINT
 from drystone.io.photo_beside import check_place, photo_beside, place_photo
 from drystone.io.photo_file import read_photo_picture
@@ -43,6 +36,9 @@ from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
 from drystone.verify.replay import rebuild_wall
 
+FILM_STONES = 100
+"""Walls of more stones get a film by `drystone export` alone: a frame a stone takes its time."""
+
 _EXIT = {
     "complete": ExitCode.DONE,
     "incomplete": ExitCode.INCOMPLETE,
@@ -52,33 +48,23 @@ _EXIT = {
 
 def add_writing(command: argparse.ArgumentParser) -> None:
     """Add the options of what is written and printed."""
-    group = command.add_argument_group("output")
-    group.add_argument(
-        "--overwrite", action="store_true", help="write into a folder that has files"
-    )
-    group.add_argument(
-        "--pareto", action="store_true",
-        help="write the walls too that no wall of the search beats in every figure: pareto/01, ...",
-    )  # fmt: skip
-    group.add_argument("--json", action="store_true", help="print the summary as JSON")
-    group.add_argument("--quiet", action="store_true", help="no progress")
-    group.add_argument("--profile", action="store_true", help="say where the time went")
+    # fmt: off
+    option = command.add_argument_group("output").add_argument
+    option("--overwrite", action="store_true", help="write into a folder that has files")
+    option("--pareto", action="store_true",
+           help="write the walls too that no wall of the search beats in every figure: "
+           "pareto/01, ...")
+    option("--json", action="store_true", help="print the summary as JSON")
+    option("--quiet", action="store_true", help="no progress")
+    option("--profile", action="store_true", help="say where the time went")
 
 
-def plan_and_write(request: PlanRequest, output: PlanOutput, *, prepared: bool = False) -> ExitCode:
-    """Plan a wall, write all files, print the summary.
-
-    Parameters
-    ----------
-    request, output : PlanRequest, PlanOutput
-        What is planned, and where it goes.
-    prepared : bool
-        Whether the folder is ready and locked.
-    """
-    stones, folder, photo = request.stones, output.folder, output.photo
-    earlier = earlier_run(request, folder)
+def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:
+    """Plan a wall, write all files, print the summary; `prepared` when the folder is locked."""
+    stones, folder, photo = request.stones, request.folder, request.photo
+    earlier = earlier_run(request)
     if earlier.plan is not None and earlier.finished:
-        return _EXIT[tell_finished(earlier.plan, request, output)]
+        return _EXIT[tell_finished(earlier.plan, request)]
     earlier.tell()
     begin = plan_to_begin_with(request)
     begun = earlier.plan or begin
@@ -87,16 +73,15 @@ def plan_and_write(request: PlanRequest, output: PlanOutput, *, prepared: bool =
     check_place(photo, folder)
     if photo is not None:
         read_photo_picture(photo, (stones.source.width_px, stones.source.height_px))
-    if output.pareto:
+    if request.pareto:
         prepare_choice(folder)
-    overwrite = output.overwrite or earlier.begun
-    names = (*WRITTEN, CHECKPOINT)
-    ready = working_in(folder, names, overwrite=overwrite, within=PLACES)
+    overwrite = request.overwrite or earlier.begun
+    ready = working_in(folder, (*WRITTEN, CHECKPOINT), overwrite=overwrite, within=PLACES)
     with nullcontext() if prepared else ready:
         keeper = Keeper(folder, made_of(request), photo)
         keeper.begin(earlier.standing)
-        _announce(request, output)
-        bar = step_bar(len(stones), request.settings, request.seconds, quiet=output.quiet)
+        _announce(request)
+        bar = step_bar(len(stones), request.settings, request.seconds, quiet=request.quiet)
         with bar as callbacks:
             result = plan_wall(
                 stones,
@@ -113,79 +98,13 @@ def plan_and_write(request: PlanRequest, output: PlanOutput, *, prepared: bool =
                 built=None if earlier.plan is None else rebuild_wall(earlier.plan, stones),
                 course_heights_px=None if begun is None else begun.course_heights_px,
                 begin=None if begin is None else rebuild_wall(begin, stones),
-                choice=output.pareto,
+                choice=request.pareto,
                 keep=keeper,
                 standing=earlier.standing,
             )
         # What it has come to is not lost by a second interrupt.
         with held():
-            return _written_and_told(result, request, output, keeper)
-
-
-def _written_and_told(
-    result: PlanResult, request: PlanRequest, output: PlanOutput, keeper: Keeper
-) -> ExitCode:
-    """Write all files and print the summary; also that of a wall that cannot be written."""
-    folder = output.folder
-    for notice in result.notices:
-        print(f"drystone: {notice}", file=sys.stderr)
-    failed: Exception | None = None
-    try:
-        result = _write(result, request.stones, output)
-        keeper.end(result)
-    except (DrystoneError, OSError) as error:
-        failed = error
-    profile = profile_summary(result, request.jobs) if output.profile else None
-    if output.json:
-        told = summary(result, folder)
-        if output.pareto:
-            told["pareto"] = choice_summary(result, folder)
-        print_json(told | ({} if profile is None else {"profile": profile}))
-    else:
-        print_table(ending(result), rows(result, folder))
-        if output.pareto:
-            print_choice(result)
-        if profile is not None:
-            title = "\nwhere the time went, and microseconds a candidate"
-            print_table(title, profile_rows(profile))
-    if failed is not None:
-        raise failed
-    if not output.quiet:
-        say_written(folder)
-    return _EXIT[result.status]
-
-
-def _write(result: PlanResult, stones: StoneSet, output: PlanOutput) -> PlanResult:
-    """Write the plan and its pictures; return it as it was written, with its photo."""
-    folder = output.folder
-    photo, record = place_photo(output.photo, folder)
-    found = photo_beside(folder)
-    if found != photo:
-        print(
-            f"drystone: {found} was not put there by a plan and stays; `drystone export` would "
-            "take it for the photograph of these stones",
-            file=sys.stderr,
-        )
-    result = replace(result, plan=replace(result.plan, source={**result.plan.source, **record}))
-    write_plan_folder(result, folder)
-    # Drawing loads matplotlib, which takes as long as a small plan.
-    from drystone.drawing import (  # noqa: PLC0415
-        view_of_result,
-        write_pictures,
-        write_report,
-    )
-
-    write_pictures(folder, result.wall, result.clusters, resistance=result.resistance)
-    view = view_of_result(result, photo=photo, notices=(*stones.notices, *result.notices))
-    write_report(folder / "report.html", view, pictures=folder)
-    write_film(result, folder)
-    if output.pareto:
-        write_choice(result, folder)
-    else:
-        clear_choice(folder)
-    if (earlier := exports_notice(folder)) is not None:
-        print(f"drystone: {earlier}", file=sys.stderr)
-    return result
+            return _written_and_told(result, request, keeper)
 
 
 def _check_stones(request: PlanRequest) -> None:
@@ -203,23 +122,131 @@ def _check_stones(request: PlanRequest) -> None:
         )
 
 
-def _announce(request: PlanRequest, output: PlanOutput) -> None:
+def _announce(request: PlanRequest) -> None:
     """Say what is planned with, and when its scale or its method is odd."""
     stones, px_per_m = request.stones, request.px_per_m
-    if not output.quiet:
+    if not request.quiet:
         seconds = request.seconds if request.settings.search.budget > 1 else None
         more = "" if seconds is None else " (--time, --budget)"
-        print(
-            f"drystone: {read_line(stones, request.wall, px_per_m, seconds)}{more}",
-            file=sys.stderr,
-        )
+        note(f"{read_line(stones, request.wall, px_per_m, seconds)}{more}")
     if request.method != request.asked_method:
-        print(
-            f"drystone: {request.settings_file} has every setting, so that nothing of --method "
-            f"{request.asked_method} is left; the plan names the method custom",
-            file=sys.stderr,
+        note(
+            f"{request.settings_file} has every setting, so that nothing of --method "
+            f"{request.asked_method} is left; the plan names the method custom"
         )
     median_px, _ = median_sides(sides_px(stone.mask) for stone in stones)
-    notice = scale_notice(median_px, px_per_m)
-    if notice is not None:
-        print(f"drystone: {notice}", file=sys.stderr)
+    note(scale_notice(median_px, px_per_m))
+
+
+def read_line(
+    stones: StoneSet, wall: tuple[float, float], px_per_m: float | None, seconds: float | None
+) -> str:
+    """Say how many stones were read, how large they and the wall (source px) are, and how long.
+
+    `seconds` is how long better walls are looked for; None when that is not known.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from drystone.model.stone import Stone
+    >>> stones = StoneSet((Stone(1, np.ones((12, 31), bool)),))
+    >>> read_line(stones, (280, 80), 200.0, 3.6)
+    'Read 1 stone (largest 15.5 x 6.0 cm, median 15.5 x 6.0 cm), wall 1.40 x 0.40 m, estimate 4 s'
+    """
+    said = f"Read {len(stones)} stone{'' if len(stones) == 1 else 's'}"
+    if len(stones):
+        biggest = sides_px(max(stones, key=lambda stone: stone.area_px).mask)
+        median = median_sides(sides_px(stone.mask) for stone in stones)
+        said += f" (largest {_size(*biggest, px_per_m)}, median {_size(*median, px_per_m)})"
+    said += f", wall {_size(*wall, px_per_m)}"
+    return said if seconds is None else f"{said}, estimate {max(seconds, 1.0):.0f} s"
+
+
+def _size(width: float, height: float, px_per_m: float | None) -> str:
+    if px_per_m is None:
+        return f"{round(width, 1):g} x {round(height, 1):g} px"
+    width, height = width / px_per_m, height / px_per_m
+    if max(width, height) < 1.0:
+        return f"{100 * width:.1f} x {100 * height:.1f} cm"
+    return f"{width:.2f} x {height:.2f} m"
+
+
+def _written_and_told(result: PlanResult, request: PlanRequest, keeper: Keeper) -> ExitCode:
+    """Write all files and print the summary; also that of a wall that cannot be written."""
+    folder = request.folder
+    note(*result.notices)
+    failed: Exception | None = None
+    try:
+        result = _write(result, request)
+        keeper.end(result)
+    except (DrystoneError, OSError) as error:
+        failed = error
+    profile = profile_summary(result, request.jobs) if request.profile else None
+    if request.json:
+        told = summary(result, folder)
+        if request.pareto:
+            told["pareto"] = choice_summary(result, folder)
+        print_json(told | ({} if profile is None else {"profile": profile}))
+    else:
+        print_table(ending(result), rows(result, folder))
+        if request.pareto:
+            print_choice(result)
+        if profile is not None:
+            title = "\nwhere the time went, and microseconds a candidate"
+            print_table(title, profile_rows(profile))
+    if failed is not None:
+        raise failed
+    if not request.quiet:
+        first, *others = (name for name in WRITTEN if (folder / name).exists())
+        note(f"wrote {' '.join([str(folder / first), *others])}")
+    return _EXIT[result.status]
+
+
+def _write(result: PlanResult, request: PlanRequest) -> PlanResult:
+    """Write the plan and its pictures; return it as it was written, with its photo."""
+    folder = request.folder
+    photo, record = place_photo(request.photo, folder)
+    found = photo_beside(folder)
+    if found != photo:
+        note(
+            f"{found} was not put there by a plan and stays; `drystone export` would "
+            "take it for the photograph of these stones"
+        )
+    result = replace(result, plan=replace(result.plan, source={**result.plan.source, **record}))
+    write_plan_folder(result, folder)
+    # Drawing loads matplotlib, which takes as long as a small plan.
+    from drystone.drawing import view_of_result, write_pictures, write_report  # noqa: PLC0415
+
+    write_pictures(folder, result.wall, result.clusters, resistance=result.resistance)
+    notices = (*request.stones.notices, *result.notices)
+    view = view_of_result(result, photo=photo, notices=notices)
+    write_report(folder / "report.html", view, pictures=folder)
+    write_film(result, folder)
+    if request.pareto:
+        write_choice(result, folder)
+    else:
+        clear_choice(folder)
+    note(_exports_notice(folder))
+    return result
+
+
+def write_film(result: PlanResult, folder: Path) -> None:
+    """Write build.gif, unless there are no steps, or many; one of an earlier run is removed."""
+    if not 0 < len(result.plan.stone_steps) <= FILM_STONES:
+        (folder / "build.gif").unlink(missing_ok=True)
+        return
+    # What draws is loaded when it draws.
+    from drystone.drawing.assembly.read import read_assembly  # noqa: PLC0415
+    from drystone.drawing.export.formats import ExportSettings  # noqa: PLC0415
+
+    FORMATS["gif"].write(read_assembly(folder), folder, ExportSettings())
+
+
+def _exports_notice(folder: Path) -> Notice | None:
+    """Say when exports of an earlier plan lie beside a new one (W181); None when there are none."""
+    names = (name for one in FORMATS.values() for name in one.writes if name not in WRITTEN)
+    earlier = [name for name in names if (folder / name).exists()]
+    if not earlier:
+        return None
+    what = f"of an earlier plan: {', '.join(earlier)}, in {folder}."
+    return Notice("W181", what, "Make them again: drystone export --overwrite.")

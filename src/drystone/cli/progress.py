@@ -20,13 +20,10 @@ from drystone.planner.events import Callbacks, Incumbent, Step
 from drystone.planner.settings import PlannerSettings
 
 
-class _Bar(Callbacks):
+class _StepBar(Callbacks):
     def __init__(self, bar: Progress, stones: int, total: float, *, timed: bool) -> None:
-        self._bar = bar
+        self._bar, self._count, self._total, self._timed = bar, stones, total, timed
         self._stones = bar.add_task(f"stone 0/{stones}", total=stones)
-        self._count = stones
-        self._total = total
-        self._timed = timed
         self._walls: TaskID | None = None
         self._started = time.monotonic()
 
@@ -56,51 +53,30 @@ def step_bar(
 ) -> Iterator[Callbacks]:
     """Show stones placed, then the best wall of the search and the time that is left.
 
-    Parameters
-    ----------
-    stones : int
-        How many there are.
-    settings : PlannerSettings
-        Their budget of walls is the end of the search,
-    seconds : float or None
-        unless it ends by the clock.
-    quiet : bool
-        Show nothing; nothing is shown either when stderr is no terminal.
-
-    Yields
-    ------
-    callbacks : Callbacks
-        For the planner.
+    The search ends after `seconds`, or else with its budget of walls.
     """
-    console = Console(stderr=True)
-    if quiet or not console.is_terminal:
-        yield Callbacks()
-        return
-    with _progress(console) as bar:
+    total = settings.search.budget if seconds is None else round(seconds)
+    with _shown(quiet=quiet) as bar:
         timed = seconds is not None
-        total = settings.search.budget if seconds is None else round(seconds)
-        yield _Bar(bar, stones, total, timed=timed)
+        yield Callbacks() if bar is None else _StepBar(bar, stones, total, timed=timed)
 
 
 @contextmanager
 def counting_bar(name: str, total: int, *, quiet: bool) -> Iterator[Callable[[int], None]]:
     """Show how many of a number are done; yields what is to be told that number."""
+    with _shown(MofNCompleteColumn(), TimeElapsedColumn(), quiet=quiet) as bar:
+        task = TaskID(0) if bar is None else bar.add_task(name, total=total)
+        yield lambda done: None if bar is None else bar.update(task, completed=done)
+
+
+@contextmanager
+def _shown(*columns: ProgressColumn, quiet: bool) -> Iterator[Progress | None]:
+    """Show a bar; None when nobody wants one, or stderr is no terminal."""
     console = Console(stderr=True)
     if quiet or not console.is_terminal:
-        yield lambda _: None
+        yield None
         return
-    with _progress(console, MofNCompleteColumn(), TimeElapsedColumn()) as bar:
-        task = bar.add_task(name, total=total)
-        yield lambda done: bar.update(task, completed=done)
-
-
-def _progress(console: Console, *columns: ProgressColumn) -> Progress:
-    return Progress(
-        TextColumn("{task.description}"),
-        *columns,
-        BarColumn(bar_width=16),
-        TextColumn("eta"),
-        TimeRemainingColumn(compact=True),
-        console=console,
-        transient=True,
-    )
+    text = TextColumn("{task.description}")
+    eta = (BarColumn(bar_width=16), TextColumn("eta"), TimeRemainingColumn(compact=True))
+    with Progress(text, *columns, *eta, console=console, transient=True) as bar:
+        yield bar

@@ -1,7 +1,6 @@
-"""What an earlier run has left in the output folder, and going on with it (`--resume`)."""
+"""Plans that a search begins with: of an earlier run in the folder (`--resume`), or `--from`."""
 
 import json
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from drystone.cli.output import print_json
-from drystone.cli.request import PlanOutput, PlanRequest
+from drystone.cli.output import note, print_json
+from drystone.cli.settings import PlanRequest
 from drystone.drawing.words.planned import summary_of_plan
 from drystone.errors import Notice, PlanError, UsageError
 from drystone.io.checkpoint import CHECKPOINT, read_checkpoint
@@ -25,21 +24,11 @@ from drystone.verify.replay import rebuild_wall
 
 @dataclass(frozen=True, eq=False)
 class Earlier:
-    """What an earlier run of the same command has left.
+    """What an earlier run of the same command has left."""
 
-    Parameters
-    ----------
-    plan : Plan or None
-        Partial, to be gone on with; or finished.
-    standing : Standing or None
-        Where its search stands, which goes on whatever the plan is.
-    begun : bool
-        Whether there is anything of it.
-    """
-
-    plan: Plan | None = None
-    standing: Standing | None = None
-    begun: bool = False
+    plan: Plan | None = None  # partial, to be gone on with; or finished
+    standing: Standing | None = None  # where its search stands, which goes on whatever the plan is
+    begun: bool = False  # whether there is anything of it
 
     @property
     def finished(self) -> bool:
@@ -49,48 +38,50 @@ class Earlier:
     def tell(self) -> None:
         """Say what is gone on with."""
         if self.standing is not None:
-            print(f"drystone: going on after {self.standing.walls} walls", file=sys.stderr)
+            note(f"going on after {self.standing.walls} walls")
         elif self.plan is not None:
-            print(f"drystone: going on after {len(self.plan.stone_steps)} stones", file=sys.stderr)
+            note(f"going on after {len(self.plan.stone_steps)} stones")
         elif self.begun:
-            print("drystone: nothing to go on with yet, planning begins anew", file=sys.stderr)
+            note("nothing to go on with yet, planning begins anew")
 
 
 def made_of(request: PlanRequest) -> dict[str, Any]:
     """Return all that shapes the plan of a command, by what the user gives, as JSON has it."""
     source = request.stones.source
-    shaped: dict[str, Any] = json.loads(
-        json.dumps(
-            {
-                "stones": source.sha256,
-                "reading": dict(source.reading),
-                "--wall": request.wall,
-                "--px-per-m": request.px_per_m,
-                "--scale": request.scale,
-                "--seed": request.seed,
-                "--method": request.method,
-                "settings": _without_budget(request.settings.as_dict()),
-            }
-        )
-    )
-    return shaped
+    shaped = {
+        "stones": source.sha256,
+        "reading": dict(source.reading),
+        "--wall": request.wall,
+        "--px-per-m": request.px_per_m,
+        "--scale": request.scale,
+        "--seed": request.seed,
+        "--method": request.method,
+        "settings": _without_budget(request.settings.as_dict()),
+    }
+    return dict(json.loads(json.dumps(shaped)))
 
 
-def earlier_run(request: PlanRequest, folder: Path) -> Earlier:
+def _without_budget(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Leave out how many walls a search builds: an interrupted plan says how many it had built."""
+    search = dict(settings.get("search", {}))
+    search.pop("budget", None)
+    return {**settings, "search": search}
+
+
+def earlier_run(request: PlanRequest) -> Earlier:
     """Return what to go on from, if that is asked for; refuse what is of something else (E136)."""
     if not request.resume:
         return Earlier()
-    asked, path = made_of(request), folder / "plan.json"
+    folder, asked = request.folder, made_of(request)
+    path = folder / "plan.json"
     plan = read_plan(path) if path.exists() else None
     different = [] if plan is None else _differences(plan, asked, request.asked_method)
+    ids = [stone.id for stone in request.stones]
     try:
-        kept = read_checkpoint(
-            folder, [stone.id for stone in request.stones], request.settings.search
-        )
+        kept = read_checkpoint(folder, ids, request.settings.search)
     except PlanError as error:
         cure = "The partial plan is gone on from." if plan is not None else "Planning begins anew."
-        notice = Notice("W129", f"{error.where}: {error.what}", cure)
-        print(f"drystone: {notice}", file=sys.stderr)
+        note(Notice("W129", f"{error.where}: {error.what}", cure))
         kept = None
     if kept is None:
         if plan is not None:
@@ -106,12 +97,10 @@ def earlier_run(request: PlanRequest, folder: Path) -> Earlier:
 
 def _differences(plan: Plan, asked: Mapping[str, Any], asked_method: str) -> list[str]:
     """Name what a plan was made of that is not what is asked for."""
-    px_per_m = asked["--px-per-m"] or 1.0
-    size = plan.width * px_per_m, plan.height * px_per_m
     equal = {
         "stones": plan.source["sha256"] == asked["stones"],
         "reading": plan.source.get("reading", {}) == asked["reading"],
-        "--wall": np.allclose(size, asked["--wall"], rtol=0, atol=1e-6),
+        "--wall": _same_wall(_wall_px(plan, asked["--px-per-m"]), asked["--wall"]),
         "--px-per-m": plan.px_per_m == asked["--px-per-m"],
         "--scale": plan.working_scale == asked["--scale"],
         "--seed": plan.seed == asked["--seed"],
@@ -121,23 +110,24 @@ def _differences(plan: Plan, asked: Mapping[str, Any], asked_method: str) -> lis
     return [name for name, same in equal.items() if not same]
 
 
+def _wall_px(plan: Plan, px_per_m: float | None) -> tuple[float, float]:
+    return plan.width * (px_per_m or 1.0), plan.height * (px_per_m or 1.0)
+
+
+def _same_wall(one: tuple[float, float], other: tuple[float, float]) -> bool:
+    return bool(np.allclose(one, other, rtol=0, atol=1e-6))
+
+
 def _refuse(different: list[str], path: Path) -> None:
     if different:
-        raise UsageError(
-            "E136",
-            f"the partial plan was made with other {', '.join(different)}.",
-            where=str(path),
-            cure="Give the same command again with --resume added, or plan into another folder.",
-        )
+        what = f"the partial plan was made with other {', '.join(different)}."
+        cure = "Give the same command again with --resume added, or plan into another folder."
+        raise UsageError("E136", what, where=str(path), cure=cure)
 
 
-def tell_finished(plan: Plan, request: PlanRequest, output: PlanOutput) -> str:
+def tell_finished(plan: Plan, request: PlanRequest) -> str:
     """Say that there is nothing to go on with; return the status that the wall ended with."""
-    print(
-        "drystone: this plan is finished, there is nothing to go on with;"
-        " --from begins a search with it",
-        file=sys.stderr,
-    )
+    note("this plan is finished, there is nothing to go on with; --from begins a search with it")
     wall = rebuild_wall(plan, request.stones)
     planner = Planner(request.stones, wall.site, seed=plan.seed, settings=request.settings)
     planner.restore(wall, plan.course_heights_px)
@@ -145,15 +135,52 @@ def tell_finished(plan: Plan, request: PlanRequest, output: PlanOutput) -> str:
     planner.stopped = Stopped("search", plan.stopped)
     result = result_of(planner)
     if result.shortfall:
-        print(f"drystone: {result.status}: {result.shortfall}", file=sys.stderr)
-    if output.json:
-        told = summary_of_plan(plan, output.folder)
-        print_json(told | {"status": "finished"})
+        note(f"{result.status}: {result.shortfall}")
+    if request.json:
+        print_json(summary_of_plan(plan, request.folder) | {"status": "finished"})
     return result.status
 
 
-def _without_budget(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Leave out how many walls a search builds: an interrupted plan says how many it had built."""
-    search = dict(settings.get("search", {}))
-    search.pop("budget", None)
-    return {**settings, "search": search}
+def plan_to_begin_with(request: PlanRequest) -> Plan | None:
+    """Return the plan of `--from`; None when there is none.
+
+    E144: it is of other stones, for another wall, made at another resolution or geometry, or in
+    poses or from a side that the settings do not allow.
+    """
+    if request.begin is None:
+        return None
+    plan = read_plan(request.begin)
+    source, wall, settings = request.stones.source, request.wall, request.settings
+    size, of_plan = _wall_px(plan, plan.px_per_m), plan.settings
+    geometry = str(of_plan.get("geometry", "raster"))
+    orientations = of_plan.get("orientations", settings.orientations)
+    sized = f"another wall ({size[0]:g}x{size[1]:g} px, not {wall[0]:g}x{wall[1]:g})"
+    checks = [  # whether it is the same, what it is else, and the option that makes it the same
+        (plan.source["sha256"] == source.sha256, "other stones", ""),
+        (
+            plan.source.get("reading", {}) == dict(source.reading),
+            "stones that were read otherwise",
+            "",
+        ),
+        (_same_wall(size, wall), sized, ""),
+        (
+            plan.working_scale == request.scale,
+            "another resolution",
+            f"--scale {plan.working_scale:g}",
+        ),
+        (geometry == settings.geometry, "another geometry", f"--geometry {geometry}"),
+        (
+            orientations == settings.orientations,
+            "other orientations",
+            f"--orientations {orientations}",
+        ),
+        (settings.two_sided or not of_plan.get("two_sided", False), "both sides", "--two-sided"),
+    ]
+    different = {name: option for same, name, option in checks if not same}
+    if different:
+        cure = "Give the stones and the wall that the plan was made for, or leave --from out."
+        if all(different.values()):
+            cure = f"Add {' '.join(different.values())}."
+        what = f"the plan is of {', '.join(different)}."
+        raise UsageError("E144", what, where=str(request.begin), cure=cure)
+    return plan

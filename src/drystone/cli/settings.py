@@ -1,9 +1,9 @@
-"""Planner settings from a method, a TOML file and options, in this order."""
+"""What is to be planned and where it goes, of stones, a method, a TOML file and options."""
 
 import argparse
 import tomllib
 from collections.abc import Iterator
-from dataclasses import fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +11,10 @@ from drystone.cli.numbers import positive, share, whole_from
 from drystone.errors import InputError, UsageError
 from drystone.io.file_bytes import file_bytes
 from drystone.io.foreign import foreign
+from drystone.model.stone import StoneSet
 from drystone.planner.search_settings import AIMS, UNLIMITED
 from drystone.planner.settings import METHODS, PlannerSettings, method_settings
+from drystone.search.plan_wall import working_scale
 from drystone.selection.policies.registry import rule_of
 
 MOST_TOML_BYTES = 1_000_000
@@ -20,7 +22,6 @@ MOST_TOML_BYTES = 1_000_000
 
 SECONDS_A_STONE = 1 / 3
 """How long better walls are looked for when nothing is said."""
-
 
 _PLAIN = ("sampling", "two_sided", "orientations", "mu", "skip_too_large")
 """Settings that have an option of their own name."""
@@ -31,71 +32,42 @@ _Asked = tuple[str, dict[str, Any]]
 
 def add_settings(command: argparse.ArgumentParser) -> None:
     """Add the options that say how a wall is planned."""
+    # fmt: off
     group = command.add_argument_group("method")
-    group.add_argument("--method", default="best", metavar="NAME", help="best (default) or paper")
-    group.add_argument(
-        "--settings", metavar="FILE.toml", help="parameters that replace the method's"
-    )
-    group.add_argument(
-        "--seed", type=whole_from(0), default=0, help="of the random choices (default 0)"
-    )
-    group.add_argument(
-        "--scale", type=share, metavar="S", help="plan on images reduced by S, 0 to 1"
-    )
-    group.add_argument(
-        "--policy", metavar="NAME",
-        help="who chooses the stones of a single pass: paper, random, lowest, scalarised, filter, "
-        "towers, learned, or one that is installed (docs/policies.md)",
-    )  # fmt: skip
-    group.add_argument(
-        "--sampling", choices=["variant", "uniform", "twofold", "full"],
-        help="stones that are tried in a step: one of each cluster, as many at random, one of "
-        "each and then all of the winner's cluster, or all",
-    )  # fmt: skip
-    group.add_argument("--placement", choices=["snug", "eq12", "lowest"])
-    group.add_argument("--reach", choices=["any", "above"], help="where a stone may be inserted")
-    group.add_argument(
-        "--two-sided", action=argparse.BooleanOptionalAction, default=None, dest="two_sided",
-        help="build from both ends",
-    )  # fmt: skip
-    group.add_argument(
-        "--one-sided", action="store_false", dest="two_sided", help="same as --no-two-sided"
-    )
-    group.add_argument("--orientations", metavar="SET", help="sf, quarter, or a step such as 10deg")
-    group.add_argument("--stabilise", choices=["both", "rotation", "wedge", "none"])
-    group.add_argument("--mu", type=float, help="coefficient of friction (default .58)")
-    group.add_argument(
-        "--geometry", choices=["exact", "raster"],
-        help="exact: stones settle on their outlines; raster: they are their pixels",
-    )  # fmt: skip
-    group.add_argument(
-        "--settle", choices=["energy", "pivot"],
-        help="with exact geometry: down to the least energy, or rolling as in the paper",
-    )  # fmt: skip
-    effort = group.add_mutually_exclusive_group()
-    effort.add_argument(
-        "--time", type=positive, metavar="SECONDS",
-        help="time limit of the search (best: 10 s for 30 stones, and a whole wall)",
-    )  # fmt: skip
-    effort.add_argument(
-        "--budget", type=whole_from(1), metavar="N",
-        help="how many walls are built instead, which repeats exactly: 1 is a single pass",
-    )  # fmt: skip
-    group.add_argument(
-        "--aim", nargs="+", action="extend", type=_aim, metavar="FIGURE=VALUE",
-        help="figures to reach, such as F_SF=.88 F_AV=40 F_AH=1.5 F_LR=.8",
-    )  # fmt: skip
-    group.add_argument(
-        "--skip-too-large", action="store_true", default=None,
-        help="leave out stones that fit into the wall in no orientation",
-    )  # fmt: skip
-    group.add_argument(
-        "--jobs",
-        type=whole_from(1),
-        default=1,
-        metavar="N",
-        help="processes; never the result of a budget",
-    )
+    option = group.add_argument
+    option("--method", default="best", metavar="NAME", help="best (default) or paper")
+    option("--settings", metavar="FILE.toml", help="parameters that replace the method's")
+    option("--seed", type=whole_from(0), default=0, help="of the random choices (default 0)")
+    option("--scale", type=share, metavar="S", help="plan on images reduced by S, 0 to 1")
+    option("--policy", metavar="NAME",
+           help="who chooses the stones of a single pass: paper, random, lowest, scalarised, "
+           "filter, towers, learned, or one that is installed (docs/policies.md)")
+    option("--sampling", choices=["variant", "uniform", "twofold", "full"],
+           help="stones that are tried in a step: one of each cluster, as many at random, one of "
+           "each and then all of the winner's cluster, or all")
+    option("--placement", choices=["snug", "eq12", "lowest"])
+    option("--reach", choices=["any", "above"], help="where a stone may be inserted")
+    option("--two-sided", action=argparse.BooleanOptionalAction, default=None, dest="two_sided",
+           help="build from both ends")
+    option("--one-sided", action="store_false", dest="two_sided", help="same as --no-two-sided")
+    option("--orientations", metavar="SET", help="sf, quarter, or a step such as 10deg")
+    option("--stabilise", choices=["both", "rotation", "wedge", "none"])
+    option("--mu", type=float, help="coefficient of friction (default .58)")
+    option("--geometry", choices=["exact", "raster"],
+           help="exact: stones settle on their outlines; raster: they are their pixels")
+    option("--settle", choices=["energy", "pivot"],
+           help="with exact geometry: down to the least energy, or rolling as in the paper")
+    effort = group.add_mutually_exclusive_group().add_argument
+    effort("--time", type=positive, metavar="SECONDS",
+           help="time limit of the search (best: 10 s for 30 stones, and a whole wall)")
+    effort("--budget", type=whole_from(1), metavar="N",
+           help="how many walls are built instead, which repeats exactly: 1 is a single pass")
+    option("--aim", nargs="+", action="extend", type=_aim, metavar="FIGURE=VALUE",
+           help="figures to reach, such as F_SF=.88 F_AV=40 F_AH=1.5 F_LR=.8")
+    option("--skip-too-large", action="store_true", default=None,
+           help="leave out stones that fit into the wall in no orientation")
+    option("--jobs", type=whole_from(1), default=1, metavar="N",
+           help="processes; never the result of a budget")
 
 
 def _aim(text: str) -> tuple[str, float]:
@@ -112,10 +84,9 @@ def settings_from(arguments: argparse.Namespace) -> PlannerSettings:
     settings = method_settings(arguments.method)
     if arguments.settings is not None:
         settings = _with_file(settings, arguments)
-    geometry = arguments.geometry or settings.geometry
-    _check_geometry(geometry, arguments)
+    _check_geometry(arguments.geometry or settings.geometry, arguments)
     asked = settings
-    for where, changes in [*_plain(arguments), *_grouped(settings, arguments)]:
+    for where, changes in [*_asked(settings, arguments)]:
         try:
             asked = asked.updated(changes)
         except UsageError as error:
@@ -168,24 +139,20 @@ def _blamed(error: UsageError, where: str) -> UsageError:
     return UsageError(error.code, error.what, where=where, cure=error.cure)
 
 
-def _plain(arguments: argparse.Namespace) -> list[_Asked]:
-    """Return what options ask for that set one value each."""
-    given = {name: getattr(arguments, name) for name in _PLAIN}
-    placed: dict[str, Any] = {"geometry": arguments.geometry}
-    if arguments.geometry == "raster":
-        placed["search"] = {"budget": 1}  # better walls are looked for on outlines alone
-    geometry = [] if arguments.geometry is None else [("--geometry", placed)]
-    return geometry + [
-        (f"--{name.replace('_', '-')}", {name: value})
-        for name, value in given.items()
-        if value is not None
-    ]
+def _asked(settings: PlannerSettings, arguments: argparse.Namespace) -> Iterator[_Asked]:
+    """Yield what the options ask for; what only makes sense together is one change."""
 
+    def given(**options: str) -> dict[str, Any]:
+        values = {name: getattr(arguments, option) for name, option in options.items()}
+        return {name: value for name, value in values.items() if value not in (None, [])}
 
-def _grouped(settings: PlannerSettings, arguments: argparse.Namespace) -> Iterator[_Asked]:
-    """Yield what the other options ask for; what only makes sense together is one change."""
-    placement = {"rule": arguments.placement, "reach": arguments.reach}
-    yield "--placement, --reach", {"placement": {k: v for k, v in placement.items() if v}}
+    if arguments.geometry == "raster":  # better walls are looked for on outlines alone
+        yield "--geometry", {"geometry": "raster", "search": {"budget": 1}}
+    else:
+        yield "--geometry", given(geometry="geometry")
+    for name in _PLAIN:
+        yield f"--{name.replace('_', '-')}", given(**{name: name})
+    yield "--placement, --reach", {"placement": given(rule="placement", reach="reach")}
     search = _search(settings, arguments)
     if arguments.policy is not None:
         yield "--policy", {"selection_rule": rule_of(arguments.policy), "search": search}
@@ -193,31 +160,20 @@ def _grouped(settings: PlannerSettings, arguments: argparse.Namespace) -> Iterat
         yield "--time" if arguments.budget is None else "--budget", {"search": search}
     if arguments.aim:
         if search.get("budget", settings.search.budget) == 1:
-            raise UsageError(
-                "E138",
-                "--aim would do nothing with a single pass.",
-                cure="Leave it out, or let walls be searched: --time, --budget.",
-            )
+            what = "--aim would do nothing with a single pass."
+            cure = "Leave it out, or let walls be searched: --time, --budget."
+            raise UsageError("E138", what, cure=cure)
         yield "--aim", {"goal": dict(arguments.aim)}
-    if arguments.settle is not None:
-        yield "--settle", {"settle": {"method": arguments.settle}}
-    if arguments.stabilise is not None:
-        yield "--stabilise", {"stabilise": {"method": arguments.stabilise}}
-    yield from _chosen(arguments)
-
-
-def _chosen(arguments: argparse.Namespace) -> Iterator[_Asked]:
-    """Yield what is said about single stones; `demo` has no such options."""
-    ids = {name: sorted(set(getattr(arguments, name, []))) for name in ("ban", "pin")}
-    given = {name: stones for name, stones in ids.items() if stones}
-    yield " and ".join(f"--{name}" for name in given), given
-    if getattr(arguments, "fixed_order", False):
+    yield "--settle", {"settle": given(method="settle")}
+    yield "--stabilise", {"stabilise": given(method="stabilise")}
+    chosen = {name: sorted(set(ids)) for name, ids in given(ban="ban", pin="pin").items()}
+    yield " and ".join(f"--{name}" for name in chosen), chosen
+    if arguments.fixed_order:
         yield "--fixed-order", {"order": "given"}
 
 
 def _search(settings: PlannerSettings, arguments: argparse.Namespace) -> dict[str, Any]:
     """Return the changes of the search's settings."""
-    search: dict[str, Any] = {}
     if arguments.policy is not None:
         if arguments.time is not None or arguments.budget not in (None, 1):
             raise UsageError(
@@ -227,12 +183,10 @@ def _search(settings: PlannerSettings, arguments: argparse.Namespace) -> dict[st
             )
         return {"budget": 1}
     if arguments.budget is not None:
-        search["budget"] = arguments.budget
-    elif (arguments.geometry or settings.geometry) == "raster":
-        return search
-    elif search_seconds(settings, 0, arguments) is not None:
-        search["budget"] = UNLIMITED
-    return search
+        return {"budget": arguments.budget}
+    exact = (arguments.geometry or settings.geometry) == "exact"
+    timed = exact and search_seconds(settings, 0, arguments) is not None
+    return {"budget": UNLIMITED} if timed else {}
 
 
 def search_seconds(
@@ -240,14 +194,7 @@ def search_seconds(
 ) -> float | None:
     """Return how long better walls are looked for; None when a budget or a policy says how many.
 
-    Parameters
-    ----------
-    settings : PlannerSettings
-        Before the options.
-    stones : int
-        How many there are.
-    arguments : argparse.Namespace
-        The options.
+    `settings` are those before the options, `stones` is their number.
     """
     if arguments.policy is not None:
         return None
@@ -258,7 +205,6 @@ def search_seconds(
 
 
 def _file_has_budget(arguments: argparse.Namespace) -> bool:
-    """Say whether the settings file says how many walls are built."""
     if arguments.settings is None:
         return False
     search = read_toml(Path(arguments.settings)).get("search", {})
@@ -271,32 +217,78 @@ def _check_geometry(geometry: str, arguments: argparse.Namespace) -> None:
     useless = ("placement", "reach") if exact else ("settle",)
     given = [f"--{name}" for name in useless if getattr(arguments, name) is not None]
     if given:
-        raise UsageError(
-            "E138",
-            f"{' and '.join(given)} would do nothing with --geometry {geometry}.",
-            cure=f"Leave it out, or add --geometry {'raster' if exact else 'exact'}.",
-        )
+        what = f"{' and '.join(given)} would do nothing with --geometry {geometry}."
+        cure = f"Leave it out, or add --geometry {'raster' if exact else 'exact'}."
+        raise UsageError("E138", what, cure=cure)
 
 
 def read_toml(path: Path) -> dict[str, Any]:
     """Read a TOML file; a missing or broken one is an InputError (E128)."""
 
     def no_toml(why: str) -> InputError:
-        return InputError(
-            "E128",
-            f"is no TOML: {why}.",
-            where=str(path),
-            cure="`drystone plan` writes the settings of a plan as settings.toml: start from that.",
-        )
+        cure = "`drystone plan` writes the settings of a plan as settings.toml: start from that."
+        return InputError("E128", f"is no TOML: {why}.", where=str(path), cure=cure)
 
     try:
         data = file_bytes(path, MOST_TOML_BYTES)
     except OSError as error:
-        raise InputError(
-            "E128",
-            f"cannot be read: {error.strerror}.",
-            where=str(path),
-            cure="Give a TOML file, such as the settings.toml that is written with every plan.",
-        ) from None
+        what = f"cannot be read: {error.strerror}."
+        cure = "Give a TOML file, such as the settings.toml that is written with every plan."
+        raise InputError("E128", what, where=str(path), cure=cure) from None
     with foreign(no_toml):
         return tomllib.loads(data.decode("utf-8-sig"))
+
+
+@dataclass(frozen=True, eq=False)
+class PlanRequest:
+    """A wall that is asked for, and where its plan goes."""
+
+    stones: StoneSet
+    wall: tuple[float, float]  # width and height, source px
+    px_per_m: float | None  # of the source
+    scale: float  # working resolution over that of the source
+    seed: int
+    asked_method: str
+    method: str  # the one that the plan names
+    settings_file: str | None
+    settings: PlannerSettings
+    seconds: float | None  # None when a number of walls ends the search
+    first_whole: bool  # whether the first wall is built to its end whatever the clock says
+    jobs: int
+    resume: bool
+    begin: Path | None  # the plan that the search begins with
+    folder: Path
+    photo: Path | None  # of the stones, to be put beside the plan
+    overwrite: bool
+    pareto: bool  # whether walls to choose from are written
+    json: bool
+    quiet: bool
+    profile: bool
+
+
+def request_from(
+    stones: StoneSet,
+    wall: tuple[float, float],
+    px_per_m: float | None,
+    arguments: argparse.Namespace,
+    photo: Path | None = None,
+) -> PlanRequest:
+    """Return what the options of `plan` or `demo` ask for."""
+    same = ("seed", "jobs", "resume", "overwrite", "pareto", "json", "profile")
+    return PlanRequest(
+        stones=stones,
+        wall=wall,
+        px_per_m=px_per_m,
+        settings=settings_from(arguments),
+        scale=arguments.scale or working_scale(stones),
+        asked_method=arguments.method,
+        method=recorded_method(arguments),
+        settings_file=arguments.settings,
+        seconds=search_seconds(method_settings(arguments.method), len(stones), arguments),
+        first_whole=arguments.time is None,
+        begin=None if arguments.begin is None else Path(arguments.begin),
+        folder=Path(arguments.output),
+        photo=photo,
+        quiet=arguments.quiet or arguments.json,
+        **{name: getattr(arguments, name) for name in same},
+    )

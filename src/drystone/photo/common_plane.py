@@ -14,42 +14,23 @@ Points = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """A rigid piece of paper with points on it.
+    """A rigid piece of paper with points on it."""
 
-    Parameters
-    ----------
-    seen_px : (n, 2) float array
-        Points in the photograph.
-    flat_m : (n, 2) float array
-        The same points on the paper, metres.
-    """
-
-    seen_px: Points
-    flat_m: Points
+    seen_px: Points  # (n, 2) points in the photograph
+    flat_m: Points  # (n, 2) the same points on the paper, metres
 
 
 @dataclass(frozen=True, eq=False)
 class CommonPlane:
-    """A plane that all pieces lie on.
+    """A plane that all pieces lie on."""
 
-    Parameters
-    ----------
-    to_plane : (3, 3) float array
-        Homography from the photograph to the plane, metres.
-    off_m : tuple of (n, 2) float arrays
-        For each piece, how far the points of the photograph are from those of the paper where it
-        fits best; metres on the plane.
-    sizes : (n,) float array
-        Sizes of the pieces that would fit better, over those that were given, where one (the
-        largest in the photograph) is as given.
-    surer : float
-        How much better they fit (F statistic of the sizes): near to 1 for noise, far above for
-        pieces that are not of the size that was given.
-    """
-
-    to_plane: Points
+    to_plane: Points  # (3, 3) homography from the photograph to the plane, metres
+    # Of each piece, (n, 2): from the points of the paper where it fits best to those of the
+    # photograph, metres on the plane.
     off_m: tuple[Points, ...]
+    # (n,) sizes that would fit better, over those given; the largest piece in the photograph has 1.
     sizes: Points
+    # How much better they fit (F statistic): near to 1 for noise, far above for wrong sizes.
     surer: float
 
 
@@ -58,21 +39,14 @@ def fit_plane(pieces: Sequence[Piece]) -> CommonPlane | None:
 
     The sum of squares of the distances, in px of the photograph, between the points that were
     seen and those of the pieces is made least over the homography and the poses of the pieces
-    (turned and moved, never mirrored).
-
-    Parameters
-    ----------
-    pieces : sequence of Piece
-        The one with the largest picture is where the search begins.
-
-    Returns
-    -------
-    plane : CommonPlane or None
-        None when no homography of any meaning was found.
+    (turned and moved, never mirrored).  None when no homography of any meaning was found.
     """
     # Numbers near to 1 for the solver: px and metres are unlike by orders of magnitude.
-    unit_px, unit_m = _unit(np.concatenate([piece.seen_px for piece in pieces])), _metre(pieces)
-    order = sorted(range(len(pieces)), key=lambda one: -_area(pieces[one].seen_px))
+    every_px = np.concatenate([piece.seen_px for piece in pieces])
+    unit_px = _unit(every_px)
+    unit_m = max(float(np.ptp(piece.flat_m, axis=0).max()) for piece in pieces)
+    areas = [float(np.prod(np.ptp(piece.seen_px, axis=0))) for piece in pieces]
+    order = sorted(range(len(pieces)), key=lambda one: -areas[one])
     scaled = [Piece(apply(unit_px, pieces[i].seen_px), pieces[i].flat_m / unit_m) for i in order]
     tried = [_least(scaled, to_seen) for to_seen in _beginnings(scaled)]
     found = [one for one in tried if one is not None]
@@ -80,8 +54,7 @@ def fit_plane(pieces: Sequence[Piece]) -> CommonPlane | None:
         return None
     best = min(found, key=lambda one: one.cost)
     to_plane = np.diag([unit_m, unit_m, 1.0]) @ np.linalg.inv(best.to_seen) @ unit_px
-    middle = np.mean(np.concatenate([piece.seen_px for piece in pieces]), axis=0)
-    to_plane = to_plane / depth(to_plane, middle[None])[0]
+    to_plane = to_plane / depth(to_plane, every_px.mean(axis=0)[None])[0]
     sizes = np.ones(len(pieces))
     sized, surer = _sizes(scaled, best)
     sizes[order] = sized
@@ -95,7 +68,7 @@ def _off(to_plane: Points, piece: Piece) -> Points:
 
 
 @dataclass(frozen=True, eq=False)
-class _Found:
+class _Fit:
     """A homography from the plane to the photograph, poses (angle, x, y) and half the squares."""
 
     to_seen: Points
@@ -103,7 +76,7 @@ class _Found:
     cost: float
 
 
-def _least(pieces: Sequence[Piece], to_seen: Points) -> _Found | None:
+def _least(pieces: Sequence[Piece], to_seen: Points) -> _Fit | None:
     """Return the homography and the poses of the least cost near to a homography."""
     poses = [np.zeros(3)]
     with np.errstate(all="ignore"):
@@ -121,10 +94,10 @@ def _least(pieces: Sequence[Piece], to_seen: Points) -> _Found | None:
     back = np.linalg.inv(homography)
     if any((depth(back, piece.seen_px) <= 0).any() for piece in pieces):
         return None
-    return _Found(homography, result.x[8:].reshape(-1, 3), float(result.cost))
+    return _Fit(homography, result.x[8:].reshape(-1, 3), float(result.cost))
 
 
-def _sizes(pieces: Sequence[Piece], best: _Found) -> tuple[Points, float]:
+def _sizes(pieces: Sequence[Piece], best: _Fit) -> tuple[Points, float]:
     """Return the sizes, over those given, that would fit best, and how much better they fit."""
     more = len(pieces) - 1
     if not more:
@@ -167,14 +140,7 @@ def _beginnings(pieces: Sequence[Piece]) -> list[Points]:
 
 
 def direct(source: Points, target: Points) -> Points:
-    """Return the homography of four or more points by the direct linear transformation.
-
-    Examples
-    --------
-    >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
-    >>> (direct(square, 2.0 * square).round(6) + 0.0).tolist()
-    [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 1.0]]
-    """
+    """Return the homography of four or more points by the direct linear transformation."""
     x, y = source.T
     u, v = target.T
     one, none = np.ones_like(x), np.zeros_like(x)
@@ -202,11 +168,3 @@ def _unit(points: Points) -> Points:
     return np.array(
         [[1 / spread, 0, -centre[0] / spread], [0, 1 / spread, -centre[1] / spread], [0, 0, 1]]
     )
-
-
-def _metre(pieces: Sequence[Piece]) -> float:
-    return max(float(np.ptp(piece.flat_m, axis=0).max()) for piece in pieces)
-
-
-def _area(points: Points) -> float:
-    return float(np.prod(np.ptp(points, axis=0)))

@@ -16,13 +16,7 @@ FAMILIES = {"aruco": "ArUco 4x4_50", "apriltag": "AprilTag 36h11"}
 
 
 def load_cv2() -> Any:
-    """Return OpenCV; it is an extra, so it is loaded only when it is needed.
-
-    Raises
-    ------
-    UsageError
-        E305 when it is not installed.
-    """
+    """Return OpenCV; it is an extra, so it is loaded only when it is needed (E305 without it)."""
     try:
         return import_module("cv2")
     except ImportError as error:
@@ -35,20 +29,10 @@ def load_cv2() -> Any:
 
 
 def opencv_dictionary(name: str) -> Any:
-    """Return OpenCV's dictionary of a family; E174 for a name that is none.
-
-    Parameters
-    ----------
-    name : str
-        A key of `DICTIONARIES`.
-    """
+    """Return OpenCV's dictionary of a family; E174 for a name that is none."""
     if name not in DICTIONARIES:
-        raise UsageError(
-            "E174",
-            f"{name!r} is no family of markers.",
-            where="--dictionary",
-            cure=f"Known: {', '.join(DICTIONARIES)}.",
-        )
+        what, cure = f"{name!r} is no family of markers.", f"Known: {', '.join(DICTIONARIES)}."
+        raise UsageError("E174", what, where="--dictionary", cure=cure)
     aruco = load_cv2().aruco
     return aruco.getPredefinedDictionary(getattr(aruco, DICTIONARIES[name]))
 
@@ -64,38 +48,15 @@ def modules_across(name: str) -> int:
 
 
 def marker_modules(name: str, marker_id: int) -> NDArray[np.bool_]:
-    """Return the squares of a marker, row 0 at its top.
+    """Return (n, n) squares of a marker, row 0 at its top, True where black; the outermost all are.
 
-    Parameters
-    ----------
-    name : str
-        A key of `DICTIONARIES`.
-    marker_id : int
-        From 0 to ``id_count(name) - 1``.
-
-    Returns
-    -------
-    black : (n, n) bool array
-        True where a square is black; the outermost ones all are.
-
-    Raises
-    ------
-    UsageError
-        E174 an id that the family does not have.
-
-    Examples
-    --------
-    >>> marker_modules("aruco", 0).shape
-    (6, 6)
+    E174 for an id that the family does not have.
     """
     dictionary = opencv_dictionary(name)
     if not 0 <= marker_id < len(dictionary.bytesList):
-        raise UsageError(
-            "E174",
-            f"the family {name!r} has no marker {marker_id}.",
-            where="--ids",
-            cure=f"Its ids are 0 to {len(dictionary.bytesList) - 1}.",
-        )
+        what = f"the family {name!r} has no marker {marker_id}."
+        cure = f"Its ids are 0 to {len(dictionary.bytesList) - 1}."
+        raise UsageError("E174", what, where="--ids", cure=cure)
     across = int(dictionary.markerSize) + 2
     picture = load_cv2().aruco.generateImageMarker(dictionary, marker_id, across)
     black: NDArray[np.bool_] = np.asarray(picture) < 128

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.errors import UsageError
+from drystone.photo.view import SQUARE
 
 PAGES_MM = {"A4": (210.0, 297.0), "A3": (297.0, 420.0), "letter": (215.9, 279.4)}
 """Width and height of pages."""
@@ -31,31 +32,14 @@ _MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
 
 @dataclass(frozen=True)
 class MarkerLayout:
-    """What is known of the markers in a photograph.
+    """What is known of the markers in a photograph."""
 
-    Parameters
-    ----------
-    size_m : float
-        Side of the black square of a marker, metres, as it was printed.
-    page : str or None
-        Key of `PAGES_MM` when they are sheets of four that `drystone markers` made: markers
-        4 k to 4 k + 3 are one sheet, and their distances are known.  None for single markers:
-        only their size is known.
-    ids : tuple of int or None
-        Markers that belong to it; others are left out with a notice.  None for any.
-    printed : float
-        Length of the printed check line over 100 mm; it multiplies size and distances.
-
-    Examples
-    --------
-    >>> parse_layout("A4:50mm").corners_m(1)[0].tolist()
-    [0.145, 0.015]
-    """
-
-    size_m: float
+    size_m: float  # side of the black square of a marker, metres, as it was printed
+    # Key of `PAGES_MM` when they are sheets of four that `drystone markers` made: markers 4 k to
+    # 4 k + 3 are one sheet, and their distances are known.  None for single ones of this size.
     page: str | None = None
-    ids: tuple[int, ...] | None = None
-    printed: float = 1.0
+    ids: tuple[int, ...] | None = None  # others are left out with a notice; None for any
+    printed: float = 1.0  # printed check line over 100 mm; it multiplies size and distances
 
     @property
     def side_m(self) -> float:
@@ -71,15 +55,11 @@ class MarkerLayout:
         return marker_id if self.page is None else marker_id // ON_A_SHEET
 
     def corners_m(self, marker_id: int) -> NDArray[np.float64]:
-        """Return where the corners of a marker are on its piece of paper.
+        """Return (4, 2) corners of a marker's pattern on its piece of paper, from its upper left.
 
-        Returns
-        -------
-        corners : (4, 2) float array
-            Upper left, upper right, lower right, lower left of the pattern; metres, x to the
-            right and y down, from the upper left of the sheet (or of a single marker).
+        Metres, x to the right and y down, from the upper left of the sheet (or of a single marker).
         """
-        unit = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]) * self.size_m
+        unit = SQUARE * self.size_m
         if self.page is not None:
             unit = unit + sheet_positions_m(self.page, self.size_m)[marker_id % ON_A_SHEET]
         return np.asarray(unit * self.printed, dtype=np.float64)
@@ -88,10 +68,7 @@ class MarkerLayout:
 def sheet_positions_m(page: str, size_m: float) -> NDArray[np.float64]:
     """Return the upper left corners of the four markers of a sheet, metres.
 
-    Raises
-    ------
-    UsageError
-        E174: no such page, or markers that do not fit on it.
+    E174 when there is no such page, or they do not fit on it.
     """
     width, height = page_mm(page)
     size = size_m * 1000.0
@@ -133,13 +110,7 @@ def page_mm(page: str) -> tuple[float, float]:
 
 
 def parse_size_m(text: str) -> float:
-    """Read the size of a marker such as ``50mm``, ``5cm`` or ``0.05m``; E174 for anything else.
-
-    Examples
-    --------
-    >>> parse_size_m("50mm")
-    0.05
-    """
+    """Read the size of a marker such as ``50mm``, ``5cm`` or ``0.05m``; E174 for anything else."""
     found = _SIZE.fullmatch(text)
     value = 0.0 if found is None else float(found[1]) * _MM[found[2]]
     if not 0.0 < value < 10_000.0:
@@ -150,22 +121,10 @@ def parse_size_m(text: str) -> float:
 def parse_layout(
     text: str, ids: tuple[int, ...] | None = None, printed: float = 1.0
 ) -> MarkerLayout:
-    """Read what `drystone segment` is told of the markers.
+    """Read what `drystone segment` is told of the markers; E174 for what cannot be.
 
-    Parameters
-    ----------
-    text : str
-        ``50mm``: single markers of this size, anywhere on the ground; ``A4:50mm`` or ``A4``
-        (50 mm): a sheet of four.
-    ids : tuple of int, optional
-        Markers that belong to it; for sheets 0 to 3 unless given.
-    printed : float
-        Length of the printed check line over 100 mm.
-
-    Raises
-    ------
-    UsageError
-        E174: no size, no page, or markers that do not fit on it.
+    ``50mm``: single markers of this size, anywhere on the ground; ``A4:50mm`` or ``A4`` (50 mm): a
+    sheet of four, with markers 0 to 3 unless given.
     """
     if not 0.5 < printed < 2.0:
         raise _no_sheet(

@@ -1,4 +1,9 @@
-"""Find square markers in a photograph."""
+"""Find square markers in a photograph, with corners where their edges meet.
+
+Each edge is measured along its length.  Where two edges meet, blur rounds the corner off, and what
+looks for the corner itself finds it too far inside: the marker then reads small and the scale with
+it.  Edges are not moved by blur.
+"""
 
 from dataclasses import dataclass
 from typing import Any
@@ -7,7 +12,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.photo.dictionaries import DICTIONARIES, load_cv2, modules_across, opencv_dictionary
-from drystone.photo.edges import corners_by_edges
+
+Points = NDArray[np.float64]
+
+_ALONG = np.linspace(0.1, 0.9, 81)
+"""Places along an edge: not near the corners, which are rounded."""
+
+_ACROSS = np.linspace(-1.0, 1.0, 41)
+"""Places across an edge, in reaches: from the black border to the white one."""
+
+_REACHES_PX = (2.0, 10.0)
+"""Least and largest reach: farther off, samples would be more than half a px apart."""
+
+_LEAST_CONTRAST = 8.0
 
 SEARCHES = ((0.05, 0.03), (0.05, 0.02), (0.125, 0.03))
 """How OpenCV looks for quadrangles: how near two may be, and how straight their sides must be.
@@ -21,20 +38,14 @@ here and by another one there; what any of them reads without a wrong square is 
 class FoundMarker:
     """A marker in a photograph.
 
-    Parameters
-    ----------
-    id : int
-        Its number in its family.
-    corners_px : (4, 2) float array
-        Upper left, upper right, lower right and lower left corner of its pattern (clockwise as
-        printed), x to the right and y down.  A pixel is a unit square with its centre at +0.5.
-    dictionary : str
-        Its family, ``"aruco"`` or ``"apriltag"``.
+    Its corners are (4, 2): upper left, upper right, lower right, lower left of its pattern
+    (clockwise as printed), x to the right, y down.  A pixel is a unit square with its centre at
+    +0.5.
     """
 
     id: int
     corners_px: NDArray[np.float64]
-    dictionary: str
+    dictionary: str  # its family, "aruco" or "apriltag"
 
     @property
     def side_px(self) -> float:
@@ -44,24 +55,11 @@ class FoundMarker:
 
 
 def find_markers(image: NDArray[np.uint8], dictionary: str = "auto") -> tuple[FoundMarker, ...]:
-    """Find markers with the white border around them, in any position.
+    """Find markers with the white border around them, in any position, in grey or RGB.
 
-    Parameters
-    ----------
-    image : (h, w) or (h, w, 3) uint8 array
-        Grey or RGB.
-    dictionary : str
-        ``"aruco"``, ``"apriltag"``, or ``"auto"``: the family with more markers in the picture.
-
-    Returns
-    -------
-    markers : tuple of FoundMarker
-        In the order of their ids; an id may occur twice.  Empty when there are none.
-
-    Raises
-    ------
-    UsageError
-        E305 without OpenCV, E174 for another dictionary.
+    `dictionary` is "aruco", "apriltag", or "auto": the family with more markers in the picture.
+    They are in the order of their ids; an id may occur twice.  E305 without OpenCV, E174 for
+    another dictionary.
     """
     cv2 = load_cv2()
     grey = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_RGB2GRAY)
@@ -121,3 +119,82 @@ def _refined(grey: NDArray[np.uint8], corners: NDArray[Any], across: int) -> NDA
     near = np.asarray(refined.reshape(4, 2), dtype=np.float64) + 0.5
     measured = corners_by_edges(grey, near, across)
     return near if measured is None else measured
+
+
+def corners_by_edges(grey: NDArray[np.uint8], corners_px: Points, modules: int) -> Points | None:
+    """Measure where the four edges of a marker meet.
+
+    `corners_px` (4, 2) are right to within a third of a square of the pattern, clockwise; pixel
+    centres at +0.5.  `modules` squares are along an edge.  None when an edge cannot be measured:
+    little contrast, or no straight line.
+    """
+    corners = corners_px
+    for _ in range(2):
+        lines = [_edge(grey, np.roll(corners, -i, axis=0), modules) for i in range(4)]
+        found = [line for line in lines if line is not None]
+        if len(found) < 4:
+            return None
+        corners = np.array([_meeting(found[i - 1], found[i]) for i in range(4)])
+        sides = np.hypot(*(corners_px - np.roll(corners_px, 1, axis=0)).T)
+        if not (np.hypot(*(corners - corners_px).T) < sides.min() / modules / 2).all():
+            return None
+    return corners
+
+
+def _edge(grey: NDArray[np.uint8], corners: Points, modules: int) -> tuple[Points, Points] | None:
+    """Return a point and the direction of the first edge; None when it is no straight edge."""
+    start, end = corners[:2]
+    along = (end - start) / float(np.hypot(*(end - start)))
+    # Clockwise as printed and never mirrored: with y down, outside is to the left.
+    outward = np.array([along[1], -along[0]])
+    # Squares are foreshortened: what counts is how wide they are across this edge.
+    width = -float(((corners[2:] - start) @ outward).mean()) / modules
+    reach = float(np.clip(0.7 * width, *_REACHES_PX))
+    places = start + _ALONG[:, None] * (end - start)
+    at = places[:, None, :] + reach * _ACROSS[:, None] * outward
+    cv2 = load_cv2()
+    seen = cv2.remap(
+        grey,
+        (at[..., 0] - 0.5).astype(np.float32),
+        (at[..., 1] - 0.5).astype(np.float32),
+        cv2.INTER_LINEAR,
+        borderMode=cv2.BORDER_REPLICATE,
+    ).astype(np.float64)
+    # Lenses blur light, not the grey values of sRGB, in which black squares would seem smaller.
+    offset = _offsets(255.0 * ((seen / 255.0 + 0.055) / 1.055) ** 2.4)
+    if offset is None:
+        return None
+    return _line(places + reach * offset[:, None] * outward)
+
+
+def _offsets(seen: Points) -> Points | None:
+    """Return where each profile, dark to bright, has its step, in reaches from its middle."""
+    ends = len(_ACROSS) // 5
+    # Light changes along an edge, but slowly.
+    dark = np.polyval(np.polyfit(_ALONG, seen[:, :ends].mean(axis=1), 1), _ALONG)
+    bright = np.polyval(np.polyfit(_ALONG, seen[:, -ends:].mean(axis=1), 1), _ALONG)
+    if not (bright - dark > _LEAST_CONTRAST).all():
+        return None
+    share = (seen - dark[:, None]) / (bright - dark)[:, None]
+    return np.asarray(1.0 - np.trapezoid(share, _ACROSS, axis=1))
+
+
+def _line(points: Points) -> tuple[Points, Points] | None:
+    """Return a point and the direction of the line through points, without the odd ones."""
+    keep = np.ones(len(points), dtype=bool)
+    middle, direction = points.mean(axis=0), np.zeros(2)
+    for _ in range(3):
+        middle = points[keep].mean(axis=0)
+        direction = np.linalg.svd(points[keep] - middle)[2][0]
+        off = np.abs((points - middle) @ np.array([-direction[1], direction[0]]))
+        keep = off <= max(3.0 * float(np.median(off)), 0.1)
+        if keep.sum() < len(points) / 2:
+            return None
+    return middle, direction
+
+
+def _meeting(one: tuple[Points, Points], other: tuple[Points, Points]) -> Points:
+    matrix = np.column_stack([one[1], -other[1]])
+    if abs(np.linalg.det(matrix)) < 1e-6:
+        return np.full(2, np.nan)
+    return np.asarray(one[0] + np.linalg.solve(matrix, other[0] - one[0])[0] * one[1])

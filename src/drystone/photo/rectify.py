@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from drystone.errors import InputError
 from drystone.photo.dictionaries import load_cv2
-from drystone.photo.view import View, apply, depth, jacobian
+from drystone.photo.view import SQUARE, View, apply, depth, jacobian
 
 MAX_PX = 60_000_000
 """Size that a rectified picture has at most."""
@@ -19,56 +19,29 @@ MAX_STRETCH = 10.0
 
 @dataclass(frozen=True, eq=False)
 class Rectified:
-    """The ground as seen from straight above.
+    """The ground as seen from straight above."""
 
-    Parameters
-    ----------
-    values : (h, w, 3) uint8 array
-        RGB; black where the photograph shows nothing.
-    px_per_m : float
-        Px of this picture in a metre.
-    inside : (h, w) bool array
-        Where the photograph shows something.
-    from_photo : (3, 3) float array
-        Homography from photo px to px of this picture (pixel centres at +0.5 in both).
-    """
-
-    values: NDArray[np.uint8]
-    px_per_m: float
-    inside: NDArray[np.bool_]
+    values: NDArray[np.uint8]  # (h, w, 3) RGB; black where the photograph shows nothing
+    px_per_m: float  # px of this picture in a metre
+    inside: NDArray[np.bool_]  # (h, w) where the photograph shows something
+    # (3, 3) homography from photo px to px of this picture (pixel centres at +0.5 in both).
     from_photo: NDArray[np.float64]
 
 
 def rectify(
     image: NDArray[np.uint8], view: View, px_per_m: float | None = None, max_px: int = MAX_PX
 ) -> Rectified:
-    """Turn a photograph into the picture that a camera far above would take.
+    """Turn a photograph into the picture that a camera far above would take; it shows all of it.
 
-    Parameters
-    ----------
-    image : (h, w, 3) uint8 array
-        The photograph that the view was found in.
-    view : View
-        A flat view of the same scale leaves every px as it is.
-    px_per_m : float, optional
-        Of the result; that of the view unless given, or less where `max_px` would be exceeded.
-    max_px : int
-        Largest result.
-
-    Returns
-    -------
-    rectified : Rectified
-        It shows all of the photograph.
-
-    Raises
-    ------
-    InputError
-        E173: the horizon or what is near to it is in the photograph.  E110: `px_per_m` was given
-        and makes more than `max_px`.
+    A flat view of the same scale leaves every px as it is.  `px_per_m` of the result is that of the
+    view unless given, or less where `max_px` would be exceeded.  E173: the horizon or what is near
+    to it is in the photograph.  E110: `px_per_m` was given and makes more than `max_px`.
     """
     height, width = image.shape[:2]
     refuse_horizon(view, (width, height))
-    low, extent = bounds_m(view, (width, height))
+    corners = apply(view.photo_to_ground, SQUARE * (width, height))
+    low = corners.min(axis=0)
+    extent = corners.max(axis=0) - low
     scale = view.px_per_m if px_per_m is None else px_per_m
     if extent[0] * extent[1] * scale**2 > max_px:
         if px_per_m is not None:
@@ -83,18 +56,15 @@ def rectify(
         everywhere = np.ones((height, width), dtype=np.bool_)
         return Rectified(image, view.px_per_m, everywhere, np.eye(3))
     moved = np.array([[scale, 0, -scale * low[0]], [0, scale, -scale * low[1]], [0, 0, 1]])
-    size = (
-        max(1, math.ceil(extent[0] * scale - 1e-6)),
-        max(1, math.ceil(extent[1] * scale - 1e-6)),
-    )
+    across, down = (max(1, math.ceil(side * scale - 1e-6)) for side in extent)
     from_photo = moved @ view.photo_to_ground
-    values, inside = _warped(image, from_photo, size)
+    values, inside = _warped(image, from_photo, (across, down))
     return Rectified(values, scale, inside, from_photo)
 
 
 def refuse_horizon(view: View, size_px: tuple[int, int]) -> None:
     """Refuse a view with the horizon, or almost, inside the photograph (E173)."""
-    corners = _corners(size_px)
+    corners = SQUARE * size_px
     w = depth(view.photo_to_ground, corners)
     seen = bool((w > 0).all())
     if seen:
@@ -109,20 +79,6 @@ def refuse_horizon(view: View, size_px: tuple[int, int]) -> None:
         )
 
 
-def bounds_m(
-    view: View, size_px: tuple[int, int]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the least x and y, and width and height, of what a photograph shows; metres."""
-    corners = apply(view.photo_to_ground, _corners(size_px))
-    low = corners.min(axis=0)
-    return low, corners.max(axis=0) - low
-
-
-def _corners(size_px: tuple[int, int]) -> NDArray[np.float64]:
-    width, height = size_px
-    return np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]])
-
-
 def _warped(
     image: NDArray[np.uint8], from_photo: NDArray[np.float64], size: tuple[int, int]
 ) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
@@ -131,7 +87,8 @@ def _warped(
     half = np.array([[1.0, 0.0, 0.5], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]])
     by = np.linalg.inv(half) @ from_photo @ half
     shown = np.full(image.shape[:2], 255, dtype=np.uint8)
-    finer = float(np.abs(np.linalg.det(jacobian(from_photo, _middle(image)))))
+    middle = np.array([image.shape[1] / 2.0, image.shape[0] / 2.0])
+    finer = float(np.abs(np.linalg.det(jacobian(from_photo, middle))))
     if finer < 0.5:
         # Px of the photograph between the samples would be skipped, and thin gaps with them.
         blur = 0.5 * math.sqrt(1.0 / finer - 1.0)
@@ -142,7 +99,3 @@ def _warped(
     inside = np.asarray(cv2.warpPerspective(shown, by, size, flags=cv2.INTER_NEAREST)) > 0
     values[~inside] = 0
     return np.asarray(values, dtype=np.uint8), inside
-
-
-def _middle(image: NDArray[np.uint8]) -> NDArray[np.float64]:
-    return np.array([image.shape[1] / 2.0, image.shape[0] / 2.0])

@@ -13,39 +13,21 @@ from drystone.photo.common_plane import CommonPlane, Piece, direct, fit_plane
 from drystone.photo.layout import MarkerLayout
 from drystone.photo.markers import FoundMarker
 from drystone.photo.rectify import refuse_horizon
-from drystone.photo.view import View, apply, jacobian
+from drystone.photo.view import SQUARE, View, apply, jacobian
 
 
 @dataclass(frozen=True)
 class MarkerLimits:
-    """When markers are not used, and when they are not believed.
+    """When markers are not used, and when they are not believed."""
 
-    Parameters
-    ----------
-    least_side_px : float
-        Smaller markers are left out (W171).
-    small_side_px : float
-        When the largest marker is smaller, the scale is in doubt (W172).
-    least_slant : float
-        Markers that are foreshortened more, length over width, are left out (W171).
-    most_percent : float
-        Residual of a marker in percent of its side from which on they disagree (E172).
-    most_size_percent : float
-        Difference of the sizes of two papers, where it is no noise, from which on they disagree
-        (E172).
-    surer : float
-        F statistic from which on it is no noise.
-    doubtful_percent : float
-        Residual of all from which on the scale is in doubt (W172).
-    """
-
-    least_side_px: float = 40.0
-    small_side_px: float = 100.0
-    least_slant: float = 0.35
-    most_percent: float = 1.0
+    least_side_px: float = 40.0  # smaller markers are left out (W171)
+    small_side_px: float = 100.0  # when the largest marker is smaller, the scale is in doubt (W172)
+    least_slant: float = 0.35  # length over width; those more foreshortened are left out (W171)
+    most_percent: float = 1.0  # residual of a marker over its side; beyond, they disagree (E172)
+    # Difference of the sizes of two papers, where it is no noise, beyond which they disagree.
     most_size_percent: float = 1.5
-    surer: float = 15.0
-    doubtful_percent: float = 0.5
+    surer: float = 15.0  # F statistic from which on it is no noise
+    doubtful_percent: float = 0.5  # residual of all from which on the scale is in doubt (W172)
 
 
 def scale_and_view(
@@ -56,33 +38,22 @@ def scale_and_view(
 ) -> View:
     """Find the scale and the perspective of a photograph from at least two markers.
 
-    Parameters
-    ----------
-    found : tuple of FoundMarker
-        Of :func:`drystone.photo.markers.find_markers`.
-    layout : MarkerLayout
-        Their size, and whether they are sheets; see :func:`drystone.photo.layout.parse_layout`.
-    size_px : (int, int)
-        Width and height of the photograph.
-    limits : MarkerLimits, optional
-        What is believed.
-
-    Returns
-    -------
-    view : View
-        With residuals and notices.
-
-    Raises
-    ------
-    InputError
-        E170 fewer than two markers that can be used; E171 an id twice; E172 markers that disagree;
-        E173 a view with the horizon in it.
+    `size_px` is width and height of the photograph.  E170 fewer than two markers that can be used;
+    E171 an id twice; E172 markers that disagree; E173 a view with the horizon in it.
     """
     limits = limits or MarkerLimits()
     used, notices = _usable(found, layout, limits)
     groups = sorted({layout.group(marker.id) for marker in used})
     papers = [[marker for marker in used if layout.group(marker.id) == one] for one in groups]
-    plane = fit_plane([_piece(paper, layout) for paper in papers])
+    plane = fit_plane(
+        [
+            Piece(
+                np.concatenate([marker.corners_px for marker in paper]),
+                np.concatenate([layout.corners_m(marker.id) for marker in paper]),
+            )
+            for paper in papers
+        ]
+    )
     if plane is None:
         raise _disagreement("No view of the ground gives all of them their size")
     residual_m = _believed(papers, plane, layout, limits)
@@ -112,9 +83,9 @@ def _usable(
     strange = sorted({one.id for one in found} - {one.id for one in known})
     if strange:
         others = "of the sheet" if layout.page else "to be used"
-        notices.append(
-            Notice("W170", f"{_markers(strange)} left out: not one {others} ({_ids(layout)}).")
-        )
+        known_ids = ", ".join(map(str, layout.ids or ()))
+        said = f"{_markers(strange)} left out: not one {others} ({known_ids})."
+        notices.append(Notice("W170", said))
     small = [one for one in known if one.side_px < limits.least_side_px]
     slanted = [one for one in known if one not in small and _slant(one) < limits.least_slant]
     used = tuple(one for one in known if one not in small and one not in slanted)
@@ -161,11 +132,6 @@ def _too_few(
         where="markers",
         cure=cure,
     )
-
-
-def _piece(paper: Sequence[FoundMarker], layout: MarkerLayout) -> Piece:
-    seen = np.concatenate([marker.corners_px for marker in paper])
-    return Piece(seen, np.concatenate([layout.corners_m(marker.id) for marker in paper]))
 
 
 def _believed(
@@ -235,8 +201,7 @@ def _doubts(
 
 def _slant(marker: FoundMarker) -> float:
     """Return how foreshortened a marker is: 1 from straight above, 0 from the side."""
-    square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
-    local = jacobian(direct(square, marker.corners_px), np.array([0.5, 0.5]))
+    local = jacobian(direct(SQUARE, marker.corners_px), np.array([0.5, 0.5]))
     long, short = np.linalg.svd(local, compute_uv=False)
     return float(short / long)
 
@@ -247,9 +212,7 @@ def _upright(to_plane: NDArray[np.float64], size_px: tuple[int, int]) -> NDArray
     angle = math.atan2(local[1, 0] - local[0, 1], local[0, 0] + local[1, 1])
     cos, sin = math.cos(angle), math.sin(angle)
     turned = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]]) @ to_plane
-    width, height = size_px
-    corners = np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]])
-    low = apply(turned, corners).min(axis=0)
+    low = apply(turned, SQUARE * size_px).min(axis=0)
     return np.array([[1.0, 0.0, -low[0]], [0.0, 1.0, -low[1]], [0.0, 0.0, 1.0]]) @ turned
 
 
@@ -259,7 +222,3 @@ def _middle(size_px: tuple[int, int]) -> NDArray[np.float64]:
 
 def _markers(ids: Sequence[int]) -> str:
     return f"marker{'s' * (len(ids) > 1)} {', '.join(map(str, ids))}"
-
-
-def _ids(layout: MarkerLayout) -> str:
-    return ", ".join(map(str, layout.ids or ()))

@@ -26,40 +26,19 @@ _HORN = 0.12
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
-    """Stones that were found in a photograph.
+class FoundStones:
+    """Stones that were found in a photograph."""
 
-    Parameters
-    ----------
-    labels : (h, w) uint16 array
-        Stones 1 ... n, numbered in rows from the top left; 0 elsewhere.
-    necks : tuple of Neck
-        Cut and doubtful ones.
-    contrast : tuple of float
-        Contrast of every stone along the weakest quarter of its outline, in CIELAB.
-    shaded : tuple of int
-        Stones with a part that may be shadow.
-    cut_px : tuple of (float, float)
-        Middles (column, row) of stones that the edge of the photograph cuts.
-    specks : int
-        Areas that were too small.
-    beside_papers : int
-        Areas that touch a marker and were taken for its paper.
-    ground : GroundModel
-        The ground.
-    shadow_level : float
-        Light in cast shadows over that beside them; 1 when there are none.
-    """
-
-    labels: NDArray[np.uint16]
-    necks: tuple[Neck, ...]
-    contrast: tuple[float, ...]
-    shaded: tuple[int, ...]
+    labels: NDArray[np.uint16]  # (h, w) 1 ... n, in rows from the top left; 0 elsewhere
+    necks: tuple[Neck, ...]  # cut and doubtful ones
+    contrast: tuple[float, ...]  # along the weakest quarter of each outline, in CIELAB
+    shaded: tuple[int, ...]  # stones with a part that may be shadow
+    # Middles (column, row) of stones that the edge of the photograph cuts.
     cut_px: tuple[tuple[float, float], ...]
-    specks: int
-    beside_papers: int
+    specks: int  # areas that were too small
+    beside_papers: int  # areas that touch a marker and were taken for its paper
     ground: GroundModel
-    shadow_level: float
+    shadow_level: float  # light in cast shadows over that beside them; 1 when there are none
 
     @property
     def count(self) -> int:
@@ -72,24 +51,11 @@ def segment(
     inside: Mask | None = None,
     settings: SegmentSettings | None = None,
     papers: Mask | None = None,
-) -> Found:
-    """Find stones.
+) -> FoundStones:
+    """Find stones in an RGB picture from above, of `WORKING_PX` or less for speed.
 
-    Parameters
-    ----------
-    image : (h, w, 3) uint8 array
-        RGB, as seen from above; of `WORKING_PX` or less for speed.
-    inside : (h, w) bool array, optional
-        False where there is no photograph.
-    settings : SegmentSettings, optional
-        How stones are told from the ground.
-    papers : (h, w) bool array, optional
-        True on markers; what touches them is their paper.
-
-    Raises
-    ------
-    InputError
-        E175 no stones; E176 no even ground.
+    `inside` (h, w) is False where there is no photograph, `papers` (h, w) True on markers; what
+    touches them is their paper.  E175 no stones; E176 no even ground.
     """
     settings = settings or SegmentSettings()
     papers = np.zeros(image.shape[:2], bool) if papers is None else papers
@@ -102,7 +68,22 @@ def segment(
     stone = _without_horns(_solid(stone, usable))
     stone, beside = _without_papers(stone, papers)
     labels, necks = split_stones(stone, ground.lab, settings)
-    return _sorted_out(labels, necks, _Context(ground, shadows, usable | papers, beside), settings)
+    found, cut, specks = _sorted_out(labels, usable | papers, settings)
+    if not found.any():
+        raise _no_stones(len(cut), ground)
+    count = int(found.max())
+    contrast = contrast_along(ground.lab, found.astype(np.int32), count)
+    return FoundStones(
+        labels=found,
+        necks=tuple(neck for neck in necks if stones_at(found, neck.at_px)),
+        contrast=tuple(float(value) for value in contrast),
+        shaded=_shaded(found, shadows, count),
+        cut_px=cut,
+        specks=specks,
+        beside_papers=beside,
+        ground=ground,
+        shadow_level=shadows.level,
+    )
 
 
 def _unlike(ground: GroundModel, usable: Mask) -> Mask:
@@ -157,50 +138,33 @@ def _without_papers(stone: Mask, papers: Mask) -> tuple[Mask, int]:
     return stone & ~touched[pieces], int(touched.sum())
 
 
-@dataclass(frozen=True, eq=False)
-class _Context:
-    ground: GroundModel
-    shadows: Shadows
-    shown: Mask
-    beside_papers: int
-
-
 def _sorted_out(
-    labels: Labels,
-    necks: tuple[Neck, ...],
-    context: _Context,
-    settings: SegmentSettings,
-) -> Found:
-    """Leave out what is too small or cut, and number the rest in rows."""
+    labels: Labels, shown: Mask, settings: SegmentSettings
+) -> tuple[NDArray[np.uint16], tuple[tuple[float, float], ...], int]:
+    """Leave out what is too small or cut, and number the rest in rows.
+
+    Returns that, the middles (column, row) of what is cut, and how many were too small.
+    """
     areas = np.bincount(labels.ravel())
     areas[0] = 0
     least = settings.min_area_px
     if least is None:
-        least = max(_FLOOR_SHARE * float(context.shown.sum()), _usual(areas) / 50)
+        least = max(_FLOOR_SHARE * float(shown.sum()), _usual(areas) / 50)
     large = areas >= least
     number = np.arange(len(areas))
     middles = np.array(ndimage.center_of_mass(labels > 0, labels, number[1:])).reshape(-1, 2)
-    near_edge = ~ndimage.binary_erosion(context.shown, iterations=4)
+    near_edge = ~ndimage.binary_erosion(shown, iterations=4)
     cut = np.isin(number, np.unique(labels[near_edge])) & large
     kept = np.flatnonzero(large & ~cut)
-    if not len(kept):
-        raise _no_stones(int(cut.sum()), context.ground)
-    order = _in_rows(middles[kept - 1], float(np.sqrt(np.median(areas[kept]))))
     new = np.zeros(len(areas), np.uint16)
-    new[kept[order]] = np.arange(1, len(kept) + 1)
-    numbered = new[labels]
-    contrast = contrast_along(context.ground.lab, numbered.astype(np.int32), len(kept))
-    return Found(
-        labels=numbered,
-        necks=tuple(neck for neck in necks if stones_at(numbered, neck.at_px)),
-        contrast=tuple(float(value) for value in contrast),
-        shaded=_shaded(numbered, context.shadows, len(kept)),
-        cut_px=tuple((float(x), float(y)) for y, x in middles[np.flatnonzero(cut) - 1]),
-        specks=int(((areas > 0) & ~large).sum()),
-        beside_papers=context.beside_papers,
-        ground=context.ground,
-        shadow_level=context.shadows.level,
-    )
+    if len(kept):
+        # As one reads: by rows as high as a stone, then from left to right.
+        size = max(float(np.sqrt(np.median(areas[kept]))), 1.0)
+        rows = np.floor(middles[kept - 1, 0] / size)
+        order = np.lexsort((middles[kept - 1, 1], rows))
+        new[kept[order]] = np.arange(1, len(kept) + 1)
+    cut_px = tuple((float(x), float(y)) for y, x in middles[np.flatnonzero(cut) - 1])
+    return new[labels], cut_px, int(((areas > 0) & ~large).sum())
 
 
 def _usual(areas: NDArray[np.int64]) -> float:
@@ -208,12 +172,6 @@ def _usual(areas: NDArray[np.int64]) -> float:
     ordered = np.sort(areas)[::-1]
     total = np.cumsum(ordered)
     return float(ordered[int(np.searchsorted(total, total[-1] / 2))]) if total[-1] else 0.0
-
-
-def _in_rows(middles: NDArray[np.float64], size: float) -> list[int]:
-    """Return the order in which one reads: by rows as high as a stone, then from left to right."""
-    rows = np.floor(middles[:, 0] / max(size, 1.0))
-    return [int(k) for k in np.lexsort((middles[:, 1], rows))]
 
 
 def stones_at(labels: NDArray[np.uint16], at_px: tuple[float, float], near: int = 4) -> list[int]:

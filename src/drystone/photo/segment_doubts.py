@@ -4,12 +4,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from skimage.measure import regionprops
 
 from drystone.errors import Notice
 from drystone.model.stone_size import sizes_of
-from drystone.photo.segment import Found, stones_at
+from drystone.photo.segment import FoundStones, stones_at
 from drystone.photo.segment_settings import SegmentSettings
 
 LOW_CONTRAST = 8.0
@@ -29,41 +29,20 @@ RULED = 0.8
 
 @dataclass(frozen=True)
 class Doubt:
-    """Something that may be wrong.
+    """Something that may be wrong."""
 
-    Parameters
-    ----------
-    code : str
-        W175 neck, W176 left out at the edge, W177 shadow, W178 low contrast, W179 unusual size
-        or a ruler.
-    stones : tuple of int
-        Stones concerned; empty when it is none of them.
-    at_px : (float, float)
-        Where, column and row of the label image.
-    text : str
-        What is in doubt.
-    """
-
+    # W175 neck, W176 left out at the edge, W177 shadow, W178 low contrast, W179 unusual size or
+    # a ruler.
     code: str
-    stones: tuple[int, ...]
-    at_px: tuple[float, float]
+    stones: tuple[int, ...]  # empty when it is none of them
+    at_px: tuple[float, float]  # column and row of the label image
     text: str
 
 
 def doubts_of(
-    found: Found, px_per_m: float | None = None, settings: SegmentSettings | None = None
+    found: FoundStones, px_per_m: float | None = None, settings: SegmentSettings | None = None
 ) -> tuple[Doubt, ...]:
-    """Return what is in doubt, stone by stone.
-
-    Parameters
-    ----------
-    found : Found
-        Of :func:`drystone.photo.segment.segment`.
-    px_per_m : float or None
-        For lengths in centimetres.
-    settings : SegmentSettings, optional
-        What size is unusual.
-    """
+    """Return what is in doubt, stone by stone."""
     sizes = sizes_of(found.labels)
     settings = settings or SegmentSettings()
     at = {size.id: size.at_px for size in sizes}
@@ -73,14 +52,11 @@ def doubts_of(
     doubts += [
         Doubt("W176", (), place, f"cut by the edge at {_place(place)}") for place in found.cut_px
     ]
+    faint = [one for one, value in enumerate(found.contrast, start=1) if value < LOW_CONTRAST]
     doubts += [
-        Doubt("W177", (stone,), at[stone], f"stone {stone} at {_place(at[stone])}")
-        for stone in found.shaded
-    ]
-    doubts += [
-        Doubt("W178", (stone,), at[stone], f"stone {stone} at {_place(at[stone])}")
-        for stone, contrast in enumerate(found.contrast, start=1)
-        if contrast < LOW_CONTRAST
+        Doubt(code, (stone,), at[stone], f"stone {stone} at {_place(at[stone])}")
+        for code, stones in (("W177", found.shaded), ("W178", faint))
+        for stone in stones
     ]
     usual = float(np.median([size.area_px for size in sizes]))
     for size in sizes:
@@ -91,24 +67,10 @@ def doubts_of(
     return tuple(doubts)
 
 
-def ruler_doubts(
-    labels: NDArray[np.uint16], ends_px: tuple[tuple[float, float], tuple[float, float]]
-) -> tuple[Doubt, ...]:
+def ruler_doubts(labels: NDArray[np.uint16], ends_px: ArrayLike) -> tuple[Doubt, ...]:
     """Return what lies where a length was measured: the ruler may have been taken for a stone.
 
-    Parameters
-    ----------
-    labels : (h, w) uint16 array
-        Stones 1 ... n.
-    ends_px : two (float, float)
-        Column and row of both ends of the length.
-
-    Examples
-    --------
-    >>> labels = np.zeros((40, 80), np.uint16)
-    >>> labels[20:24, 8:72] = 3
-    >>> ruler_doubts(labels, ((10.0, 19.0), (70.0, 19.0)))[0].text
-    'stone 3 lies along --ruler and may be the ruler'
+    `labels` are (h, w), `ends_px` two rows of column and row.
     """
     one, other = np.array(ends_px)
     length = float(np.hypot(*(other - one)))
@@ -134,7 +96,7 @@ def ruler_doubts(
     )  # fmt: skip
 
 
-def notices_of(found: Found, doubts: Iterable[Doubt]) -> tuple[Notice, ...]:
+def notices_of(found: FoundStones, doubts: Iterable[Doubt]) -> tuple[Notice, ...]:
     """Return the doubts as notices, one of each kind."""
     texts: dict[str, list[str]] = {}
     for doubt in doubts:
@@ -164,7 +126,7 @@ _KINDS = {
 """What a code means, and the cure."""
 
 
-def _hollow(found: Found, at: dict[int, tuple[float, float]]) -> list[Doubt]:
+def _hollow(found: FoundStones, at: dict[int, tuple[float, float]]) -> list[Doubt]:
     doubts = []
     for region in regionprops(found.labels):
         share = float(region.solidity)
@@ -175,7 +137,7 @@ def _hollow(found: Found, at: dict[int, tuple[float, float]]) -> list[Doubt]:
     return doubts
 
 
-def _necks(found: Found, px_per_m: float | None) -> list[Doubt]:
+def _necks(found: FoundStones, px_per_m: float | None) -> list[Doubt]:
     doubts = []
     for neck in found.necks:
         stones = tuple(stones_at(found.labels, neck.at_px))

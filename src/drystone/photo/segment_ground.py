@@ -29,31 +29,15 @@ _ORDERS = (0, 1, 1, 2, 2, 2, 3, 3, 3)
 
 @dataclass(frozen=True, eq=False)
 class GroundModel:
-    """A photograph as it would be if the ground were lit evenly.
+    """A photograph as it would be if the ground were lit evenly."""
 
-    Parameters
-    ----------
-    log_light : (h, w, 3) float32 array
-        Natural logarithm of linear light over that of the ground at the same place: 0 on the
-        ground.
-    lab : (h, w, 3) float32 array
-        CIELAB of the evenly lit picture.
-    colour : (3,) float array
-        CIELAB of the ground.
-    spread : (3,) float array
-        Robust standard deviation of the ground in L, a, b; at least 0.8.
-    share : float
-        Share of the picture that has the colour of the ground.
-    uneven : float
-        How much darker the darkest place of the ground is lit than the brightest, 0 to 1.
-    """
-
+    # Natural logarithm of linear light over that of the ground at the same place: 0 on the ground.
     log_light: Planes
-    lab: Planes
-    colour: NDArray[np.float64]
-    spread: NDArray[np.float64]
-    share: float
-    uneven: float
+    lab: Planes  # (h, w, 3) CIELAB of the evenly lit picture
+    colour: NDArray[np.float64]  # (3,) CIELAB of the ground
+    spread: NDArray[np.float64]  # (3,) robust standard deviation of the ground; at least 0.8
+    share: float  # share of the picture that has the colour of the ground
+    uneven: float  # how much darker the darkest place of it is lit than the brightest, 0 to 1
 
     @property
     def distance(self) -> NDArray[np.float32]:
@@ -63,21 +47,10 @@ class GroundModel:
 
 
 def fit_ground(image: NDArray[np.uint8], usable: Mask, ground: Ground) -> GroundModel:
-    """Find the ground and take its uneven light out of a photograph.
+    """Find the ground and take its uneven light out of an RGB photograph.
 
-    Parameters
-    ----------
-    image : (h, w, 3) uint8 array
-        RGB.
-    usable : (h, w) bool array
-        What may be ground or stone: not the markers, nor what the photograph does not show.
-    ground : str
-        See :class:`~drystone.photo.segment_settings.SegmentSettings`.
-
-    Raises
-    ------
-    InputError
-        E176 when no colour is frequent enough to be a ground, or nothing may be one.
+    `usable` is what may be ground or stone: not the markers, nor what the photograph does not show.
+    E176 when no colour is frequent enough to be a ground, or nothing may be one.
     """
     light = linear_light(image)
     smooth = np.stack([ndimage.gaussian_filter(light[..., k], 1.0) for k in range(3)], axis=-1)

@@ -17,16 +17,7 @@ _LEAST_CONTRAST = 3.0
 def refine_outlines(lab: Planes, stone: Mask, usable: Mask, rounds: int = 2) -> Mask:
     """Move outlines to where the colour is half way between stone and ground.
 
-    Parameters
-    ----------
-    lab : (h, w, 3) float32 array
-        CIELAB.
-    stone : (h, w) bool array
-        Stones, about.
-    usable : (h, w) bool array
-        What the photograph shows of ground and stones.
-    rounds : int
-        How often.
+    `stone` is where stones are, about; `usable` what the photograph shows of ground and stones.
     """
     for _ in range(rounds):
         inner = ndimage.distance_transform_edt(stone)
@@ -42,17 +33,7 @@ def refine_outlines(lab: Planes, stone: Mask, usable: Mask, rounds: int = 2) -> 
 
 
 def contrast_along(lab: Planes, labels: NDArray[np.int32], count: int) -> NDArray[np.float64]:
-    """Return the contrast along the weakest quarter of every stone's outline, in Lab.
-
-    Parameters
-    ----------
-    lab : (h, w, 3) float32 array
-        CIELAB.
-    labels : (h, w) int array
-        Stones 1 ... count.
-    count : int
-        Number of stones.
-    """
+    """Return the contrast in Lab along the weakest quarter of every outline, 1 ... count."""
     stone = labels > 0
     inner = ndimage.distance_transform_edt(stone)
     outer = ndimage.distance_transform_edt(~stone)

@@ -14,9 +14,9 @@ from drystone.photo.layout import MarkerLayout, page_mm
 from drystone.photo.markers import FoundMarker, find_markers
 from drystone.photo.rectify import rectify
 from drystone.photo.scale import scale_and_view
-from drystone.photo.segment import WORKING_PX, Found, segment
+from drystone.photo.segment import WORKING_PX, FoundStones, segment
 from drystone.photo.segment_settings import SegmentSettings
-from drystone.photo.view import View, apply
+from drystone.photo.view import SQUARE, View, apply
 
 QUIET_ZONE = 0.3
 """White border of a single marker over its side, that is no ground."""
@@ -24,44 +24,24 @@ QUIET_ZONE = 0.3
 
 @dataclass(frozen=True, eq=False)
 class SegmentedPhoto:
-    """Stones of a photograph, in the picture that a camera far above would take.
+    """Stones of a photograph, in the picture that a camera far above would take."""
 
-    Parameters
-    ----------
-    picture : (h, w, 3) uint8 array
-        That picture, RGB; black where the photograph shows nothing.
-    found : Found
-        The stones in it.
-    from_photo : (3, 3) float array
-        Homography from photo px to px of the picture (pixel centres at +0.5 in both).
-    px_per_m : float or None
-        Px of the picture in a metre.
-    view : View or None
-        What the scale was taken from.
-    unasked : tuple of int
-        Markers that are in the photograph and were not asked about: their papers are left out.
-    """
-
-    picture: NDArray[np.uint8]
-    found: Found
+    picture: NDArray[np.uint8]  # (h, w, 3) RGB; black where the photograph shows nothing
+    found: FoundStones
+    # (3, 3) homography from photo px to px of the picture (pixel centres at +0.5 in both).
     from_photo: NDArray[np.float64]
-    px_per_m: float | None = None
-    view: View | None = None
-    unasked: tuple[int, ...] = ()
+    px_per_m: float | None = None  # px of the picture in a metre
+    view: View | None = None  # what the scale was taken from
+    unasked: tuple[int, ...] = ()  # markers that nobody asked about: their papers are left out
 
     @property
     def notices(self) -> tuple[Notice, ...]:
         """What there is to say of the markers."""
         if self.unasked:
-            said = ", ".join(map(str, self.unasked))
-            return (
-                Notice(
-                    "W170",
-                    f"The photograph has markers that give no scale here: {said}. They and their "
-                    "paper are no stones.",
-                    "--aruco takes the scale and the view from them.",
-                ),
-            )
+            ids = ", ".join(map(str, self.unasked))
+            said = f"The photograph has markers that give no scale here: {ids}. They and their "
+            cure = "--aruco takes the scale and the view from them."
+            return (Notice("W170", f"{said}paper are no stones.", cure),)
         return () if self.view is None else self.view.notices
 
 
@@ -72,26 +52,11 @@ def segment_photo(
     min_area: tuple[float, str] | None = None,
     max_px: int = WORKING_PX,
 ) -> SegmentedPhoto:
-    """Find the stones of a photograph.
+    """Find the stones of an RGB photograph, the right way up.
 
-    Parameters
-    ----------
-    image : (h, w, 3) uint8 array
-        RGB, the right way up.
-    scale : MarkerLayout, float or None
-        Markers that are in it, or photo px in a metre.  Only markers correct the perspective.
-    settings : SegmentSettings, optional
-        How stones are told from the ground.
-    min_area : (float, str), optional
-        Smaller is no stone: a number of ``"px"`` of the result or of ``"cm2"``; this replaces
-        what the settings say.
-    max_px : int
-        Size of the picture in which stones are found.
-
-    Raises
-    ------
-    InputError
-        E170 to E173 of the markers, E175 no stones, E176 no ground.
+    `scale` is photo px in a metre, or the markers that are in it; only markers correct the
+    perspective.  `min_area` is in "px" of the result or in "cm2", and replaces what the settings
+    say.  E170 to E173 of the markers, E175 no stones, E176 no ground.
     """
     if isinstance(scale, MarkerLayout):
         return _by_markers(image, scale, settings, min_area, max_px)
@@ -158,28 +123,14 @@ def papers_of(
 ) -> Mask:
     """Return where sheets and markers lie, those that are not used too.
 
-    Parameters
-    ----------
-    markers : tuple of FoundMarker
-        All that are in the photograph.
-    layout : MarkerLayout or None
-        Whether they are sheets; None when nobody said.
-    from_photo : (3, 3) float array
-        Photo px to px of the picture.
-    shape : (int, int)
-        Height and width of the picture.
-
-    Returns
-    -------
-    covered : (h, w) bool array
-        Paper, as far as it is known: all of a sheet, and the border of a single marker.
+    True is paper, as far as it is known: all of a sheet, and the border of a single marker.  The
+    layout is None when nobody said whether they are sheets.
     """
     covered = np.zeros(shape, bool)
     for marker in markers:
         seen = apply(from_photo, marker.corners_px)
         if layout is not None and layout.page is not None and layout.lists(marker.id):
-            side = np.array(page_mm(layout.page)) / 1000.0 * layout.printed
-            paper = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]) * side
+            paper = SQUARE * (np.array(page_mm(layout.page)) / 1000.0 * layout.printed)
             outline = _similar(layout.corners_m(marker.id), seen, paper)
         else:
             middle = seen.mean(axis=0)

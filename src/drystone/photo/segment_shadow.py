@@ -29,24 +29,12 @@ _FEW_AGREEMENT = 0.9
 
 @dataclass(frozen=True, eq=False)
 class Shadows:
-    """Shadows in a photograph.
+    """Shadows in a photograph."""
 
-    Parameters
-    ----------
-    mask : (h, w) bool array
-        Where they are.
-    level : float
-        Light in them over that beside them; 1 when there are none.
-    direction : (2,) float array or None
-        Where they fall, rows and columns, of length 1.
-    alike : (h, w) bool array
-        What has the colour of shaded ground, shadow or not.
-    """
-
-    mask: Mask
-    level: float
-    direction: Vector | None
-    alike: Mask
+    mask: Mask  # (h, w) where they are
+    level: float  # light in them over that beside them; 1 when there are none
+    direction: Vector | None  # (2,) where they fall, rows and columns, of length 1
+    alike: Mask  # (h, w) what has the colour of shaded ground, shadow or not
 
 
 def find_shadows(ground: GroundModel, foreground: Mask, usable: Mask) -> Shadows:
@@ -56,14 +44,7 @@ def find_shadows(ground: GroundModel, foreground: Mask, usable: Mask) -> Shadows
     shadows when most of them have the same light, and lie on the same side of what cannot be
     shadow: a grey stone on grey ground has its own light, all round.
 
-    Parameters
-    ----------
-    ground : GroundModel
-        The evenly lit photograph.
-    foreground : (h, w) bool array
-        What is not ground.
-    usable : (h, w) bool array
-        What is ground, stone or shadow.
+    `foreground` is what is not ground, `usable` what is ground, stone or shadow.
     """
     light = ground.log_light.mean(axis=-1)
     # Faint shadows are not far from the colour of the ground, but tell where the light is.

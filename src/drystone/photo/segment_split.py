@@ -20,24 +20,12 @@ _OTHER_COLOUR = 14.0
 
 @dataclass(frozen=True)
 class Neck:
-    """A narrow place between two thicker parts of a piece.
+    """A narrow place between two thicker parts of a piece."""
 
-    Parameters
-    ----------
-    at_px : (float, float)
-        Its middle, column and row.
-    width_px : float
-        Its width.
-    share : float
-        Its width over the thickness of the thinner part.
-    cut : bool
-        True when the parts became two stones.
-    """
-
-    at_px: tuple[float, float]
+    at_px: tuple[float, float]  # its middle, column and row
     width_px: float
-    share: float
-    cut: bool
+    share: float  # its width over the thickness of the thinner part
+    cut: bool  # whether the parts became two stones
 
 
 def split_stones(
@@ -48,21 +36,8 @@ def split_stones(
     The watershed of the distance to the ground gives the parts of a piece; two neighbours stay
     one stone unless the line between them is short beside the thickness of both.
 
-    Parameters
-    ----------
-    stone : (h, w) bool array
-        Stones.
-    lab : (h, w, 3) float32 array
-        CIELAB: neighbours of different colours may have a wider neck between them.
-    settings : SegmentSettings
-        How narrow a neck is.
-
-    Returns
-    -------
-    labels : (h, w) int array
-        Stones 1 ... n.
-    necks : tuple of Neck
-        Those that were cut, and those in doubt.
+    Neighbours of different colours may have a wider neck between them.  The necks are those that
+    were cut, and those in doubt.
     """
     pieces, _ = ndimage.label(stone, np.ones((3, 3)))
     labels = np.zeros(stone.shape, np.int32)
@@ -72,8 +47,8 @@ def split_stones(
         parts, found = _parts(pieces[box] == piece, lab[box], settings)
         for neck in found:
             column, row = neck.at_px
-            at = (column + box[1].start, row + box[0].start)
-            necks.append(Neck(at, neck.width_px, neck.share, neck.cut))
+            at_px = (column + box[1].start, row + box[0].start)
+            necks.append(replace(neck, at_px=at_px))
         labels[box] += np.where(parts > 0, parts + number, 0).astype(np.int32)
         number += int(parts.max())
     return labels, tuple(necks)
@@ -106,7 +81,8 @@ def _joined(
         below = settings.split_below
         if below <= neck.share < settings.other_colour_below:
             one, other = (np.median(lab[(basins == k) & (depth > 2)], axis=0) for k in pair)
-            below = settings.other_colour_below if _apart(one, other) else below
+            apart = float(np.hypot.reduce(one - other)) > _OTHER_COLOUR
+            below = settings.other_colour_below if apart else below
         return settings.split and neck.share < below
 
     while True:
@@ -127,10 +103,6 @@ def _joined(
     values = np.unique(basins)
     renumbered = np.searchsorted(values, basins) + (0 if values[0] == 0 else 1)
     return renumbered.astype(np.int32), necks
-
-
-def _apart(one: NDArray[np.float32], other: NDArray[np.float32]) -> bool:
-    return bool(np.hypot.reduce(one - other) > _OTHER_COLOUR)
 
 
 def _lines(basins: Labels) -> dict[tuple[int, int], NDArray[np.intp]]:

@@ -8,47 +8,30 @@ from numpy.typing import NDArray
 
 from drystone.errors import Notice
 
+SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+"""Corners of a unit square, clockwise with y down; times a size those of a picture."""
+
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """From px of a photograph to metres on the ground.
+    """From px of a photograph to metres on the ground."""
 
-    Parameters
-    ----------
-    photo_to_ground : (3, 3) float array
-        Homography: photo px (x to the right, y down, a pixel is a unit square with its centre at
-        +0.5) to metres on the ground (x to the right, y down as the picture shows it).  Never
-        mirrored; w > 0 in front of the horizon.
-    px_per_m : float
-        Photo px in a metre, in the middle of the photograph: what a rectified picture needs to
-        be as fine as the photograph.
-    ids : tuple of int
-        Markers that it was made from; empty for a scale that was given.
-    residual_mm : float or None
-        Root mean square distance, on the ground, of the marker corners from where they should
-        be; None for a scale that was given.
-    residual_percent : float or None
-        The same in percent of the side of a marker.
-    notices : tuple of Notice
-        Markers that were left out (W170, W171), doubts (W172).
-    """
-
+    # (3, 3) homography: photo px (x to the right, y down, a pixel is a unit square with its centre
+    # at +0.5) to metres on the ground (x to the right, y down as the picture shows it).  Never
+    # mirrored; w > 0 in front of the horizon.
     photo_to_ground: NDArray[np.float64]
+    # In the middle of the photograph: what a rectified picture needs to be as fine as that.
     px_per_m: float
-    ids: tuple[int, ...] = ()
+    ids: tuple[int, ...] = ()  # markers that it was made from; empty for a scale that was given
+    # Root mean square distance, on the ground, of the marker corners from where they should be;
+    # None for a scale that was given.
     residual_mm: float | None = None
-    residual_percent: float | None = None
-    notices: tuple[Notice, ...] = ()
+    residual_percent: float | None = None  # the same in percent of the side of a marker
+    notices: tuple[Notice, ...] = ()  # markers that were left out (W170, W171), doubts (W172)
 
     @classmethod
     def flat(cls, px_per_m: float) -> "View":
-        """Return the view from straight above: a scale, and nothing to be warped.
-
-        Examples
-        --------
-        >>> View.flat(200.0).to_ground([[100.0, 50.0]]).tolist()
-        [[0.5, 0.25]]
-        """
+        """Return the view from straight above: a scale, and nothing to be warped."""
         return cls(np.diag([1.0 / px_per_m, 1.0 / px_per_m, 1.0]), float(px_per_m))
 
     @property
@@ -57,18 +40,7 @@ class View:
         return not self.ids
 
     def to_ground(self, points_px: NDArray[np.float64] | list[list[float]]) -> NDArray[np.float64]:
-        """Return where points of the photograph are on the ground.
-
-        Parameters
-        ----------
-        points_px : (n, 2) float array
-            x and y, px of the photograph.
-
-        Returns
-        -------
-        points_m : (n, 2) float array
-            Metres.
-        """
+        """Return where (n, 2) points of the photograph are on the ground, metres."""
         return apply(self.photo_to_ground, np.asarray(points_px, dtype=np.float64))
 
 

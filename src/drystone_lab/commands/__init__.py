@@ -1,6 +1,6 @@
 """Commands of the lab for the command line of drystone; each is imported when it is run."""
 
-from drystone.cli.command import Command, run_of
+from drystone.cli.parser import Command, run_of
 from drystone_lab.commands.options import add_bench, add_fetch, add_reproduce
 
 BENCH = Command(

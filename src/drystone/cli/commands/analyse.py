@@ -2,19 +2,33 @@
 
 import argparse
 import hashlib
-import sys
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
-from drystone.cli.inputs import files_of_wall, refuse_inputs, refuse_plans_own
-from drystone.cli.numbers import finite, friction, not_negative, whole_from
-from drystone.cli.output import prepare_files, print_json, print_table
+from drystone.cli.numbers import (
+    add_scale,
+    finite,
+    friction,
+    not_negative,
+    refuse_outside,
+    scale_with,
+    wall_picture_px,
+    whole_from,
+)
+from drystone.cli.output import (
+    files_of_wall,
+    note,
+    prepare_files,
+    print_json,
+    print_table,
+    refuse_inputs,
+    refuse_plans_own,
+)
 from drystone.cli.progress import counting_bar
 from drystone.cli.reading import add_wall
-from drystone.cli.scale import add_scale, refuse_outside, scale_with, wall_picture_px
 from drystone.drawing.words.analysis import (
     Card,
     ModelledWall,
@@ -39,87 +53,48 @@ from drystone.statics.scatter.shaking import ScatterSettings
 
 FRICTION, REPORT, SCATTER = "friction.png", "report.html", "scatter.png"
 SAMPLES = 200
+OTHERS = (*TABLES, FRICTION, REPORT, SCATTER)
+"""What not every run writes."""
 
 
 def add(command: argparse.ArgumentParser) -> None:
-    """Add its options."""
+    """Add what touches what and how rough it is, the loads, and the scatter of F_LR."""
     add_wall(command)
     add_scale(command)
-    _add_model(command)
-    _add_loads(command)
-    _add_scatter(command)
-
-
-def _add_model(command: argparse.ArgumentParser) -> None:
-    """Add the options that say what touches what, and how rough it is."""
-    group = command.add_argument_group("model")
-    group.add_argument(
-        "--mu", type=friction, metavar="MU",
-        help="coefficient of friction (default .58); LOW:HIGH gives the scatter between them",
-    )  # fmt: skip
-    group.add_argument(
-        "--mu-head", type=not_negative, metavar="MU", help="of head joints, 0 for open ones"
-    )
-    group.add_argument(
-        "--contacts", choices=["pixels", "outlines"], default="pixels",
-        help="from the edges of pixels (default), or from sub-pixel outlines",
-    )  # fmt: skip
-    group.add_argument(
-        "--close-gaps", metavar="PX|settle",
-        help="gaps up to PX between drawn stones bear, or stones are lowered until they touch",
-    )  # fmt: skip
-    group.add_argument(
-        "--solver",
-        choices=["auto", "highs", "highs-ipm", "clarabel"],
-        default="auto",
-        help="of the associative load multiplier and its certificate (default auto: by the number"
-        " of blocks, and another one when a certificate fails)",
-    )
-    group.add_argument(
-        "--associative-only", action="store_true",
-        help="leave out the load multiplier without dilatancy, which takes longer",
-    )  # fmt: skip
-
-
-def _add_scatter(command: argparse.ArgumentParser) -> None:
-    """Add the options of the scatter of F_LR."""
-    group = command.add_argument_group("scatter of the load multiplier (Monte Carlo)")
-    group.add_argument("--scatter", type=whole_from(1), metavar="N", help="samples (default 200)")
-    group.add_argument(
-        "--outline-noise", type=not_negative, default=0.0, metavar="PX",
-        help="standard deviation of the outlines (of a block model: in its lengths)",
-    )  # fmt: skip
-    group.add_argument(
-        "--placement-noise", type=not_negative, default=0.0, metavar="PX",
-        help="standard deviation of where stones lie (of a block model: in its lengths)",
-    )  # fmt: skip
-    group.add_argument("--seed", type=whole_from(0), default=0)
-    group.add_argument(
-        "--jobs", type=whole_from(1), default=1, metavar="N", help="workers; never the result"
-    )
-
-
-def _add_loads(command: argparse.ArgumentParser) -> None:
-    """Add the options that make up dead + alpha live."""
+    # fmt: off
+    option = command.add_argument_group("model").add_argument
+    option("--mu", type=friction, metavar="MU",
+           help="coefficient of friction (default .58); LOW:HIGH gives the scatter between them")
+    option("--mu-head", type=not_negative, metavar="MU", help="of head joints, 0 for open ones")
+    option("--contacts", choices=["pixels", "outlines"], default="pixels",
+           help="from the edges of pixels (default), or from sub-pixel outlines")
+    option("--close-gaps", metavar="PX|settle",
+           help="gaps up to PX between drawn stones bear, or stones are lowered until they touch")
+    option("--solver", choices=["auto", "highs", "highs-ipm", "clarabel"], default="auto",
+           help="of the associative load multiplier and its certificate (default auto: by the "
+           "number of blocks, and another one when a certificate fails)")
+    option("--associative-only", action="store_true",
+           help="leave out the load multiplier without dilatancy, which takes longer")
     group = command.add_argument_group("loads (dead load: weight; live load: alpha times ...)")
-    group.add_argument(
-        "--load", type=_load, choices=["tilting", "height", "points", "gravity"],
-        default="tilting",
-        help="weights sideways as on a tilting table (default), growing with height, the --live"
-        " forces, or the weight itself with the --dead forces held",
-    )  # fmt: skip
-    group.add_argument(
-        "--tilt", type=finite, default=0.0, metavar="DEG",
-        help="gravity is turned by this towards the right already",
-    )  # fmt: skip
+    option = group.add_argument
+    option("--load", type=_load, choices=["tilting", "height", "points", "gravity"],
+           default="tilting",
+           help="weights sideways as on a tilting table (default), growing with height, the "
+           "--live forces, or the weight itself with the --dead forces held")
+    option("--tilt", type=finite, default=0.0, metavar="DEG",
+           help="gravity is turned by this towards the right already")
     for name, text in (("--dead", "force that acts always"), ("--live", "force times alpha")):
-        group.add_argument(
-            name, action="append", default=[], metavar="ID@X,Y:FX,FY",
-            help=f"{text}, on block ID at (x, y) of the wall frame, up is positive; repeatable",
-        )  # fmt: skip
-    group.add_argument(
-        "--settle", type=int, metavar="ID", help="the fixed block ID gives way: its reaction"
-    )
+        option(name, action="append", default=[], metavar="ID@X,Y:FX,FY",
+               help=f"{text}, on block ID at (x, y) of the wall frame, up is positive; repeatable")
+    option("--settle", type=int, metavar="ID", help="the fixed block ID gives way: its reaction")
+    group = command.add_argument_group("scatter of the load multiplier (Monte Carlo)")
+    option = group.add_argument
+    option("--scatter", type=whole_from(1), metavar="N", help="samples (default 200)")
+    for name, text in (("outline", "the outlines"), ("placement", "where stones lie")):
+        option(f"--{name}-noise", type=not_negative, default=0.0, metavar="PX",
+               help=f"standard deviation of {text} (of a block model: in its lengths)")
+    option("--seed", type=whole_from(0), default=0)
+    option("--jobs", type=whole_from(1), default=1, metavar="N", help="workers; never the result")
 
 
 def _load(text: str) -> str:
@@ -135,7 +110,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     asked = ModelRequest(
         arguments.mu, arguments.mu_head, arguments.contacts, arguments.close_gaps, case
     )
-    if _wants_scatter(arguments) and not case.is_plain:
+    shaken = _wants_scatter(arguments)
+    if shaken and not case.is_plain:
         raise UsageError("E138", "the scatter is that of the tilting table; leave loads out.")
     path = Path(arguments.wall_path)
     given = read_wall(path, background=arguments.background)
@@ -144,46 +120,37 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     few = scarcity(wall, per_unit_m)
     if few is not None:
         wall = replace(wall, notices=(*wall.notices, few))
-    for notice in wall.notices:
-        print(f"drystone: {notice}", file=sys.stderr)
+    note(*wall.notices)
     size = size_words(wall.shapes, per_unit_m)
     if size is not None:
         wall = replace(wall, remarks={**wall.remarks, "size": size})
-    folder = None if arguments.output is None else Path(arguments.output)
-    pictures = [] if folder is None else _prepare(folder, arguments)
+    pictures = _prepare(arguments)
     model, loads = load_case(case, wall.model)
     if case.is_range:
         return _print_range(replace(wall, model=model), loads, arguments, pictures)
     resistance = lateral_resistance(model, loads, mechanism=True, solver=arguments.solver)
-    loose = None if resistance.stable else unsupported(model)
-    if loose is not None:
-        print(f"drystone: {loose}", file=sys.stderr)
+    note(None if resistance.stable else unsupported(model))
     card = analysis_of(
-        wall, loads, resistance, _sha256(arguments),
+        wall, loads, resistance, _sha256(path),
         associative_only=arguments.associative_only, solver=arguments.solver,
     )  # fmt: skip
-    if folder is not None:
-        _write_all(folder, pictures, wall, card, loads, per_unit_m)
-    unit = noise_unit(given)
-    shaken = _scatter_of(wall, arguments, unit, folder) if _wants_scatter(arguments) else None
+    if pictures:
+        _write_all(pictures, wall, card, loads, per_unit_m)
+    report, rows = card.report(), card.rows()
+    if shaken:
+        scattered = _scatter_of(wall, arguments, noise_unit(given))
+        report, rows = {**report, "scatter": scattered.report()}, rows + scattered.rows()
     if arguments.json:
-        report = card.report()
-        print_json(report if shaken is None else {**report, "scatter": shaken.report()})
+        print_json(report)
     else:
-        title = f"{path}: {_many(model)}, {model.contact_count} contact points"
-        print_table(title, card.rows() + ([] if shaken is None else shaken.rows()))
+        print_table(f"{path}: {_many(model)}, {model.contact_count} contact points", rows)
     if resistance.failed:
-        return _keep_failure(model, loads, folder)
+        return _keep_failure(model, loads, pictures)
     return ExitCode.DONE if card.stands else ExitCode.CHECK_FAILED
 
 
 def _write_all(
-    folder: Path,
-    pictures: list[Path],
-    wall: ModelledWall,
-    card: Card,
-    loads: Loads,
-    per_unit_m: float | None,
+    pictures: list[Path], wall: ModelledWall, card: Card, loads: Loads, per_unit_m: float | None
 ) -> None:
     """Write pictures, tables and the report."""
     from drystone.drawing.report.analysis import (  # noqa: PLC0415 - slow import
@@ -192,7 +159,7 @@ def _write_all(
         write_analysis,
     )
 
-    ends = (card.resistance.left, card.resistance.right)
+    folder, ends = pictures[0].parent, (card.resistance.left, card.resistance.right)
     _clear(folder)
     draw_analysis(pictures, wall, loads, ends)
     write_tables(folder, card.model, ends, per_unit_m)
@@ -204,8 +171,7 @@ def _many(model: RigidBlockModel) -> str:
     return f"{len(model.blocks)} block{'' if len(model.blocks) == 1 else 's'}"
 
 
-def _sha256(arguments: argparse.Namespace) -> str:
-    path = Path(arguments.wall_path)
+def _sha256(path: Path) -> str:
     file = path / "plan.json" if path.is_dir() else path
     return hashlib.sha256(file.read_bytes()).hexdigest()
 
@@ -221,7 +187,7 @@ def _print_range(
         mu=model.mu,
         load_case=loads.name,
         failures=wall.failures(ends),
-        sha256=_sha256(arguments),
+        sha256=_sha256(Path(arguments.wall_path)),
         version=version("drystone"),
         remarks=wall.remarks,
     )
@@ -235,31 +201,23 @@ def _print_range(
     else:
         print_table(f"{arguments.wall_path}: {_many(model)}", card.rows())
     failed = any(end.status is LimitStatus.FAILED for end in ends)
-    folder = pictures[0].parent if pictures else None
-    return _keep_failure(model, loads, folder) if failed else ExitCode.DONE
+    return _keep_failure(model, loads, pictures) if failed else ExitCode.DONE
 
 
-def _keep_failure(model: RigidBlockModel, loads: Loads, folder: Path | None) -> ExitCode:
+def _keep_failure(model: RigidBlockModel, loads: Loads, pictures: list[Path]) -> ExitCode:
     """Save the program that no solver could solve (E140)."""
-    path = (folder or Path()) / "drystone-failed.npz"
+    path = (pictures[0].parent if pictures else Path()) / "drystone-failed.npz"
     assemble(model, loads).save(path)
-    said = Notice(
-        "E140",
-        "no solver found an answer that can be certified.",
-        f"Please report it with {path}, the linear program.",
-    )
-    print(f"drystone: {said}", file=sys.stderr)
+    what = "no solver found an answer that can be certified."
+    note(Notice("E140", what, f"Please report it with {path}, the linear program."))
     return ExitCode.CHECK_FAILED
 
 
 def _metres_per_unit(wall: GivenWall, arguments: argparse.Namespace) -> float | None:
     """Return how long a unit of the model is; None when nobody knows.
 
-    Raises
-    ------
-    UsageError
-        E131 when the options give another scale than the plan has; E138 for a ruler that lies
-        beyond the picture.
+    E131 when the options give another scale than the plan has; E138 for a ruler that lies beyond
+    the picture.
     """
     refuse_outside(arguments.px_per_m, wall_picture_px(wall))
     plan = wall.plan
@@ -278,18 +236,14 @@ def _wants_scatter(arguments: argparse.Namespace) -> bool:
     mu = arguments.mu
     varied = bool(arguments.outline_noise or arguments.placement_noise or (mu and mu[0] < mu[1]))
     if arguments.scatter is not None and not varied:
+        cure = "Say what is not known: --mu LOW:HIGH, --outline-noise or --placement-noise."
         raise UsageError(
-            "E138",
-            "all samples would be the same wall.",
-            where="--scatter",
-            cure="Say what is not known: --mu LOW:HIGH, --outline-noise or --placement-noise.",
+            "E138", "all samples would be the same wall.", where="--scatter", cure=cure
         )
     return varied
 
 
-def _scatter_of(
-    wall: ModelledWall, arguments: argparse.Namespace, unit: NoiseUnit, folder: Path | None
-) -> ScatterCard:
+def _scatter_of(wall: ModelledWall, arguments: argparse.Namespace, unit: NoiseUnit) -> ScatterCard:
     """Shake the wall and analyse it each time; draw the distribution into the folder."""
     settings = ScatterSettings(
         samples=SAMPLES if arguments.scatter is None else arguments.scatter,
@@ -297,33 +251,35 @@ def _scatter_of(
         outline_noise=arguments.outline_noise * unit.lengths,
         placement_noise=arguments.placement_noise * unit.lengths,
     )
-    if folder is not None:
-        prepare_files([folder / SCATTER], overwrite=arguments.overwrite)
+    path = None if arguments.output is None else Path(arguments.output) / SCATTER
+    if path is not None:
+        prepare_files([path], overwrite=arguments.overwrite)
     jobs = arguments.jobs
     bar = counting_bar("walls", settings.samples, quiet=arguments.json)
     with bar as on_sample, ThreadPoolExecutor(jobs) if jobs > 1 else nullcontext() as executor:
         found = scatter(
             wall.model, settings, seed=arguments.seed, executor=executor, on_sample=on_sample
         )
-    if folder is not None:
+    if path is not None:
         from drystone.drawing import plot_scatter, save  # noqa: PLC0415 - slow import
 
-        save(plot_scatter(found).figure, folder / SCATTER)
+        save(plot_scatter(found).figure, path)
     return ScatterCard(found, unit)
 
 
-def _prepare(folder: Path, arguments: argparse.Namespace) -> list[Path]:
-    """Make room for all pictures; refuse to write over files unless asked to."""
-    names = ["contacts.png"]
+def _prepare(arguments: argparse.Namespace) -> list[Path]:
+    """Make room for all pictures, if any are asked for; refuse to write over files unasked."""
+    if arguments.output is None:
+        return []
+    folder, names = Path(arguments.output), ["contacts.png"]
     for direction in ("left", "right"):
         names += [f"{kind}_{direction}.png" for kind in ("mechanism", "forces")]
         names.append(f"mechanism_{direction}.gif")
-    paths = [folder / name for name in names]
-    wall, written = Path(arguments.wall_path), [*paths, *_others(folder)]
+    wall, written = Path(arguments.wall_path), [folder / name for name in (*names, *OTHERS)]
     refuse_inputs(files_of_wall(wall), written)
     refuse_plans_own(wall, written)
     prepare_files(written, overwrite=arguments.overwrite)
-    return paths
+    return [folder / name for name in names]
 
 
 def _clear(folder: Path) -> None:
@@ -331,9 +287,5 @@ def _clear(folder: Path) -> None:
 
     Not before there is an answer to put in its place.
     """
-    for path in _others(folder):
-        path.unlink(missing_ok=True)
-
-
-def _others(folder: Path) -> list[Path]:
-    return [folder / name for name in (*TABLES, FRICTION, REPORT, SCATTER)]
+    for name in OTHERS:
+        (folder / name).unlink(missing_ok=True)

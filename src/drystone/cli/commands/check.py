@@ -6,8 +6,15 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from drystone.cli.inputs import files_of, files_of_wall, refuse_among_masks, refuse_inputs
-from drystone.cli.output import prepare_picture, print_json, print_table
+from drystone.cli.output import (
+    files_of,
+    files_of_wall,
+    prepare_picture,
+    print_json,
+    print_table,
+    refuse_among_masks,
+    refuse_inputs,
+)
 from drystone.cli.progress import counting_bar
 from drystone.cli.reading import reading_of
 from drystone.drawing.words.checked import PICTURE, Checked, PhysicsCard
@@ -29,50 +36,44 @@ if TYPE_CHECKING:
 
 def add(command: argparse.ArgumentParser) -> None:
     """Add its options."""
-    command.add_argument("plan", metavar="PLAN.json", help="plan to verify, or its folder")
-    command.add_argument("--stones", metavar="STONES", help="what the plan was made from")
-    command.add_argument(
-        "--physics", action="store_true",
-        help="build the wall in a rigid-body engine too, and tilt it (extra `physics`)",
-    )  # fmt: skip
-    command.add_argument(
-        "--picture", metavar="FILE.png",
-        help="draw it, whatever was found (else check.png beside the plan when something fails)",
-    )  # fmt: skip
-    command.add_argument("--overwrite", action="store_true", help="replace the picture")
-    command.add_argument("--json", action="store_true", help="print as JSON")
+    # fmt: off
+    option = command.add_argument
+    option("plan", metavar="PLAN.json", help="plan to verify, or its folder")
+    option("--stones", metavar="STONES", help="what the plan was made from")
+    option("--physics", action="store_true",
+           help="build the wall in a rigid-body engine too, and tilt it (extra `physics`)")
+    option("--picture", metavar="FILE.png",
+           help="draw it, whatever was found (else check.png beside the plan when something fails)")
+    option("--overwrite", action="store_true", help="replace the picture")
+    option("--json", action="store_true", help="print as JSON")
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Print whether the plan holds, and each problem; draw what fails."""
-    if arguments.picture:
-        prepare_picture(Path(arguments.picture), overwrite=arguments.overwrite)
+    asked_picture = Path(arguments.picture) if arguments.picture else None
+    if asked_picture is not None:
+        prepare_picture(asked_picture, overwrite=arguments.overwrite)
     if arguments.physics:
         load_engine()
     path = Path(arguments.plan)
     if path.is_dir():
         path /= "plan.json"
-    plan = read_plan(path)
-    source = Path(arguments.stones) if arguments.stones else _find_stones(plan, path.parent)
+    folder, plan = path.parent, read_plan(path)
+    source = Path(arguments.stones) if arguments.stones else _find_stones(plan, folder)
     # Without a place of its own, what may be drawn, here or by another check before.
-    picture_path = Path(arguments.picture) if arguments.picture else path.parent / PICTURE
-    refuse_inputs((*files_of(source), *files_of_wall(path)), [picture_path])
-    if arguments.picture:
-        refuse_among_masks(source, [Path(arguments.picture)])
+    refuse_inputs((*files_of(source), *files_of_wall(path)), [asked_picture or folder / PICTURE])
+    if asked_picture is not None:
+        refuse_among_masks(source, [asked_picture])
     # The image of a plan without stones is no picture of stones.
-    labels = read_image_of(plan, path.parent) if plan.steps else None
-    blocks = _blocks_beside(plan, path.parent)
+    labels = read_image_of(plan, folder) if plan.steps else None
+    blocks = _blocks_beside(plan, folder)
     stones = read_stones(source, settings=reading_of(plan.source))
-    checked = Checked(
-        plan,
-        stones,
-        check_plan(plan, stones, wall_labels=labels, blocks=blocks),
-        plan_polygons(plan, stones),
-        asked_physics=arguments.physics,
-    )
+    report = check_plan(plan, stones, wall_labels=labels, blocks=blocks)
+    polygons = plan_polygons(plan, stones)
+    checked = Checked(plan, stones, report, polygons, asked_physics=arguments.physics)
     if arguments.physics:
         checked = replace(checked, physics=_physics_of(checked, quiet=arguments.json))
-    picture = _picture(checked, arguments, path.parent)
+    picture = _picture(checked, asked_picture, folder)
     if arguments.json:
         print_json({**checked.as_dict(), **({"picture": picture.path} if picture else {})})
     else:
@@ -81,17 +82,13 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     return ExitCode.DONE if checked.ok else ExitCode.CHECK_FAILED
 
 
-def _picture(
-    checked: Checked, arguments: argparse.Namespace, folder: Path
-) -> "FailurePicture | None":
+def _picture(checked: Checked, asked: Path | None, folder: Path) -> "FailurePicture | None":
     """Draw what fails beside the plan, or whatever there is where it was asked for."""
-    if checked.ok and not arguments.picture:
+    if checked.ok and asked is None:
         return None
     from drystone.drawing.pictures.check import draw_asked, draw_failures  # noqa: PLC0415 - slow import
 
-    if arguments.picture:
-        return draw_asked(checked, Path(arguments.picture))
-    return draw_failures(checked, folder)
+    return draw_failures(checked, folder) if asked is None else draw_asked(checked, asked)
 
 
 def _physics_of(checked: Checked, *, quiet: bool) -> PhysicsCard | None:
@@ -126,15 +123,11 @@ def _find_stones(plan: Plan, folder: Path) -> Path:
     for path in found:
         if not digest or path.is_dir() or sha256(file_bytes(path)).hexdigest() == digest:
             return path
-    if not name:
-        raise PlanError(
-            "E202",
-            "the stones that the plan was made from were given by a program: no file is known.",
-            where=str(folder),
-            cure="Write them as a label image, and say with --stones where it is.",
-        )
     what = f"the stones {name!r} that the plan was made from are not beside it."
     cure = "Say where they are with --stones."
+    if not name:
+        what = "the stones that the plan was made from were given by a program: no file is known."
+        cure = "Write them as a label image, and say with --stones where it is."
     if found:
         what = f"{found[0]} is another file than the {name!r} that the plan was made from."
         cure = "Say where that is with --stones, or give this file there to check with it (E210)."

@@ -5,14 +5,12 @@ from pathlib import Path
 
 import numpy as np
 
-from drystone.cli.announce import WRITTEN
 from drystone.cli.choice import files_of_choice
-from drystone.cli.inputs import refuse_inputs
-from drystone.cli.output import working_in
+from drystone.cli.keeping import WRITTEN
+from drystone.cli.numbers import add_scale
+from drystone.cli.output import refuse_inputs, working_in
 from drystone.cli.planning import add_writing, plan_and_write
-from drystone.cli.request import output_from, request_from
-from drystone.cli.scale import add_scale
-from drystone.cli.settings import add_settings, settings_from
+from drystone.cli.settings import add_settings, request_from, settings_from
 from drystone.errors import ExitCode
 from drystone.generate.layout import lay_out
 from drystone.generate.rubble import RubbleSettings, rubble_stones
@@ -30,6 +28,8 @@ def add(command: argparse.ArgumentParser) -> None:
     add_scale(command)
     add_settings(command)
     add_writing(command)
+    # What only `plan` has options for.
+    command.set_defaults(ban=[], pin=[], fixed_order=False, resume=False, begin=None)
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
@@ -50,4 +50,4 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         stones = read_stones(folder / STONES)
         wall = settings.width_px, settings.height_px
         request = request_from(stones, wall, arguments.px_per_m, arguments)
-        return plan_and_write(request, output_from(arguments), prepared=True)
+        return plan_and_write(request, prepared=True)

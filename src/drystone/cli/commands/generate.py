@@ -19,15 +19,15 @@ from drystone.model.settings import updated
 
 def add(command: argparse.ArgumentParser) -> None:
     """Add its options."""
-    command.add_argument("kind", choices=[*generate.GENERATORS])
-    command.add_argument("-o", "--output", required=True, metavar="STONES.png")
-    command.add_argument("--count", type=whole_from(1), help="number of stones")
-    command.add_argument("--seed", type=whole_from(0), default=0)
-    command.add_argument("--overwrite", action="store_true", help="replace the file")
-    command.add_argument(
-        "--set", action="append", default=[], metavar="NAME=VALUE", dest="changes",
-        help="a parameter of the generator, such as noise=0.4 or D2=0.2 (see the docs)",
-    )  # fmt: skip
+    # fmt: off
+    option = command.add_argument
+    option("kind", choices=[*generate.GENERATORS])
+    option("-o", "--output", required=True, metavar="STONES.png")
+    option("--count", type=whole_from(1), help="number of stones")
+    option("--seed", type=whole_from(0), default=0)
+    option("--overwrite", action="store_true", help="replace the file")
+    option("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes",
+           help="a parameter of the generator, such as noise=0.4 or D2=0.2 (see the docs)")
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
@@ -58,8 +58,6 @@ def _changes(items: list[str], settings_type: type[Any]) -> dict[str, Any]:
         except (ValueError, RecursionError):  # also numbers of thousands of digits
             sign = ""
         if not sign:
-            known = ", ".join(field.name for field in fields(settings_type))
-            raise UsageError(
-                "E135", f"{item!r} is no NAME=VALUE.", where="--set", cure=f"Known: {known}."
-            )
+            cure = f"Known: {', '.join(field.name for field in fields(settings_type))}."
+            raise UsageError("E135", f"{item!r} is no NAME=VALUE.", where="--set", cure=cure)
     return changes

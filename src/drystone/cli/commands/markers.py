@@ -12,45 +12,31 @@ from drystone.photo.layout import FIRST_SHEET, ON_A_SHEET, parse_size_m
 
 def add(command: argparse.ArgumentParser) -> None:
     """Add what can be said about a sheet of markers."""
-    command.add_argument(
-        "-o", "--output", default="markers.pdf", metavar="SHEET.pdf",
-        help="file to write (default markers.pdf)",
-    )  # fmt: skip
-    command.add_argument("--overwrite", action="store_true", help="replace the file")
-    command.add_argument(
-        "--size", metavar="LENGTH",
-        help="side of a black square (default 50mm; with --single 120mm)",
-    )  # fmt: skip
-    command.add_argument(
-        "--dictionary", choices=["aruco", "apriltag"], default="aruco",
-        help="family of the markers: ArUco 4x4 (default) or AprilTag 36h11",
-    )  # fmt: skip
-    command.add_argument(
-        "--page", choices=["A4", "A3", "letter"], default="A4", help="paper (default A4)"
-    )
-    command.add_argument(
-        "--single", action="store_true",
-        help="one large marker a page, to lie anywhere (use two or more)",
-    )  # fmt: skip
-    command.add_argument(
-        "--count", type=whole_from(1), metavar="N",
-        help="markers: four make a sheet (default 4; with --single 2)",
-    )  # fmt: skip
-    command.add_argument(
-        "--ids", type=whole_from(0), default=0, metavar="FIRST",
-        help="number of the first marker, 0, 4, 8 ... for sheets (default 0)",
-    )  # fmt: skip
-    command.add_argument("--json", action="store_true", help="print as JSON")
+    # fmt: off
+    option = command.add_argument
+    option("-o", "--output", default="markers.pdf", metavar="SHEET.pdf",
+           help="file to write (default markers.pdf)")
+    option("--overwrite", action="store_true", help="replace the file")
+    option("--size", metavar="LENGTH",
+           help="side of a black square (default 50mm; with --single 120mm)")
+    option("--dictionary", choices=["aruco", "apriltag"], default="aruco",
+           help="family of the markers: ArUco 4x4 (default) or AprilTag 36h11")
+    option("--page", choices=["A4", "A3", "letter"], default="A4", help="paper (default A4)")
+    option("--single", action="store_true",
+           help="one large marker a page, to lie anywhere (use two or more)")
+    option("--count", type=whole_from(1), metavar="N",
+           help="markers: four make a sheet (default 4; with --single 2)")
+    option("--ids", type=whole_from(0), default=0, metavar="FIRST",
+           help="number of the first marker, 0, 4, 8 ... for sheets (default 0)")
+    option("--json", action="store_true", help="print as JSON")
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Write the sheets and say how to name them when stones are looked for."""
     path = Path(arguments.output)
     if path.suffix.lower() != ".pdf":
-        raise UsageError(
-            "E139", "marker sheets are written as .pdf.", where=str(path),
-            cure="Choose another ending.",
-        )  # fmt: skip
+        what = "marker sheets are written as .pdf."
+        raise UsageError("E139", what, where=str(path), cure="Choose another ending.")
     sheets = _sheets(arguments)
     prepare_files([path], overwrite=arguments.overwrite)
     write_marker_sheets(sheets, path)
@@ -82,10 +68,9 @@ def _sheets(arguments: argparse.Namespace) -> MarkerSheets:
     single = arguments.single
     count = arguments.count or (2 if single else ON_A_SHEET)
     if not single and (count % ON_A_SHEET or arguments.ids % ON_A_SHEET):
-        raise UsageError(
-            "E174", "a sheet has four markers, and the first is 0, 4, 8 and so on.",
-            where="--count, --ids", cure="Give multiples of 4, or --single.",
-        )  # fmt: skip
+        what = "a sheet has four markers, and the first is 0, 4, 8 and so on."
+        cure = "Give multiples of 4, or --single."
+        raise UsageError("E174", what, where="--count, --ids", cure=cure)
     size_m = parse_size_m(arguments.size or ("120mm" if single else "50mm"))
     ids = tuple(range(arguments.ids, arguments.ids + count))
     return MarkerSheets(ids, size_m, arguments.dictionary, arguments.page, single)

@@ -1,16 +1,28 @@
 """`drystone measure`: the figures of merit of any wall."""
 
 import argparse
-import sys
 from dataclasses import asdict, replace
 from pathlib import Path
 
-from drystone.cli.inputs import files_of_wall, refuse_inputs
-from drystone.cli.lengths import parse_wall
-from drystone.cli.numbers import not_negative, share
-from drystone.cli.output import prepare_files, print_json, print_table
+from drystone.cli.numbers import (
+    add_scale,
+    not_negative,
+    option_of,
+    parse_wall,
+    refuse_outside,
+    scale_with,
+    share,
+    wall_picture_px,
+)
+from drystone.cli.output import (
+    files_of_wall,
+    note,
+    prepare_files,
+    print_json,
+    print_table,
+    refuse_inputs,
+)
 from drystone.cli.reading import add_wall
-from drystone.cli.scale import add_scale, option_of, refuse_outside, scale_with, wall_picture_px
 from drystone.contacts.blocks import model_from_labels, notice_of_pieces
 from drystone.contacts.given import model_from_json
 from drystone.drawing.words.content import number
@@ -21,15 +33,24 @@ from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
 
+_ROWS = (  # name, digits, meaning
+    ("F_SF", 3, "filling, higher is better"),
+    ("F_AV", 2, "vertical arrangement, higher is better"),
+    ("F_AH", 2, "horizontal arrangement, lower is better"),
+    ("F_LR", 3, "lateral resistance / mu, higher is better"),
+    ("T_LEVEL", 3, "unevenness of the top, lower is better"),
+    ("E_FLUSH", 3, "unevenness of the ends, lower is better"),
+)
+
 
 def add(command: argparse.ArgumentParser) -> None:
     """Add its options."""
     add_wall(command)
-    command.add_argument("--mu", type=not_negative, help="coefficient of friction (default .58)")
-    command.add_argument("--wall", metavar="WxH", help="wall that was to be built, px or metric")
-    command.add_argument(
-        "--scale", type=share, default=1.0, metavar="S", help="reduce the image by S first"
-    )
+    # fmt: off
+    option = command.add_argument
+    option("--mu", type=not_negative, help="coefficient of friction (default .58)")
+    option("--wall", metavar="WxH", help="wall that was to be built, px or metric")
+    option("--scale", type=share, default=1.0, metavar="S", help="reduce the image by S first")
     add_scale(command)
 
 
@@ -41,30 +62,20 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         raise UsageError("E134", "a block model has no pixels to measure.", where="measure")
     refuse_outside(arguments.px_per_m, wall_picture_px(wall))
     # Of the picture as it was given: reducing it may part what hangs together.
-    for notice in notice_of_pieces(wall.labels) if wall.blocks is None else ():
-        print(f"drystone: {notice}", file=sys.stderr)
+    note(*(notice_of_pieces(wall.labels) if wall.blocks is None else ()))
     labels = reduce_labels(wall.labels, arguments.scale) if arguments.scale != 1 else wall.labels
-    metrics = _measured(GivenWall(labels, wall.plan, wall.blocks), labels, arguments)
+    metrics = _measured(wall, labels, arguments)
     if arguments.output is not None:
         whole = wall.plan is None and arguments.wall is None
-        width_px = None if whole else metrics.width
-        _draw(labels, width_px, arguments)
+        _draw(labels, None if whole else metrics.width, arguments)
     if arguments.json:
         print_json(asdict(metrics))
         return ExitCode.DONE
     height, width = labels.shape
-    print_table(
-        f"{arguments.wall_path}: {metrics.stones} stones, measured at {width} x {height} px",
-        [
-            ("F_SF", f"{number(metrics.F_SF)}  filling, higher is better"),
-            ("F_AV", f"{number(metrics.F_AV, 2)}  vertical arrangement, higher is better"),
-            ("F_AH", f"{number(metrics.F_AH, 2)}  horizontal arrangement, lower is better"),
-            ("F_LR", f"{number(metrics.F_LR)}  lateral resistance / mu, higher is better"),
-            ("T_LEVEL", f"{number(metrics.T_LEVEL)}  unevenness of the top, lower is better"),
-            ("E_FLUSH", f"{number(metrics.E_FLUSH)}  unevenness of the ends, lower is better"),
-            ("wall", f"{metrics.width:g} x {metrics.height:g} px; joints are two px wide"),
-        ],
-    )
+    rows = [(name, f"{number(getattr(metrics, name), n)}  {said}") for name, n, said in _ROWS]
+    rows.append(("wall", f"{metrics.width:g} x {metrics.height:g} px; joints are two px wide"))
+    title = f"{arguments.wall_path}: {metrics.stones} stones, measured at {width} x {height} px"
+    print_table(title, rows)
     return ExitCode.DONE
 
 
@@ -92,8 +103,7 @@ def _measured(wall: GivenWall, labels: Labels, arguments: argparse.Namespace) ->
         model = model_from_labels(labels, mu).model
     resistance = lateral_resistance(model)
     loose = None if resistance.stable else unsupported(model)
-    if loose is not None:
-        print(f"drystone: F_LR is not defined. {loose}", file=sys.stderr)
+    note(None if loose is None else f"F_LR is not defined. {loose}")
     return measure_labels(
         labels,
         wall_px=wall_px,

@@ -4,10 +4,22 @@ import argparse
 import statistics
 from pathlib import Path
 
-from drystone.cli.inputs import files_of, refuse_among_masks, refuse_inputs
-from drystone.cli.output import prepare_picture, print_json, print_table
+from drystone.cli.numbers import (
+    add_scale,
+    picture_size_px,
+    refuse_outside,
+    scale_notice,
+    scale_with,
+)
+from drystone.cli.output import (
+    files_of,
+    prepare_picture,
+    print_json,
+    print_table,
+    refuse_among_masks,
+    refuse_inputs,
+)
 from drystone.cli.reading import STONES, add_reading, reading_from
-from drystone.cli.scale import add_scale, picture_size_px, refuse_outside, scale_notice, scale_with
 from drystone.clusters import cluster_stones
 from drystone.errors import ExitCode
 from drystone.io.read_stones import read_stones
@@ -28,16 +40,17 @@ def add(command: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Print count, sizes, clusters and notices; draw the stones when asked."""
     picture = None if arguments.output is None else Path(arguments.output)
-    source = Path(arguments.stones)
+    path = Path(arguments.stones)
     if picture is not None:
-        refuse_inputs(files_of(source), [picture])
-        refuse_among_masks(source, [picture])
+        refuse_inputs(files_of(path), [picture])
+        refuse_among_masks(path, [picture])
         prepare_picture(picture, overwrite=arguments.overwrite)
-    stones = read_stones(source, settings=reading_from(arguments))
-    refuse_outside(arguments.px_per_m, picture_size_px(stones.source))
-    px_per_m = scale_with(arguments.px_per_m, stones.source.px_per_m)
+    stones = read_stones(path, settings=reading_from(arguments))
+    source = stones.source
+    refuse_outside(arguments.px_per_m, picture_size_px(source))
+    px_per_m = scale_with(arguments.px_per_m, source.px_per_m)
     clusters = cluster_stones(stones, PoseBook())
-    areas = [stone.area_px for stone in stones]
+    median_area = statistics.median(stone.area_px for stone in stones)
     sides = {stone.id: sides_px(stone.mask) for stone in stones}
     largest = max(stones, key=lambda stone: stone.area_px)
     if picture is not None:
@@ -51,25 +64,25 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         print_json(
             {
                 "stones": len(stones),
-                "source": stones.source.path,
-                "sha256": stones.source.sha256,
-                "width_px": stones.source.width_px,
-                "height_px": stones.source.height_px,
+                "source": source.path,
+                "sha256": source.sha256,
+                "width_px": source.width_px,
+                "height_px": source.height_px,
                 "px_per_m": px_per_m,
                 "total_area_px": stones.total_area_px,
-                "median_area_px": statistics.median(areas),
+                "median_area_px": median_area,
                 "clusters": {str(stone.id): clusters[stone.id] for stone in stones},
                 "notices": notices,
             }
         )
         return ExitCode.DONE
     print_table(
-        f"{stones.source.path}: {len(stones)} stones",
+        f"{source.path}: {len(stones)} stones",
         [
-            ("image", f"{stones.source.width_px} x {stones.source.height_px} px"),
+            ("image", f"{source.width_px} x {source.height_px} px"),
             *([] if px_per_m is None else [("scale", f"{px_per_m:g} px a metre")]),
             ("total area", _area(stones.total_area_px, px_per_m)),
-            ("median stone", f"{_size(median, px_per_m)}, {statistics.median(areas):g} px²"),
+            ("median stone", f"{_size(median, px_per_m)}, {median_area:g} px²"),
             ("largest stone", f"{largest.id}: {_size(sides[largest.id], px_per_m)}"),
             ("clusters", str(max(clusters.values()))),
             *[("notice", notice) for notice in notices],

@@ -1,0 +1,280 @@
+"""What cannot be is refused with a code, the place and the cure; nothing is printed or written."""
+
+import json
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from drystone.io.wall_image import write_labels
+from tests.cli.conftest import Run
+from tests.craft.walls import painted, stack_bond
+
+PLAN = "plan {rubble} --wall 100x36 --scale 1 --method paper -o {out}"
+EXACT = "plan {rubble} --wall 100x36 --scale 1 --budget 1 -o {out}"
+RASTER = "plan {rubble} --wall 100x36 --scale 1 --geometry raster -o {out}"
+FROM = f"{EXACT} --from {{settled}}"
+SMALL = "plan {bricks} --method paper -o {out}"
+BRICKS = "generate brick -o {out}/x.png"
+SHEET = "markers -o {out}/sheet.pdf"
+PHOTO = "segment {photo} -o {out}"
+
+
+@pytest.fixture(scope="module")
+def places(rubble, bricks, finished, settled, tmp_path_factory: pytest.TempPathFactory):
+    """Files by name: good ones, and a folder of things that are no stones, walls or plans."""
+    folder = tmp_path_factory.mktemp("inputs")
+    (folder / "empty").mkdir()
+    with Image.open(rubble) as picture:
+        pixels = np.asarray(picture)
+    Image.fromarray((pixels * 30).astype(np.uint8)).save(folder / "labels.jpg")
+    box = [[0, 0], [1, 0], [1, 4], [0, 4]]
+    fixed = {"id": 1, "polygon": box, "fixed": True}
+    for name, content in {
+        "other": {"a": 1},
+        "list": [1, 2],
+        "old": {"schema": "drystone-plan/0"},
+        "overlap": {"blocks_xywh": [[0, 0, 2, 2], [1, 1, 2, 2]]},
+        "tower": {"blocks": [{"id": 1, "polygon": box}], "mu": 0.58},
+        "none": {"blocks": []},
+        "still": {"blocks": [fixed]},
+    }.items():
+        (folder / f"{name}.json").write_text(json.dumps(content), encoding="utf-8")
+    (folder / "cut.json").write_text('{"schema": "drystone-', encoding="utf-8")
+    (folder / "bytes.json").write_bytes(b"\xff\xfe\x00")
+    (folder / "deep.json").write_text("[" * 100_000, encoding="utf-8")
+    (folder / "text.png").write_text("no picture", encoding="utf-8")
+    write_labels(painted(stack_bond()), folder / "stack.png")
+    picture = np.full((120, 213, 3), 90, np.uint8)
+    Image.fromarray(picture).save(folder / "photo.png")
+    mask = np.zeros((120, 213), np.uint8)
+    mask[20:50, 20:80] = mask[60:100, 100:160] = 255
+    Image.fromarray(mask).save(folder / "pile.png")
+    given = {"rubble": rubble, "bricks": bricks, "finished": finished, "settled": settled}
+    names = {"tower": "tower.json", "stack": "stack.png", "photo": "photo.png", "pile": "pile.png"}
+    return given | {"in": folder} | {name: folder / file for name, file in names.items()}
+
+
+CASES = [
+    # What is read is something else.
+    ("plan {in}/nowhere.png --wall 9x9 -o {out}", 3, "E100", "nowhere"),
+    ("plan {in}/empty --wall 9x9 -o {out}", 3, "E111", "empty"),
+    ("plan {in}/labels.jpg --wall 9x9 -o {out}", 3, "E101", "labels"),
+    ("plan {in}/text.png --wall 9x9 -o {out}", 3, "E107", "text"),
+    ("stones {in}/nowhere.png", 3, "E100", "nowhere"),
+    ("analyse {in}/nowhere.png", 3, "E100", "nowhere"),
+    ("analyse {in}/nowhere.json", 3, "E132", "nowhere"),
+    ("analyse {in}/empty", 3, "E132", "empty"),
+    ("analyse {in}/cut.json", 3, "E132", "cut"),
+    ("analyse {in}/bytes.json", 3, "E132", "bytes"),
+    ("analyse {in}/deep.json", 3, "E132", "deep"),
+    ("analyse {in}/other.json", 3, "E204", "other"),
+    ("analyse {in}/list.json", 3, "E204", "list"),
+    ("analyse {in}/overlap.json", 3, "E304", ""),
+    ("analyse {in}/none.json", 3, "E303", "no free block"),
+    ("analyse {in}/still.json", 3, "E303", "no free block"),
+    ("measure {in}/text.png", 3, "E107", "text"),
+    ("measure {in}/other.json", 3, "E204", "other"),
+    ("measure {tower}", 2, "E134", ""),
+    ("measure {finished} --background 255", 2, "E118", ""),
+    ("measure {finished} --mu 1e308", 3, "E302", "mu"),
+    ("check {in}/nowhere.json", 3, "E202", "nowhere"),
+    ("check {in}/empty", 3, "E202", "empty"),
+    ("check {in}/cut.json", 3, "E203", "cut"),
+    ("check {in}/bytes.json", 3, "E203", "bytes"),
+    ("check {in}/text.png", 3, "E203", "text"),
+    ("check {in}/other.json", 3, "E204", "other"),
+    ("check {in}/list.json", 3, "E204", "list"),
+    ("check {in}/old.json", 3, "E204", "old"),
+    ("check {finished} --stones {in}/nowhere.png", 3, "E100", "nowhere"),
+    ("export {in}/nowhere --to csv", 3, "E132", "or its folder"),
+    ("export {in}/text.png --to csv", 3, "E132", "or its folder"),
+    # Options that nobody can mean.
+    ("", 2, "E138", "COMMAND"),
+    ("build", 2, "E138", "'build'"),
+    ("plan stones.png -o x", 2, "E138", "--wall"),
+    ("plan stones.png --wall 5x5", 2, "E138", "-o"),
+    (f"{PLAN} --scale big", 2, "E138", "--scale: 'big'"),
+    (f"{PLAN} --scale 0", 2, "E138", "--scale: '0'"),
+    (f"{PLAN} --scale 1.5", 2, "E138", "--scale: '1.5'"),
+    (f"{PLAN} --px-per-m -5", 2, "E138", "--px-per-m: '-5'"),
+    (f"{PLAN} --px-per-m nan", 2, "E138", "--px-per-m: 'nan'"),
+    (f"{PLAN} --px-per-m inf", 2, "E138", "--px-per-m: 'inf'"),
+    (f"{PLAN} --seed -1", 2, "E138", "--seed: '-1'"),
+    (f"{PLAN} --jobs 0", 2, "E138", "--jobs: '0'"),
+    (f"{PLAN} --sampling some", 2, "E138", "'some'"),
+    (f"{EXACT} --geometry wurst", 2, "E138", "wurst"),
+    (f"{EXACT} --settle wurst", 2, "E138", "wurst"),
+    (f"{EXACT} --budget 0", 2, "E138", "--budget"),
+    (f"{EXACT} --budget 1.5", 2, "E138", "--budget"),
+    (f"{PLAN} --orientations north", 2, "E122", "--orientations: 'north' is no set"),
+    (f"{PLAN} --orientations 0deg", 2, "E122", ""),
+    (f"{PLAN} --method wurst", 2, "E124", ""),
+    (f"{PLAN} --mu -1", 2, "E123", "--mu: mu must be in (0, 1e+06], not -1.0. Change mu."),
+    (f"{PLAN} --mu nan", 2, "E123", ""),
+    (f"{PLAN} --budget 3", 2, "E123", "--budget: better walls are looked for on outlines"),
+    (f"{PLAN} --settle energy", 2, "E138", "--settle would do nothing"),
+    (f"{EXACT} --placement snug", 2, "E138", "--placement would do nothing"),
+    (f"{EXACT} --reach any", 2, "E138", "--reach would do nothing"),
+    (f"{EXACT} --aim F_LR=.5", 2, "E138", "--aim would do nothing"),
+    (f"{EXACT} --aim F_LR", 2, "E138", "F_LR=VALUE"),
+    (f"{EXACT} --aim T_LEVEL=1", 2, "E138", "F_LR=VALUE"),
+    (f"{EXACT} --aim F_LR=much", 2, "E138", "--aim"),
+    (f"{EXACT} --aim F_AH=0", 2, "E138", "--aim"),
+    (f"{RASTER} --policy paper --time 2", 2, "E138", "--policy"),
+    (f"{RASTER} --policy random --budget 2", 2, "E138", "--policy"),
+    (f"{RASTER} --policy random --aim F_LR=.8", 2, "E138", "--aim"),
+    (f"{RASTER} --policy nobody", 2, "E146", "there is no policy 'nobody'. Choose one of paper,"),
+    (f"{RASTER} --policy score", 2, "E146", "--policy"),
+    (f"{RASTER} --policy ''", 2, "E146", "--policy"),
+    # Walls and stones.
+    ("plan {rubble} --wall 1.4mx0.4m -o {out}", 2, "E131", "--px-per-m"),
+    ("plan {rubble} --wall 1mx.4m --ruler 0,0,90000,0=1m -o {out}", 2, "E138", "outside"),
+    ("plan {pile} --wall 1mx.4m --ruler 20,30,2000,30=1m -o {out}", 2, "E138", "point 2000,30 is"),
+    ("stones {pile} --ruler 20,30,2000,30=1m", 2, "E138", "the point 2000,30 is outside"),
+    (f"{SMALL} --wall 15x8 --scale 1", 2, "E120", "--skip-too-large"),
+    (f"{SMALL} --wall 60x20 --scale .02", 2, "E121", ""),
+    (f"{SMALL} --wall 15x8 --scale 1 --skip-too-large", 2, "E126", "none of the 6 stones"),
+    (f"{SMALL} --wall 60x20 --scale 1 --ban 1 2 3 4 5 6", 2, "E126", "or ban fewer stones."),
+    (f"{PLAN} --ban 99", 2, "E145", ""),
+    (f"{PLAN} --pin 99", 2, "E145", ""),
+    (f"{PLAN} --ban -1", 2, "E138", ""),
+    (f"{PLAN} --ban 2 3 --pin 3", 2, "E123", "--ban and --pin: ban and pin name the same stones"),
+    # Plans that a search cannot begin with.
+    (f"{FROM} --wall 110x36", 2, "E144", "of another wall (100x36 px, not 110x36)."),
+    (f"{FROM} --scale .5", 2, "E144", "of another resolution. Add --scale 1."),
+    (f"{FROM} --geometry raster --scale .5", 2, "E144", "Add --scale 1 --geometry exact."),
+    (f"{FROM} --orientations sf", 2, "E144", "other orientations. Add --orientations quarter."),
+    (f"{FROM} --one-sided", 2, "E144", "both sides. Add --two-sided."),
+    (f"{FROM} --pieces split", 2, "E144", "stones that were read otherwise"),
+    (f"{FROM.replace('rubble', 'bricks')}", 2, "E144", "the plan is of other stones."),
+    (f"{EXACT} --from {{in}}", 3, "E202", ""),
+    (f"{FROM} --resume", 2, "E138", ""),
+    # Generators, markers and photographs.
+    ("generate rubble -o {out}/x.png --count 0", 2, "E138", "--count: '0'"),
+    ("generate rubble -o {out}/x.png --seed 1.5", 2, "E138", "--seed: '1.5'"),
+    (f"{BRICKS} --set wonder=1", 2, "E123", ""),
+    (f"{BRICKS} --set height_px", 2, "E135", "Known: count"),
+    (f"{BRICKS} --set height_px=tall", 2, "E135", ""),
+    (f"{BRICKS} --set height_px=-4", 2, "E130", ""),
+    (f"{BRICKS} --set aspect=1e308", 2, "E130", ""),
+    ("generate brick -o {out}/x.jpg", 2, "E139", ""),
+    (f"{SHEET} --size 100mm", 2, "E174", "fit on A4"),
+    (f"{SHEET} --size fifty", 2, "E174", ""),
+    (f"{SHEET} --count 3", 2, "E174", ""),
+    (f"{SHEET} --ids 2", 2, "E174", ""),
+    (f"{SHEET} --ids 48", 2, "E174", ""),
+    (f"{SHEET} --single --size 30cm", 2, "E174", ""),
+    (f"{SHEET} --page A5", 2, "E138", ""),
+    ("markers -o {out}/sheet.png", 2, "E139", ""),
+    (f"{PHOTO} --aruco A4:75mm", 3, "E170", ""),
+    (f"{PHOTO} --aruco 50mm --px-per-m 100", 2, "E138", ""),
+    (f"{PHOTO} --aruco A9:50mm", 2, "E174", ""),
+    (f"{PHOTO} --marker-ids 1", 2, "E138", "--marker-ids"),
+    (f"{PHOTO} --check-line 97mm", 2, "E138", "--check-line"),
+    (f"{PHOTO} --min-area 5cm2", 2, "E131", ""),
+    (f"{PHOTO} --min-area much", 2, "E138", ""),
+    (f"{PHOTO} --ruler 20,30,2000,30=1.0m", 2, "E138", "the point 2000,30 is outside the picture"),
+    # Analyses, craft and measures.
+    ("analyse {tower} --dead 1:0,0", 2, "E138", ""),
+    ("analyse {tower} --load points", 2, "E138", ""),
+    ("analyse {tower} --load gravity --tilt 3", 2, "E138", ""),
+    ("analyse {tower} --dead 9@0,0:1,0", 3, "E306", ""),
+    ("analyse {tower} --dead 1@0,0:1e999,0", 2, "E138", ""),
+    ("analyse {tower} --live 1@0,0:1,0", 2, "E138", ""),
+    ("analyse {tower} --settle 1", 3, "E306", ""),
+    ("analyse {tower} --settle 1 --load height", 2, "E138", ""),
+    ("analyse {tower} --tilt inf", 2, "E138", ""),
+    ("analyse {tower} --mu .8:.4", 2, "E138", ""),
+    ("analyse {tower} --mu-head -1", 2, "E138", ""),
+    ("analyse {tower} --close-gaps 3", 2, "E138", ""),
+    ("analyse {tower} --contacts outlines", 2, "E138", ""),
+    ("analyse {tower} --scatter 0", 2, "E138", ""),
+    ("analyse {tower} --scatter 9 --tilt 3 --mu .4:.8", 2, "E138", ""),
+    ("analyse {tower} --mu .4:.8 --load height", 2, "E138", ""),
+    ("analyse {tower} --scatter 9", 2, "E138", "--mu LOW:HIGH, --outline-noise or --placement"),
+    ("analyse {tower} --scatter 9 --mu .5", 2, "E138", "--scatter: all samples"),
+    ("analyse {tower} --scatter 9 --outline-noise 0", 2, "E138", "--scatter: all samples"),
+    ("analyse {tower} --px-per-m 200 --ruler 0,0,1,0=1m", 2, "E138", ""),
+    ("analyse {settled} --close-gaps 1", 2, "E138", "this plan is one of outlines"),
+    ("analyse {settled} --contacts outlines", 2, "E138", "this plan is one of outlines"),
+    ("analyse {stack} --close-gaps wide", 2, "E138", ""),
+    ("craft {stack} --limit laps", 2, "E138", ""),
+    ("craft {stack} --limit laps=.3:.1", 2, "E190", ""),
+    ("craft {stack} --limit lapse=.1:.3", 2, "E190", ""),
+    ("craft {stack} --wedges 77", 2, "E191", ""),
+    ("craft {stack} --cases -1", 2, "E138", ""),
+    ("craft {finished} --wedges 3", 2, "E138", "--wedges: a plan says itself what its wedges are."),
+    ("measure {stack} --scale 0", 2, "E138", "--scale: '0'"),
+    ("measure {stack} --mu -1", 2, "E138", "--mu"),
+    ("measure {stack} --mu inf", 2, "E138", "--mu"),
+    ("measure {stack} --wall 40", 2, "E127", ""),
+    ("measure {stack} --wall 1mx1m", 2, "E131", ""),
+    ("measure {stack} --px-per-m 100", 2, "E138", "--px-per-m: would do nothing"),
+    ("measure {stack} --wall 20x40 --ruler 0,0,20,0=20cm", 2, "E138", "--ruler: would do nothing"),
+    ("stones {stack} -o {out}/picture.txt", 2, "E139", ""),
+    ("check {finished} --picture {out}/wall.jpg --stones {rubble}", 2, "E139", ""),
+    # Exports.
+    ("export", 2, "E138", "--list names the formats"),
+    ("export {finished}", 2, "E138", "--list names the formats"),
+    ("export --to csv", 2, "E138", "--list names the formats"),
+    ("export {finished} --to step", 2, "E138", "geojson"),
+    ("export {finished} --to csv --thickness .3 -o {out}", 2, "E131", ""),
+    ("export {finished} --to csv poses -o {out}", 2, "E131", "markers"),
+    ("export {finished} --to csv --projector 0x480@9 -o {out}", 2, "E138", "--projector"),
+    ("export {finished} --to csv gif --seconds-per-step 1000 -o {out}", 2, "E138", "--seconds-per"),
+    ("export {finished} --to csv --ruler 0,0,9000,0=1m -o {out}", 2, "E138", "outside the picture"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("line", "exit_code", "code", "said"), CASES, ids=[c[0] for c in CASES])
+def test_what_cannot_be_is_refused(
+    line: str, exit_code: int, code: str, said: str, places: dict[str, Path], tmp_path, run: Run
+) -> None:
+    out = tmp_path / "out"
+    ran = run(*(word.format(out=out, **places) for word in shlex.split(line)))
+    assert (ran.code, ran.out) == (exit_code, "")
+    *notices, last = ran.err.splitlines()
+    assert last.startswith(f"drystone: {code} ")
+    assert said in last
+    assert last.endswith((".", ")", "?", "`"))
+    assert all(notice.startswith("drystone: W") for notice in notices)
+    assert not [path for path in out.rglob("*") if path.is_file()]
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "said"),
+    [
+        ("mu = -1.0", "E123", "{}: mu must be in (0, 1e+06], not -1.0. Change mu."),
+        ("wonder = 1", "E123", "{}: there is no setting 'wonder'."),
+        ("[placement]\nwonder = 1", "E123", ""),
+        ("[stop]\nfilling = 2.0", "E123", "{} [stop]: filling must be in (0, 1]"),
+        ("[stop]\nfailures = 'five'", "E123", "{}: stop.failures = 'five' has the wrong type."),
+        ("orientations = 'north'", "E122", "{}: 'north' is no set of orientations."),
+        ("mu = 1e308", "E123", "{}: mu must be a finite number up to 1e12"),
+        ("mu = 1e7", "E123", "{}: mu must be in (0, 1e+06], not 10000000.0. Change mu."),
+        ("selection_rule = 'nobody'\n[search]\nbudget = 1\n", "E146", "{}: there is no policy"),
+        ("selection_rule = 'lowest'\n", "E123", "{}: the policy 'lowest' builds"),
+        ("mu = ", "E128", "{}: is no TOML"),
+        ("mu = " + "[" * 100_000, "E128", ""),
+        ("mu = " + "7" * 5000, "E128", ""),
+        ("mu = " + "[" * 900 + "]" * 900, "E128", ""),
+        ("mu = 0.5 #" + " " * 1_000_000, "E128", ""),
+        (None, "E128", "Give a TOML file, such as the settings.toml"),
+    ],
+    ids=lambda value: str(value)[:20],
+)
+def test_settings_that_cannot_be_are_blamed_on_their_file(
+    text: str | None, code: str, said: str, rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    toml, out = tmp_path / "mine.toml", tmp_path / "out"
+    if text is not None:
+        toml.write_text(text, encoding="utf-8")
+    wall = ("--wall", "100x36", "--scale", "1", "--geometry", "raster")
+    ran = run("plan", rubble, *wall, "--settings", toml, "-o", out)
+    assert (ran.code, ran.err.count("\n")) == (3 if code == "E128" else 2, 1)
+    assert ran.err.startswith(f"drystone: {code} ")
+    assert said.format(toml) in ran.err
+    assert not out.exists()
