@@ -1,5 +1,6 @@
 """The package as a whole: its names, its examples, its list of errors."""
 
+import ast
 import doctest
 import importlib
 import pkgutil
@@ -43,6 +44,15 @@ def test_every_public_name_is_there() -> None:
 def test_the_examples_of_the_docstrings_run(name: str) -> None:
     failed, _ = doctest.testmod(importlib.import_module(name))
     assert failed == 0
+
+
+def test_no_two_classes_have_one_name() -> None:
+    places: dict[str, list[str]] = {}
+    for path in sorted((ROOT / "src").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef):
+                places.setdefault(node.name, []).append(str(path.relative_to(ROOT)))
+    assert {name: found for name, found in places.items() if len(found) > 1} == {}
 
 
 def test_every_error_code_is_explained() -> None:

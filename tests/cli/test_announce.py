@@ -4,22 +4,21 @@ import argparse
 from pathlib import Path
 
 import numpy as np
-import pytest
 from PIL import Image
 
 from drystone.cli import planning
 from drystone.cli.planning import read_line
 from drystone.io.plan_json import read_plan
 from drystone.model.stone import Stone, StoneSet
-from tests.cli.conftest import WALL, Run
+from tests.cli.conftest import WALL
 
 
-def stones(*sizes: tuple[int, int]) -> StoneSet:
+def stones(*sizes):
     masks = (np.ones((height, width), bool) for width, height in sizes)
     return StoneSet(tuple(Stone(i, mask) for i, mask in enumerate(masks, 1)))
 
 
-def test_sizes_are_metres_centimetres_or_px() -> None:
+def test_sizes_are_metres_centimetres_or_px():
     three = stones((62, 24), (20, 30), (44, 30))
     said = read_line(three, (280.0, 80.0), 200.0, 10.7)
     # Medians of the longer and of the shorter sides: 44 and 24 px.
@@ -34,9 +33,7 @@ def test_sizes_are_metres_centimetres_or_px() -> None:
     assert read_line(StoneSet(()), (280.0, 80.0), None, None) == "Read 0 stones, wall 280 x 80 px"
 
 
-def test_a_plan_begins_and_ends_with_what_is_read_and_written(
-    rubble: Path, tmp_path: Path, run: Run
-) -> None:
+def test_a_plan_begins_and_ends_with_what_is_read_and_written(rubble, tmp_path, run):
     out = tmp_path / "out"
     scaled = ("--px-per-m", 5000, *WALL[2:], "--wall", "100x36")
     ran = run("plan", rubble, *scaled, "-o", out)
@@ -52,7 +49,7 @@ def test_a_plan_begins_and_ends_with_what_is_read_and_written(
     assert [line.split()[1] for line in quiet.err.splitlines()] == ["W123"]
 
 
-def test_a_long_film_is_left_to_export(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_long_film_is_left_to_export(tmp_path, monkeypatch):
     result = argparse.Namespace(plan=argparse.Namespace(stone_steps=[None] * 3))
     monkeypatch.setattr(planning, "FILM_STONES", 2)
     (tmp_path / "build.gif").touch()

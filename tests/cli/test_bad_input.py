@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import WALL, Run
+from tests.cli.conftest import WALL
 
 
 @pytest.mark.parametrize(
@@ -22,9 +22,7 @@ from tests.cli.conftest import WALL, Run
         (("stopped",), ["deep"], "E132"),
     ],
 )
-def test_numbers_of_a_plan_that_none_can_have(
-    path: tuple[str | int, ...], value: object, code: str, plan_copy: Path, run: Run
-) -> None:
+def test_numbers_of_a_plan_that_none_can_have(path, value, code, plan_copy, run):
     plan = json.loads((plan_copy / "plan.json").read_text())
     at = plan
     for name in path[:-1]:
@@ -41,7 +39,7 @@ def test_numbers_of_a_plan_that_none_can_have(
 
 
 @pytest.mark.parametrize("command", ["stones", "measure", "segment", "check", "plan"])
-def test_pipes_are_not_waited_for(command: str, tmp_path: Path, run: Run, rubble: Path) -> None:
+def test_pipes_are_not_waited_for(command, tmp_path, run, rubble):
     pipe = tmp_path / "pipe.png"
     os.mkfifo(pipe)
     given = [*WALL, "-o", tmp_path / "out"] if command == "plan" else []
@@ -57,9 +55,7 @@ def test_pipes_are_not_waited_for(command: str, tmp_path: Path, run: Run, rubble
 
 @pytest.mark.parametrize("command", ["check", "measure", "analyse", "craft", "export"])
 @pytest.mark.parametrize("made", ["plan_copy", "settled_copy"])
-def test_a_byte_order_mark_is_no_fault(
-    command: str, made: str, tmp_path: Path, run: Run, request: pytest.FixtureRequest
-) -> None:
+def test_a_byte_order_mark_is_no_fault(command, made, tmp_path, run, request):
     plan: Path = request.getfixturevalue(made)
     for path in plan.glob("*.json"):
         path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())

@@ -6,12 +6,12 @@ import pytest
 
 from drystone.io.plan_json import read_plan
 from drystone.search.plan_result import PlanResult
-from tests.cli.conftest import EXACT, WALL, Run
+from tests.cli.conftest import EXACT, WALL
 
 SEARCH = ("--wall", "100x36", "--scale", "1", "--budget", "9", "--seed", "4")
 
 
-def test_walls_to_choose_from(rubble: Path, tmp_path: Path, run: Run) -> None:
+def test_walls_to_choose_from(rubble, tmp_path, run):
     out = tmp_path / "out"
     ran = run("plan", rubble, *SEARCH, "--pareto", "--json", "-o", out)
     assert ran.code in (0, 4)
@@ -38,7 +38,7 @@ def test_walls_to_choose_from(rubble: Path, tmp_path: Path, run: Run) -> None:
     assert [p.name for p in (out / "pareto" / "02").iterdir()] == ["mine.txt"]
 
 
-def test_the_table_has_the_figures(rubble: Path, tmp_path: Path, run: Run) -> None:
+def test_the_table_has_the_figures(rubble, tmp_path, run):
     ran = run("plan", rubble, *EXACT, "--pareto", "-o", tmp_path / "out")
     header, row = ran.out.splitlines()[-2:]
     assert header.split() == ["F_SF", "F_AV", "F_AH", "F_LR", "stones"]
@@ -47,9 +47,7 @@ def test_the_table_has_the_figures(rubble: Path, tmp_path: Path, run: Run) -> No
     assert row.split()[:3] == ["pareto/01", f"{metrics.F_SF:.3f}", f"{metrics.F_AV:.1f}"]
 
 
-def test_nothing_more_is_written_unasked(
-    settled: Path, rubble: Path, tmp_path: Path, run: Run
-) -> None:
+def test_nothing_more_is_written_unasked(settled, rubble, tmp_path, run):
     assert not (settled / "pareto").exists()
     assert not (settled / "pareto.png").exists()
     ran = run("plan", rubble, *WALL, "--json", "-o", tmp_path / "out")
@@ -60,7 +58,7 @@ def test_nothing_more_is_written_unasked(
 @pytest.mark.parametrize(
     ("wall", "text"), [("100x36", "(area of the stones)"), ("60x20", "1.000 (a full wall)")]
 )
-def test_the_bound_is_printed(wall: str, text: str, rubble: Path, tmp_path: Path, run: Run) -> None:
+def test_the_bound_is_printed(wall, text, rubble, tmp_path, run):
     options = ["--wall", wall, "--scale", "1", "--method", "paper", "--skip-too-large"]
     lines = run("plan", rubble, *options, "-o", tmp_path / "a").out.splitlines()
     (line,) = [line for line in lines if line.startswith("F_SF")]

@@ -2,17 +2,14 @@
 
 import os
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
-from tests.cli.conftest import Run
-
 
 @pytest.mark.skipif(sys.platform in {"win32", "darwin"}, reason="names are Unicode there")
-def test_a_plan_of_masks_among_which_there_is_such_a_file(tmp_path: Path, run: Run) -> None:
+def test_a_plan_of_masks_among_which_there_is_such_a_file(tmp_path, run):
     masks, out = tmp_path / "masks", tmp_path / "out"
     masks.mkdir()
     for number in range(4):

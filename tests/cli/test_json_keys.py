@@ -2,39 +2,38 @@
 
 import re
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from drystone.model.plan import PlanMetrics
-from tests.cli.conftest import WALL, Run
+from tests.cli.conftest import WALL
 
 PAGE = Path(__file__).parents[2] / "docs" / "plan-format.md"
 NOT_KEYS = {"raster", "exact", "null", "answers"}
 """Values, and a word for keys of both directions."""
 
 
-def listed(command: str) -> set[str]:
+def listed(command):
     """Names in the row of a command; options are none."""
     (row,) = re.findall(rf"^\| `{command} --json`.*$", PAGE.read_text("utf-8"), re.MULTILINE)
     return {name for name in re.findall(r"`(\w+)`", row.split("|", 2)[2]) if name not in NOT_KEYS}
 
 
-def keys(report: dict[str, Any], *within: str) -> set[str]:
+def keys(report, *within):
     """Names at the top and in some of the objects."""
     return set(report).union(*(report[name] for name in within))
 
 
-def test_of_stones_and_measure(rubble: Path, finished: Path, run: Run) -> None:
+def test_of_stones_and_measure(rubble, finished, run):
     assert set(run("stones", rubble, "--json").json()) == listed("stones")
     assert set(run("measure", finished, "--json").json()) == listed("measure")
 
 
-def test_of_craft(finished: Path, run: Run) -> None:
+def test_of_craft(finished, run):
     assert set(run("craft", finished, "--json").json()) == listed("craft")
 
 
-def test_of_plan(rubble: Path, tmp_path: Path, run: Run) -> None:
+def test_of_plan(rubble, tmp_path, run):
     asked = ("plan", rubble, *WALL, "-o", tmp_path / "out", "--json", "--profile", "--pareto")
     report = run(*asked).json()
     metrics = set(PlanMetrics.__dataclass_fields__)  # "the metrics" on the page
@@ -42,13 +41,13 @@ def test_of_plan(rubble: Path, tmp_path: Path, run: Run) -> None:
     assert found - metrics == listed("plan") - metrics
 
 
-def test_of_check(plan_copy: Path, tmp_path: Path, run: Run) -> None:
+def test_of_check(plan_copy, tmp_path, run):
     pytest.importorskip("pymunk")
     report = run("check", plan_copy, "--json", "--physics", "--picture", tmp_path / "x.png").json()
     assert keys(report, "physics") == listed("check")
 
 
-def test_of_analyse(finished: Path, run: Run) -> None:
+def test_of_analyse(finished, run):
     plain = run("analyse", finished, "--json").json()
     one_way = run("analyse", finished, "--json", "--load", "gravity").json()
     found = keys(plain, "certificate") | keys(one_way, "certificate") | {"scatter"}

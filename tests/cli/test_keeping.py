@@ -1,10 +1,8 @@
 """What is kept while a plan is made: when, what for, and what a full disk does to it."""
 
-from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, NoReturn, cast
+from typing import Any, cast
 
 import pytest
 
@@ -13,11 +11,11 @@ from drystone.cli.keeping import EVERY_S, SHARE, Keeper
 from drystone.errors import PlanError
 from drystone.io.checkpoint import CHECKPOINT
 from drystone.io.plan_json import read_plan
-from drystone.planner.events import Callbacks, Incumbent
+from drystone.planner.events import Callbacks
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import SoFar, plan_wall
 from drystone.search.standing import Progress, Standing
-from tests.cli.conftest import WALL, Run
+from tests.cli.conftest import WALL
 from tests.planner.scenes import greedy, rubble
 
 SEARCH = ("--wall", "100x36", "--scale", "1", "--seed", "1", "--budget", "7")
@@ -28,22 +26,22 @@ class Clock:
 
     now = 0.0
 
-    def __call__(self) -> float:
+    def __call__(self):
         return self.now
 
 
-def progress(walls: int, merit: float) -> Progress:
+def progress(walls, merit):
     standing = None if walls == 1 else Standing(0, None, ())
     best = cast(Any, SimpleNamespace(merit=merit))
     return Progress(walls, best, cast(Any, None), (), standing)
 
 
-def so_far(one: Progress | None) -> SoFar:
+def so_far(one):
     return SoFar(one, lambda: cast(PlanResult, one))
 
 
 @pytest.fixture
-def kept(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+def kept(monkeypatch):
     """What is written, and nothing is."""
     written: list[str] = []
     monkeypatch.setattr(Keeper, "_keep_plan", lambda *_: written.append("plan"))
@@ -51,13 +49,13 @@ def kept(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return written
 
 
-def test_plans_are_kept_when_they_are_better_and_seldom(kept: list[str], tmp_path: Path) -> None:
+def test_plans_are_kept_when_they_are_better_and_seldom(kept, tmp_path):
     clock = Clock()
     keeper = Keeper(tmp_path, {}, None, clock)
     keeper.begin(None)
     assert kept == ["search"]
 
-    def after(seconds: float, one: Progress | None) -> list[str]:
+    def after(seconds, one):
         clock.now += seconds
         kept.clear()
         keeper(so_far(one))
@@ -77,12 +75,10 @@ def test_plans_are_kept_when_they_are_better_and_seldom(kept: list[str], tmp_pat
     assert after(0.1, progress(6, 3.0)) == ["search", "plan"]
 
 
-def test_what_takes_long_is_kept_less_often(
-    kept: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_takes_long_is_kept_less_often(kept, tmp_path, monkeypatch):
     clock, seconds = Clock(), 2.0 * EVERY_S * SHARE
 
-    def slow(*_: object) -> None:
+    def slow(*_):
         clock.now += seconds
         kept.append("plan")
 
@@ -96,13 +92,11 @@ def test_what_takes_long_is_kept_less_often(
     assert kept == ["search", "search", "plan"]
 
 
-def test_a_full_disk_ends_no_search_and_is_told_once(
-    rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_full_disk_ends_no_search_and_is_told_once(rubble, tmp_path, run, monkeypatch):
     whole = run("plan", rubble, *SEARCH, "-o", tmp_path / "whole")
     calls: list[object] = []
 
-    def full(*_: object) -> NoReturn:
+    def full(*_):
         calls.append(_)
         raise PlanError("E206", "the file cannot be written (No space left on device).")
 
@@ -127,14 +121,9 @@ def test_a_full_disk_ends_no_search_and_is_told_once(
     ],
 )
 def test_the_card_of_a_wall_that_cannot_be_written_is_printed(
-    place: str,
-    more: tuple[str, ...],
-    rubble: Path,
-    tmp_path: Path,
-    run: Run,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    def full(*_: object, **__: object) -> NoReturn:
+    place, more, rubble, tmp_path, run, monkeypatch
+):
+    def full(*_, **__):
         raise OSError(28, "No space left on device", "picture.png")
 
     plan = ("plan", rubble, *WALL, "-o", tmp_path / "out", *more)
@@ -156,17 +145,15 @@ class Killed(BaseException):
     """As a signal that nobody can catch."""
 
 
-def killed_at(walls: int) -> Callable[[Callbacks, Incumbent], None]:
-    def on_walls(_: Callbacks, found: Incumbent) -> None:
+def killed_at(walls):
+    def on_walls(_, found):
         if found.walls >= walls:
             raise Killed
 
     return on_walls
 
 
-def test_pictures_of_an_earlier_plan_do_not_stay_beside_another(
-    rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_pictures_of_an_earlier_plan_do_not_stay_beside_another(rubble, tmp_path, run, monkeypatch):
     plan = ("plan", rubble, *SEARCH, "-o", tmp_path)
     assert run(*plan, "--pareto").code in (0, 4)
     (tmp_path / "mine.txt").write_text("mine")
@@ -180,7 +167,7 @@ def test_pictures_of_an_earlier_plan_do_not_stay_beside_another(
     assert run("check", tmp_path, "--stones", rubble).code == 0
 
 
-def test_the_photograph_is_beside_what_is_kept_too(tmp_path: Path) -> None:
+def test_the_photograph_is_beside_what_is_kept_too(tmp_path):
     photo, folder = tmp_path / "photo.jpg", tmp_path / "out"
     photo.write_bytes(b"a photograph")
     folder.mkdir()

@@ -20,14 +20,14 @@ from drystone.errors import UsageError
         ("8x8", 200.0, (8.0, 8.0)),
     ],
 )
-def test_sizes(text: str, px_per_m: float | None, size: tuple[float, float]) -> None:
+def test_sizes(text, px_per_m, size):
     assert parse_wall(text, px_per_m) == pytest.approx(size, abs=1e-9)
 
 
 @pytest.mark.parametrize(
     "text", ["5", "x5", "5x", "5x5x5", "ax5", "-5x5", "5kmx5km", "1e3x5", "infxinf", "0x10", "10x0"]
 )
-def test_what_is_no_size(text: str) -> None:
+def test_what_is_no_size(text):
     with pytest.raises(UsageError) as caught:
         parse_wall(text, 100.0)
     assert caught.value.code == "E127"
@@ -36,9 +36,7 @@ def test_what_is_no_size(text: str) -> None:
 
 @pytest.mark.parametrize("px_per_m", [None, 200.0])
 @pytest.mark.parametrize(("text", "cure"), [("1.4x0.4", "1.4mx0.4m"), ("12x2", "12mx2m")])
-def test_metres_without_their_unit_are_asked_about(
-    text: str, cure: str, px_per_m: float | None
-) -> None:
+def test_metres_without_their_unit_are_asked_about(text, cure, px_per_m):
     with pytest.raises(UsageError, match="has no unit") as caught:
         parse_wall(text, px_per_m)
     assert caught.value.code == "E127"
@@ -46,14 +44,14 @@ def test_metres_without_their_unit_are_asked_about(
 
 
 @pytest.mark.parametrize("text", ["1.4mx0.4", "280x80m", "280x40cm", "280pxx400mm"])
-def test_px_beside_metres_are_refused(text: str) -> None:
+def test_px_beside_metres_are_refused(text):
     with pytest.raises(UsageError, match="px one way") as caught:
         parse_wall(text, 200.0)
     assert caught.value.code == "E127"
 
 
 @pytest.mark.parametrize("text", ["1.4mx0.4m", "280mmx40cm"])
-def test_metres_need_a_scale(text: str) -> None:
+def test_metres_need_a_scale(text):
     with pytest.raises(UsageError) as caught:
         parse_wall(text, None)
     assert caught.value.code == "E131"

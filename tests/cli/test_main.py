@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,7 +14,6 @@ from drystone.cli import main
 from drystone.cli.commands import generate
 from drystone.cli.commands import stones as command
 from drystone.errors import ExitCode, UsageError
-from tests.cli.conftest import Run
 from tests.statics.walls import stacked
 
 
@@ -34,10 +32,8 @@ from tests.statics.walls import stacked
         (KeyboardInterrupt(), 130, "interrupted"),
     ],
 )
-def test_errors_become_exit_codes(
-    raised: BaseException, code: int, said: str, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def fail(_: object) -> int:
+def test_errors_become_exit_codes(raised, code, said, run, monkeypatch):
+    def fail(_):
         raise raised
 
     monkeypatch.setattr(command, "run", fail)
@@ -49,11 +45,11 @@ def test_errors_become_exit_codes(
 
 @pytest.mark.parametrize("left", [True, False])
 def test_termination_ends_with_its_own_code_whatever_becomes_of_the_interrupt(
-    left: bool, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    left, run, monkeypatch
+):
     before = signal.getsignal(signal.SIGTERM)
 
-    def stop(_: object) -> int:
+    def stop(_):
         try:
             signal.raise_signal(signal.SIGTERM)
         except KeyboardInterrupt:
@@ -67,10 +63,8 @@ def test_termination_ends_with_its_own_code_whatever_becomes_of_the_interrupt(
     assert signal.getsignal(signal.SIGTERM) == before
 
 
-def test_a_cure_names_options_that_the_command_has(
-    run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    def fail(_: object) -> int:
+def test_a_cure_names_options_that_the_command_has(run, monkeypatch, tmp_path):
+    def fail(_):
         raise MemoryError
 
     monkeypatch.setattr(generate, "run", fail)
@@ -83,13 +77,13 @@ def test_a_cure_names_options_that_the_command_has(
         assert said in run(*asked).err
 
 
-def test_debug_shows_the_traceback(run: Run) -> None:
+def test_debug_shows_the_traceback(run):
     with pytest.raises(Exception, match="E100"):
         run("stones", "nowhere.png", "--debug")
 
 
-def test_a_fault_of_drystone_says_so_in_one_line(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(_: object) -> int:
+def test_a_fault_of_drystone_says_so_in_one_line(run, monkeypatch):
+    def fail(_):
         raise ZeroDivisionError("by\nnought")
 
     monkeypatch.setattr(command, "run", fail)
@@ -107,9 +101,7 @@ def test_a_fault_of_drystone_says_so_in_one_line(run: Run, monkeypatch: pytest.M
     ("name", "closed", "code"),
     [("stones", ">&-", 0), ("stones", ">&- 2>&-", 0), ("none", "2>&-", 3), ("none", ">&-", 3)],
 )
-def test_a_closed_output_is_no_error(
-    name: str, closed: str, code: int, rubble: Path, tmp_path: Path
-) -> None:
+def test_a_closed_output_is_no_error(name, closed, code, rubble, tmp_path):
     given = rubble if name == "stones" else tmp_path / "none.png"
     shell = f"exec {sys.executable} -m drystone stones {given} {closed}"
     done = subprocess.run(["sh", "-c", shell], capture_output=True, text=True, check=False)  # noqa: S603, S607
@@ -120,9 +112,7 @@ def test_a_closed_output_is_no_error(
     assert "Traceback" not in done.stderr
 
 
-def test_names_are_printed_where_there_are_no_such_letters(
-    rubble: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_names_are_printed_where_there_are_no_such_letters(rubble, monkeypatch, tmp_path):
     named = tmp_path / "Stäine 石.png"
     named.write_bytes(rubble.read_bytes())
     out = io.BytesIO()
@@ -131,7 +121,7 @@ def test_names_are_printed_where_there_are_no_such_letters(
     assert "Stäine \\u77f3.png".encode("cp1252") in out.getvalue()
 
 
-def test_a_reader_that_goes_away_is_no_error(rubble: Path) -> None:
+def test_a_reader_that_goes_away_is_no_error(rubble):
     read, write = os.pipe()
     os.close(read)
     done = subprocess.run(  # noqa: S603 - our own code
@@ -145,7 +135,7 @@ def test_a_reader_that_goes_away_is_no_error(rubble: Path) -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_libraries_that_print_by_themselves_are_silent(tmp_path: Path) -> None:
+def test_libraries_that_print_by_themselves_are_silent(tmp_path):
     wall = tmp_path / "wall.npy"
     np.save(wall, stacked((20, 8, 0), (20, 8, 5), (20, 8, 2)))
     done = subprocess.run(  # noqa: S603 - our own code

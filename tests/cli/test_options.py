@@ -1,8 +1,5 @@
 """Every method option gives a plan that holds."""
 
-import argparse
-from pathlib import Path
-
 import pytest
 import tomli_w
 
@@ -10,7 +7,7 @@ from drystone.cli.parser import build_parser
 from drystone.cli.settings import recorded_method, settings_from
 from drystone.io.plan_json import read_plan
 from drystone.planner.settings import METHODS
-from tests.cli.conftest import WALL, Run
+from tests.cli.conftest import WALL
 
 
 @pytest.mark.parametrize(
@@ -31,9 +28,7 @@ from tests.cli.conftest import WALL, Run
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",
 )
-def test_a_plan_with_this_option_holds(
-    options: list[str], path: list[str], value: object, rubble: Path, tmp_path: Path, run: Run
-) -> None:
+def test_a_plan_with_this_option_holds(options, path, value, rubble, tmp_path, run):
     assert run("plan", rubble, *WALL, *options, "-o", tmp_path / "out").code in (0, 4)
     plan = read_plan(tmp_path / "out")
     setting: object = plan.settings
@@ -46,7 +41,7 @@ def test_a_plan_with_this_option_holds(
     assert (checked["ok"], checked["problems"]) == (True, [])
 
 
-def test_one_sided_and_stabilise_none_mean_it(rubble: Path, tmp_path: Path, run: Run) -> None:
+def test_one_sided_and_stabilise_none_mean_it(rubble, tmp_path, run):
     run("plan", rubble, *WALL, "--stabilise", "none", "--one-sided", "-o", tmp_path / "out")
     plan = read_plan(tmp_path / "out")
     assert {step.side for step in plan.stone_steps} == {"left"}
@@ -54,18 +49,18 @@ def test_one_sided_and_stabilise_none_mean_it(rubble: Path, tmp_path: Path, run:
     assert {step.rotation_moves for step in plan.stone_steps} == {0}
 
 
-def test_two_sided_uses_both_sides(rubble: Path, tmp_path: Path, run: Run) -> None:
+def test_two_sided_uses_both_sides(rubble, tmp_path, run):
     run("plan", rubble, *WALL, "--two-sided", "-o", tmp_path / "out")
     assert {step.side for step in read_plan(tmp_path / "out").stone_steps} == {"left", "right"}
 
 
-def parsed(*options: object) -> argparse.Namespace:
+def parsed(*options):
     """A command line of `plan` with some options."""
     words = ["plan", "stones.png", "--wall", "100x36", "-o", "out", *map(str, options)]
     return build_parser().parse_args(words)
 
 
-def test_what_is_said_of_single_stones_wins_over_the_file(tmp_path: Path) -> None:
+def test_what_is_said_of_single_stones_wins_over_the_file(tmp_path):
     toml = tmp_path / "mine.toml"
     toml.write_text("ban = [3]\npin = [4]\n", encoding="utf-8")
     settings = settings_from(parsed("--settings", toml, "--ban", 4, "--pin", 3))
@@ -73,7 +68,7 @@ def test_what_is_said_of_single_stones_wins_over_the_file(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("method", ["paper", "best"])
-def test_a_whole_file_of_the_other_method_is_neither(method: str, tmp_path: Path) -> None:
+def test_a_whole_file_of_the_other_method_is_neither(method, tmp_path):
     whole, part = tmp_path / "settings.toml", tmp_path / "mine.toml"
     changed = METHODS[method].updated({"mu": 0.6, "skip_too_large": True}).as_dict()
     whole.write_bytes(tomli_w.dumps(changed).encode())
@@ -93,9 +88,7 @@ def test_a_whole_file_of_the_other_method_is_neither(method: str, tmp_path: Path
     assert recorded_method(parsed("--method", method)) == method
 
 
-def test_a_plan_by_a_whole_file_of_another_method_says_so(
-    finished: Path, rubble: Path, tmp_path: Path, run: Run
-) -> None:
+def test_a_plan_by_a_whole_file_of_another_method_says_so(finished, rubble, tmp_path, run):
     asked = ("--wall", "100x36", "--scale", "1", "--settings", finished / "settings.toml")
     ran = run("plan", rubble, *asked, "--method", "best", "-o", tmp_path / "out")
     assert ran.code in (0, 4)

@@ -3,8 +3,7 @@
 import io
 import json
 import sys
-from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,10 +11,10 @@ from PIL import Image
 
 from drystone.cli import main, output, planning
 from drystone.cli.commands import segment
-from tests.cli.conftest import WALL, Run
+from tests.cli.conftest import WALL
 
 
-def refuse_to_work(*_: object, **__: object) -> NoReturn:
+def refuse_to_work(*_, **__):
     raise AssertionError("it was planned before the folder was looked at")
 
 
@@ -31,9 +30,8 @@ def refuse_to_work(*_: object, **__: object) -> NoReturn:
     ],
 )
 def test_what_is_in_the_way_is_said_before_the_search(
-    folders: list[str], files: list[str], said: str, rubble: Path, tmp_path: Path, run: Run,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:  # fmt: skip
+    folders, files, said, rubble, tmp_path, run, monkeypatch
+):
     out = tmp_path / "out"
     for name in folders:
         (out / name).mkdir(parents=True)
@@ -50,9 +48,9 @@ def test_what_is_in_the_way_is_said_before_the_search(
 
 
 def test_a_folder_that_cannot_be_written_into_is_said_before_the_search(
-    rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def read_only(**_: object) -> NoReturn:
+    rubble, tmp_path, run, monkeypatch
+):
+    def read_only(**_):
         raise OSError(30, "Read-only file system")
 
     monkeypatch.setattr(output, "TemporaryFile", read_only)
@@ -64,22 +62,17 @@ def test_a_folder_that_cannot_be_written_into_is_said_before_the_search(
     assert list(out.iterdir()) == []
 
 
-def test_segment_looks_at_its_folder_before_the_photograph(
-    tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_segment_looks_at_its_folder_before_the_photograph(tmp_path, run, monkeypatch):
     photo = tmp_path / "photo.jpg"
     Image.fromarray(np.full((40, 40, 3), 90, np.uint8)).save(photo)
     (tmp_path / "out" / "stones.json").mkdir(parents=True)
     monkeypatch.setattr(segment, "segment_photo", refuse_to_work)
     ran = run("segment", photo, "-o", tmp_path / "out", "--overwrite")
-    assert ran.code == 2
-    assert "stones.json: is a folder" in ran.err
+    assert (ran.code, "stones.json: is a folder" in ran.err) == (2, True)
 
 
 @pytest.mark.parametrize("encoding", ["cp1252", "utf-8", "ascii", "utf-16"])
-def test_json_is_json_on_any_stdout(
-    encoding: str, rubble: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_json_is_json_on_any_stdout(encoding, rubble, tmp_path, monkeypatch):
     named = tmp_path / "Stäine 🪨.png"
     named.write_bytes(rubble.read_bytes())
     out = io.BytesIO()

@@ -1,19 +1,17 @@
 """`drystone plan --policy`."""
 
 import json
-from pathlib import Path
 
 import pytest
 
 from drystone.cli.parser import build_parser
 from drystone.cli.settings import search_seconds, settings_from
-from drystone.planner.settings import PlannerSettings, method_settings
-from tests.cli.conftest import Run
+from drystone.planner.settings import method_settings
 
 SIZE = ("--wall", "100x36", "--scale", "1", "--geometry", "raster", "--quiet")
 
 
-def asked(*options: object) -> tuple[float | None, PlannerSettings]:
+def asked(*options):
     """Seconds and settings of a plan of 30 stones."""
     words = ["plan", "stones.png", "--wall", "100x36", "-o", "out", *map(str, options)]
     arguments = build_parser().parse_args(words)
@@ -25,7 +23,7 @@ def asked(*options: object) -> tuple[float | None, PlannerSettings]:
 @pytest.mark.parametrize(
     ("name", "rule"), [("paper", "algorithm2"), ("random", "random"), ("towers", "towers")]
 )
-def test_a_policy_is_a_single_pass(name: str, rule: str, method: str) -> None:
+def test_a_policy_is_a_single_pass(name, rule, method):
     for more in ((), ("--budget", 1)):
         seconds, settings = asked("--policy", name, "--method", method, *more)
         assert seconds is None
@@ -33,10 +31,10 @@ def test_a_policy_is_a_single_pass(name: str, rule: str, method: str) -> None:
         assert settings.geometry == method_settings(method).geometry
 
 
-def test_those_of_a_settings_file_too(run: Run, rubble: Path, tmp_path: Path) -> None:
+def test_those_of_a_settings_file_too(run, rubble, tmp_path):
     toml, out = tmp_path / "settings.toml", tmp_path / "out"
 
-    def said(text: str) -> str:
+    def said(text):
         toml.write_text(text, encoding="utf-8")
         ran = run("plan", rubble, *SIZE, "--settings", toml, "-o", out)
         assert ran.code == 2
@@ -51,7 +49,7 @@ def test_those_of_a_settings_file_too(run: Run, rubble: Path, tmp_path: Path) ->
     assert asked("--settings", toml, "--policy", "filter")[1].selection_rule == "filter"
 
 
-def test_a_plan_repeats_from_its_settings(run: Run, rubble: Path, tmp_path: Path) -> None:
+def test_a_plan_repeats_from_its_settings(run, rubble, tmp_path):
     one, two = tmp_path / "one", tmp_path / "two"
     toml = tmp_path / "given.toml"
     toml.write_text("[policy]\nmin_filling = 0.6\n", encoding="utf-8")

@@ -1,17 +1,9 @@
 """The progress bar: on a terminal only, and on stderr only."""
 
-from pathlib import Path
-
-import pytest
-
-from tests.cli.conftest import Run
-
 BUDGET = "[search]\nbudget = 2\n"
 
 
-def test_a_terminal_sees_stones_and_walls(
-    rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_terminal_sees_stones_and_walls(rubble, tmp_path, run, monkeypatch):
     toml = tmp_path / "quick.toml"
     toml.write_text(BUDGET, encoding="utf-8")
     plan = ("plan", rubble, "--wall", "100x36", "--scale", "1", "--settings", toml, "--overwrite")

@@ -1,7 +1,6 @@
 """What the reader is told on the command line reaches it, and the plan remembers it."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +9,7 @@ from drystone.cli import main
 
 
 @pytest.fixture
-def on_white(tmp_path: Path) -> Path:
+def on_white(tmp_path):
     """Four bricks on a background of 255."""
     labels = np.full((40, 120), 255, np.uint16)
     for number in range(4):
@@ -20,9 +19,7 @@ def on_white(tmp_path: Path) -> Path:
     return path
 
 
-def test_background_and_skip_are_read_and_remembered(
-    on_white: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_background_and_skip_are_read_and_remembered(on_white, tmp_path, capsys):
     plan = ["plan", str(on_white), "--wall", "60x20", "--method", "paper", "--scale", "1"]
     assert main([*plan, "-o", str(tmp_path / "no")]) == 3
     assert "background" in capsys.readouterr().err
@@ -34,6 +31,6 @@ def test_background_and_skip_are_read_and_remembered(
     assert main(["check", str(tmp_path / "out"), "--stones", str(on_white)]) == 0
 
 
-def test_stones_takes_the_same_options(on_white: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_stones_takes_the_same_options(on_white, capsys):
     assert main(["stones", str(on_white), "--background", "255", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["stones"] == 4

@@ -2,14 +2,12 @@
 
 import json
 import shlex
-from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
 from drystone.io.wall_image import write_labels
-from tests.cli.conftest import Run
 from tests.craft.walls import painted, stack_bond
 
 PLAN = "plan {rubble} --wall 100x36 --scale 1 --method paper -o {out}"
@@ -23,7 +21,7 @@ PHOTO = "segment {photo} -o {out}"
 
 
 @pytest.fixture(scope="module")
-def places(rubble, bricks, finished, settled, tmp_path_factory: pytest.TempPathFactory):
+def places(rubble, bricks, finished, settled, tmp_path_factory):
     """Files by name: good ones, and a folder of things that are no stones, walls or plans."""
     folder = tmp_path_factory.mktemp("inputs")
     (folder / "empty").mkdir()
@@ -230,9 +228,7 @@ CASES = [
 
 
 @pytest.mark.parametrize(("line", "exit_code", "code", "said"), CASES, ids=[c[0] for c in CASES])
-def test_what_cannot_be_is_refused(
-    line: str, exit_code: int, code: str, said: str, places: dict[str, Path], tmp_path, run: Run
-) -> None:
+def test_what_cannot_be_is_refused(line, exit_code, code, said, places, tmp_path, run):
     out = tmp_path / "out"
     ran = run(*(word.format(out=out, **places) for word in shlex.split(line)))
     assert (ran.code, ran.out) == (exit_code, "")
@@ -266,9 +262,7 @@ def test_what_cannot_be_is_refused(
     ],
     ids=lambda value: str(value)[:20],
 )
-def test_settings_that_cannot_be_are_blamed_on_their_file(
-    text: str | None, code: str, said: str, rubble: Path, tmp_path: Path, run: Run
-) -> None:
+def test_settings_that_cannot_be_are_blamed_on_their_file(text, code, said, rubble, tmp_path, run):
     toml, out = tmp_path / "mine.toml", tmp_path / "out"
     if text is not None:
         toml.write_text(text, encoding="utf-8")

@@ -12,19 +12,18 @@ from drystone.cli import keeping, main
 from drystone.io.checkpoint import CHECKPOINT
 from drystone.io.folder_lock import LOCK, locked
 from drystone.io.plan_json import read_plan
-from drystone.model.plan import Plan
 from drystone.planner.deadline import Deadline
-from drystone.planner.events import Callbacks, Incumbent, Step
-from tests.cli.conftest import WALL, Ran, Run
+from drystone.planner.events import Callbacks
+from tests.cli.conftest import WALL, Run
 from tests.cli.test_keeping import Killed, killed_at
 from tests.planner.scenes import after_looks
 
 
 @pytest.fixture
-def interrupted(rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> Path:
+def interrupted(rubble, tmp_path, run, monkeypatch):
     """The folder of a plan that was interrupted after its third stone."""
 
-    def interrupt(_: Callbacks, step: Step) -> None:
+    def interrupt(_, step):
         if step.number == 3:
             raise KeyboardInterrupt
 
@@ -38,8 +37,8 @@ def interrupted(rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.Monk
 
 
 def test_resume_gives_the_plan_that_no_interrupt_would_have_changed(
-    interrupted: Path, finished: Path, rubble: Path, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    interrupted, finished, rubble, run, monkeypatch
+):
     plan, count = read_plan(interrupted), len(read_plan(finished).stone_steps)
     assert (plan.stopped, len(plan.stone_steps), len(plan.unused)) == ("interrupted", 3, 5)
     assert count > 3
@@ -57,7 +56,7 @@ def test_resume_gives_the_plan_that_no_interrupt_would_have_changed(
     assert told == list(range(4, count + 1))  # the first three were not planned again
 
 
-def test_a_finished_plan_is_left_as_it_is(bricks: Path, tmp_path: Path, run: Run) -> None:
+def test_a_finished_plan_is_left_as_it_is(bricks, tmp_path, run):
     plan = ("plan", bricks, "--wall", "80x60", "--scale", "1", "--method", "paper")
     for code, more in ((4, ()), (0, ("--wall", "60x20"))):
         out = tmp_path / str(code)
@@ -74,7 +73,7 @@ def test_a_finished_plan_is_left_as_it_is(bricks: Path, tmp_path: Path, run: Run
         assert {path.name: path.read_bytes() for path in out.iterdir()} == before
 
 
-def limit(monkeypatch: pytest.MonkeyPatch, looks: int) -> None:
+def limit(monkeypatch, looks):
     """Let `--time` strike by how often the clock was looked at; what follows has time."""
     limits = iter([after_looks(looks)])
     monkeypatch.setattr(Deadline, "after", lambda *_: next(limits, Deadline()))
@@ -82,8 +81,8 @@ def limit(monkeypatch: pytest.MonkeyPatch, looks: int) -> None:
 
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_a_first_wall_that_the_time_limit_cuts_short_is_gone_on_with(
-    jobs: int, rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    jobs, rubble, tmp_path, run, monkeypatch
+):
     plan = ("plan", rubble, "--wall", "100x36", "--scale", "1", "--seed", 1)
     timed = (*plan, "--time", "5", "--jobs", jobs, "-o", tmp_path / "part")
     placed: list[int] = []
@@ -113,8 +112,8 @@ def test_a_first_wall_that_the_time_limit_cuts_short_is_gone_on_with(
 
 
 def test_time_that_nobody_asked_for_does_not_cut_the_first_wall_short(
-    rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    rubble, tmp_path, run, monkeypatch
+):
     plan = ("plan", rubble, "--wall", "100x36", "--scale", "1", "--seed", 1, "-o")
     limit(monkeypatch, 0)
     ran = run(*plan, tmp_path / "by default")
@@ -137,16 +136,16 @@ class Search:
     whole: Path
     run: Run
 
-    def __call__(self, folder: Path, *more: object) -> Ran:
+    def __call__(self, folder, *more):
         return self.run(*self.arguments, folder, *more)
 
-    def holds(self, folder: Path) -> bool:
+    def holds(self, folder):
         """Say whether `check` accepts what is in a folder."""
         return self.run("check", folder, "--stones", self.stones).code == 0
 
 
 @pytest.fixture(scope="module")
-def searched(rubble: Path, tmp_path_factory: pytest.TempPathFactory) -> Search:
+def searched(rubble, tmp_path_factory):
     """The folder of the whole search, not to be changed."""
     folder = tmp_path_factory.mktemp("search")
     (folder / "small.toml").write_text(SMALL)
@@ -157,12 +156,12 @@ def searched(rubble: Path, tmp_path_factory: pytest.TempPathFactory) -> Search:
 
 
 @pytest.fixture
-def search(searched: Search, run: Run) -> Search:
+def search(searched, run):
     """The same, to be called."""
     return replace(searched, run=run)
 
 
-def kill(search: Search, folder: Path, walls: int, monkeypatch: pytest.MonkeyPatch) -> Plan:
+def kill(search, folder, walls, monkeypatch):
     """Kill a search once it has built some walls; return the plan that is there."""
     with monkeypatch.context() as patch:
         patch.setattr(keeping, "EVERY_S", 0.0)
@@ -176,7 +175,7 @@ def kill(search: Search, folder: Path, walls: int, monkeypatch: pytest.MonkeyPat
     return plan
 
 
-def same(folder: Path, whole: Path) -> bool:
+def same(folder, whole):
     """Say whether two folders have the same plan, and nothing of a search is left."""
     names = ("plan.json", "blocks.json", "wall.png", "picture.png", "settings.toml")
     left = {path.name for path in folder.iterdir()}
@@ -191,14 +190,9 @@ def same(folder: Path, whole: Path) -> bool:
     [(signal.SIGINT, 1, None), (signal.SIGTERM, 3, 2), (signal.SIGINT, 13, 11)],
 )
 def test_a_search_that_is_interrupted_goes_on_to_the_same_plan(
-    sent: int,
-    walls: int,
-    stood: int | None,
-    search: Search,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    def on_walls(_: Callbacks, found: Incumbent) -> None:
+    sent, walls, stood, search, tmp_path, monkeypatch
+):
+    def on_walls(_, found):
         if found.walls == walls:
             signal.raise_signal(sent)
 
@@ -220,10 +214,8 @@ def test_a_search_that_is_interrupted_goes_on_to_the_same_plan(
 
 @pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize("signals", [(signal.SIGINT,), (signal.SIGTERM, signal.SIGINT)])
-def test_signals_while_the_end_is_written_lose_nothing(
-    signals: tuple[int, ...], search: Search, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def write_film(*_: object) -> None:
+def test_signals_while_the_end_is_written_lose_nothing(signals, search, tmp_path, monkeypatch):
+    def write_film(*_):
         for one in signals:
             signal.raise_signal(one)
 
@@ -239,8 +231,8 @@ def test_signals_while_the_end_is_written_lose_nothing(
 
 @pytest.mark.parametrize(("walls", "stood"), [(2, None), (9, 7)])
 def test_a_search_that_is_killed_goes_on_from_its_checkpoint(
-    walls: int, stood: int | None, search: Search, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    walls, stood, search, tmp_path, monkeypatch
+):
     part = kill(search, tmp_path, walls, monkeypatch)
     assert "E129" in search(tmp_path).err
     ran = search(tmp_path, "--resume")
@@ -250,8 +242,8 @@ def test_a_search_that_is_killed_goes_on_from_its_checkpoint(
 
 
 def test_a_search_that_was_cut_off_ends_where_it_is_with_a_smaller_budget(
-    search: Search, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    search, tmp_path, monkeypatch
+):
     kill(search, tmp_path / "killed", 9, monkeypatch)
     ran = search(tmp_path / "killed", "--resume", "--budget", 1)
     assert ran.code in (0, 4)
@@ -260,9 +252,9 @@ def test_a_search_that_was_cut_off_ends_where_it_is_with_a_smaller_budget(
 
 
 def test_of_a_plan_that_was_killed_before_anything_was_kept_there_is_nothing_to_go_on_with(
-    rubble: Path, finished: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def on_step(_: Callbacks, __: Step) -> None:
+    rubble, finished, tmp_path, run, monkeypatch
+):
+    def on_step(_, __):
         raise Killed
 
     plan = ("plan", rubble, *WALL, "--seed", 1, "-o", tmp_path)
@@ -281,10 +273,8 @@ def test_of_a_plan_that_was_killed_before_anything_was_kept_there_is_nothing_to_
     assert (tmp_path / "plan.json").read_bytes() == (finished / "plan.json").read_bytes()
 
 
-def test_a_plan_whose_end_was_not_written_is_not_finished(
-    search: Search, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def write_pictures(*_: object, **__: object) -> None:
+def test_a_plan_whose_end_was_not_written_is_not_finished(search, tmp_path, monkeypatch):
+    def write_pictures(*_, **__):
         raise Killed
 
     with monkeypatch.context() as patch:
@@ -299,12 +289,12 @@ def test_a_plan_whose_end_was_not_written_is_not_finished(
 
 
 def test_beside_the_checkpoint_of_a_new_plan_an_earlier_one_is_not_gone_on_with(
-    rubble: Path, finished: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    rubble, finished, tmp_path, run, monkeypatch
+):
     plan = ("plan", rubble, *WALL, "-o", tmp_path)
     assert run(*plan, "--seed", 3).code in (0, 4)
 
-    def on_step(_: Callbacks, __: Step) -> None:
+    def on_step(_, __):
         raise Killed
 
     with monkeypatch.context() as patch:
@@ -317,8 +307,8 @@ def test_beside_the_checkpoint_of_a_new_plan_an_earlier_one_is_not_gone_on_with(
 
 
 def test_a_damaged_checkpoint_is_set_aside_and_the_partial_plan_gone_on_from(
-    search: Search, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    search, tmp_path, monkeypatch
+):
     part, path = kill(search, tmp_path, 9, monkeypatch), tmp_path / CHECKPOINT
     path.write_bytes(path.read_bytes()[:-20])
     told: list[float] = []
@@ -334,9 +324,7 @@ def test_a_damaged_checkpoint_is_set_aside_and_the_partial_plan_gone_on_from(
     assert not path.exists()
 
 
-def test_two_runs_do_not_write_into_one_folder(
-    rubble: Path, finished: Path, tmp_path: Path, run: Run
-) -> None:
+def test_two_runs_do_not_write_into_one_folder(rubble, finished, tmp_path, run):
     plan = ("plan", rubble, *WALL, "--seed", 1, "-o", tmp_path / "out")
     (tmp_path / "out").mkdir()
     with locked(tmp_path / "out"):
@@ -349,9 +337,7 @@ def test_two_runs_do_not_write_into_one_folder(
     assert (tmp_path / "out" / "plan.json").read_bytes() == (finished / "plan.json").read_bytes()
 
 
-def test_resume_refuses_what_is_of_something_else(
-    interrupted: Path, rubble: Path, bricks: Path, run: Run
-) -> None:
+def test_resume_refuses_what_is_of_something_else(interrupted, rubble, bricks, run):
     path = interrupted / "plan.json"
     before = path.read_bytes()
     asked = (*WALL, "--seed", 1, "-o", interrupted, "--resume")
@@ -363,7 +349,7 @@ def test_resume_refuses_what_is_of_something_else(
         (("--px-per-m", "100"), "--px-per-m"),
     ):
         ran = run("plan", rubble, *asked, *more)
-        assert (ran.code, "E136" in ran.err, f"other {said}" in ran.err) == (2, True, True)
+        assert (ran.code, "E136" in ran.err, said in ran.err) == (2, True, True)
     assert "E136" in run("plan", bricks, *asked).err
     assert path.read_bytes() == before
     plan = json.loads(before)

@@ -21,17 +21,17 @@ from drystone.model.stone import Source
     ("text", "px_per_m"),
     [("20,30,220,30=1.0m", 200.0), ("0,0,300,400=250cm", 200.0), ("-1,0, 4,12=26mm", 500.0)],
 )
-def test_a_ruler_is_a_length_between_two_points(text: str, px_per_m: float) -> None:
+def test_a_ruler_is_a_length_between_two_points(text, px_per_m):
     assert ruler(text) == pytest.approx(px_per_m)
 
 
 @pytest.mark.parametrize("text", ["", "1,2,3=1m", "1,2,3,4=1", "1,2,1,2=1m", "1,2,3,4=0m"])
-def test_what_is_no_ruler(text: str) -> None:
+def test_what_is_no_ruler(text):
     with pytest.raises(ArgumentTypeError):
         ruler(text)
 
 
-def test_a_ruler_keeps_its_points() -> None:
+def test_a_ruler_keeps_its_points():
     scale = scale_with(ruler("20,30,220,30=1.0m"), 200.0)
     for one in (scale, pickle.loads(pickle.dumps(scale))):  # noqa: S301 - its own bytes
         assert one == 200.0
@@ -39,20 +39,20 @@ def test_a_ruler_keeps_its_points() -> None:
 
 
 @pytest.mark.parametrize("text", ["20,30,2000,30=1m", "0,-1,9,9=1m", "5,61,9,9=1m", "-1,0,9,9=1m"])
-def test_a_ruler_beyond_the_picture_is_refused(text: str) -> None:
+def test_a_ruler_beyond_the_picture_is_refused(text):
     with pytest.raises(UsageError, match="outside the picture, which is 213 x 60 px") as caught:
         refuse_outside(ruler(text), (213, 60))
     assert caught.value.code == "E138"
 
 
-def test_others_are_not() -> None:
+def test_others_are_not():
     refuse_outside(ruler("0,0,213,60=1m"), (213, 60))  # from corner to corner
     refuse_outside(ruler("20,30,2000,30=1m"), (0, 0))  # how large it is nobody knows
     refuse_outside(2000.0, (213, 60))
     refuse_outside(None, (213, 60))
 
 
-def test_where_the_size_of_a_picture_is_known() -> None:
+def test_where_the_size_of_a_picture_is_known():
     assert picture_size_px(Source("stones.png", width_px=213, height_px=60)) == (213, 60)
     # They say how far the stones reach, and a ruler lies beside them.
     assert picture_size_px(Source("stones.json", width_px=213, height_px=60)) == (0, 0)
@@ -64,13 +64,13 @@ def test_where_the_size_of_a_picture_is_known() -> None:
     assert planned_picture_px({"path": "masks.png", "files": ["1.png"], **size_px}) == (0, 0)
 
 
-def test_either_may_know_the_scale() -> None:
+def test_either_may_know_the_scale():
     assert scale_with(None, None) is None
     assert scale_with(200.0, None) == scale_with(None, 200.0) == 200.0
     assert scale_with(200.0, 200.3) == 200.0
 
 
-def test_who_says_another_scale_is_named() -> None:
+def test_who_says_another_scale_is_named():
     with pytest.raises(UsageError) as caught:
         scale_with(ruler("0,0,100,0=.1m"), 200.0, "plan")
     assert str(caught.value) == (
@@ -85,7 +85,7 @@ def test_who_says_another_scale_is_named() -> None:
 @pytest.mark.parametrize(
     ("px_per_m", "said"), [(25_000, "1.6 mm"), (10, "4 m"), (4_001, "10 mm"), (19.9, "2.01 m")]
 )
-def test_a_scale_that_makes_no_building_stones_is_asked_about(px_per_m: float, said: str) -> None:
+def test_a_scale_that_makes_no_building_stones_is_asked_about(px_per_m, said):
     notice = scale_notice(40.0, px_per_m)
     assert notice is not None
     assert notice.code == "W123"

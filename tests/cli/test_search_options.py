@@ -1,16 +1,14 @@
 """How long is searched, and for what."""
 
-from pathlib import Path
-
 from drystone.cli.parser import build_parser
 from drystone.cli.settings import search_seconds, settings_from
 from drystone.io.plan_json import read_plan
 from drystone.planner.search_settings import UNLIMITED
 from drystone.planner.settings import method_settings
-from tests.cli.conftest import EXACT, Run
+from tests.cli.conftest import EXACT
 
 
-def asked(*options: object) -> tuple[float | None, int]:
+def asked(*options):
     """Seconds and budget of a plan of 30 stones."""
     words = ["plan", "stones.png", "--wall", "100x36", "-o", "out", *map(str, options)]
     arguments = build_parser().parse_args(words)
@@ -18,7 +16,7 @@ def asked(*options: object) -> tuple[float | None, int]:
     return search_seconds(method_settings(arguments.method), 30, arguments), settings.search.budget
 
 
-def test_the_clock_ends_a_search_unless_a_budget_does(tmp_path: Path) -> None:
+def test_the_clock_ends_a_search_unless_a_budget_does(tmp_path):
     assert asked() == (10.0, UNLIMITED)
     assert asked("--time", 2.5) == (2.5, UNLIMITED)
     assert asked("--budget", 7) == (None, 7)
@@ -34,7 +32,7 @@ def test_the_clock_ends_a_search_unless_a_budget_does(tmp_path: Path) -> None:
     assert asked("--settings", toml, "--time", 3) == (3.0, UNLIMITED)
 
 
-def test_aims_are_settings(rubble: Path, tmp_path: Path, run: Run) -> None:
+def test_aims_are_settings(rubble, tmp_path, run):
     out = tmp_path / "out"
     options = (*EXACT[:-1], 2, "--aim", "F_LR=.5", "F_AH=2")
     assert run("plan", rubble, *options, "-o", out).code in (0, 4)
@@ -42,9 +40,7 @@ def test_aims_are_settings(rubble: Path, tmp_path: Path, run: Run) -> None:
     assert (goal["F_LR"], goal["F_AH"], goal["F_SF"]) == (0.5, 2.0, 0.0)
 
 
-def test_walls_to_choose_from_do_not_outlive_their_search(
-    rubble: Path, tmp_path: Path, run: Run
-) -> None:
+def test_walls_to_choose_from_do_not_outlive_their_search(rubble, tmp_path, run):
     out = tmp_path / "out"
     assert run("plan", rubble, *EXACT[:-1], 3, "--pareto", "-o", out).code in (0, 4)
     assert (out / "pareto.png").exists()

@@ -90,8 +90,7 @@ def test_a_plan_knows_its_copy_and_refuses_before_it_replaces_another(run, tmp_p
     mine.mkdir()
     (mine / "photo.jpg").write_bytes(b"mine")
     ran = quickly_planned(run, out, mine, "--overwrite")
-    assert ran.code == 2
-    assert "E129" in ran.err
+    assert (ran.code, "E129" in ran.err) == (2, True)
     assert [path.name for path in mine.iterdir()] == ["photo.jpg"]
     assert (mine / "photo.jpg").read_bytes() == b"mine"
 
@@ -101,8 +100,7 @@ def test_a_damaged_photograph_is_refused_before_the_search(run, tmp_path, bare):
     assert run("segment", saved(bare, tmp_path), "--px-per-m", 800, "-o", out).code == 0
     (out / "photo.jpg").write_bytes(b"no picture")
     ran = quickly_planned(run, out, wall)
-    assert ran.code == 3
-    assert "E189" in ran.err
+    assert (ran.code, "E189" in ran.err) == (3, True)
     assert not wall.exists()
 
 
@@ -123,9 +121,7 @@ def test_a_turned_photograph_gives_the_same_stones(run, tmp_path, bare):
 def test_the_scale_may_be_a_ruler_or_not_known(run, tmp_path, bare):
     path = saved(bare, tmp_path)
     ruled = run("segment", path, "--ruler", "0,0,400,0=50cm", "-o", tmp_path / "ruled")
-    assert ruled.code == 0
-    assert "800.0 px a metre" in ruled.out
-    assert " cm" in ruled.out
+    assert (ruled.code, "800.0 px a metre" in ruled.out, " cm" in ruled.out) == (0, True, True)
     assert json.loads((tmp_path / "ruled" / "stones.json").read_text())["px_per_m"] == 800.0
     without = run("segment", path, "-o", tmp_path / "without")
     assert "not known" in without.out

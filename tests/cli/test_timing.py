@@ -6,12 +6,11 @@ import pytest
 from drystone.drawing.words.planned import profile_rows, profile_summary
 from drystone.generate import RubbleSettings, rubble_stones
 from drystone.planner.settings import method_settings
-from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
 
 
 @pytest.fixture(scope="module")
-def searched() -> PlanResult:
+def searched():
     """A small wall, and three more that are searched."""
     sizes = RubbleSettings(count=8, width_px=100, height_px=36, courses=2)
     stones = rubble_stones(sizes, np.random.default_rng(1))
@@ -20,7 +19,7 @@ def searched() -> PlanResult:
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
-def test_parts_of_a_search_add_up(searched: PlanResult, jobs: int) -> None:
+def test_parts_of_a_search_add_up(searched, jobs):
     summary = profile_summary(searched, jobs)
     parts = summary["parts"]
     assert sum(parts.values()) == pytest.approx(summary["seconds"])
@@ -29,7 +28,7 @@ def test_parts_of_a_search_add_up(searched: PlanResult, jobs: int) -> None:
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
-def test_the_search_is_a_row_and_its_workers_are_processes(searched: PlanResult, jobs: int) -> None:
+def test_the_search_is_a_row_and_its_workers_are_processes(searched, jobs):
     lines = dict(profile_rows(profile_summary(searched, jobs)))
     assert lines["search"].endswith("%")  # no microseconds a candidate
     assert lines["processes"] == f"{jobs}; the search is by the clock"
