@@ -147,10 +147,8 @@ def test_libraries_that_print_by_themselves_are_silent(tmp_path):
 
 
 @pytest.mark.parametrize(("sent", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_a_signal_that_a_module_turns_into_an_error_is_still_a_signal(
-    sent: signal.Signals, code: int, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def imported(_: object) -> int:
+def test_a_signal_that_a_module_turns_into_an_error_is_still_a_signal(sent, code, run, monkeypatch):
+    def imported(_):
         try:
             signal.raise_signal(sent)
         except KeyboardInterrupt as interrupt:
@@ -165,10 +163,8 @@ def test_a_signal_that_a_module_turns_into_an_error_is_still_a_signal(
     )
 
 
-def test_a_signal_that_comes_while_a_command_is_loaded(
-    run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def loaded(*_: object) -> object:
+def test_a_signal_that_comes_while_a_command_is_loaded(run, monkeypatch):
+    def loaded(*_):
         signal.raise_signal(signal.SIGTERM)
 
     monkeypatch.setattr(sys.modules["drystone.cli.main"], "build_parser", loaded)
