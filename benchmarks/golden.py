@@ -28,7 +28,7 @@ BUDGET = 8
 
 GENERATED = {
     "rubble": ("280x80", ()),
-    "polygon": ("280x120", ("--count", "24")),
+    "polygon": ("480x200", ("--count", "24")),
     "fourier": ("300x120", ("--count", "20")),
     "brick": ("240x100", ("--count", "30", "--set", "aspect=2", "--set", "height_px=20")),
 }
