@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from drystone.search.plan_result import PlanResult as PlanResult
     from drystone.search.plan_result import result_of as result_of
     from drystone.search.plan_wall import plan_wall as plan_wall
+    from drystone.search.plan_wall import working_scale as working_scale
     from drystone.statics.flow.nonassociative import (
         nonassociative_resistance as nonassociative_resistance,
     )
@@ -63,6 +64,7 @@ _HOMES = {
     "PlanResult": "drystone.search.plan_result",
     "result_of": "drystone.search.plan_result",
     "plan_wall": "drystone.search.plan_wall",
+    "working_scale": "drystone.search.plan_wall",
     "MeasuredPose": "drystone.planner.measured",
     "Observation": "drystone.planner.observe",
     "Planner": "drystone.planner.planner",

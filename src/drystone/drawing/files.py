@@ -11,6 +11,7 @@ from matplotlib.figure import Figure, SubFigure
 
 from drystone.drawing.pictures.mechanism import plot_mechanism
 from drystone.drawing.pictures.wall import plot_wall
+from drystone.drawing.wall import step_by_id
 from drystone.model.wall import Wall
 from drystone.statics.model import Direction
 from drystone.statics.result import LateralResistance, LimitStatus
@@ -87,7 +88,7 @@ def write_pictures(
             continue
         side = None if result.status is LimitStatus.UNSTABLE else result.direction
         shown = wall.labels if wall.outlines is None else dict(wall.outlines.blocks)
-        ax = plot_mechanism(shown, result.mechanism, side, result.alpha)
+        ax = plot_mechanism(shown, result.mechanism, side, result.alpha, numbers=step_by_id(wall))
         save(ax.figure, path, dpi)
         written.append(path)
     return tuple(written)

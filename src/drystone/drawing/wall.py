@@ -60,20 +60,18 @@ def drawing_of_wall(
     site = wall.site
     loops = loops_of_wall(wall, outlines)
     items: list[Drawable] = []
-    step = 1
+    steps = step_by_id(wall)
     for group in wall.groups:
         stone, (x, y) = group.placement.stone_id, group.placement.centroid(site.height_px)
         fill = PLAIN_COLOUR if clusters is None else cluster_colour(clusters[stone])
-        area = Surface(f"stone-{stone}", loops[stone], fill, layer="STONES", step=step)
+        area = Surface(f"stone-{stone}", loops[stone], fill, layer="STONES", step=steps[stone])
         at = x * site.units_per_px, y * site.units_per_px
-        items += [area, Words(f"number-{stone}", str(step), at, area.room, fill)]
+        items += [area, Words(f"number-{stone}", str(steps[stone]), at, area.room, fill)]
         for wedge in group.wedges:
-            step += 1
             items.append(
                 Surface(f"wedge-{wedge.id}", loops[wedge.id], WEDGE_COLOUR, z=2.0, layer="WEDGES",
-                     step=step)
+                     step=steps[wedge.id])
             )  # fmt: skip
-        step += 1
     used = {clusters[placement.stone_id] for placement in wall.placements} if clusters else set()
     legend = cluster_legend(used)
     if wall.wedges:
@@ -81,6 +79,16 @@ def drawing_of_wall(
     size = site.width_px * site.units_per_px, site.height_px * site.units_per_px
     made = wall_drawing(items, size, "m" if site.px_per_m else "px", title)
     return Drawing(made.items, made.box, made.unit, title, legend)
+
+
+def step_by_id(wall: Wall) -> dict[int, int]:
+    """Return the step that places each stone, and each wedge."""
+    pieces = (
+        piece
+        for group in wall.groups
+        for piece in (group.placement.stone_id, *(wedge.id for wedge in group.wedges))
+    )
+    return {piece: step for step, piece in enumerate(pieces, 1)}
 
 
 def loops_of_wall(

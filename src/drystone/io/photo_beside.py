@@ -11,10 +11,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from drystone.errors import InputError, UsageError
 from drystone.io.file_errors import short
 from drystone.io.json_text import json_in
 from drystone.io.read_settings import MOST_PX_PER_M
+from drystone.model.stone import writable
 from drystone.whole_files import refuse_existing, write_whole
 
 SCHEMA = "drystone-photo/1"
@@ -39,7 +42,9 @@ class PhotoSidecar:
     photo: str = ""
     """Base name of the photograph in the frame of the label image, beside it; empty for none."""
     details: Mapping[str, Any] = field(default_factory=dict)
-    """What else was found out: markers, residuals, doubts.  For people."""
+    """What else was found out: markers, residuals, doubts."""
+    photograph: tuple[tuple[str, Any], ...] = ()
+    """Of the details, what a plan keeps (see `Source`); for one that was read."""
 
 
 def write_sidecar(sidecar: PhotoSidecar, folder: Path) -> Path:
@@ -80,11 +85,36 @@ def read_sidecar(labels: Path) -> PhotoSidecar | None:
             int(data["height_px"]),
             None if scale is None else float(scale),
             str(data.get("photo", "")),
+            photograph=tuple(_photograph(data).items()),
         )
     except (OSError, ValueError, KeyError, TypeError, OverflowError) as error:
         what = f"what it says of the photograph cannot be used ({short(error)})."
         cure = "Find the stones again with `drystone segment`, or remove the file."
         raise InputError("E112", what, where=str(path), cure=cure) from error
+
+
+def _photograph(data: dict[str, Any]) -> dict[str, Any]:
+    """Return the name of the photograph, and where its markers are; ValueError for nonsense."""
+    source, markers, frame = (data.get(name) for name in ("source", "markers", "P_from_marker"))
+    known: dict[str, Any] = {}
+    if isinstance(source, dict):
+        known["name"] = writable(str(source.get("name", "")))
+    if markers and frame:
+        known["markers"] = [
+            {"id": int(one["id"]), "corners_m": _numbers(one["corners_m"], (4, 2))}
+            for one in markers
+        ]
+        matrix = _numbers(frame["matrix"], (4, 4))
+        known["P_from_marker"] = {"id": int(frame["id"]), "matrix": matrix}
+    return known
+
+
+def _numbers(values: Any, shape: tuple[int, int]) -> list[list[float]]:
+    found = np.array(values, float)
+    if found.shape != shape or not np.isfinite(found).all():
+        raise ValueError(f"it has no {shape[0]} x {shape[1]} numbers")
+    numbers: list[list[float]] = found.tolist()
+    return numbers
 
 
 def photo_of(stones: Path) -> Path | None:

@@ -1,5 +1,6 @@
 """The file form of plans: plan.json, described by plan.schema.json (DESIGN 2)."""
 
+import hashlib
 import json
 import math
 import operator
@@ -26,7 +27,16 @@ MOST_PLAN_BYTES = 100_000_000
 
 _INDEX_NAMES = ("SF", "LFR", "GDS", "NHR", "IWR", "IS", "LLC")
 _METRIC_NAMES = tuple(PlanMetrics.__dataclass_fields__)
-_SOURCE_NAMES = ("path", "sha256", "stones", "width_px", "height_px", "files", "reading")
+_SOURCE_NAMES = (
+    "path",
+    "sha256",
+    "stones",
+    "width_px",
+    "height_px",
+    "files",
+    "reading",
+    "photograph",
+)
 _LONGEST_MESSAGE = 240
 
 
@@ -46,8 +56,17 @@ def write_plan(plan: Plan, path: str | Path) -> None:
         E205: a value that the schema does not allow (NaN among them); E206: the file cannot be
         written.
     """
+    write_whole(Path(path), _bytes_of(plan))
+
+
+def plan_digest(plan: Plan) -> str:
+    """Return what plans are told apart by: the first digits of the SHA-256 of plan.json."""
+    return hashlib.sha256(_bytes_of(plan)).hexdigest()[:16]
+
+
+def _bytes_of(plan: Plan) -> bytes:
     text = json.dumps(plan_to_json(plan), ensure_ascii=False, allow_nan=False, indent=1)
-    write_whole(Path(path), f"{text}\n".encode())
+    return f"{text}\n".encode()
 
 
 def read_plan(path: str | Path) -> Plan:

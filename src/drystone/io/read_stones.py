@@ -97,9 +97,11 @@ def read_stones(
         else:
             picture = decode(data, _max_px(settings))
         scale = None if sidecar is None else _scale_beside(sidecar, picture, path)
+        photograph = () if sidecar is None else sidecar.photograph
         digest = hashlib.sha256(data).hexdigest()
         del data  # as large as the picture when it is not compressed
-        return _read_picture(picture, Source(name, digest, px_per_m=scale), settings)
+        taken = Source(name, digest, px_per_m=scale, photograph=photograph)
+        return _read_picture(picture, taken, settings)
 
 
 def _scale_beside(sidecar: PhotoSidecar, picture: Picture, path: Path) -> float | None:

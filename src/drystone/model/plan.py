@@ -192,6 +192,12 @@ class Plan:
         return tuple(step for step in self.steps if isinstance(step, WedgeStep))
 
     @property
+    def step_by_id(self) -> dict[int, int]:
+        """The step that places each stone, and each wedge."""
+        stones = {step.stone: step.step for step in self.stone_steps}
+        return stones | {step.id: step.step for step in self.wedge_steps}
+
+    @property
     def course_heights_px(self) -> dict[int, float]:
         """What Eq. 8 compared the stones with that began a course, by their ids; working px."""
         to_px = self.working_scale * (self.px_per_m or 1.0)

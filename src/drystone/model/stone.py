@@ -148,6 +148,9 @@ class Source:
     px_per_m : float or None
         Source px in a metre, when the source says so itself: a rectified photograph, a drawing in
         millimetres.
+    photograph : tuple of (str, value) pairs
+        Of the photograph that the stones were found in: its name, its markers with their corners in
+        the frame P, and P_from_marker, the frame of one of them in P.
     """
 
     path: str = ""
@@ -157,6 +160,7 @@ class Source:
     files: tuple[str, ...] = ()
     reading: tuple[tuple[str, Any], ...] = ()
     px_per_m: float | None = None
+    photograph: tuple[tuple[str, Any], ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "path", writable(self.path))

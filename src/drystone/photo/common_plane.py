@@ -63,7 +63,7 @@ def fit_plane(pieces: Sequence[Piece]) -> CommonPlane | None:
 
 def _off(to_plane: Points, piece: Piece) -> Points:
     on_plane = apply(to_plane, piece.seen_px)
-    turn, shift = _pose(piece.flat_m, on_plane)
+    turn, shift = rigid(piece.flat_m, on_plane)
     return np.asarray(on_plane - (piece.flat_m @ turn.T + shift))
 
 
@@ -81,7 +81,7 @@ def _least(pieces: Sequence[Piece], to_seen: Points) -> _Fit | None:
     poses = [np.zeros(3)]
     with np.errstate(all="ignore"):
         for piece in pieces[1:]:
-            turn, shift = _pose(piece.flat_m, apply(np.linalg.inv(to_seen), piece.seen_px))
+            turn, shift = rigid(piece.flat_m, apply(np.linalg.inv(to_seen), piece.seen_px))
             poses.append(np.array([np.arctan2(turn[1, 0], turn[0, 0]), *shift]))
         start = np.concatenate([(to_seen / to_seen[2, 2]).ravel()[:8], *poses[1:]])
         if not np.isfinite(start).all():
@@ -154,7 +154,7 @@ def direct(source: Points, target: Points) -> Points:
     return np.asarray(solution / solution[2, 2])
 
 
-def _pose(source: Points, target: Points) -> tuple[Points, Points]:
+def rigid(source: Points, target: Points) -> tuple[Points, Points]:
     """Return the turn and the shift, never mirrored, that lay source on target best."""
     a, b = source - source.mean(axis=0), target - target.mean(axis=0)
     angle = np.arctan2((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(), (a * b).sum())

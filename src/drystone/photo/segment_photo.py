@@ -11,6 +11,7 @@ from skimage.draw import polygon2mask
 from drystone.errors import Notice, UsageError
 from drystone.kernels.raster import Mask
 from drystone.photo.layout import MarkerLayout, page_mm
+from drystone.photo.marker_places import PlacedMarker, placed_markers
 from drystone.photo.markers import FoundMarker, find_markers
 from drystone.photo.rectify import rectify
 from drystone.photo.scale import scale_and_view
@@ -32,6 +33,7 @@ class SegmentedPhoto:
     from_photo: NDArray[np.float64]
     px_per_m: float | None = None  # px of the picture in a metre
     view: View | None = None  # what the scale was taken from
+    markers: tuple[PlacedMarker, ...] = ()  # those of the view, in the frame of the picture
     unasked: tuple[int, ...] = ()  # markers that nobody asked about: their papers are left out
 
     @property
@@ -74,7 +76,7 @@ def segment_photo(
     found = segment(picture, None, _with_area(settings, min_area, px_per_m), papers)
     view = None if scale is None else View.flat(scale)
     ids = tuple(dict.fromkeys(marker.id for marker in markers))
-    return SegmentedPhoto(picture, found, from_photo, px_per_m, view, ids)
+    return SegmentedPhoto(picture, found, from_photo, px_per_m, view, unasked=ids)
 
 
 def _markers_if_possible(image: NDArray[np.uint8]) -> tuple[FoundMarker, ...]:
@@ -98,7 +100,10 @@ def _by_markers(
     papers = papers_of(markers, layout, above.from_photo, above.inside.shape)
     settings = _with_area(settings, min_area, above.px_per_m)
     found = segment(above.values, above.inside, settings, papers)
-    return SegmentedPhoto(above.values, found, above.from_photo, above.px_per_m, view)
+    used = [marker for marker in markers if marker.id in view.ids]
+    height = above.values.shape[0]
+    placed = placed_markers(used, layout, above.from_photo, above.px_per_m, height)
+    return SegmentedPhoto(above.values, found, above.from_photo, above.px_per_m, view, placed)
 
 
 def _with_area(

@@ -153,6 +153,8 @@ def assemble_plan(
         described["files"] = list(source.files)
     if source.reading:
         described["reading"] = dict(source.reading)
+    if source.photograph:
+        described["photograph"] = dict(source.photograph)
     placed = {action.stone_id for action in build.actions}
     return Plan(
         version=provenance["version"],

@@ -58,7 +58,21 @@ class SoFar:
 def working_scale(stones: StoneSet) -> float:
     """Return the working resolution at which the median stone's longer side is about 40 px.
 
-    Never finer than the source; in steps of 1 %.
+    Parameters
+    ----------
+    stones : StoneSet
+        All stones that there are to choose from.
+
+    Returns
+    -------
+    scale : float
+        Working px over source px, in (0, 1] and steps of .01: never finer than the source.
+
+    Examples
+    --------
+    >>> from drystone.model.stone import Stone
+    >>> working_scale(StoneSet((Stone(1, np.ones((30, 80), bool)),)))
+    0.5
     """
     longer = float(np.median([max(stone.mask.shape) for stone in stones])) if len(stones) else 1.0
     return min(1.0, max(0.01, round(TYPICAL_STONE_PX / longer, 2)))

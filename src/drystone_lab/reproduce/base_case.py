@@ -14,7 +14,7 @@ from drystone.drawing.pictures.mechanism import plot_mechanism
 from drystone.drawing.pictures.wall import plot_wall
 from drystone.model.placement import Wedge
 from drystone.model.wall import Wall
-from drystone.statics.failing.mechanism import describe_mechanism
+from drystone.statics.failing.mechanism import Names, describe_mechanism
 from drystone.statics.flow.nonassociative import NonassociativeResult, nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
@@ -120,7 +120,7 @@ def _words(case: BaseCase, result: EitherResult) -> str | None:
     falls = result.status is LimitStatus.UNSTABLE
     wedges = frozenset(wedge.id for wedge in case.wall.wedges)
     return describe_mechanism(
-        case.model, result.mechanism, falls=falls, noun="stone", wedges=wedges
+        case.model, result.mechanism, falls=falls, names=Names("stone", wedges)
     ).words
 
 

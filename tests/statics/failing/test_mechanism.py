@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
-from drystone.statics.failing.mechanism import describe_mechanism
+from drystone.statics.failing.mechanism import Names, describe_mechanism
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND
 from drystone.statics.result import LimitStatus, Mechanism
@@ -47,7 +47,7 @@ def test_a_tall_block_rocks_about_its_toe(direction, toe_x):
 
 @pytest.mark.parametrize(("direction", "slip"), [("left", -1.0), ("right", 1.0)])
 def test_a_flat_block_slides_although_the_flow_rule_lifts_it(direction, slip):
-    failure = of_labels(stacked((40, 20, 0)), direction, noun="stone")
+    failure = of_labels(stacked((40, 20, 0)), direction, names=Names("stone"))
     assert failure.words == "Sliding of stone 1 on the ground."
     assert failure.contact_kinds == ("sliding", "sliding")
     # The tangent of the upward normal points to the right.
@@ -61,7 +61,7 @@ def test_a_bridging_stone_is_carried_by_two_rocking_pillars():
     labels = np.zeros((60, 100), np.uint32)
     labels[20:, :20], labels[20:, 80:] = 1, 2
     labels[:20] = 3
-    failure = of_labels(labels, noun="stone")
+    failure = of_labels(labels, names=Names("stone"))
     assert failure.words == (
         "Shifting of stone 3 on 1 and 2; stones 1 and 2 rock, each about its right toe."
     )
@@ -135,7 +135,7 @@ FLOATING[6:, :3], FLOATING[:3, 5:] = 1, 2
     ],
 )
 def test_falls_and_wedges_in_words(labels, mu, words):
-    assert of_labels(labels, mu=mu, noun="stone", wedges={1}).words == words
+    assert of_labels(labels, mu=mu, names=Names("stone", frozenset({1}))).words == words
 
 
 @pytest.mark.parametrize("direction", ["left", "right"])

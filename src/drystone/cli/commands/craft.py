@@ -67,8 +67,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
 def _masonry_of(wall: GivenWall, wedge_ids: frozenset[int]) -> Masonry:
     """Return a wall from a file as the rules look at it; E191 for a wedge that is not in it."""
     wedges, plan = wall.wedge_ids | wedge_ids, wall.plan
-    steps = {} if plan is None else {step.stone: step.step for step in plan.stone_steps}
-    steps |= {} if plan is None else {step.id: step.step for step in plan.wedge_steps}
+    steps = {} if plan is None else plan.step_by_id
     if wall.blocks is not None:
         outlines, model = polygons_from_json(wall.blocks), model_from_json(wall.blocks)
         per_m = 1.0 if plan is not None and plan.px_per_m else None

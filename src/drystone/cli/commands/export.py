@@ -41,8 +41,8 @@ def add(command: argparse.ArgumentParser) -> None:
     option("--density", type=positive, metavar="KG", dest="density_kg_m3", default=2600.0,
            help="kg in a cubic metre of stone (default 2600)")
     option = command.add_argument_group("drawings and films").add_argument
-    option("--paper-scale", type=positive, default=10.0, metavar="N",
-           help="the build sheet is drawn at 1:N (default 10, larger when the wall does not fit)")
+    option("--paper-scale", type=positive, metavar="N",
+           help="draw the build sheet at 1:N (default: the largest usual scale that fits)")
     option("--title", default="", metavar="TEXT", help="in the title block")
     option("--projector", metavar="WxH@PX", default="1920x1080@1000",
            help="px of the projector and how many are a metre on the wall (1920x1080@1000)")

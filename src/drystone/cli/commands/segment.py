@@ -160,10 +160,14 @@ def _details(photo: Photo, result: SegmentedPhoto, doubts: Sequence[Doubt]) -> d
         "source": {"name": photo.name, "sha256": photo.sha256,
                    "width_px": photo.size_px[0], "height_px": photo.size_px[1]},
         "from_photo": np.asarray(result.from_photo).tolist(),
-        "markers": None if view is None or not view.ids else {
-            "ids": list(view.ids), "residual_mm": view.residual_mm,
-            "residual_percent": view.residual_percent,
+        "markers": [
+            {"id": one.id, "corners_m": one.corners_m.tolist()} for one in result.markers
+        ],
+        "P_from_marker": None if not result.markers else {
+            "id": result.markers[0].id, "matrix": result.markers[0].pose.matrix.tolist(),
         },
+        "residual_mm": None if view is None else view.residual_mm,
+        "residual_percent": None if view is None else view.residual_percent,
         "ground": {
             "lab": [round(float(part), 1) for part in found.ground.colour],
             "share": round(found.ground.share, 3), "uneven": round(found.ground.uneven, 3),

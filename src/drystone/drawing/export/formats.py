@@ -26,10 +26,11 @@ class ExportSettings:
 
     Parameters
     ----------
-    paper_scale : float
-        The build sheet is drawn at 1 to this; the next usual scale where the wall does not fit.
+    paper_scale : float or None
+        The build sheet is drawn at 1 to this; the next usual scale where the wall does not fit, and
+        None is the largest usual scale.
     title : str
-        In the title block; empty for the name of the stones.
+        In the title block; empty for the name of the photograph, or of the stones.
     projector_px : (int, int)
         Width and height of a projector.
     projector_px_per_m : float
@@ -43,7 +44,7 @@ class ExportSettings:
         Width of films, about; that of walls higher than wide is less.
     """
 
-    paper_scale: float = 10.0
+    paper_scale: float | None = None
     title: str = ""
     projector_px: tuple[int, int] = (1920, 1080)
     projector_px_per_m: float = 1000.0

@@ -37,6 +37,10 @@ FRAMES = {
     "P": "Photo. X to the right and Y up in the picture that the stones were read from, Z out of "
     "it, towards the camera; origin at the picture's bottom-left corner, on the ground that the "
     "stones lie on. Poses called `pick` are in P.",
+    "M": "Marker. Origin in its middle, X to the right and Y up in its print, Z out of it, as "
+    "OpenCV has it. `P_from_marker` is where the frame of one marker is in P, as a matrix; null "
+    "when the photograph has none. `markers` has the corners of all in P, metres, from the upper "
+    "left of the print, clockwise.",
     "S": "Part. Origin in the middle of its thickness at the centroid that the plan gives; X "
     "and Z as the picture's x and y in the source image, Y into the wall.",
     "pick and place": "A stone lies on its back under the camera: the face that the camera sees "
@@ -71,6 +75,7 @@ def poses_json(assembly: Assembly) -> dict[str, Any]:
     """Return what poses.json holds, matrices as arrays; E131 without a scale."""
     plan = assembly.plan
     width_m, height_m = assembly.size
+    photograph = plan.source.get("photograph") or {}
     return {
         "schema": "drystone-poses/1",
         "version": plan.version,
@@ -80,6 +85,8 @@ def poses_json(assembly: Assembly) -> dict[str, Any]:
         "units": {"length": "m", "mass": "kg", "angle": "degree in names with _deg"},
         "px_per_m": assembly.require_scale("poses"),
         "frames": FRAMES,
+        "markers": photograph.get("markers", []),
+        "P_from_marker": photograph.get("P_from_marker"),
         "wall": {"width_m": width_m, "height_m": height_m},
         "thickness_m": assembly.thickness,
         "density_kg_m3": assembly.density_kg_m3,

@@ -110,7 +110,7 @@ def plot_mechanism(
     ax: Axes | None = None,
     *,
     load: str = "",
-    numbers: bool = False,
+    numbers: bool | Mapping[int, int] = False,
 ) -> Axes:
     """Draw how a wall fails: every block moved by its velocity, coloured by displacement (Fig. 15).
 
@@ -134,8 +134,8 @@ def plot_mechanism(
     load : str
         Words for a live load that is not the tilting table's, such as "point load on 7"; they
         are written without an arrow.
-    numbers : bool
-        Write the ids on the blocks.
+    numbers : bool or mapping of int to int
+        Write the ids on the blocks, or other numbers by id, such as steps.
 
     Returns
     -------
@@ -157,7 +157,7 @@ def plot_mechanism(
     items: list[Drawable] = []
     if stands_on_ground(motion.regions):
         items += ground((box[0], -depth, box[2], 0.0))
-    items += _blocks(motion, moved, numbers=numbers)
+    items += _blocks(motion, moved, numbers)
     y, middle, half = y1 + 2 * depth, (x0 + x1) / 2, 0.06 * (x1 - x0 + 2 * pad)
     if direction is None:
         half = 1.2 * depth
@@ -183,7 +183,7 @@ def plot_mechanism(
 
 
 def _blocks(
-    motion: MechanismMotion, moved: tuple[tuple[Loop, ...], ...], *, numbers: bool
+    motion: MechanismMotion, moved: tuple[tuple[Loop, ...], ...], numbers: bool | Mapping[int, int]
 ) -> list[Drawable]:
     share, centroids = motion.share, motion.centroids(1.0)
     items: list[Drawable] = []
@@ -194,7 +194,8 @@ def _blocks(
         items.append(area)
         if numbers:
             at = centroids[index]
-            items.append(Words(f"number-{number}", str(number), at, area.room, fill))
+            written = numbers.get(number, "") if isinstance(numbers, Mapping) else number
+            items.append(Words(f"number-{number}", str(written), at, area.room, fill))
     items += [
         Surface(f"before-{region.id}", region.loops, line=GREY, width_pt=0.5, z=2.0)
         for region in motion.regions
@@ -243,7 +244,7 @@ def mechanism_frames(
     *,
     frames: int = 24,
     load: str = "",
-    numbers: bool = False,
+    numbers: bool | Mapping[int, int] = False,
 ) -> tuple[Image.Image, ...]:
     """Draw a mechanism from rest to the largest displacement of its picture and back.
 

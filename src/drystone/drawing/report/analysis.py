@@ -42,7 +42,7 @@ def write_analysis(
     the model, where that is known.
     """
     shapes, model, resistance = wall.shapes, card.model, card.resistance
-    unit: Literal["px", "m", "units"] = "units" if wall.noun == "block" else "px"
+    unit: Literal["px", "m", "units"] = "units" if wall.names.noun == "block" else "px"
     if per_unit_m is not None:
         unit = "m"
         shapes, model = in_metres(shapes, model, per_unit_m)
@@ -51,13 +51,15 @@ def write_analysis(
         (f"with mu = {at.mu:g}", f"load multipliers: left {content.number(at.alpha_left)}, "
          f"right {content.number(at.alpha_right)}")
         for at in curve
-    ]  # fmt: skip
+        if at.alpha_left is not None or at.alpha_right is not None
+    ] or [(f"with mu = {curve[0].mu:g} to {curve[-1].mu:g}", "no load multiplier")]  # fmt: skip
     rows = [*_full_names(card.rows()), *friction]
     cite = CITATION.format(version=card.version, sha256=card.sha256)
     view = view_of_wall(
-        shapes, model, resistance, title="Limit analysis of a wall", unit=unit, noun=wall.noun,
-        wedges=wall.wedge_ids, cards=_cards(card), inputs=[*rows, ("cite", cite)],
-        notices=wall.notices, load_case=card.load_case,
+        shapes, model, resistance, title="Limit analysis of a wall", unit=unit, noun=wall.names.noun,
+        wedges=wall.names.wedges, steps=wall.names.steps,
+        cards=_cards(card), inputs=[*rows, ("cite", cite)],
+        notices=wall.notices, load_case=card.load_case, without_dilatancy=card.alphas_by_coulomb,
     )  # fmt: skip
     return write_report(path, view, pictures=path.parent)
 

@@ -4,7 +4,7 @@ import base64
 import html
 import json
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -59,10 +59,17 @@ def write_report(path: str | Path, view: ViewerData, *, pictures: str | Path | N
         mechanisms={side: _embedded(folder, name) for side, name in MECHANISMS.items()},
         unused=", ".join(map(str, view["unused"])) or "none",
         number=content.number,
-        digits=1 if view["unit"] == "px" else 3,
+        unit="cm" if view["unit"] == "m" else view["unit"],
+        length=partial(_length, view["unit"]),
+        falls=all(end["status"] == "unstable" for end in view["mechanisms"].values()),
     )
     write_whole(path, text.encode("utf-8", "replace"))
     return path
+
+
+def _length(unit: str, value: float) -> str:
+    """Write a length: of metres the centimetres."""
+    return content.number(100.0 * value if unit == "m" else value, 3 if unit == "units" else 1)
 
 
 def viewer_page(view: ViewerData, options: Mapping[str, Any] | None = None) -> str:

@@ -19,14 +19,23 @@ from drystone.drawing.outlines import regions_box, wall_regions
 from drystone.drawing.palette import PLAIN_COLOUR, WEDGE_COLOUR, cluster_colour, text_colour
 from drystone.drawing.photo import read_photo
 from drystone.drawing.pictures.mechanism import motion_of
+from drystone.drawing.sheet.words import (
+    beside_words,
+    length_words,
+    size_words,
+    turn_words,
+    wedge_place,
+)
 from drystone.drawing.words import content
 from drystone.drawing.words.analysis import ModelledWall
-from drystone.drawing.words.content import masons_words, number
+from drystone.drawing.words.content import masons_words
+from drystone.drawing.words.wall_verdict import WallVerdict, judge_wall
 from drystone.errors import Notice
+from drystone.io.plan_json import plan_digest
 from drystone.kernels.polygons import Points
 from drystone.model.plan import Point, StoneStep
 from drystone.model.wall import Labels
-from drystone.statics.failing.mechanism import Failure, Noun
+from drystone.statics.failing.mechanism import Failure, Names, Noun
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 
@@ -77,26 +86,34 @@ def view_of_assembly(
     plan, source = assembly.plan, assembly.plan.source
     digits = part_digits(assembly.size)
     shapes = {part.id: part.corners for part in assembly.parts}
-    wedges = frozenset(part.id for part in assembly.wedges)
-    wall = ModelledWall(assembly.model, shapes, "stone", wedges, tuple(notices))
+    names = Names("stone", frozenset(part.id for part in assembly.wedges), plan.step_by_id)
+    wall = ModelledWall(assembly.model, shapes, names, tuple(notices))
+    placed, metrics = len(plan.stone_steps), plan.metrics
+    verdict = judge_wall(
+        f"{placed} of {placed + len(plan.unused)} stones", wall, assembly.resistance,
+        without_dilatancy=(metrics.alpha_left_coulomb, metrics.alpha_right_coulomb,
+                           0.0 if metrics.F_LR_coulomb == 0.0 else None),
+    )  # fmt: skip
+    cards = content.cards(plan, stands=verdict.stands)
     # The wall as ordered, and all that sticks out of it.
     corners = np.concatenate([[(0.0, 0.0), assembly.size], *shapes.values()])
     return {
-        "title": f"Dry-stone wall from {source.get('path') or 'stones'}",
+        "title": f"Dry-stone wall from {content.source_name(plan) or 'stones'}",
         "unit": assembly.unit,
-        "summary": content.summary(plan),
+        **_judged(verdict),
         "size": rounded(assembly.size, digits),
         "box": rounded((*corners.min(axis=0), *corners.max(axis=0)), digits),
         "version": plan.version,
         "method": plan.method,
         "seed": plan.seed,
+        "plan": plan_digest(plan),
         "steps": len(plan.steps),
         "parts": _planned_parts(assembly, digits),
         "unused": list(plan.unused),
         **_of_statics(wall, assembly.resistance, digits, timings,
                       {part.id: part.centroid for part in assembly.parts}),
         "index_meanings": dict(content.INDICES),
-        **_about(content.cards(plan), source.get("sha256"), content.inputs(plan), plan.settings,
+        **_about(cards, source.get("sha256"), content.inputs(plan), plan.settings,
                  content.assumptions(plan)),
     }  # fmt: skip
 
@@ -110,6 +127,7 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
     unit: Literal["px", "m", "units"] = "px",
     noun: Noun = "stone",
     wedges: Collection[int] = (),
+    steps: Mapping[int, int] | None = None,
     cards: Iterable[content.ResultCard] = (),
     inputs: Iterable[tuple[str, str]] = (),
     settings: Mapping[str, Any] | None = None,
@@ -117,6 +135,7 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
     timings: Mapping[str, float] | None = None,
     load_case: str = content.TILTING,
     assumptions: Sequence[str] | None = None,
+    without_dilatancy: Iterable[float | None] = (),
 ) -> ViewerData:
     """Show a wall that was not planned: its blocks have ids and no steps.
 
@@ -137,8 +156,10 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
         What a block is called.
     wedges : collection of int
         Blocks that are wedges.
+    steps : mapping of int to int, optional
+        Steps of a plan by id; words name them.
     cards : iterable of ResultCard
-        Further results, after those of the strength.
+        Further results, after those of the strength, of a wall that stands.
     inputs : iterable of (str, str)
         What the analysis was made from, names and values.
     settings : mapping, optional
@@ -149,6 +170,8 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
         Name of the loads of the analysis.
     assumptions : sequence of str, optional
         What the results rest on; None says those of the load case.
+    without_dilatancy : iterable of float or None
+        Load multipliers by Coulomb's law, where they are known.
 
     Returns
     -------
@@ -159,10 +182,16 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
     x0, y0, x1, y1 = regions_box(region.loops for region in regions)
     size = (x1 - x0, y1 - min(y0, 0.0))
     digits = part_digits(size)
-    many = f"{len(regions)} {noun}{'' if len(regions) == 1 else 's'}"
-    strength = content.strength_cards(
-        resistance.value, resistance.left.alpha, resistance.right.alpha, load_case=load_case
-    )
+    names = Names(noun, frozenset(wedges), steps or {})
+    shown = ModelledWall(model, wall, names, tuple(notices))
+    many = f"{len(regions)} {names.noun}{'' if len(regions) == 1 else 's'}"
+    verdict = judge_wall(many, shown, resistance, load_case=load_case,
+                         without_dilatancy=without_dilatancy)  # fmt: skip
+    results = () if verdict.stands is False else (
+        *content.strength_cards(resistance.value, resistance.left.alpha, resistance.right.alpha,
+                                load_case=load_case),
+        *cards,
+    )  # fmt: skip
     if assumptions is None:
         assumptions = (*content.wall_assumptions(load_case), *content.model_assumptions(model))
     touching: dict[int, set[int]] = {region.id: set() for region in regions}
@@ -171,31 +200,38 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
         touching.setdefault(face.other, set()).add(face.block)
     parts = [
         _part(
-            region.id, "wedge" if region.id in wedges else "stone", region.loops, region.centroid,
-            digits, number=region.id,
+            region.id, "wedge" if region.id in names.wedges else "stone", region.loops,
+            region.centroid, digits, number=region.id,
             size=rounded(np.ptp(np.concatenate(region.loops), axis=0), digits),
             neighbours=sorted(touching[region.id]),
         )
         for region in regions
     ]  # fmt: skip
-    shown = ModelledWall(model, wall, noun, frozenset(wedges), tuple(notices))
     return {
         "title": title,
         "unit": unit,
-        "summary": f"{many}, {model.contact_count} contact points.",
+        **_judged(verdict),
         "size": rounded(size, digits),
         "box": rounded((x0, min(y0, 0.0), x1, y1), digits),
         "version": version("drystone"),
         "method": None,
         "seed": None,
+        "plan": None,
         "steps": 0,
         "parts": parts,
         "unused": [],
         **_of_statics(shown, resistance, digits, timings,
                       {region.id: region.centroid for region in regions}, load_case),
         "index_meanings": {},
-        **_about((*strength, *cards), None, inputs, settings or {}, assumptions),
+        **_about(results, None, inputs, settings or {}, assumptions),
     }  # fmt: skip
+
+
+def _judged(verdict: WallVerdict) -> ViewerData:
+    return {
+        "summary": f"{verdict.words}.",
+        "verdict": {"stands": verdict.stands, "rows": [list(row) for row in verdict.rows]},
+    }
 
 
 def _about(
@@ -246,10 +282,12 @@ def _planned_parts(assembly: Assembly, digits: int) -> list[ViewerData]:
             wedges=under.get(part.id, []), words=_words(assembly, part), crop=crops.get(part.id),
             alpha_left=_short(step.alpha_left), alpha_right=_short(step.alpha_right),
         )  # fmt: skip
+        shown["beside"] = _beside(assembly, part)
         if isinstance(step, StoneStep):
             shown["side"] = step.side
             shown["indices"] = {name: _short(value) for name, value in step.indices.items()}
             shown["source"] = rounded(lying[part.id], 2)
+            shown["turn"] = turn_words(part.angle_deg)
         made.append(shown)
     return made
 
@@ -267,7 +305,8 @@ def _part(
     colour, pattern = WEDGE_COLOUR if kind == "wedge" else PLAIN_COLOUR, PATTERNS[0]
     if cluster is not None:
         colour, pattern = cluster_colour(cluster), PATTERNS[(cluster - 1) % len(PATTERNS)]
-    unknown = ("step", "angle_deg", "under", "crop", "side", "source", "alpha_left", "alpha_right")
+    unknown = ("step", "angle_deg", "turn", "beside", "under", "crop", "side", "source",
+               "alpha_left", "alpha_right")  # fmt: skip
     return {
         "id": part_id,
         "kind": kind,
@@ -288,31 +327,25 @@ def _part(
 
 def _words(assembly: Assembly, part: Part) -> str:
     """Say what the step of a part asks for."""
-    digits = 3 if assembly.unit == "m" else 1
-    x, y = (number(value, digits) for value in part.centroid)
-    step = part.plan_step
-    if not isinstance(step, StoneStep):
-        wide, high = (number(value, digits) for value in part.size)
+    if part.kind == "wedge":
+        under = assembly.part(part.under or 0)
         return (
-            f"Push wedge {part.id} in under stone {step.under}: {wide} wide, {high} high, "
-            f"around ({x}, {y}) {assembly.unit}."
+            f"Push wedge {part.id} in under the {wedge_place(assembly, part)} of stone {under.id} "
+            f"(step {under.step}): {size_words(assembly, *np.ptp(part.corners, axis=0).tolist())}."
         )
+    across, up = (length_words(assembly, value) for value in part.centroid)
+    beside = _beside(assembly, part)
     return (
-        f"Place stone {part.id}, {turned(part.angle_deg)}, with its centroid at ({x}, {y}) "
-        f"{assembly.unit}, from the {step.side}."
+        f"Set stone {part.id} ({turn_words(part.angle_deg)}), its middle {across} from the left "
+        f"end and {up} above the ground{beside and f'; {beside}'}."
     )
 
 
-def turned(angle_deg: float) -> str:
-    """Say how far something is turned, the shorter way round.
-
-    >>> turned(-90.04), turned(270.0), turned(0.01)
-    ('turned 90.0° clockwise', 'turned 90.0° clockwise', 'not turned')
-    """
-    angle = (angle_deg + 180.0) % 360.0 - 180.0
-    if abs(angle) < 0.05:
-        return "not turned"
-    return f"turned {abs(angle):.1f}° {'counter-clockwise' if angle > 0 else 'clockwise'}"
+def _beside(assembly: Assembly, part: Part) -> str:
+    """Say by steps what a part goes on and beside, or under."""
+    if part.kind == "wedge":
+        return f"under the {wedge_place(assembly, part)} of {assembly.part(part.under or 0).step}"
+    return beside_words(assembly, part)
 
 
 def _of_statics(
@@ -334,7 +367,7 @@ def _of_statics(
     }
     return {
         "schema": SCHEMA,
-        "noun": wall.noun,
+        "noun": wall.names.noun,
         "mu": wall.model.mu,
         "contacts": _contacts(wall.model, _forces_by_case(*ends), failures, digits + 1),
         "mechanisms": mechanisms,

@@ -4,8 +4,7 @@ The first page has the wall to scale and the title block; then come a line a sto
 the stones lie, wedges to cut, and what is left over.
 """
 
-import hashlib
-import json
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from textwrap import wrap
@@ -39,7 +38,8 @@ from drystone.drawing.sheet.words import (
     wedge_words,
 )
 from drystone.drawing.wall import FRAME_DASHES, drawing_of_assembly
-from drystone.io.plan_json import plan_to_json
+from drystone.drawing.words.content import source_name
+from drystone.io.plan_json import plan_digest
 from drystone.kernels.polygons import Points
 from drystone.model.plan import StoneStep
 
@@ -68,14 +68,18 @@ class Scale:
         return NOT_TO_SCALE if self.denominator is None else f"1:{self.denominator:g}"
 
 
-def paper_scale(assembly: Assembly, wished: float) -> Scale:
-    """Return the scale of the drawing: 1 to what is wished when it fits, or the next usual one."""
+def paper_scale(assembly: Assembly, wished: float | None = None) -> Scale:
+    """Return the scale of the drawing: 1 to what is wished when it fits, or the next usual one.
+
+    Without a wish it is the largest usual one that fits.
+    """
     width, height = assembly.size
     if assembly.unit != "m":
         return Scale(None, min(DRAWING_MM[0] / width, DRAWING_MM[1] / height))
     least = 1000.0 * max(width / DRAWING_MM[0], height / DRAWING_MM[1])
-    larger = [scale for scale in USUAL_SCALES if scale > wished]
-    chosen = next((scale for scale in (wished, *larger) if scale >= least * (1 - 1e-9)), least)
+    usual = [scale for scale in USUAL_SCALES if wished is None or scale > wished]
+    tried = usual if wished is None else [wished, *usual]
+    chosen = next((scale for scale in tried if scale >= least * (1 - 1e-9)), least)
     return Scale(chosen, 1000.0 / chosen)
 
 
@@ -83,11 +87,8 @@ def sheet(
     assembly: Assembly, settings: ExportSettings, photo: StonePhoto | None
 ) -> list[SheetPage]:
     """Draw the pages: the wall, a line a stone, the fetch list, wedges to cut."""
-    source = str(assembly.plan.source.get("path") or "")
+    source, sha256 = source_name(assembly.plan), plan_digest(assembly.plan)
     title = settings.title or (f"Build sheet for {source}" if source else "Build sheet")
-    # As drystone.io.plan_json.write_plan writes it.
-    plan = json.dumps(plan_to_json(assembly.plan), ensure_ascii=False, allow_nan=False, indent=1)
-    sha256 = hashlib.sha256(f"{plan}\n".encode()).hexdigest()[:16]
     pages = [
         _first_page(assembly, settings, title, sha256),
         *Rows(assembly, photo).pages(),
@@ -141,7 +142,7 @@ def _title_block(
     size = " \N{MULTIPLICATION SIGN} ".join(
         f"{side:.2f}" if assembly.unit == "m" else f"{side:.0f}" for side in assembly.size
     )
-    source = str(plan.source.get("path") or "not from a file")
+    source = source_name(plan) or "not from a file"
     on_paper = scale.words if scale.denominator is None else f"{scale.words} on A4"
     rows = [
         [("Title", settings.title or source), ("Stones", source),
@@ -181,14 +182,15 @@ def _ruler(page: SheetPage, y: float, scale: Scale) -> None:
         )  # fmt: skip
 
 
-ROW_MM = 27.0
+ROW_MM = 27.0, 34.0
+"""Height of a line: the least, and the most where a page has few."""
 HEAD_MM = 19.0
-NUMBER, PICTURE, TURN, WHERE, BESIDE = 12.0, 31.0, 63.0, 120.0, 148.0
+NUMBER, PICTURE, TURN, WHERE, BESIDE = 12.0, 31.0, 63.0, 117.0, 154.0
 """Where the columns begin, mm from the left edge of the page."""
 
 PICTURE_MM = (30.0, 23.0)
 STONE_MM = 22.0  # the largest stone of the wall, turned any way, is drawn this large
-WORDS = 28  # letters in a line of the last column
+WORDS = 26  # letters in a line of the last column
 SEEN_DEG = 15.0  # smaller turns have no arrow: it would be a dot
 TURN_COLOUR = "#0072b2"
 CROP_SPARE = 0.14  # of the size of a stone, around it in its picture
@@ -204,15 +206,19 @@ class Rows:
     def pages(self) -> list[SheetPage]:
         """Return the pages; the drawings that show how to turn a stone are all to one scale."""
         stones = list(self.assembly.stones)
-        count = int((A4_MM[1] - 2 * EDGE_MM - HEAD_MM) // ROW_MM)
+        high = A4_MM[1] - 2 * EDGE_MM - HEAD_MM
+        # Pages of about the same length: none has a single row.
+        pages = max(1, math.ceil(len(stones) / (high // ROW_MM[0])))
+        count = max(1, math.ceil(len(stones) / pages))
+        row = min(ROW_MM[1], high / count)
         spans = [float(np.hypot(*np.ptp(part.corners, axis=0))) for part in stones]
         scale = STONE_MM / max(spans, default=1.0)
         return [
-            self._page(stones[first : first + count], scale)
+            self._page(stones[first : first + count], scale, row)
             for first in range(0, len(stones), count)
         ]
 
-    def _page(self, stones: Sequence[Part], scale: float) -> SheetPage:
+    def _page(self, stones: Sequence[Part], scale: float, high: float) -> SheetPage:
         page = SheetPage()
         last = max(step for part in stones for step in
                    (part.step, *(w.step for w in wedges_after(self.assembly, part))))  # fmt: skip
@@ -233,25 +239,25 @@ class Rows:
         ):
             page.write(WHERE, top - 3.1 * (row + 1), meaning, 6.0, color="#555555")
         for row, part in enumerate(stones):
-            y = page.top - HEAD_MM - (row + 1) * ROW_MM
-            page.line([(EDGE_MM, y + ROW_MM), (page.right, y + ROW_MM)], colour=GREY)
-            page.write(NUMBER, y + ROW_MM - 9.5, str(part.step), 19.0, weight="bold")
-            page.write(NUMBER, y + ROW_MM - 14.0, f"stone {part.id}", SMALL_PT, color="#555555")
+            y = page.top - HEAD_MM - (row + 1) * high
+            page.line([(EDGE_MM, y + high), (page.right, y + high)], colour=GREY)
+            page.write(NUMBER, y + high - 9.5, str(part.step), 19.0, weight="bold")
+            page.write(NUMBER, y + high - 14.0, f"stone {part.id}", SMALL_PT, color="#555555")
             page.tick_box(NUMBER, y + 4.0)
-            self._picture(page, part, y)
-            self._turn(page, part, y, scale)
-            self._words(page, part, y)
+            self._picture(page, part, y + high / 2)
+            self._turn(page, part, y + high / 2, scale)
+            self._words(page, part, y + high - 5.0, high)
         page.line([(EDGE_MM, y), (page.right, y)], colour=GREY)
         return page
 
-    def _picture(self, page: SheetPage, part: Part, y: float) -> None:
+    def _picture(self, page: SheetPage, part: Part, middle_mm: float) -> None:
         """Draw a stone as it lies, with what is around it in the photograph."""
         outline = self.assembly.source_corners(part)
         low, high = outline.min(axis=0), outline.max(axis=0)
         spare = CROP_SPARE * float((high - low).max())
         middle, half = (low + high) / 2, (high - low) / 2 + spare
         scale = min(PICTURE_MM[0] / (2 * half[0]), PICTURE_MM[1] / (2 * half[1]))
-        at = np.array([PICTURE + PICTURE_MM[0] / 2, y + ROW_MM / 2])
+        at = np.array([PICTURE + PICTURE_MM[0] / 2, middle_mm])
         if self.photo is not None:
             (x0, y0), (x1, y1) = (middle - half).tolist(), (middle + half).tolist()
             (left, bottom), (wide, high) = (at - half * scale).tolist(), (2 * half * scale).tolist()
@@ -260,9 +266,9 @@ class Rows:
         over = replace(shape, fill="none", line=WEDGE_COLOUR, width_pt=0.9)
         page.draw(over if self.photo else shape)
 
-    def _turn(self, page: SheetPage, part: Part, y: float, scale: float) -> None:
+    def _turn(self, page: SheetPage, part: Part, middle_mm: float, scale: float) -> None:
         """Draw how a stone lies beside how it is in the wall."""
-        angle, middle = shortest_turn(part.angle_deg), y + ROW_MM / 2 + 2.2
+        angle, middle = shortest_turn(part.angle_deg), middle_mm + 2.2
         lying, standing = (TURN + 12.5, middle), (TURN + 39.5, middle)
         own = part.own_corners * scale
         placed = (part.corners - np.array(part.centroid)) * scale
@@ -281,20 +287,23 @@ class Rows:
             page.turn_arrow(lying, radius, angle, TURN_COLOUR)
         page.arrow((TURN + 24.0, middle), (TURN + 28.0, middle))
         page.write(
-            TURN + 26.0, y + 1.6, turn_words(angle), PLAIN_PT + 1, ha="center", weight="bold"
+            TURN + 26.0,
+            middle_mm - 11.9,
+            turn_words(angle),
+            PLAIN_PT + 1,
+            ha="center",
+            weight="bold",
         )
 
-    def _words(self, page: SheetPage, part: Part, y: float) -> None:
-        corner, top = lowest_corner(part), y + ROW_MM - 5.0
+    def _words(self, page: SheetPage, part: Part, top: float, high: float) -> None:
+        corner = lowest_corner(part)
         for row, (name, point) in enumerate((("middle", part.centroid), ("lowest corner", corner))):
-            at = top - 11.0 * row
+            at = top - 10.0 * row
             page.write(WHERE, at, name, SMALL_PT, color="#555555")
             # The grip of a rule: how far from the left end, then how high.
-            for line, (sign, length) in enumerate(
-                (("\N{RIGHTWARDS ARROW}", point[0]), ("\N{UPWARDS ARROW}", point[1]))
-            ):
-                said = f"{sign} {length_words(self.assembly, length)}"
-                page.write(WHERE, at - 3.7 * (line + 1), said, PLAIN_PT)
+            across, up = (length_words(self.assembly, length) for length in point)
+            said = f"\N{RIGHTWARDS ARROW} {across.split()[0]}   \N{UPWARDS ARROW} {up}"
+            page.write(WHERE, at - 4.2, said, PLAIN_PT)
         lines = wrap(beside_words(self.assembly, part), WORDS)
         told = [(line, "black") for line in lines]
         for wedge in wedges_after(self.assembly, part):
@@ -302,7 +311,7 @@ class Rows:
                 (line, WEDGE_COLOUR) for line in wrap(wedge_words(self.assembly, wedge), WORDS)
             ]
         # Lines come closer where there are many, such as three wedges.
-        pitch = min(3.9, (ROW_MM - 4.0) / max(len(told), 1))
+        pitch = min(3.9, (high - 4.0) / max(len(told), 1))
         size = min(PLAIN_PT, 2.15 * pitch)
         for place, (words, colour) in enumerate(told):
             page.write(BESIDE, top - pitch * place, words, size, color=colour)

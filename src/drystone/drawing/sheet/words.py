@@ -21,7 +21,9 @@ def turn_words(angle_deg: float) -> str:
     if abs(angle) < AS_IT_LIES_DEG:
         return "as it lies"
     if abs(angle) > 180.0 - AS_IT_LIES_DEG:
-        return "half round"
+        return "half turn"
+    if abs(abs(angle) - 90.0) < AS_IT_LIES_DEG:
+        return f"quarter turn {'left' if angle > 0 else 'right'}"
     return f"turn {'left' if angle > 0 else 'right'} {abs(angle):.0f}\N{DEGREE SIGN}"
 
 

@@ -13,7 +13,7 @@ from drystone.drawing.words.content import number
 from drystone.errors import Notice
 from drystone.io.walls import GivenWall
 from drystone.model.wall import Labels
-from drystone.statics.failing.mechanism import Failure, Names, Noun, describe_mechanism
+from drystone.statics.failing.mechanism import Failure, Names, describe_mechanism
 from drystone.statics.flow.nonassociative import (
     NonassociativeResistance,
     NonassociativeResult,
@@ -42,14 +42,12 @@ Shapes = Labels | Mapping[int, NDArray[np.float64]]
 class ModelledWall:
     """A wall as blocks and contacts, and what it looks like.
 
-    `noun` is what a block is called; `remarks` are lines for the card, such as what closing gaps
-    changes.
+    `remarks` are lines for the card, such as what closing gaps changes.
     """
 
     model: RigidBlockModel
     shapes: Shapes
-    noun: Noun
-    wedge_ids: frozenset[int] = frozenset()
+    names: Names
     notices: tuple[Notice, ...] = ()
     remarks: Mapping[str, str] = field(default_factory=dict)
 
@@ -60,8 +58,7 @@ class ModelledWall:
                 self.model,
                 result.mechanism,
                 falls=result.status is LimitStatus.UNSTABLE,
-                noun=self.noun,
-                wedges=self.wedge_ids,
+                names=self.names,
             )
             for result in results
             if result.mechanism is not None
@@ -148,6 +145,12 @@ class Card:
         return self.resistance.stable and not self._can_fall
 
     @property
+    def alphas_by_coulomb(self) -> list[float | None]:
+        """Load multipliers without dilatancy, 0 where a fall was found."""
+        falls = [0.0] if self._can_fall else []
+        return [*(end.alpha for end in self._without.values()), *falls]
+
+    @property
     def _can_fall(self) -> bool:
         """Whether a fall without dilatancy was found."""
         return LimitStatus.UNSTABLE in [end.status for end in self._without.values()]
@@ -224,7 +227,7 @@ def analysis_of(
         failures=wall.failures(both),
         loose=wall.failures(loose),
         upright=held_by_upright_faces(model, loads, solver=solver) if resistance.stable else None,
-        names=Names(wall.noun, wall.wedge_ids),
+        names=wall.names,
         sensitivity={
             result.direction: friction_sensitivity(model, result, loads).of_model(model)
             for result in both

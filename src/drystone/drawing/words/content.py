@@ -69,13 +69,14 @@ def number(value: float | None, digits: int = 3) -> str:
 def inputs(plan: Plan) -> tuple[tuple[str, str], ...]:
     """Return what the plan was made from, as pairs of name and value."""
     source, unit = plan.source, plan.length_unit
-    digits = 3 if unit == "m" else 1
+    digits = 2 if unit == "m" else 1
     scale = f"{plan.px_per_m:g} px a metre" if plan.px_per_m else "unknown (lengths in source px)"
     return (
-        ("Stones from", str(source.get("path") or "an array in memory")),
+        ("Stones from", source_name(plan) or "an array in memory"),
         ("SHA-256 of the input", str(source.get("sha256") or UNDEFINED)),
         ("Stones in the input", str(source.get("stones", UNDEFINED))),
         ("Size of the image", f"{source.get('width_px')} {TIMES} {source.get('height_px')} px"),
+        ("Building ended", plan.stopped),
         ("Wall", f"{plan.width:.{digits}f} {TIMES} {plan.height:.{digits}f} {unit}"),
         ("Scale", scale),
         ("Working resolution", f"{plan.working_scale:g} of the source's"),
@@ -157,16 +158,16 @@ def is_horizontal(load_case: str) -> bool:
     return load_case.startswith((TILTING, "growing with height"))
 
 
-def summary(plan: Plan) -> str:
-    """Return the result in one sentence."""
-    placed, of = len(plan.stone_steps), len(plan.stone_steps) + len(plan.unused)
-    wedges = len(plan.wedge_steps)
-    with_wedges = f" with {wedges} wedge{'s' if wedges != 1 else ''}" if wedges else ""
-    return f"{placed} of {of} stones placed{with_wedges}; stopped because: {plan.stopped}."
+def source_name(plan: Plan) -> str:
+    """Return what the stones were found in: the photograph, else the file that was read."""
+    photograph = plan.source.get("photograph") or {}
+    return str(photograph.get("name") or plan.source.get("path") or "")
 
 
-def cards(plan: Plan) -> tuple[ResultCard, ...]:
-    """Return the results, the ones to look at first at the front."""
+def cards(plan: Plan, *, stands: bool | None = True) -> tuple[ResultCard, ...]:
+    """Return the results, the ones to look at first at the front; no strength of what falls."""
+    if stands is False:
+        return _layout(plan)
     metrics = plan.metrics
     ends = (metrics.alpha_left, metrics.alpha_right)
     return (*strength_cards(metrics.F_LR, *ends, _by_other_rules(metrics)), *_layout(plan))
@@ -183,9 +184,6 @@ def strength_cards(
     of_one = "At 1 the whole wall would slide on the ground before it comes apart."
     if load_case != TILTING:
         of_one = f"The load case is: {load_case}."
-    weaker = "Right is the live load as given, left is the live load reversed."
-    if is_horizontal(load_case):
-        weaker = "Where the wall fails first when it is pushed from the side."
     return (
         ResultCard("F_LR", "Lateral resistance", number(ratio), "higher",
              "The smaller load multiplier over the coefficient of friction. "
@@ -193,7 +191,6 @@ def strength_cards(
         *(ResultCard(f"{ALPHA} {side}", f"Load multiplier (adequacy factor) to the {side}",
                      number(alpha), "higher", _multiplier_means(load_case, side))
           for side, alpha in (("left", left), ("right", right))),
-        ResultCard("", "Weaker direction", weaker_direction(left, right), "", weaker),
     )  # fmt: skip
 
 
@@ -222,19 +219,12 @@ def _by_other_rules(metrics: PlanMetrics) -> str:
     return said
 
 
-def weaker_direction(left: float | None, right: float | None) -> str:
-    """Return the direction of the smaller load multiplier."""
-    if left is None or right is None:
-        return UNDEFINED
-    if math.isclose(left, right, rel_tol=1e-9, abs_tol=1e-9):
-        return "both alike"
-    return "left" if left < right else "right"
-
-
 def _layout(plan: Plan) -> tuple[ResultCard, ...]:
     metrics, unit = plan.metrics, plan.length_unit
     placed, of = len(plan.stone_steps), len(plan.stone_steps) + len(plan.unused)
-    area = number(metrics.wedge_area, 4 if unit == "m" else 1)
+    factor, square = (1e4, "cm²") if unit == "m" else (1.0, "px²")
+    area = number(factor * metrics.wedge_area, 1)
+    wedges = f"{len(plan.wedge_steps)} ({area} {square})" if plan.wedge_steps else "0"
     longer, wavy = (
         UNDEFINED if share is None else f"{number(share, 2)} %"
         for share in (metrics.F_AV, metrics.F_AH)
@@ -258,7 +248,7 @@ def _layout(plan: Plan) -> tuple[ResultCard, ...]:
         ResultCard("E_FLUSH", "Gaps at the ends", number(metrics.E_FLUSH), "lower",
              "Mean gap between the wall and its two end lines, in mean widths of a stone. "
              "0 means upright ends on the lines."),
-        ResultCard("", "Wedges", f"{len(plan.wedge_steps)} ({area} {unit}²)", "lower",
+        ResultCard("", "Wedges", wedges, "lower",
              "Small stones pushed in under others, and their area. Each has to be found or cut."),
     )  # fmt: skip
 

@@ -18,7 +18,7 @@ from drystone.drawing.words.analysis import ModelledWall, Shapes
 from drystone.errors import InputError, Notice, UsageError
 from drystone.io.walls import GivenWall
 from drystone.model.wall import Labels
-from drystone.statics.failing.mechanism import Noun
+from drystone.statics.failing.mechanism import Names, Noun
 from drystone.statics.joints import with_head_friction
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import LoadCase, load_case
@@ -83,7 +83,7 @@ def _given(wall: GivenWall, blocks: dict[str, Any], mu: float, asked: ModelReque
         remarks["contacts"] = f"set back; F_LR {bare:.3f} with contacts up to the ends of faces"
     model, shapes = model_from_json(blocks), polygons_from_json(blocks)
     noun: Noun = "block" if wall.plan is None else "stone"
-    return ModelledWall(model, shapes, noun, wall.wedge_ids, remarks=remarks)
+    return ModelledWall(model, shapes, _names(wall, noun), remarks=remarks)
 
 
 def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> ModelledWall:
@@ -91,7 +91,7 @@ def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> M
         return _with_closed_gaps(wall, labels, mu, asked)
     picture = model_from_labels(labels, mu)
     if asked.contacts == "pixels":
-        return ModelledWall(picture.model, labels, "stone", wall.wedge_ids, picture.notices)
+        return ModelledWall(picture.model, labels, _names(wall), picture.notices)
     outlines = outlines_of_labels(labels[: picture.ground_row])
     # What a picture weighs it weighs by its pixels, not by what smoothing made of them.
     bare = replace(model_from_outlines(outlines, mu), blocks=picture.model.blocks)
@@ -102,7 +102,11 @@ def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> M
         with_ends = "falls" if strength is None else f"F_LR {strength:.3f}"
         said += f"; {with_ends} with contacts up to the ends of faces"
     model, remarks = replace(bare, interfaces=found.interfaces), {"contacts": said}
-    return ModelledWall(model, outlines, "stone", wall.wedge_ids, picture.notices, remarks)
+    return ModelledWall(model, outlines, _names(wall), picture.notices, remarks)
+
+
+def _names(wall: GivenWall, noun: Noun = "stone") -> Names:
+    return Names(noun, wall.wedge_ids, {} if wall.plan is None else wall.plan.step_by_id)
 
 
 def _with_closed_gaps(
@@ -122,7 +126,7 @@ def _with_closed_gaps(
         picture = model_with_closed_gaps(labels, reach, mu)
     spread = gap_spread(drawn, reach, mu, partial(_resistance, asked))
     remarks = {"gaps": f"{done}{spread}"}
-    return ModelledWall(picture.model, labels, "stone", wall.wedge_ids, picture.notices, remarks)
+    return ModelledWall(picture.model, labels, _names(wall), picture.notices, remarks)
 
 
 def _resistance(asked: ModelRequest, model: RigidBlockModel) -> LateralResistance:
@@ -172,7 +176,7 @@ def scarcity(wall: ModelledWall, per_unit_m: float | None) -> Notice | None:
     named = ", ".join(str(one.block) for one in few[:LISTED])
     more = ", …" if len(few) > LISTED else ""
     gaps = [one.gap for one in few if np.isfinite(one.gap)]
-    noun = wall.noun if len(few) == 1 else f"{wall.noun}s"
+    noun = wall.names.noun if len(few) == 1 else f"{wall.names.noun}s"
     have = "has" if len(few) == 1 else "have"
     said = f"{len(few)} {noun} {have} fewer than two contact points: {named}{more}."
     if not gaps:

@@ -1,7 +1,7 @@
 """How a wall fails, told from its mechanism: contacts, bodies that move as one, and words."""
 
-from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Literal
 
 from drystone.statics.failing.bodies import (
@@ -62,11 +62,10 @@ def describe_mechanism(
     mechanism: Mechanism,
     *,
     falls: bool = False,
-    noun: Noun = "block",
-    wedges: Collection[int] = (),
+    names: "Names | None" = None,
     tolerance: float = TOLERANCE,
 ) -> Failure:
-    """Tell how a wall fails, or falls by itself; wedges are blocks that the words call so.
+    """Tell how a wall fails, or falls by itself, in words that call blocks by their names.
 
     A mechanism of a block that the model does not have is a ValueError.  A velocity below
     `tolerance`, a share of the largest, counts as none.
@@ -79,22 +78,27 @@ def describe_mechanism(
         contact_velocity=kin.relative,
         contact_kinds=kin.kinds,
         groups=groups,
-        words=in_words(groups, Names(noun, frozenset(wedges)), falls=falls),
+        words=in_words(groups, names or Names(), falls=falls),
     )
 
 
 @dataclass(frozen=True)
 class Names:
-    """What blocks are called."""
+    """What blocks are called; those that a plan places have their steps by id.
+
+    >>> Names("stone", steps={12: 7}).listed([12])
+    'stone 12 (step 7)'
+    """
 
     noun: Noun = "block"
     wedges: frozenset[int] = frozenset()
+    steps: Mapping[int, int] = field(default_factory=dict)
 
     def listed(self, ids: Iterable[int]) -> str:
         """Name blocks: "stones 3, 7 and wedge 301"; long lists are shortened."""
         ordered = sorted(ids, key=lambda i: (i in self.wedges, i))
         wedges = sum(block in self.wedges for block in ordered)
-        words = [str(block) for block in ordered]
+        words = [self._number(block) for block in ordered]
         for noun, first, count in (
             (self.noun, 0, len(words) - wedges),
             ("wedge", len(words) - wedges, wedges),
@@ -111,7 +115,11 @@ class Names:
     def _one(self, block: int) -> str:
         if block == GROUND:
             return "the ground"
-        return f"wedge {block}" if block in self.wedges else str(block)
+        return f"{'wedge ' * (block in self.wedges)}{self._number(block)}"
+
+    def _number(self, block: int) -> str:
+        step = self.steps.get(block)
+        return str(block) if step is None else f"{block} (step {step})"
 
 
 def in_words(groups: Iterable[MovingGroup], names: Names, *, falls: bool = False) -> str:

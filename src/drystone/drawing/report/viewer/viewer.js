@@ -8,6 +8,7 @@ const STEP_MS = 700;
 const SWING_MS = 2600;
 const LARGEST_MOVE = 0.12;
 const LONGEST_FORCE = 0.22;
+const SWIPE_PX = 50;
 const WIDEST_THRUST = 14;
 const KINDS = {
   closed: { mark: "dot", words: "closed" },
@@ -32,10 +33,11 @@ let count = 0;
  * @param {Element|ShadowRoot} element where to put it; what is in it stays.
  * @param {object} data of the schema "drystone-view/1".
  * @param {object} [options] css: style sheet to add; chart, metrics, about: false leaves a part
- *   out; step: first step to show (the last); pageKeys: left and right arrows also work when
- *   nothing has the focus; onStep(step), onTheme(theme): called on changes.
+ *   out; build: false offers no Build view; step: first step to show (the whole wall); pageKeys:
+ *   left and right arrows also work when nothing has the focus; onStep(step), onTheme(theme):
+ *   called on changes.
  * @returns {{root: Element, show: function(number), step: number, select: function(number),
- *   destroy: function()}}
+ *   build: function(boolean), destroy: function()}}
  */
 export function mount(element, data, options = {}) {
   if (data.schema !== "drystone-view/1") {
@@ -97,6 +99,24 @@ function freeName() {
     name = `ds-view-${count}`;
   } while (document.getElementById(name));
   return name;
+}
+
+// Steps that are done, kept by the browser under the hash of the plan; where it keeps nothing, as in
+// some frames, they last as long as the page.
+function readTicks(data) {
+  try {
+    return new Set(JSON.parse(window.localStorage.getItem(`drystone ${data.plan}`) ?? "[]"));
+  } catch {
+    return new Set();
+  }
+}
+
+function keepTicks(data, ticks) {
+  try {
+    window.localStorage.setItem(`drystone ${data.plan}`, JSON.stringify([...ticks]));
+  } catch {
+    // Nothing is kept.
+  }
 }
 
 // The lines that a joint carries: where its force acts, which way, and how large it is.
@@ -161,9 +181,17 @@ class Viewer {
     this.timer = null;
     this.frame = null;
     this.labels = new Map();
+    this.building = false;
+    this.ticks = readTicks(data);
     this.still = window.matchMedia("(prefers-reduced-motion: reduce)");
-    this.build(element);
+    this.assemble(element);
     this.show(this.state.step, { quiet: true });
+    if (options.step === undefined) this.overview();
+  }
+
+  overview() {
+    this.select(null);
+    this.said.textContent = `Choose a ${this.noun.toLowerCase()} in the drawing${this.last ? ", or go to a step" : ""}.`;
   }
 
   handle() {
@@ -172,6 +200,7 @@ class Viewer {
       root: this.root,
       show: (step) => this.show(step),
       select: (id) => this.select(id),
+      build: (on) => this.build(on),
       get step() {
         return viewer.state.step;
       },
@@ -189,7 +218,7 @@ class Viewer {
 
   // --- building ---------------------------------------------------------------------------------
 
-  build(element) {
+  assemble(element) {
     const { data, options } = this;
     this.card = make("aside", { class: "ds-card", "aria-label": `${this.noun} card` });
     this.said = make("p", { class: "ds-said", "aria-live": "polite", role: "status" });
@@ -208,6 +237,10 @@ class Viewer {
       options.about === false ? null : this.buildAbout(),
     );
     this.root.addEventListener("keydown", (event) => this.key(event));
+    this.root.addEventListener("pointerdown", (event) => {
+      this.swipe = event.isPrimary ? event : null;
+    });
+    this.root.addEventListener("pointerup", (event) => this.swiped(event));
     this.pageKey = (event) => {
       if (options.pageKeys && event.target === document.body && /^Arrow(Left|Right)$/.test(event.key)) this.key(event);
     };
@@ -219,11 +252,9 @@ class Viewer {
 
   buildTop() {
     const { data, options } = this;
-    this.themeButton = make("button", { type: "button", class: "ds-theme" }, "Theme: auto");
-    this.themeButton.addEventListener("click", () => this.nextTheme());
-    const title = options.title === false ? null : make("h2", { class: "ds-title" }, data.title);
-    const summary = options.title === false ? null : make("p", { class: "ds-summary" }, data.summary);
-    return make("div", { class: "ds-top" }, make("div", {}, title, summary), this.themeButton);
+    if (options.title === false) return null;
+    const falls = data.verdict.stands === false ? " ds-alarm" : "";
+    return make("div", { class: "ds-top" }, make("h2", { class: "ds-title" }, data.title), make("p", { class: `ds-summary${falls}` }, data.summary));
   }
 
   buildStage() {
@@ -306,9 +337,12 @@ class Viewer {
       this.show(Number(this.slider.value));
     });
     this.counter = make("output", { class: "ds-counter" });
+    this.buildButton = make("button", { type: "button", class: "ds-build" }, "Build");
+    this.buildButton.addEventListener("click", () => this.build(!this.building));
     return make(
       "div",
       { class: "ds-transport", role: "group", "aria-label": "Steps" },
+      this.options.build === false ? null : this.buildButton,
       button("first", "First step", "|◀", to(() => 0)),
       button("previous", "One step back", "◀", to(() => this.state.step - 1)),
       this.playButton,
@@ -343,6 +377,8 @@ class Viewer {
     this.pushing = make("span", { class: "ds-sub", hidden: true }, this.forceScale.label);
     const many = Object.keys(cases).length > 1;
     const fails = Object.keys(sides).length > 1;
+    this.themeButton = make("button", { type: "button", class: "ds-theme" }, "Theme: auto");
+    this.themeButton.addEventListener("click", () => this.nextTheme());
     const zoom = this.range("Zoom", "ds-zoom", 1, 4, 0.25, 1, (value) => this.zoom(value));
     return make(
       "div",
@@ -358,6 +394,7 @@ class Viewer {
         this.data.parts.some((part) => part.cluster !== null) ? this.check("Patterns", "patterns") : null,
         this.last ? this.check("Ids, not steps", "ids") : null,
         zoom.label,
+        this.themeButton,
       ),
     );
   }
@@ -439,12 +476,12 @@ class Viewer {
     for (const part of data.parts) {
       const group = this.groups.get(part.id);
       for (const one of this.drawnOf(part)) one.classList.toggle("ds-later", part.step !== null && part.step > state.step);
-      group.classList.toggle("ds-now", part === now && state.step !== this.last);
+      group.classList.toggle("ds-now", part === now && (this.building || state.step !== this.last));
     }
     if (this.slider) {
       this.slider.value = state.step;
       this.slider.setAttribute("aria-valuetext", this.sayStep(now));
-      this.counter.textContent = `${state.step} / ${this.last}`;
+      this.count();
     }
     this.said.textContent = this.last ? this.sayStep(now) : data.summary;
     this.select(now ? now.id : this.last ? null : (state.selected ?? null), { quiet: true });
@@ -508,6 +545,43 @@ class Viewer {
     this.groups.get(seen[next]).focus();
   }
 
+  // --- building -----------------------------------------------------------------------------------
+
+  // One step fills the screen, for a phone beside the wall.
+  build(on = true) {
+    if (!this.last) return;
+    this.pause();
+    this.building = on;
+    this.root.classList.toggle("ds-building", on);
+    this.buildButton.textContent = on ? "Close" : "Build";
+    const open = this.data.parts.find((part) => !this.ticks.has(part.step));
+    if (on) this.zoom(1);
+    this.show(on && open ? open.step : this.last);
+    if (on) this.root.scrollTo(0, 0);
+  }
+
+  swiped(event) {
+    const from = this.swipe;
+    this.swipe = null;
+    if (!this.building || !from || from.pointerId !== event.pointerId) return;
+    const [across, down] = [event.clientX - from.clientX, event.clientY - from.clientY];
+    if (Math.abs(across) < SWIPE_PX || Math.abs(across) < 2 * Math.abs(down)) return;
+    this.show(Math.max(1, this.state.step - Math.sign(across)));
+  }
+
+  tick(part, on) {
+    if (on) this.ticks.add(part.step);
+    else this.ticks.delete(part.step);
+    keepTicks(this.data, this.ticks);
+    this.count();
+    if (on && this.building && part.step === this.state.step) this.show(part.step + 1);
+  }
+
+  count() {
+    const done = this.building ? `, ${this.ticks.size} done` : "";
+    this.counter.textContent = `${this.state.step} / ${this.last}${done}`;
+  }
+
   // --- what is drawn over the stones --------------------------------------------------------------
 
   get finished() {
@@ -539,10 +613,21 @@ class Viewer {
     const [, , x1, y1] = this.data.box;
     const reach = Math.max(y1 - this.data.box[1], 0.2 * (x1 - this.data.box[0])) * this.k * LARGEST_MOVE;
     const pad = this.mechanism ? reach : 0;
+    if (this.building) return this.frameStep();
     const foot = this.finished && this.state.forces !== "none" ? 0.8 * reach : 0;
     const [left, top] = [-16 - pad, -12 - pad];
     const box = [left, top, WIDTH + 32 + 2 * pad, this.height + 26 + pad + foot].map((value) => value.toFixed(1));
     this.svg.setAttribute("viewBox", box.join(" "));
+    this.resize();
+  }
+
+  // Of a long wall only what is around the step: numbers stay readable.
+  frameStep() {
+    const wide = Math.min(WIDTH + 32, Math.max(3 * this.height, 200));
+    const part = this.data.parts.find((one) => one.step === this.state.step);
+    const middle = this.x((part ?? this.data.parts[0]).centroid[0]);
+    const left = Math.min(Math.max(middle - wide / 2, -16), WIDTH + 16 - wide);
+    this.svg.setAttribute("viewBox", [left, -12, wide, this.height + 26].map((value) => value.toFixed(1)).join(" "));
     this.resize();
   }
 
@@ -716,7 +801,7 @@ class Viewer {
     if (this.mechanism) {
       const { alpha, words } = this.mechanism;
       const push = alpha === null ? "" : `${this.mechanism.load}, load multiplier ${text(alpha)}. `;
-      said.push(`${push}${words}${this.last ? " (Stones by their ids.)" : ""}`);
+      said.push(`${push}${words}`);
     } else if (this.finished && state.kinds) said.push(`Joints in the mechanism to the ${this.kindSide}.`);
     if (this.finished && state.forces !== "none") said.push(data.forces_words);
     this.note.textContent = said.join(" ");
@@ -735,7 +820,7 @@ class Viewer {
   // --- the stone card -----------------------------------------------------------------------------
 
   nameOf(part) {
-    const step = part.step === null ? "" : `, step ${part.step}`;
+    const step = part.step === null ? "" : ` (step ${part.step})`;
     return `${part.kind === "wedge" ? "Wedge" : this.noun} ${part.id}${step}`;
   }
 
@@ -754,41 +839,59 @@ class Viewer {
     if (!quiet && part) this.said.textContent = part.step === null ? `${this.nameOf(part)}.` : this.sayStep(part);
   }
 
+  // What is said of the whole wall, until a stone is chosen.
   emptyCard() {
-    const words = this.last ? "Choose a stone in the drawing, or go to a step." : `Choose a ${this.noun.toLowerCase()} in the drawing.`;
-    return [make("p", { class: "ds-hint" }, words)];
+    const { data } = this;
+    const { stands, rows } = data.verdict;
+    const said = stands === null ? "Not known" : stands ? "It stands" : "It does not stand";
+    const wedges = data.parts.filter((part) => part.kind === "wedge").length;
+    const more = [["Size", this.length(...data.size)]];
+    if (this.last) more.push(["Stones", `${data.parts.length - wedges} of ${data.parts.length - wedges + data.unused.length}`]);
+    if (data.unused.length) more.push(["Left over", data.unused.join(", ")]);
+    if (wedges) more.push(["Wedges", String(wedges)]);
+    return [
+      make("h3", { class: `ds-name${stands === false ? " ds-alarm" : ""}` }, said),
+      make("dl", {}, [...rows, ...more].map(([name, value]) => make("div", {}, make("dt", {}, name), make("dd", {}, value)))),
+    ];
   }
 
-  cardOf(part) {
+  length(...values) {
     const { unit } = this.data;
-    const digits = unit === "px" ? 1 : 3;
+    const [factor, name] = unit === "m" ? [100, "cm"] : [1, unit];
+    return `${values.map((value) => text(factor * value, unit === "units" ? 3 : 1)).join(" × ")} ${name}`;
+  }
+
+  // Rows that nobody needs for building are marked.
+  cardOf(part) {
     const wedge = part.kind === "wedge";
     const under = part.step === null ? "" : `step ${part.step} of ${this.last}`;
     const cluster = part.cluster === null ? "" : `cluster ${part.cluster}`;
     const rows = [];
-    if (part.angle_deg !== null && !wedge) rows.push(["How to turn it", this.turnWords(part.angle_deg)]);
-    const [x, y] = part.centroid.map((value) => text(value, digits));
-    rows.push([wedge ? "Around" : "Centroid", this.last ? `${x} ${unit} from the left end, ${y} ${unit} above the ground` : `x ${x} ${unit}, ${y} ${unit} above the ground`]);
-    rows.push(["Size", `${text(part.size[0], digits)} × ${text(part.size[1], digits)} ${unit}`]);
-    if (part.side) rows.push(["Placed from", `the ${part.side}`]);
-    if (part.under !== null) rows.push(["Under", this.links([part.under])]);
+    if (part.turn) rows.push(["Turn", make("strong", {}, part.turn)]);
+    const [x, y] = part.centroid.map((value) => this.length(value));
+    rows.push([wedge ? "Around" : "Middle", this.last ? `${x} from the left end, ${y} above the ground` : `x ${x}, ${y} above the ground`]);
+    if (part.beside) rows.push(["Lies", part.beside]);
+    rows.push(["Size", this.length(...part.size), !wedge]);
+    if (part.side) rows.push(["Placed from", `the ${part.side}`, true]);
+    if (part.under !== null) rows.push(["Under", this.links([part.under]), true]);
     if (part.wedges.length) rows.push(["Wedges under it", this.links(part.wedges)]);
     rows.push(...this.touching(part));
     const { alpha_left: left, alpha_right: right } = part;
-    if (left !== null || right !== null) rows.push(["α then", `left ${text(left)}, right ${text(right)}`]);
+    if (left !== null || right !== null) rows.push(["α then", `left ${text(left)}, right ${text(right)}`, true]);
     return [
       make("h3", { class: "ds-name" }, make("span", { class: "ds-big" }, part.step === null ? String(part.id) : `${part.step}`), ` ${wedge ? "Wedge" : this.noun} ${part.id}`),
       make("p", { class: "ds-which" }, [under, cluster].filter(Boolean).join(" · ")),
       this.figure(part),
-      make("dl", {}, rows.map(([name, value]) => make("div", {}, make("dt", {}, name), make("dd", {}, value)))),
+      part.step === null ? null : this.tickBox(part),
+      make("dl", {}, rows.map(([name, value, more]) => make("div", { class: more ? "ds-more" : null }, make("dt", {}, name), make("dd", {}, value)))),
       this.indexTable(part),
     ].filter(Boolean);
   }
 
-  turnWords(degrees) {
-    const angle = ((((degrees + 180) % 360) + 360) % 360) - 180;
-    if (Math.abs(angle) < 0.05) return "not at all: as it lies";
-    return `${Math.abs(angle).toFixed(1)}° ${angle > 0 ? "counter-clockwise\u00a0↺" : "clockwise\u00a0↻"}`;
+  tickBox(part) {
+    const input = make("input", { type: "checkbox", checked: this.ticks.has(part.step) });
+    input.addEventListener("change", () => this.tick(part, input.checked));
+    return make("label", { class: "ds-tick-box" }, input, part.kind === "wedge" ? " Wedge is in" : " Stone is set");
   }
 
   touching(part) {
@@ -796,8 +899,8 @@ class Viewer {
     const placed = (id) => id === 0 || (this.parts.get(id)?.step ?? Infinity) < part.step;
     const now = part.neighbours.filter(placed);
     const later = part.neighbours.filter((id) => !placed(id));
-    const rows = [["Touches", now.length ? this.links(now) : "nothing yet"]];
-    if (later.length) rows.push(["Later also", this.links(later)]);
+    const rows = [["Touches", now.length ? this.links(now) : "nothing yet", true]];
+    if (later.length) rows.push(["Later also", this.links(later), true]);
     return rows;
   }
 
@@ -852,7 +955,7 @@ class Viewer {
     };
     const crop = part.crop && String(part.crop.data).startsWith("data:image/") ? part.crop : null;
     const frameOf = (wide) => `0 0 ${wide} ${(below + 6).toFixed(1)}`;
-    const words = part.angle_deg === null || part.kind === "wedge" ? this.nameOf(part) : `${this.nameOf(part)}: turn it ${this.turnWords(part.angle_deg)}`;
+    const words = part.turn ? `${this.nameOf(part)}: ${part.turn}` : this.nameOf(part);
     if (!part.source) {
       const only = panel(placed, b, k, 0, part.kind === "wedge" ? "to find or to cut" : "", null);
       return draw("svg", { class: "ds-figure ds-one", viewBox: frameOf(128), role: "img", "aria-label": words }, ...only);

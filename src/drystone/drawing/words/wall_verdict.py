@@ -1,0 +1,89 @@
+"""The verdict on a wall, with which its report opens."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from math import atan, degrees
+
+from drystone.drawing.words.analysis import ModelledWall
+from drystone.drawing.words.content import TILTING, dead_load, is_horizontal
+from drystone.statics.failing.mechanism import Failure
+from drystone.statics.joints import loose_blocks
+from drystone.statics.model import GROUND
+from drystone.statics.result import LateralResistance
+
+
+@dataclass(frozen=True)
+class WallVerdict:
+    """What is said first: whether a wall stands, and what brings it down.
+
+    `stands` is None when no answer could be certified; `rows` are names and values.
+    """
+
+    stands: bool | None
+    words: str
+    rows: tuple[tuple[str, str], ...] = ()
+
+
+def judge_wall(
+    subject: str,
+    wall: ModelledWall,
+    resistance: LateralResistance,
+    *,
+    load_case: str = TILTING,
+    without_dilatancy: Iterable[float | None] = (),
+) -> WallVerdict:
+    """Judge a wall of which `subject` says how large it is, such as "28 of 30 stones".
+
+    `without_dilatancy` are load multipliers by Coulomb's law, where they are known: the least of
+    all is what the wall is told to carry.
+    """
+    if resistance.failed:
+        words = f"{subject}; not known whether it stands: no answer could be certified"
+        return WallVerdict(None, words)
+    failures = wall.failures((resistance.left, resistance.right))
+    if not resistance.stable:
+        return WallVerdict(False, f"{subject}, does not stand: {_why(wall, failures)}")
+    ends = [end for end in (resistance.left, resistance.right) if end.alpha is not None]
+    if not ends:
+        return WallVerdict(True, f"{subject}, stands; no load of this kind brings it down")
+    weaker = min(ends, key=lambda end: end.alpha or 0.0)
+    known = [weaker.alpha, *without_dilatancy]
+    load, rows = _load(min(alpha for alpha in known if alpha is not None), load_case)
+    words = f"{subject}, stands; {load}"
+    if weaker.direction in failures:
+        place = _weakest_place(wall, failures[weaker.direction])
+        words += f"; weakest place: {place}"
+        rows = (*rows, ("Weakest place", place))
+    return WallVerdict(True, words, rows)
+
+
+def _why(wall: ModelledWall, failures: Mapping[str, Failure]) -> str:
+    loose = loose_blocks(wall.model)
+    if loose:
+        return f"{wall.names.listed(loose)} {'has' if len(loose) == 1 else 'have'} nothing below"
+    said = next((failure.words for failure in failures.values()), "it falls under its own weight")
+    said = said.removeprefix("Falls by itself: ").rstrip(".")
+    return said[:1].lower() + said[1:]
+
+
+def _load(alpha: float, load_case: str) -> tuple[str, tuple[tuple[str, str], ...]]:
+    """Say what brings a wall down."""
+    if load_case == TILTING:
+        if alpha <= 0.0:
+            return "can fall when it is let go", (("Falls at", "no tilt at all"),)
+        angle = degrees(atan(alpha))
+        said = f"{angle:.0f}" if angle >= 10.0 else f"{angle:.1f}"
+        return f"falls when tilted by {said} degrees", (("Falls at", f"a tilt of {said}°"),)
+    of = f"the {dead_load(load_case)}" if is_horizontal(load_case) else "the live load"
+    said = f"{alpha:.3f} times {of}"
+    return f"carries {said} ({load_case})", (("Carries", said),)
+
+
+def _weakest_place(wall: ModelledWall, failure: Failure) -> str:
+    """Name what moves first where it turns about or slides: as the words of the failure begin."""
+    if not failure.groups:
+        return "not known"
+    first = failure.groups[0]
+    if first.toe is None and GROUND in first.against:
+        return "the joint with the ground"
+    return wall.names.listed(first.blocks if first.toe is None else [first.toe.block])
