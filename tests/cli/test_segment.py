@@ -52,7 +52,11 @@ def test_markers_give_scale_and_view_and_are_no_stones(run, tmp_path, sheet):
     assert (beside["width_px"], beside["height_px"]) == labels.shape[::-1]
     assert opened(out / "photo.jpg").shape == (*labels.shape, 3)
     assert opened(out / "preview.png").shape[1] > 600
-    assert beside["markers"]["ids"] == [0, 1, 2, 3]
+    assert [marker["id"] for marker in beside["markers"]] == [0, 1, 2, 3]
+    assert said["markers"] == beside["markers"]
+    for marker in beside["markers"]:
+        sides = np.hypot(*np.diff(marker["corners_m"] + marker["corners_m"][:1], axis=0).T)
+        assert sides == pytest.approx(0.075, rel=0.01)
     assert beside["px_per_m"] == said["px_per_m"]
     true = np.sort(np.bincount(sheet.truth.ravel())[1:]) / SHEET.px_per_m**2
     found = np.sort([stone["area_px"] for stone in said["sizes"]]) / said["px_per_m"] ** 2
@@ -70,7 +74,17 @@ def test_a_plan_is_made_of_what_was_written(run, tmp_path, sheet):
     )  # fmt: skip
     assert ran.code in (0, 4), ran.err
     assert (wall / "photo.jpg").read_bytes() == (out / "photo.jpg").read_bytes()
-    assert json.loads((wall / "plan.json").read_text())["steps"]
+    plan, beside = (
+        json.loads(file.read_text()) for file in (wall / "plan.json", out / "stones.json")
+    )
+    assert plan["steps"]
+    # What a robot must know of the photograph goes along, to the poses too.
+    assert plan["source"]["photograph"]["name"] == "photo-1.jpg"
+    assert run("export", wall, "--to", "poses").code == 0
+    poses = json.loads((wall / "poses.json").read_text())
+    for name in ("markers", "P_from_marker"):
+        assert poses[name] == plan["source"]["photograph"][name] == beside[name]
+    assert "photo-1.jpg" in (wall / "report.html").read_text("utf-8").split("<h1>")[1]
 
 
 def quickly_planned(run, stones, out, *more):

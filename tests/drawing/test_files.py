@@ -24,6 +24,7 @@ from drystone.drawing.photo import CROP_PX, StonePhoto, read_photo
 from drystone.drawing.pictures.marker_sheet import MarkerSheets, write_marker_sheets
 from drystone.drawing.report.notebook import Shown
 from drystone.errors import PlanError, UsageError
+from drystone.model.steps import piece_id
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from tests.drawing import examples
@@ -66,8 +67,10 @@ def test_pictures_are_written_where_a_mechanism_exists(tmp_path):
 def test_the_fall_of_a_wall_is_not_drawn_as_a_live_load(tmp_path, monkeypatch):
     drawn = []
 
-    def noted(labels, mechanism, direction, alpha):
+    def noted(labels, mechanism, direction, alpha, numbers):
         drawn.append((direction, alpha))
+        # The numbers of picture.png, which are steps.
+        assert numbers == {piece_id(step): step.step for step in examples.plan().steps}
         return plot_mechanism(labels, mechanism, direction, alpha)
 
     monkeypatch.setattr(files, "plot_mechanism", noted)
@@ -92,7 +95,7 @@ def test_nothing_global_changes(tmp_path):
 def test_mechanisms_of_a_wall_of_outlines_are_drawn_of_its_outlines(tmp_path, monkeypatch):
     drawn = []
 
-    def noted(shown, mechanism, direction, alpha):
+    def noted(shown, mechanism, direction, alpha, numbers):  # noqa: ARG001
         drawn.append((shown, plot_mechanism(shown, mechanism, direction, alpha)))
         return drawn[-1][1]
 

@@ -2,7 +2,9 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 from drystone.errors import InputError, UsageError
@@ -41,6 +43,35 @@ def test_damage_is_said(tmp_path: Path, more: str | None) -> None:
         read_sidecar(tmp_path / "stones.png")
     (tmp_path / SIDECAR).write_text('{"schema": "drystone-plan/1"}', encoding="utf-8")
     assert read_sidecar(tmp_path / "stones.png") is None
+
+
+MARKER = {"id": 0, "corners_m": [[0, 1], [1, 1], [1, 0], [0, 0]]}
+FRAME = {"id": 0, "matrix": np.eye(4).tolist()}
+
+
+def test_what_a_plan_keeps_of_the_photograph_comes_back(tmp_path: Path) -> None:
+    details = {"source": {"name": "pile.jpg"}, "markers": [MARKER], "P_from_marker": FRAME}
+    write_sidecar(PhotoSidecar(640, 480, 512.5, "photo.jpg", details), tmp_path)
+    read = read_sidecar(tmp_path / "stones.png")
+    assert read is not None
+    assert dict(read.photograph) == {
+        "name": "pile.jpg",
+        "markers": [MARKER],
+        "P_from_marker": FRAME,
+    }
+
+
+@pytest.mark.parametrize(("markers", "frame"), [
+    ([{**MARKER, "corners_m": [[0, 1]]}], FRAME), ([{**MARKER, "corners_m": "x"}], FRAME),
+    ([{"corners_m": MARKER["corners_m"]}], FRAME), ("markers", FRAME), (7, FRAME),
+    ([MARKER], [1]), ([MARKER], {**FRAME, "matrix": [[float("nan")] * 4] * 4}),
+    ([{**MARKER, "id": "one"}], FRAME),
+])  # fmt: skip
+def test_damaged_markers_are_said(tmp_path: Path, markers: Any, frame: Any) -> None:
+    details = {"markers": markers, "P_from_marker": frame}
+    write_sidecar(PhotoSidecar(640, 480, 512.5, "photo.jpg", details), tmp_path)
+    with pytest.raises(InputError, match="E112"):
+        read_sidecar(tmp_path / "stones.png")
 
 
 def segmented(folder: Path, picture: bytes = b"a picture") -> Path:

@@ -18,7 +18,7 @@ from drystone.drawing import view_of_result, view_of_wall, write_pictures, write
 from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.drawing.report.html import viewer_frame, viewer_page, viewer_script, viewer_style
 from drystone.drawing.report.notebook import Shown
-from drystone.drawing.words.content import assumptions, cards, number, weaker_direction
+from drystone.drawing.words.content import assumptions, cards, number
 from drystone.errors import InputError, Notice
 from drystone.generate import BrickSettings, brick_stones, lay_out
 from drystone.io.wall_image import write_labels
@@ -109,14 +109,17 @@ def test_every_stone_and_step_is_in_the_table(report):
     assert [a["id"] for a in page.all("tr") if "id" in a] == [f"step-{s.step}" for s in steps]
     for stone in (*examples.CLUSTERS, examples.UNUSED):
         assert re.search(rf"\b{stone}\b", page.text)
-    assert f"Push wedge {examples.WEDGE} in under stone 300: 3.0 wide, 2.0 high" in page.text
+    said = (
+        f"Push wedge {examples.WEDGE} in under the left end of stone 300 (step 5): 3 {TIMES} 2 px"
+    )
+    assert said in page.text
     assert "Stones left over: 40" in page.text
 
 
 def test_results_inputs_and_notices_are_said(report):
     text = Page(report).text
     for said in (
-        "5 of 6 stones placed with 1 wedge", "no acceptable place was found five times in a row",
+        "5 of 6 stones, ", "no acceptable place was found five times in a row",
         "0.672", "4.25 %", "Load multiplier (adequacy factor) to the left",
         "in three walls of masons, of other stones", f"44.0 {TIMES} 20.0 px", "0" * 64, "W112",
         "3.46 s", "upper bound", "placement.rule", "1 (6.0 px²)",
@@ -186,12 +189,12 @@ def test_missing_metrics_are_not_defined_and_never_zero(tmp_path):
     missing = PlanMetrics(0.4, None, None, None, 0.1, 0.1, None, 0.3, 0.0)
     plan = examples.plan(metrics=missing)
     values = {card.symbol or card.name: card.value for card in cards(plan)}
-    for name in ("F_AV", "F_AH", "F_LR", f"{ALPHA} left", "Weaker direction"):
+    for name in ("F_AV", "F_AH", "F_LR", f"{ALPHA} left"):
         assert values[name] == "not defined"
     assert values[f"{ALPHA} right"] == "0.300"
     path = write_report(tmp_path / "report.html", example_view(plan), pictures=tmp_path)
     page = Page(path.read_text(encoding="utf-8"))
-    assert page.texts.count("not defined") == 5
+    assert page.texts.count("not defined") == 4
     assert "no picture of the wall" in page.text
 
 
@@ -204,9 +207,9 @@ def test_half_a_pair_of_characters_ends_no_report(tmp_path):
     assert "?bersicht" in Shown(view).write(tmp_path / "view.html").read_text("utf-8")
 
 
-def test_lengths_in_metres_have_millimetres(tmp_path):
+def test_lengths_in_metres_are_told_in_centimetres(tmp_path):
     path = write_report(tmp_path / "m.html", example_view(wall=examples.wall(px_per_m=50.0)))
-    assert "<td>0.140</td><td>0.080</td>" in path.read_text(encoding="utf-8")
+    assert "<td>14.0</td><td>8.0</td>" in path.read_text(encoding="utf-8")
 
 
 def test_a_missing_index_is_a_dash(tmp_path):
@@ -243,14 +246,6 @@ def test_the_viewer_alone_is_a_page_or_a_frame():
 )
 def test_numbers(value, text):
     assert number(value) == text
-
-
-@pytest.mark.parametrize(
-    ("left", "right", "weaker"),
-    [(0.3, 0.4, "left"), (0.4, 0.3, "right"), (0.3, 0.3, "both alike"), (None, 0.3, "not defined")],
-)
-def test_weaker_direction(left, right, weaker):
-    assert weaker_direction(left, right) == weaker
 
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "viewer.md"

@@ -220,15 +220,15 @@ def test_a_stone_has_a_card(page):
     assert abs(part["angle_deg"]) > 1
     card = page.get_by_role("complementary", name="Stone card")
     text = card.inner_text()
-    turn = f"{abs(part['angle_deg']):.1f}°"
     x, y = (f"{value:.1f}" for value in part["centroid"])
     for said in (
-        f"Stone {part['id']}", f"step {part['step']} of", f"cluster {part['cluster']}", turn,
+        f"Stone {part['id']}", f"step {part['step']} of", f"cluster {part['cluster']}",
         f"{x} px from the left end, {y} px above the ground", f"left {part['alpha_left']:.3f}",
+        part["turn"],
     ):  # fmt: skip
         assert said in text
     assert card.get_by_role(
-        "img", name=f"Stone {part['id']}, step {part['step']}: turn it"
+        "img", name=f"Stone {part['id']} (step {part['step']}): {part['turn']}"
     ).is_visible()
     card.get_by_text("Indices of this step").click()
     for name, value in part["indices"].items():
@@ -459,6 +459,49 @@ def test_light_dark_and_the_choice_between_them(visit):
     assert page.evaluate(colour) == "rgb(255, 255, 255)"
 
 
+def test_a_report_opens_on_the_whole_wall(page):
+    assert seen(page) == placed(shown()["steps"])
+    card = page.locator(".ds-card").inner_text()
+    assert card.startswith("It stands")
+    for _, value in shown()["verdict"]["rows"]:
+        assert value in card
+
+
+def test_the_build_view_goes_on_from_what_is_set(visit, tmp_path):
+    """A card that fills the phone, the wall below, swipes, and ticks that the browser keeps."""
+    phone = {"viewport": {"width": 390, "height": 844}, "has_touch": True}
+    page = visit(write_report(tmp_path / "r.html", shown()).read_text("utf-8"), **phone)
+    page.get_by_role("button", name="Build", exact=True).click()
+    counter, last = page.locator(".ds-counter"), shown()["steps"]
+    assert counter.inner_text() == f"1 / {last}, 0 done"
+    page.get_by_label("Stone is set").click()  # and the next step is there
+    assert counter.inner_text() == f"2 / {last}, 1 done"
+    card, stage = (page.locator(name).bounding_box() for name in (".ds-card", ".ds-stage"))
+    assert card["y"] + card["height"] <= stage["y"]
+    assert stage["y"] + stage["height"] < 844
+    assert not page.locator(".ds-tools").is_visible()
+    for start, end, step in ((300, 60, 3), (60, 300, 2), (300, 280, 2)):
+        page.mouse.move(start, 100)
+        page.mouse.down()
+        page.mouse.move(end, 110)
+        page.mouse.up()
+        assert counter.inner_text() == f"{step} / {last}, 1 done"
+    text = page.locator(".ds-card").inner_text()
+    part = shown()["parts"][1]
+    assert part["turn"] in text
+    assert part["beside"] in text
+    page.goto(f"{page.url}#build")
+    page.reload()
+    assert counter.inner_text() == f"2 / {last}, 1 done"
+    page.get_by_role("button", name="One step back").click()
+    page.get_by_label("Stone is set").uncheck()
+    page.get_by_role("button", name="Close").click()
+    assert page.locator(".ds-tools").is_visible()
+    assert seen(page) == placed(last)
+    page.reload()
+    assert counter.inner_text() == f"1 / {last}, 0 done"
+
+
 def test_nothing_is_wider_than_a_phone(visit):
     page = visit(plan_page(), viewport={"width": 390, "height": 844})
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
@@ -514,7 +557,9 @@ def test_names_of_files_do_nothing(visit, tmp_path):
     data["settings"] = [[evil, evil]]
     data["notices"] = [{"code": "W1", "message": evil, "cure": evil}]
     for part in data["parts"]:
-        part["words"] = part["side"] = part["name"] = part["colour"] = evil
+        part["words"] = part["turn"] = part["beside"] = part["side"] = part["name"] = part[
+            "colour"
+        ] = evil
         part["crop"] = {"data": "javascript:window.hit=1", "box": [0, 0, 1, 1]}
     for card in data["metrics"]:
         card["name"] = card["value"] = card["sentence"] = card["masons"] = evil

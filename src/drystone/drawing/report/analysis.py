@@ -56,8 +56,8 @@ def write_analysis(
     rows = [*_full_names(card.rows()), *friction]
     cite = CITATION.format(version=card.version, sha256=card.sha256)
     view = view_of_wall(
-        shapes, model, resistance, title="Limit analysis of a wall", unit=unit, noun=wall.names.noun,
-        wedges=wall.names.wedges, steps=wall.names.steps,
+        shapes, model, resistance, title="Limit analysis of a wall", unit=unit,
+        noun=wall.names.noun, wedges=wall.names.wedges, steps=wall.names.steps,
         cards=_cards(card), inputs=[*rows, ("cite", cite)],
         notices=wall.notices, load_case=card.load_case, without_dilatancy=card.alphas_by_coulomb,
     )  # fmt: skip

@@ -827,13 +827,14 @@ class Viewer {
   select(id, { quiet = false } = {}) {
     const before = this.groups.get(this.state.selected);
     before?.classList.remove("ds-selected");
-    before?.setAttribute("tabindex", "-1");
     before?.removeAttribute("aria-pressed");
+    this.tabStop?.setAttribute("tabindex", "-1");
     const part = this.parts.get(id) ?? null;
     this.state.selected = part ? part.id : null;
     const group = part ? this.groups.get(part.id) : null;
+    this.tabStop = group ?? this.groups.values().next().value;
+    this.tabStop?.setAttribute("tabindex", "0");
     group?.classList.add("ds-selected");
-    group?.setAttribute("tabindex", "0");
     group?.setAttribute("aria-pressed", "true");
     this.card.replaceChildren(...(part ? this.cardOf(part) : this.emptyCard()));
     if (!quiet && part) this.said.textContent = part.step === null ? `${this.nameOf(part)}.` : this.sayStep(part);

@@ -1,0 +1,52 @@
+"""What is said of a wall first."""
+
+import pytest
+
+from drystone.contacts.given import model_from_json
+from drystone.drawing.words.analysis import ModelledWall
+from drystone.drawing.words.wall_verdict import judge_wall
+from drystone.statics.failing.mechanism import Names
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
+
+TALL, LOW = [[0, 0, 1, 2]], [[0, 0, 4, 1]]
+FLYING = [[0, 0, 2, 1], [0, 5, 1, 1], [4, 3, 1, 1]]
+
+
+def judged(blocks, names=None, **more):
+    model = model_from_json({"blocks_xywh": blocks, "mu": 0.6})
+    wall = ModelledWall(model, {}, names or Names("stone", steps={1: 7}))
+    return judge_wall("1 of 2 stones", wall, lateral_resistance(model, mechanism=True), **more)
+
+
+@pytest.mark.parametrize(("blocks", "more", "stands", "words"), [
+    # A block of 1 x 2 rocks at alpha = 1/2, atan(1/2) = 26.6 degrees.
+    (TALL, {}, True, "stands; falls when tilted by 27 degrees; weakest place: stone 1 (step 7)"),
+    (TALL, {"without_dilatancy": (None, 0.1)}, True,
+     "stands; falls when tilted by 5.7 degrees; weakest place: stone 1 (step 7)"),
+    (TALL, {"without_dilatancy": (0.0,)}, True,
+     "stands; can fall when it is let go; weakest place: stone 1 (step 7)"),
+    # A low one slides at alpha = mu, atan(.6) = 31 degrees.
+    (LOW, {}, True, "stands; falls when tilted by 31 degrees; weakest place: the joint with the "
+     "ground"),
+    (LOW, {"load_case": "growing with height"}, True, "stands; carries 0.600 times the own weight "
+     "(growing with height); weakest place: the joint with the ground"),
+    (FLYING, {"names": Names()}, False, "does not stand: blocks 2 and 3 have nothing below"),
+    (FLYING[:2], {}, False, "does not stand: stone 2 has nothing below"),
+    ([[0, 0, 2, 1], [1.5, 1, 4, 1]], {}, False,
+     "does not stand: stone 2 rocks and slides on 1 (step 7)"),
+])  # fmt: skip
+def test_a_wall_is_judged_in_words(blocks, more, stands, words) -> None:
+    found = judged(blocks, **more)
+    assert found.stands is stands
+    assert found.words.startswith(f"1 of 2 stones, {words}")
+    assert bool(found.rows) is stands
+
+
+def test_what_no_solver_could_answer_is_not_judged() -> None:
+    model = model_from_json({"blocks_xywh": TALL})
+    failed = LimitResult(LimitStatus.FAILED, "left")
+    found = judge_wall("1 stone", ModelledWall(model, {}, Names()),
+                       LateralResistance(failed, failed, 0.6))  # fmt: skip
+    assert (found.stands, found.rows) == (None, ())
+    assert "no answer could be certified" in found.words
