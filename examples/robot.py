@@ -17,7 +17,6 @@ from walk import Walk
 import drystone as ds
 from drystone.planner.events import Step
 from drystone.planner.measured import MeasuredPose
-from drystone.search.plan_wall import working_scale
 
 PX_PER_M = 200
 
@@ -61,7 +60,7 @@ def live_loop(stones_path: Path, width_m: float, height_m: float) -> None:
     """Plan a stone, place it, measure the wall, plan the next one from there."""
     stones = ds.read_stones(stones_path)
     site = ds.Site.from_source(
-        width_m * PX_PER_M, height_m * PX_PER_M, working_scale(stones), PX_PER_M
+        width_m * PX_PER_M, height_m * PX_PER_M, ds.working_scale(stones), PX_PER_M
     )
     settings = ds.method_settings("best").updated({"search": {"budget": 1}})
     planner, robot = ds.Planner(stones, site, seed=1, settings=settings), Robot()

@@ -80,7 +80,7 @@ __all__ = ["generate", *_HOMES]  # noqa: PLE0604 - the keys are strings
 
 
 def _plan_as_html(result: Any) -> str:
-    return str(import_module("drystone.drawing.report.notebook").frame_of_result(result))
+    return str(import_module("drystone.drawing.report.notebook").view(result)._repr_html_())
 
 
 show_by("plan", _plan_as_html)

@@ -2,10 +2,12 @@
 
 import json
 import shutil
+from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from PIL import Image
 
 from drystone.io.plan_json import read_plan
@@ -245,3 +247,17 @@ def test_measure(finished, tmp_path, run):
     half = run("measure", finished, "--scale", ".5", "--json").json()
     assert half["F_SF"] == pytest.approx(whole["F_SF"])
     assert (half["width"], half["height"]) == (whole["width"] / 2, whole["height"] / 2)
+
+
+def test_cite_says_what_the_citation_file_says(run) -> None:
+    """The file is not installed; it goes by the version of the package."""
+    cff = yaml.safe_load((Path(__file__).parents[2] / "CITATION.cff").read_text("utf-8"))
+    ran = run("cite")
+    assert ran.code == 0
+    assert cff["version"] == version("drystone")
+    (paper,) = cff["references"]
+    names = [f"{one['family-names']}" for one in paper["authors"]]
+    for said in (cff["title"], cff["version"], str(cff["date-released"]), cff["license"],
+                 str(paper["year"]), *names):  # fmt: skip
+        assert said in ran.out
+    assert ran.out.count("{") == ran.out.count("}")

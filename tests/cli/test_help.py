@@ -9,7 +9,7 @@ from drystone.kernels.backend import describe
 
 COMMANDS = (
     "plan", "demo", "stones", "analyse", "measure", "check", "export", "craft", "markers",
-    "segment", "generate", "bench", "reproduce", "fetch",
+    "segment", "generate", "cite", "bench", "reproduce", "fetch",
 )  # fmt: skip
 
 

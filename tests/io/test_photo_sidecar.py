@@ -54,11 +54,8 @@ def test_what_a_plan_keeps_of_the_photograph_comes_back(tmp_path: Path) -> None:
     write_sidecar(PhotoSidecar(640, 480, 512.5, "photo.jpg", details), tmp_path)
     read = read_sidecar(tmp_path / "stones.png")
     assert read is not None
-    assert dict(read.photograph) == {
-        "name": "pile.jpg",
-        "markers": [MARKER],
-        "P_from_marker": FRAME,
-    }
+    kept = {"name": "pile.jpg", "markers": [MARKER], "P_from_marker": FRAME}
+    assert dict(read.photograph) == kept
 
 
 @pytest.mark.parametrize(("markers", "frame"), [

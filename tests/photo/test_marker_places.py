@@ -16,13 +16,9 @@ def laid(layout, one, angle_deg, at_m):
 
     Written out: paper has x to the right and y down, P has y up.
     """
-    found = []
-    for x, y in layout.corners_m(one).tolist():
-        a = np.radians(angle_deg)
-        found.append(
-            (x * np.cos(a) + y * np.sin(a) + at_m[0], x * np.sin(a) - y * np.cos(a) + at_m[1])
-        )
-    return np.array(found)
+    a = np.radians(angle_deg)
+    x, y = layout.corners_m(one).T
+    return np.column_stack([x * np.cos(a) + y * np.sin(a), x * np.sin(a) - y * np.cos(a)]) + at_m
 
 
 def photographed(corners_m, from_photo, noise_px=0.0):

@@ -25,6 +25,7 @@ _COMMANDS = {
     "markers": "Print a sheet of markers that give photographs a scale.",
     "segment": "Find stones in a photograph.",
     "generate": "Make a synthetic stone set.",
+    "cite": "Print how to cite the program and the method, as BibTeX.",
 }
 
 

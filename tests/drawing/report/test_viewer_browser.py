@@ -463,8 +463,7 @@ def test_a_report_opens_on_the_whole_wall(page):
     assert seen(page) == placed(shown()["steps"])
     card = page.locator(".ds-card").inner_text()
     assert card.startswith("It stands")
-    for _, value in shown()["verdict"]["rows"]:
-        assert value in card
+    assert shown()["summary"] in card
 
 
 def test_the_build_view_goes_on_from_what_is_set(visit, tmp_path):

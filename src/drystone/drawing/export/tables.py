@@ -7,9 +7,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from drystone.drawing.assembly import handling
-from drystone.drawing.assembly.parts import Assembly, Part
+from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.export.formats import ExportSettings, Files, load_extra
 from drystone.drawing.export.text import json_text
+from drystone.drawing.sheet.words import step_words
 from drystone.model.plan import StoneStep
 
 
@@ -51,20 +52,8 @@ def columns(assembly: Assembly) -> tuple[Column, ...]:
         Column("neighbours", list, [handling.touched_when_placed(assembly, p) for p in parts]),
         Column("alpha_left", float, [part.plan_step.alpha_left for part in parts]),
         Column("alpha_right", float, [part.plan_step.alpha_right for part in parts]),
-        Column("instruction", str, [instruction(assembly, part) for part in parts]),
+        Column("instruction", str, [step_words(assembly, part) for part in parts]),
     )
-
-
-def instruction(assembly: Assembly, part: Part) -> str:
-    """Return what to do in a step, in words."""
-    digits = 3 if assembly.unit == "m" else 1
-    x, y = (f"{value:.{digits}f} {assembly.unit}" for value in part.centroid)
-    if part.kind == "wedge":
-        return f"Push wedge {part.id} in under stone {part.under}, {x} from the left, {y} up."
-    angle = round(part.angle_deg)
-    way = "clockwise" if angle < 0 else "counter-clockwise"
-    turned = f"turned {abs(angle)} degrees {way}" if angle else "not turned"
-    return f"Stone {part.id}, {turned}, middle {x} from the left, {y} up."
 
 
 def csv(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import ListedColormap, Normalize, to_hex
+from matplotlib.colors import ListedColormap, to_hex
 from matplotlib.patches import PathPatch
 from PIL import Image, PngImagePlugin
 
@@ -29,8 +28,6 @@ from drystone.whole_files import write_whole
 LARGEST_SHARE = 0.12  # largest displacement in the picture over the height of the wall
 LARGEST_TURN = 0.35
 """Largest angle in the picture, rad: a small stone that turns alone must not spin."""
-
-BAR_HEIGHT_IN = 2.4
 
 COLOURS = ListedColormap(colormaps["YlOrRd"](np.linspace(0.02, 0.82, 256)))
 """From pale (still) to red: lightness falls steadily, so it reads in grey too, and its dark end is
@@ -178,7 +175,6 @@ def plot_mechanism(
         (0.0 if load else 10.0, 0.0), textcoords="offset points", size=8,
         ha="center" if load else "left", va="center",
     )  # fmt: skip
-    _draw_scale(ax)
     return ax
 
 
@@ -194,7 +190,7 @@ def _blocks(
         items.append(area)
         if numbers:
             at = centroids[index]
-            written = numbers.get(number, "") if isinstance(numbers, Mapping) else number
+            written = numbers.get(number, number) if isinstance(numbers, Mapping) else number
             items.append(Words(f"number-{number}", str(written), at, area.room, fill))
     items += [
         Surface(f"before-{region.id}", region.loops, line=GREY, width_pt=0.5, z=2.0)
@@ -216,19 +212,6 @@ def _moved(points: Loop, region: Region, twist: Floats) -> Loop:
     cos, sin = np.cos(angle), np.sin(angle)
     arms = points - region.centroid
     return np.asarray(arms @ np.array([[cos, sin], [-sin, cos]]) + region.centroid + step)
-
-
-def _draw_scale(ax: Axes) -> None:
-    """Draw the colours beside the axes, in a bar of the same width for walls of any shape."""
-    ax.apply_aspect()
-    inches = ax.get_window_extent().transformed(ax.figure.dpi_scale_trans.inverted())
-    height = min(0.8 * inches.height, BAR_HEIGHT_IN) / inches.height
-    place = (1.0 + 0.1 / inches.width, 0.0, 0.13 / inches.width, height)
-    scale = ScalarMappable(Normalize(0, 1), COLOURS)
-    bar = ax.figure.colorbar(scale, cax=ax.inset_axes(place))
-    bar.set_label("displacement / largest", size=7)
-    bar.ax.tick_params(labelsize=7, length=2, width=0.5)
-    bar.outline.set_linewidth(0.5)
 
 
 FRAME_MS = 80  # how long a frame is shown

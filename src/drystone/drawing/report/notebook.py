@@ -48,8 +48,3 @@ def view(wall: PlanResult | str | Path) -> Shown:
     if isinstance(wall, PlanResult):
         return Shown(view_of_result(wall))
     return Shown(view_of_assembly(read_assembly(wall)))
-
-
-def frame_of_result(result: PlanResult) -> str:
-    """Return what a notebook shows of a result of planning."""
-    return viewer_frame(view_of_result(result))

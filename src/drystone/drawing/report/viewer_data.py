@@ -13,23 +13,17 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.drawing.assembly.parts import Assembly, Part
+from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.assembly.read import assembly_of_result
 from drystone.drawing.outlines import regions_box, wall_regions
 from drystone.drawing.palette import PLAIN_COLOUR, WEDGE_COLOUR, cluster_colour, text_colour
 from drystone.drawing.photo import read_photo
 from drystone.drawing.pictures.mechanism import motion_of
-from drystone.drawing.sheet.words import (
-    beside_words,
-    length_words,
-    size_words,
-    turn_words,
-    wedge_place,
-)
+from drystone.drawing.sheet.words import beside_words, step_words, turn_words
 from drystone.drawing.words import content
 from drystone.drawing.words.analysis import ModelledWall
 from drystone.drawing.words.content import masons_words
-from drystone.drawing.words.wall_verdict import WallVerdict, judge_wall
+from drystone.drawing.words.wall_verdict import judge_wall
 from drystone.errors import Notice
 from drystone.io.plan_json import plan_digest
 from drystone.kernels.polygons import Points
@@ -100,7 +94,8 @@ def view_of_assembly(
     return {
         "title": f"Dry-stone wall from {content.source_name(plan) or 'stones'}",
         "unit": assembly.unit,
-        **_judged(verdict),
+        "summary": f"{verdict.words}.",
+        "stands": verdict.stands,
         "size": rounded(assembly.size, digits),
         "box": rounded((*corners.min(axis=0), *corners.max(axis=0)), digits),
         "version": plan.version,
@@ -210,7 +205,8 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
     return {
         "title": title,
         "unit": unit,
-        **_judged(verdict),
+        "summary": f"{verdict.words}.",
+        "stands": verdict.stands,
         "size": rounded(size, digits),
         "box": rounded((x0, min(y0, 0.0), x1, y1), digits),
         "version": version("drystone"),
@@ -225,13 +221,6 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
         "index_meanings": {},
         **_about(results, None, inputs, settings or {}, assumptions),
     }  # fmt: skip
-
-
-def _judged(verdict: WallVerdict) -> ViewerData:
-    return {
-        "summary": f"{verdict.words}.",
-        "verdict": {"stands": verdict.stands, "rows": [list(row) for row in verdict.rows]},
-    }
 
 
 def _about(
@@ -279,15 +268,16 @@ def _planned_parts(assembly: Assembly, digits: int) -> list[ViewerData]:
             step=part.step, number=part.step if part.kind == "stone" else None,
             angle_deg=round(part.angle_deg, 3) + 0.0, size=rounded(part.size, digits),
             neighbours=list(assembly.neighbours(part.id)), under=part.under,
-            wedges=under.get(part.id, []), words=_words(assembly, part), crop=crops.get(part.id),
+            wedges=under.get(part.id, []), words=step_words(assembly, part),
+            crop=crops.get(part.id),
             alpha_left=_short(step.alpha_left), alpha_right=_short(step.alpha_right),
         )  # fmt: skip
-        shown["beside"] = _beside(assembly, part)
         if isinstance(step, StoneStep):
             shown["side"] = step.side
             shown["indices"] = {name: _short(value) for name, value in step.indices.items()}
             shown["source"] = rounded(lying[part.id], 2)
             shown["turn"] = turn_words(part.angle_deg)
+            shown["beside"] = beside_words(assembly, part)
         made.append(shown)
     return made
 
@@ -323,29 +313,6 @@ def _part(
         "indices": {},
         **known,
     }
-
-
-def _words(assembly: Assembly, part: Part) -> str:
-    """Say what the step of a part asks for."""
-    if part.kind == "wedge":
-        under = assembly.part(part.under or 0)
-        return (
-            f"Push wedge {part.id} in under the {wedge_place(assembly, part)} of stone {under.id} "
-            f"(step {under.step}): {size_words(assembly, *np.ptp(part.corners, axis=0).tolist())}."
-        )
-    across, up = (length_words(assembly, value) for value in part.centroid)
-    beside = _beside(assembly, part)
-    return (
-        f"Set stone {part.id} ({turn_words(part.angle_deg)}), its middle {across} from the left "
-        f"end and {up} above the ground{beside and f'; {beside}'}."
-    )
-
-
-def _beside(assembly: Assembly, part: Part) -> str:
-    """Say by steps what a part goes on and beside, or under."""
-    if part.kind == "wedge":
-        return f"under the {wedge_place(assembly, part)} of {assembly.part(part.under or 0).step}"
-    return beside_words(assembly, part)
 
 
 def _of_statics(

@@ -113,6 +113,22 @@ def beside_words(assembly: Assembly, part: Part) -> str:
     return ", ".join(words)
 
 
+def step_words(assembly: Assembly, part: Part) -> str:
+    """Say what a step asks for."""
+    if part.kind == "wedge":
+        under = assembly.part(part.under or 0)
+        return (
+            f"Push wedge {part.id} in under the {wedge_place(assembly, part)} of stone {under.id} "
+            f"(step {under.step}): {size_words(assembly, *np.ptp(part.corners, axis=0).tolist())}."
+        )
+    across, up = (length_words(assembly, value) for value in part.centroid)
+    beside = beside_words(assembly, part)
+    return (
+        f"Set stone {part.id} ({turn_words(part.angle_deg)}), its middle {across} from the left "
+        f"end and {up} above the ground{beside and f'; {beside}'}."
+    )
+
+
 def wedge_words(assembly: Assembly, wedge: Part) -> str:
     """Say where a wedge goes, and how large it is."""
     size = np.ptp(wedge.corners, axis=0)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from drystone.io.published import SETS
-from drystone.model.plan import Plan, PlanMetrics
+from drystone.model.plan import Plan
 from drystone.settle.settings import SettleSettings
 from drystone.statics.model import RigidBlockModel
 
@@ -168,16 +168,18 @@ def cards(plan: Plan, *, stands: bool | None = True) -> tuple[ResultCard, ...]:
     """Return the results, the ones to look at first at the front; no strength of what falls."""
     if stands is False:
         return _layout(plan)
-    metrics = plan.metrics
+    metrics, without = plan.metrics, ""
+    if metrics.F_LR_coulomb is not None:
+        without = f" {number(metrics.F_LR_coulomb)} without dilatancy, the least that was found."
     ends = (metrics.alpha_left, metrics.alpha_right)
-    return (*strength_cards(metrics.F_LR, *ends, _by_other_rules(metrics)), *_layout(plan))
+    return (*strength_cards(metrics.F_LR, *ends, without), *_layout(plan))
 
 
 def strength_cards(
     ratio: float | None,
     left: float | None,
     right: float | None,
-    by_other_rules: str = "",
+    without_dilatancy: str = "",
     load_case: str = TILTING,
 ) -> tuple[ResultCard, ...]:
     """Return what is said of a wall's strength, F_LR and alphas, under the loads of a case."""
@@ -187,7 +189,7 @@ def strength_cards(
     return (
         ResultCard("F_LR", "Lateral resistance", number(ratio), "higher",
              "The smaller load multiplier over the coefficient of friction. "
-             f"{of_one}{by_other_rules}"),
+             f"{of_one}{without_dilatancy}"),
         *(ResultCard(f"{ALPHA} {side}", f"Load multiplier (adequacy factor) to the {side}",
                      number(alpha), "higher", _multiplier_means(load_case, side))
           for side, alpha in (("left", left), ("right", right))),
@@ -206,22 +208,8 @@ def _multiplier_means(load_case: str, side: str) -> str:
     )
 
 
-def _by_other_rules(metrics: PlanMetrics) -> str:
-    """Say what it is without dilatancy and with other contacts, where that is known."""
-    said = ""
-    if metrics.F_LR_coulomb is not None:
-        said += f" {number(metrics.F_LR_coulomb)} without dilatancy, the least that was found."
-    half, double = metrics.F_LR_half, metrics.F_LR_double
-    if half is not None or double is not None:
-        said += f" {number(half)} and {number(double)} at half and twice the contact tolerance."
-    if metrics.F_LR_no_setback is not None:
-        said += f" {number(metrics.F_LR_no_setback)} with contacts up to the ends of faces."
-    return said
-
-
 def _layout(plan: Plan) -> tuple[ResultCard, ...]:
     metrics, unit = plan.metrics, plan.length_unit
-    placed, of = len(plan.stone_steps), len(plan.stone_steps) + len(plan.unused)
     factor, square = (1e4, "cm²") if unit == "m" else (1.0, "px²")
     area = number(factor * metrics.wedge_area, 1)
     wedges = f"{len(plan.wedge_steps)} ({area} {square})" if plan.wedge_steps else "0"
@@ -239,9 +227,6 @@ def _layout(plan: Plan) -> tuple[ResultCard, ...]:
         ResultCard("F_AH", "Waviness of courses", wavy, "lower",
              "How much longer than a straight line the shortest ways along joints from end to end "
              "are. 0 means straight courses."),
-        ResultCard("", "Stones placed", f"{placed} of {of}", "higher",
-             "Stones of the input that found a place. Some may be left over when the wall is "
-             "full."),
         ResultCard("T_LEVEL", "Unevenness of the top", number(metrics.T_LEVEL), "lower",
              "Mean deviation of the top from its mean height, in mean heights of a stone. "
              "0 is a level top."),

@@ -16,12 +16,11 @@ from drystone.statics.result import LateralResistance
 class WallVerdict:
     """What is said first: whether a wall stands, and what brings it down.
 
-    `stands` is None when no answer could be certified; `rows` are names and values.
+    `stands` is None when no answer could be certified.
     """
 
     stands: bool | None
     words: str
-    rows: tuple[tuple[str, str], ...] = ()
 
 
 def judge_wall(
@@ -48,13 +47,11 @@ def judge_wall(
         return WallVerdict(True, f"{subject}, stands; no load of this kind brings it down")
     weaker = min(ends, key=lambda end: end.alpha or 0.0)
     known = [weaker.alpha, *without_dilatancy]
-    load, rows = _load(min(alpha for alpha in known if alpha is not None), load_case)
+    load = _load(min(alpha for alpha in known if alpha is not None), load_case)
     words = f"{subject}, stands; {load}"
     if weaker.direction in failures:
-        place = _weakest_place(wall, failures[weaker.direction])
-        words += f"; weakest place: {place}"
-        rows = (*rows, ("Weakest place", place))
-    return WallVerdict(True, words, rows)
+        words += f"; weakest place: {_weakest_place(wall, failures[weaker.direction])}"
+    return WallVerdict(True, words)
 
 
 def _why(wall: ModelledWall, failures: Mapping[str, Failure]) -> str:
@@ -66,17 +63,15 @@ def _why(wall: ModelledWall, failures: Mapping[str, Failure]) -> str:
     return said[:1].lower() + said[1:]
 
 
-def _load(alpha: float, load_case: str) -> tuple[str, tuple[tuple[str, str], ...]]:
+def _load(alpha: float, load_case: str) -> str:
     """Say what brings a wall down."""
-    if load_case == TILTING:
-        if alpha <= 0.0:
-            return "can fall when it is let go", (("Falls at", "no tilt at all"),)
-        angle = degrees(atan(alpha))
-        said = f"{angle:.0f}" if angle >= 10.0 else f"{angle:.1f}"
-        return f"falls when tilted by {said} degrees", (("Falls at", f"a tilt of {said}°"),)
-    of = f"the {dead_load(load_case)}" if is_horizontal(load_case) else "the live load"
-    said = f"{alpha:.3f} times {of}"
-    return f"carries {said} ({load_case})", (("Carries", said),)
+    if load_case != TILTING:
+        of = f"the {dead_load(load_case)}" if is_horizontal(load_case) else "the live load"
+        return f"carries {alpha:.3f} times {of} ({load_case})"
+    if alpha <= 0.0:
+        return "can fall when it is let go"
+    angle = degrees(atan(alpha))
+    return f"falls when tilted by {angle:.{0 if angle >= 10.0 else 1}f} degrees"
 
 
 def _weakest_place(wall: ModelledWall, failure: Failure) -> str:

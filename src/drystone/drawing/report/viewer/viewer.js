@@ -253,7 +253,7 @@ class Viewer {
   buildTop() {
     const { data, options } = this;
     if (options.title === false) return null;
-    const falls = data.verdict.stands === false ? " ds-alarm" : "";
+    const falls = data.stands === false ? " ds-alarm" : "";
     return make("div", { class: "ds-top" }, make("h2", { class: "ds-title" }, data.title), make("p", { class: `ds-summary${falls}` }, data.summary));
   }
 
@@ -843,7 +843,7 @@ class Viewer {
   // What is said of the whole wall, until a stone is chosen.
   emptyCard() {
     const { data } = this;
-    const { stands, rows } = data.verdict;
+    const { stands } = data;
     const said = stands === null ? "Not known" : stands ? "It stands" : "It does not stand";
     const wedges = data.parts.filter((part) => part.kind === "wedge").length;
     const more = [["Size", this.length(...data.size)]];
@@ -852,7 +852,8 @@ class Viewer {
     if (wedges) more.push(["Wedges", String(wedges)]);
     return [
       make("h3", { class: `ds-name${stands === false ? " ds-alarm" : ""}` }, said),
-      make("dl", {}, [...rows, ...more].map(([name, value]) => make("div", {}, make("dt", {}, name), make("dd", {}, value)))),
+      make("p", {}, data.summary),
+      make("dl", {}, more.map(([name, value]) => make("div", {}, make("dt", {}, name), make("dd", {}, value)))),
     ];
   }
 
@@ -872,6 +873,7 @@ class Viewer {
     const [x, y] = part.centroid.map((value) => this.length(value));
     rows.push([wedge ? "Around" : "Middle", this.last ? `${x} from the left end, ${y} above the ground` : `x ${x}, ${y} above the ground`]);
     if (part.beside) rows.push(["Lies", part.beside]);
+    if (wedge && part.words) rows.push(["What to do", part.words]);
     rows.push(["Size", this.length(...part.size), !wedge]);
     if (part.side) rows.push(["Placed from", `the ${part.side}`, true]);
     if (part.under !== null) rows.push(["Under", this.links([part.under]), true]);
