@@ -206,7 +206,7 @@ class Rows:
     def pages(self) -> list[SheetPage]:
         """Return the pages; the drawings that show how to turn a stone are all to one scale."""
         stones = list(self.assembly.stones)
-        high = A4_MM[1] - 2 * EDGE_MM - HEAD_MM
+        high = A4_MM[1] - 2 * EDGE_MM - HEAD_MM - 3.0
         # Pages of about the same length: none has a single row.
         pages = max(1, math.ceil(len(stones) / (high // ROW_MM[0])))
         count = max(1, math.ceil(len(stones) / pages))

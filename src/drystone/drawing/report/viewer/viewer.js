@@ -852,7 +852,7 @@ class Viewer {
     if (wedges) more.push(["Wedges", String(wedges)]);
     return [
       make("h3", { class: `ds-name${stands === false ? " ds-alarm" : ""}` }, said),
-      make("p", {}, data.summary),
+      make("p", { class: "ds-sentence" }, data.summary),
       make("dl", {}, more.map(([name, value]) => make("div", {}, make("dt", {}, name), make("dd", {}, value)))),
     ];
   }
@@ -874,7 +874,7 @@ class Viewer {
     rows.push([wedge ? "Around" : "Middle", this.last ? `${x} from the left end, ${y} above the ground` : `x ${x}, ${y} above the ground`]);
     if (part.beside) rows.push(["Lies", part.beside]);
     if (wedge && part.words) rows.push(["What to do", part.words]);
-    rows.push(["Size", this.length(...part.size), !wedge]);
+    rows.push(["Size", this.length(...part.size), true]);
     if (part.side) rows.push(["Placed from", `the ${part.side}`, true]);
     if (part.under !== null) rows.push(["Under", this.links([part.under]), true]);
     if (part.wedges.length) rows.push(["Wedges under it", this.links(part.wedges)]);
@@ -883,7 +883,7 @@ class Viewer {
     if (left !== null || right !== null) rows.push(["α then", `left ${text(left)}, right ${text(right)}`, true]);
     return [
       make("h3", { class: "ds-name" }, make("span", { class: "ds-big" }, part.step === null ? String(part.id) : `${part.step}`), ` ${wedge ? "Wedge" : this.noun} ${part.id}`),
-      make("p", { class: "ds-which" }, [under, cluster].filter(Boolean).join(" · ")),
+      make("p", { class: "ds-which" }, under, cluster && make("span", { class: "ds-more" }, `${under && " · "}${cluster}`)),
       this.figure(part),
       part.step === null ? null : this.tickBox(part),
       make("dl", {}, rows.map(([name, value, more]) => make("div", { class: more ? "ds-more" : null }, make("dt", {}, name), make("dd", {}, value)))),
