@@ -272,7 +272,7 @@ FILES: dict[str, tuple[Callable[[], bytes], str]] = {
     "channels.tif": (lambda: tiff_of({277: 60_000}), "E109 .*60000 channels"),
     "wide.tif": (lambda: tiff_of({256: 2**32 - 1, 257: 2**32 - 1}), "E110"),
     "planes.tif": (lambda: tiff_of({32997: 9}), "E109 .*9 planes"),
-    "predictor.tif": (lambda: tiff_of({317: 77, 259: 8}), "E106"),
+    "predictor.tif": (lambda: tiff_of({317: 77, 259: 8}), "E107 .*predictor 77"),
     "entries.tif": (many_entries, "E106"),
     "signalling.npy": (lambda: saved(signalling()), "E108 .*not finite"),
     "shape.npy": (lambda: npy(f"({2**62}, {2**62})"), "E106"),

@@ -231,7 +231,7 @@ def test_damaged_npy():
         with pytest.raises(InputError, match=r"E106"):
             decode(data, LIMIT)
     np.save(buffer := io.BytesIO(), np.array([{}, {}]), allow_pickle=True)
-    with pytest.raises(InputError, match=r"E106.*pickle"):
+    with pytest.raises(InputError, match=r"E107.*pickle"):
         decode(buffer.getvalue(), LIMIT)
 
 
