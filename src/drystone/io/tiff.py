@@ -42,8 +42,15 @@ ORIENTATION = 0x0112
 _PLANES = 33629
 """Tag of MetaMorph, of which the number of values is that of planes behind one page."""
 
-_TURNED_BACK = {6: 8, 8: 6}
-"""What takes back the turn of an orientation, where it is another one."""
+TURNS = {
+    2: "mirrored left to right", 3: "turned by 180 degrees", 4: "mirrored top to bottom",
+    5: "mirrored and turned", 6: "turned by 90 degrees clockwise", 7: "mirrored and turned",
+    8: "turned by 90 degrees counter-clockwise",
+}  # fmt: skip
+"""What is done to a picture of an orientation."""
+
+TURNED_BACK = {6: 8, 8: 6}
+"""Orientations that another one takes back; all others are their own opposite."""
 
 _NODATA = 42113
 """Tag of GDAL: the number that stands for nothing."""
@@ -363,4 +370,4 @@ def _values_by_pillow(data: bytes, check: Callable[[int, int], None]) -> NDArray
     """Decode JPEG in a TIFF; Pillow turns a picture when it loads it."""
     with opened(data, check) as image:
         orientation = int(image.getexif().get(ORIENTATION, 1))
-        return turned(np.asarray(image), _TURNED_BACK.get(orientation, orientation))
+        return turned(np.asarray(image), TURNED_BACK.get(orientation, orientation))

@@ -116,7 +116,7 @@ def read_wall_image(
         raise InputError("E100", what, where=str(path), cure=cure) from error
     with naming(path.name):
         picture = decode(data, int(max_image_mpx * 1e6))
-        image = to_ids(picture.values, background)
+        image = to_ids(picture, background)
         census = take_census(image.ids)
         if picture.lossy:
             check_not_lossy(census, image)
