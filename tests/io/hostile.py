@@ -274,7 +274,7 @@ FILES: dict[str, tuple[Callable[[], bytes], str]] = {
     "planes.tif": (lambda: tiff_of({32997: 9}), "E109 .*9 planes"),
     "predictor.tif": (lambda: tiff_of({317: 77, 259: 8}), "E107 .*predictor 77"),
     "entries.tif": (many_entries, "E106"),
-    "signalling.npy": (lambda: saved(signalling()), "E108 .*not finite"),
+    "signalling.npy": (lambda: saved(signalling()), ""),
     "shape.npy": (lambda: npy(f"({2**62}, {2**62})"), "E106"),
     "sides.npy": (lambda: npy(f"({'9' * 400}, -1)"), "E106 .*below 0"),
     "nothing.npy": (lambda: npy(f"({'9' * 400}, 9)", "|S0"), "E106 .*no bytes"),

@@ -18,7 +18,7 @@ or GeoJSON; DXF, SVG, OBJ, PLY, STL"
 def add_reading(command: argparse.ArgumentParser) -> None:
     """Add the options that say how a picture of stones is to be read."""
     group = command.add_argument_group("reading")
-    group.add_argument("--background", type=int, metavar="N", help="the value that is not stone")
+    group.add_argument("--background", type=_value, metavar="N", help="the value that is not stone")
     group.add_argument(
         "--pieces", choices=["auto", "keep-largest", "split", "error"],
         help="what to do with a stone of several pieces",
@@ -48,7 +48,7 @@ def add_wall(command: argparse.ArgumentParser) -> None:
         "wall_path", metavar="WALL", help="label image, plan.json, or block model (JSON)"
     )
     command.add_argument(
-        "--background", type=int, default=0, metavar="N",
+        "--background", type=_value, default=0, metavar="N",
         help="the value of a label image that is not stone (default 0)",
     )  # fmt: skip
     command.add_argument("--json", action="store_true", help="print as JSON")
@@ -56,6 +56,14 @@ def add_wall(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--overwrite", action="store_true", help="replace pictures of the same names"
     )
+
+
+def _value(text: str) -> int:
+    """Read a background; NaN is one in any case, and -1 is no id, so with it 0 is none either."""
+    return -1 if text.lower() == "nan" else int(text)
+
+
+_value.__name__ = "int"  # as argparse names it in errors
 
 
 def reading_from(arguments: argparse.Namespace) -> ReadSettings:

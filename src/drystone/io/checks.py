@@ -153,8 +153,17 @@ def blended(census: Census, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
     ``np.nonzero(chosen)``.
     """
     here = census.index[chosen]
-    low = ndimage.minimum_filter(census.index, 5)[chosen]
-    high = ndimage.maximum_filter(census.index, 5)[chosen]
+    if 8 * here.size > chosen.size:
+        low = ndimage.minimum_filter(census.index, 5)[chosen]
+        high = ndimage.maximum_filter(census.index, 5)[chosen]
+        return np.asarray((low < here) & (here < high))
+    rows, cols = np.nonzero(chosen)
+    low, high = here.copy(), here.copy()
+    bottom, right = chosen.shape[0] - 1, chosen.shape[1] - 1
+    for down, across in np.ndindex(5, 5):
+        near = np.clip(rows + down - 2, 0, bottom), np.clip(cols + across - 2, 0, right)
+        np.minimum(low, census.index[near], out=low)
+        np.maximum(high, census.index[near], out=high)
     return np.asarray((low < here) & (here < high))
 
 

@@ -255,7 +255,7 @@ def _whole_numbers(values: NDArray[Any]) -> NDArray[Any]:
         values = values.astype(np.float32)
     with np.errstate(invalid="ignore"):
         found = (
-            ("infinite", ~np.isfinite(values)),
+            ("not finite", ~np.isfinite(values)),
             ("no whole numbers", values != np.floor(values)),
             ("not from 0 to 2^32-1", np.abs(values) > MAX_ID),
         )

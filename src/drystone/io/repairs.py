@@ -31,7 +31,7 @@ _WEIGHTS = np.array([1 if r and c else 2 for r, c in _AROUND])
 _WHOLE = np.ones((3, 3), bool)
 
 
-def without_net(image: IdImage, census: Census) -> tuple[IdImage, Census]:
+def without_net(image: IdImage, census: Census, *, wall: bool = False) -> tuple[IdImage, Census]:
     """Make a value background that is a net of edges around stones, and say so (W135)."""
     net = _net(census, image.background)
     if net is None:
@@ -40,6 +40,8 @@ def without_net(image: IdImage, census: Census) -> tuple[IdImage, Census]:
     count = int(census.counts[net])
     what = f"the value {value} ({count} px) is a net of edges around stones: read as background."
     cure = "Use --no-mask (mask=False in Python) to keep it as a stone."
+    if wall:
+        cure = "If it is of stone, draw its parts in ids of their own."
     ids = np.where(census.index == net + 1, image.background, image.ids).astype(image.ids.dtype)
     notices = (*image.notices, Notice("W135", what, cure))
     return replace(image, ids=ids, brightness=None, notices=notices), take_census(ids)
@@ -121,23 +123,28 @@ def _stray(
     lone = census.pixels(thin) | (astray_px(census) & stones)
     lone[[0, -1]] |= census.pixels(thin)[[0, -1]]
     most = _FEW * np.count_nonzero(stones & ~census.solid)
-    if not core[1:].any() or not 0 < np.count_nonzero(lone):
+    if not core.any() or not lone.any():
         return None
-    between = np.zeros_like(lone)
-    between[lone] = blended(census, lone)
     runs = label_runs(census.index)
     pieces = runs_in_pieces(runs)
-    small = np.bincount(pieces, runs.lengths) < least_px
+    small = (np.bincount(pieces, runs.lengths) < least_px)[pieces]
+    lengths = runs.lengths[small]
+    begins = (runs.rows * runs.width + runs.begins)[small]
+    place = np.repeat(begins - np.cumsum(lengths) + lengths, lengths) + np.arange(lengths.sum())
     stray = np.zeros(lone.shape, bool)
-    for run in np.flatnonzero(small[pieces]).tolist():
-        stray[runs.rows[run], runs.begins[run] : runs.ends[run]] = True
-    stray &= lone & (between if wall else between | census.pixels(thin))
+    stray.ravel()[place] = True
+    stray &= lone
+    sure = blended(census, stray)
+    stray[stray] = sure if wall else sure | thin[census.index[stray] - 1]
+    if not stray.any():
+        return None
     # What lies on the ground alone is a speck.
     joined, count = ndimage.label(stray, _WHOLE)
-    at_stone = ndimage.maximum_filter((stones & ~stray).view(np.uint8), 3).astype(bool)
+    body = np.pad(stones & ~stray, 1)
+    rows, cols = np.nonzero(stray)
+    at_stone = np.logical_or.reduce([body[rows + 1 + r, cols + 1 + c] for r, c in _AROUND])
     kept = np.zeros(count + 1, bool)
-    kept[joined[at_stone & stray]] = True
-    kept[0] = False
+    kept[joined[rows, cols][at_stone]] = True
     stray = kept[joined]
     return stray if 0 < np.count_nonzero(stray) <= most else None
 

@@ -131,9 +131,9 @@ def values(data: bytes, check: Callable[[int, int], None]) -> NDArray[Any]:
         if min(rows, cols, height, width, channels) < 1:
             raise damaged("a side of it is 0")
         kind = np.dtype(page.dtype).newbyteorder(page.parent.byteorder)
+        options = {tag: int(page.tags[tag].value) for tag in _FAX_OPTIONS if tag in page.tags}
         code = _Code(
-            *(int(n) for n in (page.compression, page.predictor, page.fillorder)),
-            {tag: int(page.tags[tag].value) for tag in _FAX_OPTIONS if tag in page.tags},
+            int(page.compression), int(page.predictor), int(page.fillorder), options,
             kind, int(page.bitspersample), cols, channels,
         )  # fmt: skip
         places = list(zip(page.dataoffsets, page.databytecounts, strict=False))

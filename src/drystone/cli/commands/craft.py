@@ -49,7 +49,7 @@ def _limit(text: str) -> tuple[str, float, float]:
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Print what each rule finds; a broken rule is a result, not an error."""
     wall = read_wall(Path(arguments.wall_path), background=arguments.background)
-    for notice in _pieces(wall):
+    for notice in (*wall.notices, *_pieces(wall)):
         print(f"drystone: {notice}", file=sys.stderr)
     if wall.plan is not None and arguments.wedges:
         raise UsageError(

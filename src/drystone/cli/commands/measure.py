@@ -41,7 +41,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         raise UsageError("E134", "a block model has no pixels to measure.", where="measure")
     refuse_outside(arguments.px_per_m, wall_picture_px(wall))
     # Of the picture as it was given: reducing it may part what hangs together.
-    for notice in notice_of_pieces(wall.labels) if wall.blocks is None else ():
+    pieces = notice_of_pieces(wall.labels) if wall.blocks is None else ()
+    for notice in (*wall.notices, *pieces):
         print(f"drystone: {notice}", file=sys.stderr)
     labels = reduce_labels(wall.labels, arguments.scale) if arguments.scale != 1 else wall.labels
     metrics = _measured(GivenWall(labels, wall.plan, wall.blocks), labels, arguments)
