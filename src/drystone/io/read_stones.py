@@ -197,13 +197,14 @@ def _checked(
     binary = find_mask(image, census, settings.mask, lossy=lossy)
     if binary is None:
         check_not_photo(census)
-        check_background(census, image.background, rim_px=int(image.has_edges))
         if settings.mask is None:
             net = image
             image, census = without_net(image, census)
             if image is not net:
+                check_not_uniform(census, image.background, image.notices[-1].message)
                 binary = find_mask(image, census, settings.mask)
     if binary is None:
+        check_background(census, image.background, rim_px=int(image.has_edges))
         least_px = settings.min_area_px or MIN_AREA_PX
         image, census = without_blends(image, census, least_px)
         check_not_resampled(census, image.background)

@@ -133,10 +133,11 @@ def read_wall_picture(
         if picture.lossy:
             check_not_lossy(census, image)
         if len(census.values) > 1:
+            if not planned:
+                image, census = without_net(image, census, wall=True)
             check_background(census, image.background, _CURE, int(image.has_edges))
             check_not_photo(census)
             if not planned:
-                image, census = without_net(image, census, wall=True)
                 image, census = without_blends(image, census, _BLENDED_PX, wall=True)
                 check_not_resampled(census, image.background)
         elif int(census.values[0]) == image.background:
