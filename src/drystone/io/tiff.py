@@ -136,7 +136,8 @@ def values(data: bytes, check: Callable[[int, int], None]) -> NDArray[Any]:
             int(page.compression), int(page.predictor), int(page.fillorder), options,
             kind, int(page.bitspersample), cols, channels,
         )  # fmt: skip
-        places = list(zip(page.dataoffsets, page.databytecounts, strict=False))
+        offsets, counts = page.dataoffsets, page.databytecounts
+        places = [(int(start), int(n)) for start, n in zip(offsets, counts, strict=False)]
         nodata = page.tags.get(_NODATA)
         nothing = None if nodata is None else _number(str(nodata.value))
     down, across = math.ceil(height / rows), math.ceil(width / cols)
@@ -145,13 +146,13 @@ def values(data: bytes, check: Callable[[int, int], None]) -> NDArray[Any]:
     room = down * across * planes * rows * code.row_bytes
     if room > 2 * planes * height * math.ceil(width / cols) * code.row_bytes + _ROOM:
         raise damaged("its tiles are larger than the picture")
-    if sum(int(count) for _, count in places) > len(data):
+    if sum(count for _, count in places) > len(data):
         raise damaged("its strips lie in each other")
     found = np.zeros((height, width, planes * channels), kind.newbyteorder("="))
     if nothing is not None and _holds(found.dtype, nothing):
         found[:] = nothing
     for place, (plane, i, j) in enumerate(np.ndindex(planes, down, across)):
-        start, count = map(int, places[place])
+        start, count = places[place]
         if not count:  # sparse
             continue
         top, left = i * rows, j * cols
