@@ -93,6 +93,9 @@ def test_a_net_of_edges_is_no_stone(tmp_path, value, gap):
     assert codes(stones) == ["W135"]
     assert f"the value {value} (" in said(stones)
     assert "--no-mask" in said(stones)
+    skipped = read_stones(tmp_path / "a.npy", settings=ReadSettings(skip=(value, 10)))
+    assert areas(skipped) == dict.fromkeys(range(13, 70, 3), 576)
+    assert codes(skipped) == ["W135"]
     np.testing.assert_array_equal(read_wall(tmp_path / "a.npy").labels, labels)
     kept = read_stones(
         tmp_path / "a.npy", settings=ReadSettings(mask=False, pieces="keep-largest", holes="keep")

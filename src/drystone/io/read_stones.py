@@ -164,9 +164,13 @@ def _read_picture(picture: Picture, source: Source, settings: ReadSettings) -> S
     reading = _of_px(settings)
     image = to_ids(picture, settings.background)
     height, width = image.ids.shape
+    given = image.ids
     image, census, binary = _checked(image, picture.lossy, settings)
     if binary is None:
         check_count(len(census.values) - 1)
+        # What became background is left out already.
+        skip = (i for i in settings.skip if i in census.values or not (given == i).any())
+        settings = replace(settings, skip=tuple(skip))
         check_no_zero(census.values, image.background)
         ids = np.where(census.values == image.background, 0, census.values)
         patches, notices = cut(census.index, ids), image.notices

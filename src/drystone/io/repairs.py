@@ -104,7 +104,10 @@ def without_blends(
         f"{len(rows)} px at edges have values that were blended; each was given to what it "
         f"touches most ({listed(parts)})."
     )
-    cure = "Use --min-area 1 (min_area_px=1 in Python) to keep their values."
+    cure = (
+        "Use --min-area 1 --pieces split (min_area_px=1, pieces='split' in Python) to keep their "
+        "values."
+    )
     if wall:
         cure = "Export the ids without anti-aliasing if they are right as they are."
     notices = (*image.notices, Notice("W136", what, cure))
