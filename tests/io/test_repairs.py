@@ -8,7 +8,9 @@ from PIL import Image
 from scipy import ndimage
 
 from drystone.errors import InputError, LabelImageError
+from drystone.io.labels import Census
 from drystone.io.read_stones import ReadSettings, read_stones
+from drystone.io.repairs import _given
 from drystone.io.walls import read_wall
 from tests.io.pictures import areas, codes, discs, many_stones, two_stones
 
@@ -129,6 +131,20 @@ def test_one_stone_with_a_ring_of_no_class():
 def test_stones_that_touch_are_no_net(labels):
     stones = read_stones(np.pad(labels, 4), settings=IDS)
     assert [stone.id for stone in stones] == [i for i in np.unique(labels) if i]
+
+
+def test_a_thick_stone_around_others_is_no_net():
+    labels = np.pad(np.kron([[1, 0, 2, 0, 3]], np.ones((20, 20), int)), 20, constant_values=0)
+    labels[12:48, 12:128] = np.where(labels[12:48, 12:128], labels[12:48, 12:128], 9)
+    stones = read_stones(labels)
+    assert sorted(areas(stones)) == [1, 2, 3, 9]
+    assert codes(stones) == ["W112"]
+
+
+def test_a_side_counts_more_than_a_corner():
+    index = np.array([[1, 2, 1], [2, 3, 2], [1, 2, 1]], np.int32)
+    given = _given(Census(index, np.array([0, 5, 6])), index == 3)
+    assert given[1, 1] == 2
 
 
 # -- blended pixels ----------------------------------------------------------------------------
