@@ -19,7 +19,7 @@ def add_reading(command: argparse.ArgumentParser) -> None:
     """Add the options that say how a picture of stones is to be read."""
     # fmt: off
     option = command.add_argument_group("reading").add_argument
-    option("--background", type=int, metavar="N", help="the value that is not stone")
+    option("--background", type=_value, metavar="N", help="the value that is not stone")
     option("--pieces", choices=["auto", "keep-largest", "split", "error"],
            help="what to do with a stone of several pieces")
     option("--holes", choices=["fill", "keep"], help="fill holes in stones (default)")
@@ -40,11 +40,19 @@ def add_wall(command: argparse.ArgumentParser) -> None:
     # fmt: off
     option = command.add_argument
     option("wall_path", metavar="WALL", help="label image, plan.json, or block model (JSON)")
-    option("--background", type=int, default=0, metavar="N",
+    option("--background", type=_value, default=0, metavar="N",
            help="the value of a label image that is not stone (default 0)")
     option("--json", action="store_true", help="print as JSON")
     option("-o", "--output", metavar="DIR", help="draw pictures into a folder")
     option("--overwrite", action="store_true", help="replace pictures of the same names")
+
+
+def _value(text: str) -> int:
+    """Read a background; NaN is one in any case, and -1 is no id, so with it 0 is none either."""
+    return -1 if text.lower() == "nan" else int(text)
+
+
+_value.__name__ = "int"  # as argparse names it in errors
 
 
 def reading_from(arguments: argparse.Namespace) -> ReadSettings:

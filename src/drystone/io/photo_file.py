@@ -16,7 +16,7 @@ from drystone.io import tiff
 from drystone.io.file_bytes import file_bytes
 from drystone.io.file_errors import naming, too_large, unread
 from drystone.io.pictures import check_size, format_of, opened
-from drystone.io.tiff import ORIENTATION
+from drystone.io.tiff import ORIENTATION, TURNED_BACK, TURNS, turned
 from drystone.model.stone import writable
 
 MAX_PX = 200_000_000
@@ -29,14 +29,6 @@ SAME_SHAPE = 0.02
 """Widths over heights may differ by this share: a photograph of few px rounds them."""
 
 _REDUCE = "Reduce it or crop it; only in Python can the limit be raised (max_px)."
-
-_TURNS = {
-    2: "mirrored left to right", 3: "turned by 180 degrees", 4: "mirrored top to bottom",
-    5: "mirrored and turned", 6: "turned by 90 degrees clockwise", 7: "mirrored and turned",
-    8: "turned by 90 degrees counter-clockwise",
-}  # fmt: skip
-_BACK = {6: 8, 8: 6}
-"""Orientations whose opposite is another."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,9 +57,9 @@ def read_photo(path: str | Path, max_px: int = MAX_PX) -> Photo:
     name = writable(path.name)
     if deep:
         notices = (Notice("W174", "16 bits a channel were scaled to 8."), *notices)
-    if orientation in _TURNS:
-        rgb = _turned(rgb, orientation)
-        said = f"{name} was {_TURNS[orientation]}, as its EXIF data say."
+    if orientation in TURNS:
+        rgb = turned(rgb, orientation)
+        said = f"{name} was {TURNS[orientation]}, as its EXIF data say."
         notices = (*notices, Notice("W173", said))
     return Photo(rgb, name, hashlib.sha256(data).hexdigest(), notices)
 
@@ -126,7 +118,7 @@ def _tiff(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any],
     if page.bits <= 8:
         # Pillow turns a TIFF by itself when it reads it: taken back, so that it is said.
         values, orientation = _by_pillow(data, check)
-        return _turned(values, _BACK.get(orientation, orientation)), orientation
+        return turned(values, TURNED_BACK.get(orientation, orientation)), orientation
     if page.unreadable:
         what = f"TIFF with {page.unreadable} cannot be read."
         raise unread(what, "Export it uncompressed or with LZW.")
@@ -140,15 +132,6 @@ def _tiff(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any],
         grey = np.atleast_3d(values)[..., :1]
         np.subtract(65535, grey, out=grey)
     return values, page.orientation
-
-
-def _turned(values: NDArray[Any], orientation: int) -> NDArray[Any]:
-    """Turn a picture as its orientation says."""
-    if orientation not in _TURNS:
-        return values
-    image = Image.fromarray(values)
-    image.getexif()[ORIENTATION] = orientation
-    return np.array(ImageOps.exif_transpose(image))
 
 
 def _to_rgb(values: NDArray[Any]) -> tuple[NDArray[np.uint8], tuple[Notice, ...]]:

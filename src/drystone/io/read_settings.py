@@ -22,7 +22,7 @@ class ReadSettings:
     Parameters
     ----------
     background : int
-        The value that is not stone.
+        The value that is not stone; so are NaN and -1, whatever it is.
     pieces : {"auto", "keep-largest", "split", "error"}
         What to do with a stone of several pieces: "auto" keeps the largest when the others are
         less than 2 % of the stone and refuses the picture otherwise, "keep-largest" always keeps
@@ -32,9 +32,11 @@ class ReadSettings:
         Fill holes before areas and centroids are taken, or leave them open; outlines are the outer
         ones either way.
     min_area_px : int or None
-        Smaller stones are left out and listed; None is max(10 px, 0.1 % of the median area).
+        Smaller stones are left out and listed; None is max(10 px, 0.1 % of the median area), of the
+        components of a mask also 1 % of it, up to 50 px.
     mask : bool or None
-        True reads the picture as a binary mask, False as ids; None decides by its values.
+        True reads the picture as a binary mask, False as ids; None decides by its values, and takes
+        a net of edges around stones for background.
     skip : tuple of int
         Ids of stones to leave out.
     max_image_mpx : float

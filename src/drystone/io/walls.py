@@ -17,7 +17,7 @@ from drystone.io.foreign import foreign
 from drystone.io.json_text import json_of
 from drystone.io.plan_folder import BLOCKS
 from drystone.io.plan_json import read_plan
-from drystone.io.wall_image import read_wall_image
+from drystone.io.wall_image import read_wall_image, read_wall_picture
 from drystone.kernels.label_runs import label_runs
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.model.plan import Plan
@@ -49,6 +49,7 @@ class GivenWall:
     plan: Plan | None = None  # when the file was a plan; its image is the wall image beside it
     blocks: dict[str, Any] | None = None
     """A block model as it was written, also that of a plan on outlines."""
+    notices: tuple[Notice, ...] = ()  # what was made of the pixels of a label image
 
     @property
     def wedge_ids(self) -> frozenset[int]:
@@ -72,7 +73,8 @@ def read_wall(path: Path, *, background: int = 0) -> GivenWall:
     if path.is_dir():
         path /= "plan.json"
     if path.suffix.lower() != ".json":
-        return GivenWall(read_wall_image(path, background=background))
+        image, notices = read_wall_picture(path, background=background)
+        return GivenWall(image, notices=notices)
     if background:
         what = f"a background of {background} is of a label image, and this is none."
         cure = "Leave --background (background in Python) out."

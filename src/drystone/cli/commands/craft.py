@@ -44,6 +44,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     """Print what each rule finds; a broken rule is a result, not an error."""
     path = Path(arguments.wall_path)
     wall = read_wall(path, background=arguments.background)
+    note(*wall.notices)
     if wall.labels is not None and wall.blocks is None:
         note(*notice_of_pieces(wall.labels))
     if wall.plan is not None and arguments.wedges:

@@ -56,7 +56,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         raise UsageError("E134", "a block model has no pixels to measure.", where="measure")
     refuse_outside(arguments.px_per_m, wall_picture_px(wall))
     # Of the picture as it was given: reducing it may part what hangs together.
-    note(*(notice_of_pieces(wall.labels) if wall.blocks is None else ()))
+    note(*wall.notices, *(notice_of_pieces(wall.labels) if wall.blocks is None else ()))
     labels = reduce_labels(wall.labels, arguments.scale) if arguments.scale != 1 else wall.labels
     metrics = _measured(wall, labels, arguments)
     if arguments.output is not None:

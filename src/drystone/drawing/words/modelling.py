@@ -50,6 +50,7 @@ def modelled(wall: GivenWall, asked: ModelRequest, where: str) -> ModelledWall:
     else:
         assert wall.labels is not None  # noqa: S101 - a wall without blocks has an image
         found = _drawn(wall, wall.labels, mu, asked)
+        found = replace(found, notices=(*wall.notices, *found.notices))
     if asked.mu_head is not None:
         if wall.blocks is None:
             found = replace(found, model=with_head_friction(found.model, asked.mu_head))
