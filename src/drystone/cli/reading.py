@@ -8,7 +8,8 @@ from drystone.io.read_settings import ReadSettings, Unit
 from drystone.model.settings import updated
 
 _NAMES = (
-    "background", "pieces", "holes", "mask", "min_area_px", "skip", "unit", "image", "px_per_m",
+    "background", "pieces", "holes", "mask", "min_area_px", "skip", "keep", "label", "unit",
+    "image", "px_per_m",
 )  # fmt: skip
 
 STONES = "label image, mask or NPY; folder of masks, or of `drystone segment`; labelme, COCO, SAM \
@@ -34,6 +35,14 @@ def add_reading(command: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--skip", type=int, action="append", metavar="ID", help="leave out a stone; may be repeated"
     )
+    group.add_argument(
+        "--keep", type=int, action="append", metavar="ID",
+        help="take for a stone what looks like a frame, the ground, a repeat or a part of another",
+    )  # fmt: skip
+    group.add_argument(
+        "--label", nargs="+", action="extend", metavar="NAME",
+        help="which classes of annotations are stones",
+    )  # fmt: skip
     group.add_argument(
         "--unit", choices=get_args(Unit)[1:], help="of a drawing or mesh that does not say its own"
     )
@@ -74,6 +83,4 @@ def reading_of(source: Mapping[str, Any]) -> ReadSettings:
 
 
 def _settings(changes: Mapping[str, Any]) -> ReadSettings:
-    values = {name: tuple(v) if isinstance(v, list) else v for name, v in changes.items()}
-    skip = values.pop("skip", ())
-    return updated(ReadSettings(skip=skip), values)
+    return updated(ReadSettings(), changes)

@@ -15,14 +15,10 @@ from drystone.io.file_errors import listed, short, too_large, unfit
 from drystone.io.foreign import foreign
 from drystone.io.json_text import json_of
 from drystone.io.npy import BEGINNING
-from drystone.io.outlines_in.annotations import (
-    GEOJSON_KINDS,
-    read_coco,
-    read_geojson,
-    read_labelme,
-    read_sam,
-)
+from drystone.io.outlines_in.annotations import read_coco, read_labelme, read_sam
+from drystone.io.outlines_in.classes import of_classes
 from drystone.io.outlines_in.dxf import is_dxf, read_dxf
+from drystone.io.outlines_in.geojson import GEOJSON_KINDS, read_geojson
 from drystone.io.outlines_in.meshes import mesh_kind, read_mesh
 from drystone.io.outlines_in.model import METRES, OutlineFile, numbered, without_wedges
 from drystone.io.outlines_in.raster import rastered
@@ -70,6 +66,8 @@ def _read_json(data: bytes, settings: ReadSettings) -> OutlineFile:
     if isinstance(content, list):
         if all(isinstance(found, Mapping) and "segmentation" in found for found in content):
             return read_sam(content, settings)
+        if content and all(_is_feature(found) for found in content):  # as QuPath exports them
+            return read_geojson({"type": "FeatureCollection", "features": content}, settings)
     elif isinstance(content, Mapping):
         if isinstance(content.get("shapes"), list):
             return read_labelme(content, settings)
@@ -78,6 +76,10 @@ def _read_json(data: bytes, settings: ReadSettings) -> OutlineFile:
         if isinstance(kind := content.get("type"), str) and kind in GEOJSON_KINDS:
             return read_geojson(content, settings)
     raise _no_stones(*_what_else(content))
+
+
+def _is_feature(found: Any) -> bool:
+    return isinstance(found, Mapping) and found.get("type") == "Feature"
 
 
 def _what_else(content: Any) -> tuple[str, ...]:
@@ -119,13 +121,14 @@ def stones_of(read: Reader, data: bytes, name: str, settings: ReadSettings) -> S
         replace(stone, name=stone.name.encode("utf-8", "replace").decode()) for stone in file.stones
     ]
     kept, wedges = without_wedges(named)
+    kept, classes = of_classes(kept, settings.label)
     stones, renumbered = numbered(kept)
     patches, size_px, px_per_m, said = rastered(replace(file, stones=stones), settings)
     # What has px of its own has no other resolution.
     reading = (settings if px_per_m else replace(settings, px_per_m=None)).changed()
     digest = hashlib.sha256(data).hexdigest()
     source = Source(name, digest, *size_px, reading=reading, px_per_m=px_per_m)
-    notices = [*file.notices, *wedges, *renumbered, *said]
+    notices = [*file.notices, *wedges, *classes, *renumbered, *said]
     return stone_set(patches, notices, source, settings)
 
 

@@ -37,6 +37,12 @@ class ReadSettings:
         True reads the picture as a binary mask, False as ids; None decides by its values.
     skip : tuple of int
         Ids of stones to leave out.
+    keep : tuple of int
+        Ids of outlines or masks that are stones, though they look like a frame, the ground, a
+        repeat or a part of another.
+    label : tuple of str
+        The classes of annotations that are stones; empty leaves out those whose names say
+        something else (a marker, the ground …).
     max_image_mpx : float
         Largest picture that is decoded, in millions of pixels.
     px_per_m : float or None
@@ -60,6 +66,8 @@ class ReadSettings:
     min_area_px: int | None = None
     mask: bool | None = None
     skip: tuple[int, ...] = ()
+    keep: tuple[int, ...] = ()
+    label: tuple[str, ...] = ()
     max_image_mpx: float = 200.0
     px_per_m: float | None = None
     unit: Unit = ""

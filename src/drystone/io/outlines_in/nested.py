@@ -1,18 +1,25 @@
-"""Which of many masks that lie in each other are stones."""
+"""The one rule for what is not a stone: frames, the ground, repeats, groups and parts."""
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
 
 import numpy as np
 
 from drystone.errors import Notice
-from drystone.io.file_errors import MANY, listed, too_large
-from drystone.io.outlines_in.fill import pixels_of, united
-from drystone.io.outlines_in.model import OutlinedStone
+from drystone.io.file_errors import MANY, listed, short, too_large
+from drystone.io.outlines_in.fill import united
 from drystone.io.patches import PlacedMask, enclosed
 
 INSIDE = 0.8
 """Share of a mask that lies in another one for it to count as its part."""
+
+_BESIDE = 0.25
+"""How large what lies beside a frame may be, compared with what lies in it."""
+_IN_EACH = 4
+"""How many lie, on average, in each of several frames."""
+_WHOLE_PICTURE = 0.9
+"""Share of its picture that a frame has which a program saw."""
 
 _MOST_PAIRS = 200_000
 _MOST_SHARED_PX = 300_000_000
@@ -38,73 +45,120 @@ def meeting_boxes(masks: Sequence[PlacedMask]) -> list[tuple[int, int]]:
     return pairs
 
 
-def without_nested(
-    stones: list[OutlinedStone], skip: tuple[int, ...] = ()
-) -> tuple[list[OutlinedStone], list[Notice]]:
-    """Leave out the ground, groups of stones, and parts of stones.
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """Masks of one picture, by the number of their stone."""
 
-    A program that masks whatever it sees finds the ground, heaps, stones, and spots on stones.
-    In this order:
+    masks: Mapping[int, PlacedMask]
+    size_px: tuple[int, int]  # width, height of the picture
+    keep: frozenset[int] = frozenset()
+    by_program: bool = False
+    """A program masks whatever it sees: heaps, stones, and spots on stones."""
 
-    1. a mask in whose holes `INSIDE` of another mask lies is the ground;
+
+def not_stones(seen: Seen) -> dict[int, str]:
+    """Say of each mask that is not a stone of its own what it is instead.
+
+    This is the one rule of all readers of outlines and masks, in this order:
+
+    1. a mask in whose holes `INSIDE` of others lies is the ground;
     2. of two masks that share `INSIDE` of their union, the smaller one is the same thing again;
-    3. a mask of which `INSIDE` is covered by two or more smaller ones is a group of those;
-    4. a mask of which `INSIDE` lies in a larger one that is kept is a part of it.
-
-    Ids in `skip` do not count, and their stones are kept as they are; naming parts there makes
-    their group a stone.
+    3. a mask in which nearly all others lie is a frame;
+    4. a mask of which `INSIDE` is covered by two or more smaller ones is a group of those;
+    5. a mask of which `INSIDE` lies in a larger one that is kept is a part of it.
     """
-    placed = {i: pixels_of(stone) for i, stone in enumerate(stones) if stone.id not in skip}
-    masks = {i: mask for i, mask in placed.items() if mask is not None}
+    masks, left = dict(seen.masks), {}
     keys = list(masks)
     meeting = [(keys[i], keys[j]) for i, j in meeting_boxes(list(masks.values()))]
-    ground = _with_stones_in_holes(masks, meeting)
-    shares = _Shares({i: mask for i, mask in masks.items() if i not in ground}, meeting)
-    again = shares.same()
-    shares.leave(again)
-    groups = shares.groups()
-    shares.leave(groups)
-    parts_of = shares.wholes()
-    left = {*ground, *again, *groups, *parts_of}
-    name = [stone.id for stone in stones]
-    said = [f"{name[i]} (the ground: others lie in its holes)" for i in sorted(ground)]
-    said += [f"{name[i]} ({name[whole]} again)" for i, whole in sorted(again.items())]
-    for i, parts in sorted(groups.items()):
-        said.append(f"{name[i]} (a group of {listed(name[part] for part in parts)})")
-    said += [f"{name[i]} (a part of {name[whole]})" for i, whole in sorted(parts_of.items())]
-    kept = [
-        stone if (mask := placed.get(i)) is None else replace(stone, areas=(), masks=(mask,))
-        for i, stone in enumerate(stones)
-        if i not in left
-    ]
-    if not said:
-        return kept, []
-    found = f"{len(said)} of {len(stones)} masks are no stones of their own"
-    text = f"{found}: {listed(said, most=MANY)}."
-    return kept, [Notice("W119", text, "Skip ids to decide otherwise.")]
-
-
-def _with_stones_in_holes(
-    masks: dict[int, PlacedMask], meeting: Iterable[tuple[int, int]]
-) -> set[int]:
     holes = {
         i: PlacedMask(inside, mask.row, mask.col)
         for i, mask in masks.items()
-        if (inside := enclosed(mask.mask)).any()
+        if i not in seen.keep and (inside := enclosed(mask.mask)).any()
     }
-    return {
-        i
-        for pair in meeting
-        for i, j in (pair, pair[::-1])
-        if i in holes and holes[i].common_px(masks[j]) >= INSIDE * masks[j].mask.sum()
-    }
+    for i in _ground(seen, holes, meeting):
+        left[i] = "the ground: others lie in its holes"
+    shares = _Shares({i: m for i, m in masks.items() if i not in left}, meeting, seen.keep)
+    again = shares.same()
+    left |= {i: f"{whole} again" for i, whole in again.items()}
+    shares.leave(again)
+    found = shares.frames(seen, holes)
+    left |= {i: f"a frame around {listed(held, most=3)}" for i, held in found.items()}
+    shares.leave(found)
+    groups = shares.groups()
+    left |= {i: f"a group of {listed(parts)}" for i, parts in groups.items()}
+    shares.leave(groups)
+    return left | {i: f"a part of {whole}" for i, whole in shares.wholes().items()}
+
+
+def said_of(left: Mapping[int, str], count: int, names: Mapping[int, str] | None = None) -> Notice:
+    """List what is not a stone, and how to keep it."""
+    shown = {i: f"{i} {short((names or {}).get(i, ''))}".rstrip() for i in left}
+    why = listed((f"{shown[i]} ({left[i]})" for i in sorted(left)), most=MANY)
+    text = f"{len(left)} of {count} outlines or masks are not stones of their own, left out: {why}."
+    return Notice("W119", text, "Use --keep ID (keep in Python) for each that is one.")
+
+
+def frames(
+    areas: Mapping[int, float],
+    inside: Mapping[int, AbstractSet[int]],
+    plain: AbstractSet[int] = frozenset(),
+) -> dict[int, list[int]]:
+    """Return the shapes that are drawn around the stones, and what lies in each.
+
+    A frame holds two others or more, and beside it there is little, compared with them; one that
+    is a `plain` rectangle may hold a single one.  Several frames share all others.
+    """
+    left, found = set(areas), {}
+    order = sorted(areas, key=lambda i: -areas[i])
+    while True:
+        for i in order:
+            held = inside[i] & left if i in left else set()
+            beside = left - held - {i}
+            few = len(held) < (1 if i in plain and not beside else 2)
+            if not few and sum(areas[j] for j in beside) <= _BESIDE * sum(areas[j] for j in held):
+                found[i] = sorted(held)
+                left.remove(i)
+                break
+        else:
+            break
+    holding = {i: inside[i] & left for i in left}
+    outer = left.difference(*holding.values())
+    several = len(outer) > 1 and all(len(holding[i]) > 1 for i in outer)
+    if several and len(left) - len(outer) >= _IN_EACH * len(outer):
+        found |= {i: sorted(holding[i]) for i in outer}
+    return found
+
+
+def _ground(
+    seen: Seen, holes: Mapping[int, PlacedMask], meeting: Iterable[tuple[int, int]]
+) -> set[int]:
+    """Return the masks in whose holes others lie.
+
+    One stone drawn by hand may show in another; a program finds the ground like that.
+    """
+    held: dict[int, int] = dict.fromkeys(holes, 0)
+    for pair in meeting:
+        for i, j in (pair, pair[::-1]):
+            if i in holes and holes[i].common_px(seen.masks[j]) >= INSIDE * _area(seen.masks[j]):
+                held[i] += 1
+    least = 1 if seen.by_program else min(2, len(seen.masks) - 1)
+    return {i for i, count in held.items() if count >= max(1, least)}
+
+
+def _area(mask: PlacedMask) -> int:
+    return int(mask.mask.sum())
 
 
 class _Shares:
     """How much of which mask lies in which."""
 
-    def __init__(self, masks: dict[int, PlacedMask], meeting: Iterable[tuple[int, int]]) -> None:
-        self._masks = masks
+    def __init__(
+        self,
+        masks: dict[int, PlacedMask],
+        meeting: Iterable[tuple[int, int]],
+        keep: Collection[int] = (),
+    ) -> None:
+        self._masks, self._keep = masks, keep
         self._areas = {i: int(mask.mask.sum()) for i, mask in masks.items()}
         self._common: dict[int, dict[int, int]] = {i: {} for i in masks}
         for i, j in meeting:
@@ -131,11 +185,27 @@ class _Shares:
         """Return for each mask that lies in a larger one which that is."""
         return self._within(lambda i, _j, _common: self._areas[i])
 
+    def frames(self, seen: Seen, holes: Mapping[int, PlacedMask]) -> dict[int, list[int]]:
+        """Return for each mask that is drawn around the others which those are."""
+        inside: dict[int, set[int]] = {i: set() for i in self._masks}
+        for i, shares in self._common.items():
+            for j, common in shares.items():
+                if i in self._keep or self._order(i) > self._order(j):
+                    continue
+                in_holes = holes[i].common_px(self._masks[j]) if i in holes else 0
+                if common + in_holes >= INSIDE * self._areas[j]:
+                    inside[i].add(j)
+        if seen.by_program:
+            whole = _WHOLE_PICTURE * seen.size_px[0] * seen.size_px[1]
+            inside = {i: held if self._areas[i] >= whole else set() for i, held in inside.items()}
+        plain = {i for i, mask in self._masks.items() if mask.mask.all()}
+        return frames({i: self._areas[i] for i in self._masks}, inside, plain)
+
     def groups(self) -> dict[int, list[int]]:
         """Return for each mask that smaller ones cover which those are."""
         found = {}
         for i, mask in self._masks.items():
-            parts = self._parts(i)
+            parts = [] if i in self._keep else self._parts(i)
             union = united([self._masks[j] for j in parts])
             if union is not None and mask.common_px(union) >= INSIDE * self._areas[i]:
                 found[i] = parts
@@ -160,7 +230,7 @@ class _Shares:
         for i in sorted(self._masks, key=self._order):
             common = self._common[i]
             around = [j for j in kept if j in common and common[j] >= INSIDE * of(i, j, common[j])]
-            if around:
+            if around and i not in self._keep:
                 found[i] = around[0]
             else:
                 kept.append(i)
