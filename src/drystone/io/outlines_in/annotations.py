@@ -3,7 +3,7 @@
 import base64
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import PurePath
 from typing import Any
 
@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.errors import InputError, Notice
-from drystone.io.file_errors import entry, listed, short
+from drystone.io.file_errors import entry, listed
 from drystone.io.outlines_in.classes import class_of
+from drystone.io.outlines_in.exports import image_needed
 from drystone.io.outlines_in.fill import Room, trimmed
 from drystone.io.outlines_in.model import (
     Area,
@@ -205,7 +206,7 @@ def read_sam(content: list[Mapping[str, Any]], settings: ReadSettings) -> Outlin
         if settings.image not in images:
             no_such = f"no image is called {settings.image!r}"
             what = no_such if settings.image else f"masks of {len(images)} images are in it"
-            raise _image_needed(what, sorted(images))
+            raise image_needed(what, sorted(images))
         content = [found for found in content if str(found.get("image_id")) == settings.image]
     stones = _Stones(settings)
     for number, found in enumerate(content, start=1):
@@ -253,20 +254,13 @@ def _chosen(
     if name:
         used = [i for i in known if name in (names[i], PurePath(names[i]).name, str(i))]
         if len(used) != 1:
-            raise _image_needed(f"no image or several are called {name!r}", names.values())
+            raise image_needed(f"no image or several are called {name!r}", names.values())
     if len(used) > 1:
         what = f"stones of {len(used)} images are in it"
-        raise _image_needed(what, [names.get(i, str(i)) for i in used])
+        raise image_needed(what, [names.get(i, str(i)) for i in used])
     only = used[0] if used else None
     image = known.get(only) or (next(iter(known.values())) if len(known) == 1 else None)
     return [found for found in annotations if found.get("image_id") == only], image
-
-
-def _image_needed(what: str, names: Iterable[str]) -> InputError:
-    """Make the error for several images in one file (E115)."""
-    there = listed(map(short, names))
-    cure = f"Say which one with --image NAME (ReadSettings.image); there are {there}."
-    return InputError("E115", f"{what}.", cure=cure)
 
 
 def _is_runs(value: object) -> bool:

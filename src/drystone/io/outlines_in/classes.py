@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from drystone.errors import Notice
 from drystone.io.file_errors import MANY, listed, short, unfit
-from drystone.io.outlines_in.model import OutlinedStone
+from drystone.io.outlines_in.model import OutlinedStone, number_in
 
 _PLACES = frozenset({"wall", "facade", "facing", "frame", "sheet", "page", "artboard", "canvas"})
 """What stones are drawn in: layers of these names have stones, too."""
@@ -31,8 +31,8 @@ _NONE = "(none)"
 
 
 def class_of(label: str) -> str:
-    """Return the class that a label names, without the number of the stone."""
-    return _NUMBER.sub("", label.strip())
+    """Return the class that a label names; one that is the number of a stone names none."""
+    return "" if number_in(label) else _NUMBER.sub("", label.strip())
 
 
 def layer(name: str) -> str:
@@ -68,7 +68,7 @@ def of_classes(
         left = set() if len(left) == len(found) else left
     kept = [stone for stone in stones if stone.label not in left]
     doubtful = not asked and any(map(is_other, found))
-    names_of_stones = max(found.values(), default=0) < 2
+    names_of_stones = all(count < 2 for name, count in found.items() if name)
     if not left and not doubtful and (len(found) < 2 or names_of_stones):
         return kept, []
     classes = listed((f"{_shown(name)} ({count})" for name, count in found.items()), most=MANY)

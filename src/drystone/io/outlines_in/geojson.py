@@ -19,7 +19,7 @@ from drystone.io.outlines_in.model import (
 )
 from drystone.io.read_settings import ReadSettings
 
-GEOJSON_KINDS = frozenset(
+_KINDS = frozenset(
     {
         "FeatureCollection", "Feature", "GeometryCollection", "Polygon", "MultiPolygon", "Point",
         "MultiPoint", "LineString", "MultiLineString",
@@ -29,7 +29,15 @@ _CLASSES = ("classification", "class", "label", "category", "type")
 _DEGREES = ("CRS84", "4326", "WGS84")
 
 
-def read_geojson(content: Mapping[str, Any], settings: ReadSettings) -> OutlineFile:
+def is_geojson(content: Any) -> bool:
+    """Tell GeoJSON, or a list of its features, which is what QuPath exports."""
+    if isinstance(content, list):
+        return all(isinstance(one, Mapping) and one.get("type") == "Feature" for one in content)
+    kind = content.get("type") if isinstance(content, Mapping) else None
+    return isinstance(kind, str) and kind in _KINDS
+
+
+def read_geojson(content: Any, settings: ReadSettings) -> OutlineFile:
     """Read polygons and multi-polygons, a stone a feature.
 
     A foreign member ``unit`` of the file ("m", "mm" …), or the setting, makes it a drawing with y
@@ -37,6 +45,8 @@ def read_geojson(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
     write them, unless its ``frame`` is that of a wall of drystone, or all y are negative.  The id
     of a stone is the ``id`` of its feature or of its properties, its name their ``name``.
     """
+    if isinstance(content, list):
+        content = {"type": "FeatureCollection", "features": content}
     if any(name in str(content.get("crs", "")) for name in _DEGREES):
         what = "its coordinates are degrees of latitude and longitude."
         raise _no_unit(what, 'Project it to metres, and give the file a member "unit": "m".')
