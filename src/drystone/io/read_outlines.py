@@ -177,6 +177,15 @@ def check_no_image(settings: ReadSettings) -> None:
         )
 
 
+def check_no_label(settings: ReadSettings) -> None:
+    """Refuse classes where there are none (E118)."""
+    if settings.label:
+        raise unfit(
+            "a picture of stones has no classes.",
+            "Leave --label (label in Python) out: it is for annotations; --skip leaves out ids.",
+        )
+
+
 def _check_not_given(given: bool, option: str, name: str) -> None:
     if given:
         what = f"this file says itself what is stone, so {option} has no meaning."

@@ -22,12 +22,19 @@ from drystone.io.file_bytes import file_bytes
 from drystone.io.file_errors import listed, naming
 from drystone.io.images import FORMATS, SUFFIXES, Picture, decode
 from drystone.io.labels import Census, IdImage, check_no_zero, take_census, to_ids
+from drystone.io.mask_folder import ground_in, without_others
 from drystone.io.masks import BinaryMask, components, find_mask
 from drystone.io.outlines_in.model import OutlineFile
 from drystone.io.outlines_in.npz import is_npz, read_npz
 from drystone.io.patches import StonePatch, check_count, cut, stone_set
 from drystone.io.photo_beside import LABELS, SIDECAR, PhotoSidecar, read_sidecar
-from drystone.io.read_outlines import check_no_image, check_unit, outline_reader, stones_of
+from drystone.io.read_outlines import (
+    check_no_image,
+    check_no_label,
+    check_unit,
+    outline_reader,
+    stones_of,
+)
 from drystone.io.read_settings import ReadSettings
 from drystone.model.stone import Source, StoneSet, writable
 
@@ -121,6 +128,7 @@ def _of_px(settings: ReadSettings) -> tuple[tuple[str, Any], ...]:
     """Return what a plan must keep of the settings with which a picture was read."""
     check_unit(None, settings)
     check_no_image(settings)
+    check_no_label(settings)
     return replace(settings, px_per_m=None).changed()
 
 
@@ -215,18 +223,29 @@ def _read_folder(folder: Path, name: str, settings: ReadSettings) -> StoneSet:
     if ignored:
         notices.append(Notice("W117", f"not pictures, left aside: {writable(listed(ignored))}."))
     digest, patches, sizes = hashlib.sha256(), [], []
+    doubtful: dict[int, LabelImageError] = {}
     names = tuple(writable(file.name) for file in files)
     for number, (file, own) in enumerate(zip(files, names, strict=True), start=1):
         data = _bytes_of(file)
         digest.update(hashlib.sha256(data).digest())
         where = f"{name}/{own}"
         with naming(where):
-            mask, notice = _mask_of_one(decode(data, _max_px(settings)), where, settings)
+            picture, notice = decode(data, _max_px(settings)), None
+            try:
+                mask, notice = _mask_of_one(picture, where, settings)
+            except LabelImageError as error:
+                if error.code != "E105":
+                    raise
+                error.where = where
+                doubtful[number] = error
+                mask = ground_in(picture, settings.background)
         sizes.append(mask.shape)
         notices += [notice] if notice else []
         patches += cut(mask.astype(np.int32), np.array([number]), own) or [
             StonePatch(np.zeros((1, 1), bool), 0, 0, number, len(mask), name=own)
         ]
+    patches, left_out = without_others(patches, sizes, doubtful, settings)
+    notices += left_out
     height, width = np.max(sizes, axis=0).tolist()
     source = Source(name, digest.hexdigest(), width, height, names, _of_px(settings))
     return stone_set(patches, notices, source, settings)

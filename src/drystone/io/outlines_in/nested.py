@@ -5,10 +5,10 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import ndimage
 
 from drystone.errors import Notice
 from drystone.io.file_errors import MANY, listed, short, too_large
-from drystone.io.outlines_in.fill import united
 from drystone.io.patches import PlacedMask, enclosed
 
 INSIDE = 0.8
@@ -20,6 +20,9 @@ _IN_EACH = 4
 """How many lie, on average, in each of several frames."""
 _WHOLE_PICTURE = 0.9
 """Share of its picture that a frame has which a program saw."""
+
+_MOST_IN_PIECES = 16
+"""Pieces of a group that are looked at one by one."""
 
 _MOST_PAIRS = 200_000
 _MOST_SHARED_PX = 300_000_000
@@ -64,7 +67,8 @@ def not_stones(seen: Seen) -> dict[int, str]:
     1. a mask in whose holes `INSIDE` of others lies is the ground;
     2. of two masks that share `INSIDE` of their union, the smaller one is the same thing again;
     3. a mask in which nearly all others lie is a frame;
-    4. a mask of which `INSIDE` is covered by two or more smaller ones is a group of those;
+    4. a mask of which `INSIDE` is covered by two or more smaller ones and the ground, or which has
+       some of them in each of its pieces, is a group of those;
     5. a mask of which `INSIDE` lies in a larger one that is kept is a part of it.
     """
     masks, left = dict(seen.masks), {}
@@ -75,7 +79,8 @@ def not_stones(seen: Seen) -> dict[int, str]:
         for i, mask in masks.items()
         if i not in seen.keep and (inside := enclosed(mask.mask)).any()
     }
-    for i in _ground(seen, holes, meeting):
+    around = _ground(seen, holes, meeting)
+    for i in around:
         left[i] = "the ground: others lie in its holes"
     shares = _Shares({i: m for i, m in masks.items() if i not in left}, meeting, seen.keep)
     again = shares.same()
@@ -84,7 +89,7 @@ def not_stones(seen: Seen) -> dict[int, str]:
     found = shares.frames(seen, holes)
     left |= {i: f"a frame around {listed(held, most=3)}" for i, held in found.items()}
     shares.leave(found)
-    groups = shares.groups()
+    groups = shares.groups(seen.masks[i] for i in around)
     left |= {i: f"a group of {listed(parts)}" for i, parts in groups.items()}
     shares.leave(groups)
     return left | {i: f"a part of {whole}" for i, whole in shares.wholes().items()}
@@ -201,15 +206,29 @@ class _Shares:
         plain = {i for i, mask in self._masks.items() if mask.mask.all()}
         return frames({i: self._areas[i] for i in self._masks}, inside, plain)
 
-    def groups(self) -> dict[int, list[int]]:
-        """Return for each mask that smaller ones cover which those are."""
-        found = {}
+    def groups(self, ground: Iterable[PlacedMask]) -> dict[int, list[int]]:
+        """Return for each mask that smaller ones cover, but for the ground, which those are."""
+        found, beside = {}, list(ground)
         for i, mask in self._masks.items():
             parts = [] if i in self._keep else self._parts(i)
-            union = united([self._masks[j] for j in parts])
-            if union is not None and mask.common_px(union) >= INSIDE * self._areas[i]:
+            if not parts:
+                continue
+            covered = PlacedMask(np.zeros_like(mask.mask), mask.row, mask.col)
+            for other in (*beside, *(self._masks[j] for j in parts)):
+                here, there = covered.shared(other)
+                here |= there
+            if mask.common_px(covered) >= INSIDE * self._areas[i] or self._in_each_piece(i, parts):
                 found[i] = parts
         return found
+
+    def _in_each_piece(self, i: int, parts: Iterable[int]) -> bool:
+        """Tell a mask in several pieces, which no stone is, with smaller masks in each of them."""
+        mask = self._masks[i]
+        labels, count = ndimage.label(mask.mask, np.ones((3, 3), bool))
+        if not 1 < count <= _MOST_IN_PIECES:
+            return False
+        pieces = [PlacedMask(labels == n, mask.row, mask.col) for n in range(1, count + 1)]
+        return all(any(one.common_px(self._masks[j]) for j in parts) for one in pieces)
 
     def _parts(self, i: int) -> list[int]:
         """Return the smaller masks that lie in one, and in no other that lies in it."""
