@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from drystone.errors import Notice
 from drystone.io.file_errors import MANY, listed, short, unfit
-from drystone.io.outlines_in.model import OutlinedStone, number_in
+from drystone.io.outlines_in.model import OutlinedStone
 
 _PLACES = frozenset({"wall", "facade", "facing", "frame", "sheet", "page", "artboard", "canvas"})
 """What stones are drawn in: layers of these names have stones, too."""
@@ -31,8 +31,8 @@ _NONE = "(none)"
 
 
 def class_of(label: str) -> str:
-    """Return the class that a label names; one that is the number of a stone names none."""
-    return "" if number_in(label) else _NUMBER.sub("", label.strip())
+    """Return the class that a label names, without the number of the stone."""
+    return _NUMBER.sub("", label.strip())
 
 
 def layer(name: str) -> str:

@@ -56,8 +56,10 @@ class OutlineFile:
     size_px: tuple[int, int] | None = None  # width, height of the image of a file in px, if said
     notices: Sequence[Notice] = ()
     names_images: bool = False  # it says of which image each stone is, so one can be asked for
-    seen_by: Literal["people", "program", "none"] = "people"
-    """Who drew them: a program masks whatever it sees; "none" has every stone by itself."""
+    seen_by: Literal["people", "program", "either", "none"] = "people"
+    """Who drew them: a program masks whatever it sees.  Masks and bodies may be "either" those of
+    one picture or each of its own; with "none" they are.
+    """
 
 
 def number_in(text: object) -> int | None:

@@ -16,6 +16,8 @@ INSIDE = 0.8
 
 _BESIDE = 0.25
 """How large what lies beside a frame may be, compared with what lies in it."""
+_TOUCHING = 0.1
+"""Share of a mask from which it lies over another one."""
 _IN_EACH = 4
 """How many lie, on average, in each of several frames."""
 _WHOLE_PICTURE = 0.9
@@ -103,6 +105,29 @@ def said_of(left: Mapping[int, str], count: int, names: Mapping[int, str] | None
     return Notice("W119", text, "Use --keep ID (keep in Python) for each that is one.")
 
 
+def of_one_picture(masks: Sequence[PlacedMask]) -> bool:
+    """Tell masks of one picture from stones that each had a picture of its own.
+
+    Those lie all over each other, where masks of one picture lie beside or in each other.
+    """
+    sides = np.array([mask.sides for mask in masks]).reshape(-1, 4)
+    (above, before), (below, behind) = sides[:, :2].min(axis=0), sides[:, 2:].max(axis=0)
+    depth = np.zeros((below - above, behind - before), np.uint16)
+    for mask in masks:
+        top, left = mask.row - above, mask.col - before
+        height, width = mask.mask.shape
+        depth[top : top + height, left : left + width] += mask.mask
+    if 2 * int(depth.max(initial=0)) > len(masks):
+        return False
+    nested = partial = 0
+    for i, j in meeting_boxes(masks):
+        smaller = min(_area(masks[i]), _area(masks[j]))
+        share = masks[i].common_px(masks[j]) / max(1, smaller)
+        nested += share >= INSIDE
+        partial += _TOUCHING <= share < INSIDE
+    return partial <= nested
+
+
 def frames(
     areas: Mapping[int, float],
     inside: Mapping[int, AbstractSet[int]],
@@ -113,19 +138,19 @@ def frames(
     A frame holds two others or more, and beside it there is little, compared with them; one that
     is a `plain` rectangle may hold a single one.  Several frames share all others.
     """
-    left, found = set(areas), {}
-    order = sorted(areas, key=lambda i: -areas[i])
-    while True:
-        for i in order:
-            held = inside[i] & left if i in left else set()
-            beside = left - held - {i}
-            few = len(held) < (1 if i in plain and not beside else 2)
-            if not few and sum(areas[j] for j in beside) <= _BESIDE * sum(areas[j] for j in held):
-                found[i] = sorted(held)
+    left, found, around = set(areas), {}, True
+    holders = sorted((i for i in areas if inside[i]), key=lambda i: -areas[i])
+    while around:
+        around, total = False, sum(areas[i] for i in left)
+        for i in (i for i in holders if i in left):
+            held = inside[i] & left
+            within = sum(areas[j] for j in held)
+            alone = i in plain and len(held) == len(left) - 1
+            few = len(held) < (1 if alone else 2)
+            if not few and total - areas[i] - within <= _BESIDE * within:
+                found[i], around = sorted(held), True
                 left.remove(i)
                 break
-        else:
-            break
     holding = {i: inside[i] & left for i in left}
     outer = left.difference(*holding.values())
     several = len(outer) > 1 and all(len(holding[i]) > 1 for i in outer)

@@ -10,7 +10,13 @@ from drystone.errors import LabelImageError, Notice
 from drystone.io.file_errors import listed, short
 from drystone.io.outlines_in.fill import check_reach, pixels_of, trimmed
 from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile
-from drystone.io.outlines_in.nested import Seen, meeting_boxes, not_stones, said_of
+from drystone.io.outlines_in.nested import (
+    Seen,
+    meeting_boxes,
+    not_stones,
+    of_one_picture,
+    said_of,
+)
 from drystone.io.patches import PlacedMask, StonePatch
 from drystone.io.pictures import check_size
 from drystone.io.read_settings import ReadSettings
@@ -92,7 +98,10 @@ def _not_stones(
         for stone, mask in zip(file.stones, places, strict=True)
         if mask is not None and stone.id not in settings.skip
     }
-    return not_stones(Seen(masks, size_px, frozenset(settings.keep), file.seen_by == "program"))
+    if file.seen_by == "either" and not (masks and of_one_picture(list(masks.values()))):
+        return {}
+    by_program = file.seen_by != "people"
+    return not_stones(Seen(masks, size_px, frozenset(settings.keep), by_program))
 
 
 def _usual_scale(file: OutlineFile) -> tuple[float, Notice]:
