@@ -10,6 +10,7 @@ from typing import Any
 from xml.etree import ElementTree as ET
 
 import numpy as np
+from numpy.typing import NDArray
 
 from drystone.errors import InputError
 from drystone.io.file_errors import damaged, entry, listed, short, too_large
@@ -17,6 +18,7 @@ from drystone.io.foreign import foreign
 from drystone.io.outlines_in.classes import class_of
 from drystone.io.outlines_in.fill import Room, trimmed
 from drystone.io.outlines_in.model import (
+    MOST_PX,
     OutlinedStone,
     OutlineFile,
     Slivers,
@@ -42,6 +44,7 @@ class _Picture:
     size_px: tuple[int, int] | None
     shapes: Iterable[Any]
     id: str = ""
+    earlier: int = 0  # versions of the same shapes
 
 
 def image_needed(what: str, names: Iterable[str]) -> InputError:
@@ -84,20 +87,25 @@ def is_label_studio(content: Any) -> bool:
     )
 
 
-def _results(task: Mapping[str, Any]) -> list[Any] | None:
-    """Return what the last annotator of a task drew, in the long or the short form."""
+def _results(task: Mapping[str, Any]) -> list[list[Any]] | None:
+    """Return what each annotator of a task drew, in the long or the short form."""
     for key in ("annotations", "completions"):
         if isinstance(task.get(key), list) and "data" in task:
             made = [a for a in task[key] if isinstance(a, Mapping) and not a.get("was_cancelled")]
-            return list(made[-1].get("result") or ()) if made else []
-    short_form = [
-        one
+            drawn = [one.get("result") for one in made]
+            return [_tables(one) for one in drawn]
+    alone = [
+        {"value": one, **one}
         for value in task.values()
         if isinstance(value, list)
         for one in value
         if isinstance(one, Mapping) and "original_width" in one
     ]
-    return [{"value": one, **one} for one in short_form] or None
+    return [alone] if alone else None
+
+
+def _tables(found: Any) -> list[Any]:
+    return [one for one in found if isinstance(one, Mapping)] if isinstance(found, list) else []
 
 
 def read_label_studio(content: Any, settings: ReadSettings) -> OutlineFile:
@@ -107,50 +115,63 @@ def read_label_studio(content: Any, settings: ReadSettings) -> OutlineFile:
         for task in content if isinstance(content, list) else [content]:
             where = task.get("data") or task
             name = next((v for k, v in where.items() if k != "id" and isinstance(v, str)), "")
-            shapes = _results(task) or []
-            pictures.append(_Picture(name, None, shapes, str(task.get("id", ""))))
+            made = _results(task) or [[]]
+            own = str(task.get("id", ""))
+            pictures.append(_Picture(name, None, made[-1], own, len(made) - 1))
     picture = _chosen(pictures, settings.image)
     stones: list[OutlinedStone] = []
     aside, slivers, sizes = Counter[str](), Slivers(), set()
     # Where shape and class are marked one after the other, both hold the outline.
+    aside.update({"earlier annotations of the same picture": picture.earlier})
     drawn = {str(one.get("id") or i): one for i, one in enumerate(picture.shapes)}
     for number, shape in enumerate(drawn.values()):
         where = f"result {number}"
         with entry(where):
-            value = shape["value"]
-            corners = _of_label_studio(value)
-            if corners is None:
+            value = shape.get("value") or {}
+            if not _is_outline(value):
                 aside[f"results of the type {short(shape.get('type', 'unknown'))}"] += 1
                 continue
             size = side_px(shape["original_width"]), side_px(shape["original_height"])
             sizes.add(size)
             key = next((k for k in value if k.endswith("labels")), "")
             label = _text(value.get(key))
-            scale = np.array(size) / 100.0
-            areas = slivers.areas(where, [[np.asarray(corners, float) * scale]])
+            corners = _of_label_studio(value, np.array(size) / 100.0)
+            areas = slivers.areas(where, [[corners]])
         if areas:
             stones.append(OutlinedStone(number_in(label), "", areas, label=class_of(label)))
     cure = "Brush masks are read from its export as COCO or PNG." if "brush" in str(aside) else ""
-    notices = left_aside(aside, cure) + slivers.notices()
+    notices = left_aside(+aside, cure) + slivers.notices()
     size_px = next(iter(sizes)) if len(sizes) == 1 else None
     return OutlineFile(stones, size_px=size_px, notices=notices, names_images=True)
 
 
-def _of_label_studio(value: Mapping[str, Any]) -> Any:
-    """Return corners in per cent; None when there is no outline."""
+def _is_outline(value: Mapping[str, Any]) -> bool:
+    """Tell polygons, rectangles and ellipses from points, words and masks of pixels."""
+    sides = ({"points"}, {"radiusX", "radiusY"}, {"x", "y", "width", "height"})
+    return "format" not in value and any(names <= set(value) for names in sides)
+
+
+def _of_label_studio(value: Mapping[str, Any], px: NDArray[np.float64]) -> Any:
+    """Return corners in px, of which there are (2,) in a per cent."""
     if "points" in value:
-        return value["points"]
-    turned = math.radians(float(value.get("rotation") or 0.0))
+        return np.array([list(map(float, point)) for point in value["points"]]) * px
+    x, y = float(value["x"]) * px[0], float(value["y"]) * px[1]
+    turn = float(value.get("rotation") or 0.0)
     if "radiusX" in value:
-        if turned:
-            raise ValueError("a turned ellipse is not read")
-        return ellipse((value["x"], value["y"]), (value["radiusX"], value["radiusY"]))
-    if {"x", "y", "width", "height"} <= set(value) and "format" not in value:
-        if turned:
-            raise ValueError("a turned rectangle is not read")
-        x, y, width, height = (float(value[name]) for name in ("x", "y", "width", "height"))
-        return [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
-    return None
+        radii = float(value["radiusX"]) * px[0], float(value["radiusY"]) * px[1]
+        return ellipse((x, y), radii, math.radians(turn))
+    width, height = float(value["width"]) * px[0], float(value["height"]) * px[1]
+    return _box((x, y, x + width, y + height), turn, (x, y))
+
+
+def _box(
+    sides: tuple[float, float, float, float], degrees: float, about: tuple[float, float]
+) -> Any:
+    """Return the corners of a box from its sides, turned clockwise as y runs down."""
+    x0, y0, x1, y1 = sides
+    corners = np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)]) - about
+    sine, cosine = math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
+    return corners @ np.array([[cosine, sine], [-sine, cosine]]) + about
 
 
 # VGG Image Annotator
@@ -201,7 +222,7 @@ def _of_via(shape: Mapping[str, Any]) -> Any:
         return list(zip(shape["all_points_x"], shape["all_points_y"], strict=True))
     if kind == "rect":
         x, y, width, height = (float(shape[name]) for name in ("x", "y", "width", "height"))
-        return [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
+        return _box((x, y, x + width, y + height), 0.0, (x, y))
     if kind in {"circle", "ellipse"}:
         across, along = ("r", "r") if kind == "circle" else ("rx", "ry")
         radii = float(shape[across]), float(shape[along])
@@ -253,16 +274,15 @@ def read_cvat(data: bytes, settings: ReadSettings) -> OutlineFile:
 
 
 def _of_cvat(shape: ET.Element) -> Any:
-    if float(shape.get("rotation", 0.0)):
-        raise ValueError("a turned shape is not read")
+    turn = float(shape.get("rotation", 0.0))
     if shape.tag == "polygon":
         return [tuple(map(float, p.split(","))) for p in shape.attrib["points"].split(";")]
     if shape.tag == "box":
         x0, y0, x1, y1 = (float(shape.attrib[name]) for name in ("xtl", "ytl", "xbr", "ybr"))
-        return [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+        return _box((x0, y0, x1, y1), turn, ((x0 + x1) / 2.0, (y0 + y1) / 2.0))
     if shape.tag == "ellipse":
         x, y, rx, ry = (float(shape.attrib[name]) for name in ("cx", "cy", "rx", "ry"))
-        return ellipse((x, y), (rx, ry))
+        return ellipse((x, y), (rx, ry), math.radians(turn))
     return None
 
 
@@ -272,6 +292,8 @@ def _mask_of_cvat(shape: ET.Element, room: Room) -> PlacedMask | None:
         int(float(shape.attrib[name])) for name in ("left", "top", "width", "height")
     )
     check_size(side_px(width), side_px(height), room.max_px)
+    if max(abs(left), abs(top)) > MOST_PX:
+        raise ValueError("it is beyond 1e9 px")
     room.take(width * height)
     runs = np.array([int(run) for run in shape.attrib["rle"].split(",")], np.int64)
     if runs.min() < 0 or runs.max() > width * height or int(runs.sum()) != width * height:

@@ -19,7 +19,8 @@ from drystone.kernels.polygons import Points
 METRES = MappingProxyType({"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048})
 """Metres in each unit that a user may name."""
 
-_LARGEST = 10**9
+MOST_PX = 10**9
+"""No coordinate is further away."""
 _CORNERS_OF_ELLIPSE = 256
 _STONE_NAME = re.compile(r"(?:stones?[ _-]*)?0*([1-9][0-9]*)", re.IGNORECASE)
 _WEDGE_NAME = re.compile(r"wedge[ _-]*[0-9]+", re.IGNORECASE)
@@ -167,7 +168,7 @@ def ellipse(centre: tuple[float, float], radii: tuple[float, float], turned: flo
 def side_px(value: Any) -> int:
     """Return a side of an image; ValueError when it is none."""
     number = int(value)
-    if not 0 < number <= _LARGEST:
+    if not 0 < number <= MOST_PX:
         shown = number if number <= 0 else "more than 1e9"
         raise ValueError(f"a side of it is {shown} px")
     return number
@@ -181,7 +182,7 @@ def ring(points: Any) -> Points:
     corners = corners[:, :2]
     if not np.isfinite(corners).all():
         raise ValueError("a coordinate is not finite")
-    if corners.size and np.abs(corners).max() > _LARGEST:
+    if corners.size and np.abs(corners).max() > MOST_PX:
         raise ValueError("a coordinate is beyond 1e9")
     if len(corners) > 1 and (corners[0] == corners[-1]).all():
         corners = corners[:-1]

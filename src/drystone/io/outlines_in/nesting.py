@@ -47,6 +47,8 @@ def read_nesting(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
         with entry(where):
             areas = slivers.areas(where, _of_nesting(_lower(item["shape"])))
             demand = int(item.get("demand", 1))
+            if demand < 0:
+                raise ValueError(f"{demand} of it are demanded")
             own = number_in(item.get("id")) if demand == 1 else None
         copies += demand
         if copies > _MOST_COPIES:
