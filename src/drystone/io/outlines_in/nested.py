@@ -5,6 +5,7 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 from scipy import ndimage
 
 from drystone.errors import Notice
@@ -26,6 +27,7 @@ _WHOLE_PICTURE = 0.9
 _MOST_IN_PIECES = 16
 """Pieces of a group that are looked at one by one."""
 
+_AT_ONCE = 256
 _MOST_PAIRS = 200_000
 _MOST_SHARED_PX = 300_000_000
 
@@ -36,18 +38,22 @@ def meeting_boxes(masks: Sequence[PlacedMask]) -> list[tuple[int, int]]:
     More of them, or larger ones, than can be compared are refused (E110).
     """
     sides = np.array([mask.sides for mask in masks], dtype=np.int64).reshape(-1, 4)
+    boxes = shapely.box(*sides.T)
+    tree = shapely.STRtree(boxes)
     pairs: list[tuple[int, int]] = []
     shared_px = 0
-    for i, own in enumerate(sides):
-        rest = sides[i + 1 :]
-        shared = np.minimum(rest[:, 2:], own[2:]) - np.maximum(rest[:, :2], own[:2])
+    for begin in range(0, len(boxes), _AT_ONCE):
+        i, j = tree.query(boxes[begin : begin + _AT_ONCE])
+        i += begin
+        i, j = i[i < j], j[i < j]
+        shared = np.minimum(sides[i, 2:], sides[j, 2:]) - np.maximum(sides[i, :2], sides[j, :2])
         meet = (shared > 0).all(axis=1)
-        pairs += [(i, i + 1 + int(j)) for j in np.flatnonzero(meet)]
+        pairs += zip(i[meet].tolist(), j[meet].tolist(), strict=True)
         shared_px += int(shared[meet].prod(axis=1).sum())
         if len(pairs) > _MOST_PAIRS or shared_px > _MOST_SHARED_PX:
             what = "its stones lie over each other more often than can be compared."
             raise too_large(what, "Export every stone once.")
-    return pairs
+    return sorted(pairs)
 
 
 @dataclass(frozen=True, eq=False)
@@ -269,13 +275,13 @@ class _Shares:
 
     def _within(self, of: Callable[[int, int, int], int]) -> dict[int, int]:
         """Return which masks share `INSIDE` of something with a larger one that is kept."""
-        kept: list[int] = []
+        kept: set[int] = set()
         found: dict[int, int] = {}
         for i in sorted(self._masks, key=self._order):
             common = self._common[i]
-            around = [j for j in kept if j in common and common[j] >= INSIDE * of(i, j, common[j])]
+            around = [j for j in common if j in kept and common[j] >= INSIDE * of(i, j, common[j])]
             if around and i not in self._keep:
-                found[i] = around[0]
+                found[i] = min(around, key=self._order)
             else:
-                kept.append(i)
+                kept.add(i)
         return found
