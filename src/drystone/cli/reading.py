@@ -47,7 +47,9 @@ def add_reading(command: argparse.ArgumentParser) -> None:
         "--unit", choices=get_args(Unit)[1:], help="of a drawing or mesh that does not say its own"
     )
     group.add_argument(
-        "--image", metavar="NAME", help="which image of annotations of several (COCO, masks of SAM)"
+        "--image",
+        metavar="NAME",
+        help="which image of annotations of several, or the picture that shares (YOLO) are of",
     )
 
 

@@ -52,7 +52,8 @@ class ReadSettings:
     unit : {"px", "mm", "cm", "m", "in", "ft"}
         Of a drawing or mesh that does not say its own; empty for none.
     image : str
-        Which image of annotations of several: its file name or id in COCO, its id in masks of SAM.
+        Which image of annotations of several: its file name or id, its id in masks of SAM; or the
+        file of the picture of which coordinates are shares.
 
     Examples
     --------
