@@ -72,13 +72,13 @@ def test_kinds_of_stone_are_all_read_and_listed(tmp_path, form):
     assert len(found) == 12
     assert "granite (8)" in said(found)
     assert "sandstone (4)" in said(found)
-    assert "all are read" in said(found)
+    assert "all classes are read" in said(found)
 
 
 def test_a_file_of_one_class_of_any_name_is_read(tmp_path):
     found = read(tmp_path, "coco", [("wall", ring) for ring in stones()])
     assert len(found) == 12
-    assert "wall (12); all are read" in said(found)
+    assert "wall (12); all classes are read" in said(found)
 
 
 @pytest.mark.parametrize(

@@ -50,9 +50,9 @@ def read_stones(
     ----------
     source : str, Path or array
         A label image, a picture of ids in colours, a binary mask (PNG, TIFF, BMP, GIF, NPY, NPZ),
-        a folder of one-stone masks, an array like one of these; annotations (labelme, COCO,
-        SAM, GeoJSON, Label Studio, VIA, CVAT, YOLO), a drawing (DXF, SVG), a mesh (OBJ, PLY, STL); or what `drystone
-        segment` wrote.  The content tells them apart.
+        a folder of one-stone masks, an array like one of these; annotations (labelme, COCO, SAM,
+        GeoJSON, Label Studio, VIA, CVAT, YOLO), a drawing (DXF, SVG), a mesh (OBJ, PLY, STL); or
+        what `drystone segment` wrote.  The content tells them apart.
     settings : ReadSettings, optional
         Background, holes, pieces, units and the like.
 

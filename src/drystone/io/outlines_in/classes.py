@@ -72,10 +72,8 @@ def of_classes(
     if not left and not doubtful and (len(found) < 2 or names_of_stones):
         return kept, []
     classes = listed((f"{_shown(name)} ({count})" for name, count in found.items()), most=MANY)
-    text = f"classes in it: {classes}; "
-    text += (
-        f"left out: {listed(map(_shown, sorted(left)), most=MANY)}." if left else "all are read."
-    )
+    rest = f"left out: {listed(map(_shown, sorted(left)), most=MANY)}" if left else ""
+    text = f"classes in it: {classes}; {rest or 'all classes are read'}."
     return kept, [Notice("W119", text, "Choose with --label NAME ... (label in Python).")]
 
 
