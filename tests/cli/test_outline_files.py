@@ -75,6 +75,27 @@ def test_px_of_an_image_are_not_drawn_again(tmp_path, run):
     assert run("check", out, "--json").json()["ok"]
 
 
+def test_classes_and_frames_are_chosen_and_kept_in_the_plan(tmp_path, run):
+    corners = [*boxes(), [(2, 2), (338, 2), (338, 128), (2, 128)]]
+    labels = [*["granite"] * 4, *["slate"] * 2, "granite"]
+    both = zip(labels, corners, strict=True)
+    shapes = [{"label": label, "points": np.array(ring).tolist()} for label, ring in both]
+    path, out = tmp_path / "a.json", tmp_path / "out"
+    path.write_text(json.dumps({"shapes": shapes, "imageWidth": 340, "imageHeight": 130}))
+    assert run("stones", path, "--json").json()["stones"] == 6
+    assert run("stones", path, "--label", "slate", "--json").json()["stones"] == 2
+    assert run("stones", path, "--label", "slate", "Granite", "--json").json()["stones"] == 6
+    kept = run("stones", path, "--label", "granite", "--keep", 5, "--skip", 1, "--json")
+    assert kept.json()["stones"] == 1
+    refused = run("stones", path, "--label", "marble")
+    assert refused.code == 2
+    assert "granite, slate" in refused.err
+    ran = run("plan", path, "--label", "granite", "--wall", "300x120", *QUICK, "-o", out)
+    assert ran.code in (0, 4), ran.err
+    assert read_plan(out).source["reading"] == {"label": ["granite"]}
+    assert run("check", out, "--stones", path, "--json").json()["ok"]
+
+
 def test_a_photograph_has_its_scale_beside_it(tmp_path, run):
     folder, out = tmp_path / "photo", tmp_path / "out"
     folder.mkdir()

@@ -8,7 +8,8 @@ from drystone.io.read_settings import ReadSettings, Unit
 from drystone.model.settings import updated
 
 _NAMES = (
-    "background", "pieces", "holes", "mask", "min_area_px", "skip", "unit", "image", "px_per_m",
+    "background", "pieces", "holes", "mask", "min_area_px", "skip", "keep", "label", "unit",
+    "image", "px_per_m",
 )  # fmt: skip
 
 STONES = "label image, mask or NPY; folder of masks, or of `drystone segment`; labelme, COCO, SAM \
@@ -29,10 +30,14 @@ def add_reading(command: argparse.ArgumentParser) -> None:
            help="leave out smaller stones")
     option("--skip", type=int, action="append", metavar="ID",
            help="leave out a stone; may be repeated")
+    option("--keep", type=int, action="append", metavar="ID",
+           help="take for a stone what looks like a frame, the ground, a repeat or a part")
+    option("--label", nargs="+", action="extend", metavar="NAME",
+           help="which classes of annotations are stones")
     option("--unit", choices=get_args(Unit)[1:],
            help="of a drawing or mesh that does not say its own")
     option("--image", metavar="NAME",
-           help="which image of annotations of several (COCO, masks of SAM)")
+           help="which image of annotations of several, or the picture that shares (YOLO) are of")
 
 
 def add_wall(command: argparse.ArgumentParser) -> None:
@@ -67,7 +72,4 @@ def reading_from(arguments: argparse.Namespace) -> ReadSettings:
 
 def reading_of(source: Mapping[str, Any]) -> ReadSettings:
     """Return the settings with which a plan's source was read."""
-    reading = source.get("reading", {}).items()
-    values = {name: tuple(v) if isinstance(v, list) else v for name, v in reading}
-    skip = values.pop("skip", ())
-    return updated(ReadSettings(skip=skip), values)
+    return updated(ReadSettings(), source.get("reading", {}))

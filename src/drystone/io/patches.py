@@ -157,6 +157,8 @@ def stone_set(
     noticed = list(notices)
     if unknown := sorted(skip - known):
         noticed.append(Notice("W116", f"no stone {listed(unknown)} to skip.", "Check the ids."))
+    if unknown := sorted(set(settings.keep) - known):
+        noticed.append(Notice("W116", f"no stone {listed(unknown)} to keep.", "Check the ids."))
     # One of several numbers stays until it is split.
     patches = [p for p in found if not {p.id, *numbers.get(p.id, ())} <= skip]
     # What is split must not depend on what is skipped.

@@ -39,6 +39,12 @@ class ReadSettings:
         a net of edges around stones for background.
     skip : tuple of int
         Ids of stones to leave out.
+    keep : tuple of int
+        Ids of outlines or masks that are stones, though they look like a frame, the ground, a
+        repeat or a part of another.
+    label : tuple of str
+        The classes of annotations that are stones; empty leaves out those whose names say
+        something else (a marker, the ground …).
     max_image_mpx : float
         Largest picture that is decoded, in millions of pixels.
     px_per_m : float or None
@@ -48,7 +54,8 @@ class ReadSettings:
     unit : {"px", "mm", "cm", "m", "in", "ft"}
         Of a drawing or mesh that does not say its own; empty for none.
     image : str
-        Which image of annotations of several: its file name or id in COCO, its id in masks of SAM.
+        Which image of annotations of several: its file name or id, its id in masks of SAM; or the
+        file of the picture of which coordinates are shares.
 
     Examples
     --------
@@ -62,6 +69,8 @@ class ReadSettings:
     min_area_px: int | None = None
     mask: bool | None = None
     skip: tuple[int, ...] = ()
+    keep: tuple[int, ...] = ()
+    label: tuple[str, ...] = ()
     max_image_mpx: float = 200.0
     px_per_m: float | None = None
     unit: Unit = ""

@@ -22,6 +22,7 @@ from drystone.io.file_bytes import file_bytes
 from drystone.io.file_errors import listed, naming
 from drystone.io.images import FORMATS, SUFFIXES, Picture, decode
 from drystone.io.labels import Census, IdImage, check_no_zero, take_census, to_ids
+from drystone.io.mask_folder import ground_in, without_others
 from drystone.io.masks import BinaryMask, components, find_mask
 from drystone.io.outlines_in.model import OutlineFile
 from drystone.io.outlines_in.npz import is_npz, read_npz
@@ -34,7 +35,13 @@ from drystone.io.patches import (
     stone_set,
 )
 from drystone.io.photo_beside import LABELS, SIDECAR, PhotoSidecar, read_sidecar
-from drystone.io.read_outlines import check_no_image, check_unit, outline_reader, stones_of
+from drystone.io.read_outlines import (
+    check_no_image,
+    check_no_label,
+    check_unit,
+    outline_reader,
+    stones_of,
+)
 from drystone.io.read_settings import ReadSettings
 from drystone.io.repairs import without_blends, without_net
 from drystone.model.stone import Source, StoneSet, writable
@@ -51,9 +58,9 @@ def read_stones(
     ----------
     source : str, Path or array
         A label image, a picture of ids in colours, a binary mask (PNG, TIFF, BMP, GIF, NPY, NPZ),
-        a folder of one-stone masks, an array like one of these; annotations in JSON (labelme,
-        COCO, SAM, GeoJSON), a drawing (DXF, SVG), a mesh (OBJ, PLY, STL); or what `drystone
-        segment` wrote.  The content tells them apart.
+        a folder of one-stone masks, an array like one of these; annotations (labelme, COCO, SAM,
+        GeoJSON, Label Studio, VIA, CVAT, YOLO), a drawing (DXF, SVG), a mesh (OBJ, PLY, STL); or
+        what `drystone segment` wrote.  The content tells them apart.
     settings : ReadSettings, optional
         Background, holes, pieces, units and the like.
 
@@ -129,6 +136,7 @@ def _of_px(settings: ReadSettings) -> tuple[tuple[str, Any], ...]:
     """Return what a plan must keep of the settings with which a picture was read."""
     check_unit(None, settings)
     check_no_image(settings)
+    check_no_label(settings)
     return replace(settings, px_per_m=None).changed()
 
 
@@ -244,18 +252,29 @@ def _read_folder(folder: Path, name: str, settings: ReadSettings) -> StoneSet:
     if ignored:
         notices.append(Notice("W117", f"not pictures, left aside: {writable(listed(ignored))}."))
     digest, patches, sizes = hashlib.sha256(), [], []
+    doubtful: dict[int, LabelImageError] = {}
     names = tuple(writable(file.name) for file in files)
     for number, (file, own) in enumerate(zip(files, names, strict=True), start=1):
         data = _bytes_of(file)
         digest.update(hashlib.sha256(data).digest())
         where = f"{name}/{own}"
         with naming(where):
-            mask, said = _mask_of_one(decode(data, _max_px(settings)), where, settings)
+            picture, said = decode(data, _max_px(settings)), ()
+            try:
+                mask, said = _mask_of_one(picture, where, settings)
+            except LabelImageError as error:
+                if error.code != "E105":
+                    raise
+                error.where = where
+                doubtful[number] = error
+                mask = ground_in(picture, settings.background)
         sizes.append(mask.shape)
         notices += said
         patches += cut(mask.astype(np.int32), np.array([number]), own) or [
             StonePatch(np.zeros((1, 1), bool), 0, 0, number, len(mask), name=own)
         ]
+    patches, left_out = without_others(patches, sizes, doubtful, settings)
+    notices += left_out
     height, width = np.max(sizes, axis=0).tolist()
     source = Source(name, digest.hexdigest(), width, height, names, _of_px(settings))
     return stone_set(patches, notices, source, settings)

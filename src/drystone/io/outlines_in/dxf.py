@@ -13,6 +13,7 @@ from scipy.interpolate import BSpline
 from drystone.errors import InputError, Notice
 from drystone.io.file_errors import damaged, too_large, unusable
 from drystone.io.foreign import extra, foreign
+from drystone.io.outlines_in.classes import layer
 from drystone.io.outlines_in.model import (
     METRES,
     OutlinedStone,
@@ -99,7 +100,10 @@ def read_dxf(data: bytes, settings: ReadSettings) -> OutlineFile:
         found = with_holes(rings)
     # The one layer that all stones are on says nothing of a stone.
     names = names if len(set(names)) > 1 or len(names) == 1 else [""] * len(names)
-    stones = [OutlinedStone(number_in(names[i]), names[i], (area,)) for i, area in found]
+    stones = [
+        OutlinedStone(number_in(names[i]), names[i], (area,), label=layer(names[i]))
+        for i, area in found
+    ]
     cure = "Only closed outlines are read: join lines and arcs to polylines, bind references."
     notices = left_aside(+aside, cure)
     if len(found) < len(rings):

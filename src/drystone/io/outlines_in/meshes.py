@@ -82,7 +82,7 @@ def read_mesh(kind: str, data: bytes, settings: ReadSettings) -> OutlineFile:
         text = f"{kind.upper()} has no unit: lengths were taken as metres."
         notices.append(Notice("W119", text, "Say --unit mm (or cm, in, ft) if they are not."))
     unit_m = METRES.get(settings.unit or "m")
-    return OutlineFile(stones, unit_m, y_up=True, notices=notices)
+    return OutlineFile(stones, unit_m, y_up=True, notices=notices, seen_by="either")
 
 
 def _united(body: MeshBody) -> Notice:

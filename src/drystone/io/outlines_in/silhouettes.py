@@ -8,6 +8,7 @@ import shapely
 from numpy.typing import NDArray
 
 from drystone.io.outlines_in.model import Area
+from drystone.io.outlines_in.nested import frames
 from drystone.kernels.polygons import Points
 
 _MOST_CROSSINGS = 2000
@@ -27,8 +28,9 @@ def areas_of(shape: Any) -> tuple[Area, ...]:
 def with_holes(rings: Sequence[Points]) -> list[tuple[int, Area]]:
     """Return outlines with the rings in them as holes, as drawings for cutting mean them.
 
-    Each comes with its position; a ring in a hole is an outline again.  ValueError when there are
-    too many crossings, or rings in each other, to find out.
+    Each comes with its position; a ring in a hole is an outline again.  What is drawn around
+    nearly all rings is a frame, and has no holes.  ValueError when there are too many crossings,
+    or rings in each other, to find out.
     """
     shapes = _valid(np.array([shapely.Polygon(ring) for ring in rings], dtype=object))
     tree = shapely.STRtree(shapes)
@@ -43,6 +45,12 @@ def with_holes(rings: Sequence[Points]) -> list[tuple[int, Area]]:
         for i, j in zip((pairs[0] + begin).tolist(), pairs[1].tolist(), strict=True):
             if i != j and size[i] < size[j]:
                 around[i].append(j)
+    inside: dict[int, set[int]] = {i: set() for i in around}
+    for i, found in around.items():
+        for j in found:
+            inside[j].add(i)
+    framed = frames(dict(enumerate(size.tolist())), inside)
+    around = {i: [j for j in found if j not in framed] for i, found in around.items()}
     holes: dict[int, list[int]] = {i: [] for i, found in around.items() if len(found) % 2 == 0}
     for i, found in around.items():
         if i not in holes:

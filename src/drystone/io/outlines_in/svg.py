@@ -10,6 +10,7 @@ import numpy as np
 from drystone.errors import InputError, Notice
 from drystone.io.file_errors import damaged, entry, too_large, unusable
 from drystone.io.foreign import foreign
+from drystone.io.outlines_in.classes import layer
 from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile, left_aside, number_in
 from drystone.io.outlines_in.svg_shapes import SHAPES, lines_of
 from drystone.io.outlines_in.svg_style import Styles, tag
@@ -59,6 +60,7 @@ class _Place:
     rule: str = "nonzero"
     stones: bool = False
     name: str = ""
+    group: str = ""
     depth: int = 0
     visible: bool = True
     fill: str = "black"
@@ -108,7 +110,7 @@ def read_svg(data: bytes, settings: ReadSettings) -> OutlineFile:
             continue
         name = shape.place.name
         area = Area(shape.rings, "evenodd" if shape.place.rule == "evenodd" else "nonzero")
-        stones.append(OutlinedStone(number_in(name), name, (area,)))
+        stones.append(OutlinedStone(number_in(name), name, (area,), label=layer(shape.place.group)))
     px = page.size if page.unit_m is None else None
     size = None if px is None else (round(px[0]), round(px[1]))
     notices = left_aside(+walk.aside, "Only closed shapes are read.")
@@ -209,6 +211,7 @@ class _Walk:
             rule=style.get("fill-rule", place.rule),
             stones=place.stones or (_LAYER in words and tag(element) == "g"),
             name=name if tag(element) not in {"g", "svg"} or number_in(name) else place.name,
+            group=(own[1] or own[0] or place.group) if tag(element) == "g" else place.group,
             depth=place.depth + 1,
             visible=_VISIBLE.get(style.get("visibility", ""), place.visible),
             fill=style.get("fill", place.fill),
