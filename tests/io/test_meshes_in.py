@@ -1,5 +1,7 @@
 """OBJ, PLY and STL of the known stones, extruded and written by trimesh."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -55,7 +57,8 @@ def test_obj_with_named_objects(tmp_path, axis):
     scene = trimesh.Scene()
     for i, mesh in meshes(axis).items():
         scene.add_geometry(mesh, geom_name=f"stone_{i:03d}")
-    stones = read_stones(saved(tmp_path, scene.export(file_type="obj"), "s.obj"), settings=METRIC)
+    path = saved(tmp_path, scene.export(file_type="obj"), "s.obj")
+    stones = read_stones(path, settings=replace(METRIC, up="z"))
     iou, area, centroid = compare(stones)
     assert iou > 0.998
     assert area < 2e-3
@@ -75,7 +78,7 @@ def test_bodies_without_names(tmp_path, kind, options):
     mesh, names = apart("y", unit=0.001)
     suffix = kind.removesuffix("_ascii")
     path = saved(tmp_path, mesh.export(file_type=kind, **options), f"stones.{suffix}")
-    settings = ReadSettings(pieces="keep-largest", holes="keep", px_per_m=PX_PER_M, unit="mm")
+    settings = replace(METRIC, unit="mm", up="z")
     stones = read_stones(path, settings=settings)
     assert [stone.id for stone in stones] == list(range(1, len(names) + 1))
     for stone in stones:
@@ -107,7 +110,7 @@ v 8 0 2
 v 6 0 2
 f -4 -3 -2 -1
 """
-    stones = read_stones(saved(tmp_path, text, "s.obj"), settings=ReadSettings(px_per_m=50))
+    stones = read_stones(saved(tmp_path, text, "s.obj"), settings=ReadSettings(px_per_m=50, up="z"))
     assert [stone.area_px for stone in stones] == [6 * 2500, 4 * 2500]
     assert [stone.name for stone in stones] == ["wall_1", "wall_2"]
 

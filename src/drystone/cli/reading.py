@@ -4,11 +4,12 @@ import argparse
 from collections.abc import Mapping
 from typing import Any, get_args
 
-from drystone.io.read_settings import ReadSettings, Unit
+from drystone.io.read_settings import ReadSettings, Unit, Up
 from drystone.model.settings import updated
 
 _NAMES = (
-    "background", "pieces", "holes", "mask", "min_area_px", "skip", "unit", "image", "px_per_m",
+    "background", "pieces", "holes", "mask", "min_area_px", "skip", "unit", "up", "image",
+    "px_per_m",
 )  # fmt: skip
 
 STONES = "label image, mask or NPY; folder of masks, or of `drystone segment`; labelme, COCO, SAM \
@@ -30,7 +31,9 @@ def add_reading(command: argparse.ArgumentParser) -> None:
     option("--skip", type=int, action="append", metavar="ID",
            help="leave out a stone; may be repeated")
     option("--unit", choices=get_args(Unit)[1:],
-           help="of a drawing or mesh that does not say its own")
+           help="of a drawing or mesh, also where a DXF or SVG says another")
+    option("--up", choices=get_args(Up)[1:],
+           help="which axis of a mesh or DXF is up; -back sees it from the other side")
     option("--image", metavar="NAME",
            help="which image of annotations of several (COCO, masks of SAM)")
 

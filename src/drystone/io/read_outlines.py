@@ -114,6 +114,8 @@ def stones_of(read: Reader, data: bytes, name: str, settings: ReadSettings) -> S
     _check_not_given(settings.mask is not None, mask, "mask")
     if not file.names_images:
         check_no_image(settings)
+    if not file.in_space:
+        check_no_up(settings)
     # Half a character pair can be neither printed nor written.
     named = [
         replace(stone, name=stone.name.encode("utf-8", "replace").decode()) for stone in file.stones
@@ -146,6 +148,15 @@ def check_no_image(settings: ReadSettings) -> None:
             f"there is no choice of images here, as for {settings.image!r}.",
             "Leave --image (image in Python) out: it is for annotations that name their images "
             "(COCO, masks of SAM).",
+        )
+
+
+def check_no_up(settings: ReadSettings) -> None:
+    """Refuse an axis that is up where there are only two (E118)."""
+    if settings.up:
+        raise unfit(
+            f"this file has no axis {settings.up[0].upper()} that could be up or not.",
+            "Leave --up (up in Python) out: it is for meshes and DXF.",
         )
 
 

@@ -27,7 +27,13 @@ from drystone.io.outlines_in.model import OutlineFile
 from drystone.io.outlines_in.npz import is_npz, read_npz
 from drystone.io.patches import StonePatch, check_count, cut, stone_set
 from drystone.io.photo_beside import LABELS, SIDECAR, PhotoSidecar, read_sidecar
-from drystone.io.read_outlines import check_no_image, check_unit, outline_reader, stones_of
+from drystone.io.read_outlines import (
+    check_no_image,
+    check_no_up,
+    check_unit,
+    outline_reader,
+    stones_of,
+)
 from drystone.io.read_settings import ReadSettings
 from drystone.model.stone import Source, StoneSet, writable
 
@@ -121,6 +127,7 @@ def _of_px(settings: ReadSettings) -> tuple[tuple[str, Any], ...]:
     """Return what a plan must keep of the settings with which a picture was read."""
     check_unit(None, settings)
     check_no_image(settings)
+    check_no_up(settings)
     return replace(settings, px_per_m=None).changed()
 
 

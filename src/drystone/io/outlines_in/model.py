@@ -13,6 +13,7 @@ from drystone.errors import Notice
 from drystone.io.file_errors import listed, short
 from drystone.io.labels import MAX_ID
 from drystone.io.patches import PlacedMask
+from drystone.io.read_settings import ReadSettings
 from drystone.kernels.polygons import Points
 
 METRES = MappingProxyType({"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048})
@@ -52,6 +53,7 @@ class OutlineFile:
     y_up: bool = False  # False when y runs down, as in images
     size_px: tuple[int, int] | None = None  # width, height of the image of a file in px, if said
     notices: Sequence[Notice] = ()
+    in_space: bool = False  # its coordinates have three axes, so it can be asked which is up
     names_images: bool = False  # it says of which image each stone is, so one can be asked for
 
 
@@ -113,6 +115,12 @@ def left_aside(kinds: Counter[str], cure: str = "") -> list[Notice]:
         return []
     found = listed(f"{count} {short(kind)}" for kind, count in sorted(kinds.items()))
     return [Notice("W119", f"no outlines of stones, left aside: {found}.", cure)]
+
+
+def overruled(own: str, settings: ReadSettings) -> Notice:
+    """Say that the unit of the settings took the place of that of the file."""
+    text = f"the file gives another unit ({own}), but --unit {settings.unit} was said."
+    return Notice("W119", text, "Leave --unit out to take that of the file.")
 
 
 def side_px(value: Any) -> int:
