@@ -181,6 +181,13 @@ def test_a_sphere_shows_its_circle(tmp_path):
         ("v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj", r"E114 .*not finite"),
         ("v 0 0 0\n", "a.obj", r"E114 .*no faces"),
         (b"ply\nformat binary_little_endian 1.0\nend_header\n", "a.ply", r"E1(06|14) "),
+        (
+            b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+            b"property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+            b"end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
+            "a.ply",
+            r"E106 .*a face of unknown vertices",
+        ),
         (b"too short", "a.stl", r"E106 .*damaged"),
     ],
 )

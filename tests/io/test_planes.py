@@ -98,6 +98,38 @@ def test_dxf_is_seen_from_the_side_that_it_faces(tmp_path, place):
     assert all("--up" in notice.cure for notice in said)
 
 
+@pytest.mark.parametrize("in_block", [False, True])
+@pytest.mark.parametrize("place", FACING_ALONE)
+def test_dxf_of_all_kinds_in_a_plane(tmp_path, place, in_block):
+    document = ezdxf.new("R2010", units=6)
+    space = document.modelspace()
+    block = document.blocks.new("ALL") if in_block else space
+    block.add_circle((1, 1), 0.4)
+    block.add_ellipse((3, 1), major_axis=(0.5, 0), ratio=0.4)
+    block.add_spline().set_closed([(5, 0.5, 0), (6, 0.5, 0), (6, 1.5, 0), (5, 1.5, 0)])
+    block.add_lwpolyline([(7, 0.5, 0), (8, 0.5, 1), (8, 1.5, 0), (7, 1.5, 0)], "xyb", close=True)
+    # No edge goes through centres of pixels.
+    block.add_polyline2d([(9, 0, 0), (10, 0, 0.5), (10, 0.93, 0)], format="xyb", close=True)
+    block.add_polyline3d([(11, 0, 0), (12, 0, 0), (11, 0.91, 0)], close=True)
+    if in_block:
+        space.add_blockref("ALL", (0, 0))
+    document.saveas(tmp_path / "flat.dxf")
+    matrix = np.eye(4)
+    matrix[:3, :3] = turn(place).T
+    for entity in space:
+        entity.transform(ezdxf.math.Matrix44(matrix.ravel().tolist()))
+    document.saveas(tmp_path / "turned.dxf")
+    settings = ReadSettings(px_per_m=100)
+    flat, turned = (read_stones(tmp_path / name, settings=settings) for name in
+                    ("flat.dxf", "turned.dxf"))  # fmt: skip
+    assert len(flat) == 6
+    for one, other in zip(flat, turned, strict=True):
+        assert np.abs(np.subtract(one.mask.shape, other.mask.shape)).max() <= 1
+        assert other.area_px == pytest.approx(one.area_px, rel=5e-3)
+        assert other.left_px == pytest.approx(one.left_px, abs=1)
+        assert other.bottom_px == pytest.approx(one.bottom_px, abs=1)
+
+
 def test_dxf_plans_are_seen_from_the_top_though_mirrored_copies_face_down(tmp_path):
     document = ezdxf.readfile(dxf(tmp_path, "top"))
     for line in document.modelspace():

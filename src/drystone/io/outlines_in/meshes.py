@@ -172,6 +172,8 @@ def _ply_bodies(data: bytes) -> list[MeshBody]:
     said = _PLY_FACES.search(data)
     if said and len(faces) < int(said[1]):
         raise _cut(f"{len(faces)} of {int(said[1])} faces")
+    if faces.size and not 0 <= faces.min() <= faces.max() < len(vertices):
+        raise _cut("a face of unknown vertices")
     return _bodies(vertices, list(faces))
 
 
