@@ -143,7 +143,9 @@ def test_dxf_plans_are_seen_from_the_top_though_mirrored_copies_face_down(tmp_pa
 def test_dxf_outlines_out_of_the_plane_are_named(tmp_path):
     document = ezdxf.readfile(dxf(tmp_path, "top"))
     space = document.modelspace()
-    edge = space.add_polyline3d([(2, 0, 0), (2, 0.1, 0), (2, 0.1, 0.1)], close=True)
+    edge = space.add_polyline3d(
+        [(2, 0, 0), (2.1, 0, 0), (2.1, 0.03, 0.095), (2, 0.03, 0.095)], close=True
+    )
     space.add_polyline3d([(1, 0, 0), (1.1, 0, 0), (1.1, 0.08, 0.06), (1, 0.08, 0.06)], close=True)
     document.saveas(tmp_path / "s.dxf")
     stones = read_stones(tmp_path / "s.dxf", settings=METRIC)

@@ -48,8 +48,8 @@ WAYS = {
     + clip('<use href="#r" x="0" y="0"/>') + ON,
     "hidden": clip(RECT + '<rect width="200" height="99" visibility="hidden"/>')
     + ON,
-    "nested": clip(RECT)
-    + '<clipPath id="d"><rect width="190" height="99"/></clipPath>'
+    "nested": clip(RECT + '<rect x="110" width="90" height="99"/>')
+    + '<clipPath id="d"><rect width="109" height="99"/></clipPath>'
     + f'<g clip-path="url(#d)"><g clip-path="url(#c)">{ALL}</g></g>',
     "in its own units": clip('<rect width="40" height="50"/>')
     + '<g transform="scale(2)" clip-path="url(#c)">'
@@ -57,7 +57,7 @@ WAYS = {
     "on a use": clip('<rect x="-20" width="80" height="100"/>')
     + f'<defs><g id="g" transform="translate(-20)">{ALL}</g></defs>'
     + '<use href="#g" x="20" clip-path="url(#c)"/>',
-    "hole": clip('<path d="M0 0H200V100H0zM80 0V100H180V0z" clip-rule="evenodd"/>')
+    "hole": clip('<path d="M0 0H200V100H0zM80 0H180V100H80z" clip-rule="evenodd"/>')
     + ON,
     "viewport": f'<svg width="80" height="100">{ALL}</svg>',
     "symbol": f'<symbol id="s" viewBox="0 0 80 100">{ALL}</symbol>'
@@ -88,6 +88,12 @@ def test_what_is_within_a_clip_is_as_it_was(body):
     found, said = boxes(body)
     assert list(found) == [1, 2, 3]
     assert said == ""
+
+
+def test_a_shape_within_a_clip_whose_box_is_not_is_as_it_was():
+    round_clip = clip('<circle cx="50" cy="50" r="21"/>')
+    circle = '<circle id="stone_1" cx="50" cy="50" r="20" clip-path="url(#c)"/>'
+    assert boxes(round_clip + circle) == ({1: pytest.approx([30, 30, 40, 40])}, "")
 
 
 def test_a_clip_that_is_not_there_cuts_nothing_and_is_named():
