@@ -176,6 +176,10 @@ def dxf() -> Sequence[bytes]:
         space.add_blockref("STONE", (10, 50), dxfattribs={"rotation": 90, "xscale": 2})
         space.add_lwpolyline([(70, 0), (90, 0, 1), (80, 9)], "xyb", close=True)
         space.add_ellipse((40, 50), major_axis=(9, 0), ratio=0.4)
+        through = space.add_spline([(60, 60, 0), (70, 60, 0), (70, 70, 0), (60, 72, 0)])
+        through.dxf.flags = 1
+        fitted = space.add_polyline2d([(0, 0), (9, 0), (9, 9), (4, 5)], close=True)
+        fitted.vertices[3].dxf.flags |= 16
         space.add_spline().set_closed([(60, 40, 0), (70, 40, 0), (70, 50, 0), (60, 50, 0)])
         buffer = io.BytesIO() if binary else io.StringIO()
         document.write(buffer, fmt="bin" if binary else "asc")
@@ -219,10 +223,21 @@ def svg() -> Sequence[bytes]:
         '<svg x="5%" y="1" width="9mm" height="9" viewBox="0 0 9 9"><rect width="50%" height="5"/>'
         '</svg><g id="stones"><use href="#stone_12" transform="matrix(1 0 .1 1 0 0)"/></g>'
     )
+    clipped = (
+        f'<clipPath id="c" transform="scale(1.5)"><path d="M0 0H40V9L30 60z" clip-rule="evenodd"/>'
+        f'<use href="#r" x="3"/></clipPath><g clip-path="url(#c)">{shapes}</g><defs><rect id="r" '
+        'width="9" height="9"/></defs><clipPath id="b" clipPathUnits="objectBoundingBox"><circle '
+        f'r=".7"/></clipPath><circle r="20" clip-path="url(#b)"/>'
+    )
     mm = f'width="{WIDTH}mm" height="{HEIGHT}mm" viewBox="0 0 {WIDTH} {HEIGHT}"'
     return [
         f'<?xml version="1.0"?>\n{head} {size}>\n{body}\n</svg>\n'.encode()
-        for body, size in ((paths, mm), (shapes, 'width="48" height="32"'), (used, mm))
+        for body, size in (
+            (paths, mm),
+            (shapes, 'width="48" height="32"'),
+            (used, mm),
+            (clipped, 'width="48" height="32"'),
+        )
     ]
 
 

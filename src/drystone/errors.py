@@ -126,7 +126,7 @@ CODES = {
     "E113": "A JSON file that is none of labelme, COCO, SAM or GeoJSON, or cut short.",
     "E114": "An entry of a file of outlines that cannot be used.",
     "E115": "Annotations of several images in one file, and none or another one is named.",
-    "E116": "A drawing or map that does not say its unit.",
+    "E116": "A drawing, map or mesh that does not say its unit, or which axis is up.",
     "E117": "The size of `stones.png` is not the one that `stones.json` was written for.",
     "E118": "An option that does not fit what is read.",
     "E119": "A reading setting that means nothing.",

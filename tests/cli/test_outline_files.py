@@ -44,7 +44,9 @@ def coco(folder):
     return path
 
 
-@pytest.mark.parametrize("options", [[], ["--px-per-m", "800"], ["--unit", "mm"]])
+@pytest.mark.parametrize(
+    "options", [[], ["--px-per-m", "800"], ["--unit", "mm"], ["--up", "z-back"]]
+)
 def test_a_drawing_has_a_scale_and_its_plan_holds(tmp_path, run, options):
     path = dxf(tmp_path)
     out = tmp_path / "out"
@@ -53,7 +55,7 @@ def test_a_drawing_has_a_scale_and_its_plan_holds(tmp_path, run, options):
     plan = read_plan(out)
     assert plan.length_unit == "m"
     assert plan.px_per_m == (800.0 if "--px-per-m" in options else 2100.0)
-    given = {"--px-per-m": {"px_per_m": 800.0}, "--unit": {"unit": "mm"}}
+    given = {"--px-per-m": {"px_per_m": 800.0}, "--unit": {"unit": "mm"}, "--up": {"up": "z-back"}}
     assert plan.source.get("reading", {}) == given.get(options[0] if options else "", {})
     assert run("check", out, "--json").json()["ok"]
     path.rename(tmp_path / "moved.dxf")
@@ -123,15 +125,16 @@ def test_stones_says_the_scale_and_what_was_decided(tmp_path, run):
 
 @pytest.mark.parametrize(
     ("name", "code", "text"),
-    [("drawing", 3, "E116"), ("coco", 3, "E115"), ("plan", 3, "E113"), ("unit", 2, "E118")],
+    [("drawing", 3, "E116"), ("coco", 3, "E115"), ("plan", 3, "E113"), ("up", 2, "E118")],
 )
 def test_what_cannot_be_read(tmp_path, run, name, code, text):
     (tmp_path / "plan.json").write_text('{"steps": [], "source": {}}')
+    Image.fromarray(np.pad(np.ones((9, 9), np.uint8), 3)).save(tmp_path / "labels.png")
     options = {
         "drawing": lambda: [dxf(tmp_path, 0)],
         "coco": lambda: [coco(tmp_path)],
         "plan": lambda: [tmp_path / "plan.json"],
-        "unit": lambda: [dxf(tmp_path), "--unit", "ft"],
+        "up": lambda: [tmp_path / "labels.png", "--up", "y"],
     }
     ran = run("stones", *options[name]())
     assert (ran.code, text in ran.err) == (code, True)

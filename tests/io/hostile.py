@@ -205,6 +205,7 @@ def used(length: int) -> bytes:
 
 SETTINGS = {
     "far.dxf": ReadSettings(px_per_m=10_000.0),
+    "far.stl": ReadSettings(up="z"),
     "together.json": ReadSettings(max_image_mpx=1.0),
     "packed.npz": ReadSettings(max_image_mpx=0.5),
 }

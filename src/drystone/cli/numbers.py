@@ -231,5 +231,5 @@ def scale_notice(median_px: float, px_per_m: float | None) -> Notice | None:
     return Notice(
         "W123",
         f"the median stone is {said} long with {px_per_m:g} px in a metre.",
-        "Is that scale right? All lengths go by it.",
+        "Is that scale right? All lengths go by it; --unit corrects that of a drawing.",
     )

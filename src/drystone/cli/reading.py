@@ -4,11 +4,11 @@ import argparse
 from collections.abc import Mapping
 from typing import Any, get_args
 
-from drystone.io.read_settings import ReadSettings, Unit
+from drystone.io.read_settings import ReadSettings, Unit, Up
 from drystone.model.settings import updated
 
 _NAMES = (
-    "background", "pieces", "holes", "mask", "min_area_px", "skip", "keep", "label", "unit",
+    "background", "pieces", "holes", "mask", "min_area_px", "skip", "keep", "label", "unit", "up",
     "image", "px_per_m",
 )  # fmt: skip
 
@@ -35,7 +35,9 @@ def add_reading(command: argparse.ArgumentParser) -> None:
     option("--label", nargs="+", action="extend", metavar="NAME",
            help="which classes of annotations are stones")
     option("--unit", choices=get_args(Unit)[1:],
-           help="of a drawing or mesh that does not say its own")
+           help="of a drawing or mesh, also where a DXF or SVG says another")
+    option("--up", choices=get_args(Up)[1:],
+           help="which axis of a mesh or DXF is up; -back sees it from the other side")
     option("--image", metavar="NAME",
            help="which image of annotations of several, or the picture that shares (YOLO) are of")
 

@@ -139,8 +139,8 @@ def stones_of(read: Reader, data: bytes, name: str, settings: ReadSettings) -> S
     mask = "--no-mask" if settings.mask is False else "--mask"
     _check_not_given(settings.background != 0, "--background", "background")
     _check_not_given(settings.mask is not None, mask, "mask")
-    if not file.names_images:
-        check_no_image(settings)
+    there = {"image": file.names_images, "up": file.in_space}
+    check_not_asked(settings, *(option for option, has in there.items() if not has))
     # Half a character pair can be neither printed nor written.
     named = [
         replace(stone, name=stone.name.encode("utf-8", "replace").decode()) for stone in file.stones
@@ -167,23 +167,24 @@ def check_unit(unit_m: float | None, settings: ReadSettings) -> None:
         raise unfit(f"this file is in {own}, not in {settings.unit}.", cure)
 
 
-def check_no_image(settings: ReadSettings) -> None:
-    """Refuse the name of an image where there are none to choose from (E118)."""
-    if settings.image:
-        raise unfit(
-            f"there is no choice of images here, as for {settings.image!r}.",
-            "Leave --image (image in Python) out: it is for annotations that name their images "
-            "(COCO, masks of SAM).",
-        )
+_ELSEWHERE = {
+    "image": (
+        "there is no choice of images here, as for {}.",
+        "annotations that name their images (COCO, masks of SAM)",
+    ),
+    "label": ("a picture of stones has no classes, as {}.", "annotations; --skip leaves out ids"),
+    "up": ("this file has no third axis that could be up, as for {}.", "meshes and DXF"),
+}
+"""Options that have no meaning for some files: what there is not, and what they are for."""
 
 
-def check_no_label(settings: ReadSettings) -> None:
-    """Refuse classes where there are none (E118)."""
-    if settings.label:
-        raise unfit(
-            "a picture of stones has no classes.",
-            "Leave --label (label in Python) out: it is for annotations; --skip leaves out ids.",
-        )
+def check_not_asked(settings: ReadSettings, *options: str) -> None:
+    """Refuse options that have no meaning for what is read (E118)."""
+    for option in options:
+        if value := getattr(settings, option):
+            what, kinds = _ELSEWHERE[option]
+            cure = f"Leave --{option} ({option} in Python) out: it is for {kinds}."
+            raise unfit(what.format(repr(value)), cure)
 
 
 def _check_not_given(given: bool, option: str, name: str) -> None:

@@ -8,6 +8,7 @@ from drystone.errors import UsageError
 Pieces = Literal["auto", "keep-largest", "split", "error"]
 Holes = Literal["fill", "keep"]
 Unit = Literal["", "px", "mm", "cm", "m", "in", "ft"]
+Up = Literal["", "y", "z", "y-back", "z-back"]
 
 MOST_PX_PER_M = 1e9
 """A larger scale is none: a px would be less than a nanometre."""
@@ -52,7 +53,10 @@ class ReadSettings:
         longer side of the median stone has about 160 px.  Pictures, and annotations in px of an
         image, keep their own px.
     unit : {"px", "mm", "cm", "m", "in", "ft"}
-        Of a drawing or mesh that does not say its own; empty for none.
+        Of a drawing or mesh, also of a DXF or SVG that says another; empty is what the file says.
+    up : {"y", "z", "y-back", "z-back"}
+        Which axis of a mesh or a DXF is up; "-back" sees it from the other side.  Empty is Z,
+        unless the file cannot be told from its mirror image then.
     image : str
         Which image of annotations of several: its file name or id, its id in masks of SAM; or the
         file of the picture of which coordinates are shares.
@@ -74,6 +78,7 @@ class ReadSettings:
     max_image_mpx: float = 200.0
     px_per_m: float | None = None
     unit: Unit = ""
+    up: Up = ""
     image: str = ""
 
     def changed(self) -> tuple[tuple[str, Any], ...]:
@@ -90,6 +95,7 @@ class ReadSettings:
             ("pieces", self.pieces, get_args(Pieces)),
             ("holes", self.holes, get_args(Holes)),
             ("unit", self.unit, get_args(Unit)),
+            ("up", self.up, get_args(Up)),
         ):
             if value not in choices:
                 raise _usage(

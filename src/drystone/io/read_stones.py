@@ -36,8 +36,7 @@ from drystone.io.patches import (
 )
 from drystone.io.photo_beside import LABELS, SIDECAR, PhotoSidecar, read_sidecar
 from drystone.io.read_outlines import (
-    check_no_image,
-    check_no_label,
+    check_not_asked,
     check_unit,
     outline_reader,
     stones_of,
@@ -135,8 +134,7 @@ def _scale_beside(sidecar: PhotoSidecar, picture: Picture, path: Path) -> float 
 def _of_px(settings: ReadSettings) -> tuple[tuple[str, Any], ...]:
     """Return what a plan must keep of the settings with which a picture was read."""
     check_unit(None, settings)
-    check_no_image(settings)
-    check_no_label(settings)
+    check_not_asked(settings, "image", "label", "up")
     return replace(settings, px_per_m=None).changed()
 
 
@@ -259,7 +257,8 @@ def _read_folder(folder: Path, name: str, settings: ReadSettings) -> StoneSet:
         digest.update(hashlib.sha256(data).digest())
         where = f"{name}/{own}"
         with naming(where):
-            picture, said = decode(data, _max_px(settings)), ()
+            picture = decode(data, _max_px(settings))
+            said: tuple[Notice, ...] = ()
             try:
                 mask, said = _mask_of_one(picture, where, settings)
             except LabelImageError as error:

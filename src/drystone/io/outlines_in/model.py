@@ -14,6 +14,7 @@ from drystone.errors import Notice
 from drystone.io.file_errors import MANY, listed, short
 from drystone.io.labels import MAX_ID
 from drystone.io.patches import PlacedMask
+from drystone.io.read_settings import ReadSettings
 from drystone.kernels.polygons import Points
 
 METRES = MappingProxyType({"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048})
@@ -56,6 +57,7 @@ class OutlineFile:
     y_up: bool = False  # False when y runs down, as in images
     size_px: tuple[int, int] | None = None  # width, height of the image of a file in px, if said
     notices: Sequence[Notice] = ()
+    in_space: bool = False  # its coordinates have three axes, so it can be asked which is up
     names_images: bool = False  # it says of which image each stone is, so one can be asked for
     seen_by: Literal["people", "program", "either", "none"] = "people"
     """Who drew them: a program masks whatever it sees.  Masks and bodies may be "either" those of
@@ -163,6 +165,12 @@ def ellipse(centre: tuple[float, float], radii: tuple[float, float], turned: flo
     x, y = radii[0] * np.cos(angles), radii[1] * np.sin(angles)
     turn = np.exp(1j * turned) * (x + 1j * y)
     return np.asarray(np.column_stack([turn.real, turn.imag]) + np.array(centre))
+
+
+def overruled(own: str, settings: ReadSettings) -> Notice:
+    """Say that the unit of the settings took the place of that of the file."""
+    text = f"the file gives another unit ({own}), but --unit {settings.unit} was said."
+    return Notice("W119", text, "Leave --unit out to take that of the file.")
 
 
 def side_px(value: Any) -> int:
