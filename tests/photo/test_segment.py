@@ -196,8 +196,8 @@ def test_small_and_unusual_stones_are_said():
     speck = (disc((300, 400), 220, 250, 4), (170, 160, 150))
     found = segment(drawn(*stones, small, speck))
     assert found.count == 5
-    (speck,) = found.left_out
-    assert (speck.why, speck.at_px) == (TOO_SMALL, pytest.approx((250.5, 220.5), abs=0.6))
+    (one,) = found.left_out
+    assert (one.why, one.at_px) == (TOO_SMALL, pytest.approx((250.5, 220.5), abs=0.6))
     assert any("stone 5" in doubt.text for doubt in doubts_of(found) if doubt.code == "W179")
     least = SegmentSettings(min_area_px=600)
     assert segment(drawn(*stones, small, speck), settings=least).count == 4

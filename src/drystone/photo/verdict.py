@@ -27,8 +27,8 @@ UNEVEN = 0.85
 SHEET = 0.35
 """Share of the photograph from which on a stone may be the sheet that stones lie on."""
 
-LEFT_OUT = 2.0
-"""What was left out over what was found."""
+LEFT_OUT, LEFT_OUT_SHARE = 2.0, 0.1
+"""What was left out over what was found, and over the photograph, that is more than some stones."""
 
 FEW = 3
 """So many stones are looked at one by one."""
@@ -90,7 +90,7 @@ def verdict_of(found: FoundStones, doubts: Iterable[Doubt] = ()) -> Verdict:
             "dirt or light"
         )
     left_out = sum(one.area_px for one in found.left_out) / shown
-    if left_out > max(LEFT_OUT * stone, 0.2):
+    if left_out > max(LEFT_OUT * stone, LEFT_OUT_SHARE):
         reasons.append(
             f"{100 * left_out:.0f} % of the photograph differs from the ground and was left out, "
             f"{100 * stone:.0f} % was taken for stones"
