@@ -90,7 +90,7 @@ CASES = [
     ("export {in}/nowhere --to csv", 3, "E132", "or its folder"),
     ("export {in}/text.png --to csv", 3, "E132", "or its folder"),
     # Options that nobody can mean.
-    ("", 2, "E138", "COMMAND"),
+    ("paln {stack}", 2, "E138", "Did you mean `drystone plan`?"),
     ("build", 2, "E138", "'build'"),
     ("plan stones.png -o x", 2, "E138", "--wall"),
     ("plan stones.png --wall 5x5", 2, "E138", "-o"),
