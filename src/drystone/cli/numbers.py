@@ -192,7 +192,10 @@ def wall_picture_px(wall: "GivenWall") -> tuple[int, int]:
     """Return the size of the picture in which a wall is measured: of a plan that of its stones."""
     if wall.plan is not None:
         return planned_picture_px(wall.plan.source)
-    height, width = (0, 0) if wall.labels is None else wall.labels.shape
+    # Outlines say how far the stones reach, and a ruler may lie beside them.
+    if wall.labels is None or wall.outlines is not None:
+        return 0, 0
+    height, width = wall.labels.shape
     return width, height
 
 
@@ -233,6 +236,13 @@ def scale_with(
             cure=f"Leave the option out, {or_else}.",
         )
     return px_per_m
+
+
+def wall_scale(px_per_m: float | None, wall: "GivenWall") -> float | None:
+    """Return the scale of a wall, of the options or of its file; E131 for two that differ."""
+    if wall.plan is not None:
+        return scale_with(px_per_m, wall.plan.px_per_m, "plan")
+    return scale_with(px_per_m, wall.px_per_m)
 
 
 def scale_notice(median_px: float, px_per_m: float | None) -> Notice | None:

@@ -99,7 +99,7 @@ def build_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
     asked = None if words is None else next((one for one in words if one[:1] != "-"), "")
     listed = parser.add_subparsers(dest="command", metavar="COMMAND")
-    parser.set_defaults(run=lambda _: parser.print_help() or ExitCode.DONE)
+    parser.set_defaults(run=lambda _: _print_help(parser))
     others = {} if asked in _COMMANDS else found_commands()
     for name in dict.fromkeys((*_COMMANDS, *others)):
         text = _COMMANDS.get(name) or others[name].text
@@ -111,6 +111,11 @@ def build_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
             command.add(sub)
             sub.set_defaults(run=command.run)
     return parser
+
+
+def _print_help(parser: argparse.ArgumentParser) -> int:
+    parser.print_help()
+    return ExitCode.DONE
 
 
 class _Listed(argparse.HelpFormatter):
