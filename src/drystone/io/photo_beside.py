@@ -84,6 +84,7 @@ def read_sidecar(labels: Path) -> PhotoSidecar | None:
             int(data["height_px"]),
             None if scale is None else float(scale),
             str(data.get("photo", "")),
+            labels=labels.name,
         )
     except (OSError, ValueError, KeyError, TypeError, OverflowError) as error:
         if labels.name != LABELS:  # nobody knows what it is of
