@@ -196,9 +196,14 @@ def _outlined(stones: StoneSet, file: OutlineFile) -> GivenWall:
     outlines = wall_outlines(file, stones)
     if outlines is None:
         return _painted(stones)
+    below_px = min(stone.bottom_px for stone in stones)
+    notices = not_cut(stones.notices)
+    if below_px > 0 and not file.y_up:
+        said = f"The lowest point is {below_px} px above the lower edge of the image"
+        notices = (*notices, Notice("W301", f"{said}: the wall stands on it."))
     return GivenWall(
         outlines_painted(outlines),
-        notices=not_cut(stones.notices),
+        notices=notices,
         outlines=outlines,
         px_per_m=stones.source.px_per_m,
         drawn=file.unit_m is not None,
