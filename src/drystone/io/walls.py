@@ -248,8 +248,11 @@ def read_blocks_of(plan: Plan, folder: Path) -> Any:
 BEAR = "Only edges that meet bear on each other"
 
 
-def unsupported(model: RigidBlockModel, wall: GivenWall) -> Notice | None:
-    """Name the blocks that no chain of contacts connects with the ground (W302)."""
+def unsupported(model: RigidBlockModel, wall: GivenWall, *, swept: bool = False) -> Notice | None:
+    """Name the blocks that no chain of contacts connects with the ground (W302).
+
+    `swept`: the gaps that could be closed are.
+    """
     loose = loose_blocks(model)
     if not loose:
         return None
@@ -263,6 +266,8 @@ def unsupported(model: RigidBlockModel, wall: GivenWall) -> Notice | None:
     cure = f"{BEAR}: --close-gaps auto of `drystone analyse` looks for the gaps to close."
     if wall.blocks is not None:
         cure = f"{BEAR}: move blocks until they touch."
+    elif swept:
+        cure = "Trace what carries them, or leave them out with --skip."
     return Notice("W302", said, cure)
 
 

@@ -136,7 +136,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if case.is_range:
         return _print_range(replace(wall, model=model), loads, arguments, pictures)
     resistance = lateral_resistance(model, loads, mechanism=True, solver=arguments.solver)
-    note(None if resistance.stable else unsupported(model, given))
+    swept = wall.sweep is not None
+    note(None if resistance.stable else unsupported(model, given, swept=swept))
     card = analysis_of(
         wall, loads, resistance, _sha256(path),
         associative_only=arguments.associative_only, solver=arguments.solver,

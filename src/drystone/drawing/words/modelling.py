@@ -294,7 +294,7 @@ def scarcity(wall: ModelledWall, per_unit_m: float | None) -> Notice | None:
 
 _CURES = {
     "known": "",
-    "swept": "They bear no more, or only with wider gaps: are stones missing beside them?",
+    "swept": "Are stones missing beside them? --skip leaves out what is no stone of the wall.",
     "outlines": "Leave --contacts out: --close-gaps auto looks for the width that lets them bear.",
 }
 """What to do about stones that touch too little, by what is known of the joints."""
