@@ -145,6 +145,27 @@ def test_options_of_reading_leave_out_blocks(tmp_path: Path) -> None:
         read_wall(labelme(tmp_path), ReadSettings(background=255))
 
 
+def test_what_reaches_beyond_its_image_is_whole_and_may_not_fill_the_memory(
+    tmp_path: Path,
+) -> None:
+    def drawn(far: float) -> Path:
+        outside = [(-far, 50.0), (20.0, 50.0), (20.0, 40.0), (-far, 40.0)]
+        shapes = [
+            {"label": str(i), "points": line, "shape_type": "polygon"}
+            for i, line in ({**BLOCKS, 9: outside}).items()
+        ]
+        size = {"imageHeight": HEIGHT, "imageWidth": WIDTH}
+        return _text(tmp_path / "far.json", json.dumps({"shapes": shapes, **size}))
+
+    wall = read_wall(drawn(12.0))
+    assert wall.outlines is not None
+    assert wall.outlines[9][:, 0].min() == 0.0
+    assert not any("cut off" in notice.message for notice in wall.notices)
+    with pytest.raises(DrystoneError) as caught:
+        read_wall(drawn(4.5e6))
+    assert caught.value.code == "E110"
+
+
 def image() -> np.ndarray:
     wall = {i: np.array([*line, line[0]]) for i, line in upright().items()}
     return np.pad(outlines_painted(wall), ((30, HEIGHT - FOOT), (0, WIDTH - 120)))

@@ -10,9 +10,13 @@ from drystone.errors import Notice
 from drystone.io.outlines_in.fill import filled_area
 from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile
 from drystone.io.outlines_in.silhouettes import shadow
+from drystone.io.pictures import check_size
 from drystone.kernels.polygons import Points
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
+
+MOST_PX = 200_000_000
+"""Of a picture of a wall."""
 
 
 def wall_outlines(file: OutlineFile, stones: StoneSet) -> dict[int, Points] | None:
@@ -44,10 +48,11 @@ def wall_outlines(file: OutlineFile, stones: StoneSet) -> dict[int, Points] | No
 def outlines_painted(outlines: Mapping[int, Points]) -> Labels:
     """Return the label image whose lower left corner is the origin of outlines in px.
 
-    Where they overlap the smaller stone is seen.
+    Where they overlap the smaller stone is seen.  E110 where it would fill the memory.
     """
     corners = np.concatenate(list(outlines.values()))
     width, height = (max(1, math.ceil(side - 1e-9)) for side in corners.max(axis=0).tolist())
+    check_size(width, height, MOST_PX, "Is a corner far away from the wall? Correct it.")
     labels = np.zeros((height, width), np.uint32)
     size = {i: shapely.Polygon(outline).area for i, outline in outlines.items()}
     for i in sorted(outlines, key=lambda one: (-size[one], one)):
