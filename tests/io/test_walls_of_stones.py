@@ -228,8 +228,19 @@ def test_a_sidecar_is_of_the_image_that_it_names(tmp_path: Path) -> None:
 
 def test_a_photograph_of_a_wall_is_told_how_walls_are_traced(tmp_path: Path) -> None:
     noise = np.random.default_rng(1).integers(0, 256, (80, 90, 3), np.uint8)
-    for name in ("photo.png", "photo.jpg"):
-        Image.fromarray(noise).save(tmp_path / name)
+    smooth = np.full((80, 90, 3), 200, np.uint8)
+    smooth[40:] = noise[40:]
+    made = (("a.png", noise, "E102"), ("a.jpg", noise, "E102"), ("b.jpg", smooth, "E101"))
+    for name, values, code in made:
+        Image.fromarray(values).save(tmp_path / name)
         with pytest.raises(DrystoneError, match="#from-a-photograph-of-a-wall") as caught:
             read_wall(tmp_path / name)
-        assert caught.value.code == "E102"
+        assert caught.value.code == code
+        assert "segment" not in caught.value.cure
+
+
+def test_other_cures_stay(tmp_path: Path) -> None:
+    write_sidecar(PhotoSidecar(130, 90, 250.0), tmp_path)
+    with pytest.raises(DrystoneError, match="stands beside the label image") as caught:
+        read_wall(tmp_path / "stones.json")
+    assert "Give stones.png" in caught.value.cure

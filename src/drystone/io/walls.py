@@ -98,6 +98,11 @@ _CURES = {
     "stones (labelme, COCO, GeoJSON, DXF, SVG ...).",
 }
 """What helps with a wall, by code; the cures of readers are for stones on the ground."""
+_STONES = "Stones are read from"
+_SEGMENTED = (
+    "find the stones in it with `drystone segment PHOTO`",
+    "trace its stones, as in docs/for-engineers.md#from-a-photograph-of-a-wall",
+)
 
 
 def read_wall(path: Path, settings: ReadSettings | None = None) -> GivenWall:
@@ -159,8 +164,9 @@ def _stones(path: Path, settings: ReadSettings) -> GivenWall:
     try:
         return _wall_of_stones(path, settings)
     except InputError as error:
-        if error.code in _CURES:
+        if error.code in _CURES and (error.code == "E102" or error.cure.startswith(_STONES)):
             error.cure = _CURES[error.code]
+        error.cure = error.cure.replace(*_SEGMENTED)
         raise
 
 
