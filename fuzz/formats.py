@@ -90,6 +90,19 @@ def _wall(path: Path, rng: Random) -> None:
     command(rng.choice(("measure", "craft", "craft", "measure", "analyse")), path, "--json")
 
 
+def _drawn_walls() -> Sequence[Case]:
+    seeds = {"json": (drawings.labelme, drawings.coco, drawings.geojson), "svg": (drawings.svg,)}
+    return [
+        {f"a.{ending}": data} for ending, made in seeds.items() for one in made for data in one()
+    ]
+
+
+def _drawn_wall(path: Path, rng: Random) -> None:
+    some = rng.choice(((), ("--unit", "mm"), ("--pieces", "split"), ("--px-per-m", 300)))
+    words = rng.choice((("craft",), ("analyse", "--associative-only"), ("measure",)))
+    command(*words, path, "--json", *(() if words == ("craft",) and "--px-per-m" in some else some))
+
+
 def _blocks(path: Path, rng: Random) -> None:
     command(rng.choice(("analyse", "craft")), path, "--json")
 
@@ -133,6 +146,7 @@ FORMATS = (
     Format("photo", _files(pictures.photos, "jpg"), _photo, 20),
     Format("settings", walls.settings, _settings, 20),
     Format("wall", walls.images, _wall, 10),
+    Format("drawn", _drawn_walls, _drawn_wall, 10),
     Format("blocks", walls.blocks, _blocks, 15),
     Format("plan", walls.plans, _plan, 8, folder=True),
 )  # fmt: skip

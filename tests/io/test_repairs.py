@@ -35,7 +35,7 @@ def test_what_is_no_number_of_a_stone_is_ground(tmp_path, dtype, ground, backgro
     stones = read_stones(tmp_path / "a.npy", settings=ReadSettings(background=background))
     assert areas(stones) == {7: 375, 9: 600}
     assert codes(stones) == ([] if ground == background else ["W135"])
-    wall = read_wall(tmp_path / "a.npy", background=background)
+    wall = read_wall(tmp_path / "a.npy", ReadSettings(background=background))
     np.testing.assert_array_equal(wall.labels, two_stones(7, 9))
     assert [notice.code for notice in wall.notices] == codes(stones)
 

@@ -43,12 +43,12 @@ def add_reading(command: argparse.ArgumentParser) -> None:
 
 
 def add_wall(command: argparse.ArgumentParser) -> None:
-    """Add the wall, how its picture is read, and where results go."""
+    """Add the wall, how its stones are read, and where results go."""
     # fmt: off
     option = command.add_argument
-    option("wall_path", metavar="WALL", help="label image, plan.json, or block model (JSON)")
-    option("--background", type=_value, default=0, metavar="N",
-           help="the value of a label image that is not stone (default 0)")
+    option("wall_path", metavar="WALL",
+           help=f"plan.json or its folder; block model (JSON); or stones: {STONES}")
+    add_reading(command)
     option("--json", action="store_true", help="print as JSON")
     option("-o", "--output", metavar="DIR", help="draw pictures into a folder")
     option("--overwrite", action="store_true", help="replace pictures of the same names")
@@ -68,7 +68,7 @@ def reading_from(arguments: argparse.Namespace) -> ReadSettings:
     ``--px-per-m`` is the resolution of drawings and meshes; pictures keep their own px, and for
     them it is only the scale.
     """
-    given = {name: getattr(arguments, name) for name in _NAMES}
+    given = {name: getattr(arguments, name, None) for name in _NAMES}
     return reading_of({"reading": {k: value for k, value in given.items() if value is not None}})
 
 

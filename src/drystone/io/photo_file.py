@@ -28,6 +28,9 @@ MAX_SIDE_PX = 32_766
 SAME_SHAPE = 0.02
 """Widths over heights may differ by this share: a photograph of few px rounds them."""
 
+LEAST_JUDGED_PX, PLAIN = 5000, 0.7
+"""From so many px on a picture is one of ids if so many neighbours on its stones are equal."""
+
 _REDUCE = "Reduce it or crop it; only in Python can the limit be raised (max_px)."
 
 
@@ -53,6 +56,7 @@ def read_photo(path: str | Path, max_px: int = MAX_PX) -> Photo:
     with naming(str(path)):
         data = _bytes_of(path)
         values, orientation, deep = _decode(data, partial(_check, max_px=max_px))
+        _refuse_labels(values, path.name)
         rgb, notices = _to_rgb(values)
     name = writable(path.name)
     if deep:
@@ -62,6 +66,24 @@ def read_photo(path: str | Path, max_px: int = MAX_PX) -> Photo:
         said = f"{name} was {TURNS[orientation]}, as its EXIF data say."
         notices = (*notices, Notice("W173", said))
     return Photo(rgb, name, hashlib.sha256(data).hexdigest(), notices)
+
+
+def _refuse_labels(values: NDArray[Any], name: str) -> None:
+    """Refuse a label image (E175): plain areas of other values on 0; nothing is so even in light.
+
+    Pairs of neighbours of which one is no ground are looked at, and few px are not judged.
+    """
+    colours = np.atleast_3d(values)
+    colours = colours[..., :3] if colours.shape[2] > 2 else colours[..., :1]
+    level = colours.astype(np.int64) @ np.array([1, 1 << 16, 1 << 32])[: colours.shape[2]]
+    stone = level != 0
+    if level.size < LEAST_JUDGED_PX or stone.mean() > 0.95:
+        return
+    pairs = stone[:, :-1] | stone[:, 1:]
+    equal = level[:, :-1][pairs] == level[:, 1:][pairs]
+    if equal.size and equal.mean() > PLAIN:
+        what = "this is a label image already, plain areas on 0, and not a photograph."
+        raise InputError("E175", what, cure=f"`drystone plan {name}` reads it.")
 
 
 def _bytes_of(path: Path) -> bytes:

@@ -127,6 +127,13 @@ def _no_stones(what: str, cure: str = f"Stones are read from {_EXPECTED}.") -> I
 
 def stones_of(read: Reader, data: bytes, name: str, settings: ReadSettings) -> StoneSet:
     """Read a file of outlines; its source has a scale when the file has a unit."""
+    return stones_and_outlines(read, data, name, settings)[0]
+
+
+def stones_and_outlines(
+    read: Reader, data: bytes, name: str, settings: ReadSettings
+) -> tuple[StoneSet, OutlineFile]:
+    """Return the same, and the outlines under the same ids, some of which may be left out."""
     if len(data) > MOST_TEXT_BYTES:
         megabytes = f"{len(data) / 1e6:.0f} MB, and the limit is {MOST_TEXT_BYTES / 1e6:g} MB"
         cure = "Export the outlines of one image, with fewer corners."
@@ -148,13 +155,14 @@ def stones_of(read: Reader, data: bytes, name: str, settings: ReadSettings) -> S
     kept, wedges = without_wedges(named)
     kept, classes = of_classes(kept, settings.label)
     stones, renumbered = numbered(kept)
-    patches, size_px, px_per_m, said = rastered(replace(file, stones=stones), settings)
+    file = replace(file, stones=stones)
+    patches, size_px, px_per_m, said = rastered(file, settings)
     # What has px of its own has no other resolution.
     reading = (settings if px_per_m else replace(settings, px_per_m=None)).changed()
     digest = hashlib.sha256(data).hexdigest()
     source = Source(name, digest, *size_px, reading=reading, px_per_m=px_per_m)
     notices = [*file.notices, *wedges, *classes, *renumbered, *said]
-    return stone_set(patches, notices, source, settings)
+    return stone_set(patches, notices, source, settings), file
 
 
 def check_unit(unit_m: float | None, settings: ReadSettings) -> None:

@@ -34,13 +34,8 @@ from drystone.io.patches import (
     smallest_of_mask_px,
     stone_set,
 )
-from drystone.io.photo_beside import LABELS, SIDECAR, PhotoSidecar, read_sidecar
-from drystone.io.read_outlines import (
-    check_not_asked,
-    check_unit,
-    outline_reader,
-    stones_of,
-)
+from drystone.io.photo_beside import LABELS, read_sidecar, scale_beside
+from drystone.io.read_outlines import check_not_asked, check_unit, outline_reader, stones_of
 from drystone.io.read_settings import ReadSettings
 from drystone.io.repairs import without_blends, without_net
 from drystone.model.stone import Source, StoneSet, writable
@@ -110,25 +105,11 @@ def read_stones(
             picture = Picture(arrays)
         else:
             picture = decode(data, _max_px(settings))
-        scale = None if sidecar is None else _scale_beside(sidecar, picture, path)
+        height, width = picture.values.shape[:2]
+        scale = scale_beside(sidecar, (width, height), path)
         digest = hashlib.sha256(data).hexdigest()
         del data  # as large as the picture when it is not compressed
         return _read_picture(picture, Source(name, digest, px_per_m=scale), settings)
-
-
-def _scale_beside(sidecar: PhotoSidecar, picture: Picture, path: Path) -> float | None:
-    """Return the scale of a photograph's label image; E117 when it is of another picture."""
-    height, width = picture.values.shape[:2]
-    if (width, height) != (sidecar.width_px, sidecar.height_px):
-        raise InputError(
-            "E117",
-            f"it has {width} x {height} px, but {SIDECAR} beside it is of one of "
-            f"{sidecar.width_px} x {sidecar.height_px}.",
-            where=str(path),
-            cure=f"Find the stones again with `drystone segment`, or remove {SIDECAR}, and give "
-            "the scale of the new picture.",
-        )
-    return sidecar.px_per_m
 
 
 def _of_px(settings: ReadSettings) -> tuple[tuple[str, Any], ...]:
