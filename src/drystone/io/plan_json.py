@@ -27,16 +27,7 @@ MOST_PLAN_BYTES = 100_000_000
 
 _INDEX_NAMES = ("SF", "LFR", "GDS", "NHR", "IWR", "IS", "LLC")
 _METRIC_NAMES = tuple(PlanMetrics.__dataclass_fields__)
-_SOURCE_NAMES = (
-    "path",
-    "sha256",
-    "stones",
-    "width_px",
-    "height_px",
-    "files",
-    "reading",
-    "photograph",
-)
+_SOURCE_NAMES = ("path", "sha256", "stones", "width_px", "height_px", "files", "reading")
 _LONGEST_MESSAGE = 240
 
 
@@ -56,16 +47,17 @@ def write_plan(plan: Plan, path: str | Path) -> None:
         E205: a value that the schema does not allow (NaN among them); E206: the file cannot be
         written.
     """
-    write_whole(Path(path), _bytes_of(plan_to_json(plan)))
+    write_whole(Path(path), _bytes_of(plan))
 
 
 def plan_digest(plan: Plan) -> str:
     """Return what plans are told apart by: the first digits of the SHA-256 of plan.json."""
-    return hashlib.sha256(_bytes_of(_contents(plan))).hexdigest()[:16]
+    return hashlib.sha256(_bytes_of(plan)).hexdigest()[:16]
 
 
-def _bytes_of(contents: dict[str, Any]) -> bytes:
-    return f"{json.dumps(contents, ensure_ascii=False, allow_nan=False, indent=1)}\n".encode()
+def _bytes_of(plan: Plan) -> bytes:
+    text = json.dumps(plan_to_json(plan), ensure_ascii=False, allow_nan=False, indent=1)
+    return f"{text}\n".encode()
 
 
 def read_plan(path: str | Path) -> Plan:
@@ -96,14 +88,8 @@ def read_plan(path: str | Path) -> Plan:
 
 def plan_to_json(plan: Plan) -> dict[str, Any]:
     """Return the contents of plan.json, keys in the order of the contract (DESIGN 2)."""
-    data = _contents(plan)
-    _validate(data, "plan")
-    return data
-
-
-def _contents(plan: Plan) -> dict[str, Any]:
     source = {name: plan.source[name] for name in _SOURCE_NAMES if name in plan.source}
-    return {
+    data = {
         "schema": SCHEMA,
         "version": plan.version,
         "method": plan.method,
@@ -123,6 +109,8 @@ def _contents(plan: Plan) -> dict[str, Any]:
         "stopped": plan.stopped,
         "metrics": {name: _number(getattr(plan.metrics, name)) for name in _METRIC_NAMES},
     }  # fmt: skip
+    _validate(data, "plan")
+    return data
 
 
 def _number(value: float | None) -> float | None:

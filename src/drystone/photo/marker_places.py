@@ -19,17 +19,10 @@ from drystone.photo.view import apply
 
 @dataclass(frozen=True, eq=False)
 class PlacedMarker:
-    """A marker in P.
+    """A marker in P: corners (4, 2) in metres, y up, from the upper left of its print, clockwise.
 
-    Parameters
-    ----------
-    id : int
-        As it was printed.
-    corners_m : (4, 2) array
-        Metres, x to the right and y up, from the upper left corner of its print, clockwise.
-    pose : Pose3d
-        Of its frame in P: the origin in its middle, X to the right and Y up in its print, Z out of
-        it, as OpenCV has it.  All markers that were seen of its sheet say where that is.
+    The pose is that of its frame: the origin in its middle, X to the right and Y up in its print, Z
+    out of it, as OpenCV has it.  All markers that were seen of its sheet say where that is.
     """
 
     id: int
@@ -46,22 +39,17 @@ def placed_markers(
 ) -> tuple[PlacedMarker, ...]:
     """Place markers of a photograph in P, by their ids.
 
-    `from_photo` leads from px of the photograph to those of the picture from above, which has so
-    many px in a metre and is so high.
+    `from_photo` leads from px of the photograph to those of the picture from above.
     """
-    flip, up = np.array([1.0, -1.0]), np.array([0.0, height_px / px_per_m])
+    flip, top = np.array([1.0, -1.0]), np.array([0.0, height_px / px_per_m])
     ordered = sorted(markers, key=lambda marker: marker.id)
-    seen = {
-        marker.id: apply(from_photo, marker.corners_px) / px_per_m * flip + up for marker in ordered
-    }
+    seen = {one.id: apply(from_photo, one.corners_px) / px_per_m * flip + top for one in ordered}
     printed = {one: layout.corners_m(one) * flip for one in seen}
     placed = []
     for one, corners in seen.items():
         paper = [other for other in seen if layout.group(other) == layout.group(one)]
-        turn, shift = rigid(
-            np.concatenate([printed[other] for other in paper]),
-            np.concatenate([seen[other] for other in paper]),
-        )
+        on_paper, in_p = (np.concatenate([of[i] for i in paper]) for of in (printed, seen))
+        turn, shift = rigid(on_paper, in_p)
         x, y = (turn @ printed[one].mean(axis=0) + shift).tolist()
         half = math.atan2(turn[1, 0], turn[0, 0]) / 2.0
         pose = Pose3d(x, y, 0.0, Quaternion(0.0, 0.0, math.sin(half), math.cos(half)))

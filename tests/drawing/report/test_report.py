@@ -18,7 +18,7 @@ from drystone.drawing import view_of_result, view_of_wall, write_pictures, write
 from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.drawing.report.html import viewer_frame, viewer_page, viewer_script, viewer_style
 from drystone.drawing.report.notebook import Shown
-from drystone.drawing.words.content import assumptions, cards, number
+from drystone.drawing.words.content import INDICES, assumptions, cards, number
 from drystone.errors import InputError, Notice
 from drystone.generate import BrickSettings, brick_stones, lay_out
 from drystone.io.wall_image import write_labels
@@ -212,12 +212,12 @@ def test_lengths_in_metres_are_told_in_centimetres(tmp_path):
 
 def test_a_missing_index_is_a_dash(tmp_path):
     plan = examples.plan()
-    step = replace(plan.stone_steps[0], indices={"SF": 0.9, "LLC": None})
+    step = replace(plan.stone_steps[0], indices={**plan.stone_steps[0].indices, "LLC": None})
     text = write_report(
         tmp_path / "one.html", example_view(replace(plan, steps=(step, *plan.steps[1:])))
     ).read_text(encoding="utf-8")
     cells = re.findall(r"<td>(.*?)</td>", text.split('id="step-1"')[1].split("</tr>")[0])
-    assert cells[-9:-2] == ["0.900", *["\N{EN DASH}"] * 6]
+    assert cells[-9:-2] == [*(number(step.indices[i]) for i in [*INDICES][:-1]), "\N{EN DASH}"]
 
 
 def test_a_wall_that_was_not_planned_has_a_table_of_blocks(tmp_path):

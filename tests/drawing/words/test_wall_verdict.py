@@ -1,5 +1,6 @@
 """What is said of a wall first."""
 
+import numpy as np
 import pytest
 
 from drystone.contacts.given import model_from_json
@@ -15,7 +16,7 @@ FLYING = [[0, 0, 2, 1], [0, 5, 1, 1], [4, 3, 1, 1]]
 
 def judged(blocks, names=None, **more):
     model = model_from_json({"blocks_xywh": blocks, "mu": 0.6})
-    wall = ModelledWall(model, {}, names or Names("stone", steps={1: 7}))
+    wall = ModelledWall(model, np.ones((1, 1)), names or Names("stone", steps={1: 7}))
     return judge_wall("1 of 2 stones", wall, lateral_resistance(model, mechanism=True), **more)
 
 
@@ -31,7 +32,7 @@ def judged(blocks, names=None, **more):
      "ground"),
     (LOW, {"load_case": "growing with height"}, True, "stands; carries 0.600 times the own weight "
      "(growing with height); weakest place: the joint with the ground"),
-    (FLYING, {"names": Names()}, False, "does not stand: blocks 2 and 3 have nothing below"),
+    (FLYING, {"names": Names()}, False, "does not stand: blocks 2 and 3 have nothing below that"),
     (FLYING[:2], {}, False, "does not stand: stone 2 has nothing below"),
     ([[0, 0, 2, 1], [1.5, 1, 4, 1]], {}, False,
      "does not stand: stone 2 rocks and slides on 1 (step 7)"),
@@ -45,7 +46,7 @@ def test_a_wall_is_judged_in_words(blocks, more, stands, words) -> None:
 def test_what_no_solver_could_answer_is_not_judged() -> None:
     model = model_from_json({"blocks_xywh": TALL})
     failed = LimitResult(LimitStatus.FAILED, "left")
-    found = judge_wall("1 stone", ModelledWall(model, {}, Names()),
+    found = judge_wall("1 stone", ModelledWall(model, np.ones((1, 1)), Names()),
                        LateralResistance(failed, failed, 0.6))  # fmt: skip
     assert found.stands is None
     assert "no answer could be certified" in found.words

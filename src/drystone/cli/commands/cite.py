@@ -20,7 +20,7 @@ BIBTEX = """\
 }}"""
 
 
-def add(command: argparse.ArgumentParser) -> None:
+def add(_: argparse.ArgumentParser) -> None:
     """Add nothing: there is nothing to choose."""
 
 

@@ -12,6 +12,7 @@ from drystone.settle.settings import SettleSettings
 from drystone.statics.model import RigidBlockModel
 
 UNDEFINED = "not defined"
+FALLS = "does not stand"
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
 TIMES = "\N{MULTIPLICATION SIGN}"
 INDICES = {

@@ -1,13 +1,12 @@
 """The verdict on a wall, with which its report opens."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import atan, degrees
 
-from drystone.drawing.words.analysis import ModelledWall
-from drystone.drawing.words.content import TILTING, dead_load, is_horizontal
+from drystone.drawing.words.analysis import ModelledWall, why_it_falls
+from drystone.drawing.words.content import FALLS, TILTING, dead_load, is_horizontal
 from drystone.statics.failing.mechanism import Failure
-from drystone.statics.joints import loose_blocks
 from drystone.statics.model import GROUND
 from drystone.statics.result import LateralResistance
 
@@ -41,7 +40,9 @@ def judge_wall(
         return WallVerdict(None, words)
     failures = wall.failures((resistance.left, resistance.right))
     if not resistance.stable:
-        return WallVerdict(False, f"{subject}, does not stand: {_why(wall, failures)}")
+        why = why_it_falls(wall.model, wall.names, failures, wall.lowest)
+        why = why.removeprefix("Falls by itself: ").rstrip(".")
+        return WallVerdict(False, f"{subject}, {FALLS}: {why[:1].lower()}{why[1:]}")
     ends = [end for end in (resistance.left, resistance.right) if end.alpha is not None]
     if not ends:
         return WallVerdict(True, f"{subject}, stands; no load of this kind brings it down")
@@ -52,15 +53,6 @@ def judge_wall(
     if weaker.direction in failures:
         words += f"; weakest place: {_weakest_place(wall, failures[weaker.direction])}"
     return WallVerdict(True, words)
-
-
-def _why(wall: ModelledWall, failures: Mapping[str, Failure]) -> str:
-    loose = loose_blocks(wall.model)
-    if loose:
-        return f"{wall.names.listed(loose)} {'has' if len(loose) == 1 else 'have'} nothing below"
-    said = next((failure.words for failure in failures.values()), "it falls under its own weight")
-    said = said.removeprefix("Falls by itself: ").rstrip(".")
-    return said[:1].lower() + said[1:]
 
 
 def _load(alpha: float, load_case: str) -> str:
