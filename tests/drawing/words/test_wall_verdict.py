@@ -11,6 +11,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 
 TALL, LOW = [[0, 0, 1, 2]], [[0, 0, 4, 1]]
+LEANING = [[0, 0, 2, 1], [-0.5, 1, 2, 2], [10, 0, 2, 1], [10.5, 1, 2, 2]]
 FLYING = [[0, 0, 2, 1], [0, 5, 1, 1], [4, 3, 1, 1]]
 
 
@@ -23,10 +24,15 @@ def judged(blocks, names=None, **more):
 @pytest.mark.parametrize(("blocks", "more", "stands", "words"), [
     # A block of 1 x 2 rocks at alpha = 1/2, atan(1/2) = 26.6 degrees.
     (TALL, {}, True, "stands; falls when tilted by 27 degrees; weakest place: stone 1 (step 7)"),
-    (TALL, {"without_dilatancy": (None, 0.1)}, True,
+    (TALL, {"without_dilatancy": {"left": None, "right": 0.1}}, True,
      "stands; falls when tilted by 5.7 degrees; weakest place: stone 1 (step 7)"),
-    (TALL, {"without_dilatancy": (0.0,)}, True,
+    (TALL, {"without_dilatancy": {"left": 0.0}}, True,
      "stands; can fall when it is let go; weakest place: stone 1 (step 7)"),
+    # The place is where the wall fails to the side of the least multiplier.
+    (LEANING, {"without_dilatancy": {"left": 0.2}}, True,
+     "stands; falls when tilted by 11 degrees; weakest place: stone 1 (step 7)"),
+    (LEANING, {"without_dilatancy": {"right": 0.2}}, True,
+     "stands; falls when tilted by 11 degrees; weakest place: stone 3"),
     # A low one slides at alpha = mu, atan(.6) = 31 degrees.
     (LOW, {}, True, "stands; falls when tilted by 31 degrees; weakest place: the joint with the "
      "ground"),

@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -85,8 +86,8 @@ def view_of_assembly(
     placed, metrics = len(plan.stone_steps), plan.metrics
     verdict = judge_wall(
         f"{placed} of {placed + len(plan.unused)} stones", wall, assembly.resistance,
-        without_dilatancy=(metrics.alpha_left_coulomb, metrics.alpha_right_coulomb,
-                           0.0 if metrics.F_LR_coulomb == 0.0 else None),
+        without_dilatancy={"left": metrics.alpha_left_coulomb, "right": metrics.alpha_right_coulomb}
+        if metrics.F_LR_coulomb != 0.0 else {"left": 0.0, "right": 0.0},
     )  # fmt: skip
     cards = content.cards(plan, stands=verdict.stands)
     # The wall as ordered, and all that sticks out of it.
@@ -130,7 +131,7 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
     timings: Mapping[str, float] | None = None,
     load_case: str = content.TILTING,
     assumptions: Sequence[str] | None = None,
-    without_dilatancy: Iterable[float | None] = (),
+    without_dilatancy: Mapping[str, float | None] = MappingProxyType({}),
 ) -> ViewerData:
     """Show a wall that was not planned: its blocks have ids and no steps.
 
@@ -165,8 +166,8 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
         Name of the loads of the analysis.
     assumptions : sequence of str, optional
         What the results rest on; None says those of the load case.
-    without_dilatancy : iterable of float or None
-        Load multipliers by Coulomb's law, where they are known.
+    without_dilatancy : mapping of str to float or None
+        Load multipliers by Coulomb's law, to the "left" and "right", where they are known.
 
     Returns
     -------
@@ -179,7 +180,8 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
     digits = part_digits(size)
     names = Names(noun, frozenset(wedges), steps or {})
     shown = ModelledWall(model, wall, names, tuple(notices))
-    many = f"{len(regions)} {names.noun}{'' if len(regions) == 1 else 's'}"
+    count = sum(region.id not in names.wedges for region in regions)
+    many = f"{count} {names.noun}{'' if count == 1 else 's'}"
     verdict = judge_wall(many, shown, resistance, load_case=load_case,
                          without_dilatancy=without_dilatancy)  # fmt: skip
     results = () if verdict.stands is False else (

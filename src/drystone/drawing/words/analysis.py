@@ -180,10 +180,12 @@ class Card:
         return self.resistance.stable and not self._can_fall
 
     @property
-    def alphas_by_coulomb(self) -> list[float | None]:
-        """Load multipliers without dilatancy, 0 where a fall was found."""
-        falls = [0.0] if self._can_fall else []
-        return [*(end.alpha for end in self._without.values()), *falls]
+    def alphas_by_coulomb(self) -> dict[str, float | None]:
+        """Load multipliers without dilatancy by direction, 0 where a fall was found."""
+        return {
+            side: 0.0 if end.status is LimitStatus.UNSTABLE else end.alpha
+            for side, end in self._without.items()
+        }
 
     @property
     def _can_fall(self) -> bool:

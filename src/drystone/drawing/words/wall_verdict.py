@@ -1,8 +1,9 @@
 """The verdict on a wall, with which its report opens."""
 
-from collections.abc import Iterable
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import atan, degrees
+from types import MappingProxyType
 
 from drystone.drawing.words.analysis import ModelledWall, why_it_falls
 from drystone.drawing.words.content import FALLS, TILTING, dead_load, is_horizontal
@@ -28,12 +29,12 @@ def judge_wall(
     resistance: LateralResistance,
     *,
     load_case: str = TILTING,
-    without_dilatancy: Iterable[float | None] = (),
+    without_dilatancy: Mapping[str, float | None] = MappingProxyType({}),
 ) -> WallVerdict:
     """Judge a wall of which `subject` says how large it is, such as "28 of 30 stones".
 
-    `without_dilatancy` are load multipliers by Coulomb's law, where they are known: the least of
-    all is what the wall is told to carry.
+    `without_dilatancy` are load multipliers by Coulomb's law, by direction, where they are known:
+    the least of all is what the wall is told to carry.
     """
     if resistance.failed:
         words = f"{subject}; not known whether it stands: no answer could be certified"
@@ -43,15 +44,15 @@ def judge_wall(
         why = why_it_falls(wall.model, wall.names, failures, wall.lowest)
         why = why.removeprefix("Falls by itself: ").rstrip(".")
         return WallVerdict(False, f"{subject}, {FALLS}: {why[:1].lower()}{why[1:]}")
-    ends = [end for end in (resistance.left, resistance.right) if end.alpha is not None]
-    if not ends:
+    both = [(end.alpha, str(end.direction)) for end in (resistance.left, resistance.right)]
+    both += [(alpha, direction) for direction, alpha in without_dilatancy.items()]
+    known = [(alpha, direction) for alpha, direction in both if alpha is not None]
+    if not known:
         return WallVerdict(True, f"{subject}, stands; no load of this kind brings it down")
-    weaker = min(ends, key=lambda end: end.alpha or 0.0)
-    known = [weaker.alpha, *without_dilatancy]
-    load = _load(min(alpha for alpha in known if alpha is not None), load_case)
-    words = f"{subject}, stands; {load}"
-    if weaker.direction in failures:
-        words += f"; weakest place: {_weakest_place(wall, failures[weaker.direction])}"
+    alpha, direction = min(known)
+    words = f"{subject}, stands; {_load(alpha, load_case)}"
+    if direction in failures:
+        words += f"; weakest place: {_weakest_place(wall, failures[direction])}"
     return WallVerdict(True, words)
 
 
