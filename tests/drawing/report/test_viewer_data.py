@@ -187,7 +187,7 @@ def test_what_is_not_planned_is_shown_too():
         title="three <b>blocks</b>", cards=cards, wedges=[12], settings={"a": {"b": 1}},
     )  # fmt: skip
     assert shown["steps"] == 0
-    assert shown["summary"].startswith("3 stones, stands; falls when tilted by 30 degrees; weakest")
+    assert shown["summary"].startswith("2 stones, stands; falls when tilted by 30 degrees; weakest")
     assert [(p["id"], p["kind"], p["number"]) for p in shown["parts"]] == [
         (7, "stone", 7), (9, "stone", 9), (12, "wedge", 12),
     ]  # fmt: skip
