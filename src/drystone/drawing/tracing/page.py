@@ -1,0 +1,114 @@
+"""outlines.html: a photograph with outlines that a person corrects, or draws; one file, offline."""
+
+import base64
+import hashlib
+import io
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+from numpy.typing import NDArray
+from PIL import Image
+
+from drystone.drawing.report.html import POLICY, json_in_html
+from drystone.whole_files import write_whole
+
+PAGE = "outlines.html"
+_HERE = Path(__file__).parent
+_MODULES = ("shapes.js", "propose.js", "sketch.js", "page.js")
+_MOST_BYTES = 5_500_000
+"""Of the embedded picture: the page, which holds it in base64, stays below 8 MB."""
+
+
+@dataclass(frozen=True)
+class PageDoubt:
+    """Something to look at: ids of stones, a place in px of the photograph, and a sentence."""
+
+    stones: tuple[int, ...]
+    at_px: tuple[float, float]
+    text: str
+
+
+@dataclass(frozen=True, eq=False)
+class OutlinePage:
+    """What the page begins with.
+
+    Outlines are rings in px of the picture, x to the right, y DOWN; a ring is `proposed` while
+    no person has accepted it.
+    """
+
+    name: str
+    picture: NDArray[np.uint8]  # (h, w, 3)
+    kind: Literal["stones", "wall"]
+    rings: Mapping[int, Sequence[tuple[float, float]]] = field(default_factory=dict)
+    proposed: bool = False
+    px_per_m: float | None = None
+    doubts: tuple[PageDoubt, ...] = ()
+    details: Mapping[str, Any] = field(default_factory=dict)
+
+
+def write_outline_page(path: Path, page: OutlinePage) -> Path:
+    """Write the page; the picture in it is reduced when it would be too large."""
+    height, width = page.picture.shape[:2]
+    shown = _embedded(page.picture)
+    title = f"Stones of {page.name}" if page.kind == "stones" else f"Wall of {page.name}"
+    shapes = [
+        {"label": str(number), "points": [list(point) for point in ring], "shape_type": "polygon"}
+        for number, ring in page.rings.items()
+    ]
+    data = {
+        "title": title,
+        "photo": {
+            "name": page.name, "width": width, "height": height, "kind": page.kind,
+            "details": dict(page.details), "key": hashlib.sha256(shown).hexdigest()[:16],
+            "shown": f"data:image/jpeg;base64,{base64.b64encode(shown).decode('ascii')}",
+        },
+        "file": {
+            "shapes": shapes,
+            "drystone": {
+                "px_per_m": page.px_per_m,
+                "proposed": list(page.rings) if page.proposed else [],
+            },
+        },
+        "doubts": [
+            {"stones": list(doubt.stones), "at": list(doubt.at_px), "text": doubt.text}
+            for doubt in page.doubts
+        ],
+    }  # fmt: skip
+    templates = Environment(
+        loader=FileSystemLoader(_HERE), autoescape=True, undefined=StrictUndefined
+    )
+    text = templates.get_template("page.html").render(
+        policy=POLICY, title=title, data=json_in_html(data), script=_script(),
+        style=Markup((_HERE / "page.css").read_text(encoding="utf-8")),  # noqa: S704 - our own
+    )  # fmt: skip
+    write_whole(path, text.encode("utf-8"))
+    return path
+
+
+@cache
+def _script() -> Markup:
+    """Join the modules into one, in which nothing is imported."""
+    joined = "\n".join((_HERE / name).read_text(encoding="utf-8") for name in _MODULES)
+    names = re.findall(r"^export (?:function|class|const) (\w+)", joined, re.MULTILINE)
+    joined = re.sub(r"^import \* as sketch from .*$", f"const sketch = {{{', '.join(names)}}};",
+                    joined, flags=re.MULTILINE)  # fmt: skip
+    joined = re.sub(r"^import .*$", "", joined, flags=re.MULTILINE)
+    return Markup(re.sub(r"^export ", "", joined, flags=re.MULTILINE))  # noqa: S704 - our own
+
+
+def _embedded(picture: NDArray[np.uint8]) -> bytes:
+    """Return the picture as JPEG, halved until it is small enough."""
+    image = Image.fromarray(picture)
+    while True:
+        file = io.BytesIO()
+        image.save(file, "JPEG", quality=85)
+        if file.tell() <= _MOST_BYTES:
+            return file.getvalue()
+        image = image.reduce(2)
