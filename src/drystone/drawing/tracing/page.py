@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from drystone.drawing.report.html import POLICY, json_in_html
+from drystone.model.stone import StoneSet
 from drystone.whole_files import write_whole
 
 PAGE = "outlines.html"
@@ -51,6 +52,16 @@ class OutlinePage:
     px_per_m: float | None = None
     doubts: tuple[PageDoubt, ...] = ()
     details: Mapping[str, Any] = field(default_factory=dict)
+
+
+def rings_of(stones: StoneSet) -> dict[int, list[tuple[float, float]]]:
+    """Return the outlines of stones in px of their picture, y down, as the page has them."""
+    height = stones.source.height_px
+    rings = {}
+    for stone in stones:
+        corners = stone.outline + np.array(stone.centroid)
+        rings[stone.id] = [(round(x, 2), round(height - y, 2)) for x, y in corners.tolist()]
+    return rings
 
 
 def write_outline_page(path: Path, page: OutlinePage) -> Path:
