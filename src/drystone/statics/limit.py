@@ -38,7 +38,8 @@ def lateral_resistance(
     """Find the greatest loads that the blocks carry in both directions (Eq. 23, Eq. 28).
 
     Maximise alpha subject to equilibrium of every free block under its weight w downwards and
-    alpha w sideways, both at its centroid, with n >= 0 and |t| <= mu n at every contact point.
+    alpha w sideways, both at its centroid, with ``n >= 0`` and ``|t| <= mu n`` at every contact
+    point.
 
     Parameters
     ----------
