@@ -204,7 +204,13 @@ def _outlined(stones: StoneSet, file: OutlineFile) -> GivenWall:
         return _painted(stones)
     below_px = min(stone.bottom_px for stone in stones)
     notices = not_cut(stones.notices)
-    if below_px > 0 and not file.y_up:
+    if file.ground is not None:
+        tilt = math.degrees(math.atan(np.divide(*(file.ground[1] - file.ground[0])[::-1])))
+        buried = listed(sorted({stone.id for stone in stones} - outlines.keys()))
+        said = f"The ground was drawn: the wall is turned by {tilt:.2f} degrees and cut off at it"
+        said += f", and {buried} left out" if buried else ""
+        notices = (*notices, Notice("W301", f"{said}. It stands on its lowest point."))
+    elif below_px > 0 and not file.y_up:
         said = f"The lowest point is {below_px} px above the lower edge of the image"
         notices = (*notices, Notice("W301", f"{said}: the wall stands on it."))
     return GivenWall(

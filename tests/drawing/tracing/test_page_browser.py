@@ -4,6 +4,7 @@ import json
 import shutil
 import subprocess
 import time
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,8 @@ import shapely
 from PIL import Image, ImageDraw
 from shapely import affinity
 
-from drystone.drawing.tracing.page import OutlinePage, PageDoubt, write_outline_page
+from drystone.drawing.tracing.page import OutlinePage, write_outline_page
+from drystone.photo.segment_doubts import Doubt
 from tests.drawing.report.test_viewer_browser import Heard, browser  # noqa: F401 - a fixture
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
@@ -60,10 +62,10 @@ def found_rings():
 def visit(browser, tmp_path):  # noqa: F811
     """Open the page; in the end nothing was complained about and no host was asked."""
     path = tmp_path / "outlines.html"
-    doubt = PageDoubt((1,), (186.0, 100.0), "Stone 1 may be two.")
+    doubt = Doubt("W175", (1,), (186.0, 100.0), "stone 1 may be two")
     write_outline_page(
         path,
-        OutlinePage("pile.jpg", photograph(), "stones", rings=found_rings(), doubts=(doubt,)),
+        OutlinePage("Stones", "pile.jpg", photograph(), "stones", found_rings(), doubts=(doubt,)),
     )
     contexts, heard = [], Heard()
 
@@ -118,7 +120,7 @@ class View:
             client.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": places})
 
         touch("touchStart", self(*points[0]))
-        for (x0, y0), (x1, y1) in zip(points, points[1:], strict=False):
+        for (x0, y0), (x1, y1) in pairwise(points):
             for share in np.linspace(0.2, 1.0, 5):
                 touch("touchMove", self(x0 + share * (x1 - x0), y0 + share * (y1 - y0)))
         touch("touchEnd", None)
@@ -221,7 +223,7 @@ def test_corrected_with_keys_alone(visit):
     page = visit(viewport={"width": 1280, "height": 800})
     view = View(page)
     page.keyboard.press("n")
-    playwright.expect(page.locator(".said")).to_have_text("Stone 1 may be two.")
+    playwright.expect(page.locator(".said")).to_have_text("Necks and hollows: stone 1 may be two.")
     for _ in range(2):  # stone 2 is the shadow, 3 is the frame
         page.keyboard.press("n")  # stone 1 again
         page.keyboard.press("]")

@@ -3,9 +3,11 @@
 import argparse
 from pathlib import Path
 
+from drystone.cli.inputs import refuse_inputs
 from drystone.cli.numbers import add_scale, refuse_outside
-from drystone.cli.output import prepare_folder, print_table, refuse_inputs
+from drystone.cli.output import prepare_folder, print_table
 from drystone.errors import ExitCode, InputError
+from drystone.io.photo_beside import PAGE
 from drystone.io.photo_file import read_photo
 from drystone.io.read_stones import read_stones
 
@@ -26,7 +28,6 @@ def add(command: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Write the page, and say what to do with it."""
     from drystone.drawing.tracing.page import (  # noqa: PLC0415 - slow import
-        PAGE,
         OutlinePage,
         rings_of,
         write_outline_page,
@@ -50,12 +51,13 @@ def run(arguments: argparse.Namespace) -> ExitCode:
                 where=arguments.proposals,
                 cure="Give outlines that were made on this photograph.",
             )
-        rings = rings_of(stones)
+        rings = rings_of(stones, height)
         notices += stones.notices
     prepare_folder(folder, (PAGE,), overwrite=arguments.overwrite)
     page = OutlinePage(
-        photo.name, photo.values, "wall", rings, proposed=True, px_per_m=arguments.px_per_m
-    )
+        f"Wall of {photo.name}", photo.name, photo.values, "wall", rings,
+        proposed=True, px_per_m=arguments.px_per_m,
+    )  # fmt: skip
     size = write_outline_page(folder / PAGE, page).stat().st_size
     rows = [
         ("photograph", f"{width} x {height} px"),

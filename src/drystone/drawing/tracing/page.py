@@ -4,7 +4,7 @@ import base64
 import hashlib
 import io
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -17,23 +17,16 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from drystone.drawing.report.html import POLICY, json_in_html
-from drystone.model.stone import StoneSet
+from drystone.model.stone import Stone
+from drystone.photo.segment_doubts import Doubt
 from drystone.whole_files import write_whole
 
-PAGE = "outlines.html"
 _HERE = Path(__file__).parent
 _MODULES = ("shapes.js", "propose.js", "sketch.js", "page.js")
+_TOLERANCE_PX = 0.75
+"""Of outlines from pixels: a person moves their corners, so there are not too many."""
 _MOST_BYTES = 5_500_000
 """Of the embedded picture: the page, which holds it in base64, stays below 8 MB."""
-
-
-@dataclass(frozen=True)
-class PageDoubt:
-    """Something to look at: ids of stones, a place in px of the photograph, and a sentence."""
-
-    stones: tuple[int, ...]
-    at_px: tuple[float, float]
-    text: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,23 +37,24 @@ class OutlinePage:
     no person has accepted it.
     """
 
-    name: str
+    title: str
+    name: str  # of the picture's file
     picture: NDArray[np.uint8]  # (h, w, 3)
     kind: Literal["stones", "wall"]
     rings: Mapping[int, Sequence[tuple[float, float]]] = field(default_factory=dict)
     proposed: bool = False
     px_per_m: float | None = None
-    doubts: tuple[PageDoubt, ...] = ()
+    doubts: Sequence[Doubt] = ()
     details: Mapping[str, Any] = field(default_factory=dict)
+    """What else is saved with the outlines."""
 
 
-def rings_of(stones: StoneSet) -> dict[int, list[tuple[float, float]]]:
+def rings_of(stones: Iterable[Stone], height_px: int) -> dict[int, list[tuple[float, float]]]:
     """Return the outlines of stones in px of their picture, y down, as the page has them."""
-    height = stones.source.height_px
     rings = {}
     for stone in stones:
-        corners = stone.outline + np.array(stone.centroid)
-        rings[stone.id] = [(round(x, 2), round(height - y, 2)) for x, y in corners.tolist()]
+        corners = stone.outline_within(_TOLERANCE_PX) + np.array(stone.centroid)
+        rings[stone.id] = [(round(x, 2), round(height_px - y, 2)) for x, y in corners.tolist()]
     return rings
 
 
@@ -68,27 +62,29 @@ def write_outline_page(path: Path, page: OutlinePage) -> Path:
     """Write the page; the picture in it is reduced when it would be too large."""
     height, width = page.picture.shape[:2]
     shown = _embedded(page.picture)
-    title = f"Stones of {page.name}" if page.kind == "stones" else f"Wall of {page.name}"
     shapes = [
         {"label": str(number), "points": [list(point) for point in ring], "shape_type": "polygon"}
         for number, ring in page.rings.items()
     ]
+    file = {
+        "shapes": shapes,
+        "drystone": {
+            "px_per_m": page.px_per_m,
+            "proposed": list(page.rings) if page.proposed else [],
+        },
+    }
+    # A browser keeps what a person did under this key: not for other outlines of the photograph.
+    key = hashlib.sha256(shown + json_in_html(file).encode()).hexdigest()[:16]
     data = {
-        "title": title,
+        "title": page.title,
         "photo": {
             "name": page.name, "width": width, "height": height, "kind": page.kind,
-            "details": dict(page.details), "key": hashlib.sha256(shown).hexdigest()[:16],
+            "details": dict(page.details), "key": key,
             "shown": f"data:image/jpeg;base64,{base64.b64encode(shown).decode('ascii')}",
         },
-        "file": {
-            "shapes": shapes,
-            "drystone": {
-                "px_per_m": page.px_per_m,
-                "proposed": list(page.rings) if page.proposed else [],
-            },
-        },
+        "file": file,
         "doubts": [
-            {"stones": list(doubt.stones), "at": list(doubt.at_px), "text": doubt.text}
+            {"stones": list(doubt.stones), "at": list(doubt.at_px), "text": doubt.sentence}
             for doubt in page.doubts
         ],
     }  # fmt: skip
@@ -96,7 +92,7 @@ def write_outline_page(path: Path, page: OutlinePage) -> Path:
         loader=FileSystemLoader(_HERE), autoescape=True, undefined=StrictUndefined
     )
     text = templates.get_template("page.html").render(
-        policy=POLICY, title=title, data=json_in_html(data), script=_script(),
+        policy=POLICY, title=page.title, data=json_in_html(data), script=_script(),
         style=Markup((_HERE / "page.css").read_text(encoding="utf-8")),  # noqa: S704 - our own
     )  # fmt: skip
     write_whole(path, text.encode("utf-8"))
