@@ -88,8 +88,8 @@ _OF_MASKS = (1, 255, 65535)
 """The value of all stones of a mask, whose pieces are stones; another one is an id."""
 
 _TRACED = (
-    "Trace its stones first, as in docs/for-engineers.md#from-a-photograph-of-a-wall: outlines of "
-    "labelme or CVAT are read, or a label image with one id a stone."
+    "Trace its stones first with `drystone trace PHOTO -o DIR`, as in "
+    "docs/for-engineers.md#from-a-photograph-of-a-wall; a label image of its stones is read, too."
 )
 _CURES = {
     "E102": _TRACED,
@@ -101,7 +101,7 @@ _CURES = {
 _STONES = "Stones are read from"
 _SEGMENTED = (
     "find the stones in it with `drystone segment PHOTO`",
-    "trace its stones, as in docs/for-engineers.md#from-a-photograph-of-a-wall",
+    "trace them with `drystone trace`, as in docs/for-engineers.md#from-a-photograph-of-a-wall",
 )
 
 
