@@ -1,6 +1,7 @@
 """The page of outlines in a browser: by mouse, by touch, by keys alone."""
 
 import json
+import re
 import shutil
 import subprocess
 import time
@@ -15,6 +16,8 @@ from shapely import affinity
 
 from drystone.drawing.tracing.page import OutlinePage, write_outline_page
 from drystone.photo.segment_doubts import Doubt
+from tests.cli import traced
+from tests.cli.conftest import run  # noqa: F401 - a fixture
 from tests.drawing.report.test_viewer_browser import Heard, browser  # noqa: F401 - a fixture
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
@@ -93,13 +96,13 @@ def take(page, name):
 class View:
     """Where px of the photograph are on the screen while all of it is shown."""
 
-    def __init__(self, page):
+    def __init__(self, page, width=WIDTH, height=HEIGHT):
         self.page = page
         self.box = page.locator("canvas").bounding_box()
-        k = 0.98 * min(self.box["width"] / WIDTH, self.box["height"] / HEIGHT)
+        k = 0.98 * min(self.box["width"] / width, self.box["height"] / height)
         self.k = k
-        self.left = self.box["x"] + self.box["width"] / 2 - k * WIDTH / 2
-        self.top = self.box["y"] + self.box["height"] / 2 - k * HEIGHT / 2
+        self.left = self.box["x"] + self.box["width"] / 2 - k * width / 2
+        self.top = self.box["y"] + self.box["height"] / 2 - k * height / 2
 
     def __call__(self, x, y):
         return self.left + self.k * x, self.top + self.k * y
@@ -170,7 +173,7 @@ GAP = [(187, 20), (187, 180)]
 OUTLINE = [*MISSED.exterior.coords]
 
 
-def test_corrected_with_the_mouse(visit):
+def test_corrected_with_the_mouse_and_planned(visit, run, tmp_path):  # noqa: F811
     page = visit(viewport={"width": 1280, "height": 800})
     says(page, "7 stones")
     view = View(page)
@@ -195,7 +198,20 @@ def test_corrected_with_the_mouse(visit):
     page.get_by_label("length").fill("50")
     page.keyboard.press("Enter")
     says(page, "800")
-    check(saved(page), 800)
+    file = saved(page)
+    check(file, 800)
+    (tmp_path / "outlines.json").write_text(json.dumps(file))
+    read = run("stones", tmp_path / "outlines.json", "--json").json()
+    assert (read["stones"], read["px_per_m"]) == (len(TRUTH), pytest.approx(800, rel=0.02))
+    assert read["total_area_px"] == pytest.approx(sum(one.area for one in TRUTH), rel=0.03)
+    asked = ("--wall", "50x30cm", "--method", "paper", "--scale", "0.15", "--quiet")
+    planned = run("plan", tmp_path / "outlines.json", *asked, "-o", tmp_path / "wall")
+    assert planned.code in (0, 4), planned.err
+    plan = json.loads((tmp_path / "wall" / "plan.json").read_text())
+    assert (plan["units"]["length"], plan["source"]["stones"]) == ("m", len(TRUTH))
+    assert {s["stone"] for s in plan["steps"] if s["kind"] == "stone"} <= {
+        int(shape["label"]) for shape in file["shapes"]
+    }
 
 
 def test_corrected_with_fingers(visit):
@@ -287,6 +303,51 @@ def test_a_stone_that_is_turned_or_numbered_keeps_its_number(visit):
     assert file["drystone"]["not_used"] == [99]
     ring = next(s["points"] for s in file["shapes"] if s["label"] == "99")
     assert shapely.Polygon(ring).equals(affinity.translate(OTHERS[0]))
+
+
+def test_a_wall_is_traced_and_analysed(browser, run, tmp_path):  # noqa: F811
+    wall, folder, heard = traced.photograph(tmp_path / "wall.jpg"), tmp_path / "wall", Heard()
+    assert run("trace", wall, "-o", folder).code == 0
+    page = heard.page(browser.new_context(accept_downloads=True), folder / "outlines.html")
+    view = View(page, traced.WIDTH, traced.HEIGHT)
+    page.keyboard.press("d")
+    for corners in traced.TRACED:
+        for x, y in (*corners, corners[0]):
+            page.mouse.click(*view(x / 2, y / 2))
+    says(page, "13 stones")
+    page.keyboard.press("g")
+    for point in ((60, 389.5), (590, 389.5)):
+        page.mouse.click(*view(*point))
+    page.keyboard.press("s")
+    for point in ((610, 190), (610, 390)):
+        page.mouse.click(*view(*point))
+    page.get_by_label("length").fill("1")
+    page.get_by_label("unit").select_option("m")
+    page.keyboard.press("Enter")
+    says(page, "px a metre")
+    file, path = saved(page), folder / "outlines.json"
+    path.write_text(json.dumps(file))
+    shapes = [shapely.Polygon(shape["points"]) for shape in file["shapes"]]
+    for shape, corners in zip(shapes, traced.STONES, strict=True):
+        truth = shapely.Polygon(corners)
+        assert shape.intersection(truth).area / shape.union(truth).area > 0.93
+    ran = run("analyse", path, "--close-gaps", "auto", "--associative-only")
+    assert ran.code == 0, ran.err
+    assert re.search(r"own weight +stands.*^F_LR +0\.[4-9]", ran.out, re.MULTILINE | re.DOTALL)
+    assert "2.60 m wide, 1.24 m high" in ran.out
+    assert "The ground was drawn: the wall is turned by 0.00 degrees" in ran.err
+    heard.check()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_has_no_serious_finding(visit, scheme):
+    axe = pytest.importorskip(
+        "axe_playwright_python.sync_playwright", reason="axe-playwright-python is not installed"
+    ).Axe()
+    page = visit(viewport={"width": 1280, "height": 800}, color_scheme=scheme)
+    page.keyboard.press("n")
+    found = axe.run(page).response["violations"]
+    assert [one["id"] for one in found if one["impact"] in ("serious", "critical")] == []
 
 
 def test_the_modules_alone():

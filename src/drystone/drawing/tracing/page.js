@@ -6,6 +6,7 @@ import * as sketch from "./sketch.js";
 
 const REACH_PX = 10;
 const TOUCH_REACH_PX = 22;
+const SNAP = 0.6;
 const DRAG_PX = 6;
 const TREMBLE_PX = 1.2;
 const WIDEST_GAP = 0.25;
@@ -416,7 +417,7 @@ class Page {
       const [id] = this.chosen;
       const others = this.state.stones.filter((stone) => stone.id !== id).map((stone) => stone.ring);
       const point = this.toPhoto(at);
-      const to = (snapped(point, others, (0.6 * reach) / this.k) ?? point).map(rounded);
+      const to = (snapped(point, others, (SNAP * reach) / this.k) ?? point).map(rounded);
       drag.next = sketch.withCorner(drag.base, id, drag.corner, to);
     } else if (drag.kind === "pan") {
       const last = drag.last ?? drag.from;
@@ -470,7 +471,7 @@ class Page {
       this.finish(line, false);
       return;
     }
-    line.push(this.tool === "draw" ? (snapped(point, rings, reach) ?? point) : point);
+    line.push(this.tool === "draw" ? (snapped(point, rings, SNAP * reach) ?? point) : point);
     if (line.length === 2 && (this.tool === "scale" || this.tool === "ground")) this.finish(line, false);
     this.draw();
   }

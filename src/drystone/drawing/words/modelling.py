@@ -97,11 +97,6 @@ def _given(wall: GivenWall, blocks: dict[str, Any], mu: float, asked: ModelReque
 
 
 def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> ModelledWall:
-    made = _drawn_alone(wall, labels, mu, asked)
-    return replace(made, notices=(*wall.notices, *made.notices))
-
-
-def _drawn_alone(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> ModelledWall:
     if asked.close_gaps is not None:
         return _with_closed_gaps(wall, labels, mu, asked)
     if asked.contacts == "pixels" and wall.outlines is not None:
