@@ -46,7 +46,8 @@ class Doubt:
     @property
     def sentence(self) -> str:
         """What may be wrong, in a sentence of its own."""
-        said = f"{_KINDS[self.code][0]}: {self.text}."
+        kind = "" if self.code in ("W175", "W179") else f"{_KINDS[self.code][0]}: "
+        said = f"{kind}{self.text}."
         return f"{said[0].upper()}{said[1:]}"
 
 

@@ -43,6 +43,13 @@ function make(tag, attributes = {}, ...children) {
   return node;
 }
 
+/** Put other nodes into a box; the button of the same name keeps the focus. */
+function refill(box, nodes) {
+  const name = box.contains(document.activeElement) ? document.activeElement.textContent : null;
+  box.replaceChildren(...nodes);
+  if (name !== null) [...box.querySelectorAll("button")].find((one) => one.textContent === name)?.focus();
+}
+
 class Page {
   constructor(element, data) {
     this.data = data;
@@ -83,6 +90,7 @@ class Page {
         .filter(([name]) => name !== "ground" || data.photo.kind === "wall")
         .map(([name, { name: said, key }]) => [name, button(said, key.toUpperCase(), () => this.take(name), { "aria-pressed": "false" })]),
     );
+    this.acceptButton = button("Accept all", "A", () => this.accept(this.state.stones.map((stone) => stone.id)));
     this.undoButton = button("Undo", "Ctrl+Z", () => this.undo());
     this.redoButton = button("Redo", "Ctrl+Y", () => this.redo());
     const open = make("input", { type: "file", accept: ".json,application/json", hidden: true, change: () => this.open(open.files[0]) });
@@ -95,8 +103,7 @@ class Page {
     this.list = make("ul", { class: "stones" });
     const actions = [
       button("Merge", "M", () => this.merge()), button("Delete", "Del", () => this.remove()),
-      button("Accept all", "A", () => this.accept(this.state.stones.map((stone) => stone.id))),
-      this.undoButton, this.redoButton,
+      this.acceptButton, this.undoButton, this.redoButton,
       button("Whole", "0", () => { this.fit(); this.draw(); }), button("+", "+", () => this.zoom(1.4)), button("−", "-", () => this.zoom(1 / 1.4)),
     ];
     this.several = make("input", { type: "checkbox" });
@@ -136,9 +143,9 @@ class Page {
       ...Object.values(TOOLS).map((tool) => [tool.key.toUpperCase(), `${tool.name}. ${tool.help}`]),
       ["Arrows, Enter", "Move the cross over the photograph (Shift: finely), and tap there. Enter twice ends a line."],
       ["Esc", "Let go of a line, or of what is chosen."],
-      ["N, B", "Next and previous doubt."],
+      ["N, B, F", "Next and previous doubt; it is fine as it is."],
       ["[ and ]", "Previous and next stone."],
-      ["M, Del, A, U", "Merge, delete, accept, use or not."],
+      ["M, Del, A, U", "Merge, delete, accept (all when none is chosen), build with it or not."],
       ["Ctrl+Z, Ctrl+Y, Ctrl+S", "Undo, redo, save."],
       ["+, -, 0", "Zoom; whole photograph."],
     ];
@@ -280,7 +287,9 @@ class Page {
     } else if (tool === "scale") {
       this.askLength(line);
     } else if (tool === "ground") {
-      this.go(sketch.withGround(this.state, line.map((p) => p.map(rounded))), "The ground is drawn.");
+      const ground = line.map((p) => p.map(rounded)).sort((a, b) => a[0] - b[0]);
+      if (ground[1][0] - ground[0][0] > 1) this.go(sketch.withGround(this.state, ground), "The ground is drawn.");
+      else this.tell("The ground goes from left to right.");
     }
     this.draw();
   }
@@ -323,11 +332,19 @@ class Page {
     return sketch.openDoubts(this.state, this.first, this.data.doubts, this.seen);
   }
 
+  /** The doubt that was looked at last, while it is open. */
+  get lookedAt() {
+    return this.doubts.find((doubt) => doubt === this.data.doubts[this.doubt]);
+  }
+
   nextDoubt(by) {
-    const open = this.doubts;
+    const [all, open] = [this.data.doubts, this.doubts];
     if (!open.length) return this.tell("No doubt is left.");
-    this.doubt = (Math.max(this.doubt, by > 0 ? -1 : 0) + by + open.length) % open.length;
-    const doubt = open[this.doubt];
+    let at = Math.max(this.doubt, by > 0 ? -1 : 0);
+    do at = (at + by + all.length) % all.length;
+    while (!open.includes(all[at]));
+    this.doubt = at;
+    const doubt = all[at];
     const rings = doubt.stones.map((id) => sketch.stoneOf(this.state, id).ring).flat();
     const reach = 0.03 * Math.max(this.data.photo.width, this.data.photo.height);
     const [x, y] = doubt.at;
@@ -339,6 +356,7 @@ class Page {
   settle(doubt) {
     this.seen.add(this.data.doubts.indexOf(doubt));
     this.after("It is fine as it is.");
+    this.nextDoubt(1);
   }
 
   // --- pointers ----------------------------------------------------------------------------------
@@ -505,8 +523,8 @@ class Page {
     } else {
       const tool = Object.entries(TOOLS).find(([one, { key }]) => key === name && this.buttons[one]);
       const does = {
-        m: () => this.merge(), Delete: () => this.remove(), Backspace: () => this.back(), a: () => this.accept(this.chosen),
-        u: () => this.toggleUse(), n: () => this.nextDoubt(1), b: () => this.nextDoubt(-1), "]": () => this.step(1), "[": () => this.step(-1),
+        m: () => this.merge(), Delete: () => this.remove(), Backspace: () => this.back(), a: () => this.accept(this.chosen.length ? this.chosen : this.state.stones.map((stone) => stone.id)),
+        u: () => this.toggleUse(), n: () => this.nextDoubt(1), b: () => this.nextDoubt(-1), f: () => this.lookedAt && this.settle(this.lookedAt), "]": () => this.step(1), "[": () => this.step(-1),
         "+": () => this.zoom(1.4), "=": () => this.zoom(1.4), "-": () => this.zoom(1 / 1.4), 0: () => { this.fit(); this.draw(); },
         Escape: () => (this.line.length ? this.letGo() : this.choose([])),
       }[name];
@@ -599,12 +617,13 @@ class Page {
     if (open) parts.push(`${open} proposed`);
     parts.push(sketch.pxPerMetre(state) ? `${sketch.pxPerMetre(state).toFixed(1)} px a metre` : "no scale yet");
     this.count.textContent = parts.join(" · ");
+    this.acceptButton.hidden = !open;
     this.undoButton.disabled = this.history.at === 0;
     this.redoButton.disabled = this.history.at + 1 >= this.history.states.length;
     for (const [name, one] of Object.entries(this.buttons)) one.setAttribute("aria-pressed", String(name === this.tool));
     this.fillCard();
     this.fillDoubts();
-    this.list.replaceChildren(...[...state.stones].sort((a, b) => a.id - b.id).map((stone) =>
+    refill(this.list, [...state.stones].sort((a, b) => a.id - b.id).map((stone) =>
       make("li", {}, make("button", {
         type: "button", "aria-pressed": String(this.chosen.includes(stone.id)),
         click: () => { this.choose([stone.id]); this.look(boxOf(stone.ring)); },
@@ -638,21 +657,15 @@ class Page {
 
   fillDoubts() {
     const open = this.doubts;
-    const total = this.data.doubts.length;
-    this.doubtBox.hidden = !total;
-    if (!total) return;
-    const now = open[this.doubt];
-    const parts = [
-      make("h2", {}, open.length ? `${open.length} of ${total} doubts are open` : "No doubt is left"),
-      make("div", {},
-        make("button", { type: "button", click: () => this.nextDoubt(-1), disabled: !open.length }, "Previous"),
-        make("button", { type: "button", click: () => this.nextDoubt(1), disabled: !open.length }, "Next")),
-    ];
-    if (now) {
-      parts.push(make("p", {}, now.text));
-      parts.push(make("button", { type: "button", click: () => this.settle(now) }, "Fine as it is"));
-    }
-    this.doubtBox.replaceChildren(...parts);
+    this.doubtBox.hidden = !this.data.doubts.length;
+    const now = this.lookedAt;
+    const title = now ? `Doubt ${open.indexOf(now) + 1} of ${open.length}` : open.length ? `To look at: ${open.length}` : "No doubt is left";
+    const button = (name, does, disabled = !open.length) => make("button", { type: "button", click: does, disabled }, name);
+    refill(this.doubtBox, [
+      make("h2", {}, title), ...(now ? [make("p", {}, now.text)] : []),
+      make("div", {}, button("Previous", () => this.nextDoubt(-1)), button("Next", () => this.nextDoubt(1)),
+        button("Fine", () => this.settle(now), !now)),
+    ]);
   }
 
   // --- drawing -----------------------------------------------------------------------------------
@@ -712,7 +725,8 @@ class Page {
       context.drawImage(this.image, this.left, this.top, width * this.k, height * this.k);
     }
     const state = this.drag?.next ?? this.state;
-    const doubtful = new Set(this.doubts.flatMap((doubt) => doubt.stones));
+    const [open, now] = [this.doubts, this.lookedAt];
+    const doubtful = new Set(open.flatMap((doubt) => doubt.stones));
     for (const stone of state.stones) {
       const chosen = this.chosen.includes(stone.id);
       const path = this.path(stone.ring, true);
@@ -722,7 +736,10 @@ class Page {
       this.label(context, stone);
     }
     if (this.chosen.length === 1 && this.tool === "select") this.handles(context, sketch.stoneOf(state, this.chosen[0]), colour);
-    for (const doubt of this.doubts) this.ring(context, this.toScreen(doubt.at), 9, colour("--doubt"));
+    // Where it is, when that is not a stone with an outline of that colour.
+    for (const doubt of open) {
+      if (doubt.stones.length !== 1 || doubt === now) this.ring(context, this.toScreen(doubt.at), 9, colour("--doubt"));
+    }
     if (state.scale?.ends) this.stroke(context, this.path(state.scale.ends), colour("--scale"), []);
     if (state.ground) this.stroke(context, this.path(state.ground), colour("--ground"), [12, 6]);
     if (this.line.length) {

@@ -23,7 +23,7 @@ from drystone.whole_files import write_whole
 
 _HERE = Path(__file__).parent
 _MODULES = ("shapes.js", "propose.js", "sketch.js", "page.js")
-_TOLERANCE_PX = 0.75
+_TOLERANCE_PX = 1.0
 """Of outlines from pixels: a person moves their corners, so there are not too many."""
 _MOST_BYTES = 5_500_000
 """Of the embedded picture: the page, which holds it in base64, stays below 8 MB."""
