@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from drystone.cli.commands import analyse
 from drystone.io.wall_image import write_labels
@@ -417,3 +418,12 @@ def test_head_joints_without_friction(tmp_path, run):
     asked = ("analyse", model, "--json", "--associative-only")
     oiled, given = run(*asked, "--mu-head", "0").json(), run(*asked).json()
     assert oiled["alpha_right"] < given["alpha_right"] - 1e-3
+
+
+@pytest.mark.parametrize("command", ["analyse", "measure", "craft"])
+def test_what_was_done_to_a_picture_is_said_once(command, tmp_path, run):
+    labels = np.zeros((12, 16), np.uint8)
+    labels[2:, 2:8], labels[2:, 8:14] = 1, 2
+    Image.fromarray(labels).save(tmp_path / "a.tif", tiffinfo={274: 4})
+    ran = run(command, tmp_path / "a.tif", "--json")
+    assert ran.err.count("W173") == 1

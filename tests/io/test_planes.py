@@ -257,7 +257,7 @@ def test_meshes_of_a_left_hand_are_named(tmp_path, place):
 def test_up_is_for_what_has_three_axes(tmp_path):
     (tmp_path / "s.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg"><circle r="9"/></svg>')
     for source in (tmp_path / "s.svg", np.pad(np.ones((9, 9), np.uint8), 3)):
-        with pytest.raises(UsageError, match=r"E118 .*no axis Z .*--up"):
+        with pytest.raises(UsageError, match=r"E118 .*no third axis .*--up"):
             read_stones(source, settings=ReadSettings(up="z-back"))
 
 
