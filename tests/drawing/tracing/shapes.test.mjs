@@ -93,6 +93,20 @@ test("a stone on plain ground is proposed where it lies", () => {
   assert.equal(proposed({ data: new Uint8ClampedArray(4 * 50 * 50).fill(90), width: 50, height: 50 }, [25, 25]), null);
 });
 
+test("a brick between narrow joints is proposed alone", () => {
+  const [width, height] = [300, 200];
+  const data = new Uint8ClampedArray(4 * width * height);
+  for (let i = 0; i < width * height; i++) {
+    const [x, y] = [i % width, Math.floor(i / width)];
+    const joint = y % 30 < 4 || (x + 60 * (Math.floor(y / 30) % 2)) % 120 < 4;
+    const grey = (joint ? 160 : 95) + ((7 * x + 13 * y) % 9);
+    data.set([grey, grey, grey, 255], 4 * i);
+  }
+  const ring = proposed({ data, width, height }, [190, 80]);
+  const brick = [[124, 64], [240, 64], [240, 90], [124, 90]];
+  assert.ok(overlap(ring, brick) > 0.85, String(ring && overlap(ring, brick)));
+});
+
 test("two hundred edits are undone to the first state, byte by byte", () => {
   const photo = { name: "a.jpg", width: 900, height: 700, kind: "stones", details: {} };
   let state = sketch.emptyState();

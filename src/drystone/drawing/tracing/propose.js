@@ -1,9 +1,10 @@
 // The outline of the stone around a point, guessed from the colours of the photograph.
-// Rays leave the point in all directions.  On each, a place costs little where colours change across
+// A stone of one colour is what is like the point, for as many limits of likeness as possible.
+// Of all others, rays leave the point in all directions.  On each, a place costs little where colours change across
 // it, and much behind changes that the ray has crossed already.  The cheapest closed line that no
 // two neighbouring rays leave far apart is found by dynamic programming.
 
-import { area, centroid, simplified } from "./shapes.js";
+import { area, centroid, flood, hullOf, outlineOf, shifted, simplified } from "./shapes.js";
 
 const RAYS = 96;
 const STEPS = 96;
@@ -15,6 +16,14 @@ const UNMARKED = 3;
 const BEND = 3;
 const FARTHER = 0.1;
 const LEAST_CONTRAST = 6;
+// Limits of likeness are half units of colour.  What was tried on the same beach, on gravel, on a
+// brick wall and on a drawn one: nothing is lost where stones have patterns, from this width on.
+const LIMITS = 160;
+const WIDEST_FROM = 32;
+const STABLE = 1.15;
+const LEAST_PX = 120;
+const RIM = 0.05;
+const LEAST_SOLID = 0.8;
 
 /**
  * Guess the stone at a pixel.
@@ -25,7 +34,9 @@ const LEAST_CONTRAST = 6;
  */
 export function proposed({ data, width, height }, seed) {
   if (!(seed[0] >= 0 && seed[1] >= 0 && seed[0] < width && seed[1] < height)) return null;
-  const colours = smoothed(data, width, height);
+  const plain = alike(smoothed(data, width, height, 1), width, height, seed.map(Math.floor));
+  if (plain) return plain;
+  const colours = smoothed(data, width, height, 2);
   let middle = seed;
   let found = null;
   for (let round = 0; round < 3; round++) {
@@ -36,6 +47,57 @@ export function proposed({ data, width, height }, seed) {
     middle = centroid(found.ring);
   }
   return found && found.contrast > LEAST_CONTRAST ? simplified(found.ring, 0.8) : null;
+}
+
+/** The ring of what has the colour of a pixel, if its size hardly hangs on what that means. */
+function alike(colours, width, height, [column, row]) {
+  const own = [0, 0, 0];
+  let count = 0;
+  for (let y = Math.max(0, row - 4); y <= Math.min(height - 1, row + 4); y++) {
+    for (let x = Math.max(0, column - 4); x <= Math.min(width - 1, column + 4); x++, count++) {
+      for (let c = 0; c < 3; c++) own[c] += colours[3 * (y * width + x) + c];
+    }
+  }
+  const unlike = (i) => Math.min(LIMITS - 1, Math.round(2 * Math.hypot(...own.map((sum, c) => colours[3 * i + c] - sum / count))));
+  const onRim = (i) => i % width === 0 || i % width === width - 1 || i < width || i >= width * (height - 1);
+  // Each pixel gets the least limit with which a way leads to it.
+  const limits = new Uint8Array(width * height).fill(255);
+  const open = Array.from({ length: LIMITS }, () => []);
+  const start = row * width + column;
+  limits[start] = unlike(start);
+  open[limits[start]].push(start);
+  const areas = [];
+  for (let [limit, size, rim] = [0, 0, 0]; limit < LIMITS && rim <= RIM * width; limit++) {
+    while (open[limit].length) {
+      const i = open[limit].pop();
+      size += 1;
+      if (onRim(i)) {
+        rim += 1;
+        continue;
+      }
+      for (const j of [i - 1, i + 1, i - width, i + width]) {
+        if (limits[j] !== 255) continue;
+        limits[j] = Math.max(limit, unlike(j));
+        open[limits[j]].push(j);
+      }
+    }
+    areas.push(rim <= RIM * width ? size : Infinity);
+  }
+  let best = [0, 0];
+  for (let from = 0, to = 0; areas[from] < Infinity; from++) {
+    if (areas[from] < LEAST_PX) continue;
+    for (to = Math.max(to, from); areas[to + 1] <= STABLE * areas[from];) to += 1;
+    if (to - from > best[1] - best[0]) best = [from, to];
+  }
+  if (best[1] - best[0] < WIDEST_FROM) return null;
+  const limit = (best[0] + best[1]) / 2;
+  const rest = limits.map((one, i) => (onRim(i) || one > limit ? 1 : 0));
+  // What the ground does not reach is stone, too; then narrow bridges go.
+  const ground = new Uint8Array(rest.length);
+  flood(rest, width, height, 0, ground);
+  const image = { mask: ground.map((one) => 1 - one), width, height, left: 0, top: 0, step: 1 };
+  const ring = outlineOf(shifted(shifted(image, 2, false), 2, true));
+  return ring && area(ring) > LEAST_SOLID * area(hullOf(ring)) ? simplified(ring, 0.8) : null;
 }
 
 function around(colours, width, height, [cx, cy], reach) {
@@ -91,8 +153,8 @@ function around(colours, width, height, [cx, cy], reach) {
   return { ring, contrast };
 }
 
-/** Lightness and two opponents of colour, averaged over 5 x 5 px. */
-function smoothed(data, width, height) {
+/** Lightness and two opponents of colour, averaged over squares of half side `reach`. */
+function smoothed(data, width, height, reach) {
   let planes = new Float32Array(3 * width * height);
   for (let i = 0, j = 0; j < planes.length; i += 4, j += 3) {
     const [r, g, b] = [data[i], data[i + 1], data[i + 2]];
@@ -105,7 +167,7 @@ function smoothed(data, width, height) {
     for (let i = 0; i < planes.length; i++) {
       const place = Math.floor(i / stride) % count;
       let [total, n] = [0, 0];
-      for (let d = -2; d <= 2; d++) {
+      for (let d = -reach; d <= reach; d++) {
         if (place + d < 0 || place + d >= count) continue;
         total += planes[i + d * stride];
         n += 1;

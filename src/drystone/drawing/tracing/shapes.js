@@ -308,7 +308,7 @@ export function merged(rings, widest) {
 }
 
 /** Grow (or shrink) a mask by a square of half side `reach`. */
-function shifted(image, reach, grow) {
+export function shifted(image, reach, grow) {
   const { width, height } = image;
   const pass = (source, stride, count, lines, step) => {
     const result = new Uint8Array(source.length);
