@@ -197,7 +197,10 @@ class Page {
   async open(file) {
     if (!file) return;
     try {
-      const state = sketch.stateOf(JSON.parse(await file.text()));
+      const content = JSON.parse(await file.text());
+      const { width, height } = this.data.photo;
+      if ((content.imageWidth ?? width) !== width || (content.imageHeight ?? height) !== height) throw new Error("it is of another picture");
+      const state = sketch.stateOf(content);
       this.go(state, `${state.stones.length} outlines were read from ${file.name}.`);
     } catch (error) {
       this.tell(`${file.name} cannot be read: ${error.message}`);
