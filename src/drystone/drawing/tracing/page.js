@@ -2,7 +2,11 @@
 
 import { area, boxOf, centroid, distance, sidesOf, simplified, simplifiedLine, snapped } from "./shapes.js";
 import { proposed } from "./propose.js";
-import * as sketch from "./sketch.js";
+import {
+  History, SCHEMA, accepted, fileOf, openDoubts, pxPerMetre, stateOf, stoneAt, stoneOf,
+  withCorner, withCut, withGround, withMerged, withNewCorner, withNumber, withScale, withStone,
+  withUse, withoutCorner, withoutStones,
+} from "./sketch.js";
 
 const REACH_PX = 10;
 const TOUCH_REACH_PX = 22;
@@ -26,7 +30,7 @@ const UNITS = { cm: 0.01, mm: 0.001, m: 1, in: 0.0254, ft: 0.3048 };
  *
  * @param {Element} element where to put it.
  * @param {object} data {title, photo: {name, width, height, kind, details, key, shown}, file, doubts}:
- *   shown is the picture itself as a data URL, perhaps reduced; file is what sketch.stateOf reads.
+ *   shown is the picture itself as a data URL, perhaps reduced; file is what stateOf reads.
  */
 export function mount(element, data) {
   return new Page(element, data);
@@ -53,8 +57,8 @@ function refill(box, nodes) {
 class Page {
   constructor(element, data) {
     this.data = data;
-    this.first = sketch.stateOf(data.file);
-    this.history = new sketch.History(this.first);
+    this.first = stateOf(data.file);
+    this.history = new History(this.first);
     this.seen = new Set();
     this.tool = "select";
     this.chosen = [];
@@ -155,12 +159,12 @@ class Page {
   // --- keeping -----------------------------------------------------------------------------------
 
   get place() {
-    return `${sketch.SCHEMA}:${this.data.photo.kind}:${this.data.photo.key}`;
+    return `${SCHEMA}:${this.data.photo.kind}:${this.data.photo.key}`;
   }
 
   keep() {
     try {
-      const kept = { file: sketch.fileOf(this.state, this.data.photo), seen: [...this.seen] };
+      const kept = { file: fileOf(this.state, this.data.photo), seen: [...this.seen] };
       window.localStorage.setItem(this.place, JSON.stringify(kept));
       this.kept = true;
     } catch {
@@ -179,14 +183,14 @@ class Page {
       this.kept = false;
     }
     if (!kept) return;
-    this.history.add(sketch.stateOf(kept.file));
+    this.history.add(stateOf(kept.file));
     this.seen = new Set(kept.seen);
     this.tell("This goes on where it was left. Undo leads back to the beginning.");
   }
 
   save() {
     const open = this.state.stones.filter((stone) => stone.proposed).length;
-    const text = JSON.stringify(sketch.fileOf(this.state, this.data.photo));
+    const text = JSON.stringify(fileOf(this.state, this.data.photo));
     const link = make("a", { href: URL.createObjectURL(new Blob([text], { type: "application/json" })), download: "outlines.json" });
     link.click();
     window.setTimeout(() => URL.revokeObjectURL(link.href), 10000);
@@ -200,7 +204,7 @@ class Page {
       const content = JSON.parse(await file.text());
       const { width, height } = this.data.photo;
       if ((content.imageWidth ?? width) !== width || (content.imageHeight ?? height) !== height) throw new Error("it is of another picture");
-      const state = sketch.stateOf(content);
+      const state = stateOf(content);
       this.go(state, `${state.stones.length} outlines were read from ${file.name}.`);
     } catch (error) {
       this.tell(`${file.name} cannot be read: ${error.message}`);
@@ -217,7 +221,7 @@ class Page {
   }
 
   after(said) {
-    this.chosen = this.chosen.filter((id) => sketch.stoneOf(this.state, id));
+    this.chosen = this.chosen.filter((id) => stoneOf(this.state, id));
     this.corner = null;
     this.keep();
     if (said) this.tell(said);
@@ -235,25 +239,25 @@ class Page {
   }
 
   merge() {
-    const rings = this.chosen.map((id) => sketch.stoneOf(this.state, id).ring);
+    const rings = this.chosen.map((id) => stoneOf(this.state, id).ring);
     if (rings.length < 2) return this.tell("Choose two stones or more: tap them with Shift, or with “choose several”.");
     const widest = WIDEST_GAP * Math.sqrt(Math.max(...rings.map(area)));
     const id = this.chosen[0];
-    if (this.go(sketch.withMerged(this.state, this.chosen, widest), `Merged into stone ${id}.`)) this.choose([id]);
+    if (this.go(withMerged(this.state, this.chosen, widest), `Merged into stone ${id}.`)) this.choose([id]);
     else this.tell("These stones lie too far apart to be one.");
   }
 
   remove() {
     if (this.corner !== null && this.chosen.length === 1) {
-      return this.go(sketch.withoutCorner(this.state, this.chosen[0], this.corner), "The corner is gone.");
+      return this.go(withoutCorner(this.state, this.chosen[0], this.corner), "The corner is gone.");
     }
     if (!this.chosen.length) return this.tell("Choose a stone first.");
     const said = `Deleted: ${this.chosen.join(", ")}.`;
-    return this.go(sketch.withoutStones(this.state, this.chosen), said);
+    return this.go(withoutStones(this.state, this.chosen), said);
   }
 
   accept(ids) {
-    this.go(sketch.accepted(this.state, ids), "Accepted.");
+    this.go(accepted(this.state, ids), "Accepted.");
   }
 
   propose(point) {
@@ -272,7 +276,7 @@ class Page {
     if (!ring) return this.tell("Nothing stands out there. Draw the stone, or zoom to it and tap again.");
     const id = this.state.next;
     const found = ring.map(([x, y]) => [left + x * step, top + y * step].map(rounded));
-    if (this.go(sketch.withStone(this.state, found, { proposed: true }), `Stone ${id} is proposed: accept it with A, or undo.`)) this.choose([id]);
+    if (this.go(withStone(this.state, found, { proposed: true }), `Stone ${id} is proposed: accept it with A, or undo.`)) this.choose([id]);
   }
 
   finish(line, freehand) {
@@ -282,16 +286,16 @@ class Page {
     if (tool === "draw") {
       const ring = (freehand ? simplified(line, within) : line).map((p) => p.map(rounded));
       const id = this.state.next;
-      if (this.go(sketch.withStone(this.state, ring), `Stone ${id} is drawn.`)) this.choose([id]);
+      if (this.go(withStone(this.state, ring), `Stone ${id} is drawn.`)) this.choose([id]);
     } else if (tool === "cut") {
       const stroke = freehand ? simplifiedLine(line, within) : line;
       const ids = this.chosen.length ? this.chosen : undefined;
-      if (!this.go(sketch.withCut(this.state, stroke, ids), "Cut.")) this.tell("The stroke does not cross a stone from one side to the other.");
+      if (!this.go(withCut(this.state, stroke, ids), "Cut.")) this.tell("The stroke does not cross a stone from one side to the other.");
     } else if (tool === "scale") {
       this.askLength(line);
     } else if (tool === "ground") {
       const ground = line.map((p) => p.map(rounded)).sort((a, b) => a[0] - b[0]);
-      if (ground[1][0] - ground[0][0] > 1) this.go(sketch.withGround(this.state, ground), "The ground is drawn.");
+      if (ground[1][0] - ground[0][0] > 1) this.go(withGround(this.state, ground), "The ground is drawn.");
       else this.tell("The ground goes from left to right.");
     }
     this.draw();
@@ -305,7 +309,7 @@ class Page {
         event.preventDefault();
         const length_m = Number(length.value) * UNITS[unit.value];
         if (!(length_m > 0)) return;
-        this.go(sketch.withScale(this.state, { ends, length_m }), "The scale is known.");
+        this.go(withScale(this.state, { ends, length_m }), "The scale is known.");
         this.canvas.focus();
       },
     }, make("label", {}, "This line is ", length), unit, make("button", { class: "main" }, "long"));
@@ -327,12 +331,12 @@ class Page {
     const at = ids.indexOf(this.chosen[0]);
     const id = ids[(at + by + ids.length) % ids.length];
     this.choose([id]);
-    this.look(boxOf(sketch.stoneOf(this.state, id).ring));
-    this.tell(this.sayStone(sketch.stoneOf(this.state, id)));
+    this.look(boxOf(stoneOf(this.state, id).ring));
+    this.tell(this.sayStone(stoneOf(this.state, id)));
   }
 
   get doubts() {
-    return sketch.openDoubts(this.state, this.first, this.data.doubts, this.seen);
+    return openDoubts(this.state, this.first, this.data.doubts, this.seen);
   }
 
   /** The doubt that was looked at last, while it is open. */
@@ -348,7 +352,7 @@ class Page {
     while (!open.includes(all[at]));
     this.doubt = at;
     const doubt = all[at];
-    const rings = doubt.stones.map((id) => sketch.stoneOf(this.state, id).ring).flat();
+    const rings = doubt.stones.map((id) => stoneOf(this.state, id).ring).flat();
     const reach = 0.03 * Math.max(this.data.photo.width, this.data.photo.height);
     const [x, y] = doubt.at;
     this.choose(doubt.stones);
@@ -409,14 +413,14 @@ class Page {
 
   begin(at, reach, event) {
     const drag = { from: at, moved: false, kind: "tap" };
-    const one = this.chosen.length === 1 ? sketch.stoneOf(this.state, this.chosen[0]) : null;
+    const one = this.chosen.length === 1 ? stoneOf(this.state, this.chosen[0]) : null;
     if (event.button === 1 || event.altKey) drag.kind = "pan";
     else if (this.tool === "select" && one) {
       const corner = one.ring.findIndex((p) => distance(this.toScreen(p), at) < reach);
       const middle = corner < 0 ? middles(one.ring).findIndex((p) => distance(this.toScreen(p), at) < 0.8 * reach) : -1;
       if (corner >= 0) Object.assign(drag, { kind: "corner", corner, base: this.state });
       else if (middle >= 0) {
-        const base = sketch.withNewCorner(this.state, one.id, middle, middles(one.ring)[middle]);
+        const base = withNewCorner(this.state, one.id, middle, middles(one.ring)[middle]);
         Object.assign(drag, { kind: "corner", corner: middle + 1, base, fresh: true });
       }
     }
@@ -439,7 +443,7 @@ class Page {
       const others = this.state.stones.filter((stone) => stone.id !== id).map((stone) => stone.ring);
       const point = this.toPhoto(at);
       const to = (snapped(point, others, (SNAP * reach) / this.k) ?? point).map(rounded);
-      drag.next = sketch.withCorner(drag.base, id, drag.corner, to);
+      drag.next = withCorner(drag.base, id, drag.corner, to);
     } else if (drag.kind === "pan") {
       const last = drag.last ?? drag.from;
       this.left += at[0] - last[0];
@@ -474,11 +478,11 @@ class Page {
   tap(point, reach, more) {
     const rings = this.state.stones.map((stone) => stone.ring);
     if (this.tool === "select") {
-      const id = sketch.stoneAt(this.state, point)?.id ?? null;
+      const id = stoneAt(this.state, point)?.id ?? null;
       const kept = more || this.several.checked ? this.chosen.filter((one) => one !== id) : [];
       const again = kept.length < this.chosen.length && this.chosen.includes(id) && (more || this.several.checked);
       this.choose(id === null || again ? kept : [...kept, id]);
-      if (id !== null) this.tell(this.sayStone(sketch.stoneOf(this.state, id)));
+      if (id !== null) this.tell(this.sayStone(stoneOf(this.state, id)));
       return;
     }
     if (this.tool === "propose") {
@@ -498,7 +502,7 @@ class Page {
   }
 
   hover(at) {
-    const stone = sketch.stoneAt(this.state, this.toPhoto(at));
+    const stone = stoneAt(this.state, this.toPhoto(at));
     this.under = stone?.id ?? null;
     if (!this.waiting && stone) this.tell(this.sayStone(stone), true);
   }
@@ -562,8 +566,8 @@ class Page {
 
   toggleUse() {
     if (!this.chosen.length) return;
-    const use = !sketch.stoneOf(this.state, this.chosen[0]).use;
-    const state = this.chosen.reduce((now, id) => sketch.withUse(now, id, use), this.state);
+    const use = !stoneOf(this.state, this.chosen[0]).use;
+    const state = this.chosen.reduce((now, id) => withUse(now, id, use), this.state);
     this.go(state, use ? "It may be built with." : "It is not built with.");
   }
 
@@ -594,12 +598,12 @@ class Page {
 
   /** A length in px of the photograph, in cm when there is a scale. */
   length(px) {
-    const scale = sketch.pxPerMetre(this.state);
+    const scale = pxPerMetre(this.state);
     return scale ? `${((100 * px) / scale).toFixed(1)} cm` : `${px.toFixed(0)} px`;
   }
 
   areaOf(px) {
-    const scale = sketch.pxPerMetre(this.state);
+    const scale = pxPerMetre(this.state);
     if (!scale) return `${px.toFixed(0)} px²`;
     const square = px / scale ** 2;
     return square < 1 ? `${(1e4 * square).toFixed(0)} cm²` : `${square.toFixed(2)} m²`;
@@ -618,7 +622,7 @@ class Page {
     const total = counted.reduce((sum, stone) => sum + area(stone.ring), 0);
     const parts = [`${counted.length} ${counted.length === 1 ? "stone" : "stones"}`, this.areaOf(total)];
     if (open) parts.push(`${open} proposed`);
-    parts.push(sketch.pxPerMetre(state) ? `${sketch.pxPerMetre(state).toFixed(1)} px a metre` : "no scale yet");
+    parts.push(pxPerMetre(state) ? `${pxPerMetre(state).toFixed(1)} px a metre` : "no scale yet");
     this.count.textContent = parts.join(" · ");
     this.acceptButton.hidden = !open;
     this.undoButton.disabled = this.history.at === 0;
@@ -635,7 +639,7 @@ class Page {
   }
 
   fillCard() {
-    const stones = this.chosen.map((id) => sketch.stoneOf(this.state, id));
+    const stones = this.chosen.map((id) => stoneOf(this.state, id));
     if (!stones.length) {
       this.card.replaceChildren(make("p", { class: "soft" }, TOOLS[this.tool].help));
       return;
@@ -647,7 +651,7 @@ class Page {
         type: "number", min: 1, step: 1, value: stone.id,
         change: () => {
           const wanted = Number(number.value);
-          if (this.go(sketch.withNumber(this.state, stone.id, wanted), `It is stone ${wanted} now.`)) this.choose([wanted]);
+          if (this.go(withNumber(this.state, stone.id, wanted), `It is stone ${wanted} now.`)) this.choose([wanted]);
         },
       });
       const use = make("input", { type: "checkbox", change: () => this.toggleUse() });
@@ -738,7 +742,7 @@ class Page {
       this.stroke(context, path, chosen ? colour("--chosen") : doubtful.has(stone.id) ? colour("--doubt") : colour("--stone"), stone.proposed ? [7, 5] : []);
       this.label(context, stone);
     }
-    if (this.chosen.length === 1 && this.tool === "select") this.handles(context, sketch.stoneOf(state, this.chosen[0]), colour);
+    if (this.chosen.length === 1 && this.tool === "select") this.handles(context, stoneOf(state, this.chosen[0]), colour);
     // Where it is, when that is not a stone with an outline of that colour.
     for (const doubt of open) {
       if (doubt.stones.length !== 1 || doubt === now) this.ring(context, this.toScreen(doubt.at), 9, colour("--doubt"));

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import StrictUndefined, Template
 from markupsafe import Markup
 from numpy.typing import NDArray
 from PIL import Image
@@ -21,7 +21,6 @@ from drystone.model.stone import Stone
 from drystone.photo.segment_doubts import Doubt
 from drystone.whole_files import write_whole
 
-_HERE = Path(__file__).parent
 _MODULES = ("shapes.js", "propose.js", "sketch.js", "page.js")
 _TOLERANCE_PX = 1.0
 """Of outlines from pixels: a person moves their corners, so there are not too many."""
@@ -66,13 +65,8 @@ def write_outline_page(path: Path, page: OutlinePage) -> Path:
         {"label": str(number), "points": [list(point) for point in ring], "shape_type": "polygon"}
         for number, ring in page.rings.items()
     ]
-    file = {
-        "shapes": shapes,
-        "drystone": {
-            "px_per_m": page.px_per_m,
-            "proposed": list(page.rings) if page.proposed else [],
-        },
-    }
+    own = {"px_per_m": page.px_per_m, "proposed": list(page.rings) if page.proposed else []}
+    file = {"shapes": shapes, "drystone": own}
     # A browser keeps what a person did under this key: not for other outlines of the photograph.
     key = hashlib.sha256(shown + json_in_html(file).encode()).hexdigest()[:16]
     data = {
@@ -88,25 +82,24 @@ def write_outline_page(path: Path, page: OutlinePage) -> Path:
             for doubt in page.doubts
         ],
     }  # fmt: skip
-    templates = Environment(
-        loader=FileSystemLoader(_HERE), autoescape=True, undefined=StrictUndefined
-    )
-    text = templates.get_template("page.html").render(
+    template = Template(_text("page.html"), autoescape=True, undefined=StrictUndefined)
+    text = template.render(
         policy=POLICY, title=page.title, data=json_in_html(data), script=_script(),
-        style=Markup((_HERE / "page.css").read_text(encoding="utf-8")),  # noqa: S704 - our own
+        style=Markup(_text("page.css")),  # noqa: S704 - our own
     )  # fmt: skip
     write_whole(path, text.encode("utf-8"))
     return path
 
 
+def _text(name: str) -> str:
+    return (Path(__file__).parent / name).read_text(encoding="utf-8")
+
+
 @cache
 def _script() -> Markup:
     """Join the modules into one, in which nothing is imported."""
-    joined = "\n".join((_HERE / name).read_text(encoding="utf-8") for name in _MODULES)
-    names = re.findall(r"^export (?:function|class|const) (\w+)", joined, re.MULTILINE)
-    joined = re.sub(r"^import \* as sketch from .*$", f"const sketch = {{{', '.join(names)}}};",
-                    joined, flags=re.MULTILINE)  # fmt: skip
-    joined = re.sub(r"^import .*$", "", joined, flags=re.MULTILINE)
+    joined = "\n".join(map(_text, _MODULES))
+    joined = re.sub(r"^import [^;]*;$", "", joined, flags=re.MULTILINE)
     return Markup(re.sub(r"^export ", "", joined, flags=re.MULTILINE))  # noqa: S704 - our own
 
 
