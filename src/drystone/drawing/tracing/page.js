@@ -4,7 +4,7 @@ import { area, boxOf, centroid, distance, sidesOf, simplified, simplifiedLine, s
 import { proposed } from "./propose.js";
 import {
   History, SCHEMA, accepted, fileOf, openDoubts, pxPerMetre, stateOf, stoneAt, stoneOf,
-  withCorner, withCut, withGround, withMerged, withNewCorner, withNumber, withScale, withStone,
+  withCorner, withCut, withGround, withMerged, withNewCorner, withNumber, withRing, withScale, withStone,
   withUse, withoutCorner, withoutStones,
 } from "./sketch.js";
 
@@ -18,6 +18,7 @@ const PROPOSAL_PX = 420;
 const TOOLS = {
   select: { key: "v", name: "Select", help: "Tap a stone. Drag its corners; drag a small dot to add one." },
   draw: { key: "d", name: "Draw", help: "Tap corner by corner, and the first one again; or drag around the stone." },
+  redraw: { key: "r", name: "Redraw", help: "Choose a stone first, then draw it anew: it keeps its number." },
   cut: { key: "c", name: "Cut", help: "Drag a stroke across a stone; or tap along it, and tap the last point again." },
   propose: { key: "p", name: "Propose", help: "Tap inside a stone: its outline is guessed, dashed until you accept it." },
   scale: { key: "s", name: "Scale", help: "Tap both ends of something you know the length of." },
@@ -60,7 +61,7 @@ class Page {
     this.first = stateOf(data.file);
     this.history = new History(this.first);
     this.seen = new Set();
-    this.tool = "select";
+    this.tool = this.first.stones.length ? "select" : "draw";
     this.chosen = [];
     this.corner = null;
     this.line = [];
@@ -76,6 +77,10 @@ class Page {
     window.addEventListener("beforeunload", (event) => {
       if (!this.kept) event.preventDefault();
     });
+  }
+
+  get drawing() {
+    return this.tool === "draw" || this.tool === "redraw";
   }
 
   get state() {
@@ -283,8 +288,13 @@ class Page {
     const tool = this.tool;
     this.line = [];
     const within = TREMBLE_PX / this.k;
-    if (tool === "draw") {
+    if (this.drawing) {
       const ring = (freehand ? simplified(line, within) : line).map((p) => p.map(rounded));
+      if (tool === "redraw") {
+        const [one, ...more] = this.chosen;
+        if (one === undefined || more.length) return this.tell(TOOLS.redraw.help);
+        return this.go(withRing(this.state, one, ring), `Stone ${one} is drawn anew.`);
+      }
       const id = this.state.next;
       if (this.go(withStone(this.state, ring), `Stone ${id} is drawn.`)) this.choose([id]);
     } else if (tool === "cut") {
@@ -390,7 +400,7 @@ class Page {
       this.fingers.set(event.pointerId, at);
       if (this.fingers.size === 2) {
         this.drag = null;
-        this.line = this.tool === "draw" || this.tool === "cut" ? [] : this.line;
+        this.line = this.drawing || this.tool === "cut" ? [] : this.line;
       } else if (this.fingers.size === 1) {
         this.begin(at, reach, event);
       }
@@ -432,7 +442,7 @@ class Page {
     if (!drag.moved && distance(at, drag.from) < DRAG_PX) return;
     if (!drag.moved) {
       drag.moved = true;
-      if (drag.kind === "tap" && (this.tool === "draw" || this.tool === "cut") && !this.line.length) {
+      if (drag.kind === "tap" && (this.drawing || this.tool === "cut") && !this.line.length) {
         drag.kind = "stroke";
         this.line = [this.toPhoto(drag.from)];
       } else if (drag.kind === "tap") drag.kind = "pan";
@@ -476,7 +486,7 @@ class Page {
 
   /** A tap at a place of the photograph: by finger, mouse, pen, or Enter. */
   tap(point, reach, more) {
-    const rings = this.state.stones.map((stone) => stone.ring);
+    const rings = this.state.stones.filter(({ id }) => this.tool !== "redraw" || !this.chosen.includes(id)).map((stone) => stone.ring);
     if (this.tool === "select") {
       const id = stoneAt(this.state, point)?.id ?? null;
       const kept = more || this.several.checked ? this.chosen.filter((one) => one !== id) : [];
@@ -490,13 +500,13 @@ class Page {
       return;
     }
     const { line } = this;
-    const closed = line.length > 2 && this.tool === "draw" && distance(point, line[0]) < reach;
+    const closed = line.length > 2 && this.drawing && distance(point, line[0]) < reach;
     const ended = line.length > 1 && distance(point, line[line.length - 1]) < reach;
     if (closed || (ended && (this.tool === "cut" || line.length > 2))) {
       this.finish(line, false);
       return;
     }
-    line.push(this.tool === "draw" ? (snapped(point, rings, SNAP * reach) ?? point) : point);
+    line.push(this.drawing ? (snapped(point, rings, SNAP * reach) ?? point) : point);
     if (line.length === 2 && (this.tool === "scale" || this.tool === "ground")) this.finish(line, false);
     this.draw();
   }

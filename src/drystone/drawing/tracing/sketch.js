@@ -1,7 +1,7 @@
 // What a person draws over a photograph, and every state that it was in.  No page is needed here.
 // States are never changed: an edit makes a new one that shares what stays.
 
-import { area, contains, cut, merged, simplified } from "./shapes.js";
+import { area, contains, cut, merged } from "./shapes.js";
 
 export const SCHEMA = "drystone-outlines/1";
 
@@ -170,11 +170,6 @@ export function openDoubts(state, first, doubts, seen) {
     if (seen.has(i)) return false;
     return doubt.stones.every((id) => stoneOf(state, id)?.ring === stoneOf(first, id)?.ring && stoneOf(state, id));
   });
-}
-
-/** The ring of a freehand stroke, its tremble taken out. */
-export function ringOfStroke(stroke, most) {
-  return simplified(stroke, most);
 }
 
 // --- undo ----------------------------------------------------------------------------------------
