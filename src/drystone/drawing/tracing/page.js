@@ -735,7 +735,30 @@ class Page {
     const style = window.getComputedStyle(this.canvas);
     const colour = (name) => style.getPropertyValue(name).trim();
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    context.clearRect(0, 0, this.canvas.clientWidth, this.canvas.clientHeight);
+    const [wide, high] = [this.canvas.clientWidth, this.canvas.clientHeight];
+    context.clearRect(0, 0, wide, high);
+    // Nothing but the line changes during a stroke: large photographs are scaled once.
+    const place = this.drag?.kind === "stroke" ? [this.left, this.top, this.k, wide, high].join() : "";
+    if (place && place === this.still?.place) context.drawImage(this.still.picture, 0, 0, wide, high);
+    else this.paintStones(context, colour);
+    if (!place) this.still = null;
+    else if (place !== this.still?.place) {
+      const picture = make("canvas", { width: this.canvas.width, height: this.canvas.height });
+      picture.getContext("2d").drawImage(this.canvas, 0, 0);
+      this.still = { place, picture };
+    }
+    if (this.line.length) {
+      this.stroke(context, this.path(this.line), colour("--chosen"), []);
+      for (const point of place ? [] : this.line) this.ring(context, this.toScreen(point), 4, colour("--chosen"));
+    }
+    if (this.cursor) {
+      const [u, v] = this.cursor;
+      const cross = new Path2D(`M${u - 14} ${v}H${u + 14}M${u} ${v - 14}V${v + 14}`);
+      this.stroke(context, cross, colour("--chosen"), []);
+    }
+  }
+
+  paintStones(context, colour) {
     const { width, height } = this.data.photo;
     if (this.image.complete && this.image.naturalWidth) {
       context.imageSmoothingEnabled = this.k < 4;
@@ -759,15 +782,6 @@ class Page {
     }
     if (state.scale?.ends) this.stroke(context, this.path(state.scale.ends), colour("--scale"), []);
     if (state.ground) this.stroke(context, this.path(state.ground), colour("--ground"), [12, 6]);
-    if (this.line.length) {
-      this.stroke(context, this.path(this.line), colour("--chosen"), []);
-      for (const point of this.drag?.kind === "stroke" ? [] : this.line) this.ring(context, this.toScreen(point), 4, colour("--chosen"));
-    }
-    if (this.cursor) {
-      const [u, v] = this.cursor;
-      const cross = new Path2D(`M${u - 14} ${v}H${u + 14}M${u} ${v - 14}V${v + 14}`);
-      this.stroke(context, cross, colour("--chosen"), []);
-    }
   }
 
   path(points, closed = false) {
