@@ -35,7 +35,11 @@ def labelme() -> Sequence[bytes]:
         "version": "5.8.1", "imagePath": "photo.jpg", "imageData": None, "imageHeight": HEIGHT,
         "imageWidth": WIDTH,
     }  # fmt: skip
-    return _json({"shapes": shapes, **whole}, {"shapes": [mask, circle, box, shapes[0]], **whole})
+    page = {"px_per_m": 200.0, "ground": [[0, HEIGHT], [WIDTH, HEIGHT - 2.5]], "not_used": [2]}
+    return _json(
+        {"shapes": shapes, **whole, "drystone": page},
+        {"shapes": [mask, circle, box, shapes[0]], **whole},
+    )
 
 
 def _runs(stone: int) -> dict[str, Any]:

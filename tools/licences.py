@@ -15,11 +15,13 @@ PASSES = re.compile(
 )
 BINDS = re.compile(r"(?<!L)GPL|GNU General|Affero|commercial|proprietary", re.IGNORECASE)
 BY_HAND = {
+    "axe-playwright-python": "MIT: the file of the licence, its metadata have none",
     "docutils": "public domain and BSD; GPL is of an Emacs mode that is no part of the package",
     "pypdfium2": "BSD-3-Clause, Apache-2.0; PDFium and its libraries are permissive",
     "spyrrow": "MIT: the file of the licence, its metadata have none",
 }
 WITHIN = {
+    "axe-playwright-python": "axe-core (MPL-2.0), for tests only",
     "numpy": "OpenBLAS (BSD), libgfortran and libquadmath (GPL with the runtime exception)",
     "opencv-python-headless": "FFmpeg (LGPL-2.1), OpenSSL, OpenBLAS, libvpx, libaom, libavif",
     "pillow": "libtiff, libjpeg, libwebp, FreeType and others, all permissive",

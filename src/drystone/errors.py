@@ -275,7 +275,7 @@ CODES = {
     "W182": "Shapes in a photograph that differ from the ground were not taken for stones.",
     "W183": "All that was found in a photograph is in doubt.",
     "W184": "The scale is that of markers of another family than `drystone markers` prints.",
-    "W301": "Empty rows below the stones were left out.",
+    "W301": "The wall was put on the ground: rows below its stones were left out.",
     "W302": "The wall does not stand, and blocks are not connected with the ground.",
     "W303": "While planning, the solver gave up on some candidates, which were passed over.",
     "W304": "Pixels of a stone lie apart from it; all pixels of an id are one rigid block.",

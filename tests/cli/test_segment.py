@@ -185,7 +185,7 @@ def test_what_is_no_photograph_of_stones_is_doubtful_first_and_by_its_exit_code(
     assert ran.code == 5
     assert ran.out.startswith("doubtful: the ground is not plain")
     assert {one.name for one in (tmp_path / "out").iterdir()} == {
-        "stones.png", "stones.json", "photo.jpg", "preview.png",
+        "stones.png", "stones.json", "photo.jpg", "preview.png", "outlines.html",
     }  # fmt: skip
     (reason, *_) = json.loads((tmp_path / "out" / "stones.json").read_text())["doubtful"]
     assert reason in ran.out

@@ -1,4 +1,4 @@
-"""The way of an engineer as docs/for-engineers.md prints it: photograph, labelme, analysis."""
+"""The way of an engineer as docs/for-engineers.md prints it: photograph, trace, analysis."""
 
 import re
 import shlex
@@ -17,15 +17,15 @@ SECTION = "## From a photograph of a wall\n"
 def printed(kind: str) -> list[str]:
     """The lines of the blocks of a kind in the section."""
     section = PAGE.read_text(encoding="utf-8").split(SECTION)[1].split("\n## ")[0]
-    blocks = re.findall(rf"^```{kind}\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)
+    blocks = re.findall(rf"^ *```{kind}\n(.*?)^ *```$", section, re.MULTILINE | re.DOTALL)
     return "".join(blocks).splitlines()
 
 
 @pytest.fixture
 def traced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder, worked in, with wall.jpg and wall.json."""
+    """A folder, worked in, with wall.jpg and outlines.json."""
     photograph(tmp_path / "wall.jpg")
-    labelme(tmp_path / "wall.json")
+    labelme(tmp_path / "outlines.json")
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -38,14 +38,17 @@ def test_the_trace_is_that_of_the_picture() -> None:
 
 def test_every_command_of_the_page_gives_what_it_says(traced: Path, run: Run) -> None:
     commands = [shlex.split(line)[1:] for line in printed("sh")]
-    assert [words[0] for words in commands] == ["stones", "analyse", "analyse", "stones", "measure"]
+    assert [words[0] for words in commands] == [
+        "trace", "stones", "analyse", "analyse", "stones", "measure",
+    ]  # fmt: skip
     told = [run(*words) for words in commands]
     assert [one.code for one in told] == [0] * len(told), [one.err for one in told]
-    assert "13 stones" in told[0].out
-    assert "own weight           stands" in told[1].out
-    assert set(printed("text")) <= set(told[1].out.splitlines())
-    assert "m wide" in told[1].out
-    values = [re.search(r"^F_LR +(0\.\d+)", one.out, re.MULTILINE) for one in told[1:3]]
+    assert (traced / "wall" / "outlines.html").exists()
+    assert "13 stones" in told[1].out
+    assert "own weight           stands" in told[2].out
+    assert set(printed("text")) <= set(told[2].out.splitlines())
+    assert "m wide" in told[2].out
+    values = [re.search(r"^F_LR +(0\.\d+)", one.out, re.MULTILINE) for one in told[2:4]]
     assert values[0] is not None
     assert values[1] is not None
     assert values[0][1] == values[1][1]
@@ -55,7 +58,7 @@ def test_every_command_of_the_page_gives_what_it_says(traced: Path, run: Run) ->
 
 
 def test_following_the_hints_ends_with_a_number(traced: Path, run: Run) -> None:
-    follow(traced / "wall.json", run)
+    follow(traced / "outlines.json", run)
 
 
 @pytest.mark.parametrize("name", ["R", "PR"])
@@ -84,7 +87,7 @@ def follow(wall: Path, run: Run) -> None:
 @pytest.mark.usefixtures("traced")
 def test_what_was_traced_is_measured_and_looked_at_too(run: Run) -> None:
     for command in ("measure", "craft"):
-        ran = run(command, "wall.json", "--json")
+        ran = run(command, "outlines.json", "--json")
         assert ran.code == 0
         assert ran.json()
-    assert "13 stones" in run("craft", "wall.json").out
+    assert "13 stones" in run("craft", "outlines.json").out

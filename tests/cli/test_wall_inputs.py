@@ -65,7 +65,7 @@ def test_stones_are_converted_with_their_ids_and_scale(
     again = run("stones", to, "--json").json()
     kept = ("stones", "total_area_px", "width_px", "height_px", "clusters")
     assert [again[name] for name in kept] == [first[name] for name in kept]
-    scale = None if ending == ".json" else first["px_per_m"]
+    scale = first["px_per_m"]
     assert again["px_per_m"] == scale
     assert run("stones", path, "--to", to).code == 2  # never over a file unasked
     assert run("stones", path, "--to", to, "--overwrite").code == 0

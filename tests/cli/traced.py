@@ -78,7 +78,7 @@ TRACED = (
 
 
 def labelme(path: Path) -> Path:
-    """Write the trace as labelme does, all of one class as people leave it."""
+    """Write the trace as the page of outlines does, all of one class as people leave it."""
     shapes = [
         {
             "label": "stone",
@@ -91,5 +91,6 @@ def labelme(path: Path) -> Path:
     ]
     size = {"imageHeight": HEIGHT, "imageWidth": WIDTH}
     content = {"version": "5.5.0", "flags": {}, "shapes": shapes, "imagePath": "wall.jpg", **size}
-    path.write_text(json.dumps(content | {"imageData": None}))
+    page = {"px_per_m": 200.0, "ground": [[60, FOOT], [590, FOOT]]}
+    path.write_text(json.dumps(content | {"imageData": None, "drystone": page}))
     return path

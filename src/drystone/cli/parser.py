@@ -28,6 +28,7 @@ _COMMANDS = {
     "craft": "Look at a wall as a mason does: rules by name, stones and steps.",
     "markers": "Print a sheet of markers that give photographs a scale.",
     "segment": "Find stones in a photograph.",
+    "trace": "Draw the stones of a wall over its photograph, in a browser.",
     "generate": "Make a synthetic stone set.",
     "cite": "Print how to cite the program and the method, as BibTeX.",
 }

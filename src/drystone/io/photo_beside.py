@@ -24,6 +24,8 @@ SCHEMA = "drystone-photo/1"
 SIDECAR = "stones.json"
 """Name of the file beside `LABELS`."""
 LABELS = "stones.png"
+PAGE = "outlines.html"
+"""The page on which a person corrects the outlines."""
 
 NAMES = ("photo.jpg", "photo.png")
 """Beside a plan; it shows the whole source image, at any resolution."""
@@ -137,17 +139,24 @@ def scale_beside(
 
 
 def photo_of(stones: Path) -> Path | None:
-    """Return the photograph in the frame of a label image, or of the folder with it, if any."""
+    """Return the photograph in the frame of stones, or of the folder with them, if any."""
     labels = stones / LABELS if (stones / LABELS).is_file() else stones
     sidecar = read_sidecar(labels)
-    if sidecar is None or not sidecar.photo:
-        return None
     with suppress(OSError, ValueError):  # no file can have some names
+        name = _drawn_over(labels) if sidecar is None else sidecar.photo
         # A base name: what stands in the file leads nowhere else.
-        photo = labels.with_name(Path(sidecar.photo).name)
+        photo = labels.with_name(Path(name).name)
         if photo.is_file() and _copy_of(photo, photo.parent).name in NAMES:
             return photo
     return None
+
+
+def _drawn_over(outlines: Path) -> str:
+    """Return the name of the picture that outlines of our page are drawn over; empty for none."""
+    content = json_in(outlines) if outlines.suffix.lower() == ".json" else None
+    if not isinstance(content, dict) or "drystone" not in content:
+        return ""
+    return str(content.get("imagePath", ""))
 
 
 def check_place(photo: Path | None, folder: Path) -> None:

@@ -159,6 +159,7 @@ def stones_and_outlines(
     patches, size_px, px_per_m, said = rastered(file, settings)
     # What has px of its own has no other resolution.
     reading = (settings if px_per_m else replace(settings, px_per_m=None)).changed()
+    px_per_m = px_per_m or file.px_per_m
     digest = hashlib.sha256(data).hexdigest()
     source = Source(name, digest, *size_px, reading=reading, px_per_m=px_per_m)
     notices = [*file.notices, *wedges, *classes, *renumbered, *said]

@@ -28,7 +28,7 @@ and the published ones that are repaired .01."""
 
 _AROUND = [(r, c) for r in (-1, 0, 1) for c in (-1, 0, 1) if r or c]
 _WEIGHTS = np.array([1 if r and c else 2 for r, c in _AROUND])
-_WHOLE = np.ones((3, 3), bool)
+_AT_ONCE_PX = 4_000_000
 
 
 def without_net(image: IdImage, census: Census, *, wall: bool = False) -> tuple[IdImage, Census]:
@@ -118,14 +118,27 @@ def _stray(
     census: Census, background: int, least_px: int, *, wall: bool
 ) -> NDArray[np.bool_] | None:
     """Return the pixels of small pieces at stones whose values were blended; None for no few."""
+    lone = np.zeros(census.index.shape, bool)
+    height, width = census.index.shape
+    # By rows, for a picture may have 200 million pixels.
+    step = max(1, _AT_ONCE_PX // max(width, 1))
+    tops = range(0, height, step)
     core = np.zeros(len(census.values) + 1, bool)
-    core[census.index[census.solid]] = True
+    for top in tops:
+        band = slice(top, top + step)
+        core[census.index[band][census.solid[band]]] = True
     ground = census.values == background
     thin = ~core[1:] & ~ground
-    stones = ~census.pixels(ground)
-    lone = census.pixels(thin) | (astray_px(census) & stones)
-    lone[[0, -1]] |= census.pixels(thin)[[0, -1]]
-    most = _FEW * np.count_nonzero(stones & ~census.solid)
+    edges = 0
+    for top in tops:
+        # What lies astray goes by the 3 rows around it.
+        low, high = max(0, top - 3), min(height, top + step + 3)
+        part = Census(census.index[low:high], census.values)
+        stones = ~part.pixels(ground)
+        found = part.pixels(thin) | (astray_px(part) & stones)
+        inner = slice(top - low, min(top + step, height) - low)
+        lone[top : top + step] = found[inner]
+        edges += int(np.count_nonzero((stones & ~census.solid[low:high])[inner]))
     if not core.any() or not lone.any():
         return None
     runs = label_runs(census.index)
@@ -142,14 +155,16 @@ def _stray(
     if not stray.any():
         return None
     # What lies on the ground alone is a speck.
-    joined, count = ndimage.label(stray, _WHOLE)
-    body = np.pad(stones & ~stray, 1)
+    runs = label_runs(stray.view(np.uint8))
+    pieces = np.repeat(runs_in_pieces(runs), runs.lengths)
     rows, cols = np.nonzero(stray)
-    at_stone = np.logical_or.reduce([body[rows + 1 + r, cols + 1 + c] for r, c in _AROUND])
-    kept = np.zeros(count + 1, bool)
-    kept[joined[rows, cols][at_stone]] = True
-    stray = kept[joined]
-    return stray if 0 < np.count_nonzero(stray) <= most else None
+    at_stone = np.zeros(len(rows), bool)
+    for down, across in _AROUND:
+        near = np.clip(rows + down, 0, height - 1), np.clip(cols + across, 0, width - 1)
+        at_stone |= ~ground[census.index[near] - 1] & ~stray[near]
+    kept = np.isin(pieces, pieces[at_stone])
+    stray[rows, cols] = kept
+    return stray if 0 < np.count_nonzero(kept) <= _FEW * edges else None
 
 
 def _given(census: Census, stray: NDArray[np.bool_]) -> NDArray[np.int32]:

@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 import numpy as np
 import shapely
 
-from drystone.errors import Notice
+from drystone.errors import LabelImageError, Notice
 from drystone.io.outlines_in.fill import filled_area
 from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile
 from drystone.io.outlines_in.silhouettes import shadow
@@ -22,21 +22,23 @@ MOST_PX = 200_000_000
 def wall_outlines(file: OutlineFile, stones: StoneSet) -> dict[int, Points] | None:
     """Return the outlines of the stones that were read, (n, 2) by id, counter-clockwise and closed.
 
-    They are in px, y up from the lowest point; of a file in px x is that of its image.  Holes are
-    filled, and of a stone in several pieces the largest counts, as when its pixels are read.  None
-    when some stone is known by pixels only.
+    They are in px, y up from the lowest point; of a file in px x is that of its image.  Ground that
+    the file draws is level, and what is wholly under it is not there.  Holes are filled, and of a
+    stone in several pieces the largest counts, as when its pixels are read.  None when some stone
+    is known by pixels only.
     """
     known = {stone.id or 0: stone for stone in file.stones}
     ids = [stone.id for stone in stones]
     if any(i not in known or known[i].masks or not known[i].areas for i in ids):
         return None
-    px_per_m = stones.source.px_per_m
-    scale = (file.unit_m or 1.0) * (px_per_m or 1.0)
+    scale = 1.0 if file.unit_m is None else file.unit_m * (stones.source.px_per_m or 1.0)
     sign = 1.0 if file.y_up else -1.0
     try:
         found = {i: _outer(known[i]) * (scale, sign * scale) for i in ids}
     except ValueError:  # crossings without end
         return None
+    if file.ground is not None:
+        found = _on_ground(found, file.ground * (1.0, -1.0))
     corners = np.concatenate(list(found.values()))
     # Of an image the left edge is that of the wall, but for what reaches beyond it.
     left = corners[:, 0].min()
@@ -77,6 +79,25 @@ def _outer(stone: OutlinedStone) -> Points:
     if not parts:
         raise ValueError("no area")
     return max(parts, key=lambda ring: shapely.Polygon(ring).area)
+
+
+def _on_ground(rings: Mapping[int, Points], ground: Points) -> dict[int, Points]:
+    """Turn rings until the ground is level; what is buried under it is cut off, or left out."""
+    along = ground[1] - ground[0]
+    cos, sin = along / np.hypot(*along) * np.sign(along[0])
+    above = {}
+    for i, ring in rings.items():
+        corners = (ring - ground[0]) @ [[cos, -sin], [sin, cos]] + ground[0]
+        turned = shapely.make_valid(shapely.Polygon(corners))
+        left, _, right, top = turned.bounds
+        seen = turned & shapely.box(left, ground[0, 1], right, max(top, ground[0, 1]))
+        parts = [part for part in shapely.get_parts(seen) if part.area > 0.0]
+        if parts:
+            above[i] = np.array(max(parts, key=shapely.area).exterior.coords)[:-1]
+    if not above:
+        what = "no stone is above the ground that was drawn."
+        raise LabelImageError("E104", what, cure="Draw the ground under the wall.")
+    return above
 
 
 def _closed(ring: Points) -> Points:

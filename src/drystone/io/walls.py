@@ -88,8 +88,8 @@ _OF_MASKS = (1, 255, 65535)
 """The value of all stones of a mask, whose pieces are stones; another one is an id."""
 
 _TRACED = (
-    "Trace its stones first, as in docs/for-engineers.md#from-a-photograph-of-a-wall: outlines of "
-    "labelme or CVAT are read, or a label image with one id a stone."
+    "Trace its stones first with `drystone trace PHOTO -o DIR`, as in "
+    "docs/for-engineers.md#from-a-photograph-of-a-wall; a label image of its stones is read, too."
 )
 _CURES = {
     "E102": _TRACED,
@@ -101,7 +101,7 @@ _CURES = {
 _STONES = "Stones are read from"
 _SEGMENTED = (
     "find the stones in it with `drystone segment PHOTO`",
-    "trace its stones, as in docs/for-engineers.md#from-a-photograph-of-a-wall",
+    "trace them with `drystone trace`, as in docs/for-engineers.md#from-a-photograph-of-a-wall",
 )
 
 
@@ -204,7 +204,13 @@ def _outlined(stones: StoneSet, file: OutlineFile) -> GivenWall:
         return _painted(stones)
     below_px = min(stone.bottom_px for stone in stones)
     notices = not_cut(stones.notices)
-    if below_px > 0 and not file.y_up:
+    if file.ground is not None:
+        tilt = math.degrees(math.atan(np.divide(*(file.ground[1] - file.ground[0])[::-1])))
+        buried = listed(sorted({stone.id for stone in stones} - outlines.keys()))
+        said = f"The ground was drawn: the wall is turned by {tilt:.2f} degrees and cut off at it"
+        said += f", and {buried} left out" if buried else ""
+        notices = (*notices, Notice("W301", f"{said}. It stands on its lowest point."))
+    elif below_px > 0 and not file.y_up:
         said = f"The lowest point is {below_px} px above the lower edge of the image"
         notices = (*notices, Notice("W301", f"{said}: the wall stands on it."))
     return GivenWall(

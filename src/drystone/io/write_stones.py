@@ -38,11 +38,9 @@ def write_stones(stones: StoneSet, path: Path, px_per_m: float | None) -> tuple[
         shapes = [_shape(stone, height) for stone in stones]
         size = {"imageHeight": height, "imageWidth": width}
         content = {"version": "5.0.0", "flags": {}, "shapes": shapes, "imagePath": "", **size}
-        write_whole(path, (json.dumps(content | {"imageData": None}, indent=1) + "\n").encode())
-        if px_per_m is None:
-            return ()
-        what = f"labelme keeps no scale, and that of these stones is {px_per_m:g} px a metre."
-        return (Notice("W119", what, f"Give it again with --px-per-m {px_per_m:g}."),)
+        content |= {"imageData": None, "drystone": {"px_per_m": px_per_m}}
+        write_whole(path, (json.dumps(content, indent=1) + "\n").encode())
+        return ()
     labels, notices = painted(stones)
     if path.suffix.lower() == ".npy":
         buffer = io.BytesIO()

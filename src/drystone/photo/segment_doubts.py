@@ -43,6 +43,13 @@ class Doubt:
     at_px: tuple[float, float]  # column and row of the label image
     text: str
 
+    @property
+    def sentence(self) -> str:
+        """What may be wrong, in a sentence of its own."""
+        kind = "" if self.code in ("W175", "W179") else f"{_KINDS[self.code][0]}: "
+        said = f"{kind}{self.text}."
+        return f"{said[0].upper()}{said[1:]}"
+
 
 def doubts_of(
     found: FoundStones, px_per_m: float | None = None, settings: SegmentSettings | None = None
@@ -123,15 +130,15 @@ def _listed(code: str, texts: list[str]) -> str:
 _KINDS = {
     "W175": (
         "necks and hollows",
-        "Look at them in preview.png; draw or erase a line in stones.png.",
+        "Look at them in outlines.html, which cuts and merges them.",
     ),
     "W176": ("left out", "Photograph whole stones, clear of markers."),
-    "W177": ("a part may be shadow", "Look at preview.png; avoid hard light."),
-    "W178": ("hardly differs from the ground", "Look at preview.png; take another ground."),
+    "W177": ("a part may be shadow", "Look at it in outlines.html; avoid hard light."),
+    "W178": ("hardly differs from the ground", "Look at it in outlines.html; take another ground."),
     "W179": ("unusual", "Is it a stone, and is it one? --min-area changes the limit."),
     "W182": (
         "not taken for stones",
-        "Is one of them a stone? Draw it in stones.png; --min-area keeps smaller ones.",
+        "Is one of them a stone? Draw it in outlines.html; --min-area keeps smaller ones.",
     ),
 }
 """What a code means, and the cure."""

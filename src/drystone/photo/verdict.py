@@ -54,7 +54,7 @@ class Verdict:
 
 
 _CURE = (
-    "Look at preview.png. Lay the stones apart on a plain sheet of another colour and photograph "
+    "Look at outlines.html. Lay the stones apart on a plain sheet of another colour and photograph "
     "nothing else, or crop the photograph to it; masks of a river bed or a wall come from other "
     "programs (docs/photographs.md)."
 )

@@ -15,7 +15,8 @@ from drystone.cli.inputs import refuse_inputs
 from drystone.cli.numbers import Ruled, add_scale, positive, refuse_outside, whole_from
 from drystone.cli.output import note, prepare_folder, print_json, print_table
 from drystone.errors import ExitCode, Notice, UsageError
-from drystone.io.photo_beside import LABELS, SIDECAR, PhotoSidecar, write_sidecar
+from drystone.io.patches import cut
+from drystone.io.photo_beside import LABELS, PAGE, SIDECAR, PhotoSidecar, write_sidecar
 from drystone.io.photo_file import Photo, read_photo
 from drystone.model.stone_size import StoneSize, median_sides, sizes_of
 from drystone.photo.layout import MarkerLayout, parse_layout, parse_size_m
@@ -27,7 +28,7 @@ from drystone.photo.view import apply
 from drystone.whole_files import write_whole
 
 PHOTO, PREVIEW = "photo.jpg", "preview.png"
-WRITTEN = (LABELS, PHOTO, SIDECAR, PREVIEW)
+WRITTEN = (LABELS, PHOTO, SIDECAR, PREVIEW, PAGE)
 QUALITY = 90
 
 _AREA = re.compile(r"(\d+(?:\.\d*)?|\.\d+)\s*(cm2|px)?")
@@ -137,9 +138,14 @@ def scale_from(arguments: argparse.Namespace) -> MarkerLayout | float | None:
 def _write(
     folder: Path, result: SegmentedPhoto, doubts: Sequence[Doubt], details: dict[str, Any]
 ) -> None:
-    """Write stones.png, photo.jpg, stones.json and preview.png."""
+    """Write stones.png, photo.jpg, stones.json, preview.png and outlines.html."""
     from drystone.drawing.files import save  # noqa: PLC0415 - matplotlib is slow
     from drystone.drawing.pictures.stones import plot_photo  # noqa: PLC0415
+    from drystone.drawing.tracing.page import (  # noqa: PLC0415
+        OutlinePage,
+        rings_of,
+        write_outline_page,
+    )
 
     labels, px_per_m = result.found.labels, result.px_per_m
     _save_image(labels, folder / LABELS, "PNG")
@@ -150,6 +156,14 @@ def _write(
     necks_px = tuple(doubt.at_px for doubt in doubts if doubt.code == "W175")
     axes = plot_photo(result.picture, labels, (doubtful, necks_px), px_per_m)
     save(axes.figure, folder / PREVIEW, dpi=150)
+    found = cut(labels.astype(np.int32), np.arange(1, result.found.count + 1))
+    rings = rings_of([patch.to_stone() for patch in found], height)
+    kept = {name: details[name] for name in ("source", "from_photo")}
+    title = f"Stones of {details['source']['name']}"
+    write_outline_page(
+        folder / PAGE,
+        OutlinePage(title, PHOTO, result.picture, "stones", rings, False, px_per_m, doubts, kept),
+    )
 
 
 def _save_image(values: np.ndarray[Any, Any], path: Path, kind: str, **settings: Any) -> None:
@@ -228,5 +242,5 @@ def _print(
         said = f"{len(result.view.ids)}, residual {result.view.residual_mm:.2f} mm"
         rows.insert(2, ("markers", said))
     rows += [("notice", str(notice)) for notice in notices]
-    rows.append(("to check", str(folder / PREVIEW)))
+    rows.append(("to check", f"{folder / PAGE}: open it in a browser, correct, and save"))
     print_table(f"{folder / LABELS}: {len(sizes)} stones", rows)

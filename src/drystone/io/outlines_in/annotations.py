@@ -4,6 +4,7 @@ import base64
 import math
 from collections import Counter
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import PurePath
 from typing import Any
 
@@ -11,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.errors import InputError, Notice
-from drystone.io.file_errors import entry, listed
+from drystone.io.file_errors import MANY, entry, listed
 from drystone.io.outlines_in.classes import class_of
 from drystone.io.outlines_in.exports import image_needed
 from drystone.io.outlines_in.fill import Room, trimmed
 from drystone.io.outlines_in.model import (
+    MOST_PX,
     Area,
     OutlinedStone,
     OutlineFile,
@@ -28,10 +30,12 @@ from drystone.io.outlines_in.model import (
 )
 from drystone.io.patches import PlacedMask
 from drystone.io.pictures import check_size, opened
-from drystone.io.read_settings import ReadSettings
+from drystone.io.read_settings import MOST_PX_PER_M, ReadSettings
 
+_MARKED = {"proposed": "proposals that nobody accepted", "not_used": "marked as not to be used"}
+_BACK = "Open the file in outlines.html to change that."
 _OF_MODEL = ("predicted_iou", "stability_score")
-_MOST_PX = 2**31
+_MOST_PX_OF_MASK = 2**31
 _AT_ONCE = 64
 
 
@@ -39,7 +43,7 @@ def read_labelme(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
     """Read polygons, rectangles, circles and masks.
 
     Shapes of one label and ``group_id`` are one stone.  A label that is a number, also after
-    the word stone, is its id.
+    the word stone, is its id.  The table ``drystone`` is that of our own page of outlines.
     """
     parts: dict[object, tuple[str, list[Area], list[PlacedMask]]] = {}
     aside, slivers = Counter[str](), Slivers()
@@ -67,7 +71,27 @@ def read_labelme(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
     with entry("the size of the image"):
         sides = content.get("imageWidth"), content.get("imageHeight")
         size = None if None in sides else (side_px(sides[0]), side_px(sides[1]))
-    return OutlineFile(stones, size_px=size, notices=left_aside(aside) + slivers.notices())
+    notices = left_aside(aside) + slivers.notices()
+    with entry("the table drystone"):
+        return _of_page(OutlineFile(stones, size_px=size), notices, content.get("drystone") or {})
+
+
+def _of_page(file: OutlineFile, notices: list[Notice], own: Mapping[str, Any]) -> OutlineFile:
+    """Take scale and ground from what our page of outlines adds, and leave out what it marks."""
+    kept = file.stones
+    for key, why in _MARKED.items():
+        marked = frozenset(own.get(key) or ())
+        if left := [stone.id for stone in kept if stone.id in marked]:
+            kept = [stone for stone in kept if stone.id not in marked]
+            notices.append(Notice("W119", f"{why}, left out: {listed(left, most=MANY)}.", _BACK))
+    scale, ends = own.get("px_per_m"), own.get("ground")
+    if scale is not None and not 0.0 < float(scale) <= MOST_PX_PER_M:
+        raise ValueError(f"{scale} px in a metre")
+    ground = None if ends is None else np.array(ends, float).reshape(2, 2)
+    if ground is not None and not (np.ptp(ground[:, 0]) > 0.0 and np.abs(ground).max() <= MOST_PX):
+        raise ValueError("the ground is not a line from left to right")
+    scale = None if scale is None else float(scale)
+    return replace(file, stones=kept, notices=notices, px_per_m=scale, ground=ground)
 
 
 def _corners(kind: str, points: Any) -> Any:
@@ -271,7 +295,7 @@ def _is_runs(value: object) -> bool:
 def _size_of(value: Mapping[str, Any]) -> tuple[int, int]:
     """Return width and height of run lengths."""
     height, width = (int(side) for side in value["size"])
-    if min(height, width) < 1 or height * width > _MOST_PX:
+    if min(height, width) < 1 or height * width > _MOST_PX_OF_MASK:
         raise ValueError(f"a picture of {width} x {height} px")
     return width, height
 
@@ -337,6 +361,6 @@ def _numbers(counts: Any) -> NDArray[np.int64]:
     runs = np.asarray(counts)
     if runs.ndim != 1 or (runs.size and runs.dtype.kind not in "iu"):
         raise ValueError("counts are whole numbers")
-    if runs.size and (int(runs.min()) < 0 or int(runs.max()) > _MOST_PX):
+    if runs.size and (int(runs.min()) < 0 or int(runs.max()) > _MOST_PX_OF_MASK):
         raise ValueError("a count is below 0 or too large")
     return runs.astype(np.int64)

@@ -56,6 +56,8 @@ class OutlineFile:
     unit_m: float | None = None  # metres in its unit; None when that is the px of an image
     y_up: bool = False  # False when y runs down, as in images
     size_px: tuple[int, int] | None = None  # width, height of the image of a file in px, if said
+    px_per_m: float | None = None  # px of that image in a metre, if said
+    ground: Points | None = None  # (2, 2), two points of the ground that a wall stands on, if said
     notices: Sequence[Notice] = ()
     in_space: bool = False  # its coordinates have three axes, so it can be asked which is up
     names_images: bool = False  # it says of which image each stone is, so one can be asked for
