@@ -52,7 +52,7 @@ def better_side(
 
 
 def _action(candidate: Candidate) -> Action:
-    return Action(candidate.stone_id, candidate.proposal.trial_angle_deg, candidate.indices)
+    return Action(candidate.stone_id, candidate.indices)
 
 
 def choose_by_score(
@@ -62,7 +62,7 @@ def choose_by_score(
 
     Proposals are analysed from the cheapest on, in batches, until enough of them stand.
     """
-    keys = [(p.stone_id, p.trial_angle_deg, float(p.side != "left"), p.spot) for p in proposals]
+    keys = [(p.stone_id, float(p.side != "left"), p.spot) for p in proposals]
     order = cheapest_first([p.cost for p in proposals], keys)
     standing: list[Candidate] = []
     for start in range(0, len(order), settings.analysed):

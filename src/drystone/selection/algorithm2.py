@@ -41,7 +41,6 @@ class Action:
     """What selection sees of a candidate."""
 
     stone_id: int
-    angle_deg: float  # angle of the trial pose
     indices: Indices
 
     @property
@@ -72,7 +71,7 @@ def select_action(
     Filters keep what is at least the mean of the survivors, in the order LLC, -NHR, IWR | IS, GDS,
     LFR; boundary stones are compared with boundary stones at the third, inner ones with inner
     ones.  When a filter would keep nothing, the choice is by the sum of the terms so far.  Ties go
-    to the lower id, then to the smaller angle.
+    to the lower id, then to the first of the poses (of no angle: it depends on the photograph).
     """
     settings = settings or SelectionSettings()
     pool = [k for k, action in enumerate(actions) if action.llc > 0]  # Pi_1
@@ -92,7 +91,6 @@ def select_action(
         key=lambda k: (
             -round(weighted_sum(actions[k], settings, used), TIE_DIGITS),
             actions[k].stone_id,
-            actions[k].angle_deg,
         ),
     )
     return Selected(best, tuple(survivors))
