@@ -33,6 +33,7 @@ class Study:
     def __call__(self, context: Context) -> "StudyWalls":
         """Build the walls."""
         walls = (context.quick and self.quick_walls) or self.walls
+        walls = tuple(wall.here(context.data) for wall in walls)
         if self.at_hand:
             walls = tuple(wall for wall in walls if wall.source.is_there(context.data))
         seeds = self.quick_seeds if context.quick else self.seeds

@@ -3,16 +3,18 @@
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+from PIL import Image
 
 from drystone.errors import InputError
 from drystone.generate import GENERATORS
 from drystone.io.published import published_file
+from drystone.io.read_settings import ReadSettings
 from drystone.io.read_stones import read_stones
 from drystone.model.stone import StoneSet
 from drystone.planner.settings import PlannerSettings, method_settings
@@ -85,7 +87,7 @@ class StoneSource:
 
     def is_there(self, data: Path | None) -> bool:
         """Return False when published stones are asked for and the folder has none of this name."""
-        return self.kind != "published" or (data is not None and (data / self.name).is_file())
+        return self.kind != "published" or (data is not None and (data / self.name).exists())
 
     def check(self, data: Path | None) -> None:
         """Refuse other stones in the place of published ones."""
@@ -97,7 +99,15 @@ class StoneSource:
         if self.kind == "published":
             if data is None:
                 raise FileNotFoundError(self.name)
-            return read_stones(published_file(data, self.name))
+            reading: dict[str, Any] = dict(self.settings)
+            copies = range(1, 1 + reading.pop("copies", 0))
+            path = published_file(data, self.name)
+            if not copies:
+                return read_stones(path, settings=ReadSettings(**reading))
+            (one,) = read_stones(
+                np.pad(np.asarray(Image.open(path).convert("L")) > 0, 1)
+            )  # it has no rim
+            return StoneSet(tuple(replace(one, id=number) for number in copies))
         if self.kind == "file":
             return _same(read_stones(Path(self.name)), self)
         settings, make = GENERATORS[self.kind]
@@ -123,13 +133,15 @@ def _same(stones: StoneSet, source: StoneSource) -> StoneSet:
     return stones
 
 
-def published(name: str) -> StoneSource:
-    """Return the source of a published set.
+def published(name: str, **settings: Scalar) -> StoneSource:
+    """Return the source of a published file or folder of masks, read with some settings.
+
+    With `copies` there are so many of its single stone.
 
     >>> published("almeida/PR.png").is_there(None)
     False
     """
-    return StoneSource(kind="published", name=name)
+    return StoneSource(kind="published", name=name, settings=tuple(settings.items()))
 
 
 def from_file(path: Path) -> StoneSource:
