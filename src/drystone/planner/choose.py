@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from drystone.model.site import Site
 from drystone.planner.build import Build, Candidate, Proposal
+from drystone.planner.holding import holds
 from drystone.planner.offers import offer
 from drystone.selection.algorithm2 import (
     TIE_DIGITS,
@@ -14,6 +14,8 @@ from drystone.selection.algorithm2 import (
     select_action,
     weighted_sum,
 )
+from drystone.selection.policies.settings import PolicySettings
+from drystone.selection.policies.table1 import ENGINE
 from drystone.selection.policy import Policy, choice_of
 from drystone.selection.scored import ScoreSettings, cheapest_first
 
@@ -84,14 +86,27 @@ def choose_by_policy(
     policy: Policy,
     *,
     name: str,
-    site: Site,
+    build: Build,
+    settings: PolicySettings,
     rng: np.random.Generator,
 ) -> Candidate | None:
     """Return the action that a policy chooses among those after which the wall stands.
+
+    Where it asks an engine, what does not stay where it is put is dropped, and it chooses again.
 
     All proposals, those of all sides, are analysed; as with the other rules LLC must be positive.
     UsageError (E147): the policy failed.
     """
     standing = [c for c in judge(proposals) if c.sturdy and (c.indices.LLC or 0.0) > 0]
-    position = choice_of(name, policy, [offer(one, site) for one in standing], rng)
-    return None if position is None else standing[position]
+    wall, mu = build.wall, build.analysis.model.mu
+    wedges = frozenset(wedge.id for wedge in wall.wedges)
+    asks = name in ENGINE and settings.gravity
+    while True:
+        offers = [offer(one, wall.site, wedges) for one in standing]
+        position = choice_of(name, policy, offers, rng)
+        if position is None:
+            return None
+        chosen = standing[position]
+        if not asks or holds(wall, chosen.stabilised, mu):
+            return chosen
+        standing = [one for one in standing if one is not chosen]
