@@ -43,8 +43,8 @@ def add_settings(command: argparse.ArgumentParser) -> None:
            help="who chooses the stones of a single pass: paper, random, lowest, scalarised, "
            "filter, towers, learned, or one that is installed (docs/policies.md)")
     option("--sampling", choices=["variant", "shrinking", "uniform", "twofold", "full"],
-           help="stones that are tried in a step: one of each cluster, topped up or not, as many at "
-           "random, one of each and then all of the winner's cluster, or all")
+           help="stones that are tried in a step: one of each cluster, topped up or not; as many "
+           "at random; one of each and then all of the winner's cluster; or all")
     option("--placement", choices=["snug", "eq12", "lowest"])
     option("--reach", choices=["any", "above"], help="where a stone may be inserted")
     option("--two-sided", action=argparse.BooleanOptionalAction, default=None, dest="two_sided",

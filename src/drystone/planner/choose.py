@@ -1,6 +1,7 @@
 """Choosing the action of a step from the proposals of both sides (lines 17, Eq. 29)."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -30,7 +31,7 @@ def choose_by_algorithm2(
 ) -> Candidate | None:
     """Return the best action of one side by Algorithm 2; all proposals are analysed."""
     candidates = [candidate for candidate in judge(proposals) if candidate.sturdy]
-    selected = select_action([_action(c) for c in candidates], settings)
+    selected = select_action([action_of(c, settings) for c in candidates], settings)
     return None if selected is None else candidates[selected.position]
 
 
@@ -47,14 +48,18 @@ def better_side(
     level = [winner for winner in winners if winner.indices.GDS >= most - EQUAL_GDS]
 
     def rank(winner: Candidate) -> tuple[float, int, bool]:
-        total = weighted_sum(_action(winner), settings)
+        total = weighted_sum(action_of(winner, settings), settings)
         return -round(total, TIE_DIGITS), build.count(winner.side), winner.side != "left"
 
     return min(level, key=rank)
 
 
-def _action(candidate: Candidate) -> Action:
-    return Action(candidate.stone_id, candidate.indices)
+def action_of(candidate: Candidate, settings: SelectionSettings) -> Action:
+    """Return what selection sees of a candidate."""
+    indices = candidate.indices
+    if settings.clip_nhr:
+        indices = replace(indices, NHR=min(1.0, indices.NHR))
+    return Action(candidate.stone_id, indices)
 
 
 def choose_by_score(

@@ -12,7 +12,7 @@ from drystone.planner.build import Build
 from drystone.planner.evaluate import action_indices
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Stock
-from drystone.poses import PoseBook, orientation_step_deg
+from drystone.poses import PoseBook
 from drystone.search.plan_result import other_resistances
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel

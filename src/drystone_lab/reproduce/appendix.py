@@ -1,6 +1,5 @@
 """Fig. B.33: 91 irregular stones; Fig. B.34: bricks of aspect 2 and 3 (B.2)."""
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -11,7 +10,7 @@ from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import METRICS, metric_cells
 from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.reproduce.study import StudyWalls, Trials, built
-from drystone_lab.runs.spec import Changes, from_file, generated, published
+from drystone_lab.runs.spec import Changes, generated, published
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import TWO_SIDED, Target, coarser
 
@@ -123,30 +122,13 @@ RUBBLE = Target(
 """The paper does not tell the size of the wall: it is that of the picture of the stones, which
 also shows an opening and wide joints."""
 
-MOST_PX = 96_000
-"""Pixels of the wall of a user's stones at the working resolution, at most."""
-
 
 def irregular_walls(context: Context) -> StudyWalls:
-    """Build a wall from one end and from both; of a user's own stones where there are any."""
+    """Build a wall from one end and from both."""
     wall = RUBBLE.here(context.data)
     if context.quick:
         wall = coarser(wall, 0.25)
-    if context.image is not None:
-        wall = wall_of_image(context)
     return built(context, (wall,), SIDES, (context.seed,))
-
-
-def wall_of_image(context: Context) -> Target:
-    """Return the wall of a user's stones: as large as their image, at :data:`MOST_PX` at most."""
-    if context.image is None:
-        raise ValueError("there is no image")
-    source = from_file(context.image)
-    size = source.stones(context.data).source
-    # Two digits, rounded down, so that the scale reads well and stays below the limit.
-    full = math.sqrt(MOST_PX / (size.width_px * size.height_px))
-    scale = max(0.01, min(1.0, math.floor(100 * full) / 100))
-    return Target(context.image.name, source, 0.0, 0.0, scale)
 
 
 def _irregular_table(found: StudyWalls) -> Table:

@@ -35,7 +35,7 @@ from drystone_lab.reproduce.noise_sets import (
 )
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials, walls_table, ways_table
 from drystone_lab.runs.outcome import RunOutcome
-from drystone_lab.table import Cell, Table
+from drystone_lab.table import Table
 from drystone_lab.walls import NOISES, NOISY, TWO_SIDED, coarser, generated_noise
 
 RULES = {"paper": TWO_SIDED, "random": (*TWO_SIDED, ("selection_rule", "random"))}
@@ -251,30 +251,6 @@ def _reference_table(levels: NoiseLevels) -> Table:
     )
 
 
-def _trends_table(levels: NoiseLevels) -> Table:
-    rows: list[tuple[Cell, ...]] = []
-    for name in METRICS:
-        each = {
-            f"{rule}: {over}": found
-            for rule in RULES
-            for over, found in trends(levels, name, rule).items()
-        }
-        each["published walls"] = reference_trend(levels, name)
-        for over, found in each.items():
-            known = (None, None, None) if found is None else (rounded(found.rho), found.p,
-                                                              found.count)  # fmt: skip
-            rows.append((name, over, *known))
-    return Table(
-        "Spearman's correlation with the noise",
-        ("figure", "over", "rho", "p", "pairs"),
-        tuple(rows),
-        (
-            "Walls of one set share its stones, so their p says little about noise in general; "
-            "over sets a pair is the median of a set.",
-        ),
-    )
-
-
 _levels_table = ways_table(
     "Medians and ranges by noise level, from two sides",
     ("noise, %", "set", "rule"),
@@ -380,7 +356,6 @@ NOISE = PaperItem(
     claims=noise_findings,
     tables={
         "levels": lambda levels: _levels_table(levels.built),
-        "trends": _trends_table,
         "reference": _reference_table,
         "walls": lambda levels: _walls_table(levels.built),
     },
@@ -424,15 +399,6 @@ def _gain(gains: Sequence[float], claim: str) -> ClaimCheck:
     # Four pairs cannot pass a test at this level even if all of them agree.
     enough = 0.5 ** len(gains) < LEVEL
     return ClaimCheck(claim, words, median(gains) > 0 and p < LEVEL if enough else None)
-
-
-def _turned_seconds(found: StudyWalls) -> Table:
-    rows: list[tuple[Cell, ...]] = []
-    for group in found.by_wall:
-        few, many = (median(o.times["wall"] for o in one.outcomes) for one in group)
-        rows.append((group.name, round(few, 2), round(many, 2), round(many / few, 1)))
-    columns = ("set", *(f"{name}, s" for name in ORIENTATIONS), "times as long")
-    return Table("Seconds a wall, median", columns, tuple(rows))
 
 
 def _turned_pictures(found: StudyWalls) -> Iterator[ItemPicture]:
@@ -486,6 +452,5 @@ TURNED = PaperItem(**paper("fig25"),
             ),
         ),
     },
-    times={"seconds": _turned_seconds},
     pictures=lambda found: tuple(_turned_pictures(found)),
 )  # fmt: skip

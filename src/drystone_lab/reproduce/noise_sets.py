@@ -4,8 +4,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from drystone.contacts.gaps import model_with_closed_gaps
-from drystone.io.published import published_file
-from drystone.io.wall_image import read_wall_image
 from drystone.metrics.measure import measure_labels
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
@@ -45,7 +43,7 @@ def reference_of(wall: Target, data: Path | None) -> ReferenceWall | None:
     """Measure the published wall of some stones; None of generated ones, which were never built."""
     if wall.stand_in or data is None:
         return None
-    return measured(read_wall_image(published_file(data, wall.source.name)), wall.scale)
+    return measured(wall.source.labels(data), wall.scale)
 
 
 def measured(labels: Labels, scale: float) -> ReferenceWall:
