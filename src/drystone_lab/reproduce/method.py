@@ -67,31 +67,20 @@ TABLE1 = PaperItem(
 )
 
 
-@dataclass(frozen=True, eq=False)
-class Run:
-    """A run of Algorithm 1."""
-
-    built: Construction
-    clusters: Mapping[int, int]
-    steps: tuple[Mapping[str, object], ...]  # Of the plan
+def followed(context: Context, wall: Target = PR) -> Construction:
+    """Do a run of Algorithm 1, and take it apart."""
+    return construction(context, wall.run(context.seed))
 
 
-def followed(context: Context, wall: Target = PR) -> Run:
-    """Do a run, and take it apart."""
-    spec = wall.run(context.seed)
-    (outcome,) = context.run((spec,))
-    return Run(construction(context, spec), outcome.clusters, tuple(outcome.plan["steps"]))
-
-
-def _steps(run: Run) -> Table:
+def _steps(run: Construction) -> Table:
     rows: list[tuple[Cell, ...]] = []
-    area = float(run.built.wall.site.width_px * run.built.wall.site.height_px)
+    area = float(run.wall.site.width_px * run.wall.site.height_px)
     filled = 0.0
-    for number, stage in enumerate(run.built.stages, 1):
+    for number, stage in enumerate(run.stages, 1):
         placement = stage.group.placement
         filled += placement.posed.area_px / area
         rows.append(
-            (number, placement.stone_id, run.clusters[placement.stone_id],
+            (number, placement.stone_id, run.workshop.clusters[placement.stone_id],
              placement.posed.angle_deg, placement.rotation_moves, len(stage.group.wedges),
              rounded(filled))
         )  # fmt: skip
@@ -99,18 +88,18 @@ def _steps(run: Run) -> Table:
     return Table("Algorithm 1, step by step", columns, tuple(rows))
 
 
-def _workflow(run: Run) -> tuple[ItemPicture, ...]:
-    stones, count = run.built.workshop.stones, len(run.built.stages)
+def _workflow(run: Construction) -> tuple[ItemPicture, ...]:
+    stones, count = run.workshop.stones, len(run.stages)
     size = stones.source
     shown = sorted({1, max(1, count // 3), max(1, 2 * count // 3), count})
     walls = [
-        (f"after {number} of {count} stones", run.built.stages[number - 1].after, run.clusters)
+        (f"after {number} of {count} stones", run.stages[number - 1].after, run.workshop.clusters)
         for number in shown
     ]
-    empty = Wall.empty(run.built.wall.site)
+    empty = Wall.empty(run.wall.site)
     panels = [
         Panel("the stones", wall_aspect(size.height_px / size.width_px),
-              lambda ax: plot_stones(stones, run.clusters, ax)),
+              lambda ax: plot_stones(stones, run.workshop.clusters, ax)),
         wall_panel("the landscape before the first stone: free between its bounds", empty, {}),
     ]  # fmt: skip
     return (
