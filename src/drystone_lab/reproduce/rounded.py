@@ -1,6 +1,6 @@
 """Figs. 26 and 27: walls of Fourier stones, round or elliptic, of one or of many sizes (§5.3)."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import partial
 from itertools import product
 from statistics import median
@@ -46,15 +46,16 @@ KINDS = tuple(_wall(*kind) for kind in product(SHAPES, RADII_PX))
 """The paper's four sets, each fixed size before the varied one of its shape."""
 
 
-def rounded_findings(found: StudyWalls) -> Iterator[ClaimCheck]:
+def rounded_findings(found: Iterable[Trials]) -> Iterator[ClaimCheck]:
     """Compare fixed with varied sizes, for each shape."""
+    all_of = tuple(found)
     claims = {
         "F_SF": "Walls of stones of a fixed size are poorly filled",
         "F_AV": "Variety of sizes enhances interlocking",
     }
     for (name, claim), shape in product(claims.items(), SHAPES):
         fixed, varied = (
-            figures_of(one.outcomes, name) for one in found if one.wall.name.startswith(shape)
+            figures_of(one.outcomes, name) for one in all_of if one.wall.name.startswith(shape)
         )
         words = (
             f"median {name} {median(fixed):.3g} for a fixed size and {median(varied):.3g} for "

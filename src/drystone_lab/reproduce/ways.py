@@ -1,7 +1,7 @@
 """Items that compare settings: beta, Fig. 16, Fig. 20, Fig. 21, Figs. B.30 to B.32."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from statistics import median
 
 from drystone_lab.pictures.charts import group_panels, plot_two_figures
@@ -30,6 +30,7 @@ from drystone_lab.walls import (
     PR_FREE_596,
     TWO_SIDED,
     R,
+    Target,
     coarser,
 )
 
@@ -224,11 +225,16 @@ NAMED: dict[str, Changes] = {
 """What else the paper's method could be; the last is what the released code comes with."""
 
 
-def named_variants(context: Context) -> StudyWalls:
+def named_variants(
+    context: Context,
+    walls: Sequence[Target] = MASONS,
+    framed: Sequence[Target] = (*FRAMED, PR_FREE_596),
+    count: int = 20,
+) -> StudyWalls:
     """Build the free walls by every variant, and by the paper's method those with their frames."""
-    walls = (coarser(R, 0.1), coarser(PR, 0.25)) if context.quick else MASONS
-    framed = () if context.quick else (*FRAMED, PR_FREE_596)
-    seeds = range(context.seed, context.seed + (2 if context.quick else 20))
+    if context.quick:
+        walls, framed, count = (coarser(R, 0.1), coarser(PR, 0.25)), (), 2
+    seeds = range(context.seed, context.seed + count)
     asked = [
         (wall, way, tuple(wall.run(seed, *changes) for seed in seeds))
         for wall in (*walls, *framed)
