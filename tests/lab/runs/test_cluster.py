@@ -160,11 +160,11 @@ def test_published_stones_where_the_worker_has_them(
     picture(tmp_path / "six" / "bricks.png", count=6)
     picture(tmp_path / "five" / "bricks.png", count=5)
     monkeypatch.setenv("DRYSTONE_DATA", str(tmp_path / "five"))
-    assert execute_there(spec, tmp_path / "six", None).figures["stones"] == 6
-    assert execute_there(spec, tmp_path / "elsewhere", None).figures["stones"] == 5
+    assert execute_there(spec, tmp_path / "six").figures["stones"] == 6
+    assert execute_there(spec, tmp_path / "elsewhere").figures["stones"] == 5
     monkeypatch.delenv("DRYSTONE_DATA")
     with pytest.raises(DrystoneError, match="elsewhere") as caught:
-        execute_there(spec, tmp_path / "elsewhere", None)
+        execute_there(spec, tmp_path / "elsewhere")
     assert caught.value.code == "E100"
 
 
