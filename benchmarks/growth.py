@@ -55,7 +55,7 @@ class Sizes:
     counts : tuple of int
         Stones of larger walls.
     repeats : int
-        Of each wall, but for the larger ones; the quickest counts.
+        Of each wall, but for the larger ones; the median counts.
     """
 
     stones: int | None

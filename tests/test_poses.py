@@ -180,7 +180,8 @@ def test_orientation_sets() -> None:
     def angles(orientations: str) -> list[float]:
         return [posed.angle_deg for posed in book.orientations(stone, orientations)]
 
-    assert angles("sf") == [first]
+    assert angles("sf") == [initial_angle_deg(stone)]
+    assert (first - initial_angle_deg(stone)) % 90.0 == 0.0
     assert angles("quarter") == [wrap_deg(first + turn) for turn in (0, 90, 180, 270)]
     assert angles("10deg") == [-180.0 + 10 * i for i in range(36)]
     assert angles("50deg") == [-180.0, -130.0, -80.0, -30.0, 20.0, 70.0, 120.0, 170.0]
@@ -208,3 +209,14 @@ def test_wrap(angle: float) -> None:
     wrapped = wrap_deg(angle)
     assert -180.0 <= wrapped < 180.0
     assert math.cos(math.radians(wrapped - angle)) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("quarter", [0, 1, 2, 3])
+def test_a_stone_lies_heavy_side_down_however_it_was_photographed(quarter: int) -> None:
+    mask = np.ones((6, 20), bool)
+    mask[:3, :7] = False  # Its top left is missing
+    stone = Stone(1, np.rot90(mask, quarter))
+    posed = PoseBook().orientations(stone, "quarter")
+    np.testing.assert_array_equal(posed[0].mask, mask)
+    assert posed[0].angle_deg == wrap_deg(-90.0 * quarter)
+    assert [one.mask.shape for one in posed] == [(6, 20), (20, 6), (6, 20), (20, 6)]

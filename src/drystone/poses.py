@@ -52,6 +52,22 @@ def initial_angle_deg(stone: Stone) -> float:
     return float(INITIAL_DEG[np.flatnonzero(factors >= factors.max() - 1e-12)[0]])
 
 
+def lying_angle_deg(stone: Stone) -> float:
+    """Return that of the four angles of largest SF at which a stone lies, heavy side down.
+
+    SF is the same after a quarter turn.  The pose does not depend on how the stone was turned in
+    the photograph.
+    """
+    first = initial_angle_deg(stone)
+
+    def rank(quarter: int) -> tuple[float, float, float, bytes]:
+        turns = np.array([rotation(first + 90.0 * quarter)])
+        left, bottom, _, top = turned_boxes(stone.hull, turns)[0].round(6).tolist()
+        return top - bottom, -bottom, -left, np.rot90(stone.mask, quarter).tobytes()
+
+    return wrap_deg(first + 90.0 * min(range(4), key=rank))
+
+
 def wrap_deg(angle_deg: float) -> float:
     """Bring an angle into [-180, 180)."""
     return (angle_deg + 180.0) % 360.0 - 180.0
@@ -140,9 +156,9 @@ class PoseBook:
         return posed
 
     def initial_angle(self, stone: Stone) -> float:
-        """Return :func:`initial_angle_deg` of a stone, computed once."""
+        """Return :func:`lying_angle_deg` of a stone, computed once."""
         if stone not in self._angles:
-            self._angles[stone] = initial_angle_deg(stone)
+            self._angles[stone] = lying_angle_deg(stone)
         return self._angles[stone]
 
     def angles(self, stone: Stone, orientations: str) -> list[float]:
@@ -150,15 +166,15 @@ class PoseBook:
         step = orientation_step_deg(orientations)
         if step is not None:
             return [-180.0 + i * step for i in range(math.ceil(360.0 / step - 1e-9))]
-        first = self.initial_angle(stone)
-        turns = (0,) if orientations == "sf" else (0, 90, 180, 270)
-        return [wrap_deg(first + quarter) for quarter in turns]
+        if orientations == "sf":
+            return [initial_angle_deg(stone)]
+        return [wrap_deg(self.initial_angle(stone) + quarter) for quarter in (0, 90, 180, 270)]
 
     def orientations(self, stone: Stone, orientations: str) -> tuple[PosedStone, ...]:
         """Return the poses of a stone that are candidates (DESIGN 4.2); the same pixels only once.
 
-        ``"sf"``: the pose of largest SF; ``"quarter"``: that and its quarter turns; ``"10deg"`` or
-        any step: [-180, 180) in steps from the source pose.
+        ``"quarter"``: the four of largest SF, lying first; ``"sf"``: that of them with the smallest
+        turn from the photograph; ``"10deg"`` or any step: [-180, 180) from there, in steps.
         """
         different: dict[tuple[tuple[int, ...], bytes], PosedStone] = {}
         for angle in self.angles(stone, orientations):

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import log
 from pathlib import Path
-from statistics import fmean
+from statistics import fmean, median
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -32,7 +32,7 @@ LEAST_STONES = 32
 
 @dataclass(frozen=True)
 class TimedWall:
-    """Times of one wall: seconds before the first step, and each step, the quickest of several."""
+    """Times of one wall: seconds before the first step, and each step, the median of several."""
 
     site: Site
     preparation: float
@@ -70,7 +70,7 @@ def rubble(
 def planned(
     wall: Target, data: Path | None, settings: PlannerSettings, *, seed: int, repeats: int
 ) -> TimedWall:
-    """Plan a wall several times, and keep the quickest repetition of every step."""
+    """Plan a wall several times, and keep the median repetition of every step."""
     stones = wall.source.stones(data)
     site = Site.from_source(wall.width, wall.height, wall.scale)
     profiles = []
@@ -80,8 +80,8 @@ def planned(
             pass
         profiles.append(planner.profile)
     each = zip(*(profile.steps for profile in profiles), strict=True)
-    steps = tuple(min(same, key=lambda step: step.seconds) for same in each)
-    return TimedWall(site, min(p.total("preparation") for p in profiles), steps)
+    steps = tuple(sorted(same, key=lambda step: step.seconds)[repeats // 2] for same in each)
+    return TimedWall(site, median(p.total("preparation") for p in profiles), steps)
 
 
 def fitted(points: Sequence[tuple[float, float]]) -> PowerLaw | None:

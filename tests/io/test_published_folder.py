@@ -36,7 +36,7 @@ def test_the_published_files_hash_as_they_should(data_dir: Path) -> None:
 
 def test_no_two_files_are_the_same() -> None:
     files = [file for published in SETS.values() for file in published.files]
-    assert len(files) == 8
+    assert len(files) == 114
     for field in ("name", "address", "sha256"):
         assert len({getattr(file, field) for file in files}) == len(files)
     assert all(len(f.address.split("/")[0]) == 40 and len(f.sha256) == 64 for f in files)

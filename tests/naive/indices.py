@@ -36,6 +36,16 @@ def painted(shape: tuple[int, int], mask: Mask, row: int, col: int) -> Mask:
     return image
 
 
+def shape_factor(mask: Mask, angle_deg: float) -> float:
+    """Eq. 3: pixels over the box of all their corners, turned."""
+    cells = [(x, y) for y, row in enumerate(mask[::-1]) for x, there in enumerate(row) if there]
+    cos, sin = math.cos(math.radians(angle_deg)), math.sin(math.radians(angle_deg))
+    corners = [(x + i, y + j) for x, y in cells for i in (0, 1) for j in (0, 1)]
+    across = [x * cos - y * sin for x, y in corners]
+    up = [x * sin + y * cos for x, y in corners]
+    return len(cells) / ((max(across) - min(across)) * (max(up) - min(up)))
+
+
 def dice_score(occupied: Mask, stone: Mask) -> float:
     """Eq. 5 on whole images: the box B is painted."""
     if not occupied.any():

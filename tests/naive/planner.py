@@ -8,11 +8,11 @@ import numpy as np
 
 from drystone.clusters import cluster_stones
 from drystone.contacts.blocks import model_from_labels
-from drystone.indices import Indices, shape_factor
+from drystone.indices import Indices
 from drystone.model.placement import Placement, Wedge
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site
-from drystone.model.stone import StoneSet
+from drystone.model.stone import Stone, StoneSet
 from drystone.planner.settings import PlannerSettings
 from drystone.poses import PoseBook
 from drystone.selection.algorithm2 import Action
@@ -60,15 +60,26 @@ class SlowPlanner:
         self.settings = PlannerSettings()
         self.site, self.seed = site, seed
         self.book = PoseBook(site.scale)
-        self.poses = {s.id: self.book.pose(s, self.book.initial_angle(s)) for s in stones}
+        self.poses = {s.id: self.quarter_turns(s) for s in stones}
         self.clusters = cluster_stones(stones, self.book)
-        heights = [posed.height_px for posed in self.poses.values()]
-        self.mean_height = sum(heights) / len(heights)
-        self.narrowest = min(posed.width_px for posed in self.poses.values())
+        lying = [poses[0] for poses in self.poses.values()]
+        self.mean_height = sum(posed.height_px for posed in lying) / len(lying)
+        self.narrowest = min(posed.width_px for posed in lying)
         self.labels = np.zeros((site.height_px, site.width_px), np.uint32)
         # Numbered in the order of placement, without wedges.
         self.order = np.zeros_like(self.labels)
         self.built: list[Tried] = []
+
+    def quarter_turns(self, stone: Stone) -> list[PosedStone]:
+        """The poses of largest SF, lying first; those of the same pixels only once."""
+        first = self.book.initial_angle(stone)
+        found: list[PosedStone] = []
+        for quarter in range(4):
+            posed = self.book.pose(stone, first + 90.0 * quarter)
+            if not any(np.array_equal(posed.mask, other.mask) for other in found):
+                found.append(posed)
+        fitting = self.site.height_px, self.site.width_px
+        return [p for p in found if p.height_px <= fitting[0] and p.width_px <= fitting[1]]
 
     def plan(self, at_most: int | None = None) -> list[Tried]:
         """Place stones until the wall is full, none is left, or five samples in a row failed."""
@@ -82,7 +93,7 @@ class SlowPlanner:
                 break
             rng = np.random.default_rng([self.seed, len(self.built), failures])
             sample = sample_stones("variant", remaining, self.clusters, rng)
-            found = [self.tried(self.poses[i], sample) for i in sample]
+            found = [self.tried(posed, sample) for i in sample for posed in self.poses[i]]
             candidates = [tried for tried in found if tried is not None]
             actions = [tried.action for tried in candidates]
             chosen = selection.algorithm2(actions, self.settings.selection.weights)
@@ -115,15 +126,16 @@ class SlowPlanner:
         stabilised = memory.stabilise(occupied, (posed, *spot), "left", next_wedge)
         if stabilised is None:
             return None
-        others = [float(self.poses[i].height_px) for i in sample if i != posed.stone.id]
-        return self.judged(stabilised.placement, stabilised.wedges, others, posed.angle_deg)
+        others = [
+            float(other.height_px) for i in sample if i != posed.stone.id for other in self.poses[i]
+        ]
+        return self.judged(stabilised.placement, stabilised.wedges, others)
 
     def judged(
         self,
         at: Placement,
         wedges: tuple[Wedge, ...],
         other_heights: list[float],
-        trial_angle_deg: float,
     ) -> Tried:
         """Everything that selection asks for."""
         occupied = self.labels > 0
@@ -135,7 +147,7 @@ class SlowPlanner:
         stone = indices.painted(occupied.shape, at.posed.mask, at.row, at.col)
         extent = indices.extent_of(stone)
         values = Indices(
-            SF=shape_factor(at.posed),
+            SF=indices.shape_factor(at.posed.stone.mask, at.posed.angle_deg),
             LFR=placement.filling_on_images(occupied, stone),
             GDS=indices.dice_score(occupied, stone),
             NHR=indices.neighbour_height_ratio(self.order, stone, other_heights),
@@ -144,4 +156,4 @@ class SlowPlanner:
             LLC=None if alphas is None else min(alphas) / self.settings.mu,
             boundary=min(extent.x0, occupied.shape[1] - extent.x1) < self.narrowest,
         )
-        return Tried(at, wedges, alphas, Action(at.stone_id, trial_angle_deg, values))
+        return Tried(at, wedges, alphas, Action(at.stone_id, values))

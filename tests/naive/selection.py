@@ -27,7 +27,7 @@ def _argmax(pi: list[Action], weights: Sequence[float], terms: int) -> Action:
 
     best = max(objective(a) for a in pi)
     level = [a for a in pi if objective(a) == best]
-    return min(level, key=lambda a: (a.stone_id, a.angle_deg))
+    return min(level, key=lambda a: a.stone_id)
 
 
 def _third(a: Action) -> float:

@@ -110,7 +110,7 @@ def test_constructors_check_too() -> None:
 
 def test_methods() -> None:
     paper = method_settings("paper")
-    assert (paper.sampling, paper.two_sided, paper.orientations) == ("variant", False, "sf")
+    assert (paper.sampling, paper.two_sided, paper.orientations) == ("variant", False, "quarter")
     assert (paper.placement.rule, paper.placement.reach, paper.stabilise.margin) == (
         "eq12", "any", 0.0,
     )  # fmt: skip

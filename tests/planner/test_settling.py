@@ -15,7 +15,7 @@ from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.planner.attempt import Attempt
 from drystone.planner.build import Build, Proposal
-from drystone.planner.dropping import Drop, Dropped, in_order, wedge_limits
+from drystone.planner.dropping import Drop, Dropped, _rank, in_order, wedge_limits
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
 from drystone.planner.proposing import Key, StoneTrial, one_by_one
@@ -95,7 +95,7 @@ def test_algorithm_2_compares_each_trial_where_its_first_drop_rests(choice: str)
     (found,) = proposer.proposals(trials, one_by_one)
     expected = []
     for mine in proposer.drops(trials, one_by_one):
-        assert [drop.rank for drop in mine] == sorted(drop.rank for drop in mine)
+        assert list(mine) == sorted(mine, key=_rank)
         resting = [p for drop in mine if (p := step.proposer()._settle(drop)) is not None]
         expected += resting[:1]
     assert len(found) > 4
@@ -116,7 +116,7 @@ def test_batches_are_those_of_all_drops_in_order(shortlist_size: int, choice: st
         ]
     proposer = step.proposer()
     left = [drop for mine in proposer.drops(trials, one_by_one) for drop in mine]
-    left.sort(key=lambda drop: drop.rank)
+    left.sort(key=_rank)
     assert len({drop.key for drop in left}) == len(left) > 30
     cautious = step.proposer()
     for count, batch in enumerate(cautious.batches(trials, one_by_one)):
@@ -150,7 +150,7 @@ def test_drops_whose_costs_are_equal_but_for_rounding_are_in_the_order_of_their_
     assert [(d.key[0][0], d.spot) for d in found] == [
         (3, 1), (1, 0), (1, 1), (2, 0), (3, 0), (1, 2)
     ]  # fmt: skip
-    assert [d.rank for d in found] == sorted(d.rank for d in found)
+    assert found == sorted(found, key=_rank)
     assert list(in_order([], book)) == []
 
 

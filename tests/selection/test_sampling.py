@@ -13,11 +13,16 @@ def sampled(sampling: Sampling, remaining: tuple[int, ...], seed: int = 0) -> tu
     return sample_stones(sampling, remaining, CLUSTERS, np.random.default_rng(seed))
 
 
-@pytest.mark.parametrize("sampling", ["variant", "twofold"])
+@pytest.mark.parametrize("sampling", ["variant", "twofold", "shrinking"])
 def test_variant_takes_one_stone_of_each_cluster_that_is_left(sampling: Sampling) -> None:
-    for remaining, clusters in ((ALL, [1, 2, 3, 4]), ((2, 3, 70_000), [1, 4])):
+    some, few = (1, 2, 3, 8, 70_000), (2, 3, 70_000)
+    for remaining, clusters in ((ALL, [1, 2, 3, 4]), (some, [1, 2, 4]), (few, [1, 4])):
         samples = [sampled(sampling, remaining, seed) for seed in range(60)]
-        assert all([CLUSTERS[i] for i in sample] == clusters for sample in samples)
+        # Topped up to the number of clusters at first, as far as there are stones.
+        count = len(clusters) if sampling == "shrinking" else min(4, len(remaining))
+        assert all(len({*sample}) == count for sample in samples)
+        assert all(list(sample) == sorted(sample) for sample in samples)
+        assert all(sorted({CLUSTERS[i] for i in sample}) == clusters for sample in samples)
         assert {i for sample in samples for i in sample} == set(remaining)
 
 
@@ -40,7 +45,7 @@ def test_full_takes_all_and_the_second_fold_the_cluster_of_the_winner() -> None:
     assert second_fold(9, ALL, CLUSTERS) == (9,)
 
 
-@pytest.mark.parametrize("sampling", ["variant", "uniform", "twofold", "full"])
+@pytest.mark.parametrize("sampling", ["variant", "shrinking", "uniform", "twofold", "full"])
 def test_the_generator_decides_and_nothing_is_nothing(sampling: Sampling) -> None:
     assert sampled(sampling, ALL, 7) == sampled(sampling, ALL, 7)
     assert sampled(sampling, ()) == ()

@@ -42,15 +42,15 @@ def add_settings(command: argparse.ArgumentParser) -> None:
     option("--policy", metavar="NAME",
            help="who chooses the stones of a single pass: paper, random, lowest, scalarised, "
            "filter, towers, learned, or one that is installed (docs/policies.md)")
-    option("--sampling", choices=["variant", "uniform", "twofold", "full"],
-           help="stones that are tried in a step: one of each cluster, as many at random, one of "
-           "each and then all of the winner's cluster, or all")
+    option("--sampling", choices=["variant", "shrinking", "uniform", "twofold", "full"],
+           help="stones that are tried in a step: one of each cluster, topped up or not; as many "
+           "at random; one of each and then all of the winner's cluster; or all")
     option("--placement", choices=["snug", "eq12", "lowest"])
     option("--reach", choices=["any", "above"], help="where a stone may be inserted")
     option("--two-sided", action=argparse.BooleanOptionalAction, default=None, dest="two_sided",
            help="build from both ends")
     option("--one-sided", action="store_false", dest="two_sided", help="same as --no-two-sided")
-    option("--orientations", metavar="SET", help="sf, quarter, or a step such as 10deg")
+    option("--orientations", metavar="SET", help="quarter, sf, or a step such as 10deg")
     option("--stabilise", choices=["both", "rotation", "wedge", "none"])
     option("--mu", type=float, help="coefficient of friction (default .58)")
     option("--geometry", choices=["exact", "raster"],

@@ -1,5 +1,6 @@
 """The published stone sets: what they are, where they are looked for, and how they get there."""
 
+import json
 import os
 import shlex
 from dataclasses import dataclass
@@ -68,56 +69,9 @@ class PublishedSet:
     files: tuple[PublishedFile, ...]  # label images, one id a stone
 
 
-# The files lie in two commits: the repository has no release to name instead.
-_WALLS = "51d0d033607310b1e15d561948f3495b361e9e44"
-_MAIN = "e24a0dcec1fe9a9ca46710d186088ef704b3da38"
-
-_ALMEIDA = {
-    f"{_WALLS}/Tests/Almeida/galary_by_constrution_method/variant_two_bothsides_cutting_R": (
-        "R",
-        "62a493ea836e23accf6a8ec32fb78488f1153a1bcddf0b2ad33c9ce56159c823",
-    ),
-    f"{_MAIN}/Tests/Almeida/PR": (
-        "PR",
-        "2239bb1dd8cb76a852a2af07e559c36598832630f1fb9fad8aae04d23b46e011",
-    ),
-    f"{_WALLS}/Tests/Almeida/galary_by_constrution_method/sample_twice_bothsides_cutting_IR": (
-        "IR",
-        "c30b231063ea5ce5ca88e77fa3dc4b6d9ee5c31059fac92f410cdc7563a26dad",
-    ),
-}
-_THANGAVELU = {
-    10: "605bd54d3313ddb96d12e1cab1ad94985d1d81ba6a6e77fc5f973a2177814c3e",
-    20: "132ab556fec769248b2581685e087cccd71dcc21f43b8114845a100cb77fa6fb",
-    40: "efe89f2e936c5ca8169a6c46c9543b71e6d0991055a286ce1fe68da4fe18f33d",
-    50: "a14da7a6f6f66357711b016f0bb5a0819a24f2ffdf5c00732e001afb6b70ac6e",
-    70: "f165bbce912276812f0438a15edffcb7425d15135fc3e0d8ea33b8c6f41694b9",
-}
-
 SETS = {
-    "almeida": PublishedSet(
-        "walls of masons: regular (R), partially regular (PR) and irregular (IR) stones",
-        "Almeida et al. (2021), Construction and Building Materials, "
-        "https://www.sciencedirect.com/science/article/pii/S0950061821030804",
-        tuple(
-            PublishedFile(f"almeida/{name}.png", f"{folder}/data/wall_labels.png", digest)
-            for folder, (name, digest) in _ALMEIDA.items()
-        ),
-    ),
-    "thangavelu": PublishedSet(
-        "polygonal stones at the noise levels 10, 20, 40, 50 and 70",
-        "V. Thangavelu, Y. Liu, M. Saboia and N. Napp (2018), Dry stacking for automated "
-        "construction with irregular objects, IEEE International Conference on Robotics and "
-        "Automation",
-        tuple(
-            PublishedFile(
-                f"thangavelu/noise_{noise}.png",
-                f"{_WALLS}/Tests/Thangavelu/data/stones_noise_{noise}_labels.png",
-                digest,
-            )
-            for noise, digest in _THANGAVELU.items()
-        ),
-    ),
+    name: PublishedSet(one["text"], one["source"], tuple(PublishedFile(*f) for f in one["files"]))
+    for name, one in json.loads(Path(__file__).with_name("published.json").read_text()).items()
 }
 """What there is, by name."""
 
@@ -158,19 +112,20 @@ def destination(given: str | None) -> Path:
 
 
 def published_file(folder: Path, name: str) -> Path:
-    """Return the path of a published file, which has the contents that were released.
+    """Return the path of a published file or folder, which has the contents that were released.
 
     Other contents are refused (E160): figures of other stones would pass for those of the
     published ones.  A file that is missing or in no set is not checked: whoever opens it says so.
     """
-    path = folder / name
     for known, published in SETS.items():
         for file in published.files:
-            if file.name == name and _sha256(path) not in (file.sha256, None):
+            path = folder / file.name
+            inside = file.name == name or file.name.startswith(f"{name}/")
+            if inside and _sha256(path) not in (file.sha256, None):
                 to = "" if folder == _cache() else f" --to {shlex.quote(str(folder))}"
                 cure = f"Move it away and fetch it again (`drystone fetch {known}{to}`), or"
                 raise _other_contents(path, cure, f"{RAW}/{file.address}")
-    return path
+    return folder / name
 
 
 def fetch_set(wanted: PublishedSet, folder: Path, *, address: str = RAW) -> list[Fetched]:

@@ -25,12 +25,10 @@ _fast = compiled("raster")
 
 
 def rotation(angle_deg: float) -> Pair:
-    """Return cosine and sine of an angle in degrees, exact at quarter turns."""
+    """Return cosine and sine of an angle in degrees; quarter turns only swap them."""
     quarter, rest = divmod(angle_deg, 90.0)
-    if rest == 0.0:
-        return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[int(quarter) % 4]
-    angle = math.radians(angle_deg)
-    return math.cos(angle), math.sin(angle)
+    cos, sin = math.cos(math.radians(rest)), math.sin(math.radians(rest))
+    return ((cos, sin), (-sin, cos), (-cos, -sin), (sin, -cos))[int(quarter) % 4]
 
 
 def turn(points: Floats, angle_deg: float) -> Floats:

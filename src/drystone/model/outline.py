@@ -8,7 +8,7 @@ from scipy import ndimage
 from skimage import measure
 
 from drystone.kernels.polygons import Points, area_and_centroid
-from drystone.kernels.raster import Mask
+from drystone.kernels.raster import Mask, turn
 
 HALVINGS = 6
 """How often the tolerance is halved before the contour is taken as it is."""
@@ -53,7 +53,13 @@ def stone_outline(mask: Mask, tolerance_px: float) -> Points:
         raise ValueError(f"the tolerance must be 0 or more, not {tolerance_px}")
     if not mask.any():
         raise ValueError("the mask has no pixel")
-    pixels = solid(mask)
+    # Traced in one of four positions: how a stone was turned in the photograph changes nothing.
+    ways = [np.rot90(solid(mask), quarter) for quarter in range(4)]
+    quarter = min(range(4), key=lambda way: (ways[way].shape, ways[way].tobytes()))
+    return turn(_traced(ways[quarter], tolerance_px), -90.0 * quarter)
+
+
+def _traced(pixels: Mask, tolerance_px: float) -> Points:
     contour = _contour(pixels)
     area_px = float(np.count_nonzero(pixels))
     mended, about_centroid = _mended(contour), contour - np.array(centroid_of(pixels))

@@ -233,3 +233,14 @@ def _moves(
             fell = move > settings.moved_share * size or turn > settings.turned_deg
             moves.append(BlockMove(block, number, move, move / size, turn, overlaps[block], fell))
     return moves
+
+
+def stays(built: Group, group: Group, mu: float = 0.58) -> bool:
+    """Say whether a stone and its wedges stay where they are put on blocks that do not move."""
+    scene = EngineScene(dict([*built, *group]), mu, fixed=frozenset(block for block, _ in built))
+    settings = BuildSettings()
+    table, watch = TiltingTable(scene, settings.engine), Watch(scene)
+    table.tilt(0.0)
+    rests = _rest(table, watch, settings)
+    moved = _moves([group], watch, scene, dict.fromkeys(scene.shapes, 0.0), settings)
+    return rests and not any(move.fell for move in moved)

@@ -131,10 +131,11 @@ class Attempt:
 
     def _best(self, proposals: Sequence[Proposal], rng: np.random.Generator) -> Candidate | None:
         if self._policy is not None:
-            name, site = self._settings.selection_rule, self._workshop.site
+            name, settings = self._settings.selection_rule, self._settings.policy
             return choose_by_policy(
-                proposals, self._judge, self._policy, name=name, site=site, rng=rng
-            )
+                proposals, self._judge, self._policy, name=name, build=self.build,
+                settings=settings, rng=rng,
+            )  # fmt: skip
         if self._settings.selection_rule == "score":
             return choose_by_score(proposals, self._judge, self._settings.score)
         return choose_by_algorithm2(proposals, self._judge, self._settings.selection)

@@ -1,11 +1,12 @@
 """Choosing the action of a step from the proposals of both sides (lines 17, Eq. 29)."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from drystone.model.site import Site
 from drystone.planner.build import Build, Candidate, Proposal
+from drystone.planner.holding import holds
 from drystone.planner.offers import offer
 from drystone.selection.algorithm2 import (
     TIE_DIGITS,
@@ -14,6 +15,8 @@ from drystone.selection.algorithm2 import (
     select_action,
     weighted_sum,
 )
+from drystone.selection.policies.settings import PolicySettings
+from drystone.selection.policies.table1 import ENGINE
 from drystone.selection.policy import Policy, choice_of
 from drystone.selection.scored import ScoreSettings, cheapest_first
 
@@ -28,7 +31,7 @@ def choose_by_algorithm2(
 ) -> Candidate | None:
     """Return the best action of one side by Algorithm 2; all proposals are analysed."""
     candidates = [candidate for candidate in judge(proposals) if candidate.sturdy]
-    selected = select_action([_action(c) for c in candidates], settings)
+    selected = select_action([action_of(c, settings) for c in candidates], settings)
     return None if selected is None else candidates[selected.position]
 
 
@@ -45,14 +48,18 @@ def better_side(
     level = [winner for winner in winners if winner.indices.GDS >= most - EQUAL_GDS]
 
     def rank(winner: Candidate) -> tuple[float, int, bool]:
-        total = weighted_sum(_action(winner), settings)
+        total = weighted_sum(action_of(winner, settings), settings)
         return -round(total, TIE_DIGITS), build.count(winner.side), winner.side != "left"
 
     return min(level, key=rank)
 
 
-def _action(candidate: Candidate) -> Action:
-    return Action(candidate.stone_id, candidate.proposal.trial_angle_deg, candidate.indices)
+def action_of(candidate: Candidate, settings: SelectionSettings) -> Action:
+    """Return what selection sees of a candidate."""
+    indices = candidate.indices
+    if settings.clip_nhr:
+        indices = replace(indices, NHR=min(1.0, indices.NHR))
+    return Action(candidate.stone_id, indices)
 
 
 def choose_by_score(
@@ -62,7 +69,7 @@ def choose_by_score(
 
     Proposals are analysed from the cheapest on, in batches, until enough of them stand.
     """
-    keys = [(p.stone_id, p.trial_angle_deg, float(p.side != "left"), p.spot) for p in proposals]
+    keys = [(p.stone_id, float(p.side != "left"), p.spot) for p in proposals]
     order = cheapest_first([p.cost for p in proposals], keys)
     standing: list[Candidate] = []
     for start in range(0, len(order), settings.analysed):
@@ -84,14 +91,27 @@ def choose_by_policy(
     policy: Policy,
     *,
     name: str,
-    site: Site,
+    build: Build,
+    settings: PolicySettings,
     rng: np.random.Generator,
 ) -> Candidate | None:
     """Return the action that a policy chooses among those after which the wall stands.
+
+    Where it asks an engine, what does not stay where it is put is dropped, and it chooses again.
 
     All proposals, those of all sides, are analysed; as with the other rules LLC must be positive.
     UsageError (E147): the policy failed.
     """
     standing = [c for c in judge(proposals) if c.stands]
-    position = choice_of(name, policy, [offer(one, site) for one in standing], rng)
-    return None if position is None else standing[position]
+    wall, mu = build.wall, build.analysis.model.mu
+    wedges = frozenset(wedge.id for wedge in wall.wedges)
+    asks = name in ENGINE and settings.gravity
+    while True:
+        offers = [offer(one, wall.site, wedges) for one in standing]
+        position = choice_of(name, policy, offers, rng)
+        if position is None:
+            return None
+        chosen = standing[position]
+        if not asks or holds(wall, chosen.stabilised, mu):
+            return chosen
+        standing = [one for one in standing if one is not chosen]

@@ -3,7 +3,6 @@
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
-from operator import attrgetter
 
 import numpy as np
 
@@ -32,7 +31,7 @@ class Drop:
     trial: StoneTrial
     spot: int  # which place of the trial's pose
     start: tuple[float, float]  # of its centroid, in the view, source px
-    # estimated cost, and what tells it from the others of a step: sorts the cheapest first
+    # estimated cost, and what tells it from the others of a step
     rank: tuple[float, tuple[Key, int]]
 
     @property
@@ -76,7 +75,7 @@ def drop_terms(site: Site, stock: Stock, rest: Rest, settings: PlannerSettings) 
 
 
 def in_order(dropped: Sequence[Dropped], book: OutlineBook) -> Iterator[Drop]:
-    """List the drops of some trials that are known, the cheapest first, by :attr:`Drop.rank`."""
+    """List the drops of some trials that are known, the cheapest first."""
     owners = [(one.trial, posed) for one in dropped for posed in one.trial.poses]
     places = [mine for one in dropped for mine in one.places]
     rows = np.concatenate([np.zeros((0, 4)), *places])
@@ -94,10 +93,15 @@ def in_order(dropped: Sequence[Dropped], book: OutlineBook) -> Iterator[Drop]:
         drop = Drop(one, spot_at, (x - left, y), (round(cost, 12), (one.key, spot_at)))
         # Rounding keeps the order of costs, except that it makes some equal.
         if equal and equal[-1].rank[0] != drop.rank[0]:
-            yield from sorted(equal, key=attrgetter("rank"))
+            yield from sorted(equal, key=_rank)
             equal = []
         equal.append(drop)
-    yield from sorted(equal, key=attrgetter("rank"))
+    yield from sorted(equal, key=_rank)
+
+
+def _rank(drop: Drop) -> tuple[object, ...]:
+    """Return what sorts drops: the angle does not, for it depends on the photograph."""
+    return drop.rank[0], drop.key[0][::2], drop.spot
 
 
 def shortlist(drops: Iterable[Drop], settings: SettleSettings) -> list[Drop]:

@@ -1,19 +1,25 @@
 """What a policy sees of the candidates of a step."""
 
+from collections.abc import Sequence
+
 from drystone.kernels.polygons import Points
 from drystone.model.site import Site
 from drystone.planner.build import Candidate
 from drystone.poses import wrap_deg
 from drystone.selection.policy import Offer, Point
-from drystone.statics.model import RigidBlockModel
+from drystone.statics.model import GROUND, Interface, RigidBlockModel
 
 UPWARD = 0.1
 """A contact bears a stone when its unit normal, into the stone, goes up by more than this: an
 upright face does not."""
 
 
-def offer(candidate: Candidate, site: Site) -> Offer:
-    """Return what a policy sees of a candidate after which the wall stands."""
+def offer(candidate: Candidate, site: Site, wedge_ids: frozenset[int] = frozenset()) -> Offer:
+    """Return what a policy sees of a candidate after which the wall stands.
+
+    `wedge_ids` are those of the wedges that the wall has already.
+    """
+    wedge_ids |= {wedge.id for wedge in candidate.stabilised.wedges}
     placement = candidate.stabilised.placement
     settled, posed = placement.settled, placement.posed
     left, bottom, right, top = (
@@ -41,6 +47,7 @@ def offer(candidate: Candidate, site: Site) -> Offer:
         top_px=top,
         centroid_px=placement.centroid(site.height_px),
         support_px=support_px(candidate.model, candidate.stone_id, scale),
+        touches=_touched(candidate.model, candidate.stone_id, wedge_ids),
         wedges=len(candidate.stabilised.wedges),
         wall_width_px=site.width_px,
         wall_height_px=site.height_px,
@@ -61,9 +68,8 @@ def support_px(
     them; of points above each other the lower one; working px.  `scale` is the working px in a
     unit of the model.
     """
-    interfaces = model.interfaces if model.added is None else model.added.interfaces
     bearing: list[Points] = []
-    for interface in interfaces:
+    for interface in _new_interfaces(model):
         up = interface.normal[1]
         into = (interface.block == stone_id) - (interface.other == stone_id)
         if into * up > UPWARD:
@@ -72,3 +78,14 @@ def support_px(
     if not points:
         return None
     return min(points), min(points, key=lambda point: (-point[0], point[1]))
+
+
+def _new_interfaces(model: RigidBlockModel) -> Sequence[Interface]:
+    return model.interfaces if model.added is None else model.added.interfaces
+
+
+def _touched(model: RigidBlockModel, stone_id: int, others: frozenset[int]) -> tuple[int, ...]:
+    """Return the ids of the stones that the last one touches; `others` are wedges."""
+    pairs = [{i.block, i.other} for i in _new_interfaces(model)]
+    touched = set().union(*(pair for pair in pairs if stone_id in pair))
+    return tuple(sorted(touched - {stone_id, GROUND} - others))

@@ -50,14 +50,15 @@ class PlannerSettings(Ranged):
         Stones are their pixels at the working resolution, or settle on the outlines of the source
         image (DESIGN 4.9).
     orientations : str
-        ``"sf"``, ``"quarter"``, or a step such as ``"10deg"`` (DESIGN 4.2).
+        ``"quarter"``, ``"sf"``, or a step such as ``"10deg"`` (DESIGN 4.2).
     orientation_choice : {"candidates", "placement"}
         With several orientations: each is a candidate of its own, or the placement rule picks one
         per stone.
-    sampling : {"variant", "uniform", "twofold", "full"}
+    sampling : {"variant", "shrinking", "uniform", "twofold", "full"}
         Which stones are tried in a step (§3.4, §5.1): ``"variant"``: one at random from each
-        cluster; ``"uniform"``: as many as there were clusters at first, at random; ``"twofold"``:
-        as variant, then all of the winner's cluster; ``"full"``: all that are left.
+        cluster, topped up at random to as many as there were clusters at first; ``"shrinking"``:
+        the same, not topped up; ``"uniform"``: as many at random; ``"twofold"``: as variant, then
+        all of the winner's cluster; ``"full"``: all that are left.
     selection_rule : str
         ``"algorithm2"``: the paper's filters and sums; ``"score"``: the least craft cost
         (:mod:`drystone.selection.scored`); or the name of a policy, with which a search's budget
@@ -86,7 +87,7 @@ class PlannerSettings(Ranged):
     """
 
     geometry: Literal["raster", "exact"] = "raster"
-    orientations: str = "sf"
+    orientations: str = "quarter"
     orientation_choice: Literal["candidates", "placement"] = "candidates"
     sampling: Sampling = "variant"
     selection_rule: str = "algorithm2"
@@ -181,7 +182,6 @@ METHODS: Mapping[str, PlannerSettings] = types.MappingProxyType(
         "paper": PlannerSettings(),
         "best": PlannerSettings(
             geometry="exact",
-            orientations="quarter",
             sampling="full",
             two_sided=True,
             selection_rule="score",

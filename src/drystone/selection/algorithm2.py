@@ -22,6 +22,8 @@ class SelectionSettings:
     ----------
     w_llc, w_nhr, w_third, w_gds, w_lfr : float
         Weights of LLC, -NHR, IWR or IS, GDS and LFR; the paper uses 1 for each.
+    clip_nhr : bool
+        NHR above 1 counts as 1: that of the first stone of a course has no bound (Eq. 8).
     """
 
     w_llc: float = 1.0
@@ -29,6 +31,7 @@ class SelectionSettings:
     w_third: float = 1.0
     w_gds: float = 1.0
     w_lfr: float = 1.0
+    clip_nhr: bool = False
 
     @property
     def weights(self) -> tuple[float, float, float, float, float]:
@@ -41,7 +44,6 @@ class Action:
     """What selection sees of a candidate."""
 
     stone_id: int
-    angle_deg: float  # angle of the trial pose
     indices: Indices
 
     @property
@@ -61,7 +63,8 @@ class Selected:
     """The best action."""
 
     position: int  # its place among the actions given
-    survivors: tuple[int, ...]  # how many actions passed each filter: K_1, K_2, ...
+    # the positions that passed each filter: K_1 of them, K_2, ...
+    survivors: tuple[tuple[int, ...], ...]
 
 
 def select_action(
@@ -72,17 +75,17 @@ def select_action(
     Filters keep what is at least the mean of the survivors, in the order LLC, -NHR, IWR | IS, GDS,
     LFR; boundary stones are compared with boundary stones at the third, inner ones with inner
     ones.  When a filter would keep nothing, the choice is by the sum of the terms so far.  Ties go
-    to the lower id, then to the smaller angle.
+    to the lower id, then to the first of the poses (of no angle: it depends on the photograph).
     """
     settings = settings or SelectionSettings()
     pool = [k for k, action in enumerate(actions) if action.llc > 0]  # Pi_1
     if not pool:
         return None
-    survivors = [len(pool)]
+    survivors = [tuple(pool)]
     used = 0
     for used in range(1, 6):
         kept = _at_least_mean(actions, pool, used - 1)
-        survivors.append(len(kept))
+        survivors.append(tuple(kept))
         if not kept:
             break
         pool = kept
@@ -92,7 +95,6 @@ def select_action(
         key=lambda k: (
             -round(weighted_sum(actions[k], settings, used), TIE_DIGITS),
             actions[k].stone_id,
-            actions[k].angle_deg,
         ),
     )
     return Selected(best, tuple(survivors))

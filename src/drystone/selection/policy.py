@@ -47,6 +47,8 @@ class Offer:
     support_px : ((float, float), (float, float)) or None
         The leftmost and the rightmost of the points that bear the stone from below (the line AB
         of §3.7), the same twice when there is one; None when there is none.
+    touches : tuple of int
+        Ids of the stones that it touches, wedges and the ground left out.
     wedges : int
         How many wedges hold it.
     wall_width_px, wall_height_px : int
@@ -65,6 +67,7 @@ class Offer:
     top_px: float
     centroid_px: Point
     support_px: tuple[Point, Point] | None
+    touches: tuple[int, ...] = ()
     wedges: int
     wall_width_px: int
     wall_height_px: int

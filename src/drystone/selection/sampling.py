@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-Sampling = Literal["variant", "uniform", "twofold", "full"]
+Sampling = Literal["variant", "shrinking", "uniform", "twofold", "full"]
 
 
 def sample_stones(
@@ -16,20 +16,23 @@ def sample_stones(
 ) -> tuple[int, ...]:
     """Return the ids of the stones to try first in a step; these and those that are left ascend.
 
-    ``"variant"``: one at random from each cluster that is not empty; ``"uniform"``: as many as
-    there were clusters at the start, at random; ``"twofold"``: as variant, then
-    :func:`second_fold`; ``"full"``: all, and nothing is drawn.  `clusters` has every stone of the
-    set.
+    ``"variant"``: one at random from each cluster that is not empty, topped up at random to as many
+    as there were clusters at the start; ``"shrinking"``: the same, not topped up; ``"uniform"``:
+    as many at random; ``"twofold"``: as variant, then :func:`second_fold`; ``"full"``: all, and
+    nothing is drawn.  `clusters` has every stone of the set.
     """
     if sampling == "full" or not remaining:
         return tuple(remaining)
-    if sampling == "uniform":
-        count = min(len(set(clusters.values())), len(remaining))
-        return tuple(sorted(int(i) for i in rng.choice(remaining, size=count, replace=False)))
-    members: dict[int, list[int]] = {}
-    for stone_id in remaining:
-        members.setdefault(clusters[stone_id], []).append(stone_id)
-    drawn = [int(rng.choice(members[cluster])) for cluster in sorted(members)]
+    drawn: set[int] = set()
+    if sampling != "uniform":
+        members: dict[int, list[int]] = {}
+        for stone_id in remaining:
+            members.setdefault(clusters[stone_id], []).append(stone_id)
+        drawn = {int(rng.choice(members[cluster])) for cluster in sorted(members)}
+    lacking = min(len(set(clusters.values())), len(remaining)) - len(drawn)
+    if sampling != "shrinking" and lacking:
+        others = [i for i in remaining if i not in drawn]
+        drawn.update(rng.choice(others, size=lacking, replace=False).tolist())
     return tuple(sorted(drawn))
 
 

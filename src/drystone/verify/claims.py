@@ -12,7 +12,7 @@ from drystone.planner.build import Build
 from drystone.planner.evaluate import action_indices
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Stock
-from drystone.poses import PoseBook, orientation_step_deg
+from drystone.poses import PoseBook
 from drystone.search.plan_result import other_resistances
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
@@ -216,11 +216,5 @@ def _allowed_turns(moves: int, settings: PlannerSettings) -> tuple[int, float, f
 
 
 def _orientation_angles(stone_id: int, reference: Reference) -> Sequence[float]:
-    step_deg = orientation_step_deg(reference.settings.orientations)
-    if step_deg is not None:
-        count = int(-(-(360.0 - 1e-9) // step_deg))
-        return [-180.0 + i * step_deg for i in range(count)]
-    first = reference.book.initial_angle(reference.stones.by_id(stone_id))
-    if reference.settings.orientations == "sf":
-        return [first]
-    return [first + quarter for quarter in (0.0, 90.0, 180.0, 270.0)]
+    stone = reference.stones.by_id(stone_id)
+    return reference.book.angles(stone, reference.settings.orientations)

@@ -96,7 +96,6 @@ def add_reproduce(command: argparse.ArgumentParser) -> None:
     )
     command.add_argument("--quick", action="store_true", help="a smaller version, in a minute each")
     command.add_argument("--data", metavar="DIR", help="published data (default: $DRYSTONE_DATA)")
-    command.add_argument("--image", metavar="PATH", help="your own stones, where they can be taken")
     command.add_argument("--seed", type=whole_from(0), default=1, help="the first one (default 1)")
     command.add_argument(
         "--jobs", type=whole_from(1), metavar="N", help="processes; never the result"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from drystone.cli.output import make_folder, print_json, say
 from drystone.errors import ExitCode, UsageError
 from drystone.io.folder_lock import locked
-from drystone_lab.reproduce.items import ALL, ITEMS, OWN_STONES, item_names
+from drystone_lab.reproduce.items import ALL, ITEMS, item_names
 
 if TYPE_CHECKING:  # loaded when something is made: --list does not wait for matplotlib
     from drystone_lab.reproduce.driver import MadeItem, Options
@@ -70,13 +70,6 @@ def _names(arguments: argparse.Namespace) -> tuple[str, ...]:
             cure="Write `drystone reproduce fig5 -o DIR`; `drystone reproduce --list` names all.",
         )
     asked = {name for each in arguments.names for name in item_names(each)}
-    if arguments.image is not None and not asked <= {*OWN_STONES}:
-        raise UsageError(
-            "E138",
-            "your own stones would change nothing in what is named.",
-            where="--image",
-            cure=f"It is for {', '.join(OWN_STONES)}.",
-        )
     return tuple(name for name in ITEMS if name in asked)
 
 
@@ -92,7 +85,6 @@ def _options(arguments: argparse.Namespace, work: "RunWorker") -> "Options":
         data=data,
         quick=arguments.quick,
         seed=arguments.seed,
-        image=None if arguments.image is None else Path(arguments.image),
         again=arguments.again,
         work=work,
         say=(lambda _: None) if arguments.quiet else say,

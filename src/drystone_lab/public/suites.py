@@ -13,13 +13,17 @@ from typing import Any
 from drystone.errors import UsageError
 from drystone.selection.policies.registry import BUILT_IN, GROUP, PAPER, RULES, rule_of
 from drystone_lab.runs.spec import STRIPS, Changes, RunSpec, flat, generated
-from drystone_lab.walls import IR, PR_560, PR_600, R, Target, chosen
+from drystone_lab.walls import IR_FRAMED, NOISY, PR_560, PR_600, R_FRAMED, Target, chosen
 
 SUITE_VERSION = 1
 """Of all suites together."""
 
 
-_MASONS = tuple(replace(wall, suite="masons") for wall in (PR_560, PR_600, R, IR))
+_MASONS = tuple(
+    replace(wall, name=wall.name.removesuffix(" framed"), suite="masons")
+    for wall in (PR_560, PR_600, R_FRAMED, IR_FRAMED)
+)
+_NOISE = tuple(replace(wall, suite="noise") for wall in NOISY)
 
 
 def _rounded(count: int, shape: str, width: float, height: float) -> Target:
@@ -94,6 +98,7 @@ _WALLS: Mapping[str, tuple[Target, ...]] = MappingProxyType(
         "rubble": _RUBBLE,
         "bricks": _BRICKS,
         "sizes": _SIZES,
+        "noise": _NOISE,
     }
 )
 
@@ -105,7 +110,8 @@ PUBLIC_SUITES: Mapping[str, str] = MappingProxyType(
         "rubble": "generated rubble for courses, 30, 60 and 120",
         "bricks": "equal bricks, 2:1 and 3:1, and with halves",
         "sizes": "generated polygons of one kind, 20 to 500",
-        ALL: "all walls of these six",
+        "noise": "the published polygons of Thangavelu et al. (2018), noise 10 to 80 %",
+        ALL: "all walls of these seven",
     }
 )
 """What each is about.  Of generated stones there are .85 of the wall, within .01."""

@@ -1,8 +1,8 @@
 """Fig. B.33: 91 irregular stones; Fig. B.34: bricks of aspect 2 and 3 (B.2)."""
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 
 from drystone.model.wall import Wall
@@ -10,9 +10,9 @@ from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import METRICS, metric_cells
 from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.reproduce.study import StudyWalls, Trials, built
-from drystone_lab.runs.spec import Changes, from_file, generated
+from drystone_lab.runs.spec import Changes, generated, published
 from drystone_lab.table import Cell, Table
-from drystone_lab.walls import TWO_SIDED, Target
+from drystone_lab.walls import TWO_SIDED, Target, coarser
 
 OVERLAP = 0.25
 """Of the brick's length, by which head joints of neighbouring courses are apart at least: the
@@ -115,31 +115,20 @@ def _irregular(count: int, width_px: int, height_px: int, courses: int) -> Targe
     return Target(name, source, width_px, height_px, 1.0, stand_in=True)
 
 
-GENERATED = _irregular(91, 480, 200, 8)
-QUICK = _irregular(24, 240, 100, 4)
-
-MOST_PX = 96_000
-"""Pixels of the wall of a user's stones at the working resolution, at most."""
+RUBBLE = Target(
+    "91 irregular stones", published("rubble/rubble.png", mask=True, min_area_px=20), 0, 0, 0.5,
+    instead=partial(_irregular, 91, 480, 200, 8),
+)  # fmt: skip
+"""The paper does not tell the size of the wall: it is that of the picture of the stones, which
+also shows an opening and wide joints."""
 
 
 def irregular_walls(context: Context) -> StudyWalls:
-    """Build a wall from one end and from both; of a user's own stones where there are any."""
-    wall = QUICK if context.quick else GENERATED
-    if context.image is not None:
-        wall = wall_of_image(context)
+    """Build a wall from one end and from both."""
+    wall = RUBBLE.here(context.data)
+    if context.quick:
+        wall = coarser(wall, 0.25)
     return built(context, (wall,), SIDES, (context.seed,))
-
-
-def wall_of_image(context: Context) -> Target:
-    """Return the wall of a user's stones: as large as their image, at :data:`MOST_PX` at most."""
-    if context.image is None:
-        raise ValueError("there is no image")
-    source = from_file(context.image)
-    size = source.stones(context.data).source
-    # Two digits, rounded down, so that the scale reads well and stays below the limit.
-    full = math.sqrt(MOST_PX / (size.width_px * size.height_px))
-    scale = max(0.01, min(1.0, math.floor(100 * full) / 100))
-    return Target(context.image.name, source, 0.0, 0.0, scale)
 
 
 def _irregular_table(found: StudyWalls) -> Table:
@@ -149,12 +138,14 @@ def _irregular_table(found: StudyWalls) -> Table:
         clusters = len({*outcome.clusters.values()})
         figures = outcome.figures
         rows.append(
-            (found.name, one.way, figures["placed"], figures["stones"], clusters,
+            (found.name, one.wall.said, one.way, figures["placed"], figures["stones"], clusters,
              *metric_cells(outcome), figures["wedges"])
         )  # fmt: skip
-    rows += [("the paper's", f"wall {n}", placed, 91, None, None, None, None, None, None)
+    rows += [("the paper's", "published", f"wall {n}", placed, 91, *[None] * 6)
              for n, placed in enumerate(PAPER_PLACED, 1)]  # fmt: skip
-    columns = ("stones", "built from", "placed", "of", "clusters", *METRICS, "wedges")
+    columns = (
+        "stones", "stones are", "built from", "placed", "of", "clusters", *METRICS, "wedges",
+    )  # fmt: skip
     return Table("Walls of many irregular stones", columns, tuple(rows))
 
 
@@ -177,12 +168,8 @@ IRREGULAR = PaperItem(
 ASPECTS = (2.0, 3.0)
 HEIGHT_PX = 12
 
-HALF = 0.5
-"""Bricks by which the wall is longer than a whole number: so that a bond can be flush in every
-other course, as there are no halves."""
-
-FULL_SIZE, QUICK_SIZE = (8, 8), (4, 4)
-"""Bricks in a course, and courses."""
+FULL_SIZE, QUICK_SIZE = (216, 17), (72, 4)
+"""Width of the wall in px, which is a whole number of either brick, and courses."""
 
 
 Bricks = Sequence[tuple[float, Trials, Wall]]
@@ -191,21 +178,23 @@ Bricks = Sequence[tuple[float, Trials, Wall]]
 
 def brick_walls(context: Context, size: tuple[int, int] | None = None) -> Bricks:
     """Build walls of bricks of both aspects; bricks are enough for all courses."""
-    length, courses = size or (QUICK_SIZE if context.quick else FULL_SIZE)
-    walls = tuple(
-        Target(
-            f"aspect {aspect:g}",
-            generated("brick", 1, count=length * courses, height_px=HEIGHT_PX, aspect=aspect),
-            (length + HALF) * round(HEIGHT_PX * aspect), courses * HEIGHT_PX, 1.0,
-        )
-        for aspect in ASPECTS
-    )  # fmt: skip
+    width, courses = size or (QUICK_SIZE if context.quick else FULL_SIZE)
+    walls = [_brick_wall(aspect, width, courses).here(context.data) for aspect in ASPECTS]
     found = built(context, walls, SIDES, (context.seed,))
     return [
         (aspect, one, found.wall(one))
         for side in SIDES
         for aspect, one in zip(ASPECTS, found.of(side), strict=True)
     ]
+
+
+def _brick_wall(aspect: float, width: int, courses: int) -> Target:
+    long = round(HEIGHT_PX * aspect)
+    count, size = courses * width // long, (width, courses * HEIGHT_PX, 1.0)
+    made = generated("brick", 1, count=count, height_px=HEIGHT_PX, aspect=aspect)
+    source = published(f"bricks/brick_{long}_{HEIGHT_PX}.png", copies=count)
+    name = f"aspect {aspect:g}"
+    return Target(name, source, *size, instead=partial(Target, name, made, *size, stand_in=True))
 
 
 def _bricks_table(found: Bricks) -> Table:
@@ -215,15 +204,16 @@ def _bricks_table(found: Bricks) -> Table:
         courses = courses_of(bricks_of(wall), HEIGHT_PX, round(HEIGHT_PX * aspect))
         rows.append(
             (
-                aspect, one.way, f"{spec.width:g} x {spec.height:g}", outcome.figures["placed"],
+                aspect, one.wall.said, one.way, f"{spec.width:g} x {spec.height:g}",
+                outcome.figures["placed"],
                 outcome.figures["stones"], *metric_cells(outcome), courses.lying,
                 courses.in_course, courses.courses, courses.joints, courses.crossed,
             )
         )  # fmt: skip
     return Table(
         "Walls of bricks of one size",
-        ("aspect", "built from", "wall, px", "placed", "of", *METRICS, "lying", "in courses",
-         "courses", "head joints", "crossed"),
+        ("aspect", "bricks are", "built from", "wall, px", "placed", "of", *METRICS, "lying",
+         "in courses", "courses", "head joints", "crossed"),
         tuple(rows),
         (
             f"Crossed: {OVERLAP:g} of the brick's length or more from every head joint of the "

@@ -26,9 +26,8 @@ class Options:
     """How items are made."""
 
     data: Path | None = None  # Folder of the published data
-    quick: bool = False  # quick, seed, image: See :class:`drystone_lab.reproduce.item.Context`
+    quick: bool = False  # quick, seed: See :class:`drystone_lab.reproduce.item.Context`
     seed: int = 1
-    image: Path | None = None
     # Make items again that are finished; their walls are taken from the folder all the same
     again: bool = False
     work: RunWorker = one_by_one  # Who plans the walls
@@ -55,9 +54,7 @@ def reproduce(
 ) -> Iterator[MadeItem]:
     """Make items and yield what became of each; the report is written anew after every one."""
     items = {name: item_named(name) for name in ITEMS} if items is None else items
-    request = request_of(
-        quick=options.quick, seed=options.seed, image=options.image, data=options.data
-    )
+    request = request_of(quick=options.quick, seed=options.seed, data=options.data)
     report = ReportFolder(folder)
     progress = ItemProgress(options.say, len(names))
     runner = Runner(report.runs, options.data, options.work, progress.walls)
@@ -135,7 +132,7 @@ class _Maker:
 
     def _make(self, name: str, item: PaperItem) -> dict[str, Any]:
         begun = time.perf_counter()
-        context = Context(self.runner, self.options.quick, self.options.seed, self.options.image)
+        context = Context(self.runner, self.options.quick, self.options.seed)
         output = item.make(context)
         about = {
             "request": self.request,

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.cluster.hierarchy import ward
 
 from drystone.clusters import ClusterSettings, cluster_stones, stone_features
-from drystone.drawing.palette import OUTLINE_COLOUR, WEDGE_COLOUR, cluster_colour
+from drystone.drawing.palette import OUTLINE_COLOUR, cluster_colour
 from drystone.drawing.pictures.stones import plot_stones
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
@@ -28,9 +28,6 @@ MARKERS = ("o", "s", "D", "^", "v", "P", "X", "p")
 MARKER_PT = 6.0
 LABEL_PT = 8.0
 """Size of a point, and how far from it its id is written."""
-
-COUNT_LOOKS = (("#0072b2", "o"), (WEDGE_COLOUR, "s"), ("#008655", "^"))
-"""Colour and marker of a set."""
 
 
 def plot_features(
@@ -74,29 +71,6 @@ def _write_ids(ax: Axes, features: NDArray[np.floating], stone_ids: Sequence[int
             str(stone_id), features[number].tolist(), ways[best].tolist(), size=6,
             textcoords="offset points", ha="center", va="center_baseline",
         )  # fmt: skip
-
-
-def plot_counts(
-    counts: Mapping[str, Sequence[tuple[float, int]]],
-    ax: Axes | None = None,
-    *,
-    claim: tuple[float, int, str] | None = None,
-) -> Axes:
-    """Draw how many clusters there are over the distance threshold."""
-    ax = Figure(figsize=COUNTS_IN, layout="constrained").add_subplot() if ax is None else ax
-    for rank, (name, points) in enumerate(counts.items()):
-        colour, marker = COUNT_LOOKS[rank % len(COUNT_LOOKS)]
-        ax.plot(*zip(*points, strict=True), marker, color=colour, linestyle="-", markersize=4,
-                linewidth=1.2, label=name, gid=f"counts-{name}")  # fmt: skip
-    if claim is not None:
-        distance, number, who = claim
-        ax.plot([distance], [number], "x", color=OUTLINE_COLOUR, markersize=9,
-                markeredgewidth=1.6, label=who, gid="claim", zorder=5)  # fmt: skip
-    name_axes(ax, "distance threshold of Ward's linkage", "clusters")
-    ax.set_ylim(bottom=0)
-    ax.grid(visible=True, axis="y", linewidth=0.3)
-    ax.legend(fontsize=7, frameon=False)
-    return ax
 
 
 DISTANCE = ClusterSettings().distance
@@ -208,17 +182,6 @@ def _picture(drawn: ClusteredStones) -> ItemPicture:
     )  # fmt: skip
 
 
-def _counts_picture(counted: Sequence[ClusteredStones]) -> ItemPicture:
-    counts = {one.name: sorted(one.counts.items()) for one in counted}
-    claim = (0.2, PAPER_CLUSTERS, "PR in the paper")
-    figure = Figure(figsize=COUNTS_IN, layout="constrained")
-    plot_counts(counts, figure.add_subplot(), claim=claim)
-    return ItemPicture(
-        "fig5-thresholds", figure,
-        "How many clusters there are over the distance threshold.",
-    )  # fmt: skip
-
-
 def _claims(counted: Sequence[ClusteredStones]) -> Iterator[ClaimCheck]:
     drawn = counted[0]
     low, high = drawn.between(PAPER_CLUSTERS)
@@ -238,6 +201,6 @@ CLUSTERS = PaperItem(
         "stones": lambda sets: _stones(sets[0]),
         "thresholds": _thresholds,
     },
-    pictures=lambda sets: (_picture(sets[0]), _counts_picture(sets)),
+    pictures=lambda sets: (_picture(sets[0]),),
     needs=(PR.source.name,),
 )

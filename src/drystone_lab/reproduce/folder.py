@@ -6,7 +6,6 @@ import os
 import platform
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from datetime import UTC, datetime
-from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -14,7 +13,7 @@ from typing import Any
 from PIL import PngImagePlugin
 
 from drystone.drawing.files import save
-from drystone.errors import DrystoneError, InputError, UsageError
+from drystone.errors import DrystoneError, UsageError
 from drystone.io.folder_lock import has_files
 from drystone.io.published import SETS
 from drystone.kernels.backend import describe
@@ -37,7 +36,7 @@ def utc_now() -> datetime:
     return datetime.now(UTC)
 
 
-def request_of(*, quick: bool, seed: int, image: Path | None, data: Path | None) -> dict[str, Any]:
+def request_of(*, quick: bool, seed: int, data: Path | None) -> dict[str, Any]:
     """Return what the contents of an item depend on, beside its name.
 
     Published are the files that are there: some items leave out rows whose stones are not.
@@ -47,7 +46,6 @@ def request_of(*, quick: bool, seed: int, image: Path | None, data: Path | None)
         "version": version("drystone"),
         "quick": quick,
         "seed": seed,
-        "image_sha256": None if image is None else _sha256(image),
         "published": [name for name in files if data is not None and (data / name).is_file()],
     }
 
@@ -73,20 +71,6 @@ def made_with(now: TimeOfDay) -> dict[str, Any]:
         "kernels": describe(),
         "packages": {name: version(name) for name in PACKAGES},
     }
-
-
-def _sha256(image: Path) -> str:
-    """Return the hash of a file, or of the names and contents of all files of a folder."""
-    if not image.exists():
-        raise InputError(
-            "E100", "the picture does not exist.", where=str(image), cure="Check the path."
-        )
-    if image.is_file():
-        return sha256(image.read_bytes()).hexdigest()
-    whole = sha256()
-    for path in sorted(path for path in image.iterdir() if path.is_file()):
-        whole.update(f"{path.name}\0".encode() + sha256(path.read_bytes()).digest())
-    return whole.hexdigest()
 
 
 TIMES = "_times"

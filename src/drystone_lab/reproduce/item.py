@@ -30,7 +30,6 @@ class Context:
     # A smaller version: the same kind of walls, fewer or smaller ones, a minute of one core at most
     quick: bool = False
     seed: int = 1  # Of all random choices, or the first of several
-    image: Path | None = None  # A user's own stones, for items that take them
     asked: list[RunSpec] = field(default_factory=list)  # Runs so far: what the item is made of
 
     @property

@@ -12,17 +12,22 @@ if TYPE_CHECKING:  # names are listed without waiting for matplotlib
 
 ITEMS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
+        "table1": ("what each system looks at (§2)", "method.TABLE1"),
+        "fig3-4": ("Algorithm 1 on a real run (§3.2)", "method.WORKFLOW"),
         "fig5": ("clusters of the stones PR (§3.4)", "fig5.CLUSTERS"),
         "fig6-7": ("the indices, good and bad, on real stones (§3.5)", "fig6_7.INDICES"),
         "fig8": ("feasible positions of a stone (§3.6)", "fig8.POSITIONS"),
         "beta": ("the threshold of GDS in Eq. 12: 0, .5, .7, .9 (§3.6)", "ways.BETA"),
         "fig9": ("an unstable stone, turned and wedged (§3.7)", "fig9.STABILISING"),
+        "fig10": ("who passes which filter of Algorithm 2 (§3.8)", "method.SELECTION"),
+        "fig11": ("two rigid blocks in contact (§4.1)", "method.RIGID"),
         "fig12": ("Pic-to-Ri: from pixels to rigid blocks (§4.2)", "fig12.PIC_TO_RI"),
         "fig13": ("the masons' walls, and with their gaps closed (§5.1)", "masons.FIG13"),
         "fig14-15": ("the base case PR and its mechanisms (§5.1)", "base_case.BASE_CASE"),
         "fig16": ("sampling: uniform, two-fold, full batch (§5.1)", "ways.SAMPLING"),
         "fig17": ("shortest paths along the joints (§5.2)", "fig17.PATHS"),
         "table2": ("walls 1-5: fixed seed, best of 20, masons; with fig18 (§5.2)", "table2.TABLE2"),
+        "variants": ("the paper's method and what it could have been (§5.2)", "ways.VARIANTS"),
         "fig19": ("wedges of walls 3 and 5 (§5.2)", "base_case.WEDGES"),
         "fig20": ("stabilisation: filling against area of wedges (§5.2)", "ways.STABILISATION"),
         "fig21": ("walls built from both ends (§5.2)", "ways.BOTH_ENDS"),
@@ -41,16 +46,14 @@ ITEMS: Mapping[str, tuple[str, str]] = MappingProxyType(
 
 ALSO: Mapping[str, str] = MappingProxyType(
     {
-        "fig6": "fig6-7", "fig7": "fig6-7", "fig14": "fig14-15", "fig15": "fig14-15",
+        "fig3": "fig3-4", "fig4": "fig3-4", "fig6": "fig6-7", "fig7": "fig6-7", "fig14": "fig14-15",
+        "fig15": "fig14-15",
         "fig18": "table2", "fig22": "fig22-24", "fig23": "fig22-24", "fig24": "fig22-24",
         "fig26": "fig26-27", "fig27": "fig26-27", "figB30": "figB30-32", "figB31": "figB30-32",
         "figB32": "figB30-32",
     }
 )  # fmt: skip
 """Other names, of those that are made together."""
-
-OWN_STONES = ("figB33",)
-"""Items that can be made of a user's own stones."""
 
 ALL = "all"
 
@@ -59,7 +62,7 @@ def item_names(asked: str) -> tuple[str, ...]:
     """Return the names of the items that are meant.
 
     >>> item_names("fig18"), len(item_names("all"))
-    (('table2',), 23)
+    (('table2',), 28)
     """
     if asked == ALL:
         return tuple(ITEMS)

@@ -12,8 +12,6 @@ from scipy import ndimage
 from drystone.clusters import cluster_stones
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.gaps import model_with_closed_gaps, settle_gaps
-from drystone.io.published import published_file
-from drystone.io.wall_image import read_wall_image
 from drystone.metrics.measure import WallMetrics, measure_labels
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
@@ -145,7 +143,7 @@ def masons_wall(wall: Target, data: Path | None) -> TracedWall:
     if data is None:
         raise FileNotFoundError(wall.source.name)
     stones = wall.source.stones(data)
-    labels = reduce_labels(read_wall_image(published_file(data, wall.source.name)), wall.scale)
+    labels = reduce_labels(wall.source.labels(data), wall.scale)
     return TracedWall(wall, labels, cluster_stones(stones, PoseBook(wall.scale)))
 
 

@@ -30,17 +30,13 @@ from drystone_lab.reproduce.cells import (
 from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.reproduce.noise_sets import (
     GAP_RANGE,
-    NOISES,
-    PUBLISHED,
     ReferenceWall,
-    generated_set,
-    noise_set,
     reference_of,
 )
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials, walls_table, ways_table
 from drystone_lab.runs.outcome import RunOutcome
-from drystone_lab.table import Cell, Table
-from drystone_lab.walls import TWO_SIDED
+from drystone_lab.table import Table
+from drystone_lab.walls import NOISES, NOISY, TWO_SIDED, coarser, generated_noise
 
 RULES = {"paper": TWO_SIDED, "random": (*TWO_SIDED, ("selection_rule", "random"))}
 """The paper's method, from both ends; or any candidate, all with one chance."""
@@ -115,11 +111,10 @@ def trends(levels: NoiseLevels, name: str, rule: str = "paper") -> dict[str, Tre
     """Correlate a figure with the noise: over walls; over sets, which alone are independent."""
     walls = [(level.noise, value) for level in levels.all
              for value in figures_of(level.rule(rule).outcomes, name)]  # fmt: skip
-    sets = [(level, (level.noise, level.rule(rule).median(name))) for level in levels.all]
+    sets = [(level.noise, level.rule(rule).median(name)) for level in levels.all]
     return {
         "walls": trend(walls),
-        "sets": trend([pair for _, pair in sets]),
-        "published": trend([pair for level, pair in sets if not level.generated]),
+        "sets": trend(sets),
     }
 
 
@@ -190,7 +185,7 @@ def _trending(levels: NoiseLevels, name: str, sign: int, claim: str) -> ClaimChe
         return ClaimCheck(claim, said, None)
     if sign:
         return ClaimCheck(claim, said, sets.rho * sign > 0 and sets.clear)
-    # Eight medians may miss a trend that the walls, or the published sets alone, do show.
+    # Eight medians may miss a trend that the walls do show.
     others = any(found.clear for found in each.values() if found is not None)
     return ClaimCheck(claim, said, False if sets.clear else None if others else True)
 
@@ -256,50 +251,21 @@ def _reference_table(levels: NoiseLevels) -> Table:
     )
 
 
-def _trends_table(levels: NoiseLevels) -> Table:
-    rows: list[tuple[Cell, ...]] = []
-    for name in METRICS:
-        each = {
-            f"{rule}: {over}": found
-            for rule in RULES
-            for over, found in trends(levels, name, rule).items()
-        }
-        each["published walls"] = reference_trend(levels, name)
-        for over, found in each.items():
-            known = (None, None, None) if found is None else (rounded(found.rho), found.p,
-                                                              found.count)  # fmt: skip
-            rows.append((name, over, *known))
-    return Table(
-        "Spearman's correlation with the noise",
-        ("figure", "over", "rho", "p", "pairs"),
-        tuple(rows),
-        (
-            "Walls of one set share its stones, so their p says little about noise in general; "
-            "over sets a pair is the median of a set.",
-        ),
-    )
-
-
-def _stones(trials: Trials) -> str:
-    return "generated" if trials.wall.stand_in else "published"
-
-
 _levels_table = ways_table(
     "Medians and ranges by noise level, from two sides",
     ("noise, %", "set", "rule"),
-    lambda one: (one.wall.number, _stones(one), one.way),
+    lambda one: (one.wall.number, one.wall.said, one.way),
 )
 _walls_table = walls_table(
     "Walls of polygons of several noise levels, from two sides",
     ("noise, %", "stones", "rule", "seed", "placed", "of", *METRICS, f"F_SF above {FILLED:g}"),
     lambda one, spec, outcome: (
-        one.wall.number, _stones(one), one.way, spec.seed, outcome.figures["placed"],
+        one.wall.number, one.wall.said, one.way, spec.seed, outcome.figures["placed"],
         outcome.figures["stones"], *metric_cells(outcome), is_full(outcome),
     ),
     (
         "Rule paper: Algorithm 2. Rule random: any of the candidates that stand, all with the same "
         "chance.",
-        "Generated stones are our own noisy polygons; those of these levels are not public.",
     ),
 )  # fmt: skip
 
@@ -314,9 +280,8 @@ def _noise_pictures(levels: NoiseLevels) -> Iterator[ItemPicture]:
         walls.append(level.built.drawn(level.ours, f"{title}, seed {seed}", place))
     yield ItemPicture(
         "fig22", plot_walls(walls, 2),
-        "A wall of each noise level, the one in the middle by filling. Generated: stones of our "
-        "own, where those of the paper are not public. Numbers are the order of placement, colours "
-        "the clusters, wedges are dark red.",
+        "A wall of each noise level, the one in the middle by filling. Numbers are the order of "
+        "placement, colours the clusters, wedges are dark red.",
     )  # fmt: skip
     yield _scatter(levels)
     names = NoiseNames(f"F_SF > {FILLED:g}", f"F_SF <= {FILLED:g}", "published walls",
@@ -381,28 +346,24 @@ NOISE = PaperItem(
     study=partial(
         noise_levels,
         study=Study(
-            walls=tuple(map(noise_set, NOISES)),
+            walls=NOISY,
             ways=RULES,
             seeds=10,
             quick_seeds=2,
-            quick_walls=tuple(noise_set(noise, 0.15) for noise in NOISES),
+            quick_walls=tuple(coarser(wall, 0.15) for wall in NOISY),
         ),
     ),
     claims=noise_findings,
     tables={
         "levels": lambda levels: _levels_table(levels.built),
-        "trends": _trends_table,
         "reference": _reference_table,
         "walls": lambda levels: _walls_table(levels.built),
     },
     pictures=lambda levels: tuple(_noise_pictures(levels)),
-    needs=tuple(noise_set(noise).source.name for noise in PUBLISHED),
 )
 
-ORIENTATIONS = ("sf", "10deg")
-"""Setting of each: that of largest shape factor, and 36."""
-
-TURNED_NOISES = (40, 50, 70, 80)
+ORIENTATIONS = ("quarter", "10deg")
+"""Setting of each: the four of largest shape factor, and 36."""
 
 
 def _gains(found: StudyWalls, name: str) -> list[float]:
@@ -440,15 +401,6 @@ def _gain(gains: Sequence[float], claim: str) -> ClaimCheck:
     return ClaimCheck(claim, words, median(gains) > 0 and p < LEVEL if enough else None)
 
 
-def _turned_seconds(found: StudyWalls) -> Table:
-    rows: list[tuple[Cell, ...]] = []
-    for group in found.by_wall:
-        few, many = (median(o.times["wall"] for o in one.outcomes) for one in group)
-        rows.append((group.name, round(few, 2), round(many, 2), round(many / few, 1)))
-    columns = ("set", *(f"{name}, s" for name in ORIENTATIONS), "times as long")
-    return Table("Seconds a wall, median", columns, tuple(rows))
-
-
 def _turned_pictures(found: StudyWalls) -> Iterator[ItemPicture]:
     walls = [
         found.titled(one, f"{one.wall.name}, orientations {one.way}, seed {found.seeds[0]}")
@@ -456,7 +408,7 @@ def _turned_pictures(found: StudyWalls) -> Iterator[ItemPicture]:
     ]
     yield ItemPicture(
         "fig25", plot_walls(walls, 2),
-        "Left: each stone in its orientation of largest shape factor. Right: in steps of 10 "
+        "Left: each stone in its four orientations of largest shape factor. Right: in steps of 10 "
         "degrees, the same seed.",
     )  # fmt: skip
     panels = {
@@ -477,12 +429,12 @@ def _turned_pictures(found: StudyWalls) -> Iterator[ItemPicture]:
 
 TURNED = PaperItem(**paper("fig25"),
     study=Study(
-        walls=tuple(map(noise_set, TURNED_NOISES)),
+        walls=NOISY,
         ways={name: (*TWO_SIDED, ("orientations", name)) for name in ORIENTATIONS},
         seeds=3,
         quick_seeds=1,
         # A few generated stones: 36 orientations of each are still a thousand candidates.
-        quick_walls=(generated_set(70, 10, 0.1),),
+        quick_walls=(generated_noise(70, 10, 0.1),),
     ),
     claims=turned_findings,
     tables={
@@ -500,7 +452,5 @@ TURNED = PaperItem(**paper("fig25"),
             ),
         ),
     },
-    times={"seconds": _turned_seconds},
     pictures=lambda found: tuple(_turned_pictures(found)),
-    needs=tuple(noise_set(noise).source.name for noise in TURNED_NOISES if noise in PUBLISHED),
 )  # fmt: skip

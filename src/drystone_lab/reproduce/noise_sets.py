@@ -1,35 +1,14 @@
-"""The stones of Thangavelu et al. (2018), and our own of the noise levels between (§5.3)."""
+"""The published walls of Thangavelu et al. (2018), measured (§5.3)."""
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 
 from drystone.contacts.gaps import model_with_closed_gaps
-from drystone.io.published import published_file
-from drystone.io.wall_image import read_wall_image
 from drystone.metrics.measure import measure_labels
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
-from drystone_lab.runs.spec import generated, published
 from drystone_lab.walls import Target
-
-NOISES = tuple(range(10, 90, 10))
-"""Levels of the paper, %."""
-
-PUBLISHED = (10, 20, 40, 50, 70)
-"""Levels whose stones are public; the others are generated."""
-
-SCALE = 0.3
-
-COUNT = 26
-"""Stones of a generated set: the published ones have 28, 23, 26, 27 and 25."""
-
-AREA_SHARE = 0.696
-"""Area of all stones over that of the wall: .790, .659, .702, .649 and .680 in the published."""
-
-ASPECT = 1.80
-"""Width over height of the wall: 1.71, 1.98, 1.76, 1.73 and 1.82 there."""
 
 GAP_SOURCE_PX = 20 / 3
 """Widest gap of a published wall that counts as a contact: 2 px at the working scale."""
@@ -60,38 +39,11 @@ class ReferenceWall:
         return named[name]
 
 
-def noise_set(noise: int, scale: float = SCALE) -> Target:
-    """Return the stones of a noise level, %, and their wall; published ones where there are any."""
-    if noise in PUBLISHED:
-        source = published(f"thangavelu/noise_{noise}.png")
-        return Target(f"noise {noise} %", source, 0.0, 0.0, scale, noise)
-    return generated_set(noise, COUNT, scale)
-
-
-def generated_set(noise: int, count: int, scale: float) -> Target:
-    """Return generated stones, with a wall of which they are the same share as published ones.
-
-    The noise is the deviation of the corners over the shorter side of the brick, %.
-
-    >>> wall = generated_set(30, 26, 0.3)
-    >>> round(wall.source.stones(None).total_area_px / (wall.width * wall.height), 3)
-    0.696
-    >>> round(wall.width / wall.height, 2)
-    1.8
-    """
-    source = generated("polygon", 2018_00 + noise, count=count, noise=noise / 100)
-    wall_px = source.stones(None).total_area_px / AREA_SHARE
-    height = round(math.sqrt(wall_px / ASPECT))
-    width = round(wall_px / height)
-    name = f"noise {noise} % (generated)"
-    return Target(name, source, width, height, scale, noise, stand_in=True)
-
-
 def reference_of(wall: Target, data: Path | None) -> ReferenceWall | None:
     """Measure the published wall of some stones; None of generated ones, which were never built."""
     if wall.stand_in or data is None:
         return None
-    return measured(read_wall_image(published_file(data, wall.source.name)), wall.scale)
+    return measured(wall.source.labels(data), wall.scale)
 
 
 def measured(labels: Labels, scale: float) -> ReferenceWall:

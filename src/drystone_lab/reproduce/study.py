@@ -28,13 +28,11 @@ class Study:
     seeds: int = 20  # seeds, quick_seeds: How many, the same for all; in the quick version
     quick_seeds: int = 3
     quick_walls: tuple[Target, ...] = ()  # Of the quick version; empty for the same
-    at_hand: bool = False  # Leave out sets whose stones are not there
 
     def __call__(self, context: Context) -> "StudyWalls":
         """Build the walls."""
         walls = (context.quick and self.quick_walls) or self.walls
-        if self.at_hand:
-            walls = tuple(wall for wall in walls if wall.source.is_there(context.data))
+        walls = tuple(wall.here(context.data) for wall in walls)
         seeds = self.quick_seeds if context.quick else self.seeds
         return built(context, walls, self.ways, range(context.seed, context.seed + seeds))
 

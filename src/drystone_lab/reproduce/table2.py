@@ -144,8 +144,8 @@ def _comparison(found: Five) -> Table:
             "Best: the highest filling, then the highest multiplier over mu, both to one decimal "
             "(§5.2); the paper does not say how both count, so the fullest is shown too.",
             "All stones: the area of all stones over the target, the largest F_SF there can be.",
-            "Walls 4 and 5 of the paper are of stones that are not public; ours are of generated "
-            "ones, so their rows are no comparison.",
+            "Walls 4 and 5: the stones of Liu et al. (2018) are not public; ours are generated, so "
+            "their rows are no comparison.",
         ),
     )
 

@@ -1,13 +1,13 @@
 """Items that compare settings: beta, Fig. 16, Fig. 20, Fig. 21, Figs. B.30 to B.32."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from statistics import median
 
 from drystone_lab.pictures.charts import group_panels, plot_two_figures
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, ClaimCheck, rounded
-from drystone_lab.reproduce.item import ItemPicture, PaperItem, paper
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.reproduce.study import (
     Study,
     StudyWalls,
@@ -15,12 +15,24 @@ from drystone_lab.reproduce.study import (
     pairs_table,
     sheet,
     strips,
+    trials_of,
     walls_table,
     ways_table,
 )
 from drystone_lab.runs.spec import Changes
 from drystone_lab.table import Table
-from drystone_lab.walls import IR, LIU_5, MASONS, PR, TWO_SIDED, R, coarser
+from drystone_lab.walls import (
+    FRAMED,
+    IR,
+    LIU_5,
+    MASONS,
+    PR,
+    PR_FREE_596,
+    TWO_SIDED,
+    R,
+    Target,
+    coarser,
+)
 
 MASONS_STONES = tuple(wall.source.name for wall in MASONS)
 
@@ -177,16 +189,6 @@ def _wedge_cells(one: Trials) -> tuple[float | None, ...]:
     return one.median("wedges"), rounded(median(shares))
 
 
-def _pairs_of_wall(number: int, found: StudyWalls) -> Table:
-    table = pairs_table(
-        "{wall}: both against other ways to stabilise, pairs of one seed",
-        "both",
-        STABILISED[1:],
-        "other",
-    )
-    return table(found.by_wall[number])
-
-
 STABILISATION = PaperItem(
     **paper("fig20"),
     study=Study(
@@ -194,7 +196,6 @@ STABILISATION = PaperItem(
         ways={method: (("stabilise.method", method),) for method in STABILISED},
         quick_seeds=4,
         quick_walls=(coarser(LIU_5, 0.2), coarser(IR, 0.2)),
-        at_hand=True,
     ),
     claims=_stabilised_claims,
     tables={
@@ -206,13 +207,64 @@ STABILISATION = PaperItem(
             _wedge_cells,
             ("Variant sampling, one-sided. F_SF is without wedges.",),
         ),
-        "fig20_pairs_1": lambda found: _pairs_of_wall(0, found),
-        "fig20_pairs_2": lambda found: _pairs_of_wall(-1, found),
     },
     pictures=lambda found: [
         _wedges_picture(group, number) for number, group in enumerate(found.by_wall, 1)
     ],
+    needs=(IR.source.name,),
 )
+
+NAMED: dict[str, Changes] = {
+    "paper": (),
+    "sf: one pose a stone": (("orientations", "sf"),),
+    "shrinking sets": (("sampling", "shrinking"),),
+    "NHR at most 1": (("selection.clip_nhr", True),),
+    "turns of up to 45 degrees": (("stabilise.max_turn_deg", 45.0), ("stabilise.max_pivots", 10)),
+    "two-fold, two-sided": (("sampling", "twofold"), *TWO_SIDED),
+}
+"""What else the paper's method could be; the last is what the released code comes with."""
+
+
+def named_variants(
+    context: Context,
+    walls: Sequence[Target] = MASONS,
+    framed: Sequence[Target] = (*FRAMED, PR_FREE_596),
+    count: int = 20,
+) -> StudyWalls:
+    """Build the free walls by every variant, and by the paper's method those with their frames."""
+    if context.quick:
+        walls, framed, count = (coarser(R, 0.1), coarser(PR, 0.25)), (), 2
+    seeds = range(context.seed, context.seed + count)
+    asked = [
+        (wall, way, tuple(wall.run(seed, *changes) for seed in seeds))
+        for wall in (*walls, *framed)
+        for way, changes in NAMED.items()
+        if wall in walls or not changes
+    ]
+    return StudyWalls(context, trials_of(context, asked))
+
+
+VARIANTS = PaperItem(
+    **paper("variants"),
+    study=named_variants,
+    tables={
+        "variants": ways_table(
+            "Walls by the variant of the paper's method",
+            ("wall", "variant", "working px"),
+            lambda one: (
+                one.wall.name, one.way,
+                f"{one.specs[0].width * one.wall.scale:.0f} x "
+                f"{one.specs[0].height * one.wall.scale:.0f}",
+            ),
+            ("all stones placed in",),
+            lambda one: (_whole(one),),
+        ),
+    },
+    pictures=lambda found: (
+        strips(found, "variants", ("F_SF", "F_LR"), lambda one: f"{one.wall.name}\n{one.way}"),
+    ),
+    needs=MASONS_STONES,
+)  # fmt: skip
 
 ONE, TWO = "one-sided", "two-sided"
 SIDES: dict[str, Changes] = {ONE: (), TWO: TWO_SIDED}

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from drystone.errors import DrystoneError, UsageError
-from drystone.model.stone import StoneSet
 from drystone_lab.runs.outcome import RunOutcome, execute
 from drystone_lab.runs.runner import RunWorker, died
 from drystone_lab.runs.spec import RunSpec
@@ -63,14 +62,14 @@ def check_versions(client: Any) -> None:
         raise _other_version(f"drystone is {here} here, and {listed}.")
 
 
-def execute_there(spec: RunSpec, data: Path | None, stones: StoneSet | None) -> RunOutcome:
+def execute_there(spec: RunSpec, data: Path | None) -> RunOutcome:
     """Plan the wall of a run, on a worker.
 
     `data` is the folder here; if it is not there on this machine, that of ``DRYSTONE_DATA``.
     """
     if data is not None and not data.is_dir():
         data = Path(os.environ.get("DRYSTONE_DATA", data))
-    return execute(spec, data, stones)
+    return execute(spec, data)
 
 
 def _distributed() -> Any:
@@ -108,9 +107,8 @@ def _outcomes(
     """Do runs."""
     if not specs:
         return
-    own = [spec.source.stones(data) if spec.source.kind == "file" else None for spec in specs]
     # pure: another client of the cluster may ask for the same run with another folder of data.
-    futures = client.map(execute_there, specs, [data] * len(specs), own, pure=False)
+    futures = client.map(execute_there, specs, [data] * len(specs), pure=False)
     spec_of = {future.key: spec for future, spec in zip(futures, specs, strict=True)}
     asked = {future.key: future for future in futures}
     ended = distributed.as_completed(futures, loop=client.loop)

@@ -3,18 +3,22 @@
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
-from drystone.errors import InputError
 from drystone.generate import GENERATORS
+from drystone.io.images import decode
 from drystone.io.published import published_file
+from drystone.io.read_settings import ReadSettings
 from drystone.io.read_stones import read_stones
+from drystone.io.wall_image import read_wall_image
 from drystone.model.stone import StoneSet
+from drystone.model.wall import Labels
 from drystone.planner.settings import PlannerSettings, method_settings
 
 Scalar = bool | int | float | str
@@ -66,18 +70,17 @@ def told(changes: Changes) -> str:
     return ", ".join(f"{name} = {value}" for name, value in changes)
 
 
-SourceKind = Literal["published", "file", "fourier", "polygon", "brick", "rubble"]
+SourceKind = Literal["published", "fourier", "polygon", "brick", "rubble"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class StoneSource:
-    """Stones by name: published ones, a file, or what a generator makes from a seed."""
+    """Stones by name: published ones, or what a generator makes from a seed."""
 
     kind: SourceKind  # Of the source
     name: str = ""  # Path in the folder of published data (``"almeida/PR.png"``), or of the file
     seed: int = 0
     settings: tuple[tuple[str, Scalar], ...] = ()
-    sha256: str = ""  # Of the file, see :func:`from_file`; empty if it may be any
 
     def __str__(self) -> str:
         """Return a few words for messages."""
@@ -85,7 +88,7 @@ class StoneSource:
 
     def is_there(self, data: Path | None) -> bool:
         """Return False when published stones are asked for and the folder has none of this name."""
-        return self.kind != "published" or (data is not None and (data / self.name).is_file())
+        return self.kind != "published" or (data is not None and (data / self.name).exists())
 
     def check(self, data: Path | None) -> None:
         """Refuse other stones in the place of published ones."""
@@ -97,47 +100,46 @@ class StoneSource:
         if self.kind == "published":
             if data is None:
                 raise FileNotFoundError(self.name)
-            return read_stones(published_file(data, self.name))
-        if self.kind == "file":
-            return _same(read_stones(Path(self.name)), self)
+            path, how = published_file(data, self.name), dict(self.settings)
+            if "copies" in how:  # of a brick that fills its picture
+                (one,) = read_stones(np.pad(_grey(path) > 0, 1))
+                numbers = range(1, 1 + int(how["copies"]))
+                return StoneSet(tuple(replace(one, id=number) for number in numbers))
+            if "least_px" in how:
+                return read_stones(self.labels(data))
+            return read_stones(path, settings=ReadSettings(**how))  # type: ignore[arg-type]
         settings, make = GENERATORS[self.kind]
         return make(settings(**dict(self.settings)), np.random.default_rng(self.seed))
+
+    def labels(self, data: Path) -> Labels:
+        """Return a published picture as a wall; ids of less than `least_px` px are none."""
+        path, least = published_file(data, self.name), dict(self.settings).get("least_px")
+        if least is None:
+            return read_wall_image(path)
+        grey = _grey(path)
+        return np.where(np.bincount(grey.ravel())[grey] < int(least), 0, grey).astype(np.uint32)
 
     def as_dict(self) -> dict[str, Any]:
         """Return what JSON writes."""
         return {
             "kind": self.kind, "name": self.name, "seed": self.seed,
-            "settings": dict(self.settings), "sha256": self.sha256,
+            "settings": dict(self.settings),
         }  # fmt: skip
 
 
-def _same(stones: StoneSet, source: StoneSource) -> StoneSet:
-    """Refuse a file of other contents than the source's."""
-    if source.sha256 and stones.source.sha256 != source.sha256:
-        raise InputError(
-            "E100",
-            "the file was changed since its runs were asked for.",
-            where=source.name,
-            cure="Give the command again.",
-        )
-    return stones
+def _grey(path: Path) -> NDArray[Any]:
+    return decode(path.read_bytes(), 10**7).values[..., 0]
 
 
-def published(name: str) -> StoneSource:
-    """Return the source of a published set.
+def published(name: str, **settings: Scalar) -> StoneSource:
+    """Return the source of a published file or folder of masks, read with some settings.
+
+    With `copies` there are so many of its single stone.
 
     >>> published("almeida/PR.png").is_there(None)
     False
     """
-    return StoneSource(kind="published", name=name)
-
-
-def from_file(path: Path) -> StoneSource:
-    """Return the source of stones in a file or a folder of masks, as it is now.
-
-    Runs of it are found again as long as its contents are the same.
-    """
-    return StoneSource(kind="file", name=str(path), sha256=read_stones(path).source.sha256)
+    return StoneSource(kind="published", name=name, settings=tuple(settings.items()))
 
 
 def generated(kind: SourceKind, seed: int, **settings: Scalar) -> StoneSource:

@@ -48,9 +48,6 @@ def test_items_are_named_one_a_line(run: Run) -> None:
         ((), "nothing to make is named"),
         (("fig5",), "no folder to write to is named"),
         (("fig99", "-o", "x"), "'fig99'"),
-        (("fig8", "-o", "x", "--image", "y"), "--image"),
-        (("fig5", "fig8", "-o", "x", "--image", "y"), "--image"),
-        (("all", "-o", "x", "--image", "y"), "--image"),
     ],
 )
 def test_what_is_not_said_well(

@@ -2,7 +2,7 @@ import numpy as np
 from matplotlib.colors import to_hex
 
 from drystone.drawing.palette import cluster_colour
-from drystone_lab.reproduce.fig5 import plot_counts, plot_features
+from drystone_lab.reproduce.fig5 import plot_features
 
 FEATURES = np.array([[0.2, 1.0], [0.8, 0.5], [0.81, 0.5]])
 
@@ -15,10 +15,3 @@ def test_stones_are_at_their_features_in_the_colour_of_their_cluster():
         np.testing.assert_allclose(line.get_xydata(), [at])
         assert to_hex(line.get_markerfacecolor()) == cluster_colour(cluster)
     assert lines["stone-3"].get_marker() != lines["stone-5"].get_marker()
-
-
-def test_counts_and_what_somebody_else_found():
-    ax = plot_counts({"PR": [(0.1, 12), (0.2, 7)]}, claim=(0.2, 7, "the paper"))
-    lines = {line.get_gid(): line.get_xydata().tolist() for line in ax.lines}
-    assert lines == {"counts-PR": [[0.1, 12], [0.2, 7]], "claim": [[0.2, 7]]}
-    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["PR", "the paper"]

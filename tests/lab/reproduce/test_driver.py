@@ -185,24 +185,6 @@ def test_published_stones_that_are_not_there(tmp_path: Path) -> None:
     assert "Not made" not in (tmp_path / "out" / "index.html").read_text("utf-8")
 
 
-def test_your_own_stones_are_known_by_their_contents(tmp_path: Path) -> None:
-    out, image = tmp_path / "out", tmp_path / "stones"
-    given = replace(OPTIONS, image=image)
-    with pytest.raises(InputError, match="E100"):
-        make(out, "beta", options=given)
-    image.write_bytes(b"one")
-    assert [make(out, "beta", options=given)[0].status for _ in range(2)] == ["made", "kept"]
-    image.write_bytes(b"two")
-    assert make(out, "beta", options=given)[0].status == "made"
-    image.unlink()
-    image.mkdir()
-    (image / "a.png").write_bytes(b"two")
-    assert [make(out, "beta", options=given)[0].status for _ in range(2)] == ["made", "kept"]
-    (image / "a.png").rename(image / "b.png")
-    assert make(out, "beta", options=given)[0].status == "made"
-    assert make(out, "beta")[0].status == "made"
-
-
 def test_an_error_stops_one_item(tmp_path: Path) -> None:
     failed, after = make(tmp_path, "figB33", "beta")
     assert (failed.status, after.status) == ("failed", "made")

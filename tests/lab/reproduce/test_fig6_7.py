@@ -26,7 +26,7 @@ def places(moment):
 
 def test_places_are_all_at_which_a_stone_rests(moment, places):
     stone_id = moment.remaining[0]
-    (posed,) = moment.workshop.poses(stone_id)
+    posed = moment.workshop.poses(stone_id)[0]
     occupied, mask = moment.wall.occupied, posed.mask
     height, width = occupied.shape
     expected = {
@@ -36,7 +36,7 @@ def test_places_are_all_at_which_a_stone_rests(moment, places):
         if not np.any(occupied[row : row + mask.shape[0], col : col + mask.shape[1]] & mask)
         and rests_stably(occupied, mask, row, col, col + posed.anchor[0], 0.0)
     }
-    found = {(p.row, p.col) for p in places if p.posed.stone.id == stone_id}
+    found = {(p.row, p.col) for p in places if p.posed is posed}
     assert {place for place in found if place[1] % EVERY == 0} == expected != set()
     assert {p.posed.stone.id for p in places} <= set(moment.remaining)
 

@@ -33,17 +33,17 @@ def test_a_hole_is_no_joint_and_the_last_course_needs_one_beside_it():
 
 
 def test_planned_bricks_are_read_off_their_wall(tmp_path):
-    output = of(BRICKS, (2, 2)).make(context(tmp_path))
+    output = of(BRICKS, (72, 2)).make(context(tmp_path))
     found = rows(output, "walls")
     assert [(row["aspect"], row["built from"]) for row in found] == [
         (2.0, "one side"), (3.0, "one side"), (2.0, "two sides"), (3.0, "two sides")
     ]  # fmt: skip
-    assert [run.width for run in output.runs] == [60, 60, 90, 90]
+    assert [run.width for run in output.runs] == [72, 72, 72, 72]
     # Runs have one aspect after the other, rows one side.
     for run, row in zip(output.runs, (found[0], found[2], found[1], found[3]), strict=True):
         wall = context(tmp_path).wall(run)
         boxes = bricks_of(wall)
-        assert row["placed"] == row["lying"] == len(boxes) == 4
+        assert row["placed"] == row["lying"] == len(boxes) == 144 // (12 * row["aspect"])
         for box, placement in zip(boxes, wall.placements, strict=True):
             pixels = wall.labels[::-1] == placement.stone_id
             assert pixels[box.bottom : box.top, box.left : box.right].all()
@@ -52,4 +52,4 @@ def test_planned_bricks_are_read_off_their_wall(tmp_path):
         {patch.get_facecolor() for patch in ax.patches if str(patch.get_gid()).startswith("stone")}
         for ax in output.pictures[0].figure.axes
     ]
-    assert [len(each) for each in colours] == [4, 4, 4, 4]
+    assert [len(each) for each in colours] == [6, 4, 6, 4]

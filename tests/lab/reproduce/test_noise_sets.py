@@ -2,49 +2,29 @@
 
 import numpy as np
 import pytest
-from PIL import Image
 
-from drystone.io.read_stones import read_stones
 from drystone_lab.reproduce.noise_sets import (
-    AREA_SHARE,
-    ASPECT,
-    COUNT,
-    NOISES,
-    PUBLISHED,
-    generated_set,
     measured,
-    noise_set,
     reference_of,
 )
+from drystone_lab.walls import NOISY
 
 
-def test_levels_without_published_stones_are_generated_and_say_so():
-    assert NOISES == (10, 20, 30, 40, 50, 60, 70, 80)
-    for noise in NOISES:
-        wall = noise_set(noise)
-        assert wall.number == noise
-        assert wall.stand_in is ("generated" in wall.name) is (noise not in PUBLISHED)
-        assert (wall.width == 0) is not wall.stand_in
-    assert dict(noise_set(60).source.settings) == {"count": COUNT, "noise": 0.6}
+def test_generated_stones_stand_in_only_where_published_ones_are_not_at_hand(data_dir, tmp_path):
+    assert [wall.number for wall in NOISY] == [10, 20, 30, 40, 50, 60, 70, 80]
+    for wall in NOISY:
+        assert wall.here(data_dir) is wall
+        assert (wall.said, wall.width) == ("published", 0)
+        made = wall.here(tmp_path)
+        assert (made.name, made.number, made.scale) == (wall.name, wall.number, wall.scale)
+        assert made.said == "generated: not in the data folder"
+        stones = made.source.stones(None)
+        assert stones.total_area_px / (made.width * made.height) == pytest.approx(0.696, abs=2e-3)
 
 
-def test_generated_stones_are_the_share_of_their_wall_that_published_ones_are(data_dir):
-    shares, aspects, counts = [], [], []
-    for noise in PUBLISHED:
-        path = data_dir / noise_set(noise).source.name
-        with Image.open(path) as image:
-            width, height = image.size
-        stones = read_stones(path)
-        shares.append(stones.total_area_px / (width * height))
-        aspects.append(width / height)
-        counts.append(len(stones))
-    assert pytest.approx(np.mean(shares), abs=5e-4) == AREA_SHARE
-    assert pytest.approx(np.mean(aspects), abs=5e-3) == ASPECT
-    assert round(np.mean(counts)) == COUNT
-    wall = generated_set(80, 12, 0.2)
-    area = sum(stone.mask.sum() for stone in wall.source.stones(None))
-    assert area / (wall.width * wall.height) == pytest.approx(AREA_SHARE, abs=2e-3)
-    assert wall.width / wall.height == pytest.approx(ASPECT, abs=0.01)
+def test_the_published_sets_have_these_stones(data_dir):
+    counts = [len(wall.source.stones(data_dir)) for wall in NOISY]
+    assert counts == [28, 23, 22, 26, 27, 23, 25, 18]
 
 
 def two_piers(gap):
@@ -76,9 +56,10 @@ def test_the_resistance_of_a_reference_needs_its_gaps_closed():
 
 
 def test_only_published_walls_are_references(data_dir):
-    assert reference_of(noise_set(30), data_dir) is None
-    assert reference_of(noise_set(20), None) is None
-    found = reference_of(noise_set(20), data_dir)
+    wall = NOISY[1]
+    assert reference_of(wall.here(None), data_dir) is None
+    assert reference_of(wall, None) is None
+    found = reference_of(wall, data_dir)
     assert found is not None
     assert found.stones == 23
     assert found.F_SF == pytest.approx(0.659, abs=5e-4)

@@ -22,7 +22,6 @@ OTHER_SOURCES = {
     "name": "a.png",
     "seed": 2,
     "settings": (("count", 7),),
-    "sha256": "0",
 }
 
 

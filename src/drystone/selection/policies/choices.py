@@ -32,7 +32,7 @@ class Lowest:
             offer = candidates[k]
             firsts = offer.centroid_px[1], -offer.indices.LFR, offer.from_end_px
             rounded = (round(value, TIE_DIGITS) for value in firsts)
-            return (*rounded, offer.stone_id, offer.angle_deg)
+            return (*rounded, offer.stone_id)
 
         return min(range(len(candidates)), key=rank)
 
@@ -52,11 +52,11 @@ class Scalarised:
     def choose(self, candidates: Sequence[Offer], rng: np.random.Generator) -> int | None:  # noqa: ARG002
         """See :class:`drystone.selection.policy.Policy`; ties as in Algorithm 2."""
 
-        def rank(k: int) -> tuple[float, int, float]:
+        def rank(k: int) -> tuple[float, int]:
             offer = candidates[k]
-            action = Action(offer.stone_id, offer.angle_deg, offer.indices)
+            action = Action(offer.stone_id, offer.indices)
             total = weighted_sum(action, self._weights) + self._w_sf * offer.indices.SF
-            return -round(total, TIE_DIGITS), offer.stone_id, offer.angle_deg
+            return -round(total, TIE_DIGITS), offer.stone_id
 
         return min(range(len(candidates)), key=rank)
 
@@ -115,7 +115,7 @@ class Towers:
         self._settings = settings
 
     def choose(self, candidates: Sequence[Offer], rng: np.random.Generator) -> int | None:  # noqa: ARG002
-        """See :class:`drystone.selection.policy.Policy`; ties go to the lower id, then angle."""
+        """See :class:`drystone.selection.policy.Policy`; ties go to the lower id."""
         settings = self._settings
         terms: tuple[tuple[float, Callable[[Offer], float | None]], ...] = (
             (settings.w_area, lacking_support),
@@ -125,9 +125,9 @@ class Towers:
         )
         shares = [(weight, _shares([term(o) for o in candidates])) for weight, term in terms]
 
-        def rank(k: int) -> tuple[float, int, float]:
+        def rank(k: int) -> tuple[float, int]:
             cost = math.fsum(weight * values[k] for weight, values in shares)
-            return round(cost, TIE_DIGITS), candidates[k].stone_id, candidates[k].angle_deg
+            return round(cost, TIE_DIGITS), candidates[k].stone_id
 
         return min(range(len(candidates)), key=rank)
 

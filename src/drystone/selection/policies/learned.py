@@ -55,11 +55,11 @@ class ValueModel:
         return np.asarray(features(offers) @ np.array(self.weights), np.float64)
 
     def best(self, offers: Sequence[Offer]) -> int:
-        """Return the position of the largest value; ties to the lower id, then smaller angle."""
+        """Return the position of the largest value; ties go to the lower id."""
         values = self.values(offers).tolist()
 
-        def rank(k: int) -> tuple[float, int, float]:
-            return -round(values[k], TIE_DIGITS), offers[k].stone_id, offers[k].angle_deg
+        def rank(k: int) -> tuple[float, int]:
+            return -round(values[k], TIE_DIGITS), offers[k].stone_id
 
         return min(range(len(offers)), key=rank)
 

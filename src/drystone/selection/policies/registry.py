@@ -8,6 +8,7 @@ from drystone.selection.algorithm2 import SelectionSettings
 from drystone.selection.policies.choices import Filters, Lowest, Random, Scalarised, Towers
 from drystone.selection.policies.learned import Learned
 from drystone.selection.policies.settings import PolicySettings
+from drystone.selection.policies.table1 import Filtered, Summed, learned_parts, parts
 from drystone.selection.policy import Policy, broken
 
 GROUP = "drystone.policies"
@@ -20,7 +21,10 @@ PAPER = "paper"
 RULES = ("algorithm2", "score")
 """Values of `selection_rule` that are no policies."""
 
-BUILT_IN = ("random", "lowest", "scalarised", "filter", "towers", "learned")
+BUILT_IN = (
+    "random", "lowest", "scalarised", "filter", "towers", "learned",
+    "johns", "lambert", "liu2021", "thangavelu", "menezes", "liu2018",
+)  # fmt: skip
 """Policies of this package beside the paper's."""
 
 
@@ -46,6 +50,12 @@ def policy_named(name: str, settings: PolicySettings, weights: SelectionSettings
         "filter": lambda: Filters(settings),
         "towers": lambda: Towers(settings),
         "learned": Learned,
+        "johns": lambda: Summed(parts(name, settings)),
+        "lambert": lambda: Summed(parts(name, settings)),
+        "liu2021": lambda: Filtered(parts(name, settings)),
+        "thangavelu": lambda: Filtered(parts(name, settings), contacts=True),
+        "menezes": lambda: Learned(learned_parts(parts(name, settings))),
+        "liu2018": lambda: Learned(learned_parts(parts(name, settings))),
     }
     make = built_in.get(name)
     return make() if make is not None else _of_another_package(name)

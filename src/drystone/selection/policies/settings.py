@@ -11,6 +11,8 @@ class PolicySettings(Ranged):
 
     Parameters
     ----------
+    packing, course, interlocking, footing, sloping, gravity, lateral : bool
+        Components of the policies of Table 1; false takes one from a policy that has it.
     w_sf : float
         ``"scalarised"``: weight of SF, beside the five of `[selection]`.
     min_support : float
@@ -28,6 +30,13 @@ class PolicySettings(Ranged):
         centres and the deviation of the normal.
     """
 
+    packing: bool = True
+    course: bool = True
+    interlocking: bool = True
+    footing: bool = True
+    sloping: bool = True
+    gravity: bool = True
+    lateral: bool = True
     w_sf: float = 1.0
     min_support: float = 0.3
     min_interlocking: float = 0.2

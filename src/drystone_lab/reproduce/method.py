@@ -1,0 +1,275 @@
+"""The method itself: Table 1, and Figs. 3, 4, 10 and 11 on a real run."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import islice
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from drystone.contacts.blocks import model_from_labels
+from drystone.drawing.palette import CLUSTER_COLOURS
+from drystone.drawing.pictures.forces import plot_forces
+from drystone.drawing.pictures.stones import plot_stones
+from drystone.model.site import Site
+from drystone.model.wall import Labels, Wall
+from drystone.planner.attempt import Attempt
+from drystone.planner.build import Candidate
+from drystone.planner.choose import action_of
+from drystone.planner.planner import Planner
+from drystone.selection.algorithm2 import Selected, select_action, weighted_sum
+from drystone.selection.policies.table1 import ENGINE, MARKS
+from drystone.selection.sampling import sample_stones
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LateralResistance
+from drystone_lab.pictures.walls import Panel, plot_walls, sheet_of, wall_aspect, wall_panel
+from drystone_lab.reproduce.cells import ClaimCheck, rounded
+from drystone_lab.reproduce.construction import Construction, construction
+from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
+from drystone_lab.table import Cell, Table
+from drystone_lab.walls import PR, Target
+
+ROWS: Mapping[str, tuple[str, int, tuple[str, ...]]] = {
+    "packing": ("tight packing", 6, ("paper",)),
+    "course": ("straight course", 3, ("paper",)),
+    "interlocking": ("interlocking", 4, ("paper", "thangavelu")),
+    "wedging": ("wedging", 1, ("paper",)),
+    "footing": ("stable footing", 3, ()),
+    "sloping": ("inward sloping", 4, ("paper", "liu2021")),
+    "gravity": ("gravity", 6, ("paper", "johns", "liu2021")),
+    "lateral": ("lateral load", 3, ("paper", "thangavelu", "liu2018")),
+}
+"""Rows of Table 1: name, number of marks, and whose they are as far as the text says it."""
+
+
+def _table1(context: Context) -> Table:  # noqa: ARG001 - an item reads its study
+    def cell(policy: str, part: str) -> str:
+        said, ours = policy in ROWS[part][2], part in MARKS[policy]
+        return {(1, 1): "paper and ours", (1, 0): "paper", (0, 1): "ours", (0, 0): ""}[said, ours]
+
+    return Table(
+        "Table 1: components of each system, and of our policy of that name",
+        ("component", "marks in the paper", *MARKS),
+        tuple((name, count, *(cell(policy, part) for policy in MARKS))
+              for part, (name, count, _who) in ROWS.items()),
+        (
+            f"An engine looks at what {' and '.join(ENGINE)} choose. Every policy is offered only "
+            "walls that stand; weights are 1, as none are in the paper.",
+        ),
+    )  # fmt: skip
+
+
+TABLE1 = PaperItem(
+    **paper("table1"),
+    study=lambda context: context,
+    tables={"table1": _table1},
+)
+
+
+def followed(context: Context, wall: Target = PR) -> Construction:
+    """Do a run of Algorithm 1, and take it apart."""
+    return construction(context, wall.run(context.seed))
+
+
+def _steps(run: Construction) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    area = float(run.wall.site.width_px * run.wall.site.height_px)
+    filled = 0.0
+    for number, stage in enumerate(run.stages, 1):
+        placement = stage.group.placement
+        filled += placement.posed.area_px / area
+        rows.append(
+            (number, placement.stone_id, run.workshop.clusters[placement.stone_id],
+             placement.posed.angle_deg, placement.rotation_moves, len(stage.group.wedges),
+             rounded(filled))
+        )  # fmt: skip
+    columns = ("step", "stone", "cluster", "angle, degrees", "turns", "wedges", "filled")
+    return Table("Algorithm 1, step by step", columns, tuple(rows))
+
+
+def _workflow(run: Construction) -> tuple[ItemPicture, ...]:
+    stones, count = run.workshop.stones, len(run.stages)
+    size = stones.source
+    shown = sorted({1, max(1, count // 3), max(1, 2 * count // 3), count})
+    walls = [
+        (f"after {number} of {count} stones", run.stages[number - 1].after, run.workshop.clusters)
+        for number in shown
+    ]
+    empty = Wall.empty(run.wall.site)
+    panels = [
+        Panel("the stones", wall_aspect(size.height_px / size.width_px),
+              lambda ax: plot_stones(stones, run.workshop.clusters, ax)),
+        wall_panel("the landscape before the first stone: free between its bounds", empty, {}),
+    ]  # fmt: skip
+    return (
+        ItemPicture("fig3", plot_walls(walls, 2), "The run of Algorithm 1, in four moments."),
+        ItemPicture("fig4", sheet_of(panels, 2), "What a run begins with."),
+    )
+
+
+WORKFLOW = PaperItem(
+    **paper("fig3-4"),
+    study=followed,
+    tables={"steps": _steps},
+    pictures=_workflow,
+    needs=(PR.source.name,),
+)
+
+FILTERS = ("LLC > 0", "LLC", "NHR", "IWR or IS", "GDS", "LFR")
+
+
+@dataclass(frozen=True, eq=False)
+class Selection:
+    """A step of Algorithm 2: candidates after which the wall stands, and who passed what."""
+
+    before: Wall
+    clusters: Mapping[int, int]
+    tried: int
+    candidates: tuple[Candidate, ...]
+    selected: Selected
+
+    @property
+    def passed(self) -> list[int]:
+        """How many filters each candidate passed."""
+        return [
+            sum(k in survivors for survivors in self.selected.survivors)
+            for k in range(len(self.candidates))
+        ]
+
+
+def selection_step(context: Context, wall: Target = PR) -> Selection:
+    """Build half of a wall, and look at what Algorithm 2 does next."""
+    stones, settings = wall.source.stones(context.data), wall.run(context.seed).settings()
+    site = Site.from_source(*wall.size(stones), wall.scale)
+    planner = Planner(stones, site, seed=context.seed, settings=settings)
+    for _ in islice(planner.steps(), len(stones) // 2):
+        pass
+    shop, build = planner.workshop, planner.build
+    attempt = Attempt(shop, settings, build)
+    rng = np.random.default_rng([context.seed, len(build.actions), 0])  # as the planner's own
+    sample = sample_stones(settings.sampling, shop.remaining(build), shop.clusters, rng)
+    standing = tuple(attempt.standing(sample))
+    selected = select_action([action_of(c, settings.selection) for c in standing])
+    if selected is None:
+        raise ValueError("no candidate stands")
+    return Selection(build.wall, shop.clusters, attempt.candidates, standing, selected)
+
+
+def _filters(step: Selection) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    settings = PR.run(0).settings().selection
+    for k, (candidate, passed) in enumerate(zip(step.candidates, step.passed, strict=True)):
+        action = action_of(candidate, settings)
+        indices = candidate.indices
+        rows.append(
+            (candidate.stone_id, candidate.proposal.trial_angle_deg,
+             *(rounded(term) for term in action.terms), "IS" if indices.boundary else "IWR",
+             rounded(weighted_sum(action, settings)), FILTERS[passed - 1],
+             k == step.selected.position)
+        )  # fmt: skip
+    return Table(
+        "The candidates of a step of Algorithm 2",
+        ("stone", "angle, degrees", "LLC", "-NHR", "third", "GDS", "LFR", "third is", "sum",
+         "last filter passed", "chosen"),
+        tuple(rows),
+        (
+            f"{step.tried} candidates were tried; those after which the wall does not stand are "
+            "left out: the filter LLC > 0.",
+        ),
+    )  # fmt: skip
+
+
+def _selection_pictures(step: Selection) -> Iterator[ItemPicture]:
+    chosen = step.candidates[step.selected.position].stabilised
+    after = step.before.add(chosen.placement, chosen.wedges)
+    figure = Figure(figsize=(6.4, 0.4 + 0.22 * len(step.candidates)), layout="constrained")
+    ax = figure.add_subplot()
+    for k, passed in enumerate(step.passed):
+        colour = CLUSTER_COLOURS[1 if k == step.selected.position else 0]
+        ax.barh(k, passed, color=colour)
+    names = [f"{c.stone_id} at {c.proposal.trial_angle_deg:g}" for c in step.candidates]
+    ax.set_yticks(range(len(names)), names, fontsize=6)
+    ax.set_xticks(range(1, len(FILTERS) + 1), FILTERS, fontsize=7)
+    ax.set_ylabel("stone, angle in degrees")
+    counts = " > ".join(str(len(survivors)) for survivors in step.selected.survivors)
+    yield ItemPicture(
+        "fig10", figure,
+        f"How far each candidate came through the filters ({counts}); orange: the action taken.",
+    )  # fmt: skip
+    walls = [("before the step", step.before, step.clusters), ("after", after, step.clusters)]
+    yield ItemPicture("fig10-walls", plot_walls(walls, 2), "The wall before and after the step.")
+
+
+SELECTION = PaperItem(
+    **paper("fig10"),
+    study=selection_step,
+    tables={"candidates": _filters},
+    pictures=lambda step: tuple(_selection_pictures(step)),
+    needs=(PR.source.name,),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class TwoStones:
+    """Fig. 11: a stone on another one, and the forces at the most that they carry."""
+
+    labels: Labels
+    model: RigidBlockModel
+    both: LateralResistance
+
+
+def two_stones(_: Context) -> TwoStones:
+    """Load one brick on another."""
+    labels = np.zeros((44, 64), np.uint32)
+    labels[24:, 2:62], labels[4:24, 22:62] = 1, 2
+    model = model_from_labels(labels).model
+    return TwoStones(labels, model, lateral_resistance(model, mechanism=True))
+
+
+def _contact_forces(found: TwoStones) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    forces = found.both.right.forces
+    each = iter(() if forces is None else forces.tolist())
+    for face in found.model.interfaces:
+        for x, y in face.points.tolist():
+            n, t = next(each)
+            share = rounded(abs(t) / (found.model.mu * n)) if n else None
+            under = "the ground" if not face.other else f"stone {face.other}"
+            rows.append((f"stone {face.block}", under, x, y, rounded(n), rounded(t), share))
+    return Table(
+        f"Contact points at the load multiplier {found.both.right.alpha:.3f} to the right",
+        ("block", "on", "x, px", "y, px", "normal force", "tangential force", "|t| / (mu n)"),
+        tuple(rows),
+    )
+
+
+def _two_claims(found: TwoStones) -> Iterator[ClaimCheck]:
+    points = {len(face.points) for face in found.model.interfaces}
+    yield ClaimCheck(
+        "Forces act at the two ends of every interface.", f"{points} points an interface.",
+        points == {2},
+    )  # fmt: skip
+    alpha, mu = found.both.right.alpha, found.model.mu
+    yield ClaimCheck(
+        "Eq. 23 bounds the load by sliding and by opening.",
+        f"alpha {alpha:.6f}; by hand the upper stone slides at mu = {mu:g}, before any tips.",
+        alpha is not None and abs(alpha - mu) < 1e-9,
+    )
+
+
+def _two_picture(found: TwoStones) -> tuple[ItemPicture, ...]:
+    figure = Figure(figsize=(5.0, 3.6), layout="constrained")
+    forces = found.both.right.forces
+    if forces is not None:
+        plot_forces(found.labels, found.model, forces, figure.add_subplot())
+    return (ItemPicture("fig11", figure, "Two stones and their forces at the load multiplier."),)
+
+
+RIGID = PaperItem(
+    **paper("fig11"),
+    study=two_stones,
+    claims=_two_claims,
+    tables={"forces": _contact_forces},
+    pictures=_two_picture,
+)
