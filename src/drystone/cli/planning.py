@@ -52,12 +52,9 @@ def add_writing(command: argparse.ArgumentParser) -> None:
     # fmt: off
     option = command.add_argument_group("output").add_argument
     option("--overwrite", action="store_true", help="write into a folder that has files")
-    option("--pareto", action="store_true",
-           help="write the walls too that no wall of the search beats in every figure: "
-           "pareto/01, ...")
     option("--json", action="store_true", help="print the summary as JSON")
-    option("--quiet", action="store_true", help="no progress")
-    option("--profile", action="store_true", help="say where the time went")
+    for name in ("--pareto", "--quiet", "--profile"):
+        option(name, action="store_true")
 
 
 def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:

@@ -24,12 +24,12 @@ def add(command: argparse.ArgumentParser) -> None:
     # fmt: off
     option = command.add_argument
     option("--cases", type=whole_from(0), default=3, metavar="N",
-           help="how many places a rule names in the table (default 3); JSON has all")
+           help="places to name for each rule (default 3); --json has all")
     option("--limit", action="append", type=_limit, default=[], metavar="RULE=GOOD:FAIR",
            dest="limits",
-           help="last good and last fair number of a rule, such as laps=.1:.3; repeatable")
+           help="limits of a rule, such as laps=0.1:0.3; repeatable")
     option("--wedges", nargs="+", action="extend", type=whole_from(1), default=[], metavar="ID",
-           help="ids that are wedges, in a wall that is not a plan")
+           help="ids of wedges, if the wall is not a plan")
 
 
 def _limit(text: str) -> tuple[str, Limit]:

@@ -26,7 +26,7 @@ def add(command: argparse.ArgumentParser) -> None:
     """Add formats and what shapes them."""
     # fmt: off
     option = command.add_argument
-    option("plan", metavar="PLAN.json", nargs="?", help="plan, or its folder")
+    option("plan", metavar="PLAN", nargs="?", help="plan.json, or its folder")
     option("--list", action="store_true", help="name the formats, one a line")
     option("--to", nargs="+", action="extend", default=[], metavar="FORMAT", choices=list(FORMATS),
            help=", ".join(FORMATS))
@@ -37,17 +37,17 @@ def add(command: argparse.ArgumentParser) -> None:
     add_scale(command)
     option = command.add_argument_group("stones").add_argument
     option("--thickness", type=positive, metavar="M", dest="thickness_m",
-           help="of the wall, metres (default: the median square root of the stones' areas)")
+           help="of the wall, metres (default: the side of a median stone)")
     option("--density", type=positive, metavar="KG", dest="density_kg_m3", default=2600.0,
            help="kg in a cubic metre of stone (default 2600)")
     option = command.add_argument_group("drawings and films").add_argument
     option("--paper-scale", type=positive, default=10.0, metavar="N",
-           help="the build sheet is drawn at 1:N (default 10, larger when the wall does not fit)")
+           help="draw the build sheet at 1:N (default 10, more if the wall does not fit)")
     option("--title", default="", metavar="TEXT", help="in the title block")
     option("--projector", metavar="WxH@PX", default="1920x1080@1000",
-           help="px of the projector and how many are a metre on the wall (1920x1080@1000)")
+           help="pixels of the projector, and how many make a metre on the wall (1920x1080@1000)")
     option("--seconds-per-step", type=positive, default=0.6, metavar="S",
-           help="of films (default .6)")
+           help="of films (default 0.6)")
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
@@ -98,7 +98,7 @@ def _settings_from(arguments: argparse.Namespace) -> ExportSettings:
     """Return what the options say; E138 for a projector that is none."""
     found = _PROJECTOR.fullmatch(arguments.projector)
     if found is None or not (int(found[1]) and int(found[2]) and float(found[3])):
-        what = f"{arguments.projector!r} is no projector."
+        what = f"{arguments.projector!r} is not a projector."
         cure = "Write 1920x1080@1000: its px, and how many of them are a metre on the wall."
         raise UsageError("E138", what, where="--projector", cure=cure)
     return ExportSettings(

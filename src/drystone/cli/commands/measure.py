@@ -42,9 +42,10 @@ def add(command: argparse.ArgumentParser) -> None:
     add_wall(command)
     # fmt: off
     option = command.add_argument
-    option("--mu", type=not_negative, help="coefficient of friction (default .58)")
-    option("--wall", metavar="WxH", help="wall that was to be built, px or metric")
-    option("--scale", type=share, default=1.0, metavar="S", help="reduce the image by S first")
+    option("--mu", type=not_negative, help="coefficient of friction (default 0.58)")
+    option("--wall", metavar="WxH", help="size that the wall was to have: 280x80 (px) or 1.4mx0.4m")
+    option("--scale", type=share, default=1.0, metavar="S",
+           help="reduce the image by S first, 0 to 1")
     add_scale(command)
 
 

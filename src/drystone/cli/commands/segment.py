@@ -2,8 +2,6 @@
 
 import argparse
 import io
-import math
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -12,7 +10,7 @@ import numpy as np
 from PIL import Image
 
 from drystone.cli.inputs import refuse_inputs
-from drystone.cli.numbers import Ruled, add_scale, positive, refuse_outside, whole_from
+from drystone.cli.numbers import Ruled, add_scale, area, positive, refuse_outside, whole_from
 from drystone.cli.output import note, prepare_folder, print_json, print_table
 from drystone.errors import ExitCode, Notice, UsageError
 from drystone.io.photo_beside import LABELS, SIDECAR, PhotoSidecar, write_sidecar
@@ -29,8 +27,6 @@ from drystone.whole_files import write_whole
 PHOTO, PREVIEW = "photo.jpg", "preview.png"
 WRITTEN = (LABELS, PHOTO, SIDECAR, PREVIEW)
 QUALITY = 90
-
-_AREA = re.compile(r"(\d+(?:\.\d*)?|\.\d+)\s*(cm2|px)?")
 
 
 def add(command: argparse.ArgumentParser) -> None:
@@ -60,15 +56,6 @@ def add(command: argparse.ArgumentParser) -> None:
     option("--mpx", type=positive, default=1.6, metavar="N",
            help="million px of the result, at most (default 1.6)")
     command.add_argument("--json", action="store_true", help="print as JSON")
-
-
-def area(text: str) -> tuple[float, str]:
-    """Read an area: value and unit, "cm2" or "px"."""
-    found = _AREA.fullmatch(text.strip())
-    if found is None or not 0 < float(found[1]) < math.inf:
-        message = f"{text!r} is no area such as 12cm2 or 300 (px)"
-        raise argparse.ArgumentTypeError(message)
-    return float(found[1]), found[2] or "px"
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
