@@ -213,7 +213,7 @@ SETTINGS = {
 
 FILES: dict[str, tuple[Callable[[], bytes], str]] = {
     # a program that is started
-    "eps.json": (lambda: labelme(EPS), "E114 .*is no picture"),
+    "eps.json": (lambda: labelme(EPS), "E114 .*is not a picture"),
     # no end
     "circle.tif": (lambda: tiff_of(following=8), "E106 .*in a circle"),
     "circle_big.tif": (lambda: tiff_of(following=16, big=True), "E106 .*in a circle"),

@@ -65,7 +65,7 @@ def feature(geometry):
         (annotation({"size": [3, 3], "counts": "~~~"}), r"annotation 5.*does not belong"),
         (annotation({"size": [90000, 90000], "counts": [1]}), r"annotation 5.*90000 x 90000"),
         (annotation({"size": [3, 3], "counts": [0, 9]}), r"the image.*sizes differ: 3 x 3, 320 x"),
-        (coco({}, annotations=[3]), r"annotations are no objects"),
+        (coco({}, annotations=[3]), r"annotations are not objects"),
         (coco({}, categories=["stone"]), r"list of categories"),
         (coco({}, annotations=[{"image_id": [7]}]), r"list of images"),
         (labelme(imageWidth=0), r"size of the image.*is 0 px"),

@@ -88,7 +88,7 @@ def test_closed_and_open_lines():
     [
         ("L1 1", "not with a move"),
         ("M1", "not a multiple of 2"),
-        ("M1 1 L1 x", "'x' is no number"),
+        ("M1 1 L1 x", "'x' is not a number"),
         ("M1 1 z 4", "numbers after z"),
         ("M0 0 A1 1 0 2 0 3 3", "no number"),
     ],

@@ -40,7 +40,7 @@ from drystone.drawing.words.modelling import (
 )
 from drystone.drawing.words.tables import NAMES as TABLES
 from drystone.drawing.words.tables import write_tables
-from drystone.errors import ExitCode, Notice, UsageError
+from drystone.errors import ExitCode, Notice, UsageError, counted
 from drystone.io.walls import GivenWall, read_wall, unsupported
 from drystone.statics.limit import lateral_resistance, load_range
 from drystone.statics.loads import LoadCase, Loads, load_case
@@ -145,7 +145,11 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if arguments.json:
         print_json(report)
     else:
-        print_table(f"{path}: {_many(model)}, {model.contact_count} contact points", rows)
+        print_table(
+            f"{path}: {counted(len(model.blocks), 'block')}, "
+            f"{counted(model.contact_count, 'contact point')}",
+            rows,
+        )
     if resistance.failed:
         return _keep_failure(model, loads, pictures)
     return ExitCode.DONE if card.stands else ExitCode.CHECK_FAILED
@@ -167,10 +171,6 @@ def _write_all(
     write_tables(folder, card.model, ends, per_unit_m)
     curve = draw_friction(folder, card.model, loads)
     write_analysis(folder / REPORT, wall, card, per_unit_m, curve)
-
-
-def _many(model: RigidBlockModel) -> str:
-    return f"{len(model.blocks)} block{'' if len(model.blocks) == 1 else 's'}"
 
 
 def _sha256(path: Path) -> str:
@@ -201,7 +201,7 @@ def _print_range(
     if arguments.json:
         print_json(card.report())
     else:
-        print_table(f"{arguments.wall_path}: {_many(model)}", card.rows())
+        print_table(f"{arguments.wall_path}: {counted(len(model.blocks), 'block')}", card.rows())
     failed = any(end.status is LimitStatus.FAILED for end in ends)
     if failed:
         return _keep_failure(model, loads, pictures)

@@ -71,7 +71,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         print_json({**checked.as_dict(), **({"picture": picture.path} if picture else {})})
     else:
         drawn = [("picture", picture.words)] if picture else []
-        print_table(f"{path}: {checked.verdict}", checked.rows() + drawn)
+        print_table(
+            f"{'OK' if checked.ok else 'FAILED'}: {path} {checked.verdict}", checked.rows() + drawn
+        )
     return ExitCode.DONE if checked.ok else ExitCode.CHECK_FAILED
 
 

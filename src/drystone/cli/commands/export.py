@@ -15,6 +15,7 @@ from drystone.cli.numbers import (
     scale_notice,
 )
 from drystone.cli.output import make_folder, note, prepare_files, print_json
+from drystone.cli.progress import busy
 from drystone.drawing.assembly.read import read_assembly
 from drystone.drawing.export.formats import FORMATS, ExportSettings, write_files
 from drystone.errors import ExitCode, Notice, UsageError
@@ -69,7 +70,11 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     )
     refuse_outside(arguments.px_per_m, planned_picture_px(assembly.plan.source))
     asked = list(dict.fromkeys(arguments.to))
-    made = {name: FORMATS[name].files(assembly, settings) for name in asked}
+    made = {}
+    with busy(quiet=arguments.json) as told:
+        for name in asked:
+            told(f"making {name}")
+            made[name] = FORMATS[name].files(assembly, settings)
     folder = path if path.is_dir() else path.parent
     folder = Path(arguments.output) if arguments.output else folder
     names = [name for files in made.values() for name in files]

@@ -59,5 +59,5 @@ def _changes(items: list[str], settings_type: type[Any]) -> dict[str, Any]:
             sign = ""
         if not sign:
             cure = f"Known: {', '.join(field.name for field in fields(settings_type))}."
-            raise UsageError("E135", f"{item!r} is no NAME=VALUE.", where="--set", cure=cure)
+            raise UsageError("E135", f"{item!r} is not NAME=VALUE.", where="--set", cure=cure)
     return changes

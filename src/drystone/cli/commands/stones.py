@@ -16,7 +16,7 @@ from drystone.cli.output import prepare_files, prepare_picture, print_json, prin
 from drystone.cli.parser import Renamed
 from drystone.cli.reading import STONES, add_reading, reading_from
 from drystone.clusters import cluster_stones
-from drystone.errors import ExitCode
+from drystone.errors import ExitCode, counted
 from drystone.io.read_stones import read_stones
 from drystone.io.write_stones import write_stones, written_as
 from drystone.model.stone_size import median_sides, sides_px
@@ -88,7 +88,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         )
         return ExitCode.DONE
     print_table(
-        f"{source.path}: {len(stones)} stones",
+        f"{source.path}: {counted(len(stones), 'stone')}",
         [
             ("image", f"{source.width_px} x {source.height_px} px"),
             *([] if px_per_m is None else [("scale", f"{px_per_m:g} px a metre")]),

@@ -22,7 +22,7 @@ from drystone.drawing.pictures.mechanism import motion_of
 from drystone.drawing.words import content
 from drystone.drawing.words.analysis import ModelledWall
 from drystone.drawing.words.content import masons_words, number
-from drystone.errors import Notice
+from drystone.errors import Notice, counted
 from drystone.kernels.polygons import Points
 from drystone.model.plan import Point, StoneStep
 from drystone.model.wall import Labels
@@ -162,7 +162,7 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
     x0, y0, x1, y1 = regions_box(region.loops for region in regions)
     size = (x1 - x0, y1 - min(y0, 0.0))
     digits = part_digits(size)
-    many = f"{len(regions)} {noun}{'' if len(regions) == 1 else 's'}"
+    many = counted(len(regions), noun)
     strength = content.strength_cards(
         resistance.value, resistance.left.alpha, resistance.right.alpha, load_case=load_case
     )

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from drystone.errors import counted
 from drystone.io.published import SETS
 from drystone.model.plan import Plan, PlanMetrics
 from drystone.settle.settings import SettleSettings
@@ -162,7 +163,7 @@ def summary(plan: Plan) -> str:
     """Return the result in one sentence."""
     placed, of = len(plan.stone_steps), len(plan.stone_steps) + len(plan.unused)
     wedges = len(plan.wedge_steps)
-    with_wedges = f" with {wedges} wedge{'s' if wedges != 1 else ''}" if wedges else ""
+    with_wedges = f" with {counted(wedges, 'wedge')}" if wedges else ""
     return f"{placed} of {of} stones placed{with_wedges}; stopped because: {plan.stopped}."
 
 
