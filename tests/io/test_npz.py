@@ -39,8 +39,8 @@ def test_a_mask_a_stone(tmp_path):
 @pytest.mark.parametrize(
     ("arrays", "text"),
     [
-        ({"a": np.zeros((4, 4)), "b": np.zeros((5, 4))}, "no masks of one picture"),
-        ({"a": np.zeros(4), "b": np.zeros(4)}, "no masks of one picture"),
+        ({"a": np.zeros((4, 4)), "b": np.zeros((5, 4))}, "not masks of one picture"),
+        ({"a": np.zeros(4), "b": np.zeros(4)}, "not masks of one picture"),
         ({"a": np.eye(4), "b": np.arange(16).reshape(4, 4)}, "'b' is not a mask"),
     ],
 )

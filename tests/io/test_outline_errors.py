@@ -57,7 +57,7 @@ def feature(geometry):
         (shape(points=[*SQUARE, [1e300, 2]]), r"shape 0.*beyond 1e9"),
         (shape(shape_type="circle", points=[[1, 2]]), r"shape 0"),
         (shape(shape_type="mask", points=SQUARE[:2], mask="####"), r"shape 0"),
-        (shape(shape_type="mask", points=SQUARE[:2], mask="aGVsbG8="), r"shape 0.*no picture"),
+        (shape(shape_type="mask", points=SQUARE[:2], mask="aGVsbG8="), r"shape 0.*not a picture"),
         (labelme(shapes=[{"label": "1"}]), r"shape 0.*has no 'points'"),
         (annotation([[1, 1, 5]]), r"annotation 5.*odd number"),
         (annotation({"size": [3, 3], "counts": [1, 2]}), r"annotation 5.*add up to 3, not"),

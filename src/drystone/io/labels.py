@@ -256,7 +256,7 @@ def _whole_numbers(values: NDArray[Any]) -> NDArray[Any]:
     with np.errstate(invalid="ignore"):
         found = (
             ("not finite", ~np.isfinite(values)),
-            ("no whole numbers", values != np.floor(values)),
+            ("not whole numbers", values != np.floor(values)),
             ("not from 0 to 2^32-1", np.abs(values) > MAX_ID),
         )
     for name, bad in found:
