@@ -36,6 +36,7 @@ lint: .venv/dev.stamp
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/python tools/size.py
+	$(BIN)/python tools/prose.py
 
 bench: .venv/dev.stamp          ## times beside slow twins; QUICK=1 takes a minute instead of ten
 	$(BIN)/python -m benchmarks $(if $(QUICK),--quick)

@@ -9,10 +9,7 @@ import json
 import os
 import re
 import shlex
-import textwrap
 from collections.abc import Iterator
-from dataclasses import dataclass
-from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +18,7 @@ import pytest
 from PIL import Image
 
 import drystone
+from drystone.cli.commands.settings import entries, explained_rows, plain_fields, planner_tables
 from drystone.cli.parser import build_parser
 from drystone.errors import CODES
 from drystone.generate import (
@@ -35,8 +33,7 @@ from drystone.io.plan_json import plan_from_json, plan_schema
 from drystone.io.read_settings import ReadSettings
 from drystone.io.wall_image import write_labels
 from drystone.model.settings import range_text
-from drystone.planner.settings import METHODS, PlannerSettings
-from drystone.selection.scored import Craft
+from drystone.planner.settings import METHODS
 
 ROOT = Path(__file__).resolve().parents[1]
 SETTINGS = ROOT / "docs" / "settings.md"
@@ -61,74 +58,11 @@ SOURCES: dict[str, type[Any]] = {
 """Settings outside the planner, by the name of their table."""
 
 
-@dataclass(frozen=True)
-class Entry:
-    """What a docstring says of one parameter."""
-
-    kind: str
-    text: str
-
-
-def entries(described: type[Any]) -> dict[str, Entry]:
-    """Read the Parameters section of a numpydoc docstring."""
-    text = textwrap.dedent((described.__doc__ or "").expandtabs())
-    text = re.split(r"^ *Parameters\n *-+\n", text, flags=re.MULTILINE)[1]
-    text = re.split(r"\n *\w+\n *-{3,}\n", text)[0]
-    found: dict[str, Entry] = {}
-    parts = re.split(r"^(?:    )?(\w[\w, ]*?)(?: : (.*))?\n(?=        |    \S)", text, flags=re.M)
-    for names, kind, body in zip(parts[1::3], parts[2::3], parts[3::3], strict=True):
-        for name in names.split(", "):
-            found[name] = Entry(plain(kind or ""), plain(" ".join(body.split())))
-    return found
-
-
-def plain(text: str) -> str:
-    """Turn the marks of docstrings into those of the documents."""
-    text = re.sub(r":\w+:`~?([^`]+)`", r"`\1`", text)
-    text = re.sub(r" \(DESIGN [\d.]+\)", "", text)
-    return text.replace("``", "`").replace("|", "\\|")
-
-
-def meaning(entry: Entry) -> str:
-    """Say what values there are, unless the text does, then what they do."""
-    choices = re.findall(r'"[^"]+"', entry.kind) if entry.kind.startswith("{") else []
-    if all(choice in entry.text for choice in choices):
-        return entry.text
-    return f"{', '.join(f'`{choice}`' for choice in choices)}. {entry.text}"
-
-
 def value(thing: object) -> str:
     """Write a value as in TOML; None, which TOML lacks, as none."""
     if thing is None:
         return "none"
     return f"`{json.dumps(thing)}`"
-
-
-def plain_fields(described: type[Any]) -> list[str]:
-    """Return the names of the fields that are no settings themselves."""
-    default = described()
-    names = [field.name for field in dataclasses.fields(described)]
-    return [name for name in names if not dataclasses.is_dataclass(getattr(default, name))]
-
-
-def planner_tables() -> dict[str, type[Any]]:
-    """Return the settings of the planner by the name of their TOML table."""
-    tables: dict[str, type[Any]] = {"planner": PlannerSettings}
-    for field in dataclasses.fields(PlannerSettings):
-        nested = getattr(METHODS["paper"], field.name)
-        if dataclasses.is_dataclass(nested):
-            tables[field.name] = type(nested)
-    return tables
-
-
-def explained_rows(name: str) -> Iterator[tuple[tuple[str, ...], str]]:
-    """Yield the fields of a table with their meaning; those explained together are one row."""
-    described = SOURCES.get(name) or planner_tables()[name]
-    known = entries(described)
-    if name == "score":  # its weights are those of the costs, which are explained at the costs
-        known |= entries(Craft)
-    for entry, together in groupby(plain_fields(described), key=lambda field: known[field]):
-        yield tuple(together), meaning(entry)
 
 
 def written_table(name: str) -> str:
@@ -143,7 +77,7 @@ def written_table(name: str) -> str:
         }
     lines = [f"| name | {' | '.join(columns)} | meaning |", "|---" * (len(columns) + 2) + "|"]
     ends = {field.name: field.metadata for field in dataclasses.fields(kind)}
-    for names, text in explained_rows(name):
+    for names, text in explained_rows(name, kind):
         ranges = dict.fromkeys(range_text(ends[one]) for one in names if ends[one])
         said = " ".join([text, *(f"{one[0].upper()}{one[1:]}." for one in ranges)])
         values = [

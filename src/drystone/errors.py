@@ -95,6 +95,17 @@ class PlanError(DrystoneError):
     """A plan file is not valid or does not belong to these stones."""
 
 
+def counted(count: int, noun: str) -> str:
+    """Return a number and what it counts, which is one or several.
+
+    Examples
+    --------
+    >>> counted(1, "stone"), counted(0, "stone")
+    ('1 stone', '0 stones')
+    """
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
 NO_ROOM = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))
 """What the system says when the disk, or the user's share of it, is full."""
 
@@ -121,7 +132,7 @@ CODES = {
     "E108": "Values that cannot be ids.",
     "E109": "Several pages, frames or planes where one picture is needed.",
     "E110": "Too much work or memory.",
-    "E111": "A folder without pictures, or a file in it that is no mask of one stone.",
+    "E111": "A folder without pictures, or a file in it that is not a mask of one stone.",
     "E112": "`stones.json`, which says what is known of a photograph, is damaged.",
     "E113": "A JSON file that is none of labelme, COCO, SAM or GeoJSON, or cut short.",
     "E114": "An entry of a file of outlines that cannot be used.",
@@ -137,12 +148,12 @@ CODES = {
     "E124": "No method of this name.",
     "E125": "The scale is not above 0 and at most 1.",
     "E126": "There are no stones to build with.",
-    "E127": "`--wall` is no size.",
-    "E128": "The settings file cannot be read, is larger than 1 MB, or is no TOML.",
+    "E127": "`--wall` is not a wall size.",
+    "E128": "The settings file cannot be read, is larger than 1 MB, or is not valid TOML.",
     "E129": "Something is in the way of what would be written, or would be written over.",
     "E130": "The generator cannot make stones with these settings.",
     "E131": "A length, pose or mass in metres, and no scale is known; or two scales that differ.",
-    "E132": "A JSON file (block model or plan) cannot be read or is no JSON.",
+    "E132": "A JSON file (block model or plan) cannot be read or is not valid JSON.",
     "E133": "The wall image or the block model beside a plan is missing, or of another wall.",
     "E134": "A block model has no pixels, so it cannot be measured.",
     "E135": "`--set` is not followed by `NAME=VALUE`.",
@@ -186,14 +197,14 @@ CODES = {
     "E191": "Wedges are named by an id that is not in the wall.",
     "E192": "A wall is too long or too high to be judged by the craft rules.",
     "E195": "`Planner.observe` is told of a stone that there is not.",
-    "E196": "What was measured is no picture of the ids of the wall.",
+    "E196": "What was measured is not a picture of the ids of the wall.",
     "E197": "A measured pose is no `MeasuredPose`, no number, or not in the wall.",
     "E198": "A stone was measured where it overlaps others, and there is no room near it.",
     "E199": "A stone is named as lost, and measured in the wall.",
     "E201": "A stone is asked for that is not among those read.",
     "E202": "The plan cannot be read, or the stones that it was made from are not beside it.",
-    "E203": "The plan is no JSON; it may be cut short.",
-    "E204": "It is no plan, or of a version that is not read here.",
+    "E203": "The plan is not valid JSON; it may be cut short.",
+    "E204": "It is not a plan, or of a version that is not read here.",
     "E205": "The plan is not as its JSON Schema says.",
     "E206": "The file cannot be written, or the disk is full.",
     "E207": "The search cannot go on from its `checkpoint.json`.",
@@ -224,7 +235,7 @@ CODES = {
     "E240": "On exact geometry: the outline of a stone is not that of its pixels, holes filled.",
     "E241": "With `--physics`: blocks fall while the wall is built in the order of the plan.",
     "E242": "With `--physics`: tilted, the wall comes down before the load that the plan claims.",
-    "E301": "The array is no picture of ids.",
+    "E301": "The array is not a picture of ids.",
     "E302": "The coefficient of friction is negative, no number, or above 1e300.",
     "E303": "The block model is not as it should be.",
     "E304": "Blocks overlap, or reach below the ground.",
@@ -244,7 +255,7 @@ CODES = {
     "W114": "The picture was read as a binary mask.",
     "W115": "Colours were read as ids; says by which rule.",
     "W116": "`skip` names an id that no stone has, nor a piece that became one.",
-    "W117": "Files in a folder of masks that are no pictures.",
+    "W117": "Files in a folder of masks that are not pictures.",
     "W118": "A mask in a folder is stone to all its edges.",
     "W119": "What a file of outlines left to decide.",
     "W120": "Pinned stones are not in the wall, which therefore counts as incomplete.",

@@ -85,7 +85,7 @@ def orientation_step_deg(orientations: str) -> float | None:
     if not orientations.endswith("deg") or not 0.5 <= step <= 360:
         raise UsageError(
             "E122",
-            f"{orientations!r} is no set of orientations.",
+            f"{orientations!r} is not a set of orientations.",
             where="--orientations",
             cure="Use sf, quarter, or a step from 0.5deg to 360deg, such as 10deg.",
         )

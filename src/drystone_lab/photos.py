@@ -94,7 +94,7 @@ def _real(settings: BenchSettings) -> Table:
         (
             f"{len(rows)} of {len(ALL)} are there; the others belong into the folder "
             f"{FOLDER} of --data (docs/photographs.md says from where).",
-            "Median IoU is of the stones that were found, IoU .5 or more. Without a number in "
+            "Median IoU is of the stones that were found, IoU 0.5 or more. Without a number in "
             "precision only some of the stones are known.",
         ),
     )  # fmt: skip

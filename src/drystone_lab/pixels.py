@@ -339,9 +339,9 @@ def _refinement(settings: BenchSettings) -> Table:
         tuple(rows),
         ("Nine walls of 3 to 5 courses, bed and head joints tilted, each at three sub-pixel"
          " positions, both directions. The order p is that of error ~ height^-p.",
-         "No bend and no piece of a joint of these walls is shorter than .04 wall heights, 1.6 px"
+         "No bend and no piece of a joint of these walls is shorter than 0.04 wall heights, 1.6 px"
          " at 40 px: what a picture cannot show does not converge with it (with pieces down to"
-         " .003 wall heights the order was .88)."),
+         " 0.003 wall heights the order was 0.88)."),
     )  # fmt: skip
 
 

@@ -106,7 +106,7 @@ def _number(cell: str) -> float | None:
 def _not_a_table(path: Path, line: int) -> UsageError:
     return UsageError(
         "E148",
-        "this is no table of searches of this version.",
+        "this is not a table of searches of this version.",
         where=f"{path}:{line}",
         cure="Name another file, which is begun anew, or take out the line if it was cut off.",
     )

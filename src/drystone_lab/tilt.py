@@ -34,7 +34,7 @@ def table_of(rows: list[tuple[Cell, ...]], settings: BenchSettings) -> Table:
          " scatter of the first motion, or the wall falls at rest on both sides.",
          "Both sides see the same sub-pixel outlines. Scatter: nine trials that differ in what"
          " should not matter (order, iterations, time step, overlap, corners, tiny shifts)."
-         " First motion: a block moves by .02 mean block sizes; comes down: by half of one.",
+         " First motion: a block moves by 0.02 mean block sizes; comes down: by half of one.",
          *missing_data(settings)),
     )  # fmt: skip
 

@@ -27,7 +27,7 @@ class Ran:
 
 
 def _refuse_constant(name: str) -> NoReturn:
-    raise ValueError(f"{name} is no JSON number")
+    raise ValueError(f"{name} is not a JSON number")
 
 
 Run = Callable[..., Ran]

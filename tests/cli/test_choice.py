@@ -64,5 +64,5 @@ def test_the_bound_is_printed(wall, text, rubble, tmp_path, run):
     (line,) = [line for line in lines if line.startswith("F_SF")]
     assert text in line
     summary = run("plan", rubble, *options, "--json", "-o", tmp_path / "b").json()
-    assert f"of at most {summary['F_SF_bound']:.3f}" in line
+    assert f"the maximum for these stones is {summary['F_SF_bound']:.3f}" in line
     assert summary["F_SF"] <= summary["F_SF_bound"]

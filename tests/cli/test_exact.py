@@ -137,9 +137,9 @@ def foreign(path):
     [
         (Path.unlink, "E133", "there is no blocks.json beside the plan"),
         (foreign, "E133", "has other stones than the plan"),
-        (lambda path: path.write_text("[1]"), "E133", "is no block model"),
+        (lambda path: path.write_text("[1]"), "E133", "is not a block model"),
         (lambda path: path.write_text("{}"), "E303", "there is neither"),
-        (lambda path: path.write_text("{"), "E132", "is no JSON"),
+        (lambda path: path.write_text("{"), "E132", "is not valid JSON"),
     ],
 )
 def test_a_plan_needs_its_own_blocks(spoil, code, said, settled_copy, run):
@@ -199,7 +199,7 @@ def test_pivots_on_outlines(rubble, settled, tmp_path, run):
 
 def test_check_verifies_the_outlines(settled_copy, tmp_path, run):
     ran = run("check", settled_copy)
-    assert (ran.code, ": holds\n" in ran.out) == (0, True)
+    assert (ran.code, "is valid, and the wall stands\n" in ran.out) == (0, True)
     assert "0.00 source px deep by the outlines" in ran.out
     report = run("check", settled_copy, "--json", "--picture", tmp_path / "check.png").json()
     assert (report["ok"], report["geometry"], report["overlap_depth"]) == (True, "exact", 0.0)
@@ -225,7 +225,7 @@ def lift(plan):
 def test_a_tampered_plan_does_not_hold(tamper, code, settled_copy, run):
     change(settled_copy / "plan.json", tamper)
     ran = run("check", settled_copy)
-    assert (ran.code, "does not hold" in ran.out, f"problem  {code}" in ran.out) == (5, True, True)
+    assert (ran.code, "is not valid\n" in ran.out, f"problem  {code}" in ran.out) == (5, True, True)
     assert (settled_copy / "check.png").exists() == ("picture" in ran.out)
 
 

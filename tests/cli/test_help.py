@@ -1,15 +1,19 @@
 """Help, version and wrong options: quick, short, and with a code."""
 
+import argparse
 import subprocess
 import sys
 from importlib.metadata import version
 
 from drystone.cli.parser import build_parser
+from drystone.cli.settings import settings_from
 from drystone.kernels.backend import describe
 
+HIDDEN = argparse.SUPPRESS
+TASKS = ("first", "build", "judge", "study")
 COMMANDS = (
-    "plan", "demo", "stones", "analyse", "measure", "check", "export", "craft", "markers",
-    "segment", "generate", "cite", "bench", "reproduce", "fetch",
+    "demo", "stones", "markers", "segment", "trace", "plan", "settings", "export", "check",
+    "analyse", "measure", "craft", "reproduce", "bench", "fetch", "generate", "cite",
 )  # fmt: skip
 
 
@@ -38,10 +42,65 @@ def test_every_command_explains_itself(run):
         assert f"usage: drystone {command}" in ran.out
 
 
-def test_all_commands_are_tested():
-    listed = build_parser().format_help().split("COMMAND\n")[1].split("\n\n")[0]
-    names = [line.split()[0] for line in listed.splitlines() if line.startswith("    ")]
-    assert [name for name in names if name in COMMANDS] == list(COMMANDS)
+def test_all_commands_are_listed_by_tasks_on_one_screen():
+    help_text = build_parser().format_help()
+    table = help_text.split("\n\n")[2]
+    assert tuple(line.split()[line[0] != " "] for line in table.splitlines()) == COMMANDS
+    assert [word for word in table.split() if word in TASKS] == list(TASKS)
+    lines = help_text.splitlines()
+    assert len(lines) <= 24
+    assert max(map(len, lines)) <= 80
+
+
+def listed(*command):
+    """Options that the help of a command lists."""
+    parser = build_parser(command)
+    (commands,) = (one for one in parser._actions if isinstance(one.choices, dict))
+    actions = commands.choices[command[0]]._actions
+    return [one.option_strings[0] for one in actions if one.option_strings and one.help != HIDDEN]
+
+
+def test_help_lists_what_most_people_need():
+    assert len(listed("plan")) <= 20
+    assert {"--wall", "--set", "--budget", "--ban"} < {*listed("plan")}
+    assert listed("demo") == ["-h", "-o", "--seed", "--time", "--json"]
+    reading = {"--skip", "--min-area", "--unit"}
+    assert reading < {*listed("stones")}
+    assert not reading & {*listed("plan"), *listed("analyse"), *listed("measure"), *listed("craft")}
+
+
+def test_options_by_their_old_names_work_and_say_the_new_one(rubble, tmp_path, run):
+    told = run("stones", rubble, "--to", tmp_path / "old.png")
+    assert told.code == 0
+    assert "--to is called --labels now" in told.err
+    assert run("stones", rubble, "--labels", tmp_path / "new.png").err == ""
+    assert (tmp_path / "old.png").read_bytes() == (tmp_path / "new.png").read_bytes()
+    words = ["plan", "s.png", "--wall", "9x9", "-o", "out", "--settle", "pivot"]
+    assert settings_from(build_parser().parse_args(words)).settle.method == "pivot"
+
+
+def test_an_area_is_read_in_the_same_way_everywhere(rubble, run):
+    half = round(run("stones", rubble, "--json").json()["median_area_px"]) + 1
+    kept = {
+        run("stones", rubble, "--min-area", f"{half}{unit}", "--px-per-m", "100", "--json").json()[
+            "total_area_px"
+        ]
+        for unit in ("", "px", "cm2")
+    }
+    assert len(kept) == 1
+    assert 0 < kept.pop() < run("stones", rubble, "--json").json()["total_area_px"]
+    assert "E131" in run("stones", rubble, "--min-area", "60cm2").err
+
+
+def test_settings_are_listed_with_value_range_and_meaning(run):
+    every = run("settings", "--json").json()
+    assert every["mu"] == {"value": 0.58, "range": "in (0, 1e+06]",
+                           "meaning": "Coefficient of friction."}  # fmt: skip
+    assert run("settings", "mu").out == "mu = 0.58  (in (0, 1e+06])\n    Coefficient of friction.\n"
+    some = run("settings", "search", "--method", "paper", "--json").json()
+    assert some["search.budget"]["value"] == 1
+    assert {*some} == {name for name in every if name.startswith("search.")}
+    assert "E123" in run("settings", "serach").err
 
 
 def test_version(run):

@@ -5,6 +5,7 @@ import tomli_w
 
 from drystone.cli.parser import build_parser
 from drystone.cli.settings import recorded_method, settings_from
+from drystone.errors import UsageError
 from drystone.io.plan_json import read_plan
 from drystone.planner.settings import METHODS
 from tests.cli.conftest import WALL
@@ -65,6 +66,22 @@ def test_what_is_said_of_single_stones_wins_over_the_file(tmp_path):
     toml.write_text("ban = [3]\npin = [4]\n", encoding="utf-8")
     settings = settings_from(parsed("--settings", toml, "--ban", 4, "--pin", 3))
     assert (settings.ban, settings.pin) == ((4,), (3,))
+
+
+def test_any_setting_can_be_set_by_its_name(tmp_path):
+    toml = tmp_path / "mine.toml"
+    toml.write_text("mu = 0.4\n[settle]\nmethod = 'energy'\n", encoding="utf-8")
+    given = ("--set", "mu=.7", "--set", "settle.method=pivot", "--set", "ban=[3, 4]")
+    settings = settings_from(parsed("--settings", toml, *given, "--set", "search.budget=3"))
+    assert (settings.mu, settings.settle.method, settings.ban) == (0.7, "pivot", (3, 4))
+    assert settings.search.budget == 3  # the clock does not end this search
+    assert settings_from(parsed("--set", "mu=.7", "--mu", ".6")).mu == 0.6
+    # Two that only make sense together.
+    raster = settings_from(parsed("--set", "search.budget=1", "--set", "geometry=raster"))
+    assert (raster.geometry, raster.search.budget) == ("raster", 1)
+    for wrong, code in (("settle.metod=pivot", "E123"), ("mu=high", "E123"), ("mu=[1", "E123")):
+        with pytest.raises(UsageError, match=f"{code} --set: .*drystone settings"):
+            settings_from(parsed("--set", wrong))
 
 
 @pytest.mark.parametrize("method", ["paper", "best"])

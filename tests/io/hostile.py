@@ -213,7 +213,7 @@ SETTINGS = {
 
 FILES: dict[str, tuple[Callable[[], bytes], str]] = {
     # a program that is started
-    "eps.json": (lambda: labelme(EPS), "E114 .*is no picture"),
+    "eps.json": (lambda: labelme(EPS), "E114 .*is not a picture"),
     # no end
     "circle.tif": (lambda: tiff_of(following=8), "E106 .*in a circle"),
     "circle_big.tif": (lambda: tiff_of(following=16, big=True), "E106 .*in a circle"),
@@ -222,9 +222,9 @@ FILES: dict[str, tuple[Callable[[], bytes], str]] = {
         lambda: svg(f"<style>{'*{opacity:1}' * 3000}</style>{STONE * 3000}"),
         "E110 .*lie over each other",
     ),
-    "digits.svg": (lambda: svg(STONE, width=f"{'1' * 60_000}!"), "E114 .*no length"),
-    "spaces.svg": (lambda: svg(f'<path d="M1 1{" " * 60_000}!"/>'), "E114 .*no number"),
-    "turn.svg": (lambda: svg(f'<g transform="{" " * 60_000}!"/>'), "E114 .*no transform"),
+    "digits.svg": (lambda: svg(STONE, width=f"{'1' * 60_000}!"), "E114 .*not a length"),
+    "spaces.svg": (lambda: svg(f'<path d="M1 1{" " * 60_000}!"/>'), "E114 .*not a number"),
+    "turn.svg": (lambda: svg(f'<g transform="{" " * 60_000}!"/>'), "E114 .*not a transform"),
     "not.svg": (
         lambda: svg(f"<style>rect:not({parens(60_000)}){{x:1}}</style>{STONE}"),
         "E114 .*sheet",
@@ -284,7 +284,7 @@ FILES: dict[str, tuple[Callable[[], bytes], str]] = {
         lambda: tiff_of({259: 8}).replace(
             struct.pack("<HHII", 256, 4, 1, 6), struct.pack("<HHI4s", 256, 7, 1, b"6")
         ),
-        "E106 .*no number",
+        "E106 .*not a number",
     ),
     "negative.npy": (lambda: npy("(-1, 4)"), "E10"),
     "width.npy": (lambda: npy("(2160,)", "|S1000000000"), "E106"),

@@ -253,13 +253,16 @@ def with_value(value, dtype=float):
         (np.where(WHITE == 255, 255, 0), {}, r"E105.*Use --background 255 "),
         (np.where(WHITE == 5, 0, WHITE), {"background": 255}, r"E108.*value 0 .*background 255"),
         (with_value(np.inf), {}, r"E108.*1 px are not finite.*column 9, row 7"),
-        (with_value(2.5), {}, r"E108.*1 px are no whole numbers.*column 9, row 7"),
+        (with_value(2.5), {}, r"E108.*1 px are not whole numbers.*column 9, row 7"),
         (with_value(-3.0), {}, r"E108.*1 px are -3 ... 70000 outside.*column 9, row 7"),
         (with_value(2.0**32), {}, r"E108.*1 px are not from 0 to.*column 9, row 7"),
         (with_value(-2, np.int64), {}, r"E108.*outside 0 ... 2\^32-1.*column 9, row 7"),
         (with_value(2**32, np.int64), {}, r"E108.*outside 0 ... 2\^32-1.*column 9, row 7"),
         (changed(MINUS, (np.s_[0, 0], 0)), {"background": -1}, r"E108"),
-        *((two_stones().astype(kind), {}, r"E108.*are no ids") for kind in (complex, "U3", object)),
+        *(
+            (two_stones().astype(kind), {}, r"E108.*are not ids")
+            for kind in (complex, "U3", object)
+        ),
         (two_stones(), {"image": "tray-3.jpg"}, r"E118.*'tray-3.jpg'.*Leave --image"),
     ],
 )

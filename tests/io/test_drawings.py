@@ -381,7 +381,7 @@ def test_svg_layer_of_stones_is_all_that_counts(tmp_path):
         ('<svg viewBox="0 0 1 1" preserveAspectRatio="both"/>', r"E114 .*AspectRatio is 'both'"),
         ('<use href="#a" x="1em"/><g id="a"/>', r"E114 .*a use .*x in em"),
         ('<polygon points="1 2 3"/>', r"E114 .*a polygon cannot be used"),
-        ('<g transform="turn(3)"/>', r"E114 .*no transform"),
+        ('<g transform="turn(3)"/>', r"E114 .*not a transform"),
         ("<text>nothing</text>", r"E104 .*no stones in it.*1 text"),
         ("<g>", r"E106 .*damaged or cut short \(mismatched tag"),
     ],

@@ -39,9 +39,9 @@ def test_a_mask_a_stone(tmp_path):
 @pytest.mark.parametrize(
     ("arrays", "text"),
     [
-        ({"a": np.zeros((4, 4)), "b": np.zeros((5, 4))}, "no masks of one picture"),
-        ({"a": np.zeros(4), "b": np.zeros(4)}, "no masks of one picture"),
-        ({"a": np.eye(4), "b": np.arange(16).reshape(4, 4)}, "'b' is no mask"),
+        ({"a": np.zeros((4, 4)), "b": np.zeros((5, 4))}, "not masks of one picture"),
+        ({"a": np.zeros(4), "b": np.zeros(4)}, "not masks of one picture"),
+        ({"a": np.eye(4), "b": np.arange(16).reshape(4, 4)}, "'b' is not a mask"),
     ],
 )
 def test_arrays_that_are_no_masks(tmp_path, arrays, text):

@@ -79,5 +79,5 @@ def test_what_is_of_another_type_is_refused(change: dict[str, Any]) -> None:
         from_plain(Outer, data)
     data = json.loads(as_json(ONE))
     del data[next(iter(change.keys() & data.keys()), "name")]
-    with pytest.raises(ValueError, match="this is no Outer"):
+    with pytest.raises(ValueError, match="this is not of type Outer"):
         from_plain(Outer, data)

@@ -88,9 +88,9 @@ def test_closed_and_open_lines():
     [
         ("L1 1", "not with a move"),
         ("M1", "not a multiple of 2"),
-        ("M1 1 L1 x", "'x' is no number"),
+        ("M1 1 L1 x", "'x' is not a number"),
         ("M1 1 z 4", "numbers after z"),
-        ("M0 0 A1 1 0 2 0 3 3", "no number"),
+        ("M0 0 A1 1 0 2 0 3 3", "not a number"),
     ],
 )
 def test_damaged_path_data(data, text):
@@ -124,5 +124,5 @@ def test_damaged_transforms(text):
 
 def test_lengths():
     assert length("1.5E2 mm") == (150.0, "mm")
-    with pytest.raises(ValueError, match="no length"):
+    with pytest.raises(ValueError, match="not a length"):
         length("wide")

@@ -95,5 +95,5 @@ def test_no_stones_and_too_few_for_paths():
     ids=["floats", "a mask", "below 0", "colours", "a line"],
 )
 def test_what_is_no_picture_of_ids(labels):
-    with pytest.raises(LabelImageError, match=r"E301 labels: .* is no picture of ids"):
+    with pytest.raises(LabelImageError, match=r"E301 labels: .* is not a picture of ids"):
         measure_labels(labels)

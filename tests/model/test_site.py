@@ -33,13 +33,13 @@ def test_a_wall_of_too_many_pixels_is_refused_with_the_cure() -> None:
 
 @pytest.mark.parametrize("size", [(math.nan, 20), (60, math.inf)])
 def test_a_size_that_is_no_finite_number_is_refused(size: tuple[float, float]) -> None:
-    with pytest.raises(UsageError, match=r"E127 --wall: .* is no size of a wall"):
+    with pytest.raises(UsageError, match=r"E127 --wall: .* is not a wall size"):
         Site.from_source(*size)
 
 
 @pytest.mark.parametrize("px_per_m", [0.0, -400.0, math.nan, math.inf])
 def test_a_scale_that_is_none_is_refused(px_per_m: float) -> None:
-    with pytest.raises(UsageError, match=r"E138 --px-per-m: .* is no scale"):
+    with pytest.raises(UsageError, match=r"E138 --px-per-m: .* is not a scale"):
         Site.from_source(560, 160, px_per_m=px_per_m)
 
 

@@ -351,7 +351,7 @@ def test_what_comes_out_of_json_is_refused_in_words() -> None:
     with pytest.raises(InputError, match=r"E195 .*no stone '[0-9]+' among"):
         one.observe(text)
     bare: dict = dict.fromkeys(poses, (0.5, 0.1, 0.0))
-    with pytest.raises(InputError, match=r"E197 .*\(0.5, 0.1, 0.0\), which is no MeasuredPose"):
+    with pytest.raises(InputError, match=r"E197 .*\(0.5, 0.1, 0.0\), which is not a MeasuredPose"):
         one.observe(bare)
 
 

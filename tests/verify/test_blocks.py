@@ -124,7 +124,7 @@ def test_the_same_in_other_words_is_the_same(true: Example) -> None:
 def test_what_is_no_block_model_is_named(true: Example, content: Any) -> None:
     (problem,) = found(true, content)
     assert problem.code == "E238"
-    assert problem.message.startswith("blocks.json is no block model")
+    assert problem.message.startswith("blocks.json is not a block model")
 
 
 def test_outlines_are_compared_where_the_wall_cannot_be_built(true: Example) -> None:

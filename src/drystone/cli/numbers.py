@@ -18,6 +18,7 @@ _LENGTH = r"(\d+(?:[.,]\d*)?|[.,]\d+)"
 _SIDE = rf"{_LENGTH}(px|mm|cm|m|ft|in|)"
 _WALL = re.compile(f"{_SIDE}[xX\N{MULTIPLICATION SIGN}]{_SIDE}")
 _THOUSANDS = re.compile(r"[1-9]\d{0,2},\d{3}")
+_AREA = re.compile(r"(\d+(?:\.\d*)?|\.\d+)\s*(cm2|px)?")
 _NUMBER = r"\s*(-?\d+(?:\.\d*)?|-?\.\d+)\s*"
 _RULER = re.compile(rf"{_NUMBER},{_NUMBER},{_NUMBER},{_NUMBER}=\s*{_LENGTH}(m|cm|mm|ft|in)")
 _PICTURES = {".png", ".tif", ".tiff", ".bmp", ".gif", ".jpg", ".jpeg", ".npy"}
@@ -45,7 +46,7 @@ def whole_from(least: int) -> Callable[[str], int]:
         except ValueError:
             value = least - 1
         if value < least:
-            raise argparse.ArgumentTypeError(f"{text!r} is no whole number from {least} on")
+            raise argparse.ArgumentTypeError(f"{text!r} is not a whole number of {least} or more")
         return value
 
     return read
@@ -67,9 +68,9 @@ def _reader(wrong: str, fits: Callable[[float], bool]) -> Callable[[str], float]
     return read
 
 
-finite = _reader("no finite number", math.isfinite)
-not_negative = _reader("no number from 0 on", lambda value: 0 <= value < math.inf)
-positive = _reader("no number above 0", lambda value: 0 < value < math.inf)
+finite = _reader("not a finite number", math.isfinite)
+not_negative = _reader("not a number of 0 or more", lambda value: 0 <= value < math.inf)
+positive = _reader("not a number above 0", lambda value: 0 < value < math.inf)
 
 
 def share(text: str) -> float:
@@ -80,12 +81,20 @@ def share(text: str) -> float:
     return value
 
 
+def area(text: str) -> tuple[float, str]:
+    """Read an area: value and unit, "cm2" or "px"."""
+    found = _AREA.fullmatch(text.strip())
+    if found is None or not 0 < float(found[1]) < math.inf:
+        raise argparse.ArgumentTypeError(f"{text!r} is not an area such as 12cm2 or 300 (px)")
+    return float(found[1]), found[2] or "px"
+
+
 def friction(text: str) -> tuple[float, float]:
     """Read one coefficient of friction, or LOW:HIGH."""
     parts = [_number(part) for part in text.split(":")]
     low, high = (parts * 2)[:2] if len(parts) in (1, 2) else (math.nan, math.nan)
     if not 0 <= low <= high < math.inf:
-        raise argparse.ArgumentTypeError(f"{text!r} is no friction such as .58 or .4:.8")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a friction such as 0.58 or 0.4:0.8")
     return low, high
 
 
@@ -118,8 +127,8 @@ def parse_wall(text: str, px_per_m: float | None) -> tuple[float, float]:
     if px_per_m is None:
         raise UsageError(
             "E131", "a wall in metres needs the scale of the image.", where="--wall",
-            cure="Say how many source pixels make a metre with --px-per-m, name a length in the "
-            "image with --ruler x1,y1,x2,y2=1.0m, or give px.",
+            cure="Give the source pixels in a metre with --px-per-m, or a length in the image with "
+            "--ruler x1,y1,x2,y2=1.0m; or give the wall in px.",
         )  # fmt: skip
     return values[0] * _METRES[units[0]] * px_per_m, values[1] * _METRES[units[1]] * px_per_m
 
@@ -145,11 +154,11 @@ class Ruled(float):
 
 def add_scale(command: argparse.ArgumentParser) -> None:
     """Add the options that say how large a px is."""
-    group = command.add_argument_group("scale").add_mutually_exclusive_group()
-    group.add_argument("--px-per-m", type=positive, metavar="N", help="source px in a metre")
+    group = command.add_argument_group("size of a pixel").add_mutually_exclusive_group()
+    group.add_argument("--px-per-m", type=positive, metavar="N", help="source pixels in a metre")
     group.add_argument(
         "--ruler", type=ruler, dest="px_per_m", metavar="X1,Y1,X2,Y2=LENGTH",
-        help="two points of the source image, px, and how far apart they are: 20,30,220,30=1.0m",
+        help="two points of the source image (px) and their distance: 20,30,220,30=1.0m",
     )  # fmt: skip
 
 

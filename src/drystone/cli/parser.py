@@ -2,14 +2,18 @@
 
 import argparse
 import re
-from collections.abc import Callable, Sequence
+import sys
+from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
+from itertools import chain
 from typing import Any, NamedTuple, NoReturn
 
 from drystone.errors import ExitCode, UsageError
 
 GROUP = "drystone.commands"
 """Of entry points; each names a :class:`Command`."""
+
+_SUMMARY = "Plan dry-stone walls from the stones that you have, and test whether they stand."
 
 STUDIES = ("bench", "reproduce", "fetch")
 """Commands that every installation has, and whose code is not in this package."""
@@ -18,20 +22,29 @@ _UNKNOWN = re.compile(r"argument COMMAND: invalid choice: '(.*?)'.*\(choose from
 """What argparse says of a command that there is not."""
 
 _COMMANDS = {
-    "plan": "Plan a wall from an image of stones.",
-    "demo": "Plan a generated stone set; no arguments needed, works offline.",
-    "stones": "Say what is read from an image of stones.",
-    "analyse": "Limit analysis of a wall: load multipliers and mechanism.",
-    "measure": "Measure filling, arrangement and lateral resistance of a wall.",
-    "check": "Re-derive a wall from stones and plan and verify every claim.",
-    "export": "Write a plan for robots, drawings and films: see --list.",
-    "craft": "Look at a wall as a mason does: rules by name, stones and steps.",
-    "markers": "Print a sheet of markers that give photographs a scale.",
-    "segment": "Find stones in a photograph.",
+    "demo": "Plan a sample wall: no arguments, no network.",
+    "stones": "Show what is read from a picture or drawing of stones.",
+    "markers": "Print a sheet of markers that gives photographs a scale.",
+    "segment": "Find the stones in a photograph.",
     "trace": "Draw the stones of a wall over its photograph, in a browser.",
-    "generate": "Make a synthetic stone set.",
-    "cite": "Print how to cite the program and the method, as BibTeX.",
+    "plan": "Plan a wall from stones: which goes where, and in which order.",
+    "settings": "List what plan --set and --settings can change.",
+    "export": "Write a plan for robots, for drawings, or as a film.",
+    "check": "Build a plan again from its stones, and verify every claim.",
+    "analyse": "Compute which sideways load brings a wall down, and how.",
+    "measure": "Measure how full, how regular and how strong a wall is.",
+    "craft": "Judge a wall by masons' rules, stone by stone.",
+    "generate": "Make a set of artificial stones.",
+    "cite": "Print how to cite drystone and the paper, as BibTeX.",
 }
+
+_TASKS = {
+    "first": ("demo", "stones"),
+    "build": ("markers", "segment", "trace", "plan", "settings", "export"),
+    "judge": ("check", "analyse", "measure", "craft", "rehearse"),
+    "study": ("reproduce", "bench", "fetch", "generate", "cite"),
+}
+"""Commands in the order of work; those that are not here come last, and some may not be there."""
 
 
 class Command(NamedTuple):
@@ -92,27 +105,63 @@ def build_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
     Only the command that `words` name is loaded, and none for help, which must not wait for NumPy.
     Without words all commands are.
     """
+    asked = None if words is None else next((one for one in words if one[:1] != "-"), "")
+    others = {} if asked in _COMMANDS else found_commands()
+    texts = _COMMANDS | {name: command.text for name, command in others.items()}
     parser = _Parser(
         prog="drystone",
-        description="Plans dry-stone walls from images of found stones.",
-        epilog="drystone COMMAND --help explains a command. Start with: drystone demo",
-        formatter_class=_Listed,
+        usage="drystone [-h] [--version] COMMAND ...",
+        description=f"{_SUMMARY}\n\n{_table(texts)}",
+        epilog="drystone COMMAND --help explains a command. New here? Try: drystone demo",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        add_help=False,
     )
-    parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
-    asked = None if words is None else next((one for one in words if one[:1] != "-"), "")
-    listed = parser.add_subparsers(dest="command", metavar="COMMAND")
+    hidden = argparse.SUPPRESS
+    parser.add_argument("-h", "--help", action="help", help=hidden)
+    parser.add_argument("--version", action=_Version, nargs=0, help=hidden)
+    listed = parser.add_subparsers(prog="drystone", dest="command", metavar="COMMAND", help=hidden)
     parser.set_defaults(run=lambda _: _print_help(parser))
-    others = {} if asked in _COMMANDS else found_commands()
-    for name in dict.fromkeys((*_COMMANDS, *others)):
-        text = _COMMANDS.get(name) or others[name].text
-        sub = listed.add_parser(name, help=text, description=text)
+    for name, text in texts.items():
+        sub = listed.add_parser(name, description=text)
         if asked in (None, name):
             module = f"drystone.cli.commands.{name}"
             command: Any = import_module(module) if name in _COMMANDS else others[name]
-            sub.add_argument("--debug", action="store_true", help="show the traceback of an error")
+            # The traceback of an error is for those who look for a fault.
+            sub.add_argument("--debug", action="store_true", help=hidden)
             command.add(sub)
             sub.set_defaults(run=command.run)
     return parser
+
+
+def _table(texts: Mapping[str, str]) -> str:
+    """Return the commands and what they do, by tasks."""
+    rest = {"other": [name for name in texts if name not in chain(*_TASKS.values())]}
+    lines = []
+    for task, names in (_TASKS | rest).items():
+        known = [name for name in names if name in texts]
+        firsts = (task if name == known[0] else "" for name in known)
+        lines += [
+            f"{first:6} {name:10} {texts[name]}" for first, name in zip(firsts, known, strict=True)
+        ]
+    return "\n".join(lines)
+
+
+def list_only(command: argparse.ArgumentParser, *names: str) -> None:
+    """Leave out of the help what a command takes so far, but its arguments and options `names`."""
+    for action in command._actions:  # noqa: SLF001 - argparse has no other way
+        if action.option_strings and not {"-h", *names} & {*action.option_strings}:
+            action.help = argparse.SUPPRESS
+
+
+class Renamed(argparse.Action):
+    """An option by its old name: it works for one more version, and says the new one (`const`)."""
+
+    def __call__(  # noqa: D102
+        self, _: object, namespace: argparse.Namespace, values: Any, name: str | None = None
+    ) -> None:
+        new = str(self.const).format(values)
+        print(f"drystone: {name} is called {new} now; the old name will go", file=sys.stderr)
+        setattr(namespace, self.dest, values)
 
 
 def _print_help(parser: argparse.ArgumentParser) -> int:
@@ -120,21 +169,12 @@ def _print_help(parser: argparse.ArgumentParser) -> int:
     return ExitCode.DONE
 
 
-class _Listed(argparse.HelpFormatter):
-    """Has room for names of commands, whose indentation argparse forgets, beside their texts."""
-
-    def add_argument(self, action: argparse.Action) -> None:
-        super().add_argument(action)
-        self._action_max_length = max(self._action_max_length, 13)
-
-
 class _Parser(argparse.ArgumentParser):
     """Says what is wrong in one line, with a code (E138), and where help is."""
 
     def error(self, message: str) -> NoReturn:
         coded = UsageError("E138", f"{message}.", cure=f"`{self.prog} --help` explains.")
-        unknown = _UNKNOWN.search(message)
-        if unknown is not None:
+        if (unknown := _UNKNOWN.search(message)) is not None:
             coded = _unknown(unknown[1], re.findall(r"[\w-]+", unknown[2]))
         self.exit(int(coded.exit_code), f"drystone: {coded}\n")
 

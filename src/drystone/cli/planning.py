@@ -22,7 +22,7 @@ from drystone.cli.resuming import earlier_run, made_of, plan_to_begin_with, tell
 from drystone.cli.settings import PlanRequest
 from drystone.drawing.export.formats import FORMATS
 from drystone.drawing.words.planned import ending, profile_rows, profile_summary, rows, summary
-from drystone.errors import DrystoneError, ExitCode, Notice, UsageError
+from drystone.errors import DrystoneError, ExitCode, Notice, UsageError, counted
 from drystone.io.checkpoint import CHECKPOINT
 from drystone.io.folder_lock import LOCK, locked
 from drystone.io.photo_beside import check_place, photo_beside, place_photo
@@ -52,12 +52,9 @@ def add_writing(command: argparse.ArgumentParser) -> None:
     # fmt: off
     option = command.add_argument_group("output").add_argument
     option("--overwrite", action="store_true", help="write into a folder that has files")
-    option("--pareto", action="store_true",
-           help="write the walls too that no wall of the search beats in every figure: "
-           "pareto/01, ...")
     option("--json", action="store_true", help="print the summary as JSON")
-    option("--quiet", action="store_true", help="no progress")
-    option("--profile", action="store_true", help="say where the time went")
+    for name in ("--pareto", "--quiet", "--profile"):
+        option(name, action="store_true")
 
 
 def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:
@@ -157,7 +154,7 @@ def read_line(
     >>> read_line(stones, (280, 80), 200.0, 3.6)
     'Read 1 stone (largest 15.5 x 6.0 cm, median 15.5 x 6.0 cm), wall 1.40 x 0.40 m, estimate 4 s'
     """
-    said = f"Read {len(stones)} stone{'' if len(stones) == 1 else 's'}"
+    said = f"Read {counted(len(stones), 'stone')}"
     if len(stones):
         biggest = sides_px(max(stones, key=lambda stone: stone.area_px).mask)
         median = median_sides(sides_px(stone.mask) for stone in stones)

@@ -70,8 +70,16 @@ def counting_bar(name: str, total: int, *, quiet: bool) -> Iterator[Callable[[in
 
 
 @contextmanager
+def busy(*, quiet: bool) -> Iterator[Callable[[str], None]]:
+    """Show that something is being done, and for how long; yields what is to be told what."""
+    with _shown(TimeElapsedColumn(), quiet=quiet) as bar:
+        task = TaskID(0) if bar is None else bar.add_task("", total=None)
+        yield lambda text: None if bar is None else bar.update(task, description=text)
+
+
+@contextmanager
 def _shown(*columns: ProgressColumn, quiet: bool) -> Iterator[Progress | None]:
-    """Show a bar; None when nobody wants one, or stderr is no terminal."""
+    """Show a bar; None when nobody wants one, or stderr is not a terminal."""
     console = Console(stderr=True)
     if quiet or not console.is_terminal:
         yield None

@@ -4,11 +4,14 @@ import argparse
 from collections.abc import Mapping
 from typing import Any, get_args
 
+from drystone.cli.numbers import area
+from drystone.cli.parser import list_only
+from drystone.errors import UsageError
 from drystone.io.read_settings import ReadSettings, Unit, Up
 from drystone.model.settings import updated
 
 _NAMES = (
-    "background", "pieces", "holes", "mask", "min_area_px", "skip", "keep", "label", "unit", "up",
+    "background", "pieces", "holes", "mask", "skip", "keep", "label", "unit", "up",
     "image", "px_per_m",
 )  # fmt: skip
 
@@ -16,30 +19,34 @@ STONES = "label image, mask or NPY; folder of masks, or of `drystone segment`; l
 or GeoJSON; DXF, SVG, OBJ, PLY, STL"
 
 
+READING = "How stones are read (--skip, --min-area, --unit ...): drystone stones --help."
+
+
 def add_reading(command: argparse.ArgumentParser) -> None:
     """Add the options that say how a picture of stones is to be read."""
     # fmt: off
     option = command.add_argument_group("reading").add_argument
-    option("--background", type=_value, metavar="N", help="the value that is not stone")
+    option("--background", type=_value, metavar="N", help="the value of what is not stone")
     option("--pieces", choices=["auto", "keep-largest", "split", "error"],
            help="what to do with a stone of several pieces")
     option("--holes", choices=["fill", "keep"], help="fill holes in stones (default)")
     option("--mask", action=argparse.BooleanOptionalAction, default=None,
            help="read the picture as a binary mask, or as ids")
-    option("--min-area", type=int, metavar="PX", dest="min_area_px",
-           help="leave out smaller stones")
+    option("--min-area", type=area, metavar="AREA",
+           help="leave out smaller stones: px, or 12cm2 where the scale is given")
     option("--skip", type=int, action="append", metavar="ID",
-           help="leave out a stone; may be repeated")
+           help="leave this out, it is not a stone; repeatable")
     option("--keep", type=int, action="append", metavar="ID",
-           help="take for a stone what looks like a frame, the ground, a repeat or a part")
+           help="read this as a stone, though it looks like a frame, the ground, a repeat or a "
+           "part; repeatable")
     option("--label", nargs="+", action="extend", metavar="NAME",
-           help="which classes of annotations are stones")
+           help="classes of annotations that are stones")
     option("--unit", choices=get_args(Unit)[1:],
-           help="of a drawing or mesh, also where a DXF or SVG says another")
+           help="of a drawing or mesh, even if a DXF or SVG names another")
     option("--up", choices=get_args(Up)[1:],
-           help="which axis of a mesh or DXF is up; -back sees it from the other side")
+           help="axis of a mesh or DXF that points up; -back looks from behind")
     option("--image", metavar="NAME",
-           help="which image of annotations of several, or the picture that shares (YOLO) are of")
+           help="image to take from annotations of several, or the picture of YOLO's shares")
 
 
 def add_wall(command: argparse.ArgumentParser) -> None:
@@ -49,6 +56,8 @@ def add_wall(command: argparse.ArgumentParser) -> None:
     option("wall_path", metavar="WALL",
            help=f"plan.json or its folder; block model (JSON); or stones: {STONES}")
     add_reading(command)
+    list_only(command)
+    command.epilog = READING
     option("--json", action="store_true", help="print as JSON")
     option("-o", "--output", metavar="DIR", help="draw pictures into a folder")
     option("--overwrite", action="store_true", help="replace pictures of the same names")
@@ -69,6 +78,16 @@ def reading_from(arguments: argparse.Namespace) -> ReadSettings:
     them it is only the scale.
     """
     given = {name: getattr(arguments, name, None) for name in _NAMES}
+    if arguments.min_area is not None:
+        value, unit = arguments.min_area
+        if unit == "cm2":
+            per_m = given["px_per_m"]
+            if per_m is None:
+                what = "an area in cm2 needs the scale of the picture."
+                cure = "Give it with --px-per-m or --ruler, or give the area in px."
+                raise UsageError("E131", what, where="--min-area", cure=cure)
+            value *= 1e-4 * per_m**2
+        given["min_area_px"] = max(1, round(value))
     return reading_of({"reading": {k: value for k, value in given.items() if value is not None}})
 
 

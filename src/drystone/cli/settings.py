@@ -2,12 +2,15 @@
 
 import argparse
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, fields, is_dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
 from drystone.cli.numbers import positive, share, whole_from
+from drystone.cli.parser import Renamed
 from drystone.errors import InputError, UsageError
 from drystone.io.file_bytes import file_bytes
 from drystone.io.foreign import foreign
@@ -23,6 +26,13 @@ MOST_TOML_BYTES = 1_000_000
 SECONDS_A_STONE = 1 / 3
 """How long better walls are looked for when nothing is said."""
 
+SHOWN = (
+    "--wall", "-o", "--overwrite", "--resume", "--from", "--px-per-m", "--ruler", "--method",
+    "--settings", "--set", "--seed", "--mu", "--time", "--budget", "--aim", "--jobs", "--ban",
+    "--pin", "--json",
+)  # fmt: skip
+"""What the help of `plan` lists; the other options are settings, for scripts and for studies."""
+
 _PLAIN = ("sampling", "two_sided", "orientations", "mu", "skip_too_large")
 """Settings that have an option of their own name."""
 
@@ -36,38 +46,58 @@ def add_settings(command: argparse.ArgumentParser) -> None:
     group = command.add_argument_group("method")
     option = group.add_argument
     option("--method", default="best", metavar="NAME", help="best (default) or paper")
-    option("--settings", metavar="FILE.toml", help="parameters that replace the method's")
-    option("--seed", type=whole_from(0), default=0, help="of the random choices (default 0)")
-    option("--scale", type=share, metavar="S", help="plan on images reduced by S, 0 to 1")
-    option("--policy", metavar="NAME",
-           help="who chooses the stones of a single pass: paper, random, lowest, scalarised, "
-           "filter, towers, learned, or one that is installed (docs/policies.md)")
-    option("--sampling", choices=["variant", "shrinking", "uniform", "twofold", "full"],
-           help="stones that are tried in a step: one of each cluster, topped up or not; as many "
-           "at random; one of each and then all of the winner's cluster; or all")
+    option("--settings", metavar="FILE.toml", help="settings that replace those of the method")
+    option("--set", type=_setting, action="append", default=[], metavar="NAME=VALUE",
+           dest="changes", help="one of them, such as settle.method=pivot; repeatable. "
+           "`drystone settings` lists all")
+    option("--seed", type=whole_from(0), default=0, metavar="N",
+           help="of the random choices (default 0)")
+    option("--scale", type=share, metavar="S", help="reduce the images by S first, 0 to 1")
+    option("--policy", metavar="NAME")
+    option("--sampling", choices=["variant", "shrinking", "uniform", "twofold", "full"])
     option("--placement", choices=["snug", "eq12", "lowest"])
-    option("--reach", choices=["any", "above"], help="where a stone may be inserted")
-    option("--two-sided", action=argparse.BooleanOptionalAction, default=None, dest="two_sided",
-           help="build from both ends")
-    option("--one-sided", action="store_false", dest="two_sided", help="same as --no-two-sided")
-    option("--orientations", metavar="SET", help="quarter, sf, or a step such as 10deg")
+    option("--reach", choices=["any", "above"])
+    option("--two-sided", action=argparse.BooleanOptionalAction, default=None, dest="two_sided")
+    option("--one-sided", action="store_false", dest="two_sided")
+    option("--orientations", metavar="SET")
     option("--stabilise", choices=["both", "rotation", "wedge", "none"])
-    option("--mu", type=float, help="coefficient of friction (default .58)")
-    option("--geometry", choices=["exact", "raster"],
-           help="exact: stones settle on their outlines; raster: they are their pixels")
-    option("--settle", choices=["energy", "pivot"],
-           help="with exact geometry: down to the least energy, or rolling as in the paper")
+    option("--mu", type=float, help="coefficient of friction (default 0.58)")
+    option("--geometry", choices=["exact", "raster"])
+    option("--settle", choices=["energy", "pivot"], action=Renamed, const="--set settle.method={}")
     effort = group.add_mutually_exclusive_group().add_argument
     effort("--time", type=positive, metavar="SECONDS",
-           help="time limit of the search (best: 10 s for 30 stones, and a whole wall)")
+           help="stop the search after this time (10 s for 30 stones, unless a budget is given)")
     effort("--budget", type=whole_from(1), metavar="N",
-           help="how many walls are built instead, which repeats exactly: 1 is a single pass")
+           help="stop after N walls instead; the same N gives the same wall everywhere")
     option("--aim", nargs="+", action="extend", type=_aim, metavar="FIGURE=VALUE",
-           help="figures to reach, such as F_SF=.88 F_AV=40 F_AH=1.5 F_LR=.8")
-    option("--skip-too-large", action="store_true", default=None,
-           help="leave out stones that fit into the wall in no orientation")
+           help="figures to reach, such as F_SF=0.88 F_AV=40 F_AH=1.5 F_LR=0.8")
+    option("--skip-too-large", action="store_true", default=None)
     option("--jobs", type=whole_from(1), default=1, metavar="N",
-           help="processes; never the result of a budget")
+           help="number of processes (a budget gives the same wall with any)")
+
+
+def _setting(text: str) -> dict[str, Any]:
+    """Read a dotted name and its value: as in TOML, or else a number or a text as it stands."""
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise argparse.ArgumentTypeError(f"{text!r} is not NAME=VALUE")
+    read: Any = value.strip()
+    with suppress(ValueError):
+        read = float(value)
+    with suppress(tomllib.TOMLDecodeError):
+        read = tomllib.loads(f"value = {value}")["value"]
+    for part in reversed(name.strip().split(".")):
+        read = {part: read}
+    return dict(read)
+
+
+def _together(changes: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+    """Return nested changes as one; of two values the later one."""
+    whole: dict[str, Any] = {}
+    for name, value in chain.from_iterable(one.items() for one in changes):
+        both = isinstance(value, dict) and isinstance(whole.get(name), dict)
+        whole[name] = _together((whole[name], value)) if both else value
+    return whole
 
 
 def _aim(text: str) -> tuple[str, float]:
@@ -84,6 +114,11 @@ def settings_from(arguments: argparse.Namespace) -> PlannerSettings:
     settings = method_settings(arguments.method)
     if arguments.settings is not None:
         settings = _with_file(settings, arguments)
+    try:
+        settings = settings.updated(_together(arguments.changes))
+    except UsageError as error:
+        cure = f"{error.cure} `drystone settings` lists all."
+        raise UsageError(error.code, error.what, where="--set", cure=cure) from None
     _check_geometry(arguments.geometry or settings.geometry, arguments)
     asked = settings
     for where, changes in [*_asked(settings, arguments)]:
@@ -200,14 +235,14 @@ def search_seconds(
         return None
     if arguments.time is not None:
         return float(arguments.time)
-    timed = arguments.budget is None and not _file_has_budget(arguments)
+    timed = arguments.budget is None and not _has_budget(arguments)
     return stones * SECONDS_A_STONE if timed and settings.search.budget > 1 else None
 
 
-def _file_has_budget(arguments: argparse.Namespace) -> bool:
-    if arguments.settings is None:
-        return False
-    search = read_toml(Path(arguments.settings)).get("search", {})
+def _has_budget(arguments: argparse.Namespace) -> bool:
+    """Tell whether a file or `--set` says how many walls are built."""
+    file = {} if arguments.settings is None else read_toml(Path(arguments.settings))
+    search = _together((file, *arguments.changes)).get("search", {})
     return isinstance(search, dict) and "budget" in search
 
 
@@ -227,7 +262,7 @@ def read_toml(path: Path) -> dict[str, Any]:
 
     def no_toml(why: str) -> InputError:
         cure = "`drystone plan` writes the settings of a plan as settings.toml: start from that."
-        return InputError("E128", f"is no TOML: {why}.", where=str(path), cure=cure)
+        return InputError("E128", f"is not valid TOML: {why}.", where=str(path), cure=cure)
 
     try:
         data = file_bytes(path, MOST_TOML_BYTES)

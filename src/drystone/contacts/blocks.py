@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from drystone.contacts.interfaces import PointContacts, find_interfaces, interfaces_in
-from drystone.errors import InputError, LabelImageError, Notice
+from drystone.errors import InputError, LabelImageError, Notice, counted
 from drystone.kernels.label_runs import label_runs, runs_in_pieces
 from drystone.kernels.patches import Part, painted_patch
 from drystone.model.placement import Placement, Wedge
@@ -71,7 +71,7 @@ def model_from_labels(labels: Labels, mu: float = 0.58) -> ImageModel:
         notices.append(
             Notice(
                 "W301",
-                f"The {labels.shape[0] - height} empty rows below the stones were left out:"
+                f"{counted(labels.shape[0] - height, 'empty row')} below the stones left out:"
                 " the wall stands on its lowest stone pixel.",
             )
         )
@@ -157,7 +157,7 @@ def _check_labels(labels: Labels) -> None:
     if labels.ndim != 2 or labels.dtype.kind not in "iu" or (labels.size and labels.min() < 0):
         raise LabelImageError(
             "E301",
-            f"an array of shape {labels.shape} and type {labels.dtype} is no picture of ids.",
+            f"an array of shape {labels.shape} and type {labels.dtype} is not a picture of ids.",
             where="label image",
             cure="Give a two-dimensional array of integers: 0 for nothing, ids above 0.",
         )

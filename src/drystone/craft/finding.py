@@ -80,7 +80,7 @@ class Rule:
             better = "higher" if self.higher_is_better else "lower"
             raise UsageError(
                 "E190",
-                f"{limit.good:g}:{limit.fair:g} are no limits of {self.name!r}, "
+                f"{limit.good:g}:{limit.fair:g} are not limits of {self.name!r}, "
                 f"whose number is better the {better} it is.",
                 where="limits of craft",
                 cure=f"Give the last good and the last fair value, such as {self.limit.good:g}:"

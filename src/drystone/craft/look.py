@@ -24,7 +24,7 @@ _ALL = (
         "Adcock 1994, principle 1 (cover all joints; a joint of two stones only once in a blue "
         "moon); Bowland Dry Stone Walling 2024 (no seam of more than two stones or courses); the "
         "paper, section 2 (offset vertical joints)",
-        "courses that the longest joint goes through: the lesser number of stones on its two sides",
+        "longest unbroken upright joint, in courses",
         Limit(1, 2), running_joints, unit="courses",
     ),
     Rule(
@@ -110,7 +110,7 @@ _ALL = (
         "flush_ends", "flush ends",
         "The ends of the wall are upright and in line.",
         "Own definition, like E_FLUSH of `drystone measure` but of the stones at the ends alone: a "
-        "bed that is open from end to end, or an uneven top, is no ragged end",
+        "bed that is open from end to end, or an uneven top, is not a ragged end",
         "mean gap between the ends of the wall and its end lines, in mean stone widths",
         Limit(0.1, 0.2), flush_ends,
     ),

@@ -193,9 +193,9 @@ class Masonry:
                 raise InputError(
                     "E192",
                     f"it reaches over {extent:.2g} mean heights of its {len(places)} stones,"
-                    " which is no wall that rules could judge.",
+                    " which is not a wall that rules could judge.",
                     where="wall",
-                    cure="Leave out what lies far from the wall, and what is no stone.",
+                    cure="Leave out what lies far from the wall, and what is not a stone.",
                 )
         return scan(self.loops, axis, self.settings.sample * self.mean_height)
 

@@ -65,11 +65,11 @@ class RubbleSettings:
                 self.width_px * self.courses >= 4 * self.count,
                 "the stones must be 4 px wide or more",
             ),
-            (0 < self.area_ratio <= 0.95, "area_ratio must be above 0 and at most .95"),
+            (0 < self.area_ratio <= 0.95, "area_ratio must be above 0 and at most 0.95"),
             (0 <= self.spread <= 1, "spread must be between 0 and 1"),
-            (0 <= self.roughness <= 0.3, "roughness must be between 0 and .3"),
+            (0 <= self.roughness <= 0.3, "roughness must be between 0 and 0.3"),
             (0 <= self.pentagons <= 1, "pentagons must be between 0 and 1"),
-            (0 <= self.rounding <= 0.3, "rounding must be between 0 and .3"),
+            (0 <= self.rounding <= 0.3, "rounding must be between 0 and 0.3"),
             (0 <= self.tilt_deg <= 360, "tilt_deg must be between 0 and 360"),
         ):
             check_setting(ok, what, "rubble")

@@ -88,13 +88,13 @@ def _data(text: bytes) -> Mapping[str, Any]:
     """Return what a file holds, if it is one of ours and as it was written."""
     whole = json.loads(text)
     if not isinstance(whole, dict) or whole.keys() != {"sha256", "data"}:
-        raise ValueError("it is no checkpoint")
+        raise ValueError("it is not a checkpoint")
     data = whole["data"]
     if _digest(as_json(data)) != whole["sha256"]:
         raise ValueError("it is damaged")
     names = {"schema", "version", "made_of", "search"}
     if not isinstance(data, dict) or data.keys() != names or data["schema"] != SCHEMA:
-        raise ValueError("it is no checkpoint that this drystone knows")
+        raise ValueError("it is not a checkpoint that this drystone knows")
     if data["version"] != version("drystone"):
         raise ValueError(f"it is of drystone {str(data['version'])[:20]}")
     if not isinstance(data["made_of"], dict):

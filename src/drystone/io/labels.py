@@ -249,14 +249,14 @@ def _whole_numbers(values: NDArray[Any]) -> NDArray[Any]:
         return values
     if kind != "f":
         cure = "Give whole numbers (or bools for a mask)."
-        raise LabelImageError("E108", f"values of type {values.dtype} are no ids.", cure=cure)
+        raise LabelImageError("E108", f"values of type {values.dtype} are not ids.", cure=cure)
     if values.dtype.itemsize < 4:
         # The largest id is beyond what 16 bits can be compared with.
         values = values.astype(np.float32)
     with np.errstate(invalid="ignore"):
         found = (
             ("not finite", ~np.isfinite(values)),
-            ("no whole numbers", values != np.floor(values)),
+            ("not whole numbers", values != np.floor(values)),
             ("not from 0 to 2^32-1", np.abs(values) > MAX_ID),
         )
     for name, bad in found:
@@ -276,7 +276,7 @@ def _check_alpha(alpha: NDArray[Any], image: IdImage) -> None:
         return
     raise InputError(
         "E109",
-        "the last channel is no transparency: it does not go with where stones are.",
+        "the last channel is not transparency: it does not go with where stones are.",
         cure="Give ids in one channel, or colours in three; masks of one stone each in a folder "
         "of pictures, or as the arrays of an NPZ.",
     )

@@ -108,7 +108,7 @@ def _decode(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any
         # Colours of 16 bits come from Pillow as their upper 8.
         return *_by_pillow(data, check), kind == "PNG" and data[24:25] == b"\x10"
     cure = "Export the photograph as JPEG (phones: 'most compatible')."
-    raise unread("this is no JPEG, PNG or TIFF.", cure)
+    raise unread("this is not a JPEG, PNG or TIFF.", cure)
 
 
 def _check(width: int, height: int, max_px: int) -> None:
@@ -163,7 +163,7 @@ def _to_rgb(values: NDArray[Any]) -> tuple[NDArray[np.uint8], tuple[Notice, ...]
     if values.dtype == np.uint16:
         values = np.round(values / 257.0).astype(np.uint8)
     if values.dtype != np.uint8 or values.ndim != 3 or not 1 <= values.shape[2] <= 4:
-        what = f"values of type {values.dtype} are no photograph."
+        what = f"values of type {values.dtype} are not those of a photograph."
         raise unread(what, "Export it with 8 or 16 bits a channel.")
     if values.shape[2] in (2, 4):
         if (values[..., -1] < 255).any():

@@ -61,7 +61,7 @@ def opened(data: bytes, check: Callable[[int, int], None]) -> Iterator[Image.Ima
     plugin = next((plugin for name, _, plugin in _FORMATS if name == kind), None)
     if plugin is None:
         raise InputError(
-            "E107", f"this is no picture ({', '.join(name for name, _, _ in _FORMATS)}).",
+            "E107", f"this is not a picture ({', '.join(name for name, _, _ in _FORMATS)}).",
             cure="Export it as PNG.",
         )  # fmt: skip
     if kind == "JPEG" and _scans(data) > _MOST_SCANS:

@@ -58,7 +58,7 @@ def _read(kind: Any, data: Any) -> Any:
 def _dataclass(kind: Any, data: Any) -> Any:
     types = _types(kind)
     if not isinstance(data, dict) or data.keys() != types.keys():
-        raise ValueError(f"this is no {kind.__name__}")
+        raise ValueError(f"this is not of type {kind.__name__}")
     return kind(**{name: _read(one, data[name]) for name, one in types.items()})
 
 
@@ -66,7 +66,7 @@ def _tuple(kinds: Sequence[Any], data: Any) -> Any:
     if isinstance(data, list) and kinds[-1] is Ellipsis:
         return tuple(_read(kinds[0], item) for item in data)
     if not isinstance(data, list) or len(data) != len(kinds):
-        raise ValueError(f"this is no list of {len(kinds)} values")
+        raise ValueError(f"this is not a list of {len(kinds)} values")
     return tuple(_read(kind, item) for kind, item in zip(kinds, data, strict=True))
 
 
@@ -74,9 +74,9 @@ def _float(data: float) -> float:
     try:
         value = float(data)
     except OverflowError as error:
-        raise ValueError("this is no number of 64 bits") from error
+        raise ValueError("this is not a number of 64 bits") from error
     if math.isnan(value):
-        raise ValueError("this is no number")
+        raise ValueError("this is not a number")
     return value
 
 

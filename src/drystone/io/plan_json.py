@@ -229,7 +229,7 @@ def _parsed(data: bytes, where: str) -> Any:
 
     def no_json(why: str) -> PlanError:
         cure = "Give the plan.json that `drystone plan -o` wrote; it may be cut short."
-        return PlanError("E203", f"the file is no JSON ({why}).", where=where, cure=cure)
+        return PlanError("E203", f"the file is not valid JSON ({why}).", where=where, cure=cure)
 
     with foreign(no_json):
         return json_of(
@@ -240,7 +240,7 @@ def _parsed(data: bytes, where: str) -> Any:
 
 
 def _refuse_constant(name: str) -> Any:
-    raise ValueError(f"{name} is no JSON number")
+    raise ValueError(f"{name} is not a JSON number")
 
 
 def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -254,7 +254,7 @@ def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 def _validate(data: Any, where: str) -> None:
     """Refuse what is no plan of this version (E204) or not as the schema says (E205)."""
     if not isinstance(data, Mapping) or "schema" not in data:
-        what = f'this is no plan: it is no JSON object with "schema": "{SCHEMA}".'
+        what = f'this is not a drystone plan: it is not a JSON object with "schema": "{SCHEMA}".'
         cure = "Give the plan.json that `drystone plan -o` wrote."
         raise PlanError("E204", what, where=where, cure=cure)
     if data["schema"] != SCHEMA:

@@ -305,7 +305,7 @@ def _page(data: bytes) -> Iterator[Any]:
         )
         page = file.pages[0]
         if not all(isinstance(side, int) for side in page.shape):
-            raise damaged("a side of it is no number")
+            raise damaged("a side of it is not a number")
         yield page
 
 

@@ -303,7 +303,7 @@ def _blocks_of(plan: Plan, path: Path) -> dict[str, Any]:
     if blocks is None:
         what = f"there is no {BLOCKS} beside the plan."
     elif not isinstance(blocks, dict):
-        what = f"the {BLOCKS} beside the plan is no block model."
+        what = f"the {BLOCKS} beside the plan is not a block model."
     elif set(polygons := polygons_from_json(blocks)) != set(_ids(plan)):
         what = f"the {BLOCKS} beside the plan has other stones than the plan."
     elif not _where_planned(plan, polygons):
@@ -383,5 +383,5 @@ def _read_json(
         data = file_bytes(path)
     except OSError as error:
         raise refused(f"cannot be read ({error.strerror}).") from error
-    with foreign(lambda why: refused(f"is no JSON ({why}).")):
+    with foreign(lambda why: refused(f"is not valid JSON ({why}).")):
         return json_of(data.decode("utf-8-sig"))

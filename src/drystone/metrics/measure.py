@@ -137,7 +137,7 @@ def _ids(labels: Labels) -> Labels:
     if ids.ndim != 2 or ids.dtype.kind not in "iu" or (signed and ids.size and ids.min() < 0):
         raise LabelImageError(
             "E301",
-            f"an array of shape {ids.shape} and type {ids.dtype} is no picture of ids.",
+            f"an array of shape {ids.shape} and type {ids.dtype} is not a picture of ids.",
             where="labels",
             cure="Give a two-dimensional array of whole numbers: 0 for nothing, ids above 0.",
         )

@@ -68,14 +68,14 @@ class Site:
         if not (math.isfinite(width) and math.isfinite(height)):
             raise UsageError(
                 "E127",
-                f"{width} x {height} px is no size of a wall.",
+                f"{width} x {height} px is not a wall size.",
                 where="--wall",
                 cure="Give a positive, finite width and height.",
             )
         if px_per_m is not None and not 0 < px_per_m < math.inf:
             raise UsageError(
                 "E138",
-                f"{px_per_m} px in a metre is no scale.",
+                f"{px_per_m} px in a metre is not a scale.",
                 where="--px-per-m",
                 cure="Give a positive number, or none for a wall in px.",
             )

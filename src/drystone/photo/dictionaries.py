@@ -58,7 +58,7 @@ def opencv_dictionary(name: str) -> Any:
     """Return OpenCV's dictionary of a family; E174 for a name that is none."""
     known = DICTIONARIES | OTHERS
     if name not in known:
-        what, cure = f"{name!r} is no family of markers.", f"Known: {', '.join(DICTIONARIES)}."
+        what, cure = f"{name!r} is not a family of markers.", f"Known: {', '.join(DICTIONARIES)}."
         raise UsageError("E174", what, where="--dictionary", cure=cure)
     aruco = load_cv2().aruco
     return aruco.getPredefinedDictionary(getattr(aruco, known[name]))

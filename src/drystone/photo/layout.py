@@ -105,7 +105,7 @@ def margin_mm(size_mm: float) -> float:
 def page_mm(page: str) -> tuple[float, float]:
     """Return width and height of a page; E174 for one that is not known."""
     if page not in PAGES_MM:
-        raise _no_sheet(f"{page!r} is no page", f"one of {', '.join(PAGES_MM)}")
+        raise _no_sheet(f"{page!r} is not a page", f"one of {', '.join(PAGES_MM)}")
     return PAGES_MM[page]
 
 
@@ -114,7 +114,7 @@ def parse_size_m(text: str) -> float:
     found = _SIZE.fullmatch(text)
     value = 0.0 if found is None else float(found[1]) * _MM[found[2]]
     if not 0.0 < value < 10_000.0:
-        raise _no_sheet(f"{text!r} is no size of a marker", "a length such as 50mm, 5cm or 0.05m")
+        raise _no_sheet(f"{text!r} is not a marker size", "a length such as 50mm, 5cm or 0.05m")
     return value / 1000.0
 
 

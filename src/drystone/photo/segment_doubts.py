@@ -133,9 +133,12 @@ _KINDS = {
         "Look at them in outlines.html, which cuts and merges them.",
     ),
     "W176": ("left out", "Photograph whole stones, clear of markers."),
-    "W177": ("a part may be shadow", "Look at it in outlines.html; avoid hard light."),
-    "W178": ("hardly differs from the ground", "Look at it in outlines.html; take another ground."),
-    "W179": ("unusual", "Is it a stone, and is it one? --min-area changes the limit."),
+    "W177": ("a part may be shadow", "Look at outlines.html; avoid hard light."),
+    "W178": ("hardly differs from the ground", "Look at outlines.html; take another ground."),
+    "W179": (
+        "unusual",
+        "If it is not one stone, correct it in outlines.html; --min-area leaves out small ones.",
+    ),
     "W182": (
         "not taken for stones",
         "Is one of them a stone? Draw it in outlines.html; --min-area keeps smaller ones.",
@@ -150,8 +153,8 @@ def _hollow(found: FoundStones, at: dict[int, tuple[float, float]]) -> list[Doub
         share = float(region.solidity)
         if share < HOLLOW:
             stone = int(region.label)
-            text = f"stone {stone} at {_place(at[stone])} fills {100 * share:.0f} % of its hull"
-            doubts.append(Doubt("W175", (stone,), at[stone], f"{text}: maybe two stones"))
+            text = f"stone {stone} at {_place(at[stone])} has a hollow outline"
+            doubts.append(Doubt("W175", (stone,), at[stone], f"{text}: it may be two stones"))
     return doubts
 
 
@@ -165,9 +168,9 @@ def _necks(found: FoundStones, px_per_m: float | None) -> list[Doubt]:
         where = f"at {_place(neck.at_px)}, {wide} wide"
         if neck.cut and neck.share >= SURELY_TWO and len(stones) > 1:
             names = " and ".join(str(stone) for stone in stones)
-            text = f"stones {names} were cut apart {where}: maybe one stone"
+            text = f"stones {names} were cut apart {where}: they may be one stone"
         elif not neck.cut:
-            text = f"stone {stones[0]} has a neck {where}: maybe two stones"
+            text = f"stone {stones[0]} has a neck {where}: it may be two stones"
         else:
             continue
         doubts.append(Doubt("W175", stones, neck.at_px, text))

@@ -43,7 +43,7 @@ class SegmentedPhoto:
             ids = ", ".join(map(str, self.unasked))
             said = f"The photograph has markers that give no scale here: {ids}. They and their "
             cure = "--aruco takes the scale and the view from them."
-            return (Notice("W170", f"{said}paper are no stones.", cure),)
+            return (Notice("W170", f"{said}paper are not stones.", cure),)
         return () if self.view is None else self.view.notices
 
 

@@ -76,7 +76,7 @@ def places_of(poses: Mapping[int, MeasuredPose], site: Site) -> dict[int, Measur
     for stone_id, pose in poses.items():
         if not isinstance(pose, MeasuredPose):
             raise InputError(
-                "E197", f"stone {stone_id} is measured at {pose!r}, which is no MeasuredPose.",
+                "E197", f"stone {stone_id} is measured at {pose!r}, which is not a MeasuredPose.",
                 where="observe", cure="Give MeasuredPose(x, y, angle_deg) for each stone.",
             )  # fmt: skip
         x, y = pose.x * px, pose.y * px
@@ -229,8 +229,8 @@ def _scale_of(labels: NDArray[np.integer], site: Site) -> float:
     said = " or ".join(f"{h} rows x {w} columns" for h, w in dict.fromkeys(sizes))
     raise InputError(
         "E196",
-        f"an array of {' x '.join(map(str, labels.shape))} {labels.dtype} is no picture of the ids "
-        f"of the wall.",
+        f"an array of {' x '.join(map(str, labels.shape))} {labels.dtype} is not a picture of the "
+        "ids of the wall.",
         where="observe",
         cure=f"Give whole numbers, {said}: the whole wall at the source or working resolution, "
         "row 0 at the top.",

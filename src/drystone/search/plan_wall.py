@@ -183,7 +183,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
             "method_settings('best').updated({...}) makes them"
         )
     if seed < 0:
-        raise UsageError("E138", f"{seed} is no seed.", where="--seed", cure="Give 0 or more.")
+        raise UsageError("E138", f"{seed} is not a seed.", where="--seed", cure="Give 0 or more.")
     if built is not None and begin is not None:
         raise UsageError(
             "E138",
@@ -199,7 +199,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
             "E125",
             f"a scale of {scale} is not in (0, 1].",
             where="--scale",
-            cure="Give a share of the source resolution such as .5, or none to have it chosen.",
+            cure="Give a share of the source resolution such as 0.5, or none to have it chosen.",
         )
     frame = Frame(width, height, Site.from_source(width, height, scale, px_per_m))
     asked = _PlanOrigin(frame, settings, method, seed, time.perf_counter())

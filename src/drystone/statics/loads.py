@@ -118,7 +118,7 @@ def support_settlement(model: RigidBlockModel, block: int) -> tuple[RigidBlockMo
     if not found.fixed:
         raise InputError(
             "E306",
-            f"block {block} is not fixed, so it is no support that can settle.",
+            f"block {block} is not fixed, so it is not a support that can settle.",
             where="load case",
             cure=f"Name a fixed one: {_listed(b for b in model.blocks if b.fixed)}.",
         )
@@ -234,7 +234,7 @@ def _parsed(text: str, option: str) -> tuple[int, tuple[float, float], tuple[flo
     if found is None:
         raise UsageError(
             "E138",
-            f"{text!r} is no force at a point.",
+            f"{text!r} is not a force at a point.",
             where=option,
             cure="Write ID@X,Y:FX,FY, as in 7@120,85:0,-200.",
         )

@@ -37,11 +37,11 @@ def check_blocks(
     """
     if not isinstance(content, Mapping):
         why = f": {content}" if isinstance(content, str) else "."
-        return [_problem(f"{FILE} is no block model{why}")]
+        return [_problem(f"{FILE} is not a block model{why}")]
     try:
         polygons, claimed = polygons_from_json(content), model_from_json(content)
     except DrystoneError as error:
-        return [_problem(f"{FILE} is no block model: {error.where}: {error.what}")]
+        return [_problem(f"{FILE} is not a block model: {error.where}: {error.what}")]
     px = plan.px_per_m or 1.0
     outlines = {block: corners * px for block, corners in polygons.items()}
     problems = _check_outlines(outlines, replay)

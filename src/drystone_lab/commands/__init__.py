@@ -4,17 +4,17 @@ from drystone.cli.parser import Command, run_of
 from drystone_lab.commands.options import add_bench, add_fetch, add_reproduce
 
 BENCH = Command(
-    "Show how good the numbers are, and compare methods of choosing stones.",
+    "Test the numbers, and compare ways of choosing stones.",
     add_bench,
     run_of("drystone_lab.commands.bench"),
 )
 REPRODUCE = Command(
-    "Make tables and figures of the paper again, with a report.",
+    "Make the tables and figures of the paper again.",
     add_reproduce,
     run_of("drystone_lab.commands.reproduce"),
 )
 FETCH = Command(
-    "Download published stone sets, with licence and what to cite.",
+    "Download published stone sets, with licence and citation.",
     add_fetch,
     run_of("drystone_lab.commands.fetch"),
 )

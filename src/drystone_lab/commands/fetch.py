@@ -24,7 +24,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             print(f"{name}: {published.text} ({len(published.files)} files)")
         return ExitCode.DONE
     names = _names(arguments.sets)
-    folder = destination(arguments.to)
+    folder = destination(arguments.output)
     fetched = {name: fetch_set(SETS[name], folder, address=RAW) for name in names}
     if arguments.json:
         print_json(_record(folder, fetched))

@@ -3,6 +3,7 @@
 import argparse
 
 from drystone.cli.numbers import positive, whole_from
+from drystone.cli.parser import Renamed
 
 PUBLIC_OPTIONS = ("policy", "settings", "jobs", "dask", "store", "again", "history", "shake")
 """For public suites, and what other suites say that they go by."""
@@ -11,14 +12,15 @@ PUBLIC_OPTIONS = ("policy", "settings", "jobs", "dask", "store", "again", "histo
 def add_bench(command: argparse.ArgumentParser) -> None:
     """Add the options of ``bench``."""
     command.add_argument("suite", metavar="SUITE", nargs="?", help="see --list")
-    command.add_argument(
-        "--suite", dest="named", metavar="NAME", help="the same as SUITE; see --list"
-    )
+    command.add_argument("--suite", dest="named", help=argparse.SUPPRESS)
     command.add_argument("--list", action="store_true", help="name suites and policies, one a line")
     command.add_argument("--data", metavar="DIR", help="published data (default: $DRYSTONE_DATA)")
     command.add_argument("-o", "--output", metavar="DIR", help="draw pictures into a folder")
     command.add_argument(
-        "--seed", type=whole_from(0), default=0, help="of random choices, or the first"
+        "--seed",
+        type=whole_from(0),
+        default=0,
+        help="of the random choices, or the first of several (default 0)",
     )
     command.add_argument("--quick", action="store_true", help="a smaller version")
     command.add_argument(
@@ -79,9 +81,10 @@ def add_fetch(command: argparse.ArgumentParser) -> None:
     command.add_argument("sets", metavar="NAME", nargs="*", help="see --list")
     command.add_argument("--list", action="store_true", help="name the sets, one a line")
     command.add_argument(
-        "--to", metavar="DIR",
+        "-o", "--output", metavar="DIR",
         help="folder to write to (default: $DRYSTONE_DATA, else a cache of your account)",
     )  # fmt: skip
+    command.add_argument("--to", dest="output", action=Renamed, const="-o", help=argparse.SUPPRESS)
     command.add_argument("--json", action="store_true", help="print as JSON")
 
 
@@ -97,9 +100,7 @@ def add_reproduce(command: argparse.ArgumentParser) -> None:
     command.add_argument("--quick", action="store_true", help="a smaller version, in a minute each")
     command.add_argument("--data", metavar="DIR", help="published data (default: $DRYSTONE_DATA)")
     command.add_argument("--seed", type=whole_from(0), default=1, help="the first one (default 1)")
-    command.add_argument(
-        "--jobs", type=whole_from(1), metavar="N", help="processes; never the result"
-    )
+    command.add_argument("--jobs", type=whole_from(1), metavar="N", help="number of processes")
     command.add_argument("--dask", metavar="ADDRESS", help="plan the walls on a Dask cluster")
     command.add_argument(
         "--again", action="store_true",

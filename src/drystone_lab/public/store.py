@@ -152,7 +152,7 @@ class BenchStore:
             return not_written(OSError(0, str(error), str(self.database)))
         return InputError(
             "E401",
-            f"this is no database of runs that can be used: {error}.",
+            f"this is not a database of runs that can be used: {error}.",
             where=str(self.database),
             cure="Move it away; runs whose plans are kept beside it are not done again.",
         )

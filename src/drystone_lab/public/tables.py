@@ -323,8 +323,8 @@ def _pairs_table(
             "bootstrap of the mean. p: Wilcoxon's signed-rank test, by Holm for all "
             f"{len(known)} tests of these tables.",
             "shows: who is better, where the interval does not hold 0 and p is below "
-            f"{LEVEL:.2g}; a name with a question mark has the interval alone, which is no proof "
-            "where so many are looked at.",
+            f"{LEVEL:.2g}; a name with a question mark has the interval alone, which is not "
+            "a proof where so many are looked at.",
             *(() if not less else (f"{less} pairs lack a value of one or both and are left out.",)),
             *(() if not copies else (_COPIES,)),
             *_too_few(most, len(known), copies=copies),

@@ -246,7 +246,7 @@ def _reference_table(levels: NoiseLevels) -> Table:
         (
             "F_SF is of the whole image, which is also the size of our walls, and so the most that "
             "its stones can fill. Gaps: x1 closes those of up to 6.7 px of the source (2 px at the "
-            "working scale .3); - does not stand.",
+            "working scale 0.3); - does not stand.",
         ),
     )
 

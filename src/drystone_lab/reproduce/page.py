@@ -9,6 +9,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from drystone.drawing.report.html import HERE
+from drystone.errors import counted
 from drystone.whole_files import write_whole
 from drystone_lab.table import written
 
@@ -46,7 +47,7 @@ def about(record: Record) -> str:
     request, taken = record["request"], record["taken"]
     words = [f"seed {request['seed']}", f"drystone {request['version']}", record["made"]["date"]]
     if taken["walls"]:
-        walls = f"{taken['walls']} wall{'' if taken['walls'] == 1 else 's'}"
+        walls = counted(taken["walls"], "wall")
         words.append(f"{walls} planned in {duration(taken['wall_seconds'])}")
     return ", ".join(words)
 

@@ -145,7 +145,7 @@ def _comparison(found: Five) -> Table:
             "(§5.2); the paper does not say how both count, so the fullest is shown too.",
             "All stones: the area of all stones over the target, the largest F_SF there can be.",
             "Walls 4 and 5: the stones of Liu et al. (2018) are not public; ours are generated, so "
-            "their rows are no comparison.",
+            "their rows cannot be compared.",
         ),
     )
 

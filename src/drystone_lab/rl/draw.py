@@ -46,7 +46,7 @@ class DrawSettings:
         if self.stones < 3 or not self.size_px >= 8:
             raise _refused("walls need 3 stones or more, of 8 px or more", "Give more of them.")
         if not self.surplus >= 0.2 or not self.aspect > 0:
-            raise _refused("surplus must be .2 or more, aspect positive", "Give larger ones.")
+            raise _refused("surplus must be 0.2 or more, aspect positive", "Give larger ones.")
 
 
 def draw_wall(settings: DrawSettings, rng: Generator) -> tuple[StoneSet, Site]:

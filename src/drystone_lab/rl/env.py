@@ -310,7 +310,7 @@ def _arriving(stones: StoneSet, order: Any) -> list[int]:
     try:
         ids = [stones.by_id(index(stone_id)).id for stone_id in order]
     except TypeError as error:
-        raise _refused(f"order is {order!r}, which is no sequence of ids") from error
+        raise _refused(f"order is {order!r}, which is not a sequence of ids") from error
     if not ids or len(set(ids)) < len(ids):
         raise _refused("no stone arrives" if not ids else "a stone arrives twice")
     return ids

@@ -32,7 +32,7 @@ def test_a_set_arrives_with_licence_and_source(
     lay_open(tmp_path / "served")
     with serving(tmp_path / "served") as address:
         monkeypatch.setattr(fetch, "RAW", address)
-        ran = run("fetch", "toy", "--to", tmp_path / "here")
+        ran = run("fetch", "toy", "-o", tmp_path / "here")
     assert ran.code == 0
     for name, contents in CONTENTS.items():
         path = tmp_path / "here" / name

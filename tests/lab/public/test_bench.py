@@ -92,7 +92,7 @@ def test_walls_without_data_are_named():
 
 
 def test_a_damaged_store_is_found_before_the_runs(tmp_path, counted):
-    (tmp_path / "bench.sqlite").write_text("this is no database, and never was one")
+    (tmp_path / "bench.sqlite").write_text("this is not a database, and never was one")
     with pytest.raises(InputError) as caught:
         run_public(replace(SETTINGS, store=tmp_path))
     assert caught.value.code == "E401"

@@ -40,7 +40,7 @@ from drystone.drawing.words.modelling import (
 )
 from drystone.drawing.words.tables import NAMES as TABLES
 from drystone.drawing.words.tables import write_tables
-from drystone.errors import ExitCode, Notice, UsageError
+from drystone.errors import ExitCode, Notice, UsageError, counted
 from drystone.io.walls import GivenWall, read_wall, unsupported
 from drystone.statics.limit import lateral_resistance, load_range
 from drystone.statics.loads import LoadCase, Loads, load_case
@@ -63,38 +63,37 @@ def add(command: argparse.ArgumentParser) -> None:
     # fmt: off
     option = command.add_argument_group("model").add_argument
     option("--mu", type=friction, metavar="MU",
-           help="coefficient of friction (default .58); LOW:HIGH gives the scatter between them")
-    option("--mu-head", type=not_negative, metavar="MU", help="of head joints, 0 for open ones")
+           help="coefficient of friction (default 0.58); LOW:HIGH for a random one in between")
+    option("--mu-head", type=not_negative, metavar="MU", help="of upright joints, 0 for open ones")
     option("--contacts", choices=["pixels", "outlines"], default="pixels",
-           help="from the edges of pixels (default), or from sub-pixel outlines")
+           help="find contacts on pixels (default) or on smooth outlines")
     option("--close-gaps", metavar="PX|auto|settle",
-           help="gaps up to PX between drawn stones bear; auto looks for the width; settle lowers "
-           "stones until they touch")
+           help="treat stones closer than PX as touching; auto finds a width; settle lowers stones "
+           "until they touch")
     option("--solver", choices=["auto", "highs", "highs-ipm", "clarabel"], default="auto",
-           help="of the associative load multiplier and its certificate (default auto: by the "
-           "number of blocks, and another one when a certificate fails)")
+           help="for the associative load multiplier (default: chosen by the number of blocks)")
     option("--associative-only", action="store_true",
-           help="leave out the load multiplier without dilatancy, which takes longer")
-    group = command.add_argument_group("loads (dead load: weight; live load: alpha times ...)")
+           help="skip the load multiplier without dilatancy, which takes longer")
+    group = command.add_argument_group("loads (the wall bears its weight, and alpha times ...)")
     option = group.add_argument
     option("--load", type=_load, choices=["tilting", "height", "points", "gravity"],
            default="tilting",
-           help="weights sideways as on a tilting table (default), growing with height, the "
-           "--live forces, or the weight itself with the --dead forces held")
+           help="sideways as on a tilting table (default), growing with height, the --live forces, "
+           "or more weight with the --dead forces held")
     option("--tilt", type=finite, default=0.0, metavar="DEG",
-           help="gravity is turned by this towards the right already")
-    for name, text in (("--dead", "force that acts always"), ("--live", "force times alpha")):
+           help="turn gravity by this towards the right first")
+    for name, text in (("--dead", "constant force"), ("--live", "force that grows with alpha")):
         option(name, action="append", default=[], metavar="ID@X,Y:FX,FY",
                help=f"{text}, on block ID at (x, y) of the wall frame, up is positive; repeatable")
-    option("--settle", type=int, metavar="ID", help="the fixed block ID gives way: its reaction")
+    option("--settle", type=int, metavar="ID", help="lower the fixed block ID: its reaction")
     group = command.add_argument_group("scatter of the load multiplier (Monte Carlo)")
     option = group.add_argument
     option("--scatter", type=whole_from(1), metavar="N", help="samples (default 200)")
     for name, text in (("outline", "the outlines"), ("placement", "where stones lie")):
         option(f"--{name}-noise", type=not_negative, default=0.0, metavar="PX",
                help=f"standard deviation of {text} (of a block model: in its lengths)")
-    option("--seed", type=whole_from(0), default=0)
-    option("--jobs", type=whole_from(1), default=1, metavar="N", help="workers; never the result")
+    option("--seed", type=whole_from(0), default=0, help="of the random choices (default 0)")
+    option("--jobs", type=whole_from(1), default=1, metavar="N", help="number of processes")
 
 
 def _load(text: str) -> str:
@@ -146,7 +145,11 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if arguments.json:
         print_json(report)
     else:
-        print_table(f"{path}: {_many(model)}, {model.contact_count} contact points", rows)
+        print_table(
+            f"{path}: {counted(len(model.blocks), 'block')}, "
+            f"{counted(model.contact_count, 'contact point')}",
+            rows,
+        )
     if resistance.failed:
         return _keep_failure(model, loads, pictures)
     return ExitCode.DONE if card.stands else ExitCode.CHECK_FAILED
@@ -168,10 +171,6 @@ def _write_all(
     write_tables(folder, card.model, ends, per_unit_m)
     curve = draw_friction(folder, card.model, loads)
     write_analysis(folder / REPORT, wall, card, per_unit_m, curve)
-
-
-def _many(model: RigidBlockModel) -> str:
-    return f"{len(model.blocks)} block{'' if len(model.blocks) == 1 else 's'}"
 
 
 def _sha256(path: Path) -> str:
@@ -202,7 +201,7 @@ def _print_range(
     if arguments.json:
         print_json(card.report())
     else:
-        print_table(f"{arguments.wall_path}: {_many(model)}", card.rows())
+        print_table(f"{arguments.wall_path}: {counted(len(model.blocks), 'block')}", card.rows())
     failed = any(end.status is LimitStatus.FAILED for end in ends)
     if failed:
         return _keep_failure(model, loads, pictures)

@@ -31,12 +31,12 @@ def add(command: argparse.ArgumentParser) -> None:
     """Add its options."""
     # fmt: off
     option = command.add_argument
-    option("plan", metavar="PLAN.json", help="plan to verify, or its folder")
-    option("--stones", metavar="STONES", help="what the plan was made from")
+    option("plan", metavar="PLAN", help="plan.json, or its folder")
+    option("--stones", metavar="STONES", help="what the plan was made from, if it is not beside it")
     option("--physics", action="store_true",
-           help="build the wall in a rigid-body engine too, and tilt it (extra `physics`)")
+           help="also build and tilt the wall in a physics engine (extra `physics`)")
     option("--picture", metavar="FILE.png",
-           help="draw it, whatever was found (else check.png beside the plan when something fails)")
+           help="draw the result here (default: check.png beside the plan, if something fails)")
     option("--overwrite", action="store_true", help="replace the picture")
     option("--json", action="store_true", help="print as JSON")
 
@@ -71,7 +71,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         print_json({**checked.as_dict(), **({"picture": picture.path} if picture else {})})
     else:
         drawn = [("picture", picture.words)] if picture else []
-        print_table(f"{path}: {checked.verdict}", checked.rows() + drawn)
+        print_table(
+            f"{'OK' if checked.ok else 'FAILED'}: {path} {checked.verdict}", checked.rows() + drawn
+        )
     return ExitCode.DONE if checked.ok else ExitCode.CHECK_FAILED
 
 

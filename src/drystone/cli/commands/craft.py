@@ -12,7 +12,7 @@ from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.contacts.outlines import model_of_traced
 from drystone.craft import RULES, CraftReport, Finding, Limit, Masonry, look
 from drystone.craft.look import UNSEEN
-from drystone.errors import ExitCode, UsageError
+from drystone.errors import ExitCode, UsageError, counted
 from drystone.io.walls import GivenWall, read_wall
 
 SHEET_DPI, SINGLE_DPI = 130, 150
@@ -24,12 +24,13 @@ def add(command: argparse.ArgumentParser) -> None:
     # fmt: off
     option = command.add_argument
     option("--cases", type=whole_from(0), default=3, metavar="N",
-           help="how many places a rule names in the table (default 3); JSON has all")
+           help="places to name for each rule (default 3); --json has all")
     option("--limit", action="append", type=_limit, default=[], metavar="RULE=GOOD:FAIR",
            dest="limits",
-           help="last good and last fair number of a rule, such as laps=.1:.3; repeatable")
+           help="limits of a rule, such as laps=0.1:0.3; repeatable")
+    option("--explain", action="store_true", help="say what each rule measures, and its limits")
     option("--wedges", nargs="+", action="extend", type=whole_from(1), default=[], metavar="ID",
-           help="ids that are wedges, in a wall that is not a plan")
+           help="ids of wedges, if the wall is not a plan")
 
 
 def _limit(text: str) -> tuple[str, Limit]:
@@ -83,11 +84,12 @@ def _masonry_of(wall: GivenWall, wedge_ids: frozenset[int]) -> Masonry:
 def _print(report: CraftReport, arguments: argparse.Namespace) -> None:
     masonry = report.masonry
     wedges = len(set(masonry.wedge_ids))
-    also = f", {_many(wedges, 'wedge')}" if wedges else ""
-    print(f"{arguments.wall_path}: {_many(len(masonry.stones), 'stone')}{also}")
+    also = f", {counted(wedges, 'wedge')}" if wedges else ""
+    print(f"{arguments.wall_path}: {counted(len(masonry.stones), 'stone')}{also}")
     width = max(len(rule.title) for rule in RULES.values())
     for finding in report.findings.values():
-        print(f"{finding.rule.title:<{width}}  {finding.verdict:<10}  {_number(finding)}")
+        said = _number(finding, explain=arguments.explain)
+        print(f"{finding.rule.title:<{width}}  {finding.verdict:<10}  {said}")
         if finding.note and finding.number is not None:
             print(f"{'':<{width}}    {finding.note}")
         for case in finding.cases[: arguments.cases]:
@@ -99,14 +101,10 @@ def _print(report: CraftReport, arguments: argparse.Namespace) -> None:
     print(UNSEEN)
 
 
-def _many(count: int, noun: str) -> str:
-    return f"{count} {noun}{'' if count == 1 else 's'}"
-
-
-def _number(finding: Finding) -> str:
-    """Write the number of a rule with its limits."""
-    if finding.number is None:
-        return finding.note
+def _number(finding: Finding, *, explain: bool) -> str:
+    """Write the number of a rule; to explain it, with its limits and its meaning."""
+    if finding.number is None or not explain:
+        return finding.note if finding.number is None else finding.amount
     rule, limit = finding.rule, finding.limit
     sign = ">=" if rule.higher_is_better else "<="
     good, fair = f"good {sign} {limit.good:g}", f"fair {sign} {limit.fair:g}"

@@ -10,6 +10,7 @@ from drystone.cli.inputs import refuse_inputs
 from drystone.cli.keeping import WRITTEN
 from drystone.cli.numbers import add_scale
 from drystone.cli.output import working_in
+from drystone.cli.parser import list_only
 from drystone.cli.planning import add_writing, plan_and_write
 from drystone.cli.settings import add_settings, request_from, settings_from
 from drystone.errors import ExitCode
@@ -24,11 +25,16 @@ STONES = "stones.png"
 def add(command: argparse.ArgumentParser) -> None:
     """Add what `drystone demo` takes."""
     command.add_argument(
-        "-o", "--output", default="drystone-demo", metavar="DIR", help="folder to write to"
+        "-o",
+        "--output",
+        default="drystone-demo",
+        metavar="DIR",
+        help="folder to write to (default drystone-demo)",
     )
     add_scale(command)
     add_settings(command)
     add_writing(command)
+    list_only(command, "-o", "--seed", "--time", "--json")
     # What only `plan` has options for.
     command.set_defaults(ban=[], pin=[], fixed_order=False, resume=False, begin=None)
 

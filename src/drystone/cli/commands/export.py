@@ -15,6 +15,7 @@ from drystone.cli.numbers import (
     scale_notice,
 )
 from drystone.cli.output import make_folder, note, prepare_files, print_json
+from drystone.cli.progress import busy
 from drystone.drawing.assembly.read import read_assembly
 from drystone.drawing.export.formats import FORMATS, ExportSettings, write_files
 from drystone.errors import ExitCode, Notice, UsageError
@@ -26,7 +27,7 @@ def add(command: argparse.ArgumentParser) -> None:
     """Add formats and what shapes them."""
     # fmt: off
     option = command.add_argument
-    option("plan", metavar="PLAN.json", nargs="?", help="plan, or its folder")
+    option("plan", metavar="PLAN", nargs="?", help="plan.json, or its folder")
     option("--list", action="store_true", help="name the formats, one a line")
     option("--to", nargs="+", action="extend", default=[], metavar="FORMAT", choices=list(FORMATS),
            help=", ".join(FORMATS))
@@ -37,7 +38,7 @@ def add(command: argparse.ArgumentParser) -> None:
     add_scale(command)
     option = command.add_argument_group("stones").add_argument
     option("--thickness", type=positive, metavar="M", dest="thickness_m",
-           help="of the wall, metres (default: the median square root of the stones' areas)")
+           help="of the wall, metres (default: the side of a median stone)")
     option("--density", type=positive, metavar="KG", dest="density_kg_m3", default=2600.0,
            help="kg in a cubic metre of stone (default 2600)")
     option = command.add_argument_group("drawings and films").add_argument
@@ -45,9 +46,9 @@ def add(command: argparse.ArgumentParser) -> None:
            help="draw the build sheet at 1:N (default: the largest usual scale that fits)")
     option("--title", default="", metavar="TEXT", help="in the title block")
     option("--projector", metavar="WxH@PX", default="1920x1080@1000",
-           help="px of the projector and how many are a metre on the wall (1920x1080@1000)")
+           help="pixels of the projector, and how many make a metre on the wall (1920x1080@1000)")
     option("--seconds-per-step", type=positive, default=0.6, metavar="S",
-           help="of films (default .6)")
+           help="of films (default 0.6)")
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
@@ -69,7 +70,11 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     )
     refuse_outside(arguments.px_per_m, planned_picture_px(assembly.plan.source))
     asked = list(dict.fromkeys(arguments.to))
-    made = {name: FORMATS[name].files(assembly, settings) for name in asked}
+    made = {}
+    with busy(quiet=arguments.json) as told:
+        for name in asked:
+            told(f"making {name}")
+            made[name] = FORMATS[name].files(assembly, settings)
     folder = path if path.is_dir() else path.parent
     folder = Path(arguments.output) if arguments.output else folder
     names = [name for files in made.values() for name in files]
@@ -98,7 +103,7 @@ def _settings_from(arguments: argparse.Namespace) -> ExportSettings:
     """Return what the options say; E138 for a projector that is none."""
     found = _PROJECTOR.fullmatch(arguments.projector)
     if found is None or not (int(found[1]) and int(found[2]) and float(found[3])):
-        what = f"{arguments.projector!r} is no projector."
+        what = f"{arguments.projector!r} is not a projector."
         cure = "Write 1920x1080@1000: its px, and how many of them are a metre on the wall."
         raise UsageError("E138", what, where="--projector", cure=cure)
     return ExportSettings(

@@ -21,13 +21,13 @@ def add(command: argparse.ArgumentParser) -> None:
     """Add its options."""
     # fmt: off
     option = command.add_argument
-    option("kind", choices=[*generate.GENERATORS])
-    option("-o", "--output", required=True, metavar="STONES.png")
-    option("--count", type=whole_from(1), help="number of stones")
-    option("--seed", type=whole_from(0), default=0)
+    option("kind", choices=[*generate.GENERATORS], help="how the stones are shaped")
+    option("-o", "--output", required=True, metavar="STONES.png", help="file to write")
+    option("--count", type=whole_from(1), metavar="N", help="number of stones")
+    option("--seed", type=whole_from(0), default=0, help="of the random choices (default 0)")
     option("--overwrite", action="store_true", help="replace the file")
     option("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes",
-           help="a parameter of the generator, such as noise=0.4 or D2=0.2 (see the docs)")
+           help="a parameter, such as noise=0.4 or D2=0.2 (docs/settings.md has all)")
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
@@ -59,5 +59,5 @@ def _changes(items: list[str], settings_type: type[Any]) -> dict[str, Any]:
             sign = ""
         if not sign:
             cure = f"Known: {', '.join(field.name for field in fields(settings_type))}."
-            raise UsageError("E135", f"{item!r} is no NAME=VALUE.", where="--set", cure=cure)
+            raise UsageError("E135", f"{item!r} is not NAME=VALUE.", where="--set", cure=cure)
     return changes

@@ -6,7 +6,7 @@ from pathlib import Path
 from drystone.cli.numbers import whole_from
 from drystone.cli.output import prepare_files, print_json
 from drystone.drawing.pictures.marker_sheet import MarkerSheets, write_marker_sheets
-from drystone.errors import ExitCode, UsageError
+from drystone.errors import ExitCode, UsageError, counted
 from drystone.photo.layout import FIRST_SHEET, ON_A_SHEET, parse_size_m
 
 
@@ -59,7 +59,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             }
         )
         return ExitCode.DONE
-    print(f"{path}: markers {sheets.ids[0]} to {sheets.ids[-1]}, {len(sheets.pages)} page(s)")
+    print(
+        f"{path}: markers {sheets.ids[0]} to {sheets.ids[-1]}, {counted(len(sheets.pages), 'page')}"
+    )
     print(f"Print at 100 %. Stones are then looked for with {' '.join(options)}")
     return ExitCode.DONE
 

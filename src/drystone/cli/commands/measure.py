@@ -20,7 +20,7 @@ from drystone.cli.reading import add_wall, reading_from
 from drystone.contacts.blocks import model_from_labels, notice_of_pieces
 from drystone.contacts.given import model_from_json
 from drystone.drawing.words.content import number
-from drystone.errors import ExitCode, UsageError
+from drystone.errors import ExitCode, UsageError, counted
 from drystone.io.walls import GivenWall, read_wall, unsupported
 from drystone.metrics.measure import WallMetrics, measure_labels
 from drystone.metrics.reduce import reduce_labels
@@ -42,9 +42,10 @@ def add(command: argparse.ArgumentParser) -> None:
     add_wall(command)
     # fmt: off
     option = command.add_argument
-    option("--mu", type=not_negative, help="coefficient of friction (default .58)")
-    option("--wall", metavar="WxH", help="wall that was to be built, px or metric")
-    option("--scale", type=share, default=1.0, metavar="S", help="reduce the image by S first")
+    option("--mu", type=not_negative, help="coefficient of friction (default 0.58)")
+    option("--wall", metavar="WxH", help="size that the wall was to have: 280x80 (px) or 1.4mx0.4m")
+    option("--scale", type=share, default=1.0, metavar="S",
+           help="reduce the image by S first, 0 to 1")
     add_scale(command)
 
 
@@ -70,8 +71,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     height, width = labels.shape
     rows = [(name, f"{number(getattr(metrics, name), n)}  {said}") for name, n, said in _ROWS]
     rows.append(("wall", f"{metrics.width:g} x {metrics.height:g} px; joints are two px wide"))
-    title = f"{arguments.wall_path}: {metrics.stones} stones, measured at {width} x {height} px"
-    print_table(title, rows)
+    size = f"measured at {width} x {height} px"
+    said = counted(metrics.stones, "stone")
+    print_table(f"{arguments.wall_path}: {said}, {size}", rows)
     return ExitCode.DONE
 
 

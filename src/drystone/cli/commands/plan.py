@@ -8,9 +8,10 @@ from drystone.cli.inputs import files_of, files_of_plan, refuse_among_masks, ref
 from drystone.cli.keeping import WRITTEN
 from drystone.cli.numbers import add_scale, parse_wall, scale_with, whole_from
 from drystone.cli.output import note
+from drystone.cli.parser import list_only
 from drystone.cli.planning import add_writing, plan_and_write
-from drystone.cli.reading import STONES, add_reading, reading_from
-from drystone.cli.settings import add_settings, request_from
+from drystone.cli.reading import READING, STONES, add_reading, reading_from
+from drystone.cli.settings import SHOWN, add_settings, request_from
 from drystone.errors import ExitCode
 from drystone.io.photo_beside import photo_of
 from drystone.io.read_stones import read_stones
@@ -22,22 +23,23 @@ def add(command: argparse.ArgumentParser) -> None:
     option = command.add_argument
     option("stones", metavar="STONES", help=STONES)
     option("--wall", required=True, metavar="WxH",
-           help="size in px of the source image, or 1.4mx0.4m with --px-per-m")
+           help="size of the wall: 280x80 (px of the image), or 1.4mx0.4m where the scale is known")
     option("-o", "--output", required=True, metavar="DIR", help="folder to write to")
     option = command.add_mutually_exclusive_group().add_argument
-    option("--resume", action="store_true", help="go on from the partial plan in the output folder")
+    option("--resume", action="store_true", help="continue the plan in the output folder")
     option("--from", dest="begin", metavar="PLAN",
-           help="begin the search with the wall of a plan of these stones (its file or folder)")
+           help="start from the wall of another plan of these stones")
     add_reading(command)
     add_scale(command)
     add_settings(command)
     option = command.add_argument_group("stones").add_argument
-    for name, text in (("--ban", "that are not used"), ("--pin", "that must be in the wall")):
+    for name, text in (("--ban", "leave out of"), ("--pin", "put into")):
         option(name, nargs="+", action="extend", type=whole_from(0), default=[], metavar="ID",
-               help=f"stones {text}")
-    option("--fixed-order", action="store_true",
-           help="place stones in the order of their ids; what finds no place then is set aside")
+               help=f"stones to {text} the wall")
+    option("--fixed-order", action="store_true")
     add_writing(command)
+    list_only(command, *SHOWN)
+    command.epilog = f"{READING} All settings: drystone settings."
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:

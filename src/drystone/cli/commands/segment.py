@@ -2,8 +2,6 @@
 
 import argparse
 import io
-import math
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -12,9 +10,10 @@ import numpy as np
 from PIL import Image
 
 from drystone.cli.inputs import refuse_inputs
-from drystone.cli.numbers import Ruled, add_scale, positive, refuse_outside, whole_from
+from drystone.cli.numbers import Ruled, add_scale, area, positive, refuse_outside, whole_from
 from drystone.cli.output import note, prepare_folder, print_json, print_table
-from drystone.errors import ExitCode, Notice, UsageError
+from drystone.cli.progress import busy
+from drystone.errors import ExitCode, Notice, UsageError, counted
 from drystone.io.patches import cut
 from drystone.io.photo_beside import LABELS, PAGE, SIDECAR, PhotoSidecar, write_sidecar
 from drystone.io.photo_file import Photo, read_photo
@@ -31,8 +30,6 @@ PHOTO, PREVIEW = "photo.jpg", "preview.png"
 WRITTEN = (LABELS, PHOTO, SIDECAR, PREVIEW, PAGE)
 QUALITY = 90
 
-_AREA = re.compile(r"(\d+(?:\.\d*)?|\.\d+)\s*(cm2|px)?")
-
 
 def add(command: argparse.ArgumentParser) -> None:
     """Add what can be said about a photograph."""
@@ -45,31 +42,21 @@ def add(command: argparse.ArgumentParser) -> None:
     group = command.add_argument_group("markers (they correct the perspective too)")
     option = group.add_argument
     option("--aruco", metavar="MARKERS",
-           help="A4 or A4:50mm: the sheet of `drystone markers`; "
-           "120mm: single markers of this size")
+           help="A4 or A4:50mm: the sheet of `drystone markers`; 120mm: single markers")
     option("--marker-ids", nargs="+", type=whole_from(0), metavar="ID",
-           help="markers that count (default: of a sheet 0 to 3, of single ones all)")
+           help="ids of the markers to use (default: 0 to 3 of a sheet, all single ones)")
     option("--check-line", metavar="LENGTH",
-           help="what a ruler says of the line of 100 mm on the printed sheet, such as 97mm")
+           help="measured length of the 100 mm line on the printed sheet, such as 97mm")
     option = command.add_argument_group("stones").add_argument
     option("--ground", choices=["auto", "light", "dark"], default="auto",
-           help="what the stones lie on (default: the most frequent colour)")
+           help="what the stones lie on (default: found by its colour)")
     option("--min-area", type=area, metavar="AREA",
-           help="smaller is no stone: 12cm2, or px of the result "
-           "(default: a fiftieth of a usual one)")
+           help="leave out smaller stones: px, or 12cm2 where the scale is given (default: a "
+           "fiftieth of a usual one)")
     option("--no-split", action="store_false", dest="split", help="leave touching stones together")
     option("--mpx", type=positive, default=1.6, metavar="N",
-           help="million px of the result, at most (default 1.6)")
+           help="largest size of the result, million px (default 1.6)")
     command.add_argument("--json", action="store_true", help="print as JSON")
-
-
-def area(text: str) -> tuple[float, str]:
-    """Read an area: value and unit, "cm2" or "px"."""
-    found = _AREA.fullmatch(text.strip())
-    if found is None or not 0 < float(found[1]) < math.inf:
-        message = f"{text!r} is no area such as 12cm2 or 300 (px)"
-        raise argparse.ArgumentTypeError(message)
-    return float(found[1]), found[2] or "px"
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
@@ -87,7 +74,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         raise UsageError("E131", what, where="--min-area", cure=cure)
     prepare_folder(folder, WRITTEN, overwrite=arguments.overwrite)
     max_px = round(arguments.mpx * 1e6)
-    result = segment_photo(photo.values, scale, settings, min_area, max_px=max_px)
+    with busy(quiet=arguments.json) as told:
+        told("finding stones")
+        result = segment_photo(photo.values, scale, settings, min_area, max_px=max_px)
     doubts = doubts_of(result.found, result.px_per_m, settings)
     if isinstance(scale, Ruled):
         ends_px = apply(result.from_photo, np.array(scale.ends_px))
@@ -112,7 +101,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             print(f"doubtful: {'; '.join(verdict.reasons)}")
         _print(folder, result, sizes, notices)
     if result.px_per_m is None:
-        note("no scale: sizes are px. --aruco, --px-per-m or --ruler give one")
+        note("No scale given, so sizes are in pixels. Add --aruco, --ruler or --px-per-m.")
     return ExitCode.CHECK_FAILED if verdict.doubtful else ExitCode.DONE
 
 
@@ -243,4 +232,4 @@ def _print(
         rows.insert(2, ("markers", said))
     rows += [("notice", str(notice)) for notice in notices]
     rows.append(("to check", f"{folder / PAGE}: open it in a browser, correct, and save"))
-    print_table(f"{folder / LABELS}: {len(sizes)} stones", rows)
+    print_table(f"{folder / LABELS}: {counted(len(sizes), 'stone')}", rows)

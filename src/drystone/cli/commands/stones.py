@@ -13,9 +13,10 @@ from drystone.cli.numbers import (
     scale_with,
 )
 from drystone.cli.output import prepare_files, prepare_picture, print_json, print_table
+from drystone.cli.parser import Renamed
 from drystone.cli.reading import STONES, add_reading, reading_from
 from drystone.clusters import cluster_stones
-from drystone.errors import ExitCode
+from drystone.errors import ExitCode, counted
 from drystone.io.read_stones import read_stones
 from drystone.io.write_stones import write_stones, written_as
 from drystone.model.stone_size import median_sides, sides_px
@@ -27,10 +28,13 @@ def add(command: argparse.ArgumentParser) -> None:
     command.add_argument("stones", metavar="STONES", help=STONES)
     command.add_argument("-o", "--output", metavar="PICTURE.png", help="draw the stones")
     command.add_argument(
-        "--to", metavar="FILE",
-        help="write what was read as a label image (.png, .tif, .npy; its scale into stones.json "
-        "beside it), or as outlines for labelme (.json)",
+        "--labels", metavar="FILE",
+        help="write what was read: as a label image (.png, .tif, .npy; its scale goes into "
+        "stones.json beside it), or as outlines for labelme (.json)",
     )  # fmt: skip
+    command.add_argument(
+        "--to", dest="labels", action=Renamed, const="--labels", help=argparse.SUPPRESS
+    )
     command.add_argument("--overwrite", action="store_true", help="replace what is written")
     add_reading(command)
     add_scale(command)
@@ -41,7 +45,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     """Print count, sizes, clusters and notices; draw or convert the stones when asked."""
     picture = None if arguments.output is None else Path(arguments.output)
     path = Path(arguments.stones)
-    to = None if arguments.to is None else Path(arguments.to)
+    to = None if arguments.labels is None else Path(arguments.labels)
     if to is not None:
         files = written_as(to)
         refuse_inputs(files_of(path), files)
@@ -84,7 +88,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         )
         return ExitCode.DONE
     print_table(
-        f"{source.path}: {len(stones)} stones",
+        f"{source.path}: {counted(len(stones), 'stone')}",
         [
             ("image", f"{source.width_px} x {source.height_px} px"),
             *([] if px_per_m is None else [("scale", f"{px_per_m:g} px a metre")]),

@@ -156,7 +156,7 @@ def _read(path: Path) -> tuple[Plan, Mapping[int, Points], RigidBlockModel]:
     wall = read_wall(path) if path.is_dir() or path.suffix.lower() == ".json" else None
     if wall is None or wall.plan is None:
         raise InputError(
-            "E132", "this is no plan.", where=str(path),
+            "E132", "this is not a drystone plan.", where=str(path),
             cure="Give the plan.json of a plan, or its folder.",
         )  # fmt: skip
     # What is made of steps goes by their numbers.

@@ -25,7 +25,7 @@ from drystone.drawing.words import content
 from drystone.drawing.words.analysis import ModelledWall
 from drystone.drawing.words.content import masons_words
 from drystone.drawing.words.wall_verdict import judge_wall
-from drystone.errors import Notice
+from drystone.errors import Notice, counted
 from drystone.io.plan_json import plan_digest
 from drystone.kernels.polygons import Points
 from drystone.model.plan import Point, StoneStep
@@ -181,8 +181,7 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
     names = Names(noun, frozenset(wedges), steps or {})
     shown = ModelledWall(model, wall, names, tuple(notices))
     count = sum(region.id not in names.wedges for region in regions)
-    many = f"{count} {names.noun}{'' if count == 1 else 's'}"
-    verdict = judge_wall(many, shown, resistance, load_case=load_case,
+    verdict = judge_wall(counted(count, names.noun), shown, resistance, load_case=load_case,
                          without_dilatancy=without_dilatancy)  # fmt: skip
     results = () if verdict.stands is False else (
         *content.strength_cards(resistance.value, resistance.left.alpha, resistance.right.alpha,

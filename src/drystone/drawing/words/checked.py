@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from drystone.drawing.words.content import number
+from drystone.errors import counted
 from drystone.kernels.polygons import Points
 from drystone.model.plan import Plan, PlanMetrics, Point
 from drystone.model.stone import StoneSet
@@ -175,18 +176,25 @@ class Checked:
     def verdict(self) -> str:
         """In words."""
         if not self.report.ok:
-            return "does not hold"
+            return "is not valid"
         if self.falls:
-            return "holds, but falls in the engine"
-        return "holds" if self.ok else "holds, but not in the engine"
+            return "is valid, but the wall falls in the engine"
+        if not self.ok:
+            return "is valid, but the engine contradicts it"
+        metrics = self.report.metrics
+        stands = metrics is not None and metrics.F_LR is not None
+        return "is valid, and the wall stands" if stands else "is valid"
 
     def rows(self) -> list[tuple[str, str]]:
         """Return names and values, one a line."""
         plan, report = self.plan, self.report
         rows = [
-            ("stones", f"{len(plan.stone_steps)} placed, {len(plan.wedge_steps)} wedges"),
+            (
+                "stones",
+                f"{len(plan.stone_steps)} placed, " + counted(len(plan.wedge_steps), "wedge"),
+            ),
             ("overlap", f"{report.overlap_depth:.2f} source px deep by the outlines"),
-            ("area", f"the pixels of a stone miss its area by {report.area_error:.1%} at most"),
+            ("area", f"pixel areas agree to {100 * report.area_error:.1f} %"),
             ("buried", ", ".join(map(str, report.buried)) or "none"),
         ]
         if self.asked_physics:

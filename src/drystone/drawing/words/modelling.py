@@ -129,7 +129,7 @@ def _with_closed_gaps(
     wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest
 ) -> ModelledWall:
     if asked.contacts != "pixels":
-        what = "--close-gaps finds contacts on pixels, and --contacts outlines on outlines."
+        what = "--close-gaps works only with --contacts pixels."
         raise UsageError("E138", what, cure="Leave one of them out.")
     if asked.close_gaps == "auto":
         return _with_swept_gaps(wall, labels, mu, asked)
@@ -290,7 +290,7 @@ def scarcity(wall: ModelledWall, per_unit_m: float | None) -> Notice | None:
 
 _CURES = {
     "known": "",
-    "swept": "Are stones missing beside them? --skip leaves out what is no stone of the wall.",
+    "swept": "Are stones missing beside them? --skip leaves out what is not a stone of the wall.",
     "outlines": "Leave --contacts out: --close-gaps auto looks for the width that lets them bear.",
 }
 """What to do about stones that touch too little, by what is known of the joints."""

@@ -5,6 +5,7 @@ from typing import Any
 
 from drystone.craft import RULES, CraftReport, Masonry, look
 from drystone.drawing.words.content import number
+from drystone.errors import counted
 from drystone.kernels.backend import describe
 from drystone.model.plan import Plan
 from drystone.planner.profile import PARTS
@@ -15,6 +16,10 @@ FIGURES = (
     "T_LEVEL", "E_FLUSH", "alpha_left", "alpha_right", "wedge_area",
 )  # fmt: skip
 """Metrics that the summary has beside F_SF."""
+
+
+MOST_NAMED = 2
+"""More stones that found no place are named in the table alone."""
 
 
 def summary(result: PlanResult, folder: Path) -> dict[str, Any]:
@@ -62,7 +67,13 @@ def ending(result: PlanResult) -> str:
     """Say how a plan ended."""
     if result.status == "interrupted":
         return "interrupted: --resume goes on from here"
-    return f"{result.status}: {'; '.join(filter(None, (result.message, result.shortfall)))}"
+    placed, unused = len(result.plan.stone_steps), result.plan.unused
+    why = result.message
+    if why.startswith("no stone that is left"):
+        some = 0 < len(unused) <= MOST_NAMED
+        why = f"{' and '.join(map(str, unused)) if some else 'the others'} did not fit"
+    said = f"{placed} of {counted(placed + len(unused), 'stone')} placed"
+    return f"{result.status}: {'; '.join(filter(None, (said, why, result.shortfall)))}"
 
 
 def rows(result: PlanResult, folder: Path) -> list[tuple[str, str]]:
@@ -70,23 +81,19 @@ def rows(result: PlanResult, folder: Path) -> list[tuple[str, str]]:
     plan, metrics, bound = result.plan, result.metrics, result.F_SF_bound
     placed, left = len(plan.stone_steps), len(plan.unused)
     unused = f", unused: {', '.join(map(str, plan.unused))}" if left else ""
-    most = f"{number(bound)} ({'a full wall' if bound == 1.0 else 'area of the stones'})"
-    by_contacts = [
-        f"{number(metrics.F_LR_half)} and {number(metrics.F_LR_double)} at half and twice the"
-        " contact tolerance",
-        f"{number(metrics.F_LR_no_setback)} with contacts up to the ends of faces",
-    ]
+    most = (
+        "a full wall is 1" if bound == 1.0 else f"the maximum for these stones is {number(bound)}"
+    )
     report = _craft(result)
     broken = [f"{RULES[name].title} ({report.findings[name].amount})" for name in report.broken]
     craft = f"breaks {', '.join(broken)}; see drystone craft" if broken else "breaks no rule"
     return [
         ("stones", f"{placed} of {placed + left} placed{unused}"),
-        ("F_SF", f"{number(metrics.F_SF)} of at most {most}"),
+        ("F_SF", f"{number(metrics.F_SF)}  ({most})"),
         ("F_AV", f"{number(metrics.F_AV, 2)}  vertical arrangement, higher is better"),
         ("F_AH", f"{number(metrics.F_AH, 2)}  horizontal arrangement, lower is better"),
         ("F_LR", f"{number(metrics.F_LR)}  lateral resistance / mu, higher is better"),
         ("F_LR_coulomb", f"{number(metrics.F_LR_coulomb)}  the same without dilatancy"),
-        *(("", said) for said in by_contacts if result.wall.outlines is not None),
         ("T_LEVEL", f"{number(metrics.T_LEVEL)}  unevenness of the top"),
         ("E_FLUSH", f"{number(metrics.E_FLUSH)}  unevenness of the ends"),
         ("alpha", f"left {number(metrics.alpha_left)}, right {number(metrics.alpha_right)}"),

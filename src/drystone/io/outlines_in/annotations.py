@@ -123,7 +123,7 @@ def _mask(shape: Mapping[str, Any], room: Room) -> PlacedMask:
     except InputError as error:
         if error.code == "E110":
             raise
-        raise ValueError(f"its mask is no picture: {error.what}") from error
+        raise ValueError(f"its mask is not a picture: {error.what}") from error
     return PlacedMask(mask, place_px(y0), place_px(x0))
 
 
@@ -272,7 +272,7 @@ def _chosen(
         images = ({**content["image"], "id": None},)
     with entry("the list of images"):
         if not all(isinstance(found, Mapping) for found in annotations):
-            raise TypeError("annotations are no objects")
+            raise TypeError("annotations are not objects")
         known = {image.get("id"): image for image in images}
         names = {i: str(image.get("file_name", i)) for i, image in known.items()}
         used = list(dict.fromkeys(found.get("image_id") for found in annotations))

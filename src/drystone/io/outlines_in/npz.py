@@ -72,11 +72,11 @@ def _masks(found: Mapping[str, NDArray[Any]]) -> OutlineFile:
     stones = []
     shapes = {array.shape for array in found.values()}
     if len(shapes) != 1 or len(next(iter(shapes))) != 2:
-        raise unusable(f"its arrays are no masks of one picture: shapes {sorted(shapes)}")
+        raise unusable(f"its arrays are not masks of one picture: shapes {sorted(shapes)}")
     for name, array in found.items():
         values = np.unique(array)
         if len(values) > 2 or array.dtype.kind not in "biuf" or (len(values) == 2 and values[0]):
-            raise unusable(f"the array {name!r} is no mask (0 and one other value)")
+            raise unusable(f"the array {name!r} is not a mask (0 and one other value)")
         mask = trimmed(PlacedMask(array.astype(bool), 0, 0))
         masks = () if mask is None else (mask,)
         stones.append(OutlinedStone(number_in(name), name, (), masks, class_of(name)))

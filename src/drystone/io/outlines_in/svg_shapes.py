@@ -74,7 +74,7 @@ def _numbers(text: str, *, arc: bool) -> list[float]:
         is_flag = arc and len(numbers) % 7 in (3, 4)
         found = (_FLAG if is_flag else _NUMBER).match(text, place)
         if found is None:
-            raise ValueError(f"{text[place:end].strip()[:20]!r} is no number")
+            raise ValueError(f"{text[place:end].strip()[:20]!r} is not a number")
         numbers.append(bounded(found[1]))
         place = found.end()
     return numbers

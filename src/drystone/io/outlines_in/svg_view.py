@@ -50,7 +50,7 @@ def length(text: str) -> tuple[float, str]:
     """Split a length into number and unit; ValueError when it is none."""
     found = _LENGTH.fullmatch(text.strip())
     if found is None:
-        raise ValueError(f"{text[:30]!r} is no length")
+        raise ValueError(f"{text[:30]!r} is not a length")
     return bounded(found[1]), found[2].lower()
 
 
@@ -61,7 +61,7 @@ def transform(text: str) -> Matrix:
     while place < len(text):
         found = _TRANSFORM.match(text, place)
         if found is None:
-            raise ValueError(f"{text[place:][:30]!r} is no transform")
+            raise ValueError(f"{text[place:][:30]!r} is not a transform")
         matrix = matrix @ _matrix_of(found[1], numbers_in(found[2]))
         place = found.end()
     return matrix
@@ -86,7 +86,7 @@ def _matrix_of(name: str, numbers: list[float]) -> Matrix:
         row = 0 if name == "skewX" else 1
         matrix[row, 1 - row] = math.tan(math.radians(numbers[0]))
     else:
-        raise ValueError(f"{name} of {count} numbers is no transform")
+        raise ValueError(f"{name} of {count} numbers is not a transform")
     return matrix
 
 

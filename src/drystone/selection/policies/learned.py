@@ -121,7 +121,9 @@ def model_from_json(text: str, where: str) -> ValueModel:
             tuple(float(content["weights"][name]) for name in FEATURES), content["trained"]
         )
     except (ValueError, TypeError, KeyError) as error:
-        raise _broken(f"is no file of weights ({type(error).__name__}: {error})", where) from error
+        raise _broken(
+            f"is not a file of weights ({type(error).__name__}: {error})", where
+        ) from error
 
 
 @cache

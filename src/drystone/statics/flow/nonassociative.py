@@ -250,9 +250,9 @@ def _least_verified(
     least, best = min(verified, key=lambda one: round(one[0], 9))
     alphas = tuple(sorted(alpha for alpha, _ in verified))
     found = replace(best, rounds=rounds, answers=alphas)
-    count = f"{len(verified)} verified answers"
+    count = f"{len(verified)} solutions"
     if least >= 0.0:
-        message = f"The least of {count}, which reach up to {alphas[-1]:.4f}."
+        message = f"Lowest of {count}; range {least:.4f} to {alphas[-1]:.4f}."
         return replace(found, message=message)
     message = (
         "Without dilatancy the blocks can move this way under their dead load alone, and even"

@@ -1,0 +1,77 @@
+"""Keep what people read plain: messages of the code, the README and the pages of docs.
+
+A fault is "is no X" for "is not an X", "stone(s)", a number without the zero before its point, and
+a sentence above 40 words.  Messages have none.  What pages still have is in prose.txt, a number a
+page, that may only shrink: ``python tools/prose.py --write`` writes it anew.
+"""
+
+import ast
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+LEFT = ROOT / "tools" / "prose.txt"
+MOST_WORDS = 40
+FAULTS = (
+    re.compile(r"(?<!here )\b(?:is|are) no (?!longer\b|more\b|data\b|\w+er than\b)[a-z]\w*", re.I),
+    re.compile(r"\w\(s\)"),
+    re.compile(r"(?:^|[\s(=:])\.\d\w*"),
+)
+QUOTED = {"published.py", "classes.py"}
+"""Modules whose texts are a licence, and names."""
+
+UNREAD = re.compile(r"^(```|~~~).*?^\1|^\s*\|.*?$|<!--.*?-->|`[^`\n]*`|\]\([^)]*\)", re.M | re.S)
+"""Code, tables and addresses: they are not sentences."""
+
+
+def faults(text: str) -> Iterator[str]:
+    """Yield what is wrong in a text."""
+    for pattern in FAULTS:
+        yield from (found[0].strip() for found in pattern.finditer(text))
+    for sentence in re.split(r"[.:;!?](?=\s|$)|\n\s*(?:\n|[-*#>\d])", text):
+        if (words := len(re.findall(r"\w[\w'-]*", sentence))) > MOST_WORDS:
+            yield f"{words} words: {' '.join(sentence.split())[:60]}"
+
+
+def messages(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """Yield the texts of a module that are not docstrings, X where something is put in."""
+    said = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.JoinedStr):
+            said |= {id(part) for part in node.values}
+            parts = (part.value if isinstance(part, ast.Constant) else "X" for part in node.values)
+            yield node.lineno, "".join(map(str, parts))
+        elif (
+            isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in said
+        ):
+            yield node.lineno, node.value
+
+
+def main() -> int:
+    """Print faults; 1 when a message has one, or a page more than are left to mend."""
+    rows = (line.split() for line in LEFT.read_text(encoding="utf-8").splitlines())
+    left = {name: int(count) for name, count in rows}
+    said, found = list[str](), dict[str, int]()
+    for path in sorted((ROOT / "src").rglob("*.py")):
+        if path.name in QUOTED:
+            continue
+        for line, text in messages(ast.parse(path.read_text(encoding="utf-8"))):
+            if " " in text:
+                said += [f"{path.relative_to(ROOT)}:{line}: {fault}" for fault in faults(text)]
+    for path in sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")]):
+        name = str(path.relative_to(ROOT))
+        wrong = list(faults(UNREAD.sub(" X ", path.read_text(encoding="utf-8"))))
+        found[name] = len(wrong)
+        if len(wrong) > left.get(name, 0):
+            said += [f"{name}: {len(wrong)} faults, at most {left.get(name, 0)} before:", *wrong]
+    if "--write" in sys.argv:
+        lines = [f"{name} {count}\n" for name, count in found.items() if count]
+        LEFT.write_text("".join(lines), encoding="utf-8")
+    sys.stdout.write("".join(f"{line}\n" for line in said))
+    return int(bool(said))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
