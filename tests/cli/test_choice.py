@@ -56,13 +56,13 @@ def test_nothing_more_is_written_unasked(settled, rubble, tmp_path, run):
 
 
 @pytest.mark.parametrize(
-    ("wall", "text"), [("100x36", "(area of the stones)"), ("60x20", "1.000 (a full wall)")]
+    ("wall", "text"),
+    [("100x36", "(the maximum for these stones is {:.3f})"), ("60x20", "(1 is a full wall)")],
 )
 def test_the_bound_is_printed(wall, text, rubble, tmp_path, run):
     options = ["--wall", wall, "--scale", "1", "--method", "paper", "--skip-too-large"]
     lines = run("plan", rubble, *options, "-o", tmp_path / "a").out.splitlines()
     (line,) = [line for line in lines if line.startswith("F_SF")]
-    assert text in line
     summary = run("plan", rubble, *options, "--json", "-o", tmp_path / "b").json()
-    assert f"the maximum for these stones is {summary['F_SF_bound']:.3f}" in line
+    assert text.format(summary["F_SF_bound"]) in line
     assert summary["F_SF"] <= summary["F_SF_bound"]

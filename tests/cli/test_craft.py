@@ -20,7 +20,8 @@ def stack(tmp_path):
 
 
 def test_a_label_image_names_stones(stack, run):
-    ran = run("craft", stack)
+    assert "good <= 1" not in run("craft", stack).out
+    ran = run("craft", stack, "--explain")
     assert ran.code == 0
     assert ran.out.startswith(f"{stack}: 20 stones\n")
     assert "running joints    broken      5 courses (good <= 1, fair <= 2)" in ran.out
@@ -71,7 +72,8 @@ def test_a_block_model_is_a_wall_too(tmp_path, run):
 
 
 def test_limits_can_be_set(stack, run):
-    said = run("craft", stack, "--limit", "running_joints=5:6", "--limit", "cross_joints=1:9").out
+    limits = ("--limit", "running_joints=5:6", "--limit", "cross_joints=1:9")
+    said = run("craft", stack, "--explain", *limits).out
     assert "running joints    good        5 courses (good <= 5, fair <= 6)" in said
     assert "cross joints      fair" in said
 

@@ -140,7 +140,7 @@ def test_the_scale_may_be_a_ruler_or_not_known(run, tmp_path, bare):
     assert json.loads((tmp_path / "ruled" / "stones.json").read_text())["px_per_m"] == 800.0
     without = run("segment", path, "-o", tmp_path / "without")
     assert "not known" in without.out
-    assert "no scale" in without.err
+    assert "No scale given" in without.err
     assert json.loads((tmp_path / "without" / "stones.json").read_text())["px_per_m"] is None
 
 

@@ -82,7 +82,7 @@ def rows(result: PlanResult, folder: Path) -> list[tuple[str, str]]:
     placed, left = len(plan.stone_steps), len(plan.unused)
     unused = f", unused: {', '.join(map(str, plan.unused))}" if left else ""
     most = (
-        "a full wall is 1" if bound == 1.0 else f"the maximum for these stones is {number(bound)}"
+        "1 is a full wall" if bound == 1.0 else f"the maximum for these stones is {number(bound)}"
     )
     report = _craft(result)
     broken = [f"{RULES[name].title} ({report.findings[name].amount})" for name in report.broken]
