@@ -258,6 +258,7 @@ CODES = {
     "W128": "The time limit (`--time`) struck inside the first wall.",
     "W129": "`checkpoint.json` cannot be used, and was set aside.",
     "W130": "What is planned so far cannot be kept beside the plan that is being made.",
+    "W131": "The time limit struck before as many walls were built as were asked for.",
     "W170": "Markers were left out.",
     "W171": "Markers were left out that are smaller than 40 px or seen at too flat an angle.",
     "W172": "The scale is in doubt.",
