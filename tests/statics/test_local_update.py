@@ -8,10 +8,9 @@ import pytest
 from drystone.contacts.blocks import model_from_labels
 from drystone.kernels.certificate import figures
 from drystone.kernels.simplex import Added, Cones
-from drystone.statics import local_update as module
 from drystone.statics.incremental import LOCAL, LocalAnalysis, certified_bound
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.local_update import least, local_update
+from drystone.statics.local_update import local_update
 from drystone.statics.model import Addition, Block, Interface, RigidBlockModel
 from drystone.statics.result import LimitStatus
 from tests.kernels.simplex_walls import needs_kernel
