@@ -269,6 +269,7 @@ CODES = {
     "W128": "The time limit (`--time`) struck inside the first wall.",
     "W129": "`checkpoint.json` cannot be used, and was set aside.",
     "W130": "What is planned so far cannot be kept beside the plan that is being made.",
+    "W131": "The time limit struck before as many walls were built as were asked for.",
     "W135": "What the file or its value says is nothing became background.",
     "W136": "Few blended pixels at edges were repaired.",
     "W170": "Markers were left out.",

@@ -25,7 +25,7 @@ SUMMARY = [
     "plan", "status", "stopped", "shortfall", "placed", "stones", "unused", "wedges", "F_SF",
     "F_SF_bound", "craft_broken", "F_AV", "F_AH", "F_LR", "F_LR_coulomb", "F_LR_half",
     "F_LR_double", "F_LR_no_setback", "T_LEVEL", "E_FLUSH", "alpha_left", "alpha_right",
-    "wedge_area", "working_scale", "seconds",
+    "wedge_area", "walls", "working_scale", "seconds",
 ]  # fmt: skip
 
 

@@ -5,18 +5,16 @@ import json
 import pytest
 
 from drystone.cli.parser import build_parser
-from drystone.cli.settings import search_seconds, settings_from
+from drystone.cli.settings import settings_from
 from drystone.planner.settings import method_settings
 
 SIZE = ("--wall", "100x36", "--scale", "1", "--geometry", "raster", "--quiet")
 
 
 def asked(*options):
-    """Seconds and settings of a plan of 30 stones."""
+    """Settings of a plan."""
     words = ["plan", "stones.png", "--wall", "100x36", "-o", "out", *map(str, options)]
-    arguments = build_parser().parse_args(words)
-    settings = settings_from(arguments)
-    return search_seconds(method_settings(arguments.method), 30, arguments), settings
+    return settings_from(build_parser().parse_args(words))
 
 
 @pytest.mark.parametrize("method", ["best", "paper"])
@@ -25,8 +23,7 @@ def asked(*options):
 )
 def test_a_policy_is_a_single_pass(name, rule, method):
     for more in ((), ("--budget", 1)):
-        seconds, settings = asked("--policy", name, "--method", method, *more)
-        assert seconds is None
+        settings = asked("--policy", name, "--method", method, *more)
         assert (settings.selection_rule, settings.search.budget) == (rule, 1)
         assert settings.geometry == method_settings(method).geometry
 
@@ -45,8 +42,8 @@ def test_those_of_a_settings_file_too(run, rubble, tmp_path):
     assert f"E146 {toml}: there is no policy 'nobody'." in strange
     assert f"E123 {toml}: the policy 'lowest' builds" in said("selection_rule = 'lowest'\n")
     toml.write_text("selection_rule = 'lowest'\n[search]\nbudget = 1\n", encoding="utf-8")
-    assert asked("--settings", toml)[1].selection_rule == "lowest"
-    assert asked("--settings", toml, "--policy", "filter")[1].selection_rule == "filter"
+    assert asked("--settings", toml).selection_rule == "lowest"
+    assert asked("--settings", toml, "--policy", "filter").selection_rule == "filter"
 
 
 def test_a_plan_repeats_from_its_settings(run, rubble, tmp_path):

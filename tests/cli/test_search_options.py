@@ -1,32 +1,35 @@
 """How long is searched, and for what."""
 
 from drystone.cli.parser import build_parser
-from drystone.cli.settings import search_seconds, settings_from
+from drystone.cli.settings import limited, settings_from
 from drystone.io.plan_json import read_plan
 from drystone.planner.search_settings import UNLIMITED
-from drystone.planner.settings import method_settings
 from tests.cli.conftest import EXACT
 
 
-def asked(*options):
-    """Seconds and budget of a plan of 30 stones."""
+def asked(*options, stones=30):
+    """Time limit and budget of a plan."""
     words = ["plan", "stones.png", "--wall", "100x36", "-o", "out", *map(str, options)]
     arguments = build_parser().parse_args(words)
-    settings = settings_from(arguments)
-    return search_seconds(method_settings(arguments.method), 30, arguments), settings.search.budget
+    settings, seconds = limited(settings_from(arguments), stones, arguments)
+    return seconds, settings.search.budget
 
 
-def test_the_clock_ends_a_search_unless_a_budget_does(tmp_path):
-    assert asked() == (10.0, UNLIMITED)
+def test_a_budget_ends_a_search_unless_the_clock_shall(tmp_path):
+    assert asked() == (300.0, 96)
+    assert asked(stones=64) == (640.0, 60)
+    assert asked(stones=5000) == (50_000.0, 8)
     assert asked("--time", 2.5) == (2.5, UNLIMITED)
     assert asked("--budget", 7) == (None, 7)
-    assert asked("--method", "paper") == (None, 1)
+    assert asked("--budget", 7, "--time", 2.5) == (2.5, 7)
+    assert asked("--method", "paper") == asked("--geometry", "raster") == (None, 1)
     assert asked("--method", "paper", "--time", 2) == (2.0, 1)
+    assert asked("--policy", "random") == (None, 1)
     toml = tmp_path / "settings.toml"
     toml.write_text("mu = 0.6\n", encoding="utf-8")
-    assert asked("--settings", toml) == (10.0, UNLIMITED)
+    assert asked("--settings", toml) == (300.0, 96)
     toml.write_text("mu = 0.6\n[search]\npasses = 3\n", encoding="utf-8")
-    assert asked("--settings", toml) == (10.0, UNLIMITED)
+    assert asked("--settings", toml) == (300.0, 96)
     toml.write_text("[search]\nbudget = 5\n", encoding="utf-8")
     assert asked("--settings", toml) == (None, 5)
     assert asked("--settings", toml, "--time", 3) == (3.0, UNLIMITED)

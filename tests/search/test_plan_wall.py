@@ -136,8 +136,11 @@ def test_after_a_whole_first_wall_no_wall_that_is_cut_short_counts(way: str) -> 
         result = planned(after_looks(clock.count + more), **options, budget=6)
         used = result.plan.settings["search"]["budget"]
         assert used < 6
-        assert result.plan == planned(None, **options, budget=used).plan
-        assert result.notices == ()
+        again = planned(None, **options, budget=used)
+        assert (again.plan, again.notices) == (result.plan, ())
+        (notice,) = result.notices
+        assert notice.code == "W131"
+        assert f"after {used} walls of 6;" in notice.message
 
 
 def test_every_time_a_wall_grows_by_a_stone_however_little_time_there_is() -> None:

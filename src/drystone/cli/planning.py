@@ -82,7 +82,8 @@ def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:
         keeper = Keeper(folder, made_of(request), photo)
         keeper.begin(earlier.standing)
         _announce(request)
-        bar = step_bar(len(stones), request.settings, request.seconds, quiet=request.quiet)
+        seconds = None if request.first_whole else request.seconds
+        bar = step_bar(len(stones), request.settings, seconds, quiet=request.quiet)
         with bar as callbacks:
             result = plan_wall(
                 stones,
@@ -92,6 +93,7 @@ def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:
                 settings=request.settings,
                 scale=request.scale,
                 px_per_m=request.px_per_m,
+                budget=request.settings.search.budget,
                 seconds=math.inf if request.seconds is None else request.seconds,
                 first_whole=request.first_whole,
                 n_jobs=request.jobs,
@@ -127,8 +129,10 @@ def _announce(request: PlanRequest) -> None:
     """Say what is planned with, and when its scale or its method is odd."""
     stones, px_per_m = request.stones, request.px_per_m
     if not request.quiet:
-        seconds = request.seconds if request.settings.search.budget > 1 else None
-        more = "" if seconds is None else " (--time, --budget)"
+        walls = request.settings.search.budget
+        seconds = None if request.first_whole or walls == 1 else request.seconds
+        more = "" if seconds is not None or walls == 1 else f", {walls} walls"
+        more += "" if walls == 1 else " (--time, --budget)"
         note(f"{read_line(stones, request.wall, px_per_m, seconds)}{more}")
     if request.method != request.asked_method:
         note(

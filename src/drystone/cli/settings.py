@@ -23,8 +23,11 @@ from drystone.selection.policies.registry import rule_of
 MOST_TOML_BYTES = 1_000_000
 """Larger settings are refused; all that there are have 3 kB."""
 
-SECONDS_A_STONE = 1 / 3
-"""How long better walls are looked for when nothing is said."""
+MOST_WALLS, LEAST_WALLS, WORK = 96, 8, 3840
+"""So many walls are tried when nothing is said: at most, at least, and times stones in between."""
+
+GUARD_S_A_STONE = 10.0
+"""The clock ends such a search only after so long: a machine may be slow or busy."""
 
 SHOWN = (
     "--wall", "-o", "--overwrite", "--resume", "--from", "--px-per-m", "--ruler", "--method",
@@ -64,11 +67,10 @@ def add_settings(command: argparse.ArgumentParser) -> None:
     option("--mu", type=float, help="coefficient of friction (default 0.58)")
     option("--geometry", choices=["exact", "raster"])
     option("--settle", choices=["energy", "pivot"], action=Renamed, const="--set settle.method={}")
-    effort = group.add_mutually_exclusive_group().add_argument
-    effort("--time", type=positive, metavar="SECONDS",
-           help="stop the search after this time (10 s for 30 stones, unless a budget is given)")
-    effort("--budget", type=whole_from(1), metavar="N",
-           help="stop after N walls instead; the same N gives the same wall everywhere")
+    option("--budget", type=whole_from(1), metavar="N",
+           help="number of walls to build; 1 is a single pass (best: 96 up to 40 stones)")
+    option("--time", type=positive, metavar="SECONDS",
+           help="stop the search after this time, however many walls were built")
     option("--aim", nargs="+", action="extend", type=_aim, metavar="FIGURE=VALUE",
            help="figures to reach, such as F_SF=0.88 F_AV=40 F_AH=1.5 F_LR=0.8")
     option("--skip-too-large", action="store_true", default=None)
@@ -219,24 +221,25 @@ def _search(settings: PlannerSettings, arguments: argparse.Namespace) -> dict[st
         return {"budget": 1}
     if arguments.budget is not None:
         return {"budget": arguments.budget}
+    searched = settings.search.budget > 1 and not _has_budget(arguments)
     exact = (arguments.geometry or settings.geometry) == "exact"
-    timed = exact and search_seconds(settings, 0, arguments) is not None
-    return {"budget": UNLIMITED} if timed else {}
+    return {"budget": UNLIMITED} if exact and (searched or arguments.time is not None) else {}
 
 
-def search_seconds(
+def limited(
     settings: PlannerSettings, stones: int, arguments: argparse.Namespace
-) -> float | None:
-    """Return how long better walls are looked for; None when a budget or a policy says how many.
+) -> tuple[PlannerSettings, float | None]:
+    """Return the settings with a budget for so many stones, and the time limit, if any.
 
-    `settings` are those before the options, `stones` is their number.
+    Where neither `--time` nor anything else says how much is done, that is the default budget: the
+    same on every machine, with a time limit as a guard.
     """
-    if arguments.policy is not None:
-        return None
     if arguments.time is not None:
-        return float(arguments.time)
-    timed = arguments.budget is None and not _has_budget(arguments)
-    return stones * SECONDS_A_STONE if timed and settings.search.budget > 1 else None
+        return settings, float(arguments.time)
+    if settings.search.budget != UNLIMITED:
+        return settings, None
+    budget = min(MOST_WALLS, max(LEAST_WALLS, WORK // max(1, stones)))
+    return settings.updated({"search": {"budget": budget}}), stones * GUARD_S_A_STONE
 
 
 def _has_budget(arguments: argparse.Namespace) -> bool:
@@ -287,8 +290,8 @@ class PlanRequest:
     method: str  # the one that the plan names
     settings_file: str | None
     settings: PlannerSettings
-    seconds: float | None  # None when a number of walls ends the search
-    first_whole: bool  # whether the first wall is built to its end whatever the clock says
+    seconds: float | None  # time limit of the search
+    first_whole: bool  # whether that is but a guard, and the first wall is built to its end
     jobs: int
     resume: bool
     begin: Path | None  # the plan that the search begins with
@@ -309,17 +312,18 @@ def request_from(
     photo: Path | None = None,
 ) -> PlanRequest:
     """Return what the options of `plan` or `demo` ask for."""
+    settings, seconds = limited(settings_from(arguments), len(stones), arguments)
     same = ("seed", "jobs", "resume", "overwrite", "pareto", "json", "profile")
     return PlanRequest(
         stones=stones,
         wall=wall,
         px_per_m=px_per_m,
-        settings=settings_from(arguments),
+        settings=settings,
         scale=arguments.scale or working_scale(stones),
         asked_method=arguments.method,
         method=recorded_method(arguments),
         settings_file=arguments.settings,
-        seconds=search_seconds(method_settings(arguments.method), len(stones), arguments),
+        seconds=seconds,
         first_whole=arguments.time is None,
         begin=None if arguments.begin is None else Path(arguments.begin),
         folder=Path(arguments.output),

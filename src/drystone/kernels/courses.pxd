@@ -57,7 +57,8 @@ cdef int side_by_side(Scene s, int out) noexcept nogil
 cdef int nest(Scene s, int left, int right) noexcept nogil
 cdef void open_ends(Scene s, int out) noexcept nogil
 cdef double crossing(Scene s, int out, int below) noexcept nogil
-cdef void lay(Scene s, int below, int old, bint last, int out) noexcept nogil
+cdef bint lay(Scene s, int below, int old, bint last, double left, int out) noexcept nogil
+cdef double lies(Scene s, Py_ssize_t stone, bint beside) noexcept nogil
 cdef int columns_of(Scene s, int pose) noexcept nogil
 cdef Py_ssize_t found_in(Scene s, int course, int i, int count, Py_ssize_t stone) noexcept nogil
 cdef void widen(Scene s, int first, int last) noexcept nogil

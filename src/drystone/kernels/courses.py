@@ -313,18 +313,31 @@ def laid_again(s, now, trial, lowest, limit, doubt):
         return INFINITY
     s.changed = s.unchanged = 0
     below = now.slots[lowest]
+    doubtful: cython.bint = courses == now.laid and highest[0] < courses - 1
+    near: cython.double = 0.0
+    if doubtful:
+        for course in range(lowest, highest[0] + 1):
+            was += s.costs[now.slots[course + 1]]
+            near += s.sure[trial.slots[course + 1]]
     for course in range(lowest, courses):
         slot = trial.slots[course + 1]
         old = now.slots[course + 1] if course < now.laid else -1
-        lay(s, below, old, course == courses - 1, slot)
+        left: cython.double = bound - cost - sure
+        if doubtful and course < courses - 1:
+            if course > highest[0]:
+                was += s.costs[old]
+                near = s.sure[slot]
+            left = min(left, was + (limit - now.cost + doubt) + (bound - limit) - cost - near)
+        if not lay(s, below, old, course == courses - 1, left, slot):
+            return INFINITY
         s.seen[course] = below = slot
         cost += s.costs[slot]
         sure -= s.sure[slot]
+        near -= s.sure[slot]
         if cost + sure > bound:
             return INFINITY
-        if courses == now.laid:
-            was += s.costs[old]
-            if highest[0] <= course < courses - 1 and cost - was > limit - now.cost + doubt:
+        if doubtful and highest[0] <= course < courses - 1:
+            if cost - was > limit - now.cost + doubt:
                 return INFINITY
     return with_paths(s, now, trial, lowest, cost, bound)
 
@@ -508,8 +521,10 @@ def crossing(s, out, below):
     return total
 
 
-def lay(s, below, old, last, out):
+def lay(s, below, old, last, left, out):
     """Lay the stones of a course on what is below, and count how they lie.
+
+    Return False as soon as the stones cost more than what is left.
 
     The scene knows in which columns this is not what was below the old course, and then in which
     ones the tops are others.
@@ -532,6 +547,9 @@ def lay(s, below, old, last, out):
                 widen(s, first, end)
         else:
             copy_stone(s, was, stone)
+        left -= lies(s, stone, i > 0)
+        if left < 0.0:
+            return False
     if old >= 0:
         here = s.most * old
         for i in range(s.counts[old]):
@@ -540,6 +558,19 @@ def lay(s, below, old, last, out):
                 widen(s, first, first + columns_of(s, s.pose[here + i]))
     raise_tops(s, below, old, out)
     count_up(s, below, last, out)
+    return True
+
+
+def lies(s, stone, beside):
+    """Return what a stone costs where it lies, and its step to the stone before it in a course."""
+    at: cython.Py_ssize_t = PARTS * stone
+    steps: cython.int = 0
+    for j in range(at if beside else at + 1, at + PARTS):
+        steps += abs(s.heights[j] - s.heights[j - 1])
+    steep = (abs(s.slope[stone]) * columns_of(s, s.pose[stone])) >> SLOPE_BITS
+    w: cython.p_double = s.weights
+    settled = s.void[stone] * w[6] + steep * w[7] + s.rock[stone] * w[8] + s.short_[stone] * w[9]
+    return settled + steps * w[0]
 
 
 def columns_of(s, pose):

@@ -182,6 +182,12 @@ class Plan:
         )
 
     @property
+    def walls(self) -> int | None:
+        """How many walls were built, of which this is the best; None where it is not known."""
+        budget = self.settings.get("search", {}).get("budget")
+        return budget if isinstance(budget, int) else None
+
+    @property
     def stone_steps(self) -> tuple[StoneStep, ...]:
         """The steps that place a stone."""
         return tuple(step for step in self.steps if isinstance(step, StoneStep))

@@ -270,6 +270,8 @@ class _PlanOrigin:
         """Return the plan, with others to choose from, and all that there is to say of it."""
         plans = [self.plan(ended, until)]
         to_choose = ended.kept if choice else ()
+        budget = self.settings.search.budget
+        short = ended.walls < budget < UNLIMITED and not (ended.lost or ended.fallen)
         # Those of least merit that there is no time for are left out.
         with suppress(TimeIsUp):
             for wall in to_choose[1:]:
@@ -279,7 +281,7 @@ class _PlanOrigin:
         cut = ended.cut or len(plans) < len(to_choose)
         return replace(
             plans[0],
-            notices=tuple(_notices(first, ended, left_out, cut=cut)),
+            notices=tuple(_notices(first, ended, left_out, cut=cut, short=short)),
             solves=Solves(first.failed_solves, first.cold_solves),
             choice=tuple(plans) if to_choose else (),
         )
@@ -294,12 +296,12 @@ def _searched(settings: PlannerSettings, budget: int | None, seconds: float) -> 
 
 
 def _notices(
-    first: Planner, ended: SearchEnd, left_out: Sequence[int], *, cut: bool
+    first: Planner, ended: SearchEnd, left_out: Sequence[int], *, cut: bool, short: bool
 ) -> Iterator[Notice]:
     """List the notices of a plan.
 
     `left_out` are stones of the wall that was begun with; `cut` says that there was no time for
-    all that follows a search.
+    all that follows a search, `short` that there was none for all of its budget.
     """
     if left_out:
         yield Notice(
@@ -340,6 +342,13 @@ def _notices(
             f"the time limit struck after {placed} of {fitting} stones of the first wall; the plan "
             "is what is built of it.",
             "Give the same command again with --resume to go on with it, or more --time.",
+        )
+    elif short and ended.stopped != INTERRUPTED:
+        yield Notice(
+            "W131",
+            f"the time limit struck after {ended.walls} walls of "
+            f"{first.settings.search.budget}; this is the best of them.",
+            f"--budget {ended.walls} gives the same plan again, more --time a better one.",
         )
     if first.failed_solves:
         yield Notice(

@@ -56,6 +56,9 @@ At 120 the inverses of both ends take 4 MB, and all states that a plan may go ba
 keeps, 170 MB; at 200 it would be 800 MB.  In time the break-even is about 400.
 """
 
+UNSOLVED = 8
+"""After so many stones whose answers were found near them the whole wall is solved again."""
+
 MANY_BLOCKS_AT_ONCE = 100
 """From here on a model that does not grow gets its first bases by an interior point method."""
 
@@ -225,6 +228,7 @@ class LocalAnalysis(ConeAnalysis):
     by_highs: "HighsAnalysis"  # the same wall in HiGHS, the columns in the same order
     greatest: PrimalDual  # both ends of the range of alpha
     least: PrimalDual
+    unsolved: int = 0  # stones that HiGHS knows no more of than what carries them
 
     @classmethod
     def of(cls, model: RigidBlockModel, units: Units) -> IncrementalAnalysis:
@@ -255,22 +259,61 @@ class LocalAnalysis(ConeAnalysis):
         return self.by_highs
 
     def _extended_to(self, model: RigidBlockModel) -> IncrementalAnalysis:
-        grown, by_highs = self._grown(model), self.by_highs.extended(model)
+        grown = self._grown(model)
         if grown is None:
-            return by_highs
-        assert isinstance(by_highs, HighsAnalysis)  # noqa: S101 - it goes on as what it is
+            return self.by_highs.extended(model)
         addition, added = grown
-        result = _result_between(model, self._bounds(model, added))
-        return self._of(by_highs, result, self.program.appended(addition, added))
+        program = self.program.appended(addition, added)
+        near = [self._near(*ends, added) for ends in self._ends]
+        bounds = [bound for _, bound in near]
+        known = all(b is not None and b.alpha == b.alpha and b.fall is None for b in bounds)
+        if known and self.unsolved < UNSOLVED:
+            result, after = _result_between(model, bounds), model.forgetting()
+            greatest, least = (end for end, _ in near if end is not None)
+            starts = self._followed(result, after, added, (least, greatest))
+            return LocalAnalysis(after, result, program, starts, greatest, least, self.unsolved + 1)
+        by_highs = self.by_highs.extended(model)
+        assert isinstance(by_highs, HighsAnalysis)  # noqa: S101 - it goes on as what it is
+        return self._of(by_highs, _result_between(model, self._bounds(model, added)), program)
+
+    def _followed(
+        self,
+        result: IncrementalResult,
+        model: RigidBlockModel,
+        added: Added,
+        ends: tuple[PrimalDual, PrimalDual],
+    ) -> "HighsAnalysis":
+        """Let HiGHS know of a stone without solving: the bases get what carries it."""
+        bases = self.by_highs.bases
+        if len(added.closed):
+            stay = np.ones(1 + len(self.program.interfaces), bool)
+            stay[1 + added.closed] = False
+            bases = WarmBases(*(basis.with_columns(stay) for basis in bases))
+        count, rows = len(added.cones.first), 3 * len(added.weights)
+        pairs = zip(bases, ends, strict=True)
+        bases = WarmBases(
+            *(b.carrying(end.forces[len(end.forces) - count :], rows) for b, end in pairs)
+        )
+        return HighsAnalysis(model, result, self.program.units, bases)
+
+    @property
+    def _ends(self) -> tuple[tuple[PrimalDual, PrimalDual], ...]:
+        """Both ends, each with the opposite one."""
+        return (self.greatest, self.least), (self.least, self.greatest)
+
+    def _near(
+        self, end: PrimalDual, opposite: PrimalDual, added: Added
+    ) -> "tuple[PrimalDual | None, Bound | None]":
+        """Look near a stone; no bound without a certificate that holds."""
+        near = local_update(self.program, end, opposite, added)
+        if near is None:
+            return None, None
+        return near, _bound_of(self.program, added, near, end.sign, LOCAL)
 
     def _bounds(self, model: RigidBlockModel, added: Added) -> "Iterator[Bound | None]":
         whole = None
-        ends = (self.greatest, self.least)
-        for end, opposite in (ends, ends[::-1]):
-            near = local_update(self.program, end, opposite, added)
-            bound = None
-            if near is not None:
-                bound = _bound_of(self.program, added, near, end.sign, LOCAL)
+        for end, opposite in self._ends:
+            bound = self._near(end, opposite, added)[1]
             if bound is None:
                 whole = whole or self.by_highs.prepared(model)
                 bound = highs_bound(*whole, end.sign)

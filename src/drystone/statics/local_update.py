@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import highspy
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_array
+from scipy.sparse import csc_array, hstack, vstack
 
 from drystone.kernels.simplex import OPTIMAL, UNSTABLE, Added, Cones, Optimum
 from drystone.statics.lp.cone_program import NONE_CLOSED, ConeProgram
@@ -24,6 +24,9 @@ from drystone.statics.lp.program import Floats
 
 REACH = 2.0
 """Half width of the strip beyond the centroids of what the stone touches, in units of length."""
+
+FURTHER = 2.0
+"""So many times as wide is the second strip, where the first was not enough."""
 
 NO_WORK = 1e-11
 """Work of a stone on the mechanism of the wall that counts as none."""
@@ -59,21 +62,37 @@ def local_update(
 ) -> PrimalDual | None:
     """Put together forces and a mechanism of a wall with one more stone.
 
-    `end` is the one to be found, of the wall without the stone.  None when the stone changes the
-    mechanism, or when the strip is not enough.
+    `end` is the one to be found, of the wall without the stone.  Where the mechanism of the wall,
+    or of the stone alone, is not that of both, one is looked for in which all bodies near the stone
+    move as they will.  None when there is none, or when no strip is enough.
     """
-    moved = _mechanism(program, end, added) if len(added.weights) else None
-    if moved is None or np.isnan(moved.alpha):
-        return moved
-    carried = end.forces
-    if moved.alpha != end.alpha:
-        if end.sign * (moved.alpha - opposite.alpha) < 0.0:
-            return None
-        # Any alpha between the two ends is carried by a mixture of their forces.
-        share = (moved.alpha - opposite.alpha) / (end.alpha - opposite.alpha)
-        carried = share * end.forces + (1.0 - share) * opposite.forces
-    forces = _strip_forces(program, added, moved.alpha, carried, end.forces > 0.0)
-    return None if forces is None else moved._replace(forces=forces)
+    if not len(added.weights):
+        return None
+    for mechanism, reach in ((_mechanism, REACH), (_mechanism_near, FURTHER * REACH)):
+        moved = mechanism(program, end, added)
+        if moved is not None and np.isnan(moved.alpha):
+            return moved
+        carried = None if moved is None else _carried(end, opposite, moved.alpha)
+        if moved is None or carried is None:
+            continue
+        basic = end.forces > 0.0
+        forces = _strip_forces(program, added, moved.alpha, (carried, basic), reach)
+        if forces is not None:
+            return moved._replace(forces=forces)
+    return None
+
+
+def _carried(end: PrimalDual, opposite: PrimalDual, alpha: float) -> Floats | None:
+    """Return forces that carry the wall at some alpha; None where they are not known.
+
+    Any alpha between the two ends is carried by a mixture of their forces.
+    """
+    if alpha == end.alpha:
+        return end.forces
+    if not end.sign * opposite.alpha <= end.sign * alpha < end.sign * end.alpha:
+        return None
+    share = (alpha - opposite.alpha) / (end.alpha - opposite.alpha)
+    return share * end.forces + (1.0 - share) * opposite.forces
 
 
 def _mechanism(program: ConeProgram, end: PrimalDual, added: Added) -> PrimalDual | None:
@@ -93,6 +112,54 @@ def _mechanism(program: ConeProgram, end: PrimalDual, added: Added) -> PrimalDua
         return None
     velocity = np.concatenate((end.velocity, -found[1]))
     return PrimalDual(end.sign, end.alpha, found[0], velocity)
+
+
+def _mechanism_near(program: ConeProgram, end: PrimalDual, added: Added) -> PrimalDual | None:
+    """Return alpha and a mechanism in which bodies near the stone move as they will.
+
+    All others move as in the mechanism of the wall, all slower or faster by one factor, or rest.
+    Without any alpha it is a fall.  None where there is none, or alpha is greater than before.
+    """
+    wall, place = program.cones, _places_in_strip(program, added, FURTHER * REACH)
+    built, count = len(program.weights), int(place.max()) + 1
+    velocity = end.velocity.reshape(-1, 3)
+    # All columns that act on a body that is near; what they do far off is work on the mechanism.
+    open_ = np.ones(len(wall.first), bool)
+    open_[added.closed] = False
+    on = (place[wall.first] >= 0) | ((wall.second >= 0) & (place[wall.second] >= 0))
+    chosen = open_ & on
+    first = np.concatenate((wall.first[chosen], added.cones.first))
+    second = np.concatenate((wall.second[chosen], added.cones.second))
+    entries = np.concatenate((wall.entries[:, chosen], added.cones.entries), axis=1)
+    work = np.zeros(len(first))
+    places = []
+    for bodies, part in ((first, entries[:3]), (second, entries[3:])):
+        far = (bodies >= 0) & (place[bodies] < 0)
+        work[far] += (part[:, far].T * velocity[bodies[far]]).sum(axis=1)
+        places.append(np.where((bodies < 0) | far, -1, place[bodies]))
+    cones = Cones(places[0].astype(np.int32), places[1].astype(np.int32), entries)
+    weights = np.concatenate((program.weights, added.weights))[place >= 0]
+    moves = velocity * program.weights[:, None] * (place[:built] < 0)[:, None]
+    live = np.append(np.column_stack((weights, 0.0 * weights, 0.0 * weights)), moves[:, 0].sum())
+    rhs = np.append(np.column_stack((0.0 * weights, weights, 0.0 * weights)), moves[:, 1].sum())
+    rest = np.append(np.zeros(3 * count), 1.0)  # other columns work on the mechanism as well
+    forces = vstack((_matrix(cones, count), work[None, :]))
+    matrix = csc_array(hstack((live[:, None], -live[:, None], rest[:, None], forces)))
+    costs = np.zeros(matrix.shape[1])
+    costs[:2] = -end.sign, end.sign
+    alpha, found = np.nan, least(costs, matrix, rhs)
+    if found is not None:
+        alpha = float(found[0][0] - found[0][1])
+    else:
+        held = csc_array(np.diag(rhs)[:, 1 : 3 * count : 3])
+        matrix = csc_array(hstack((matrix, held)))
+        found = least(np.append(0.0 * costs, np.ones(count)), matrix, rhs)
+    if found is None or end.sign * (alpha - end.alpha) > 0.0:
+        return None
+    moved = np.zeros((built + len(added.weights), 3))
+    moved[:built] = -found[1][-1] * velocity
+    moved[place >= 0] = -found[1][:-1].reshape(-1, 3)
+    return PrimalDual(end.sign, alpha, np.empty(0), moved.ravel())
 
 
 def _on_supports(program: ConeProgram, end: PrimalDual, added: Added) -> tuple[Cones, Floats]:
@@ -121,15 +188,20 @@ def _on_supports(program: ConeProgram, end: PrimalDual, added: Added) -> tuple[C
 
 
 def _strip_forces(
-    program: ConeProgram, added: Added, alpha: float, carried: Floats, basic: NDArray[np.bool_]
+    program: ConeProgram,
+    added: Added,
+    alpha: float,
+    known: tuple[Floats, NDArray[np.bool_]],
+    reach: float,
 ) -> Floats | None:
     """Find forces that carry a stone down through the strip of the wall below it, or None.
 
-    `carried` (N,) are forces that carry the wall without the stone at this alpha, `basic` (N,) are
-    the columns to start with.  Returned are the forces of the wall's columns that are left, then
-    of the new ones.
+    Known are forces (N,) that carry the wall without the stone at this alpha, and which columns
+    (N,) to start with.  Returned are the forces of the wall's columns that are left, then of the
+    new ones.
     """
-    wall, place = program.cones, _places_in_strip(program, added)
+    carried, basic = known
+    wall, place = program.cones, _places_in_strip(program, added, reach)
     first = place[wall.first]
     second = np.where(wall.second < 0, -1, place[wall.second])
     inside = (first >= 0) & ((second >= 0) | (wall.second < 0))
@@ -156,15 +228,18 @@ def _strip_forces(
     return np.concatenate((np.delete(forces, added.closed), found[0][count:]))
 
 
-def _places_in_strip(program: ConeProgram, added: Added) -> NDArray[np.int32]:
-    """Return the place of each body of the wall and the stone in the strip; -1 outside."""
+def _places_in_strip(program: ConeProgram, added: Added, reach: float) -> NDArray[np.int32]:
+    """Return the place of each body of the wall and the stone in the strip; -1 outside.
+
+    The strip reaches so far beyond what the stone touches, in units of length.
+    """
     built, x = len(program.weights), program.centroid_x
     touched = np.concatenate((added.cones.first, added.cones.second))
     under = x[touched[(touched >= 0) & (touched < built)]]
     inside = np.ones(built + len(added.weights), bool)
     inside[:built] = False
     if len(under):
-        reach = REACH * program.units.length
+        reach = reach * program.units.length
         inside[:built] = (x >= under.min() - reach) & (x <= under.max() + reach)
     return np.where(inside, np.cumsum(inside) - 1, -1).astype(np.int32)
 

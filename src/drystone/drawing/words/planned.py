@@ -49,6 +49,7 @@ def summary_of_plan(plan: Plan, folder: Path) -> dict[str, Any]:
         "F_SF_bound": None,
         "craft_broken": None,
         **{name: getattr(metrics, name) for name in FIGURES},
+        "walls": plan.walls,
         "working_scale": plan.working_scale,
         "seconds": None,
     }
@@ -80,6 +81,7 @@ def rows(result: PlanResult, folder: Path) -> list[tuple[str, str]]:
     """Return names and values, one a line."""
     plan, metrics, bound = result.plan, result.metrics, result.F_SF_bound
     placed, left = len(plan.stone_steps), len(plan.unused)
+    again = f"; --budget {plan.walls} builds the same again" if plan.walls != 1 else ""
     unused = f", unused: {', '.join(map(str, plan.unused))}" if left else ""
     most = (
         "1 is a full wall" if bound == 1.0 else f"the maximum for these stones is {number(bound)}"
@@ -99,6 +101,7 @@ def rows(result: PlanResult, folder: Path) -> list[tuple[str, str]]:
         ("alpha", f"left {number(metrics.alpha_left)}, right {number(metrics.alpha_right)}"),
         ("wedges", f"{len(plan.wedge_steps)}, area {metrics.wedge_area:g} {plan.length_unit}²"),
         ("craft", craft),
+        ("walls tried", f"{plan.walls}{again}"),
         ("working scale", f"{plan.working_scale:g}"),
         ("planned in", f"{result.seconds:.2f} s"),
         ("picture", str(folder / "picture.png")),

@@ -120,6 +120,11 @@ class WarmBasis:
     rows: tuple[highspy.HighsBasisStatus, ...] = ()
     whole: bool = True  # False when unknowns that were basic are gone
 
+    def carrying(self, forces: Floats, rows: int) -> "WarmBasis":
+        """Return the basis with more equations and unknowns, those with a force basic."""
+        columns = tuple(_BASIC if force > 0.0 else _AT_ZERO for force in forces.tolist())
+        return WarmBasis(self.columns + columns, self.rows + (_AT_ZERO,) * rows, whole=False)
+
     def appended(self, columns: int, rows: int) -> "WarmBasis":
         """Return the basis for so many unknowns, the new ones at 0, and so many equations.
 
@@ -133,9 +138,8 @@ class WarmBasis:
         """Return the basis with some of the unknowns only."""
         both = list(zip(self.columns, stay.tolist(), strict=True))
         columns = tuple(status for status, stays in both if stays)
-        return WarmBasis(
-            columns, self.rows, all(stays or status != _BASIC for status, stays in both)
-        )
+        whole = self.whole and all(stays or status != _BASIC for status, stays in both)
+        return WarmBasis(columns, self.rows, whole)
 
 
 class HighsSession:
