@@ -23,8 +23,8 @@ MOST_TOML_BYTES = 1_000_000
 MOST_WALLS, LEAST_WALLS, WORK = 96, 8, 3840
 """So many walls are tried when nothing is said: at most, at least, and times stones in between."""
 
-GUARD_S_A_STONE = 10.0
-"""The clock ends such a search only after so long: a machine may be slow or busy."""
+GUARD_S_A_STONE, GUARD_S = 10.0, 600.0
+"""The clock ends such a search only after so long, and so long at least: machines are busy."""
 
 _PLAIN = ("sampling", "two_sided", "orientations", "mu", "skip_too_large")
 """Settings that have an option of their own name."""
@@ -206,7 +206,7 @@ def limited(
     if settings.search.budget != UNLIMITED:
         return settings, None
     budget = min(MOST_WALLS, max(LEAST_WALLS, WORK // max(1, stones)))
-    return settings.updated({"search": {"budget": budget}}), stones * GUARD_S_A_STONE
+    return settings.updated({"search": {"budget": budget}}), max(GUARD_S, stones * GUARD_S_A_STONE)
 
 
 def _file_has_budget(arguments: argparse.Namespace) -> bool:
