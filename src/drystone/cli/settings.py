@@ -23,11 +23,11 @@ from drystone.selection.policies.registry import rule_of
 MOST_TOML_BYTES = 1_000_000
 """Larger settings are refused; all that there are have 3 kB."""
 
-MOST_WALLS, LEAST_WALLS, WORK = 96, 8, 3840
+MOST_WALLS, LEAST_WALLS, WORK = 32, 8, 1280
 """So many walls are tried when nothing is said: at most, at least, and times stones in between."""
 
-GUARD_S_A_STONE = 10.0
-"""The clock ends such a search only after so long: a machine may be slow or busy."""
+GUARD_S_A_STONE, GUARD_S = 10.0, 600.0
+"""The clock ends such a search only after so long, and so long at least: machines are busy."""
 
 SHOWN = (
     "--wall", "-o", "--overwrite", "--resume", "--from", "--px-per-m", "--ruler", "--method",
@@ -68,7 +68,7 @@ def add_settings(command: argparse.ArgumentParser) -> None:
     option("--geometry", choices=["exact", "raster"])
     option("--settle", choices=["energy", "pivot"], action=Renamed, const="--set settle.method={}")
     option("--budget", type=whole_from(1), metavar="N",
-           help="number of walls to build; 1 is a single pass (best: 96 up to 40 stones)")
+           help="number of walls to build; 1 is a single pass (best: 32 up to 40 stones)")
     option("--time", type=positive, metavar="SECONDS",
            help="stop the search after this time, however many walls were built")
     option("--aim", nargs="+", action="extend", type=_aim, metavar="FIGURE=VALUE",
@@ -239,7 +239,7 @@ def limited(
     if settings.search.budget != UNLIMITED:
         return settings, None
     budget = min(MOST_WALLS, max(LEAST_WALLS, WORK // max(1, stones)))
-    return settings.updated({"search": {"budget": budget}}), stones * GUARD_S_A_STONE
+    return settings.updated({"search": {"budget": budget}}), max(GUARD_S, stones * GUARD_S_A_STONE)
 
 
 def _has_budget(arguments: argparse.Namespace) -> bool:
