@@ -114,7 +114,7 @@ def test_the_second_fold_tries_the_cluster_of_the_winner(monkeypatch: pytest.Mon
 def test_the_height_of_a_course_is_the_mean_of_other_stones() -> None:
     # Eq. 8: the first stone is compared with the mean height of the other candidates.
     stones = blocks({1: (20, 10), 2: (20, 10), 3: (20, 4)})
-    settings = PlannerSettings(sampling="full")
+    settings = PlannerSettings(sampling="full", orientations="sf")
     planner = Planner(stones, Site(60, 20), settings=settings)
     attempt = Attempt(planner.workshop, settings, planner.build)
     chosen = attempt.choose(np.random.default_rng(0))

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from drystone.model.site import Site
-from drystone.planner.build import Candidate
+from drystone.planner.build import Build, Candidate
 from drystone.planner.choose import choose_by_policy
 from drystone.planner.offers import offer, support_px, turned_deg
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
+from drystone.selection.policies.settings import PolicySettings
 from drystone.selection.policy import Offer
 from drystone.statics.model import Block, Interface, RigidBlockModel
 from tests.planner.scenes import RUBBLE_SITE, blocks, finish, greedy, rubble
@@ -134,7 +135,8 @@ def test_only_walls_that_stand_are_offered() -> None:
             lambda _: candidates,
             policy,
             name="last",
-            site=RUBBLE_SITE,
+            build=Build.empty(RUBBLE_SITE, 0.58, 100.0),
+            settings=PolicySettings(),
             rng=rng,
         )
 

@@ -231,6 +231,6 @@ def test_what_cannot_be_planned() -> None:
 def test_a_stone_that_fits_only_when_turned_is_not_too_large() -> None:
     stones = blocks({1: (5, 10)})
     with pytest.raises(UsageError, match="E120"):
-        Planner(stones, Site(20, 6))
-    planner = finish(Planner(stones, Site(20, 6), settings=PlannerSettings(orientations="quarter")))
+        Planner(stones, Site(20, 6), settings=PlannerSettings(orientations="sf"))
+    planner = finish(Planner(stones, Site(20, 6)))
     assert len(planner.build.actions) == 1

@@ -185,14 +185,20 @@ def _one(method: str, start: tuple[float, float], post: float = 0.0) -> Proposal
     }  # fmt: skip
     step = _Step(TIPPING, Site(60, 30), changes=changes)
     step.build = _placed(step, 1, (post + 4.02, 6.01))
-    trial = next(t for t in step.trials(("left",)) if t.key == (2, 0.0, "left"))
+    trial = _upright(step, 2)
     return step.proposer()._settle(Drop(trial, 0, start, (0.0, (trial.key, 0))))
+
+
+def _upright(step: _Step, stone_id: int) -> StoneTrial:
+    """The stone as it was photographed, or half turned, which is the same."""
+    trials = step.trials(("left",))
+    return next(t for t in trials if t.key[0] == stone_id and t.key[1] % 180.0 == 0.0)
 
 
 def _placed(step: _Step, stone_id: int, start: tuple[float, float]) -> Build:
     """The build with one stone settled from a place."""
     proposer = step.proposer()
-    trial = next(t for t in step.trials(("left",)) if t.key == (stone_id, 0.0, "left"))
+    trial = _upright(step, stone_id)
     proposal = proposer._settle(Drop(trial, 0, start, (0.0, (trial.key, 0))))
     assert proposal is not None
     attempt = Attempt(step.workshop, step.settings, step.build)
