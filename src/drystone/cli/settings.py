@@ -41,7 +41,7 @@ def add_settings(command: argparse.ArgumentParser) -> None:
     option("--scale", type=share, metavar="S", help="plan on images reduced by S, 0 to 1")
     option("--policy", metavar="NAME",
            help="who chooses the stones of a single pass: paper, random, lowest, scalarised, "
-           "filter, towers, learned, or one that is installed (docs/policies.md)")
+           "filter, towers, learned, or one that is installed (docs/for-researchers.md)")
     option("--sampling", choices=["variant", "uniform", "twofold", "full"],
            help="stones that are tried in a step: one of each cluster, as many at random, one of "
            "each and then all of the winner's cluster, or all")
