@@ -9,6 +9,7 @@ from PIL import Image
 from scipy import ndimage
 
 from drystone.errors import DrystoneError, ExitCode, InputError, LabelImageError, UsageError
+from drystone.io.photo_beside import PhotoSidecar, write_sidecar
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.pictures import areas, codes, discs, many_stones, two_stones
 
@@ -406,3 +407,13 @@ def test_folder_of_a_plan(tmp_path):
 def test_settings_that_mean_nothing(wrong):
     with pytest.raises(UsageError, match=rf"E119 ReadSettings: {next(iter(wrong))}"):
         ReadSettings(**wrong)
+
+
+@pytest.mark.parametrize("shape", [(), (7,), (3, 4, 5, 6), (0, 3)])
+@pytest.mark.parametrize("beside", [False, True])
+def test_an_array_of_other_dimensions_in_a_file(tmp_path, shape, beside):
+    np.save(tmp_path / "stones.npy", np.ones(shape, np.uint8))
+    if beside:
+        write_sidecar(PhotoSidecar(3, 4, labels="stones.npy"), tmp_path)
+    with pytest.raises(InputError, match=r"E1\d\d"):
+        read_stones(tmp_path / "stones.npy")

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from drystone.contacts.given import model_from_json
-from drystone.contacts.outlines import model_from_outlines
+from drystone.contacts.outlines import model_of_traced
 from drystone.errors import DrystoneError
 from drystone.io.photo_beside import PhotoSidecar, write_sidecar
 from drystone.io.read_settings import ReadSettings
@@ -98,7 +98,7 @@ OUTLINES = (labelme, coco, svg, geojson, dxf)
 
 def strength(wall: GivenWall) -> float:
     assert wall.outlines is not None
-    found = lateral_resistance(model_from_outlines(wall.outlines, 0.6)).value
+    found = lateral_resistance(model_of_traced(wall.outlines, 0.6)).value
     assert found is not None
     return found
 

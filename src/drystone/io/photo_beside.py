@@ -95,16 +95,15 @@ def read_sidecar(labels: Path) -> PhotoSidecar | None:
 
 
 def scale_beside(
-    sidecar: PhotoSidecar | None, size_px: tuple[int, int], path: Path
+    sidecar: PhotoSidecar | None, size_px: tuple[int, ...], path: Path
 ) -> float | None:
     """Return the scale of a label image, width and height; E117 when it is of another picture."""
     if sidecar is None:
         return None
-    width, height = size_px
     if size_px != (sidecar.width_px, sidecar.height_px):
         raise InputError(
             "E117",
-            f"it has {width} x {height} px, but {SIDECAR} beside it is of one of "
+            f"it has {' x '.join(map(str, size_px))} px, but {SIDECAR} beside it is of one of "
             f"{sidecar.width_px} x {sidecar.height_px}.",
             where=str(path),
             cure=f"Find the stones again with `drystone segment`, or remove {SIDECAR}, and give "

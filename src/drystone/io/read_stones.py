@@ -105,8 +105,8 @@ def read_stones(
             picture = Picture(arrays)
         else:
             picture = decode(data, _max_px(settings))
-        height, width = picture.values.shape[:2]
-        scale = scale_beside(sidecar, (width, height), path)
+        # What has no two sides is refused below.
+        scale = scale_beside(sidecar, picture.values.shape[1::-1], path)
         digest = hashlib.sha256(data).hexdigest()
         del data  # as large as the picture when it is not compressed
         return _read_picture(picture, Source(name, digest, px_per_m=scale), settings)

@@ -9,7 +9,7 @@ from drystone.cli.output import note, prepare_files, print_json
 from drystone.cli.reading import add_wall, reading_from
 from drystone.contacts.blocks import notice_of_pieces
 from drystone.contacts.given import model_from_json, polygons_from_json
-from drystone.contacts.outlines import model_from_outlines
+from drystone.contacts.outlines import model_of_traced
 from drystone.craft import RULES, CraftReport, Finding, Limit, Masonry, look
 from drystone.craft.look import UNSEEN
 from drystone.errors import ExitCode, UsageError
@@ -76,7 +76,7 @@ def _masonry_of(wall: GivenWall, wedge_ids: frozenset[int]) -> Masonry:
         per_m = 1.0 if plan is not None and plan.px_per_m else None
         return Masonry(outlines, model, wedges, steps, cut=plan is not None, per_m=per_m)
     if wall.outlines is not None:
-        return Masonry(wall.outlines, model_from_outlines(wall.outlines, wall.mu), wedges)
+        return Masonry(wall.outlines, model_of_traced(wall.outlines, wall.mu), wedges)
     assert wall.labels is not None  # noqa: S101 - a wall without blocks has an image
     return Masonry.from_labels(wall.labels, wedges, steps=steps, mu=wall.mu)
 

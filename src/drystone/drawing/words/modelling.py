@@ -19,7 +19,7 @@ from drystone.contacts.gaps import (
     settle_gaps,
 )
 from drystone.contacts.given import model_from_json, polygons_from_json
-from drystone.contacts.outlines import model_from_outlines, outlines_of_labels
+from drystone.contacts.outlines import model_of_traced, outlines_of_labels
 from drystone.contacts.scarce import scarce_contacts
 from drystone.contacts.settled import SETBACK
 from drystone.drawing.words.analysis import ModelledWall, Shapes
@@ -100,7 +100,7 @@ def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> M
     if asked.close_gaps is not None:
         return _with_closed_gaps(wall, labels, mu, asked)
     if asked.contacts == "pixels" and wall.outlines is not None:
-        model = model_from_outlines(wall.outlines, mu)
+        model = model_of_traced(wall.outlines, mu)
         return ModelledWall(model, wall.outlines, "stone", joints="drawn")
     picture = model_from_labels(labels, mu)
     if asked.contacts == "pixels":
@@ -109,11 +109,11 @@ def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> M
         )
     outlines = wall.outlines or outlines_of_labels(labels[: picture.ground_row])
     notices = picture.notices if wall.outlines is None else ()
-    bare = model_from_outlines(outlines, mu)
+    bare = model_of_traced(outlines, mu)
     if wall.outlines is None:
         # What a picture weighs it weighs by its pixels, not by what smoothing made of them.
         bare = replace(bare, blocks=picture.model.blocks)
-    found = model_from_outlines(outlines, mu, setback=SETBACK)
+    found = model_of_traced(outlines, mu, setback=SETBACK)
     said = f"from {'sub-pixel ' if wall.outlines is None else ''}outlines, set back"
     if asked.as_planned:
         strength = lateral_resistance(bare).value
@@ -224,7 +224,7 @@ def _made(
         i: outline + (moved.get(i, (0, 0)) * np.array([1.0, -1.0]))
         for i, outline in wall.outlines.items()
     }
-    blocks = model_from_outlines(shapes).blocks
+    blocks = model_of_traced(shapes).blocks
     return ModelledWall(replace(picture.model, blocks=blocks), shapes, "stone")
 
 

@@ -23,6 +23,7 @@ from drystone.io.outlines_in.model import (
     ellipse,
     left_aside,
     number_in,
+    place_px,
     side_px,
 )
 from drystone.io.patches import PlacedMask
@@ -99,7 +100,7 @@ def _mask(shape: Mapping[str, Any], room: Room) -> PlacedMask:
         if error.code == "E110":
             raise
         raise ValueError(f"its mask is no picture: {error.what}") from error
-    return PlacedMask(mask, round(float(y0)), round(float(x0)))
+    return PlacedMask(mask, place_px(y0), place_px(x0))
 
 
 class _Stones:

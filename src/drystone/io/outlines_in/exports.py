@@ -18,13 +18,13 @@ from drystone.io.foreign import foreign
 from drystone.io.outlines_in.classes import class_of
 from drystone.io.outlines_in.fill import Room, trimmed
 from drystone.io.outlines_in.model import (
-    MOST_PX,
     OutlinedStone,
     OutlineFile,
     Slivers,
     ellipse,
     left_aside,
     number_in,
+    place_px,
     side_px,
 )
 from drystone.io.patches import PlacedMask
@@ -289,11 +289,9 @@ def _of_cvat(shape: ET.Element) -> Any:
 def _mask_of_cvat(shape: ET.Element, room: Room) -> PlacedMask | None:
     """Return a mask of run lengths along the rows of its box, background first."""
     left, top, width, height = (
-        int(float(shape.attrib[name])) for name in ("left", "top", "width", "height")
+        place_px(shape.attrib[name]) for name in ("left", "top", "width", "height")
     )
     check_size(side_px(width), side_px(height), room.max_px)
-    if max(abs(left), abs(top)) > MOST_PX:
-        raise ValueError("it is beyond 1e9 px")
     room.take(width * height)
     runs = np.array([int(run) for run in shape.attrib["rle"].split(",")], np.int64)
     if runs.min() < 0 or runs.max() > width * height or int(runs.sum()) != width * height:

@@ -182,6 +182,14 @@ def side_px(value: Any) -> int:
     return number
 
 
+def place_px(value: Any) -> int:
+    """Return a row or column of a mask; ValueError when no picture reaches there."""
+    number = float(value)
+    if not abs(number) <= MOST_PX:
+        raise ValueError("a coordinate is beyond 1e9")
+    return round(number)
+
+
 def ring(points: Any) -> Points:
     """Return a ring from numbers; ValueError when it is none."""
     corners = np.asarray(points, dtype=float)
