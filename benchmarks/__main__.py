@@ -77,7 +77,9 @@ def parser() -> argparse.ArgumentParser:
     )  # fmt: skip
     made.add_argument("--sizes", choices=list(LIMITS), help="smoke: everything once, for tests")
     made.add_argument("--markdown", action="store_true", help="print as Markdown")
-    made.add_argument("--page", type=Path, help="write the tables into docs/speed.md, growth too")
+    made.add_argument(
+        "--page", type=Path, help="write the tables into docs/evidence/speed.md, growth too"
+    )
     return made
 
 

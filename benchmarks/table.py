@@ -86,7 +86,7 @@ def read_session(path: Path) -> Session:
 
 
 def tables(first: Session, numpy: Session | None) -> dict[str, Table]:
-    """Return all tables by their names in docs/speed.md.
+    """Return all tables by their names in docs/evidence/speed.md.
 
     Parameters
     ----------

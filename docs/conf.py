@@ -62,6 +62,7 @@ html_title = f"drystone {release}"
 html_static_path = ["static"]
 html_css_files = ["pages.css"]
 html_copy_source = False
+html_show_search_summary = False  # a page from disk may not fetch others; the search itself works
 html_show_sphinx = False
 html_theme_options = {
     "light_css_variables": {"color-brand-primary": "#4961c2", "color-brand-content": "#4961c2"},

@@ -40,7 +40,7 @@ def read_ids(path: Path) -> NDArray[np.int64]:
     ("name", "stones", "count"), [("PR", 32, 7), ("R", 34, 9), ("IR", None, 15)]
 )
 def test_published_sets(data_dir: Path, name: str, stones: int | None, count: int) -> None:
-    """PR: the paper's Fig. 5 says 32 stones in 7 clusters; R and IR: docs/decisions.md."""
+    """PR: the paper's Fig. 5 says 32 stones in 7 clusters; R and IR: docs/evidence/decisions.md."""
     found = stones_of(read_ids(data_dir / "almeida" / f"{name}.png"))
     assert stones is None or len(found) == stones
     assert len(set(cluster_stones(found, PoseBook()).values())) == count

@@ -1,9 +1,11 @@
 """The documents say what the code does.
 
 ``python -m tests.test_documents`` from the root of the checkout writes the tables of
-docs/settings.md anew from the docstrings of the settings, and the meanings in docs/errors.md.
+docs/settings.md anew from the docstrings of the settings, the meanings in docs/errors.md, and
+docs/commands.md from the parser.
 """
 
+import argparse
 import dataclasses
 import json
 import os
@@ -38,7 +40,9 @@ from drystone.planner.settings import METHODS
 ROOT = Path(__file__).resolve().parents[1]
 SETTINGS = ROOT / "docs" / "settings.md"
 ERRORS = ROOT / "docs" / "errors.md"
-PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
+COMMANDS = ROOT / "docs" / "commands.md"
+MENU = sorted((ROOT / "docs").glob("*.md"))
+PAGES = [*sorted(ROOT.glob("*.md")), *MENU, *sorted((ROOT / "docs" / "evidence").glob("*.md"))]
 NAMES = [str(page.relative_to(ROOT)) for page in PAGES]
 
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -98,6 +102,51 @@ def with_meanings(text: str) -> str:
     return CODE_ROW.sub(lambda m: f"| {m[1]} | {CODES.get(m[1], m[2])} |", text)
 
 
+def written_commands() -> str:
+    """Return docs/commands.md as the parser has it; options that commands share stand once."""
+    parsers = build_parser()._subparsers._group_actions[0].choices  # type: ignore[union-attr]
+    assert isinstance(parsers, dict)
+    places: dict[str, list[str]] = {}
+    for name, parser in parsers.items():
+        for row in _options(parser):
+            places.setdefault(row, []).append(name)
+    lines = [
+        "# Command line",
+        "Every command with its options, as `drystone COMMAND --help` prints them.",
+        "`python -m tests.test_documents` writes this page. "
+        "Exit codes and JSON: [files](plan-format.md#exit-codes).",
+    ]
+    for name, parser in parsers.items():
+        own = [row for row in _options(parser) if len(places[row]) == 1]
+        lines += [f"## drystone {name}", parser.description or "", *_table(own)]
+    shared = [
+        f"{row} {', '.join(names)} |"
+        for row, names in places.items()
+        if 1 < len(names) < len(parsers)
+    ]
+    every = [row for row, names in places.items() if len(names) == len(parsers)]
+    lines += ["## Options of several commands", *_table(shared, " | of")]
+    lines += ["## Options of every command", *_table(every)]
+    return "\n\n".join(lines) + "\n"
+
+
+def _table(rows: list[str], more: str = "") -> list[str]:
+    head = f"| option | what it does{more} |\n{'|---' * (2 + bool(more))}|"
+    return ["\n".join([head, *rows])] if rows else []
+
+
+def _options(parser: argparse.ArgumentParser) -> list[str]:
+    """Return a row of a table for each option that help shows."""
+    layout, rows = parser._get_formatter(), []
+    for action in parser._actions:
+        if action.help != argparse.SUPPRESS and "-h" not in action.option_strings:
+            text = layout._expand_help(action) if action.help else ""
+            name = layout._format_action_invocation(action).replace("|", "\\|")
+            text = " ".join(text.replace("|", "\\|").replace("<", "&lt;").split())
+            rows.append(f"| `{name}` | {text} |")
+    return rows
+
+
 def blocks(page: Path, language: str) -> list[str]:
     """Return the fenced blocks of a page in one language."""
     text = page.read_text(encoding="utf-8")
@@ -131,6 +180,11 @@ def test_the_codes_mean_what_the_code_says() -> None:
     assert text == with_meanings(text), "run python -m tests.test_documents"
     assert list(CODES) == sorted(CODES)
     assert all(said[-1] == "." and len(said.split()) < 26 for said in CODES.values())
+
+
+def test_the_commands_are_those_of_the_parser() -> None:
+    text = COMMANDS.read_text(encoding="utf-8")
+    assert text == written_commands(), "run python -m tests.test_documents"
 
 
 @pytest.mark.parametrize("described", [*planner_tables().values(), *SOURCES.values()])
@@ -208,19 +262,33 @@ def test_every_link_to_a_heading_finds_it(name: str) -> None:
             assert heading in slugs
 
 
-def test_every_page_is_reached_from_the_index() -> None:
-    text = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
-    entries = [
-        line
-        for tree in TOCTREE.findall(text)
-        for line in tree.splitlines()
-        if line and not line.startswith(":")
-    ]
+def tree_of(page: Path) -> list[str]:
+    """Return the entries of the tables of contents of a page."""
+    trees = TOCTREE.findall(page.read_text(encoding="utf-8"))
+    lines = [line for tree in trees for line in tree.splitlines()]
+    return [line for line in lines if line and not line.startswith(":")]
+
+
+def test_every_page_is_in_the_menu_or_among_the_evidence() -> None:
+    index, evidence = MENU[0].parent / "index.md", MENU[0].parent / "evidence" / "index.md"
+    menu, behind = tree_of(index), tree_of(evidence)
+    assert len(menu) <= 20, "one purpose a page; what was measured goes to docs/evidence"
+    entries = [*menu, *(os.path.normpath(f"evidence/{entry}") for entry in behind)]
     assert len(set(entries)) == len(entries)
-    pages = {page.stem for page in (ROOT / "docs").glob("*.md")} - {"index"}
-    assert set(entries) == pages | {"auto_gallery/index"}
-    linked = {target for target, _ in LINK.findall(text)}
-    assert {f"{page}.md" for page in pages} <= linked, "for those who read it on the code host"
+    pages = {str(page.relative_to(index.parent))[:-3] for page in PAGES if page.parent != ROOT}
+    assert {*entries, "index", "evidence/index"} == pages | {"auto_gallery/index"}
+    for page, tree in ((index, [*menu, "evidence/index"]), (evidence, behind)):
+        linked = {target for target, _ in LINK.findall(page.read_text(encoding="utf-8"))}
+        missing = {f"{entry}.md" for entry in tree} - linked - {"auto_gallery/index.md"}
+        assert not missing, "for those who read it on the code host"
+
+
+@pytest.mark.parametrize("page", [page.name for page in MENU])
+def test_every_page_says_in_its_first_line_what_it_is_for(page: str) -> None:
+    title, first = (ROOT / "docs" / page).read_text(encoding="utf-8").split("\n\n")[:2]
+    assert re.fullmatch("# .+", title)
+    sentence = re.split(r"[.:?](?:\s|$)", first)[0]
+    assert 5 <= len(sentence.split()) <= 30
 
 
 def test_no_page_has_a_name_that_sphinx_keeps() -> None:
@@ -295,3 +363,4 @@ def _properties(schema: object) -> set[str]:
 if __name__ == "__main__":
     for page, anew in ((SETTINGS, rewritten), (ERRORS, with_meanings)):
         page.write_text(anew(page.read_text(encoding="utf-8")), encoding="utf-8")
+    COMMANDS.write_text(written_commands(), encoding="utf-8")

@@ -8,7 +8,7 @@ import pytest
 from benchmarks import page
 from drystone_lab.table import Table
 
-SPEED = Path(__file__).parents[2] / "docs" / "speed.md"
+SPEED = Path(__file__).parents[2] / "docs" / "evidence" / "speed.md"
 ONE = Table("One", ("a",), ((1,),))
 
 

@@ -16,7 +16,7 @@ def asked(*options, stones=30):
 
 
 def test_a_budget_ends_a_search_unless_the_clock_shall(tmp_path):
-    assert asked() == (600.0, 96)
+    assert asked() == (600.0, 32)
     assert asked(stones=64) == (640.0, 60)
     assert asked(stones=5000) == (50_000.0, 8)
     assert asked("--time", 2.5) == (2.5, UNLIMITED)
@@ -27,9 +27,9 @@ def test_a_budget_ends_a_search_unless_the_clock_shall(tmp_path):
     assert asked("--policy", "random") == (None, 1)
     toml = tmp_path / "settings.toml"
     toml.write_text("mu = 0.6\n", encoding="utf-8")
-    assert asked("--settings", toml) == (600.0, 96)
+    assert asked("--settings", toml) == (600.0, 32)
     toml.write_text("mu = 0.6\n[search]\npasses = 3\n", encoding="utf-8")
-    assert asked("--settings", toml) == (600.0, 96)
+    assert asked("--settings", toml) == (600.0, 32)
     toml.write_text("[search]\nbudget = 5\n", encoding="utf-8")
     assert asked("--settings", toml) == (None, 5)
     assert asked("--settings", toml, "--time", 3) == (3.0, UNLIMITED)

@@ -46,7 +46,7 @@ def add_bench(command: argparse.ArgumentParser) -> None:
 
 def _public(command: argparse.ArgumentParser) -> None:
     """Add the options of public suites."""
-    group = command.add_argument_group("public suites (docs/benchmark.md)")
+    group = command.add_argument_group("public suites (docs/evidence/benchmark.md)")
     group.add_argument(
         "--policy", nargs="+", action="extend", default=[], metavar="NAME",
         help="methods that build every wall (default: paper random); see --list; for search those "

@@ -1,1 +1,1 @@
-"""The public benchmark: fixed walls, any method, one scorer (docs/benchmark.md)."""
+"""The public benchmark: fixed walls, any method, one scorer (docs/evidence/benchmark.md)."""

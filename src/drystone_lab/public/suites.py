@@ -139,7 +139,7 @@ ABOUT = {
     BEST: "one pass of the default method, on outlines: no search",
     STRIPS: "no policy but a yardstick, F_SF alone: strips packed without gravity (extra `bench`)",
 }
-"""What each does; docs/policies.md explains the policies."""
+"""What each does; docs/for-researchers.md explains the policies."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Walls for reinforcement learning: ``gymnasium.make("drystone/Wall-v0")`` (docs/learning.md).
+"""For learning: ``gymnasium.make("drystone/Wall-v0")`` (docs/evidence/learning.md).
 
 Importing this room registers the environment, and needs the extra ``rl``; nothing else of the
 package imports it.  The policy that was trained with it needs no extra

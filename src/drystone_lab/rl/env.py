@@ -318,7 +318,10 @@ def _arriving(stones: StoneSet, order: Any) -> list[int]:
 
 def _refused(what: str) -> UsageError:
     return UsageError(
-        "E123", f"{what}.", where="drystone/Wall-v0", cure="docs/learning.md lists what there is."
+        "E123",
+        f"{what}.",
+        where="drystone/Wall-v0",
+        cure="docs/evidence/learning.md lists what there is.",
     )
 
 

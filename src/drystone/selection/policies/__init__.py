@@ -1,1 +1,1 @@
-"""Ways of choosing stones in the literature, as policies (docs/policies.md)."""
+"""Ways of choosing stones in the literature, as policies (docs/for-researchers.md)."""

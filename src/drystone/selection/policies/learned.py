@@ -1,4 +1,4 @@
-"""A learned value of each action; its weights come with the package (docs/learning.md)."""
+"""A learned value of each action; its weights come with the package (docs/evidence/learning.md)."""
 
 import hashlib
 import json
@@ -31,8 +31,8 @@ FEATURES = (
     "lying", "from_end", "end_sliver", "support", "off_centre", "slope", "turned", "wedges",
     "top_rank", "LFR_rank", "LLC_rank",
 )  # fmt: skip
-"""Of an offer (docs/learning.md).  SF and the size of the stone are not among them: they hardly
-differ between the places of one stone, so walls of stones that arrive teach nothing of them."""
+"""Of an offer (docs/evidence/learning.md).  SF and the size of the stone are not among them: they
+hardly differ between the places of one stone, so stones that arrive teach nothing of them."""
 
 
 FLUSH = 0.15

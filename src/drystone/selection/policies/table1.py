@@ -1,4 +1,4 @@
-"""The systems of Table 1 as policies: what each looks at, and how it chooses (docs/policies.md).
+"""The systems of Table 1 as policies: what each looks at, and how it chooses.
 
 The paper says which components each has, how they are combined, and little more: that Thangavelu
 et al. (2018) maximise the number of contacting stones, and that Johns et al. (2020) and Liu et al.
