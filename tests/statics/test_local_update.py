@@ -12,7 +12,7 @@ from drystone.statics import local_update as module
 from drystone.statics.incremental import LocalAnalysis, certified_bound
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.local_update import least, local_update
-from drystone.statics.model import Addition, RigidBlockModel
+from drystone.statics.model import Addition, Block, Interface, RigidBlockModel
 from tests.kernels.simplex_walls import needs_kernel
 from tests.statics.growth import PX, wall_at_once, with_block
 from tests.statics.walls import coursed, irregular, stacked
@@ -88,6 +88,63 @@ def test_a_slender_stone_on_a_broad_wall_decides_alone():
         assert (found.alpha, found.fall) == (guess.alpha, None)
 
 
+def slender_stone():
+    """A stone five times as high as wide on a stone of the middle of the wall."""
+    whole = model_from_labels(coursed(1, 3, 160)).model
+    middle = [block for block in whole.blocks if 60 < block.centroid[0] < 100]
+    under = max(middle, key=lambda block: block.centroid[1])
+    (x, _), top = (
+        under.centroid,
+        max(
+            float(i.points[:, 1].max()) for i in whole.interfaces if under.id in (i.block, i.other)
+        ),
+    )
+    ends = np.array([[x - 3.0, top], [x + 3.0, top]])
+    stone = Block(999, 180.0, (x, top + 15.0))
+    analysis = LocalAnalysis.of(whole, PX)
+    model = analysis.model.with_added((stone,), (Interface(999, under.id, ends, (0.0, 1.0)),))
+    return analysis, analysis.program.columns_of(model.added, model.mu), model
+
+
+def test_forces_far_from_a_stone_that_decides_alone_are_mixed_too():
+    analysis, added, model = slender_stone()
+    for end, opposite in both(analysis):
+        assert abs(end.alpha) > 0.3
+        guess = local_update(analysis.program, end, opposite, added)
+        assert guess.alpha == pytest.approx(end.sign * 0.2)
+        assert bound(analysis, added, guess).fall is None
+    assert lateral_resistance(model).right.alpha == pytest.approx(0.2)
+
+
+def test_a_wall_that_stands_at_one_alpha_only_has_nothing_to_mix():
+    analysis, added, _ = slender_stone()
+    for end, _ in both(analysis):
+        same = end._replace(sign=-end.sign)
+        assert local_update(analysis.program, end, same, added) is None
+
+
+def test_contacts_that_closed_carry_nothing():
+    """Such as would carry some of the stone, and nothing without it."""
+    analysis, candidates = wall_at_once(coursed(1, 7, 150), 40)
+    program, guesses, proved = analysis.program, 0, 0
+    for model in candidates:
+        stone = model.added
+        for end, opposite in both(analysis):
+            guess = local_update(program, end, opposite, program.columns_of(stone, model.mu))
+            if guess is None or guess.alpha != end.alpha:
+                continue
+            loaded = (guess.forces[: len(end.forces)] > 0) & (end.forces == 0)
+            for gone in np.unique(program.interfaces[loaded]).tolist():
+                if end.forces[program.interfaces == gone].any():
+                    continue
+                closed = Addition(analysis.model, stone.blocks, stone.interfaces, (gone,))
+                added = program.columns_of(closed, model.mu)
+                without = local_update(program, end, opposite, added)
+                guesses += without is not None
+                proved += without is not None and bound(analysis, added, without) is not None
+    assert proved == guesses > 5
+
+
 def test_a_stone_that_changes_the_mechanism_is_for_others(monkeypatch):
     """A pile of two blocks of which the upper one makes the lower one topple earlier."""
     asked = []
@@ -116,3 +173,30 @@ def test_a_stone_that_goes_along_leaves_alpha_as_it_is():
         assert guess.alpha == end.alpha == pytest.approx(end.sign * 0.58)
         assert guess.velocity[3:] == pytest.approx(end.velocity)
         assert bound(analysis, added, guess).alpha == end.alpha
+
+
+def test_columns_may_begin_at_either_body():
+    """Ids decide which body of an interface comes first; a stone may have a smaller one."""
+    analysis, candidates = wall_at_once(coursed(1, 7, 150), 40)
+    program, told = analysis.program, 0
+    for model in candidates[:4]:
+        added = program.columns_of(model.added, model.mu)
+        old = added.cones
+        swapped = Cones(
+            np.where(old.second < 0, old.first, old.second),
+            np.where(old.second < 0, old.second, old.first),
+            np.ascontiguousarray(
+                np.where(old.second < 0, old.entries, np.roll(old.entries, 3, axis=0))
+            ),
+        )
+        for end, opposite in both(analysis):
+            one = local_update(program, end, opposite, added)
+            two = local_update(program, end, opposite, replace(added, cones=swapped))
+            assert (one is None) == (two is None)
+            if one is not None:
+                told += 1
+                assert two.alpha == pytest.approx(one.alpha)
+                assert (bound(analysis, added, one) is None) == (
+                    bound(analysis, added, two) is None
+                )
+    assert told > 2

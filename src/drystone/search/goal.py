@@ -32,7 +32,7 @@ QUICK = NonassociativeSettings(starts=STARTS[:1], random_starts=0, let_go=False)
 
 @dataclass(frozen=True)
 class WallFigures:
-    """WallFigures of merit of a finished wall; 0 where a figure is not defined.
+    """Figures of merit of a finished wall; 0 where a figure is not defined.
 
     Their names are those of :class:`drystone.metrics.measure.WallMetrics`.
     """

@@ -8,6 +8,7 @@ from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
+from drystone.cli.inputs import files_of_wall, refuse_inputs, refuse_plans_own
 from drystone.cli.numbers import (
     add_scale,
     finite,
@@ -18,15 +19,7 @@ from drystone.cli.numbers import (
     wall_picture_px,
     whole_from,
 )
-from drystone.cli.output import (
-    files_of_wall,
-    note,
-    prepare_files,
-    print_json,
-    print_table,
-    refuse_inputs,
-    refuse_plans_own,
-)
+from drystone.cli.output import note, prepare_files, print_json, print_table
 from drystone.cli.progress import counting_bar
 from drystone.cli.reading import add_wall
 from drystone.drawing.words.analysis import (

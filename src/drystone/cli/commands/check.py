@@ -6,15 +6,8 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from drystone.cli.output import (
-    files_of,
-    files_of_wall,
-    prepare_picture,
-    print_json,
-    print_table,
-    refuse_among_masks,
-    refuse_inputs,
-)
+from drystone.cli.inputs import files_of, files_of_wall, refuse_among_masks, refuse_inputs
+from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.cli.progress import counting_bar
 from drystone.cli.reading import reading_of
 from drystone.drawing.words.checked import PICTURE, Checked, PhysicsCard

@@ -3,8 +3,9 @@
 import argparse
 from pathlib import Path
 
+from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.numbers import finite, whole_from
-from drystone.cli.output import files_of_wall, note, prepare_files, print_json, refuse_inputs
+from drystone.cli.output import note, prepare_files, print_json
 from drystone.cli.reading import add_wall
 from drystone.contacts.blocks import notice_of_pieces
 from drystone.contacts.given import model_from_json, polygons_from_json

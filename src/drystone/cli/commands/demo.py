@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from drystone.cli.choice import files_of_choice
+from drystone.cli.inputs import refuse_inputs
 from drystone.cli.keeping import WRITTEN
 from drystone.cli.numbers import add_scale
-from drystone.cli.output import refuse_inputs, working_in
+from drystone.cli.output import working_in
 from drystone.cli.planning import add_writing, plan_and_write
 from drystone.cli.settings import add_settings, request_from, settings_from
 from drystone.errors import ExitCode

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
 
+from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.numbers import (
     add_scale,
     planned_picture_px,
@@ -13,14 +14,7 @@ from drystone.cli.numbers import (
     refuse_outside,
     scale_notice,
 )
-from drystone.cli.output import (
-    files_of_wall,
-    make_folder,
-    note,
-    prepare_files,
-    print_json,
-    refuse_inputs,
-)
+from drystone.cli.output import make_folder, note, prepare_files, print_json
 from drystone.drawing.assembly.read import read_assembly
 from drystone.drawing.export.formats import FORMATS, ExportSettings, write_files
 from drystone.errors import ExitCode, Notice, UsageError

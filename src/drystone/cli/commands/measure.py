@@ -4,6 +4,7 @@ import argparse
 from dataclasses import asdict, replace
 from pathlib import Path
 
+from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.numbers import (
     add_scale,
     not_negative,
@@ -14,14 +15,7 @@ from drystone.cli.numbers import (
     share,
     wall_picture_px,
 )
-from drystone.cli.output import (
-    files_of_wall,
-    note,
-    prepare_files,
-    print_json,
-    print_table,
-    refuse_inputs,
-)
+from drystone.cli.output import note, prepare_files, print_json, print_table
 from drystone.cli.reading import add_wall
 from drystone.contacts.blocks import model_from_labels, notice_of_pieces
 from drystone.contacts.given import model_from_json

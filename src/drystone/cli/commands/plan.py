@@ -4,9 +4,10 @@ import argparse
 from pathlib import Path
 
 from drystone.cli.choice import files_of_choice
+from drystone.cli.inputs import files_of, files_of_plan, refuse_among_masks, refuse_inputs
 from drystone.cli.keeping import WRITTEN
 from drystone.cli.numbers import add_scale, parse_wall, scale_with, whole_from
-from drystone.cli.output import files_of, files_of_plan, note, refuse_among_masks, refuse_inputs
+from drystone.cli.output import note
 from drystone.cli.planning import add_writing, plan_and_write
 from drystone.cli.reading import STONES, add_reading, reading_from
 from drystone.cli.settings import add_settings, request_from

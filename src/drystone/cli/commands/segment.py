@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
+from drystone.cli.inputs import refuse_inputs
 from drystone.cli.numbers import Ruled, add_scale, positive, refuse_outside, whole_from
-from drystone.cli.output import note, prepare_folder, print_json, print_table, refuse_inputs
+from drystone.cli.output import note, prepare_folder, print_json, print_table
 from drystone.errors import ExitCode, Notice, UsageError
 from drystone.io.photo_beside import LABELS, SIDECAR, PhotoSidecar, write_sidecar
 from drystone.io.photo_file import Photo, read_photo

@@ -4,6 +4,7 @@ import argparse
 import statistics
 from pathlib import Path
 
+from drystone.cli.inputs import files_of, refuse_among_masks, refuse_inputs
 from drystone.cli.numbers import (
     add_scale,
     picture_size_px,
@@ -11,14 +12,7 @@ from drystone.cli.numbers import (
     scale_notice,
     scale_with,
 )
-from drystone.cli.output import (
-    files_of,
-    prepare_picture,
-    print_json,
-    print_table,
-    refuse_among_masks,
-    refuse_inputs,
-)
+from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.cli.reading import STONES, add_reading, reading_from
 from drystone.clusters import cluster_stones
 from drystone.errors import ExitCode

@@ -33,11 +33,11 @@ def write_report(path: str | Path, view: ViewerData, *, pictures: str | Path | N
     ----------
     path : str or Path
         The file to write.
-    view : dict
+    view : ViewerData
         The wall: from `view_of_assembly`, `view_of_wall` or `view_of_result`.
     pictures : str or Path, optional
-        Folder with picture.png, mechanism_left.png and mechanism_right.png; the report says which
-        of them there are none of.
+        Folder with picture.png, mechanism_left.png and mechanism_right.png; the report
+        names those that are missing.
 
     Returns
     -------

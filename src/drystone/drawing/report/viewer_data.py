@@ -137,7 +137,7 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
         What a block is called.
     wedges : collection of int
         Blocks that are wedges.
-    cards : iterable of Card
+    cards : iterable of ResultCard
         Further results, after those of the strength.
     inputs : iterable of (str, str)
         What the analysis was made from, names and values.
