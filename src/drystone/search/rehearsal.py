@@ -1,80 +1,49 @@
 """A plan built again with a builder's errors, by exact settling (DESIGN 4.10).
 
-Each run draws errors of its own for every block: how its outline differs from what was seen, and
-how far from the plan it is put down.  A block is brought apart from what it overlaps there, let
-go, and rests; it has fallen when it ends far from the plan, or not at rest.  What stands is judged
-by the limit analysis after the last stone, and after those before it where the last does not stand.
+Each run draws errors of its own for every block (:mod:`drystone.model.builder`).  A block is
+brought apart from what it overlaps where it is put, as are its neighbours on which nothing rests
+yet; it is let go, and rests.  It has fallen when it ends far from the plan, or not at rest.
 """
 
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 
-from drystone.contacts.settled import PlacedPolygons, model_of_outlines
 from drystone.kernels.gaps import crosses_any
-from drystone.kernels.polygons import Points, Polygons, area_and_centroid, no_polygons
+from drystone.kernels.polygons import Points, area_and_centroid, no_polygons
+from drystone.kernels.profiles import extremes
+from drystone.kernels.settling import Status
+from drystone.model.builder import WEDGE_SHARE, BuilderErrors, Built
 from drystone.model.outlines import Outlined
-from drystone.model.placement import Side
-from drystone.settle.rest import SettlingScene, Turned, lay
+from drystone.settle.rest import OVERLAP_PX, SettlingScene, Turned, let_go, repose, ways
 from drystone.settle.settings import SettleSettings
-from drystone.statics.limit import lateral_resistance
 
-ROBOT, HAND = 0.015, 0.03
-"""Precision p of a good robot, and of a hand."""
+TOUCHING = 0.5
+"""Blocks that are nearer, source px, touch."""
 
 FALLEN_SHARE, FALLEN_DEG = 0.25, 12.0
 """A stone has fallen when it ends farther from the plan, over its size, or turned by more."""
 
-WEDGE_SHARE = 1 / 3
-"""Errors of a wedge over those of a stone: it is small, and cut to its place."""
+BEARS = 0.3
+"""A contact whose normal goes up by more than this bears what is above it."""
 
-MODES = range(2, 7)
-"""Waves around an outline; 0 would change its size, 1 only shift it."""
+NEAR,TOUCHES,STEPS,STEEP,LIFT,MOST,GAP=.01,.003,300,-1.,.02,.3,.05
+REACH = 0.3
+"""So far around a stone, over its size, gaps are looked at when it is brought apart."""
 
-LONGEST_EDGE = 0.12
-"""Edges are cut into pieces no longer than this, over the size, so that errors bend them too."""
+BESIDE = 0.3
+"""Stones no farther than this, over the size of a stone that is put down, may be pushed aside."""
 
-APART = (0.0, 0.005, 0.01, 0.02, 0.03, 0.045, 0.065, 0.09, 0.12, 0.16, 0.2, 0.25)
-"""Distances, over the size, at which a block that overlaps others is tried; it is lifted first."""
+PUSHED = 2.0
+"""Cost of moving another stone, over that of moving the one that is put down."""
 
-DIRECTIONS = 16
+ROUNDS = 4
+"""So often, at most, gaps are made linear until nothing overlaps."""
 
-
-class PlannedGroup(NamedTuple):
-    """A stone and its wedges, in the order of placement: outlines, (n, 2), source px, wall frame."""
-
-    side: Side
-    stone: Outlined
-    wedges: tuple[Outlined, ...] = ()
-
-
-@dataclass(frozen=True, kw_only=True)
-class BuilderErrors:
-    """Standard deviations of what a builder misses by; lengths in the unit of the wall."""
-
-    placement: float  # along the wall
-    angle_deg: float
-    outline: float  # of the distance from the centroid, all around
-
-    @classmethod
-    def of_precision(cls, precision: float, mean_size: float) -> "BuilderErrors":
-        """Return the errors of a precision p (DESIGN 4.10): p = .015 is a good robot, .03 a hand."""
-        return cls(
-            placement=precision * mean_size,
-            angle_deg=100 * precision * 2 / 3,
-            outline=0.5 * precision * mean_size,
-        )
-
-    def times(self, share: float) -> "BuilderErrors":
-        """Return errors of a share of these."""
-        return BuilderErrors(
-            placement=share * self.placement,
-            angle_deg=share * self.angle_deg,
-            outline=share * self.outline,
-        )
+LIFTS = (0.0, 0.01, 0.02, 0.04, 0.06, 0.08, 0.1, 0.13, 0.16, 0.2)
+"""So much higher, over the size, a stone is let go where it still overlaps others."""
 
 
 @dataclass(frozen=True)
@@ -83,8 +52,8 @@ class StoneEnd:
 
     stone: int
     fallen: bool
-    share: float  # distance of its centroid from the plan, over its size
-    turn_deg: float
+    share: float | None  # distance of its centroid from the plan, over its size; None: not at rest
+    turn_deg: float | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,157 +61,140 @@ class RehearsalRun:
     """One wall that was built with errors."""
 
     stones: tuple[StoneEnd, ...]  # in the order of placement
-    first_fall: int | None  # the stone at which something fell first; None when nothing did
-    F_LR: float | None  # of what stands at the end; None when it does not stand
     blocks: tuple[Outlined, ...]  # where all that has not fallen lies
 
     @property
-    def whole(self) -> bool:
-        """Nothing fell, and the wall stands."""
-        return self.first_fall is None
+    def first_fall(self) -> int | None:
+        """The first stone that fell; None when none did."""
+        return next((end.stone for end in self.stones if end.fallen), None)
+
+
+def errors_of(
+    groups: Sequence[Sequence[Outlined]], errors: BuilderErrors, rng: np.random.Generator
+) -> list[list[tuple[int, Built]]]:
+    """Return the blocks of a plan as they are and where they are put, the stone of each first."""
+    wedge = errors.times(WEDGE_SHARE)
+    return [
+        [(i, (wedge if k else errors).built(corners, rng)) for k, (i, corners) in enumerate(group)]
+        for group in groups
+    ]
 
 
 def rehearse(
-    groups: Sequence[PlannedGroup],
-    width_px: float,
+    groups: Sequence[Sequence[Outlined]],
     errors: BuilderErrors,
     rng: np.random.Generator,
     *,
     mu: float = 0.58,
     settle: SettleSettings | None = None,
 ) -> RehearsalRun:
-    """Build a wall once, stone after stone as planned, each with its own errors (open loop)."""
+    """Build a wall once, stone after stone as planned, each with its own errors (open loop).
+
+    `groups` are stones with their wedges, the stone first, in the order of placement: (n, 2)
+    corners in the wall frame, source px.  Stones may stand out over the ends of the wall.
+    """
     settle = settle or SettleSettings()
-    # Errors are larger than what a search lets a stone move by while it settles.
-    settle = replace(settle, max_shift=FALLEN_SHARE, max_turn_deg=FALLEN_DEG)
-    # Stones may stand out over the ends of the wall, which are lines on the ground.
-    aside = np.array((width_px, 0.0))
-    polygons, laid = no_polygons(), list[Outlined]()
-    ends: list[StoneEnd] = []
-    after: list[int] = []  # how many blocks lie after each stone
-    for group in groups:
-        end = StoneEnd(group.stone[0], fallen=True, share=math.inf, turn_deg=math.inf)
-        for block_id, corners in (*group.wedges, group.stone):
-            wedge = block_id != group.stone[0]
-            own = errors.times(WEDGE_SHARE) if wedge else errors
-            scene = SettlingScene.of(polygons, 3.0 * width_px, group.side, mu)
-            found = _put_down(corners + aside, scene, own, rng, settle)
-            if found is None:
-                continue
-            placed, share, turn_deg = found
-            if not wedge:
-                fallen = share > FALLEN_SHARE or abs(turn_deg) > FALLEN_DEG
-                end = StoneEnd(block_id, fallen, share, turn_deg)
-            if share <= FALLEN_SHARE and abs(turn_deg) <= FALLEN_DEG:
-                polygons = polygons.added([placed])
-                laid.append((block_id, placed))
-        ends.append(end)
-        after.append(len(laid))
-    fallen = next((end.stone for end in ends if end.fallen), None)
-    resistance, last = _judged(laid, after, mu, settle)
-    if last is not None and (fallen is None or last < [e.stone for e in ends].index(fallen)):
-        fallen = ends[last].stone
-    blocks = tuple((block_id, corners - aside) for block_id, corners in laid)
-    return RehearsalRun(tuple(ends), fallen, resistance, blocks)
-
-
-def _judged(
-    laid: Sequence[Outlined], after: Sequence[int], mu: float, settle: SettleSettings
-) -> tuple[float | None, int | None]:
-    """Return F_LR of what lies, and the number of the stone with which it stands no longer."""
-
-    def value(count: int) -> float | None:
-        if not count:
-            return 0.0
-        placed = PlacedPolygons.of(laid[:count])
-        return lateral_resistance(
-            model_of_outlines(placed, mu, settle.contact_px, settle.setback)
-        ).value
-
-    whole = value(len(laid))
-    if whole is not None:
-        return whole, None
-    stands, falls = -1, len(after) - 1  # a stone may be held by a later one: the first is sought
-    while falls - stands > 1:
-        middle = (stands + falls) // 2
-        if value(after[middle]) is None:
-            falls = middle
-        else:
-            stands = middle
-    return None, falls
-
-
-def _put_down(
-    corners: Points,
-    scene: SettlingScene,
-    errors: BuilderErrors,
-    rng: np.random.Generator,
-    settle: SettleSettings,
-) -> tuple[Points, float, float] | None:
-    """Return where a block with errors comes to rest: corners, distance over size, turn.
-
-    None when it does not rest anywhere near.
-    """
-    area, x, y = area_and_centroid(corners)
-    size = math.sqrt(area)
-    outline = misjudged(corners - (x, y), errors.outline, size, rng)
-    x_put = x + rng.normal(0.0, errors.placement) if errors.placement else x
-    angle_deg = rng.normal(0.0, errors.angle_deg) if errors.angle_deg else 0.0
-    turned = Turned.of(outline, angle_deg, scene.side, size)
-    seen_x = x_put if scene.side == "left" else scene.width_px - x_put
-    for start in _apart(turned, scene.polygons, (seen_x, y), size):
-        found = lay(turned, scene, start, settle)
-        if found is not None:
-            at = found.settled
-            away = math.hypot(at.x_px - x, at.y_px - y) / size
-            return at.corners, away, found.angle_deg
-        break
-    return None
-
-
-def _apart(
-    turned: Turned, around: Polygons, start: tuple[float, float], size: float
-) -> Iterator[tuple[float, float]]:
-    """List places near one where a block overlaps nothing, the nearest first, higher ones before."""
-    lowest = -float(turned.corners[:, 1].min())
-    for share in APART:
-        for k in range(DIRECTIONS if share else 1):
-            # Straight up, then more and more aside, to the left and to the right by turns.
-            angle = math.pi / 2 + (k + 1) // 2 * (-1) ** k * 2 * math.pi / DIRECTIONS
-            x = start[0] + share * size * math.cos(angle)
-            y = max(start[1] + share * size * math.sin(angle), lowest)
-            if not crosses_any(turned.corners + np.array((x, y)), around):
-                yield x, y
-
-
-def misjudged(
-    outline: Points, sigma: float, size: float, rng: np.random.Generator
-) -> Points:
-    """Return an outline about its centroid as it really is: a smooth error of what was seen.
-
-    The error is along the way from the centroid, of Fourier modes 2 to 6 over the polar angle with
-    equal weights; `sigma` is its standard deviation at any angle.
-    """
-    waves = rng.normal(0.0, sigma / math.sqrt(len(MODES)), (len(MODES), 2))
-    if not sigma:
-        return outline
-    fine = _refined(outline, LONGEST_EDGE * size)
-    angle = np.arctan2(fine[:, 1], fine[:, 0])
-    error = sum(
-        a * np.cos(mode * angle) + b * np.sin(mode * angle)
-        for mode, (a, b) in zip(MODES, waves.tolist(), strict=True)
+    # Errors are larger than what a search lets a stone move by while it settles, and friction
+    # holds on upright faces too: what is put down with errors is pressed in.
+    settle = replace(settle, max_shift=FALLEN_SHARE, max_turn_deg=FALLEN_DEG, steep=0.0)
+    planned = {block: corners for group in groups for block, corners in group}
+    ends = np.concatenate(list(planned.values()))[:, 0]
+    # The ends of the wall are no ends of what is built: it stands in the middle of a wider one.
+    width = float(np.ptp(ends))
+    aside = width - float(ends.min())
+    scene = SettlingScene(no_polygons(), 3.0 * width, "left", mu)
+    laid: dict[int, Built] = {}
+    for group in errors_of(groups, errors, rng):
+        for block, built in (*group[1:], group[0]):
+            laid = _with(laid, block, replace(built, x=built.x + aside), scene, settle)
+    laid = {block: replace(built, x=built.x - aside) for block, built in laid.items()}
+    near = {i: built for i, built in laid.items() if _share(built, planned[i]) <= FALLEN_SHARE}
+    return RehearsalRun(
+        tuple(_end(group[0], laid.get(group[0][0])) for group in groups),
+        tuple((block, built.corners) for block, built in near.items()),
     )
-    moved = fine * (1.0 + error / np.hypot(*fine.T))[:, None]
-    _, x, y = area_and_centroid(moved)
-    return np.asarray(moved - (x, y))
 
 
-def _refined(outline: Points, longest: float) -> Points:
-    """Return an outline with corners added so that no edge is longer."""
-    after = np.roll(outline, -1, axis=0)
-    counts = np.maximum(1, np.ceil(np.hypot(*(after - outline).T) / longest)).astype(int)
-    pieces = [
-        a + (b - a) * (np.arange(count) / count)[:, None]
-        for a, b, count in zip(outline, after, counts, strict=True)
-    ]
-    return np.concatenate(pieces)
+def _share(built: Built, planned: Points) -> float:
+    """Return how far a block is from the plan, over its size."""
+    _, x, y = area_and_centroid(planned)
+    return math.hypot(built.x - x, built.y - y) / built.size
+
+
+def _end(planned: Outlined, built: Built | None) -> StoneEnd:
+    if built is None:
+        return StoneEnd(planned[0], True, None, None)
+    share = _share(built, planned[1])
+    fallen = share > FALLEN_SHARE or abs(built.angle_deg) > FALLEN_DEG
+    return StoneEnd(planned[0], fallen, share, built.angle_deg)
+
+
+def _with(
+    laid: dict[int, Built], block: int, built: Built, scene: SettlingScene, settle: SettleSettings
+) -> dict[int, Built]:
+    """Return what lies once a block is put down and let go; the same where it rests nowhere."""
+    built, after = _squeezed_in(built, laid)
+    polygons = no_polygons().added(one.corners for one in after.values())
+    scene, size = replace(scene, polygons=polygons), built.size
+    turned = Turned.of(built.outline, built.angle_deg, scene.side, size)
+    usual = ways(turned, scene, settle)[-1]._replace(
+        stop=0.0, near=NEAR * size, far=2.0 * NEAR * size, tolerance=TOUCHES * size, steps=STEPS,
+        overlap=LIFT*size, steep=STEEP,
+    )
+    for sticks in (True, False):
+        for lift in LIFTS:
+            start = built.x, built.y + lift * size
+            found = let_go(turned, scene, start, usual._replace(sticks=sticks))
+            if found.status is Status.RESTS:
+                rest = repose(turned, scene, found)
+                at = rest.settled
+                return {**after, block: Built(built.outline, at.x_px, at.y_px, rest.angle_deg)}
+    return laid
+
+
+def _squeezed_in(built: Built, laid: dict[int, Built]) -> tuple[Built, dict[int, Built]]:
+    """Move a block aside to where it has room between its neighbours, or push these apart."""
+    left, right = (max((_into(built, one, sign) for one in laid.values()), default=0.0) for sign in (-1.0,1.0))
+    if left<=0 and right<=0: return built, laid
+    if left>0 and right>0: shift=.5*(left-right)
+    else:
+        # all the way, as far as there is room
+        want=left if left>0 else right
+        sign=1. if left>0 else -1.
+        moved=replace(built,x=built.x+sign*want)
+        over=max((_into(moved, one, sign) for one in laid.values()), default=0.0)
+        shift=sign*(want-.5*max(over,0.))
+    if abs(shift) > MOST*built.size:
+        return built, laid
+    built = replace(built, x=built.x+shift)
+    after = dict(laid)
+    for sign in (-1.0, 1.0):
+        todo=[built]
+        while todo:
+            by = todo.pop()
+            for i, one in after.items():
+                if one is not by:
+                    over=_into(by, one, sign)
+                    if over>0 and over<MOST*one.size:
+                        after[i]=replace(one,x=one.x+sign*over)
+                        todo.append(after[i])
+    return built, after
+
+
+def _into(built: Built, other: Built, sign: float) -> float:
+    """Return how far another block, beside this one, has to move along x until it clears this one; 0 where need not"""
+    if (other.x-built.x)*sign<=0 or abs(other.x-built.x)>2*(built.size+other.size): return 0.0
+    a, b = built.corners, other.corners
+    low, high = np.maximum(a.min(0),b.min(0)), np.minimum(a.max(0),b.max(0))
+    if (high-low).min()<=0: return 0.0
+    if high[1]-low[1]<BESIDE*min(np.ptp(a[:,1]),np.ptp(b[:,1])): return 0.0
+    if not crosses_any(a,no_polygons().added([b])): return 0.0
+    across=_depth(a[:,::-1],b[:,::-1],sign)
+    return across if across < _depth(a,b,1. if other.y>built.y else -1.) else 0.0
+
+
+def _depth(a,b, sign: float) -> float:
+    low=max(a[:,0].min(),b[:,0].min()); high=min(a[:,0].max(),b[:,0].max())
+    rows=32; cell=(high-low)/rows
+    al,ar=extremes(a,low,cell,rows); bl,br=extremes(b,low,cell,rows)
+    return float((ar-bl if sign>0 else br-al).max())
