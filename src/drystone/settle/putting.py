@@ -1,0 +1,226 @@
+"""Putting a block down where it is not quite as planned, and letting it go (DESIGN 4.10).
+
+It is pressed in between its neighbours: moved aside where there is room, else these are pushed
+apart along their beds.  Then it goes down as friction lets it: it rolls about what carries it, and
+slides only where it does not come to rest so.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from drystone.kernels.gaps import crosses_any
+from drystone.kernels.polygons import Points, Polygons, no_polygons
+from drystone.kernels.profiles import extremes
+from drystone.kernels.settling import SettlingRules, Status
+from drystone.model.builder import Built, BuilderErrors
+from drystone.model.placement import Settled
+from drystone.model.stone import Stone
+from drystone.poses import wrap_deg
+from drystone.settle.rest import SettlingScene, Turned, let_go, repose, ways
+from drystone.settle.settings import SettleSettings
+
+FALLEN_SHARE, FALLEN_DEG = 0.25, 12.0
+"""A stone has fallen when it ends farther from the plan, over its size, or turned by more."""
+
+ASIDE = 0.3
+"""So far, over its size, a block is moved aside or pushed at most."""
+
+BESIDE = 0.3
+"""Two blocks lie beside each other when they share so much of the height of the lower one."""
+
+LINES = 32
+"""Along so many lines it is looked how far two blocks overlap."""
+
+LIFTS = (0.0, 0.01, 0.02, 0.04, 0.06, 0.08, 0.1, 0.13, 0.16, 0.2)
+"""So much higher, over its size, a block is let go where it overlaps others."""
+
+STEP, TOUCHING, OVERLAP = 0.01, 0.003, 0.02
+"""Over the size: first steps of settling, the gap up to which a contact holds, and how deep a
+block may overlap where it is let go.  What is built with errors touches at few points."""
+
+PRECISION, TRIES = 0.04, 4
+"""Errors with which a seat is tried, as those of both blocks that meet there, and how often."""
+
+STEPS = 300
+"""Most steps."""
+
+
+def put_down(
+    built: Built, around: Polygons, mu: float, settle: SettleSettings
+) -> tuple[Built | None, dict[int, float]]:
+    """Return where a block comes to rest, and by how much which others are pushed along x.
+
+    None, and the others stay, where it rests nowhere near.
+    """
+    near = nearby(built, around)
+    pushed: dict[int, float] = {}
+    if crosses_any(built.corners, near):
+        built, pushed = _squeezed_in(built, around)
+        around = moved(around, pushed)
+        near = nearby(built, around)
+    turned = Turned.of(built.outline, built.angle_deg, "left", built.size)
+    scene = SettlingScene(near, 0.0, "left", mu)
+    for sticks in (True, False):
+        rules = _rules(turned, scene, settle)._replace(sticks=sticks)
+        for lift in LIFTS:
+            found = let_go(turned, scene, (built.x, built.y + lift * built.size), rules)
+            if found.status is Status.RESTS:
+                rest = repose(turned, scene, found)
+                at = rest.settled
+                return Built(built.outline, at.x_px, at.y_px, rest.angle_deg), pushed
+    return None, {}
+
+
+def _rules(turned: Turned, scene: SettlingScene, settle: SettleSettings) -> SettlingRules:
+    size = turned.size_px
+    return ways(turned, scene, settle)[-1]._replace(
+        stop=0.0,
+        near=STEP * size,
+        far=2.0 * STEP * size,
+        tolerance=max(TOUCHING * size, 2.0 * settle.clearance_px),
+        overlap=OVERLAP * size,
+        steep=-1.0,  # what is pressed in is held by upright faces too
+        beyond=math.inf,  # the ends of a wall are lines on the ground
+        shift=FALLEN_SHARE * size,
+        turn=math.radians(FALLEN_DEG),
+        steps=STEPS,
+    )
+
+
+def nearby(built: Built, around: Polygons, reach: float = ASIDE) -> Polygons:
+    """Return those of some polygons that are near a block, `reach` over its size."""
+    far = reach * built.size
+    low, high = built.corners.min(axis=0) - far, built.corners.max(axis=0) + far
+    (left, bottom), (right, top), boxes = low.tolist(), high.tolist(), around.boxes
+    meets = (boxes[:, 0] <= right) & (boxes[:, 2] >= left)
+    meets &= (boxes[:, 1] <= top) & (boxes[:, 3] >= bottom)
+    if meets.all():
+        return around
+    return no_polygons().added(around.polygon(i) for i in np.flatnonzero(meets).tolist())
+
+
+def moved(around: Polygons, pushed: dict[int, float]) -> Polygons:
+    """Return polygons of which some are moved along x."""
+    if not pushed:
+        return around
+    return no_polygons().added(
+        around.polygon(i) + (pushed.get(i, 0.0), 0.0) for i in range(len(around))
+    )
+
+
+def _squeezed_in(built: Built, around: Polygons) -> tuple[Built, dict[int, float]]:
+    """Move a block aside to where it has room between its neighbours, or push these apart."""
+    others = [around.polygon(i) for i in range(len(around))]
+    left, right = (_most_into(built.corners, others, sign) for sign in (-1.0, 1.0))
+    shift = 0.5 * (left - right)
+    if bool(left) != bool(right):
+        # All the way where there is room, else half of what is missing.
+        all_the_way = built.corners + (2.0 * shift, 0.0)
+        sign = math.copysign(1.0, shift)
+        shift = 2.0 * shift - 0.5 * sign * _most_into(all_the_way, others, sign)
+    if not left + right or abs(shift) > ASIDE * built.size:
+        return built, {}
+    built = Built(built.outline, built.x + shift, built.y, built.angle_deg)
+    pushed: dict[int, float] = {}
+    for sign in (-1.0, 1.0):
+        todo = [built.corners]
+        while todo:
+            by = todo.pop()
+            for i, other in enumerate(others):
+                over = _into(by, other, sign) if other is not by else 0.0
+                if 0.0 < over < ASIDE * built.size:
+                    others[i] = other + (sign * over, 0.0)
+                    pushed[i] = pushed.get(i, 0.0) + sign * over
+                    todo.append(others[i])
+    return built, pushed
+
+
+def _most_into(corners: Points, others: Sequence[Points], sign: float) -> float:
+    return max((_into(corners, other, sign) for other in others), default=0.0)
+
+
+def _into(corners: Points, other: Points, sign: float) -> float:
+    """Return how far along x another block beside this one must go, to a side, to clear it.
+
+    0 where it does not overlap, or where less is needed upwards: then one lies on the other.
+    """
+    low = np.maximum(corners.min(axis=0), other.min(axis=0))
+    high = np.minimum(corners.max(axis=0), other.max(axis=0))
+    if (high <= low).any() or sign * (_middle(other)[0] - _middle(corners)[0]) <= 0.0:
+        return 0.0
+    lower = min(np.ptp(corners[:, 1]), np.ptp(other[:, 1]))
+    if high[1] - low[1] < BESIDE * lower:
+        return 0.0
+    if not crosses_any(corners, no_polygons().added([other])):
+        return 0.0
+    above = 1.0 if _middle(other)[1] > _middle(corners)[1] else -1.0
+    across = _depth(corners[:, ::-1], other[:, ::-1], low[1], high[1], sign)
+    return across if across < _depth(corners, other, low[0], high[0], above) else 0.0
+
+
+def _middle(corners: Points) -> Points:
+    return np.asarray(0.5 * (corners.min(axis=0) + corners.max(axis=0)))
+
+
+def _depth(one: Points, other: Points, low: float, high: float, sign: float) -> float:
+    """Return how far up (sign 1) or down another polygon must go to clear one, between two x."""
+    cell = (high - low) / LINES
+    bottom, top = extremes(one, low, cell, LINES)
+    other_bottom, other_top = extremes(other, low, cell, LINES)
+    return float((top - other_bottom if sign > 0 else other_top - bottom).max())
+
+
+def fallen_share(x: float, y: float, turn_deg: float, size: float) -> float:
+    """Return how near a block is to having fallen, from its way from the plan; from 1 on it has."""
+    return max(math.hypot(x, y) / size / FALLEN_SHARE, abs(turn_deg) / FALLEN_DEG)
+
+
+class SeatBook:
+    """Stones as a builder may put them, each made once: what seats are tried with.
+
+    `size` is the mean over the stones of the root of their area, source px.
+    """
+
+    def __init__(self, size: float, settle: SettleSettings) -> None:
+        self._errors = BuilderErrors.of_precision(PRECISION, size)
+        self._settle = settle
+        self._tries: dict[Stone, list[Built]] = {}
+
+    def seat(self, stone: Stone, at: Settled, angle_deg: float, around: Polygons, mu: float) -> float:
+        """Return the seat index of a stone at a place (:func:`sureness`)."""
+        if stone not in self._tries:
+            outline = stone.outline_within(self._settle.outline_px)
+            rng = np.random.default_rng(stone.id)
+            self._tries[stone] = [self._errors.built(outline, rng) for _ in range(TRIES)]
+        place = at.x_px, at.y_px, angle_deg
+        return sureness(self._tries[stone], place, around, mu, self._settle)
+
+
+def sureness(
+    tries: Sequence[Built],
+    place: tuple[float, float, float],
+    around: Polygons,
+    mu: float,
+    settle: SettleSettings,
+) -> float:
+    """Return how surely a block rests at a place (x, y, angle in degrees): its index, in [0, 1].
+
+    It is put down again in some `tries`, with a builder's errors from a place at the origin.  A try
+    counts 1 where the block comes to rest as planned, less the further it rests from there, down to
+    a half where it has nearly fallen, and 0 where it has.
+    """
+    found = []
+    x, y, angle_deg = place
+    there = Built(tries[0].outline, x, y, angle_deg)
+    around = nearby(there, around, 2.0 * ASIDE)
+    for one in tries:
+        built = Built(one.outline, x + one.x, y + one.y, angle_deg + one.angle_deg)
+        rest, _ = put_down(built, around, mu, settle)
+        fell = 1.0
+        if rest is not None:
+            turn_deg = wrap_deg(rest.angle_deg - angle_deg)
+            fell = fallen_share(rest.x - x, rest.y - y, turn_deg, rest.size)
+        found.append(1.0 - 0.5 * fell if fell < 1.0 else 0.0)
+    return math.fsum(found) / len(found)
