@@ -20,6 +20,7 @@ _COMMANDS = {
     "analyse": "Limit analysis of a wall: load multipliers and mechanism.",
     "measure": "Measure filling, arrangement and lateral resistance of a wall.",
     "check": "Re-derive a wall from stones and plan and verify every claim.",
+    "rehearse": "Build a plan again and again with a builder's errors: what falls.",
     "export": "Write a plan for robots, drawings and films: see --list.",
     "craft": "Look at a wall as a mason does: rules by name, stones and steps.",
     "markers": "Print a sheet of markers that give photographs a scale.",

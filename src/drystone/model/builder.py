@@ -10,8 +10,8 @@ import shapely
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.kernels.raster import turn
 
-ROBOT, HAND = 0.015, 0.03
-"""Precision p of a good robot, and of a hand."""
+ROBOT, BETWEEN, HAND = 0.015, 0.02, 0.03
+"""Precision p of a good robot, of what walls of a search are rehearsed with, and of a hand."""
 
 WEDGE_SHARE = 1 / 3
 """Errors of a wedge over those of a stone: it is small, and cut to its place."""
@@ -82,7 +82,7 @@ class Built:
     @cached_property
     def corners(self) -> Points:
         """Corners in the wall frame, (n, 2)."""
-        return turn(self.outline, self.angle_deg) + (self.x, self.y)
+        return turn(self.outline, self.angle_deg) + np.array((self.x, self.y))
 
     @cached_property
     def size(self) -> float:

@@ -26,8 +26,8 @@ from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Stock
-from drystone.settle.putting import SeatBook
 from drystone.planner.sturdy import falls_when_let_go, sturdy_model_with
+from drystone.settle.putting import SeatBook
 from drystone.statics.incremental import IncrementalAnalysis, IncrementalResult
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance

@@ -10,15 +10,14 @@ from drystone.craft.bond import bond_faults
 from drystone.craft.masonry import Masonry
 from drystone.craft.settings import CraftSettings
 from drystone.metrics.measure import measure_labels
-from drystone.model.builder import BuilderErrors
-from drystone.model.wall import outlined
+from drystone.model.builder import BETWEEN, BuilderErrors
 from drystone.planner.build import Build
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import GoalSettings
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.courses import CoursePlan
-from drystone.search.rehearsal import rehearse
+from drystone.search.rehearsal import groups_of, mean_size, rehearse
 from drystone.search.yard import Yard
 from drystone.statics.flow.flow_search import STARTS, NonassociativeSettings
 from drystone.statics.flow.nonassociative import nonassociative_resistance
@@ -37,9 +36,6 @@ QUICK = NonassociativeSettings(starts=STARTS[:1], random_starts=0, let_go=False)
 
 RUNS, LAST_RUNS = 3, 12
 """So often a wall of a search is rehearsed, and the best ones at the end."""
-
-PRECISION = 0.02
-"""Between those of a good robot and of a hand."""
 
 
 @dataclass(frozen=True)
@@ -198,10 +194,8 @@ class FoundWall:
 
 def rehearsed(build: Build, yard: Yard, runs: int) -> float:
     """Return the mean share of the stones of a wall of outlines that fall in some rehearsals."""
-    groups = [outlined(group.placement, group.wedges) for group in build.wall.groups]
-    settings, workshop = yard.settings, yard.workshop
-    size = workshop.stock.mean_area_px**0.5 / workshop.site.scale
-    errors = BuilderErrors.of_precision(PRECISION, size)
+    groups, settings = groups_of(build.wall), yard.settings
+    errors = BuilderErrors.of_precision(BETWEEN, mean_size(groups))
     fallen = 0
     for run in range(runs):
         yard.until.look()

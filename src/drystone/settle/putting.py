@@ -7,6 +7,7 @@ slides only where it does not come to rest so.
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from drystone.kernels.gaps import crosses_any
 from drystone.kernels.polygons import Points, Polygons, no_polygons
 from drystone.kernels.profiles import extremes
 from drystone.kernels.settling import SettlingRules, Status
-from drystone.model.builder import Built, BuilderErrors
+from drystone.model.builder import BuilderErrors, Built
 from drystone.model.placement import Settled
 from drystone.model.stone import Stone
 from drystone.poses import wrap_deg
@@ -106,62 +107,78 @@ def moved(around: Polygons, pushed: dict[int, float]) -> Polygons:
     if not pushed:
         return around
     return no_polygons().added(
-        around.polygon(i) + (pushed.get(i, 0.0), 0.0) for i in range(len(around))
+        around.polygon(i) + np.array((pushed.get(i, 0.0), 0.0)) for i in range(len(around))
     )
+
+
+class _Block(NamedTuple):
+    """A polygon and its box: left, bottom, right, top."""
+
+    corners: Points
+    box: tuple[float, float, float, float]
+
+    def shifted(self, x: float) -> "_Block":
+        """Return it moved along x."""
+        left, bottom, right, top = self.box
+        return _Block(self.corners + np.array((x, 0.0)), (left + x, bottom, right + x, top))
 
 
 def _squeezed_in(built: Built, around: Polygons) -> tuple[Built, dict[int, float]]:
     """Move a block aside to where it has room between its neighbours, or push these apart."""
-    others = [around.polygon(i) for i in range(len(around))]
-    left, right = (_most_into(built.corners, others, sign) for sign in (-1.0, 1.0))
+    (left, bottom), (right, top) = built.corners.min(axis=0), built.corners.max(axis=0)
+    block = _Block(built.corners, (float(left), float(bottom), float(right), float(top)))
+    others = {
+        i: _Block(around.polygon(i), (x0, y0, x1, y1))
+        for i, (x0, y0, x1, y1) in enumerate(around.boxes.tolist())
+        if y0 < top and y1 > bottom
+    }
+    left, right = (_most_into(block, others, sign) for sign in (-1.0, 1.0))
     shift = 0.5 * (left - right)
     if bool(left) != bool(right):
         # All the way where there is room, else half of what is missing.
-        all_the_way = built.corners + (2.0 * shift, 0.0)
         sign = math.copysign(1.0, shift)
-        shift = 2.0 * shift - 0.5 * sign * _most_into(all_the_way, others, sign)
+        missing = _most_into(block.shifted(2.0 * shift), others, sign)
+        shift = 2.0 * shift - 0.5 * sign * missing
     if not left + right or abs(shift) > ASIDE * built.size:
         return built, {}
-    built = Built(built.outline, built.x + shift, built.y, built.angle_deg)
     pushed: dict[int, float] = {}
     for sign in (-1.0, 1.0):
-        todo = [built.corners]
+        todo = [block.shifted(shift)]
         while todo:
             by = todo.pop()
-            for i, other in enumerate(others):
-                over = _into(by, other, sign) if other is not by else 0.0
+            for i, other in others.items():
+                over = _into(by, other, sign)
                 if 0.0 < over < ASIDE * built.size:
-                    others[i] = other + (sign * over, 0.0)
+                    others[i] = other.shifted(sign * over)
                     pushed[i] = pushed.get(i, 0.0) + sign * over
                     todo.append(others[i])
-    return built, pushed
+    return Built(built.outline, built.x + shift, built.y, built.angle_deg), pushed
 
 
-def _most_into(corners: Points, others: Sequence[Points], sign: float) -> float:
-    return max((_into(corners, other, sign) for other in others), default=0.0)
+def _most_into(block: _Block, others: dict[int, _Block], sign: float) -> float:
+    return max((_into(block, other, sign) for other in others.values()), default=0.0)
 
 
-def _into(corners: Points, other: Points, sign: float) -> float:
+def _into(one: _Block, other: _Block, sign: float) -> float:
     """Return how far along x another block beside this one must go, to a side, to clear it.
 
     0 where it does not overlap, or where less is needed upwards: then one lies on the other.
     """
-    low = np.maximum(corners.min(axis=0), other.min(axis=0))
-    high = np.minimum(corners.max(axis=0), other.max(axis=0))
-    if (high <= low).any() or sign * (_middle(other)[0] - _middle(corners)[0]) <= 0.0:
+    (x0, y0, x1, y1), (u0, v0, u1, v1) = one.box, other.box
+    if u0 >= x1 or x0 >= u1 or sign * (u0 + u1 - x0 - x1) <= 0.0:
         return 0.0
-    lower = min(np.ptp(corners[:, 1]), np.ptp(other[:, 1]))
-    if high[1] - low[1] < BESIDE * lower:
+    low, high = max(y0, v0), min(y1, v1)
+    if high - low < BESIDE * min(y1 - y0, v1 - v0):
         return 0.0
-    if not crosses_any(corners, no_polygons().added([other])):
+    if not crosses_any(one.corners, no_polygons().added([other.corners])):
         return 0.0
-    above = 1.0 if _middle(other)[1] > _middle(corners)[1] else -1.0
-    across = _depth(corners[:, ::-1], other[:, ::-1], low[1], high[1], sign)
-    return across if across < _depth(corners, other, low[0], high[0], above) else 0.0
-
-
-def _middle(corners: Points) -> Points:
-    return np.asarray(0.5 * (corners.min(axis=0) + corners.max(axis=0)))
+    across = _depth(one.corners[:, ::-1], other.corners[:, ::-1], low, high, sign)
+    above = math.copysign(1.0, v0 + v1 - y0 - y1)
+    return (
+        across
+        if across < _depth(one.corners, other.corners, max(x0, u0), min(x1, u1), above)
+        else 0.0
+    )
 
 
 def _depth(one: Points, other: Points, low: float, high: float, sign: float) -> float:
@@ -174,7 +191,7 @@ def _depth(one: Points, other: Points, low: float, high: float, sign: float) -> 
 
 def fallen_share(x: float, y: float, turn_deg: float, size: float) -> float:
     """Return how near a block is to having fallen, from its way from the plan; from 1 on it has."""
-    return max(math.hypot(x, y) / size / FALLEN_SHARE, abs(turn_deg) / FALLEN_DEG)
+    return max(math.hypot(x, y) / size / FALLEN_SHARE, abs(wrap_deg(turn_deg)) / FALLEN_DEG)
 
 
 class SeatBook:
@@ -188,7 +205,9 @@ class SeatBook:
         self._settle = settle
         self._tries: dict[Stone, list[Built]] = {}
 
-    def seat(self, stone: Stone, at: Settled, angle_deg: float, around: Polygons, mu: float) -> float:
+    def seat(
+        self, stone: Stone, at: Settled, angle_deg: float, around: Polygons, mu: float
+    ) -> float:
         """Return the seat index of a stone at a place (:func:`sureness`)."""
         if stone not in self._tries:
             outline = stone.outline_within(self._settle.outline_px)
@@ -220,7 +239,7 @@ def sureness(
         rest, _ = put_down(built, around, mu, settle)
         fell = 1.0
         if rest is not None:
-            turn_deg = wrap_deg(rest.angle_deg - angle_deg)
-            fell = fallen_share(rest.x - x, rest.y - y, turn_deg, rest.size)
+            turned = rest.angle_deg - angle_deg
+            fell = fallen_share(rest.x - x, rest.y - y, turned, rest.size)
         found.append(1.0 - 0.5 * fell if fell < 1.0 else 0.0)
     return math.fsum(found) / len(found)
