@@ -72,9 +72,7 @@ class Attempt:
             self._policy = policy_named(rule, settings.policy, settings.selection)
         kind = RasterProposer if settings.geometry == "raster" else ExactProposer
         self._proposer: Proposer = kind(workshop, settings, build, self._profile)
-        weighed = settings.selection_rule == "score" and settings.score.seat > 0.0
-        seats = workshop.seats if weighed and settings.geometry == "exact" else None
-        self._evaluator = Evaluator(settings, workshop.stock, self._profile, seats)
+        self._evaluator = Evaluator(settings, workshop.stock, self._profile)
         sides: tuple[Side, ...] = ("left", "right") if settings.two_sided else ("left",)
         self._landscapes = {side: Landscape.of(build.wall, side) for side in sides}
         self._judged: dict[Key, Candidate] = {}

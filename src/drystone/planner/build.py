@@ -54,7 +54,6 @@ class Candidate:
     sturdy_model: RigidBlockModel | None = None
     sturdy: bool = True  # whether it does
     failed: bool = False  # True when the solver gave up on one of the models
-    seat: float = 1.0  # seat index (`drystone.settle.putting`), where it was asked for
 
     def __repr__(self) -> str:
         return f"<Candidate: {self.said}>"

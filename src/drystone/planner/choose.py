@@ -72,7 +72,7 @@ def choose_by_score(
             break
 
     def cost(candidate: Candidate) -> float:
-        bonus = settings.llc * (candidate.indices.LLC or 0.0) + settings.seat * candidate.seat
+        bonus = settings.llc * (candidate.indices.LLC or 0.0)
         return round(candidate.proposal.cost - bonus, TIE_DIGITS)
 
     return min(standing[: settings.analysed], key=cost, default=None)

@@ -1,6 +1,5 @@
 """Resistance and indices of one candidate (Algorithm 1, line 16)."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from drystone.contacts.blocks import model_with
@@ -18,8 +17,7 @@ from drystone.indices import (
 )
 from drystone.model.landscape import Landscape, view_box
 from drystone.model.outlines import Outlined
-from drystone.model.placement import Placement, Settled
-from drystone.model.stone import Stone
+from drystone.model.placement import Placement
 from drystone.model.wall import Group, outlined
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.deadline import NEVER, Deadline
@@ -27,7 +25,6 @@ from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Stock
 from drystone.planner.sturdy import falls_when_let_go, sturdy_model_with
-from drystone.settle.putting import SeatBook
 from drystone.statics.incremental import IncrementalAnalysis, IncrementalResult
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
@@ -48,7 +45,6 @@ class Evaluator:
     settings: PlannerSettings
     stock: Stock  # sizes of the set
     profile: Profile = field(default_factory=Profile)  # told where the time goes
-    seats: SeatBook | None = None  # tries seats, where they are weighed
     until: Deadline = NEVER  # looked at for every wall that is judged: `TimeIsUp` ends the judging
 
     def judge(self, build: Build, landscape: Landscape, proposal: Proposal) -> Candidate:
@@ -70,21 +66,7 @@ class Evaluator:
             return self.candidate(landscape, proposal, self._loaded(build.analysis, model))
         blocks = outlined(group.placement, group.wedges)
         loaded = self.loaded(build, blocks)
-        candidate = self.candidate(landscape, proposal, loaded, self.sturdily(build, blocks))
-        if self.seats is None or not (candidate.sturdy and candidate.indices.LLC):
-            return candidate
-        at = group.placement
-        seat = self.seat(build, at.posed.stone, at.exact, at.posed.angle_deg, blocks[1:])
-        return replace(candidate, seat=seat)
-
-    def seat(
-        self, build: Build, stone: Stone, at: Settled, angle_deg: float, wedges: Sequence[Outlined]
-    ) -> float:
-        """Return the seat index of a stone with its wedges; 1 where seats are not weighed."""
-        if self.seats is None:
-            return 1.0
-        around = build.wall.exact.polygons.added(corners for _, corners in wedges)
-        return self.seats.seat(stone, at, angle_deg, around, self.settings.mu)
+        return self.candidate(landscape, proposal, loaded, self.sturdily(build, blocks))
 
     def candidate(
         self, landscape: Landscape, proposal: Proposal, loaded: Loaded, sturdy: Loaded | None = None

@@ -43,8 +43,6 @@ class LayingSettings(Ranged):
         How many places of a stone in a pose are judged at most.
     llc : float
         Bonus for LLC = 1.
-    seat : float
-        Bonus for a seat index of 1.
     """
 
     column_px: float = ranged(1.0, above=0)
@@ -62,7 +60,6 @@ class LayingSettings(Ranged):
     analysed: int = ranged(6, least=1)
     judged: int = ranged(10, least=1)
     llc: float = ranged(3.0, least=0)
-    seat: float = ranged(0.0, least=0)
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -40,7 +40,7 @@ class GoalSettings(Ranged):
     level: float = 0.5
     flush: float = 0.25
     bond: float = 2.0
-    fallen: float = 0.0
+    fallen: float = 15.0
     F_SF: float = ranged(0.0, least=0)
     F_LR: float = ranged(0.0, least=0)
     F_AV: float = ranged(0.0, least=0)

@@ -14,7 +14,6 @@ from drystone.planner.stock import Rest, SideCounts, Stock, sides_of
 from drystone.planner.views import Views
 from drystone.poses import PoseBook, wrap_deg
 from drystone.settle.book import OutlineBook
-from drystone.settle.putting import SeatBook
 from drystone.stabilise.memory import StabiliseMemory
 
 
@@ -36,7 +35,6 @@ class Workshop:
     outlines: OutlineBook  # turned outlines, for stones that settle on them
     costs: PoseCosts  # of their poses, wherever they go
     views: Views  # of walls of outlines
-    seats: SeatBook  # tries how surely stones rest
     _angles: dict[int, tuple[float, ...]] = field(default_factory=dict, init=False, repr=False)
 
     @classmethod
@@ -53,7 +51,6 @@ class Workshop:
         return cls(
             stones, site, book, clusters, settings.orientations, fitting, stock, sides, memory,
             outlines, PoseCosts(stock, frozenset(settings.pin)), Views(site),
-            SeatBook(stock.mean_area_px**0.5 / site.scale, settings.settle),
         )  # fmt: skip
 
     def poses(self, stone_id: int) -> tuple[PosedStone, ...]:

@@ -110,8 +110,7 @@ class Mason:
         """Return one who looks at the bare ground."""
         workshop, settings = yard.workshop, yard.settings
         hand = Hand(laying, settings.settle, yard.limits, settings.stabilise.method)
-        seats = workshop.seats if laying.seat > 0.0 else None
-        evaluator = Evaluator(settings, workshop.stock, seats=seats, until=yard.until)
+        evaluator = Evaluator(settings, workshop.stock, until=yard.until)
         width_px, mu = workshop.site.extent_px[0], settings.mu
         views = {side: SideView.bare(width_px, side, mu, laying.column_px) for side in SIDES}
         return cls(yard, laying, hand, evaluator, views)
@@ -231,12 +230,7 @@ class Mason:
             blocks = [(stone.id, place.repose.settled.corners), *wedges]
             loaded = self.evaluator.loaded(build, blocks)
             llc = loaded.grown.resistance.value or 0.0
-            cost = math.inf
-            if llc > 0.0:
-                at, angle_deg = place.repose.settled, place.repose.angle_deg
-                seat = self.evaluator.seat(build, stone, at, angle_deg, wedges)
-                unsure = laying.seat * (1.0 - seat)
-                cost = round(place.cost - laying.llc * llc + unsure, 9)
+            cost = round(place.cost - laying.llc * llc, 9) if llc > 0.0 else math.inf
             rated.append(_RatedPlace(place, spot, blocks, loaded, cost))
             best, standing = min(best, cost), standing + (llc > 0.0)
         return rated

@@ -76,8 +76,6 @@ class ScoreSettings(Ranged):
         Bonus for a stone whose shorter side is the mean height.
     llc : float
         Bonus for LLC = 1.
-    seat : float
-        Bonus for a seat index of 1 (:mod:`drystone.settle.putting`), on outlines.
     analysed : int
         How many of the cheapest actions that stand are compared by LLC.
     """
@@ -94,7 +92,6 @@ class ScoreSettings(Ranged):
     area: float = 1.8
     thickness: float = 0.0
     llc: float = 1.3
-    seat: float = 0.0
     analysed: int = ranged(4, least=1)
 
 

@@ -6,7 +6,6 @@ slides only where it does not come to rest so.
 """
 
 import math
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -15,9 +14,7 @@ from drystone.kernels.gaps import crosses_any
 from drystone.kernels.polygons import Points, Polygons, no_polygons
 from drystone.kernels.profiles import extremes
 from drystone.kernels.settling import SettlingRules, Status
-from drystone.model.builder import BuilderErrors, Built
-from drystone.model.placement import Settled
-from drystone.model.stone import Stone
+from drystone.model.builder import Built
 from drystone.poses import wrap_deg
 from drystone.settle.rest import SettlingScene, Turned, let_go, repose, ways
 from drystone.settle.settings import SettleSettings
@@ -40,9 +37,6 @@ LIFTS = (0.0, 0.01, 0.02, 0.04, 0.06, 0.08, 0.1, 0.13, 0.16, 0.2)
 STEP, TOUCHING, OVERLAP = 0.01, 0.003, 0.02
 """Over the size: first steps of settling, the gap up to which a contact holds, and how deep a
 block may overlap where it is let go.  What is built with errors touches at few points."""
-
-PRECISION, TRIES = 0.04, 4
-"""Errors with which a seat is tried, as those of both blocks that meet there, and how often."""
 
 STEPS = 300
 """Most steps."""
@@ -192,54 +186,3 @@ def _depth(one: Points, other: Points, low: float, high: float, sign: float) -> 
 def fallen_share(x: float, y: float, turn_deg: float, size: float) -> float:
     """Return how near a block is to having fallen, from its way from the plan; from 1 on it has."""
     return max(math.hypot(x, y) / size / FALLEN_SHARE, abs(wrap_deg(turn_deg)) / FALLEN_DEG)
-
-
-class SeatBook:
-    """Stones as a builder may put them, each made once: what seats are tried with.
-
-    `size` is the mean over the stones of the root of their area, source px.
-    """
-
-    def __init__(self, size: float, settle: SettleSettings) -> None:
-        self._errors = BuilderErrors.of_precision(PRECISION, size)
-        self._settle = settle
-        self._tries: dict[Stone, list[Built]] = {}
-
-    def seat(
-        self, stone: Stone, at: Settled, angle_deg: float, around: Polygons, mu: float
-    ) -> float:
-        """Return the seat index of a stone at a place (:func:`sureness`)."""
-        if stone not in self._tries:
-            outline = stone.outline_within(self._settle.outline_px)
-            rng = np.random.default_rng(stone.id)
-            self._tries[stone] = [self._errors.built(outline, rng) for _ in range(TRIES)]
-        place = at.x_px, at.y_px, angle_deg
-        return sureness(self._tries[stone], place, around, mu, self._settle)
-
-
-def sureness(
-    tries: Sequence[Built],
-    place: tuple[float, float, float],
-    around: Polygons,
-    mu: float,
-    settle: SettleSettings,
-) -> float:
-    """Return how surely a block rests at a place (x, y, angle in degrees): its index, in [0, 1].
-
-    It is put down again in some `tries`, with a builder's errors from a place at the origin.  A try
-    counts 1 where the block comes to rest as planned, less the further it rests from there, down to
-    a half where it has nearly fallen, and 0 where it has.
-    """
-    found = []
-    x, y, angle_deg = place
-    there = Built(tries[0].outline, x, y, angle_deg)
-    around = nearby(there, around, 2.0 * ASIDE)
-    for one in tries:
-        built = Built(one.outline, x + one.x, y + one.y, angle_deg + one.angle_deg)
-        rest, _ = put_down(built, around, mu, settle)
-        fell = 1.0
-        if rest is not None:
-            turned = rest.angle_deg - angle_deg
-            fell = fallen_share(rest.x - x, rest.y - y, turned, rest.size)
-        found.append(1.0 - 0.5 * fell if fell < 1.0 else 0.0)
-    return math.fsum(found) / len(found)
