@@ -109,6 +109,57 @@ def geojson() -> Sequence[bytes]:
     return _json(whole, {**whole, **metres}, {**whole, "features": more}, collection)
 
 
+def exports() -> Sequence[bytes]:
+    """Return what Label Studio, VIA and QuPath export, and an instance of a nesting program."""
+    size = {"original_width": WIDTH, "original_height": HEIGHT}
+    results: list[dict[str, Any]] = []
+    regions, items, features = [], [], []
+    for stone, outline in STONES.items():
+        shares = [[100.0 * x / WIDTH, 100.0 * y / HEIGHT] for x, y in outline]
+        value = {"points": shares, "polygonlabels": ["stone"]}
+        results.append({"id": f"r{stone}", "type": "polygonlabels", "value": value} | size)
+        xs, ys = zip(*outline, strict=True)
+        shape = {"name": "polygon", "all_points_x": xs, "all_points_y": ys}
+        regions.append({"shape_attributes": shape, "region_attributes": {"class": "stone"}})
+        piece = {"type": "simple_polygon", "data": outline}
+        items.append({"id": stone, "demand": 1, "shape": piece})
+        ring = {"type": "Polygon", "coordinates": [[*outline, outline[0]]]}
+        said = {"classification": {"name": "Stone"}}
+        features.append({"type": "Feature", "geometry": ring, "properties": said})
+    turned = {"x": 5, "y": 5, "width": 20, "height": 9, "rotation": 30, "rectanglelabels": ["bar"]}
+    results.append({"type": "rectanglelabels", "value": turned} | size)
+    circle = {"name": "circle", "cx": 9, "cy": 9, "r": 5}
+    regions.append({"shape_attributes": circle, "region_attributes": {}})
+    hole = {"outer": items[0]["shape"]["data"], "inner": []}
+    items.append({"id": 0, "demand": 2, "shape": {"type": "polygon", "data": hole}})
+    return _json(
+        [{"id": 1, "data": {"image": "a.jpg"}, "annotations": [{"result": results}]}],
+        {"a.jpg1": {"filename": "a.jpg", "regions": regions}},
+        {"name": "a", "items": items},
+        features,
+    )
+
+
+def cvat() -> Sequence[bytes]:
+    """Return an image with shapes of all kinds."""
+    drawn = "".join(
+        f'<polygon label="stone" points="{";".join(f"{x},{y}" for x, y in outline)}"/>'
+        for outline in STONES.values()
+    )
+    drawn += '<box label="bar" xtl="1" ytl="1" xbr="9" ybr="5" rotation="10"/>'
+    drawn += '<ellipse label="a" cx="30" cy="9" rx="8" ry="4"/>'
+    drawn += '<mask label="a" rle="2, 4, 2, 4" left="50" top="9" width="4" height="3"/>'
+    image = f'<image id="0" name="a.jpg" width="{WIDTH}" height="{HEIGHT}">{drawn}</image>'
+    return [f"<annotations>{image}</annotations>".encode()]
+
+
+def yolo() -> Sequence[bytes]:
+    """Return segments, which are refused for want of a picture, and such as are px."""
+    lines = [" ".join(map(str, np.ravel(outline))) for outline in STONES.values()]
+    shares = [" ".join(map(str, np.ravel(outline) / 99.0)) for outline in STONES.values()]
+    return ["\n".join(f"0 {line}" for line in one).encode() for one in (lines, shares)]
+
+
 def dxf() -> Sequence[bytes]:
     """Return drawings with polylines alone, and with curves and blocks, as text and in bytes."""
     ezdxf.options.write_fixed_meta_data_for_testing = True  # the same bytes every time
@@ -125,6 +176,10 @@ def dxf() -> Sequence[bytes]:
         space.add_blockref("STONE", (10, 50), dxfattribs={"rotation": 90, "xscale": 2})
         space.add_lwpolyline([(70, 0), (90, 0, 1), (80, 9)], "xyb", close=True)
         space.add_ellipse((40, 50), major_axis=(9, 0), ratio=0.4)
+        through = space.add_spline([(60, 60, 0), (70, 60, 0), (70, 70, 0), (60, 72, 0)])
+        through.dxf.flags = 1
+        fitted = space.add_polyline2d([(0, 0), (9, 0), (9, 9), (4, 5)], close=True)
+        fitted.vertices[3].dxf.flags |= 16
         space.add_spline().set_closed([(60, 40, 0), (70, 40, 0), (70, 50, 0), (60, 50, 0)])
         buffer = io.BytesIO() if binary else io.StringIO()
         document.write(buffer, fmt="bin" if binary else "asc")
@@ -168,10 +223,21 @@ def svg() -> Sequence[bytes]:
         '<svg x="5%" y="1" width="9mm" height="9" viewBox="0 0 9 9"><rect width="50%" height="5"/>'
         '</svg><g id="stones"><use href="#stone_12" transform="matrix(1 0 .1 1 0 0)"/></g>'
     )
+    clipped = (
+        f'<clipPath id="c" transform="scale(1.5)"><path d="M0 0H40V9L30 60z" clip-rule="evenodd"/>'
+        f'<use href="#r" x="3"/></clipPath><g clip-path="url(#c)">{shapes}</g><defs><rect id="r" '
+        'width="9" height="9"/></defs><clipPath id="b" clipPathUnits="objectBoundingBox"><circle '
+        f'r=".7"/></clipPath><circle r="20" clip-path="url(#b)"/>'
+    )
     mm = f'width="{WIDTH}mm" height="{HEIGHT}mm" viewBox="0 0 {WIDTH} {HEIGHT}"'
     return [
         f'<?xml version="1.0"?>\n{head} {size}>\n{body}\n</svg>\n'.encode()
-        for body, size in ((paths, mm), (shapes, 'width="48" height="32"'), (used, mm))
+        for body, size in (
+            (paths, mm),
+            (shapes, 'width="48" height="32"'),
+            (used, mm),
+            (clipped, 'width="48" height="32"'),
+        )
     ]
 
 

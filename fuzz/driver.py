@@ -251,7 +251,7 @@ def fuzz(
                     del working[connection]
                     left += _ended(worker, report, limits)
             for key in report.numbers.keys() - known:
-                say(f"{key[0]}: {key[1]} in {key[2]}\n")
+                say(f"{key[0]}:{min(report.numbers[key])} {key[1]} in {key[2]}\n")
 
 
 def _parts(formats: Sequence[Format], count: int | None) -> Iterator[_Part]:

@@ -23,6 +23,11 @@ _READINGS = (
     *(ReadSettings(pieces="split"), ReadSettings(mask=True), ReadSettings(px_per_m=300.0)),
     *(ReadSettings(max_image_mpx=0.01), ReadSettings(background=7, skip=(9,))),
 )
+_OF_LABELS = (
+    ReadSettings(keep=(1, 3)),
+    ReadSettings(label=("stone",)),
+    ReadSettings(image="a.jpg"),
+)
 _FEW_PX, _SEGMENTED = 20_000, 0.03
 """Stones are looked for in photographs of so few px only, and in few of them: it takes a second."""
 
@@ -35,6 +40,10 @@ def _files(seeds: Callable[[], Sequence[bytes]], ending: str) -> Callable[[], Se
 
 def _stones(path: Path, rng: Random) -> None:
     read_stones(path, settings=rng.choice(_READINGS))
+
+
+def _labelled(path: Path, rng: Random) -> None:
+    read_stones(path, settings=rng.choice((*_READINGS, *_OF_LABELS)))
 
 
 def _beside(path: Path, rng: Random) -> None:
@@ -81,6 +90,19 @@ def _wall(path: Path, rng: Random) -> None:
     command(rng.choice(("measure", "craft", "craft", "measure", "analyse")), path, "--json")
 
 
+def _drawn_walls() -> Sequence[Case]:
+    seeds = {"json": (drawings.labelme, drawings.coco, drawings.geojson), "svg": (drawings.svg,)}
+    return [
+        {f"a.{ending}": data} for ending, made in seeds.items() for one in made for data in one()
+    ]
+
+
+def _drawn_wall(path: Path, rng: Random) -> None:
+    some = rng.choice(((), ("--unit", "mm"), ("--pieces", "split"), ("--px-per-m", 300)))
+    words = rng.choice((("craft",), ("analyse", "--associative-only"), ("measure",)))
+    command(*words, path, "--json", *(() if words == ("craft",) and "--px-per-m" in some else some))
+
+
 def _blocks(path: Path, rng: Random) -> None:
     command(rng.choice(("analyse", "craft")), path, "--json")
 
@@ -110,16 +132,21 @@ FORMATS = (
             ("jpeg", pictures.jpegs, "jpg", 40), ("npy", pictures.npys, "npy", 40),
             ("npz", pictures.npzs, "npz", 30), ("labelme", drawings.labelme, "json", 40),
             ("coco", drawings.coco, "json", 40), ("sam", drawings.sam, "json", 20),
-            ("geojson", drawings.geojson, "json", 40), ("dxf", drawings.dxf, "dxf", 10),
-            ("svg", drawings.svg, "svg", 20), ("obj", drawings.obj, "obj", 8),
-            ("ply", drawings.ply, "ply", 8), ("stl", drawings.stl, "stl", 8),
+            ("geojson", drawings.geojson, "json", 40),
+            ("dxf", drawings.dxf, "dxf", 10), ("svg", drawings.svg, "svg", 20),
+            ("obj", drawings.obj, "obj", 8), ("ply", drawings.ply, "ply", 8),
+            ("stl", drawings.stl, "stl", 8),
         )
     ),
+    Format("exports", _files(drawings.exports, "json"), _labelled, 40),
+    Format("cvat", _files(drawings.cvat, "xml"), _labelled, 20),
+    Format("yolo", _files(drawings.yolo, "txt"), _labelled, 20),
     Format("masks", pictures.folders, _stones, folder=True),
     Format("segmented", pictures.segmented, _beside, 40, folder=True),
     Format("photo", _files(pictures.photos, "jpg"), _photo, 20),
     Format("settings", walls.settings, _settings, 20),
     Format("wall", walls.images, _wall, 10),
+    Format("drawn", _drawn_walls, _drawn_wall, 10),
     Format("blocks", walls.blocks, _blocks, 15),
     Format("plan", walls.plans, _plan, 8, folder=True),
 )  # fmt: skip

@@ -57,6 +57,8 @@ def pngs() -> Sequence[bytes]:
     bits = [(depth, kind) for depth in (1, 2, 4) for kind in (0, 3)]
     clear = Image.fromarray(grey).convert("P")
     frames = [Image.fromarray(grey), Image.fromarray(grey[::-1].copy())]
+    turned = Image.Exif()
+    turned[274] = 6
     return [
         *(_saved(values, "PNG") for values in (grey, large, colours(label_image("u4", times=300)))),
         *(_saved(colours(label_image("u4"), 4)[..., :n], "PNG") for n in (2, 4)),
@@ -64,6 +66,8 @@ def pngs() -> Sequence[bytes]:
         _png(grey, 8, 0, interlaced=True),
         _png(np.repeat(grey, 6, axis=1), 16, 2),  # refused: ids would merge
         _saved(clear, "PNG", transparency=0),
+        _saved(np.dstack([grey, np.where(grey == 9, 0, 255).astype("u1")]), "PNG", exif=turned),
+        _saved(np.dstack([grey * 0] * 3 + [grey * 20]), "PNG"),  # the mask is the alpha
         _saved(frames[0], "PNG", save_all=True, append_images=frames[1:]),
     ]
 
@@ -120,8 +124,35 @@ def tiffs() -> Sequence[bytes]:
         _tiff(np.moveaxis(rgb, -1, 0), photometric="rgb", planarconfig="separate"),
         _tiff(colours(wide, 4), photometric="rgb", extrasamples=["unassalpha"]),
         _tiff(np.stack([grey, grey])),
+        *_tiffs_of_tags(),
         _tiff(grey[None], imagej=True), _tiff(grey, ome=True, metadata={"axes": "YX", "UUID": "a"}),
     ]  # fmt: skip
+
+
+def _tiffs_of_tags() -> Sequence[bytes]:
+    """Return TIFF that no writer here makes: 4 bits, a sparse strip, numbers with predictor 3."""
+    grey, half = label_image(), {256: WIDTH, 258: 4}
+    packed = grey[:, ::2] % 16 << 4 | grey[:, 1::2] % 16
+    strips = _tiff(grey, tile=(16, 16), compression="zlib")
+    nodata = (42113, "s", 0, "-1", True)
+    point = _tiff(label_image("i4"), compression="zlib", predictor=2, extratags=[nodata])
+    lzw = _saved(packed, "TIFF", compression="tiff_lzw")
+    return [_patched(_tiff(packed), half), _patched(lzw, half), _patched(point, {317: 3, 339: 3}),
+            _patched(strips, {}, sparse=True)]  # fmt: skip
+
+
+def _patched(data: bytes, tags: dict[int, int], *, sparse: bool = False) -> bytes:
+    """Return a TIFF with other numbers in its tags; or without its first strip."""
+    found = bytearray(data)
+    (place,) = struct.unpack_from("<I", found, 4)
+    for entry in range(place + 2, place + 2 + 12 * found[place], 12):
+        tag, kind, count, value = struct.unpack_from("<HHII", found, entry)
+        if tag in tags:
+            struct.pack_into("<HHII", found, entry, tag, 4, 1, tags[tag])
+        if sparse and tag in (273, 279, 324, 325):
+            at = value if count > 2 or (count > 1 and kind == 4) else entry + 8
+            struct.pack_into("<I" if kind == 4 else "<H", found, at, 0)
+    return bytes(found)
 
 
 def _tiff(values: Array, **options: Any) -> bytes:
@@ -171,6 +202,9 @@ def npys() -> Sequence[bytes]:
     kinds = ("u1", "<u2", ">u4", "i8", "f4", "f8", "?")
     arrays = [*(label_image(kind) for kind in kinds), np.asfortranarray(grey), grey[None]]
     arrays += [colours(label_image("u4", times=300)), np.array([{}])]
+    arrays += [np.where(grey == 0, ground, label_image("f4")) for ground in (-1, np.nan)]
+    near = np.pad(grey, 1)[2:, 2:] | np.pad(grey, 1)[:-2, :-2] | grey
+    arrays += [np.where((grey == 0) & (near > 0), 255, grey)]  # a void around all stones
     return [_npy(array) for array in arrays] + [_npy(grey, version=(2, 0))]
 
 

@@ -1,17 +1,28 @@
-"""Suite "photos": stones found in rendered photographs beside the truth."""
+"""Suite "photos": stones found in rendered and in real photographs beside the truth."""
 
 import io
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import ImageOps, JpegImagePlugin
+from PIL import Image, ImageOps, JpegImagePlugin
 
-from drystone.errors import DrystoneError
+from drystone.errors import DrystoneError, ExitCode
+from drystone.photo.segment_doubts import doubts_of
 from drystone.photo.segment_photo import SegmentedPhoto, segment_photo
+from drystone.photo.verdict import verdict_of
 from drystone_lab.photographs.layout import LEVELS, PhotoLevel
+from drystone_lab.photographs.real import (
+    ALL,
+    FOLDER,
+    RealPhoto,
+    pixels_of,
+    there,
+    truth_of,
+)
 from drystone_lab.photographs.scene import Photograph, inverse, layout_of, moved, photograph
 from drystone_lab.table import BenchSettings, Cell, Table
 
@@ -21,6 +32,11 @@ MATCHED = 0.5
 COLUMNS = (
     "photograph", "stones", "found", "recall", "precision", "median IoU", "worst IoU",
     "scale error %", "shadow", "seconds",
+)  # fmt: skip
+
+REAL_COLUMNS = (
+    "photograph", "source", "licence", "as asked for", "stones", "found", "recall", "precision",
+    "median IoU", "verdict", "exit code",
 )  # fmt: skip
 
 
@@ -63,7 +79,63 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
         ),
         Table("Photographs that give an error, not a number", ("case", "expected", "result"),
               tuple(cases)),
+        _real(settings),
     )  # fmt: skip
+
+
+def _real(settings: BenchSettings) -> Table:
+    """Find stones in the real photographs that are there."""
+    rows = []
+    for photo in there(settings.data):
+        rows.append(_real_row(photo, settings.data))
+        settings.say(", ".join(map(str, rows[-1])))
+    return Table(
+        "Real photographs", REAL_COLUMNS, tuple(rows),
+        (
+            f"{len(rows)} of {len(ALL)} are there; the others belong into the folder "
+            f"{FOLDER} of --data (docs/photographs.md says from where).",
+            "Median IoU is of the stones that were found, IoU .5 or more. Without a number in "
+            "precision only some of the stones are known.",
+        ),
+    )  # fmt: skip
+
+
+def _real_row(photo: RealPhoto, data: Path | None) -> tuple[Cell, ...]:
+    image = pixels_of(photo, data)
+    about = (photo.name, photo.source, photo.licence, "yes" if photo.asked_for else "no")
+    try:
+        result = segment_photo(image)
+    except DrystoneError as error:
+        truth = truth_of(photo, data, (image.shape[1], image.shape[0]))
+        count = None if truth is None else int(whole_stones(truth).max())
+        return (*about, count, 0, None, None, None, error.code, int(error.exit_code))
+    verdict = verdict_of(result.found, doubts_of(result.found))
+    said = "doubtful" if verdict.doubtful else "found"
+    code = int(ExitCode.CHECK_FAILED if verdict.doubtful else ExitCode.DONE)
+    height, width = result.found.labels.shape
+    full = truth_of(photo, data, (image.shape[1], image.shape[0]))
+    if full is None:
+        return (*about, None, result.found.count, None, None, None, said, code)
+    scaled = Image.fromarray(full.astype(np.int32)).resize((width, height), 0)
+    truth = whole_stones(np.asarray(scaled).astype(np.uint16))
+    iou = overlaps(truth, result.found.labels)
+    best = iou.max(axis=1)
+    matched = int((iou.max(axis=0) >= MATCHED).sum())
+    found = best[best >= MATCHED]
+    return (
+        *about, len(best), result.found.count, round(len(found) / len(best), 3),
+        None if photo.part else round(matched / result.found.count, 3),
+        round(float(np.median(found)), 3) if len(found) else None, said, code,
+    )  # fmt: skip
+
+
+def whole_stones(truth: NDArray[np.uint16]) -> NDArray[np.uint16]:
+    """Return the stones that the edge of the picture does not cut, numbered anew."""
+    rim = np.unique(np.concatenate([truth[0], truth[-1], truth[:, 0], truth[:, -1]]))
+    kept = np.setdiff1d(np.unique(truth), np.append(rim, 0))
+    new = np.zeros(int(truth.max()) + 1, np.uint16)
+    new[kept] = np.arange(1, len(kept) + 1)
+    return np.asarray(new[truth])
 
 
 def score(made: Photograph, result: SegmentedPhoto) -> Score:

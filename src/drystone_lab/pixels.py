@@ -14,7 +14,7 @@ from shapely.ops import split
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
-from drystone.contacts.outlines import model_from_outlines, outlines_of_labels
+from drystone.contacts.outlines import model_of_traced, outlines_of_labels
 from drystone.kernels.outline import rasterise_polygon
 from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
@@ -271,7 +271,7 @@ def from_pixels(labels: Labels, mu: float) -> RigidBlockModel:
 
 def from_outlines(labels: Labels, mu: float) -> RigidBlockModel:
     """Return the model with contacts from sub-pixel outlines."""
-    return model_from_outlines(outlines_of_labels(labels), mu)
+    return model_of_traced(outlines_of_labels(labels), mu)
 
 
 def _published(*, quick: bool) -> Table:

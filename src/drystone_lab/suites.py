@@ -13,7 +13,7 @@ SUITES = {
     "tilt": ("walls tilted in a rigid-body engine beside the limit analysis", "tilt"),
     "engine": ("walls planned on outlines, built up and tilted in a rigid-body engine", "engine"),
     "search": ("methods that look for good walls, compared at equal CPU time", "search"),
-    "photos": ("stones found in ten rendered photographs, beside the truth", "photos"),
+    "photos": ("stones found in rendered and in real photographs, beside the truth", "photos"),
     "packing": ("strips packed without gravity beside planned walls (extra `bench`)", "packing"),
 }
 """What each one is about, and the module of this package whose `run` does it."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from drystone.contacts.outlines import model_from_outlines, outlines_of_labels
+from drystone.contacts.outlines import model_of_traced, outlines_of_labels
 from drystone.physics.scatter import TiltComparison, compare_with_tilt, usual_variations
 from drystone.physics.scene import EngineScene
 from drystone_lab.planned_walls import PlannedWall, missing_data, planned_walls
@@ -44,7 +44,7 @@ def _rows(wall: PlannedWall, settings: BenchSettings) -> list[tuple[Cell, ...]]:
     variations = usual_variations()
     compared = compare_with_tilt(
         EngineScene(outlines, wall.mu),
-        model_from_outlines(outlines, wall.mu),
+        model_of_traced(outlines, wall.mu),
         np.random.default_rng(settings.seed),
         variations=variations[:1] if settings.quick else variations,
     )

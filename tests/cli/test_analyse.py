@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from drystone.cli.commands import analyse
 from drystone.io.wall_image import write_labels
@@ -296,13 +297,71 @@ def test_standing_is_an_exit_code(tmp_path, run):
     boxes = (box(0, 0, 1, 1), box(0.8, 1, 1, 1))
     blocks = [{"id": i, "polygon": corners} for i, corners in enumerate(boxes, start=1)]
     ran = run("analyse", written(tmp_path / "leans.json", blocks))
-    assert (ran.code, "does not stand\n" in ran.out, "E140" in ran.err) == (5, True, False)
+    assert (ran.code, "does not stand: falls by itself" in ran.out, "E140" in ran.err) == (
+        5,
+        True,
+        False,
+    )
     # A wall that no load brings down one way stands.
     np.save(tmp_path / "block.npy", np.ones((20, 40), np.uint32))
     asked = ("analyse", tmp_path / "block.npy", "--load", "points", "--live", "1@20,10:0,-1")
     ran = run(*asked, "--associative-only")
     assert (ran.code, "own weight         stands\n" in ran.out) == (0, True)
     assert ("unbounded" in ran.out, "W302" in ran.err) == (True, False)
+
+
+@pytest.mark.parametrize(
+    ("shapes", "why"),
+    [
+        ([box(0, 10, 2, 1)], "nothing touches y = 0: the lowest block is at y = 10"),
+        ([box(0, 0, 2, 1), box(0, 2, 2, 1)], "block 2 has nothing below that stands"),
+        ([box(0, 0, 1, 1), box(0.8, 1, 1, 1)], "falls by itself: block 2 rocks and slides on 1"),
+    ],
+)
+def test_what_does_not_stand_is_told_why_in_one_sentence(tmp_path, run, shapes, why):
+    """On the card, in JSON, and as the only card of the report."""
+    blocks = [{"id": i, "polygon": corners} for i, corners in enumerate(shapes, start=1)]
+    path = written(tmp_path / "falls.json", blocks)
+    ran, folder = run("analyse", path), tmp_path / "out"
+    assert (ran.code, f"does not stand: {why}" in ran.out) == (5, True), ran.out
+    assert ("W302" in ran.err) == ("below" in why or "y = 0" in why)
+    told = run("analyse", path, "--json", "-o", folder).json()
+    assert (told["stands"], told["why"][0].lower() + told["why"][1:]) != (True, "")
+    assert why in told["why"][0].lower() + told["why"][1:]
+    report = (folder / "report.html").read_text(encoding="utf-8")
+    shown = json.loads(report.split('type="application/json"')[1].split(">", 1)[1].split("<")[0])
+    (card,) = shown["metrics"]
+    assert (card["value"], card["sentence"]) == ("does not stand", told["why"])
+    assert 'class="card falls"' in report
+
+
+def test_the_width_of_gaps_is_looked_for(tmp_path, run):
+    wall = gapped(tmp_path / "gapped.png")
+    bare = run("analyse", wall)
+    assert (bare.code, "--close-gaps auto looks" in bare.err) == (5, True)
+    told = run("analyse", wall, "--close-gaps", "auto", "--json").json()
+    chosen = told["gaps"]["chosen_px"]
+    assert (told["stands"], told["gaps"]["stands_from_px"], told["gaps"]["steady"]) == (
+        True,
+        chosen,
+        True,
+    )
+    falls = [one["px"] for one in told["gaps"]["tried"] if not one["stands"]]
+    assert falls == list(range(chosen))
+    again = run("analyse", wall, "--close-gaps", f"{chosen}px", "--json").json()
+    assert again["F_LR"] == told["F_LR"]
+
+
+def test_a_stone_in_the_air_stays_there_whatever_gaps_are_closed(tmp_path, run):
+    labels, wall = np.zeros((90, 60), np.uint32), tmp_path / "air.png"
+    labels[60:, :30], labels[60:, 30:], labels[:20, 10:50] = 1, 2, 3
+    write_labels(labels, wall)
+    ran = run("analyse", wall, "--close-gaps", "auto")
+    assert (ran.code, "does not stand with gaps up to" in ran.out) == (5, True)
+    assert "does not stand: stone 3 has nothing below that stands" in ran.out
+    assert "--close-gaps auto" not in ran.err  # never in a circle
+    assert "leave them out with --skip" in ran.err
+    assert run("analyse", wall, "--skip", 3, "--associative-only").code == 0
 
 
 def test_gaps_are_closed_and_that_is_said(tmp_path, run):
@@ -325,7 +384,7 @@ def test_what_touches_too_little_is_named_with_a_cure(tmp_path, run):
     write_labels(labels, wall)
     ran = run("analyse", wall, "--px-per-m", "200", "--load", "tilt", "--mu", "0.6")
     assert "W305 1 stone has fewer than two contact points: 4. The narrowest gap" in ran.err
-    assert ("3 px (15 mm)" in ran.err, "--close-gaps 3px" in ran.err) == (True, True)
+    assert ("3 px (15 mm)" in ran.err, "--close-gaps auto" in ran.err) == (True, True)
     assert ("does not stand" in ran.out, "0.30 m wide, 0.20 m high" in ran.out) == (True, True)
     dead = ("--dead", "3@30,20:0,-2")
     asked = ("analyse", wall, "--close-gaps", "3px", "--px-per-m", "200", *dead, "-o", folder)
@@ -359,3 +418,12 @@ def test_head_joints_without_friction(tmp_path, run):
     asked = ("analyse", model, "--json", "--associative-only")
     oiled, given = run(*asked, "--mu-head", "0").json(), run(*asked).json()
     assert oiled["alpha_right"] < given["alpha_right"] - 1e-3
+
+
+@pytest.mark.parametrize("command", ["analyse", "measure", "craft"])
+def test_what_was_done_to_a_picture_is_said_once(command, tmp_path, run):
+    labels = np.zeros((12, 16), np.uint8)
+    labels[2:, 2:8], labels[2:, 8:14] = 1, 2
+    Image.fromarray(labels).save(tmp_path / "a.tif", tiffinfo={274: 4})
+    ran = run(command, tmp_path / "a.tif", "--json")
+    assert ran.err.count("W173") == 1

@@ -138,12 +138,15 @@ def test_measure_can_follow_its_own_cure(tmp_path, run):
     assert run("craft", *given).json()["stones"] == 2
 
 
-def test_measure_warns_of_a_mask(tmp_path, run):
+def test_the_stones_of_a_mask_are_told_apart_in_every_command(tmp_path, run):
     mask = np.zeros((40, 60), np.uint16)
     mask[5:40, 5:25] = mask[10:40, 30:55] = 255
     write_labels(mask, tmp_path / "mask.png")
     told = [run(name, tmp_path / "mask.png").err for name in ("analyse", "measure", "craft")]
-    assert all("W304 700 pixels of stone 255 lie apart" in err for err in told)
+    assert all("W114" in err and "2 components" in err for err in told)
+    write_labels(np.where(mask, 7, 0).astype(np.uint16), tmp_path / "one.png")
+    told = [run(name, tmp_path / "one.png").err for name in ("analyse", "measure", "craft")]
+    assert all("W304 700 pixels of stone 7 lie apart" in err for err in told)
     assert "W304" not in run("measure", _tower(tmp_path / "tower.png")).err
 
 

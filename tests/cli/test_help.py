@@ -55,3 +55,16 @@ def test_kernels_that_are_not_there_are_a_coded_error(run, monkeypatch):
     assert (told.code, "E143" in told.err, "fortran" in told.err) == (2, True, True)
     monkeypatch.setenv("DRYSTONE_KERNELS", "")
     assert run("--version").code == 0
+
+
+def test_without_a_command_help_is_printed(run):
+    told = run()
+    assert (told.code, told.err, told.out) == (0, "", run("--help").out)
+
+
+def test_a_command_that_is_not_there_is_told_what_was_meant(run):
+    for word, meant in (("paln", "plan"), ("Analyze", "analyse"), ("stone", "stones")):
+        told = run(word, "x.png")
+        assert (told.code, told.out) == (2, "")
+        assert f"Did you mean `drystone {meant}`?" in told.err
+    assert "Did you mean" not in run("xyzzy").err

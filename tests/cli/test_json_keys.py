@@ -51,4 +51,5 @@ def test_of_analyse(finished, run):
     plain = run("analyse", finished, "--json").json()
     one_way = run("analyse", finished, "--json", "--load", "gravity").json()
     found = keys(plain, "certificate") | keys(one_way, "certificate") | {"scatter"}
+    found |= {"gaps", "chosen_px", "stands_from_px", "steady", "tried"}
     assert found == listed("analyse")

@@ -44,7 +44,9 @@ def coco(folder):
     return path
 
 
-@pytest.mark.parametrize("options", [[], ["--px-per-m", "800"], ["--unit", "mm"]])
+@pytest.mark.parametrize(
+    "options", [[], ["--px-per-m", "800"], ["--unit", "mm"], ["--up", "z-back"]]
+)
 def test_a_drawing_has_a_scale_and_its_plan_holds(tmp_path, run, options):
     path = dxf(tmp_path)
     out = tmp_path / "out"
@@ -53,7 +55,7 @@ def test_a_drawing_has_a_scale_and_its_plan_holds(tmp_path, run, options):
     plan = read_plan(out)
     assert plan.length_unit == "m"
     assert plan.px_per_m == (800.0 if "--px-per-m" in options else 2100.0)
-    given = {"--px-per-m": {"px_per_m": 800.0}, "--unit": {"unit": "mm"}}
+    given = {"--px-per-m": {"px_per_m": 800.0}, "--unit": {"unit": "mm"}, "--up": {"up": "z-back"}}
     assert plan.source.get("reading", {}) == given.get(options[0] if options else "", {})
     assert run("check", out, "--json").json()["ok"]
     path.rename(tmp_path / "moved.dxf")
@@ -73,6 +75,27 @@ def test_px_of_an_image_are_not_drawn_again(tmp_path, run):
     assert (plan.source["width_px"], plan.source["stones"]) == (340, 4)
     assert {step.stone for step in plan.stone_steps} <= {20, 21, 22, 23}
     assert run("check", out, "--json").json()["ok"]
+
+
+def test_classes_and_frames_are_chosen_and_kept_in_the_plan(tmp_path, run):
+    corners = [*boxes(), [(2, 2), (338, 2), (338, 128), (2, 128)]]
+    labels = [*["granite"] * 4, *["slate"] * 2, "granite"]
+    both = zip(labels, corners, strict=True)
+    shapes = [{"label": label, "points": np.array(ring).tolist()} for label, ring in both]
+    path, out = tmp_path / "a.json", tmp_path / "out"
+    path.write_text(json.dumps({"shapes": shapes, "imageWidth": 340, "imageHeight": 130}))
+    assert run("stones", path, "--json").json()["stones"] == 6
+    assert run("stones", path, "--label", "slate", "--json").json()["stones"] == 2
+    assert run("stones", path, "--label", "slate", "Granite", "--json").json()["stones"] == 6
+    kept = run("stones", path, "--label", "granite", "--keep", 5, "--skip", 1, "--json")
+    assert kept.json()["stones"] == 1
+    refused = run("stones", path, "--label", "marble")
+    assert refused.code == 2
+    assert "granite, slate" in refused.err
+    ran = run("plan", path, "--label", "granite", "--wall", "300x120", *QUICK, "-o", out)
+    assert ran.code in (0, 4), ran.err
+    assert read_plan(out).source["reading"] == {"label": ["granite"]}
+    assert run("check", out, "--stones", path, "--json").json()["ok"]
 
 
 def test_a_photograph_has_its_scale_beside_it(tmp_path, run):
@@ -102,15 +125,16 @@ def test_stones_says_the_scale_and_what_was_decided(tmp_path, run):
 
 @pytest.mark.parametrize(
     ("name", "code", "text"),
-    [("drawing", 3, "E116"), ("coco", 3, "E115"), ("plan", 3, "E113"), ("unit", 2, "E118")],
+    [("drawing", 3, "E116"), ("coco", 3, "E115"), ("plan", 3, "E113"), ("up", 2, "E118")],
 )
 def test_what_cannot_be_read(tmp_path, run, name, code, text):
     (tmp_path / "plan.json").write_text('{"steps": [], "source": {}}')
+    Image.fromarray(np.pad(np.ones((9, 9), np.uint8), 3)).save(tmp_path / "labels.png")
     options = {
         "drawing": lambda: [dxf(tmp_path, 0)],
         "coco": lambda: [coco(tmp_path)],
         "plan": lambda: [tmp_path / "plan.json"],
-        "unit": lambda: [dxf(tmp_path), "--unit", "ft"],
+        "up": lambda: [tmp_path / "labels.png", "--up", "y"],
     }
     ran = run("stones", *options[name]())
     assert (ran.code, text in ran.err) == (code, True)

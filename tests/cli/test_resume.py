@@ -73,6 +73,18 @@ def test_a_finished_plan_is_left_as_it_is(bricks, tmp_path, run):
         assert {path.name: path.read_bytes() for path in out.iterdir()} == before
 
 
+def test_the_lock_of_a_run_that_was_killed_at_its_end_goes(bricks, tmp_path, run):
+    asked = ("plan", bricks, "--wall", "60x20", "--scale", "1", "--method", "paper")
+    asked = (*asked, "-o", tmp_path / "out", "--resume")
+    assert run(*asked).code == 0
+    (tmp_path / "out" / LOCK).touch()
+    assert "finished" in run(*asked).err
+    assert not (tmp_path / "out" / LOCK).exists()
+    with locked(tmp_path / "out"):
+        assert "E149" in run(*asked).err
+    assert not (tmp_path / "out" / LOCK).exists()
+
+
 def limit(monkeypatch, looks):
     """Let `--time` strike by how often the clock was looked at; what follows has time."""
     limits = iter([after_looks(looks)])

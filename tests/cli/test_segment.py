@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from PIL import Image
+from scipy import ndimage
 
 from drystone_lab.photographs.layout import PhotoLevel
 from drystone_lab.photographs.scene import photograph
@@ -157,3 +158,37 @@ def test_a_stone_along_the_ruler_is_in_doubt(run, tmp_path):
     for row, doubted in ((49, True), (80, False)):
         asked = ("segment", tmp_path / "photo.png", "--ruler", f"55,{row},345,{row}=290mm")
         assert (said in run(*asked, "-o", tmp_path / str(row)).out) == doubted
+
+
+def test_what_is_no_photograph_of_stones_is_doubtful_first_and_by_its_exit_code(run, tmp_path):
+    rng = np.random.default_rng(1)
+    grains = ndimage.gaussian_filter(rng.standard_normal((300, 400)), 3)
+    picture = np.clip(120 + 40 * grains / grains.std(), 0, 255)[..., None].repeat(3, 2)
+    rows, cols = np.indices((300, 400))
+    picture[np.hypot(rows - 150, cols - 200) < 24] = 170, 70, 50
+    Image.fromarray(picture.astype(np.uint8)).save(tmp_path / "bed.png")
+    ran = run("segment", tmp_path / "bed.png", "-o", tmp_path / "out")
+    assert ran.code == 5
+    assert ran.out.startswith("doubtful: the ground is not plain")
+    assert {one.name for one in (tmp_path / "out").iterdir()} == {
+        "stones.png", "stones.json", "photo.jpg", "preview.png",
+    }  # fmt: skip
+    (reason, *_) = json.loads((tmp_path / "out" / "stones.json").read_text())["doubtful"]
+    assert reason in ran.out
+    said = run("segment", tmp_path / "bed.png", "-o", tmp_path / "json", "--json")
+    assert (said.code, said.json()["doubtful"][0]) == (5, reason)
+
+
+def test_what_was_left_out_has_a_place_and_a_reason(run, tmp_path):
+    picture = np.full((300, 400, 3), (60, 90, 150), np.uint8)
+    picture[120:200, 60:160] = picture[130:210, 220:330] = (160, 150, 140)
+    picture[20:26, 100:106] = picture[100:180, 380:400] = (160, 150, 140)
+    Image.fromarray(picture).save(tmp_path / "photo.png")
+    ran = run("segment", tmp_path / "photo.png", "-o", tmp_path / "out")
+    assert (ran.code, "2 stones" in ran.out) == (0, True)
+    left_out = json.loads((tmp_path / "out" / "stones.json").read_text())["left_out"]
+    assert [one["why"] for one in left_out] == [
+        "at the edge of the photograph or cut by it",
+        "too small (--min-area)",
+    ]
+    assert [one["x_px"] for one in left_out] == pytest.approx([390, 103], abs=1)

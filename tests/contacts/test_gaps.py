@@ -1,4 +1,6 @@
 from itertools import pairwise
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.gaps import (
     close_gaps,
     gap_spread,
+    gap_sweep,
     model_with_closed_gaps,
     settle_gaps,
 )
@@ -190,3 +193,48 @@ def test_no_toe_grows_beyond_its_stone():
             cols = np.flatnonzero((labels == interface.block).any(axis=0))
             assert interface.points[:, 0].min() >= cols[0]
             assert interface.points[:, 0].max() <= cols[-1] + 1
+
+
+def answers(alphas: dict[int, float | None]) -> Any:
+    """Answer as at the widest known width that is not wider; None is a wall that falls."""
+
+    def at(width: int) -> Any:
+        alpha = alphas[max(known for known in alphas if known <= width)]
+        end = SimpleNamespace(alpha=alpha)
+        return SimpleNamespace(stable=alpha is not None, left=end, right=end)
+
+    return at
+
+
+@pytest.mark.parametrize(
+    ("alphas", "chosen", "first", "steady"),
+    [
+        ({0: 0.5}, 0, 0, True),  # stands as it is drawn
+        ({0: None, 3: 0.4}, 3, 3, True),
+        ({0: None, 9: 0.4}, 9, 9, True),  # between widths of the ladder
+        ({0: None, 4: 0.1, 6: 0.3, 8: 0.4, 9: 0.41}, 8, 4, True),
+        ({0: None, 2: 0.3, 3: None, 5: 0.3}, 5, 5, True),  # wider gaps may bear less, too
+        ({0: None, **{width: 0.01 * 1.2**width for width in range(6, 60)}}, 6, 6, False),
+        ({0: None}, 20, None, False),
+    ],
+)
+def test_a_sweep_finds_from_where_a_wall_stands(
+    alphas: dict[int, float | None], chosen: int, first: int | None, steady: bool
+) -> None:
+    sweep = gap_sweep(answers(alphas), 40.0)
+    assert (sweep.chosen_px, sweep.stands_from_px, sweep.steady) == (chosen, first, steady)
+    assert [width for width, *_ in sweep.tried] == sorted({width for width, *_ in sweep.tried})
+    known = {width: alpha for width, _, alpha in sweep.tried}
+    if first:
+        assert known[first - 1] is None
+    if steady:
+        low, high = sweep.within() or (0.0, 0.0)
+        assert low == pytest.approx(known[chosen])
+        assert high <= 1.1 * low
+
+
+@pytest.mark.parametrize("factor", [1, 3])
+def test_widths_that_are_tried_grow_with_the_stones(factor: int) -> None:
+    sweep = gap_sweep(answers({0: None, 4 * factor: 0.4}), 60.0 * factor)
+    assert (sweep.chosen_px, sweep.stands_from_px) == (4 * factor, 4 * factor)
+    assert len(sweep.tried) < 14

@@ -341,3 +341,9 @@ def test_not_all_of_many_blocks_may_meet_at_one_point(monkeypatch):
     monkeypatch.setattr("drystone.contacts.given.MOST_TOUCHING", (100, 8))
     with pytest.raises(InputError, match=r"E303 .*more than 420 pairs of its 40 blocks touch"):
         model_from_json(sectors(40))
+
+
+def test_rectangles_among_polygons_are_told_where_they_belong() -> None:
+    with pytest.raises(InputError, match='belongs into "blocks_xywh"') as caught:
+        model_from_json({"blocks": [{"xywh": [0, 0, 2, 1]}]})
+    assert (caught.value.code, "[[x, y, width, height]" in caught.value.cure) == ("E303", True)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from skimage import measure
 
-from drystone.contacts.outlines import model_from_outlines, outlines_of_labels
+from drystone.contacts.outlines import model_of_traced, outlines_of_labels
 from drystone.io.read_stones import read_stones
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND
@@ -60,7 +60,7 @@ def test_a_stone_on_the_ground_has_a_flat_bed_to_its_toes():
     row, col = np.mgrid[:30, :60]
     y, x = 29.5 - row, col + 0.5
     labels = np.where((x > 5.2 + 0.3 * y) & (x < 54.7 - 0.2 * y), 1, 0)
-    (bed,) = (i for i in model_from_outlines(outlines_of_labels(labels)).interfaces)
+    (bed,) = (i for i in model_of_traced(outlines_of_labels(labels)).interfaces)
     assert bed.points[:, 1] == pytest.approx([0, 0], abs=1e-3)
     assert bed.points[:, 0] == pytest.approx([5.2, 54.7], abs=0.3)
 
@@ -112,14 +112,14 @@ def test_every_id_has_a_closed_outline_of_about_its_area(labels):
         pieces = measure.label(labels == block, connectivity=1)
         largest = np.bincount(pieces.ravel())[1:].max()
         assert area(outline) > largest / 2
-    model = model_from_outlines(outlines)
+    model = model_of_traced(outlines)
     assert len(model.blocks) == len(outlines)
 
 
 @pytest.mark.parametrize("seed", [2, 5])
 def test_the_model_of_a_picture_has_the_load_multipliers_of_the_wall(seed):
     wall = tilted_wall(np.random.default_rng(seed), courses=3)
-    model = model_from_outlines(outlines_of_labels(wall.picture(160, (0.3, 0.6))))
+    model = model_of_traced(outlines_of_labels(wall.picture(160, (0.3, 0.6))))
     exact = wall.model()
     assert len(model.interfaces) == len(exact.interfaces)
     found, true = lateral_resistance(model), lateral_resistance(exact)
@@ -130,14 +130,14 @@ def test_the_model_of_a_picture_has_the_load_multipliers_of_the_wall(seed):
 @pytest.mark.parametrize("seed", range(6))
 def test_coarse_pictures_of_walls_stand_on_the_ground(seed):
     wall = tilted_wall(np.random.default_rng(seed), courses=3 + seed % 3)
-    model = model_from_outlines(outlines_of_labels(wall.picture(40, (0.3, 0.6))))
+    model = model_of_traced(outlines_of_labels(wall.picture(40, (0.3, 0.6))))
     assert lateral_resistance(model).stable
 
 
 def test_gaps_up_to_the_tolerance_are_contacts():
     square = np.array([[0.0, 0], [4, 0], [4, 4], [0, 4], [0, 0]])
     for gap, contacts in ((0.09, 1), (-0.09, 1), (0.11, 0)):
-        model = model_from_outlines({1: square, 2: square + np.array([1, 4 + gap])})
+        model = model_of_traced({1: square, 2: square + np.array([1, 4 + gap])})
         among = [i for i in model.interfaces if i.other != GROUND]
         assert len(among) == contacts
     assert [(i.block, i.length) for i in model.interfaces] == [(1, 4.0)]

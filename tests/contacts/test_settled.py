@@ -8,7 +8,7 @@ import shapely
 from shapely.geometry.polygon import orient
 
 from drystone.contacts.given import model_from_json
-from drystone.contacts.outlines import model_from_outlines
+from drystone.contacts.outlines import model_of_traced
 from drystone.contacts.settled import (
     PlacedPolygons,
     model_of_outlines,
@@ -111,7 +111,7 @@ def test_settled_walls_are_as_strong_as_those_without_gaps(seed):
         placed = settled_wall(seed, loose, lean)
         assert alphas(model_of(*placed)) == pytest.approx(exact, abs=1e-3)
         closed = {i: np.vstack([c, c[:1]]) for i, c in enumerate(placed, start=1)}
-        others = model_from_outlines(closed, MU)
+        others = model_of_traced(closed, MU)
         assert alphas(model_of(*placed)) == pytest.approx(alphas(others), abs=1e-3)
 
 

@@ -9,6 +9,7 @@ from PIL import Image
 from scipy import ndimage
 
 from drystone.errors import DrystoneError, ExitCode, InputError, LabelImageError, UsageError
+from drystone.io.photo_beside import PhotoSidecar, write_sidecar
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.pictures import areas, codes, discs, many_stones, two_stones
 
@@ -251,12 +252,11 @@ def with_value(value, dtype=float):
         (np.where(WHITE == 255, 255, 5), {}, r"E105.*Use --background 255 "),
         (np.where(WHITE == 255, 255, 0), {}, r"E105.*Use --background 255 "),
         (np.where(WHITE == 5, 0, WHITE), {"background": 255}, r"E108.*value 0 .*background 255"),
-        (with_value(np.nan), {}, r"E108.*1 px are not finite.*column 9, row 7"),
         (with_value(np.inf), {}, r"E108.*1 px are not finite.*column 9, row 7"),
         (with_value(2.5), {}, r"E108.*1 px are no whole numbers.*column 9, row 7"),
         (with_value(-3.0), {}, r"E108.*1 px are -3 ... 70000 outside.*column 9, row 7"),
         (with_value(2.0**32), {}, r"E108.*1 px are not from 0 to.*column 9, row 7"),
-        (with_value(-1, np.int64), {}, r"E108.*outside 0 ... 2\^32-1.*column 9, row 7"),
+        (with_value(-2, np.int64), {}, r"E108.*outside 0 ... 2\^32-1.*column 9, row 7"),
         (with_value(2**32, np.int64), {}, r"E108.*outside 0 ... 2\^32-1.*column 9, row 7"),
         (changed(MINUS, (np.s_[0, 0], 0)), {"background": -1}, r"E108"),
         *((two_stones().astype(kind), {}, r"E108.*are no ids") for kind in (complex, "U3", object)),
@@ -407,3 +407,13 @@ def test_folder_of_a_plan(tmp_path):
 def test_settings_that_mean_nothing(wrong):
     with pytest.raises(UsageError, match=rf"E119 ReadSettings: {next(iter(wrong))}"):
         ReadSettings(**wrong)
+
+
+@pytest.mark.parametrize("shape", [(), (7,), (3, 4, 5, 6), (0, 3)])
+@pytest.mark.parametrize("beside", [False, True])
+def test_an_array_of_other_dimensions_in_a_file(tmp_path, shape, beside):
+    np.save(tmp_path / "stones.npy", np.ones(shape, np.uint8))
+    if beside:
+        write_sidecar(PhotoSidecar(3, 4, labels="stones.npy"), tmp_path)
+    with pytest.raises(InputError, match=r"E1\d\d"):
+        read_stones(tmp_path / "stones.npy")

@@ -5,12 +5,14 @@ import io
 import numpy as np
 import pytest
 import tifffile
-from PIL import Image
+from PIL import Image, ImageOps
+from scipy import ndimage
 
-from drystone.errors import InputError
+from drystone.errors import InputError, LabelImageError
 from drystone.io.images import decode
-from drystone.io.read_stones import read_stones
+from drystone.io.read_stones import ReadSettings, read_stones
 from drystone.io.wall_image import read_wall_image
+from drystone.io.walls import read_wall
 from tests.io.pictures import areas, codes, two_stones
 from tests.io.test_formats import LIMIT, pillow, rgb
 
@@ -25,24 +27,49 @@ def with_last(values, last):
 # -- orientation -------------------------------------------------------------------------------
 
 
+def upright(values, orientation):
+    """The picture as a program shows it that follows its orientation."""
+    image = Image.fromarray(values.astype(np.int32), "I")
+    image.getexif()[274] = orientation
+    return np.asarray(ImageOps.exif_transpose(image))
+
+
 @pytest.mark.parametrize("orientation", range(1, 9))
 @pytest.mark.parametrize("dtype", [bool, np.uint8, np.uint16, np.int32])
-def test_an_orientation_turns_no_label_image_in_any_compression(orientation, dtype):
+def test_an_orientation_turns_a_label_image_in_any_compression(orientation, dtype):
     labels = two_stones(0 if dtype is bool else 7, 1, dtype)
     packed = ["raw", "packbits", "tiff_adobe_deflate", "tiff_lzw"]
     for compression in [*packed, *(["group4", "group3"] if dtype is bool else [])]:
         data = pillow(labels, "TIFF", compression=compression, tiffinfo={274: orientation})
-        values = decode(data, LIMIT).values
-        np.testing.assert_array_equal(values.astype(dtype), labels, err_msg=compression)
+        picture = decode(data, LIMIT)
+        np.testing.assert_array_equal(
+            picture.values.astype(int), upright(labels, orientation), err_msg=compression
+        )
+        assert [notice.code for notice in picture.notices] == ["W173"] * (orientation > 1)
 
 
 @pytest.mark.parametrize("kind", ["PNG", "JPEG"])
-def test_an_orientation_turns_no_mask_in_other_formats(kind):
+@pytest.mark.parametrize("orientation", [4, 6])
+def test_an_orientation_turns_a_mask_with_its_alpha_in_other_formats(kind, orientation):
     mask = (two_stones() > 0).astype(np.uint8) * np.uint8(255)
+    alpha = (two_stones() != 300) * np.uint8(255)
     exif = Image.Exif()
-    exif[0x0112] = 6
-    values = decode(pillow(mask, kind, exif=exif), LIMIT).values
-    np.testing.assert_array_equal(values > 127, mask > 0)
+    exif[0x0112] = orientation
+    values = mask if kind == "JPEG" else np.dstack([mask, alpha])
+    picture = decode(pillow(values, kind, exif=exif), LIMIT)
+    np.testing.assert_array_equal(picture.values > 127, upright(mask, orientation) > 0)
+    if kind == "PNG":
+        np.testing.assert_array_equal(picture.alpha, upright(alpha, orientation))
+
+
+def test_all_readers_of_a_wall_turn_it_alike(tmp_path):
+    labels = two_stones(7, 9, np.uint8)
+    (tmp_path / "a.tif").write_bytes(pillow(labels, "TIFF", tiffinfo={274: 4}))
+    wall = read_wall(tmp_path / "a.tif")
+    np.testing.assert_array_equal(wall.labels, labels[::-1])
+    assert [notice.code for notice in wall.notices] == ["W173"]
+    assert "mirrored top to bottom, as its orientation (4) says" in str(wall.notices[0])
+    assert read_stones(tmp_path / "a.tif").by_id(7).bottom_px == 5
 
 
 # -- channels ----------------------------------------------------------------------------------
@@ -76,19 +103,82 @@ def test_an_array_with_alpha_is_read(colour, alpha):
     assert areas(read_stones(with_last(values, alpha))) == {300: 375, 70000: 600}
 
 
-@pytest.mark.parametrize("kind", ["PNG", "TIFF", "lzw"])
-@pytest.mark.parametrize("channels", [2, 4])
-def test_alpha_that_a_file_declares_is_ignored_whatever_it_holds(tmp_path, kind, channels):
-    grey = two_stones(8, 255, np.uint8)
-    alpha = np.random.default_rng(1).integers(0, 256, (40, 60), dtype=np.uint8)
-    options = {"compression": "tiff_lzw"} if kind == "lzw" else {}
-    values = np.dstack([grey] * (channels - 1) + [alpha])
-    data = pillow(values, "TIFF" if kind == "lzw" else kind, **options)
-    (tmp_path / "a.any").write_bytes(data)
+GREY = two_stones(8, 255, np.uint8)
+NOISE = np.random.default_rng(1).integers(1, 256, (40, 60), dtype=np.uint8)
+ERASED = (GREY != 8) * np.uint8(255)  # the colours of stone 8 are there, under alpha 0
+SOFT = np.round(ndimage.gaussian_filter((GREY > 0) * 255.0, 1)).astype(np.uint8)
+
+
+def with_alpha(kind, values, alpha):
+    """A file of grey values with alpha: a channel, or an entry of the palette that is clear."""
+    if kind in ("L", "RGB"):
+        channels = [values] * (1 if kind == "L" else 3)
+        return pillow(np.dstack([*channels, alpha]), "PNG")
+    if kind in ("TIFF", "lzw"):
+        options = {"compression": "tiff_lzw"} if kind == "lzw" else {}
+        return pillow(np.dstack([values] * 3 + [alpha]), "TIFF", **options)
+    image = Image.fromarray(values)
+    clear = int(values[alpha == 0].max())
+    if kind in ("P", "GIF"):
+        image.putpalette([i // 3 for i in range(768)])
+    elif kind == "16":
+        image = Image.fromarray(values.astype(np.uint16))
+    buffer = io.BytesIO()
+    image.save(buffer, "GIF" if kind == "GIF" else "PNG", transparency=clear, optimize=False)
+    return buffer.getvalue()
+
+
+CHANNELS = ["L", "RGB", "TIFF", "lzw"]
+
+
+@pytest.mark.parametrize("kind", [*CHANNELS, "P", "GIF", "16", "8"])
+def test_a_transparent_pixel_is_background_whatever_its_colour(tmp_path, kind):
+    (tmp_path / "a.any").write_bytes(with_alpha(kind, GREY, ERASED))
+    stones = read_stones(tmp_path / "a.any", settings=ReadSettings(mask=False))
+    assert areas(stones) == {255: 600}
+    assert codes(stones) == ["W135"]
+    assert "375 px are transparent, whatever their colour" in str(stones.notices[0])
+    wall = read_wall(tmp_path / "a.any")
+    np.testing.assert_array_equal(wall.labels, GREY * (ERASED > 0))
+    assert [notice.code for notice in wall.notices] == ["W135"]
+
+
+@pytest.mark.parametrize("kind", CHANNELS)
+@pytest.mark.parametrize(
+    ("alpha", "said"),
+    [(NOISE, []), (FULL[..., 0], []), ((GREY > 0) * np.uint8(255), []), (GREY * 0, ["W174"])],
+)
+def test_alpha_that_hides_no_stone_changes_nothing(tmp_path, kind, alpha, said):
+    (tmp_path / "a.any").write_bytes(with_alpha(kind, GREY, alpha))
     stones = read_stones(tmp_path / "a.any")
     assert areas(stones) == {8: 375, 255: 600}
-    assert codes(stones) == []
-    np.testing.assert_array_equal(read_wall_image(tmp_path / "a.any"), grey)
+    assert codes(stones) == said
+    np.testing.assert_array_equal(read_wall_image(tmp_path / "a.any"), GREY)
+
+
+@pytest.mark.parametrize("kind", CHANNELS)
+@pytest.mark.parametrize("colour", [0, 90, 255])
+@pytest.mark.parametrize("alpha", [(GREY > 0) * np.uint8(255), (GREY > 0) * np.uint8(1), SOFT])
+def test_a_mask_that_lives_in_alpha(tmp_path, kind, colour, alpha):
+    for under in {colour, 0}:
+        values = np.where(alpha > 0, colour, under).astype(np.uint8)
+        (tmp_path / "a.any").write_bytes(with_alpha(kind, values, alpha))
+        stones = read_stones(tmp_path / "a.any")
+        expected = (alpha > 0) if alpha is not SOFT else (SOFT >= 128)
+        assert len(stones) == 2
+        assert stones.total_area_px == expected.sum()
+        assert "W114" in codes(stones)
+
+
+@pytest.mark.parametrize("kind", ["GIF", "P", "16"])
+def test_a_stone_of_0_on_a_transparent_ground_is_refused(tmp_path, kind):
+    values = np.select([GREY == 8, GREY == 255], [0, 5], 9).astype(np.uint8)
+    (tmp_path / "a.any").write_bytes(with_alpha(kind, values, (values != 9) * 255))
+    with pytest.raises(LabelImageError, match=r"E108 a.any: 375 px are 0 .*add 1"):
+        read_stones(tmp_path / "a.any")
+    values[values == 0] = 7
+    (tmp_path / "a.any").write_bytes(with_alpha(kind, values, (values != 9) * 255))
+    assert areas(read_stones(tmp_path / "a.any")) == {7: 375, 5: 600}
 
 
 @pytest.mark.parametrize("declared", [False, True])
@@ -101,7 +191,10 @@ def test_an_extra_channel_of_a_tiff_is_alpha_only_where_it_says_so(tmp_path, dec
     )
     (tmp_path / "a.tif").write_bytes(buffer.getvalue())
     if declared:
-        assert areas(read_stones(tmp_path / "a.tif")) == {1: 375}
+        # All that can be seen is 0 where the other mask is 255.
+        stones = read_stones(tmp_path / "a.tif")
+        assert areas(stones) == {1: 600}
+        assert codes(stones) == ["W135", "W114"]
         return
     with pytest.raises(InputError, match=r"E109 a.tif: the last channel"):
         read_stones(tmp_path / "a.tif")

@@ -107,11 +107,7 @@ def test_dxf_without_a_unit_is_refused_unless_it_is_told(tmp_path):
     assert stones.source.px_per_m is None
 
 
-def test_a_unit_that_is_not_the_files_is_refused(tmp_path):
-    path = saved(dxf(), tmp_path)
-    with pytest.raises(UsageError, match=r"E118.*0.001 m\), not in cm"):
-        read_stones(path, settings=ReadSettings(unit="cm"))
-    assert len(read_stones(path, settings=ReadSettings(unit="mm"))) == len(STONES)
+def test_a_unit_of_a_picture_is_refused():
     with pytest.raises(UsageError, match=r"E118.*in px, not in mm"):
         read_stones(np.pad(np.ones((9, 9), np.uint8), 3), settings=ReadSettings(unit="mm"))
 
@@ -148,6 +144,87 @@ def test_dxf_curves_and_blocks(tmp_path):
     (notice,) = [n for n in stones.notices if "left aside" in n.message]
     for kind in ("1 ARC", "1 LINE", "1 TEXT", "1 open LWPOLYLINE"):
         assert kind in notice.message
+
+
+ROUND = [(371, 1077), (371, 971), (253, 969), (182, 980), (90, 1022), (180, 1157), (335, 1147)]
+"""What a curve goes through or near, mm."""
+
+
+def cubic(points):
+    """A closed uniform cubic near points, by its matrix."""
+    basis = np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) / 6.0
+    powers = np.arange(0, 1, 1 / 64)[:, None] ** np.arange(4)
+    rows = np.array(points, float)
+    near = [np.roll(rows, -k, axis=0)[:4] for k in range(len(rows))]
+    return np.concatenate([powers @ basis @ four for four in near])
+
+
+def curves(tmp_path, *makers):
+    document = ezdxf.new("R2010", units=units.MM)
+    for make in makers:
+        make(document.modelspace())
+    # All lie in one place, so they look like repeats.
+    settings = ReadSettings(px_per_m=1000, keep=tuple(range(1, len(makers) + 1)))
+    stones = read_stones(saved(document, tmp_path), settings=settings)
+    return [stone.area_px for stone in stones], [n.message for n in stones.notices]
+
+
+def area(points):
+    x, y = np.array(points, float).T
+    return abs(np.roll(x, -1) @ y - x @ np.roll(y, -1)) / 2.0
+
+
+def test_dxf_splines_that_say_they_are_closed(tmp_path):
+    angles = np.arange(12) * (math.pi / 6)
+    around = np.column_stack([100 * np.cos(angles), 100 * np.sin(angles)]).tolist()
+
+    def fit(space, *, closed=True):
+        space.add_spline(around).dxf.flags = int(closed)
+
+    def fit_again(space):
+        space.add_spline([*around, around[0]]).dxf.flags = 1
+
+    def periodic(space):  # without the control points of its beginning at its end
+        line = space.add_spline()
+        line.control_points = ROUND
+        line.knots = range(len(ROUND) + 4)
+        line.dxf.flags = 3
+
+    def clamped(space):
+        space.add_open_spline(ROUND).dxf.flags = 1
+
+    areas, said = curves(tmp_path, fit, fit_again, periodic)
+    smooth = area(cubic(ROUND))
+    assert areas[:2] == pytest.approx([math.pi * 1e4] * 2, rel=2e-3)
+    assert areas[2] == pytest.approx(smooth, rel=2e-3)
+    assert not any("apart" in text for text in said)
+    areas, said = curves(tmp_path, clamped)
+    ends_apart = [point.xyz[:2] for point in ezdxf.math.BSpline(ROUND).approximate(500)]
+    assert areas[0] == pytest.approx(area(ends_apart), rel=2e-3)
+    assert any("end apart" in text and "straight line" in text for text in said)
+    with pytest.raises(InputError, match=r"E104 .*1 open SPLINE"):
+        curves(tmp_path, lambda space: fit(space, closed=False))
+
+
+@pytest.mark.parametrize("version", ["R12", "R2010"])
+@pytest.mark.parametrize("in_space", [False, True])
+@pytest.mark.parametrize("frame_first", [False, True])
+def test_dxf_points_that_shape_a_polyline_are_not_drawn(tmp_path, version, in_space, frame_first):
+    document = ezdxf.new(version)
+    space = document.modelspace()
+    drawn = [((x, y), 8) for x, y in cubic(ROUND)]
+    frame = [((x, y), 16) for x, y in ROUND]
+    both = frame + drawn if frame_first else drawn + frame
+    add = space.add_polyline3d if in_space else space.add_polyline2d
+    points = [(*place, 0) if in_space else place for place, _ in both]
+    line = add(points, close=True)
+    line.dxf.flags |= 4
+    line.dxf.smooth_type = 6
+    for vertex, (_, flag) in zip(line.vertices, both, strict=True):
+        vertex.dxf.flags |= flag
+    settings = ReadSettings(px_per_m=1000, unit="mm")
+    (stone,) = read_stones(saved(document, tmp_path), settings=settings)
+    assert stone.area_px == pytest.approx(area(cubic(ROUND)), rel=2e-3)
 
 
 def test_resolution_of_a_drawing_makes_the_median_stone_160_px_long(tmp_path):

@@ -5,6 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
+from drystone.io.images import Picture
 from drystone.io.labels import take_census, to_ids
 from tests.naive import io as naive
 
@@ -37,7 +38,7 @@ def _is_solid(labels, row, col):
 @given(arrays(np.uint8, st.tuples(st.integers(1, 6), st.integers(1, 6), st.just(3))))
 def test_ids_of_colours(picture):
     """The id of DESIGN 4.1, unless two colours would share it; never two colours, one id."""
-    ids = to_ids(picture, 0).ids
+    ids = to_ids(Picture(picture), 0).ids
     colours = {tuple(pixel) for row in picture.tolist() for pixel in row}
     assert len(np.unique(ids)) == len(colours)
     expected = [[naive.colour_id(*pixel) for pixel in row] for row in picture.tolist()]
@@ -47,13 +48,13 @@ def test_ids_of_colours(picture):
 
 def test_colours_that_would_share_an_id_are_kept_apart():
     picture = np.array([[[0, 0, 0], [5, 5, 5], [5, 0, 0], [1, 2, 3]]], np.uint8)
-    image = to_ids(picture, 0)
+    image = to_ids(Picture(picture), 0)
     assert image.ids.tolist() == [[0, 5 * 0x010101, 5, 1 + 256 * 2 + 65536 * 3]]
     assert "greys" not in image.notices[0].message
 
 
 def test_greys_among_colours_keep_their_value():
     picture = np.array([[[0, 0, 0], [7, 7, 7], [5, 0, 0], [1, 2, 3]]], np.uint8)
-    image = to_ids(picture, 0)
+    image = to_ids(Picture(picture), 0)
     assert image.ids.tolist() == [[0, 7, 5, 1 + 256 * 2 + 65536 * 3]]
     assert "(greys: their value)" in image.notices[0].message

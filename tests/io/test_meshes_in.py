@@ -1,5 +1,7 @@
 """OBJ, PLY and STL of the known stones, extruded and written by trimesh."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -55,7 +57,8 @@ def test_obj_with_named_objects(tmp_path, axis):
     scene = trimesh.Scene()
     for i, mesh in meshes(axis).items():
         scene.add_geometry(mesh, geom_name=f"stone_{i:03d}")
-    stones = read_stones(saved(tmp_path, scene.export(file_type="obj"), "s.obj"), settings=METRIC)
+    path = saved(tmp_path, scene.export(file_type="obj"), "s.obj")
+    stones = read_stones(path, settings=replace(METRIC, up="z"))
     iou, area, centroid = compare(stones)
     assert iou > 0.998
     assert area < 2e-3
@@ -75,7 +78,7 @@ def test_bodies_without_names(tmp_path, kind, options):
     mesh, names = apart("y", unit=0.001)
     suffix = kind.removesuffix("_ascii")
     path = saved(tmp_path, mesh.export(file_type=kind, **options), f"stones.{suffix}")
-    settings = ReadSettings(pieces="keep-largest", holes="keep", px_per_m=PX_PER_M, unit="mm")
+    settings = replace(METRIC, unit="mm", up="z")
     stones = read_stones(path, settings=settings)
     assert [stone.id for stone in stones] == list(range(1, len(names) + 1))
     for stone in stones:
@@ -107,7 +110,7 @@ v 8 0 2
 v 6 0 2
 f -4 -3 -2 -1
 """
-    stones = read_stones(saved(tmp_path, text, "s.obj"), settings=ReadSettings(px_per_m=50))
+    stones = read_stones(saved(tmp_path, text, "s.obj"), settings=ReadSettings(px_per_m=50, up="z"))
     assert [stone.area_px for stone in stones] == [6 * 2500, 4 * 2500]
     assert [stone.name for stone in stones] == ["wall_1", "wall_2"]
 
@@ -178,6 +181,13 @@ def test_a_sphere_shows_its_circle(tmp_path):
         ("v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj", r"E114 .*not finite"),
         ("v 0 0 0\n", "a.obj", r"E114 .*no faces"),
         (b"ply\nformat binary_little_endian 1.0\nend_header\n", "a.ply", r"E1(06|14) "),
+        (
+            b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+            b"property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+            b"end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
+            "a.ply",
+            r"E106 .*a face of unknown vertices",
+        ),
         (b"too short", "a.stl", r"E106 .*damaged"),
     ],
 )

@@ -56,5 +56,5 @@ def test_damaged_archives(tmp_path):
     with pytest.raises(InputError, match=r"E106"):
         read_stones(path)
     np.savez(path, a=np.array([{}], dtype=object), b=np.zeros(3))
-    with pytest.raises(InputError, match=r"E106.*pickle"):
+    with pytest.raises(InputError, match=r"E107.*pickle"):
         read_stones(path)

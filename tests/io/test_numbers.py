@@ -65,7 +65,7 @@ def test_numbers_that_are_not_kept_are_said(tmp_path, content, said):
         (of_coco([1, 2, 3]), [1, 2, 3]),
         (of_coco([7, 2**32 - 1, 3]), [3, 7, 2**32 - 1]),
         (of_coco([None, None, None]), [1, 2, 3]),
-        (of_labelme(["a", "b", "a"]), [1, 2, 3]),
+        (of_labelme(["a", "b", "c"]), [1, 2, 3]),
         (of_labelme(["0", "0", "0"]), [1, 2, 3]),  # labels of a class
         (of_labelme(["stone 9", "8", "07"]), [7, 8, 9]),
     ],

@@ -1,9 +1,13 @@
 """Every damaged file of outlines gets a coded error that names the entry; extras are named too."""
 
+import base64
+import io
 import json
+import math
 import sys
 
 import pytest
+from PIL import Image
 
 from drystone.errors import InputError, UsageError
 from drystone.io.read_stones import ReadSettings, read_stones
@@ -40,6 +44,16 @@ def shape(**changes):
     return labelme(shapes=[{"label": "1", "points": SQUARE} | changes])
 
 
+def _dot():
+    made = io.BytesIO()
+    Image.new("L", (1, 1), 255).save(made, "PNG")
+    return base64.b64encode(made.getvalue()).decode()
+
+
+DOT = _dot()
+"""A mask of one pixel."""
+
+
 def annotation(segmentation):
     return coco({5: segmentation})
 
@@ -52,13 +66,14 @@ def feature(geometry):
 @pytest.mark.parametrize(
     ("content", "text"),
     [
-        (shape(points=SQUARE[:2]), r"shape 0.*needs 3 points, not 2"),
         (shape(points=[*SQUARE, ["a", 2]]), r"shape 0.*could not convert"),
         (shape(points=[*SQUARE, [float("nan"), 2]]), r"shape 0.*not finite"),
         (shape(points=[*SQUARE, [1e300, 2]]), r"shape 0.*beyond 1e9"),
         (shape(shape_type="circle", points=[[1, 2]]), r"shape 0"),
         (shape(shape_type="mask", points=SQUARE[:2], mask="####"), r"shape 0"),
         (shape(shape_type="mask", points=SQUARE[:2], mask="aGVsbG8="), r"shape 0.*no picture"),
+        (shape(shape_type="mask", points=[[1e30, 0], [1e30, 9]], mask=DOT), r"shape 0.*beyond 1e9"),
+        (shape(shape_type="mask", points=[[0, math.inf], [9, 9]], mask=DOT), r"shape 0.*beyond"),
         (labelme(shapes=[{"label": "1"}]), r"shape 0.*has no 'points'"),
         (annotation([[1, 1, 5]]), r"annotation 5.*odd number"),
         (annotation({"size": [3, 3], "counts": [1, 2]}), r"annotation 5.*add up to 3, not"),
@@ -75,7 +90,6 @@ def feature(geometry):
         ([{"segmentation": runs(masks()[3])}, {"segmentation": {"size": [3, 3], "counts": [9]}}],
          r"the image.*sizes differ"),
         (feature({"type": "Polygon", "coordinates": []}), r"feature 0.*no ring"),
-        (feature({"type": "Polygon", "coordinates": [[[1, 1], [2, 2]]]}), r"needs 3 points"),
         (feature({"coordinates": []}), r"feature 0.*has no 'type'"),
         (geojson(features=None), r"list of features|feature"),
     ],

@@ -176,3 +176,25 @@ def test_cmyk_of_16_bits_is_refused(tmp_path):
     tifffile.imwrite(tmp_path / "deep.tif", four, photometric="separated")
     with pytest.raises(InputError, match=r"E107 .*16 bits a channel in CMYK.*8 bits"):
         read_photo(tmp_path / "deep.tif")
+
+
+def test_a_label_image_is_no_photograph_whatever_its_depth(tmp_path):
+    """Ids in greys, colours, 16 bits and a palette; a mask too.  Light on black cloth is one."""
+    labels = np.zeros((80, 100), np.uint8)
+    labels[10:40, 10:45], labels[45:70, 20:60], labels[10:60, 65:95] = 1, 2, 200
+    palette = Image.fromarray(labels, "P")
+    palette.putpalette(np.repeat(np.arange(256), 3).tolist())
+    made = (labels, np.where(labels, 255, 0).astype(np.uint8), labels.astype(np.uint16) * 257)
+    paths = [saved(tmp_path / f"{number}.png", values) for number, values in enumerate(made)]
+    paths += [saved(tmp_path / "rgb.tif", np.stack([labels, 2 * labels, labels], axis=-1))]
+    palette.save(tmp_path / "palette.png")
+    for path in (*paths, tmp_path / "palette.png"):
+        with pytest.raises(InputError, match="label image already") as caught:
+            read_photo(path)
+        assert (caught.value.code, f"drystone plan {path.name}" in caught.value.cure) == (
+            "E175",
+            True,
+        )
+    noise = np.random.default_rng(3).integers(0, 40, (*labels.shape, 3), np.uint8)
+    lit = np.where(labels[..., None] > 0, 100 + noise, 0).astype(np.uint8)
+    read_photo(saved(tmp_path / "cloth.png", lit))

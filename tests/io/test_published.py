@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from drystone.io.read_stones import read_stones
+from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.pictures import codes
 
 COUNTS = {
@@ -36,3 +36,21 @@ def test_published_picture(data_dir, name):
         rows = slice(top, top + stone.mask.shape[0])
         cols = slice(stone.left_px, stone.left_px + stone.mask.shape[1])
         assert (grey[rows, cols][stone.mask] == stone.id).all()
+
+
+@pytest.mark.parametrize(
+    ("name", "count", "said"),
+    [
+        *((f"thangavelu/noise_{noise}0.png", n, "") for noise, n in zip(
+            range(1, 9), (28, 23, 22, 26, 27, 23, 25, 18), strict=True)),
+        ("rubble/rubble.png", 91, "W114"),
+    ],
+)  # fmt: skip
+def test_published_pictures_have_the_stones_that_their_authors_count(data_dir, name, count, said):
+    """Regions of 50 px and more, by default and by that rule."""
+    for least_px in (None, 50):
+        stones = read_stones(data_dir / name, settings=ReadSettings(min_area_px=least_px))
+        assert len(stones) == count
+        assert min(stone.area_px for stone in stones) >= 50
+        assert said in codes(stones) or not said
+    assert ("W136" in codes(stones)) == ("noise_30" in name)

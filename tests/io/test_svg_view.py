@@ -71,7 +71,7 @@ def test_svg_sizes_of_viewports(body, box):
     ],
 )
 def test_svg_preserves_the_aspect_ratio_as_it_is_told(ratio, box):
-    told = f'viewBox="0 0 10 10" preserveAspectRatio="{ratio}"'
+    told = f'viewBox="0 0 10 10" preserveAspectRatio="{ratio}" overflow="visible"'
     rect = '<rect x="1" y="1" width="8" height="4"/>'
     inner = f'<svg x="100" y="50" width="40" height="20" {told}>{rect}</svg>'
     assert bounds(inner)[0] == [box]

@@ -5,7 +5,18 @@ import numpy as np
 
 from drystone.photo.view import apply
 
-BITS = {"aruco": (cv2.aruco.DICT_4X4_50, 6), "apriltag": (cv2.aruco.DICT_APRILTAG_36h11, 8)}
+BITS = {
+    "aruco": (cv2.aruco.DICT_4X4_50, 6),
+    "apriltag": (cv2.aruco.DICT_APRILTAG_36h11, 8),
+    "aruco5x5": (cv2.aruco.DICT_5X5_100, 7),
+    "aruco6x6": (cv2.aruco.DICT_6X6_250, 8),
+    "aruco7x7": (cv2.aruco.DICT_7X7_50, 9),
+    "original": (cv2.aruco.DICT_ARUCO_ORIGINAL, 7),
+    "mip36h12": (cv2.aruco.DICT_ARUCO_MIP_36h12, 8),
+    "apriltag25h9": (cv2.aruco.DICT_APRILTAG_25h9, 7),
+    "apriltag36h10": (cv2.aruco.DICT_APRILTAG_36h10, 8),
+    "apriltag16h5": (cv2.aruco.DICT_APRILTAG_16h5, 6),
+}
 
 
 def camera(focal_px, size_px, *, tilt_deg=0.0, turn_deg=0.0, distance_m=1.0):

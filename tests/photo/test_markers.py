@@ -4,10 +4,18 @@ import cv2
 import numpy as np
 import pytest
 
-from drystone.errors import UsageError
+from drystone.errors import InputError, UsageError
 from drystone.photo import markers
-from drystone.photo.dictionaries import id_count, marker_modules, modules_across
+from drystone.photo.dictionaries import (
+    DICTIONARIES,
+    FAMILIES,
+    id_count,
+    marker_modules,
+    modules_across,
+)
+from drystone.photo.layout import parse_layout
 from drystone.photo.markers import FoundMarker, find_markers
+from drystone.photo.scale import scale_and_view
 from drystone.photo.view import apply
 from tests.photo.scenes import BITS, camera, outline, photograph
 
@@ -18,6 +26,21 @@ PLACED = ((3, 15.0, -0.08, -0.06, SIDE), (11, 200.0, 0.07, 0.06, SIDE))
 
 def to_photo(tilt_deg=0.0):
     return camera(600, SIZE, tilt_deg=tilt_deg, distance_m=0.4)
+
+
+@pytest.mark.parametrize("dictionary", sorted(set(BITS) - set(DICTIONARIES)))
+def test_markers_of_other_dictionaries_are_read_and_named(dictionary):
+    shown = photograph(to_photo(), SIZE, PLACED, dictionary=dictionary)
+    found = find_markers(shown)
+    assert [(one.id, one.dictionary) for one in found] == [(3, dictionary), (11, dictionary)]
+    view = scale_and_view(found, parse_layout("50mm"), SIZE)
+    assert view.px_per_m == pytest.approx(1500.0, rel=0.01)
+    (notice,) = [one for one in view.notices if one.code == "W184"]
+    assert f"markers 3, 11 of {FAMILIES[dictionary]}" in notice.message
+    with pytest.raises(InputError) as refused:
+        scale_and_view(found, parse_layout("A4:50mm"), SIZE)
+    assert refused.value.code == "E170"
+    assert FAMILIES[dictionary] in refused.value.what
 
 
 @pytest.mark.parametrize("dictionary", ["aruco", "apriltag"])

@@ -7,6 +7,7 @@ from scipy import ndimage
 
 from drystone.errors import InputError
 from drystone.model.stone_size import sizes_of
+from drystone.photo.left_out import SMALL as TOO_SMALL
 from drystone.photo.segment import segment
 from drystone.photo.segment_doubts import doubts_of, notices_of, ruler_doubts
 from drystone.photo.segment_photo import segment_photo
@@ -36,7 +37,7 @@ def drawn(*stones, ground=(60, 110, 180), shape=(300, 400), noise=2.0):
 
 
 def codes(found, settings=None):
-    return [notice.code for notice in notices_of(found, doubts_of(found, None, settings))]
+    return [notice.code for notice in notices_of(doubts_of(found, None, settings))]
 
 
 @pytest.mark.parametrize(
@@ -195,7 +196,8 @@ def test_small_and_unusual_stones_are_said():
     speck = (disc((300, 400), 220, 250, 4), (170, 160, 150))
     found = segment(drawn(*stones, small, speck))
     assert found.count == 5
-    assert found.specks == 1
+    (one,) = found.left_out
+    assert (one.why, one.at_px) == (TOO_SMALL, pytest.approx((250.5, 220.5), abs=0.6))
     assert any("stone 5" in doubt.text for doubt in doubts_of(found) if doubt.code == "W179")
     least = SegmentSettings(min_area_px=600)
     assert segment(drawn(*stones, small, speck), settings=least).count == 4

@@ -13,20 +13,23 @@ if TYPE_CHECKING:  # they would bring NumPy
     from drystone.io.walls import GivenWall
     from drystone.model.stone import Source
 
-METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
 """Units of lengths."""
 
-_LENGTH = r"(\d+(?:\.\d*)?|\.\d+)"
-_SIDE = rf"{_LENGTH}(px|mm|cm|m|)"
-_WALL = re.compile(f"{_SIDE}[xX]{_SIDE}")
+_LENGTH = r"(\d+(?:[.,]\d*)?|[.,]\d+)"
+_SIDE = rf"{_LENGTH}(px|mm|cm|m|ft|in|)"
+_WALL = re.compile(f"{_SIDE}[xX\N{MULTIPLICATION SIGN}]{_SIDE}")
+_THOUSANDS = re.compile(r"[1-9]\d{0,2},\d{3}")
 _NUMBER = r"\s*(-?\d+(?:\.\d*)?|-?\.\d+)\s*"
-_RULER = re.compile(rf"{_NUMBER},{_NUMBER},{_NUMBER},{_NUMBER}=\s*{_LENGTH}(m|cm|mm)")
+_RULER = re.compile(rf"{_NUMBER},{_NUMBER},{_NUMBER},{_NUMBER}=\s*{_LENGTH}(m|cm|mm|ft|in)")
 _PICTURES = {".png", ".tif", ".tiff", ".bmp", ".gif", ".jpg", ".jpeg", ".npy"}
 _SAYS = {
     "stones": ("the stones say", "or correct the scale beside the stones"),
     "plan": ("the plan says", "or plan again with another scale"),
 }
 """Who knows a scale: how that is said, and what else can be done when an option differs."""
+
+_SIZES = "Write 560x160 (px of the source image), 1.4mx0.4m, 140x40cm or 4x1.5ft."
 
 LEAST_PX = 8.0
 """A wall without a unit is this wide and high at least: less was meant to be metres."""
@@ -89,16 +92,16 @@ def friction(text: str) -> tuple[float, float]:
 
 
 def parse_wall(text: str, px_per_m: float | None) -> tuple[float, float]:
-    """Turn ``560x160``, ``1.4mx0.4m`` or ``140cmx40cm`` into width and height in source px.
+    """Turn ``560x160``, ``1.4mx0.4m`` or ``140 x 40 cm`` into width and height in source px.
 
-    E127 for anything else, px beside metres, and a few px without a unit; E131 for metres without
-    a scale.
+    A unit at the end is that of both sides.  E127 for anything else, px beside metres, and a few px
+    without a unit; E131 for metres without a scale.
     """
     sides = _WALL.fullmatch(text.strip().replace(" ", ""))
     if sides is None:
-        cure = "Write 560x160 (px of the source image), 1.4mx0.4m or 140cmx40cm."
-        raise _no_wall(f"{text!r} is no size of a wall.", cure)
-    values, units = (float(sides[1]), float(sides[3])), (sides[2], sides[4])
+        raise _no_wall(f"{text!r} is not the size of a wall.", _SIZES)
+    values = _plain(sides[1], text), _plain(sides[3], text)
+    units = sides[2] or sides[4], sides[4]
     metric = [unit in METRES for unit in units]
     if metric[0] != metric[1]:
         cure = "Give both sides a unit, as in 1.4mx0.4m, or both in px."
@@ -121,6 +124,15 @@ def parse_wall(text: str, px_per_m: float | None) -> tuple[float, float]:
             "image with --ruler x1,y1,x2,y2=1.0m, or give px.",
         )  # fmt: skip
     return values[0] * METRES[units[0]] * px_per_m, values[1] * METRES[units[1]] * px_per_m
+
+
+def _plain(number: str, text: str) -> float:
+    """Read a number with a point or a comma before its decimals; E127 where that may be neither."""
+    if _THOUSANDS.fullmatch(number):
+        plain = number.replace(",", "")
+        what = f"{number} in {text!r} may be {plain}, or {float(number.replace(',', '.')):g}."
+        raise _no_wall(what, "Write it without the comma, or with a point before the decimals.")
+    return float(number.replace(",", "."))
 
 
 def _no_wall(what: str, cure: str = "") -> UsageError:
@@ -147,9 +159,9 @@ def ruler(text: str) -> Ruled:
     """Read `--ruler`; return px in a metre."""
     found = _RULER.fullmatch(text)
     if found is None:
-        message = f"{text!r} is not like 20,30,220,30=1.0m (or cm, mm)"
+        message = f"{text!r} is not like 20,30,220,30=1.0m (or cm, mm, ft, in)"
         raise argparse.ArgumentTypeError(message)
-    x1, y1, x2, y2, length = (float(number) for number in found.groups()[:5])
+    x1, y1, x2, y2, length = (float(number.replace(",", ".")) for number in found.groups()[:5])
     px, metres = math.hypot(x2 - x1, y2 - y1), length * METRES[found[6]]
     if px == 0.0 or metres == 0.0:
         raise argparse.ArgumentTypeError(f"{text!r} has no length")
@@ -182,7 +194,10 @@ def wall_picture_px(wall: "GivenWall") -> tuple[int, int]:
     """Return the size of the picture in which a wall is measured: of a plan that of its stones."""
     if wall.plan is not None:
         return planned_picture_px(wall.plan.source)
-    height, width = (0, 0) if wall.labels is None else wall.labels.shape
+    # Outlines say how far the stones reach, and a ruler may lie beside them.
+    if wall.labels is None or wall.outlines is not None:
+        return 0, 0
+    height, width = wall.labels.shape
     return width, height
 
 
@@ -225,6 +240,13 @@ def scale_with(
     return px_per_m
 
 
+def wall_scale(px_per_m: float | None, wall: "GivenWall") -> float | None:
+    """Return the scale of a wall, of the options or of its file; E131 for two that differ."""
+    if wall.plan is not None:
+        return scale_with(px_per_m, wall.plan.px_per_m, "plan")
+    return scale_with(px_per_m, wall.px_per_m)
+
+
 def scale_notice(median_px: float, px_per_m: float | None) -> Notice | None:
     """Say when a scale makes median stones that nobody builds with (W123); None else."""
     if px_per_m is None or LEAST_M <= (length := median_px / px_per_m) <= MOST_M:
@@ -233,5 +255,5 @@ def scale_notice(median_px: float, px_per_m: float | None) -> Notice | None:
     return Notice(
         "W123",
         f"the median stone is {said} long with {px_per_m:g} px in a metre.",
-        "Is that scale right? All lengths go by it.",
+        "Is that scale right? All lengths go by it; --unit corrects that of a drawing.",
     )

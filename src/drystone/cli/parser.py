@@ -1,17 +1,21 @@
 """Commands and options, also the commands of other packages, by their entry points."""
 
 import argparse
+import re
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import Any, NamedTuple, NoReturn
 
-from drystone.errors import UsageError
+from drystone.errors import ExitCode, UsageError
 
 GROUP = "drystone.commands"
 """Of entry points; each names a :class:`Command`."""
 
 STUDIES = ("bench", "reproduce", "fetch")
 """Commands that every installation has, and whose code is not in this package."""
+
+_UNKNOWN = re.compile(r"argument COMMAND: invalid choice: '(.*?)'.*\(choose from (.*)\)", re.DOTALL)
+"""What argparse says of a command that there is not."""
 
 _COMMANDS = {
     "plan": "Plan a wall from an image of stones.",
@@ -95,7 +99,8 @@ def build_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
     asked = None if words is None else next((one for one in words if one[:1] != "-"), "")
-    listed = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    listed = parser.add_subparsers(dest="command", metavar="COMMAND")
+    parser.set_defaults(run=lambda _: _print_help(parser))
     others = {} if asked in _COMMANDS else found_commands()
     for name in dict.fromkeys((*_COMMANDS, *others)):
         text = _COMMANDS.get(name) or others[name].text
@@ -107,6 +112,11 @@ def build_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
             command.add(sub)
             sub.set_defaults(run=command.run)
     return parser
+
+
+def _print_help(parser: argparse.ArgumentParser) -> int:
+    parser.print_help()
+    return ExitCode.DONE
 
 
 class _Listed(argparse.HelpFormatter):
@@ -122,7 +132,20 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         coded = UsageError("E138", f"{message}.", cure=f"`{self.prog} --help` explains.")
+        unknown = _UNKNOWN.search(message)
+        if unknown is not None:
+            coded = _unknown(unknown[1], re.findall(r"[\w-]+", unknown[2]))
         self.exit(int(coded.exit_code), f"drystone: {coded}\n")
+
+
+def _unknown(word: str, commands: Sequence[str]) -> UsageError:
+    """Return the error for a command that there is not, with the one that was meant."""
+    from difflib import get_close_matches  # noqa: PLC0415 - only for this
+
+    meant = get_close_matches(word.lower(), commands, 1)
+    cure = f"Did you mean `drystone {meant[0]}`? " if meant else ""
+    what = f"there is no command {word!r}."
+    return UsageError("E138", what, cure=f"{cure}`drystone --help` lists the commands.")
 
 
 class _Version(argparse.Action):

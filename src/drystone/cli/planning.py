@@ -24,6 +24,7 @@ from drystone.drawing.export.formats import FORMATS
 from drystone.drawing.words.planned import ending, profile_rows, profile_summary, rows, summary
 from drystone.errors import DrystoneError, ExitCode, Notice, UsageError
 from drystone.io.checkpoint import CHECKPOINT
+from drystone.io.folder_lock import LOCK, locked
 from drystone.io.photo_beside import check_place, photo_beside, place_photo
 from drystone.io.photo_file import read_photo_picture
 from drystone.io.plan_folder import write_plan_folder
@@ -64,7 +65,10 @@ def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:
     stones, folder, photo = request.stones, request.folder, request.photo
     earlier = earlier_run(request)
     if earlier.plan is not None and earlier.finished:
-        return _EXIT[tell_finished(earlier.plan, request)]
+        # A run that was killed at its very end has left its lock, which goes with this one.
+        left = (folder / LOCK).exists() and not prepared
+        with locked(folder, PLACES) if left else nullcontext():
+            return _EXIT[tell_finished(earlier.plan, request)]
     earlier.tell()
     begin = plan_to_begin_with(request)
     begun = earlier.plan or begin

@@ -1,7 +1,7 @@
 """Pictures of real walls have gaps between the stones: close them for the contacts, or settle."""
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -16,6 +16,15 @@ from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from drystone.statics.result import LateralResistance
+
+LADDER = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 36, 40)
+"""Widths that are tried one after the other,"""
+
+STEPS = 60
+"""in sixtieths of the shorter side of a usual stone, a px at least."""
+
+BEYOND, LITTLE = 1.5, 0.1
+"""A load multiplier that changes by a tenth at most up to 1.5 of a width does not hang on it."""
 
 TIE_BREAK = (-1e-4, -3e-5)
 """Added to (row, col): of two stones at one distance the upper or left one is the nearer."""
@@ -205,6 +214,85 @@ def _room_aside(wall: Labels, block: int, push: Literal["left", "right"]) -> int
         if others[rows[inside], ahead[inside]].any():
             return step * way
     return 0
+
+
+@dataclass(frozen=True)
+class GapSweep:
+    """What a wall carries with gaps of one width after the other closed."""
+
+    tried: tuple[tuple[int, bool, float | None], ...]
+    """Width in px, whether the wall stands, and the smaller load multiplier where there is one."""
+    chosen_px: int  # 0 to leave the gaps open
+    stands_from_px: int | None  # None when it stands with none of the widths
+    steady: bool  # whether the load multiplier hardly changes from the chosen width on
+
+    def within(self, factor: float = BEYOND) -> tuple[float, float] | None:
+        """Return the least and the greatest load multiplier from the chosen width on."""
+        upto = _beyond(self.chosen_px, factor)
+        found = [
+            alpha
+            for width, _, alpha in self.tried
+            if alpha is not None and self.chosen_px <= width <= upto
+        ]
+        return (min(found), max(found)) if found else None
+
+
+def gap_sweep(analyse: Callable[[int], LateralResistance], usual_px: float) -> GapSweep:
+    """Find the narrowest width from which on the load multiplier hardly changes any more.
+
+    `analyse` answers with gaps of a width closed; `usual_px` is the shorter side of a usual stone,
+    half of which is the widest.  Without such a width it is the narrowest at which the wall stands.
+    """
+    tried: dict[int, tuple[bool, float | None]] = {}
+
+    def at(width: int) -> bool:
+        if width not in tried:
+            both = analyse(width)
+            alphas = [end.alpha for end in (both.left, both.right) if end.alpha is not None]
+            tried[width] = both.stable, min(alphas, default=None) if both.stable else None
+        return tried[width][0]
+
+    step = max(1, round(usual_px / STEPS))
+    for width in (0, *(step * number for number in LADDER)):
+        if width > max(8.0, usual_px / 2.0):
+            break
+        at(width)
+        if _steady(tried) is not None:
+            break
+    fallen = max((width for width, (stands, _) in tried.items() if not stands), default=-1)
+    begin = min((width for width in tried if width > fallen), default=None)
+    while begin is not None and begin - fallen > 1 and fallen >= 0:
+        between = (begin + fallen) // 2
+        begin, fallen = (between, fallen) if at(between) else (begin, between)
+    steady = _steady(tried)
+    chosen = steady if steady is not None else begin
+    told = tuple((width, *tried[width]) for width in sorted(tried))
+    return GapSweep(told, max(tried) if chosen is None else chosen, begin, steady is not None)
+
+
+def _steady(tried: Mapping[int, tuple[bool, float | None]]) -> int | None:
+    """Return the narrowest width from which on two wider ones or more change little."""
+    for width, (stands, alpha) in sorted(tried.items()):
+        if not stands:
+            continue
+        upto = _beyond(width)
+        wider = [found for other, found in tried.items() if width < other <= upto]
+        if len(wider) < 2 or max(tried) < 0.8 * upto:
+            continue
+        alphas = [one for still, one in wider if still]
+        if len(alphas) == len(wider) and all(_alike(alpha, one) for one in alphas):
+            return width
+    return None
+
+
+def _beyond(width: int, factor: float = BEYOND) -> float:
+    return max(factor * width, width + 2.0)
+
+
+def _alike(one: float | None, other: float | None) -> bool:
+    if one is None or other is None:
+        return one is other
+    return abs(other - one) <= LITTLE * max(one, 1e-9)
 
 
 def gap_spread(

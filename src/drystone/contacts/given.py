@@ -127,6 +127,9 @@ def _rectangle(number: int, row: Any) -> Points:
 
 def _polygon_block(place: int, entry: Any) -> tuple[Block, Points]:
     where = f"blocks, entry {place + 1}"
+    if isinstance(entry, Mapping) and "xywh" in entry and "polygon" not in entry:
+        cure = 'Give rectangles as "blocks_xywh": [[x, y, width, height], ...], without "blocks".'
+        raise bad("it has 'xywh', which belongs into \"blocks_xywh\".", where, cure)
     if not isinstance(entry, Mapping) or "polygon" not in entry:
         raise bad("it has no 'polygon'.", where, "Give id and polygon.")
     block_id, fixed, density = entry.get("id"), entry.get("fixed", False), entry.get("density", 1.0)

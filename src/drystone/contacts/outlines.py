@@ -69,7 +69,7 @@ def outlines_of_labels(
         fits = {piece: fit for piece, fit in fits.items() if piece not in blocky}
 
 
-def model_from_outlines(
+def model_of_traced(
     outlines: Mapping[int, Points],
     mu: float = 0.58,
     *,

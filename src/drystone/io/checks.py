@@ -38,8 +38,8 @@ def check_no_plan(folder: Path) -> None:
         raise InputError("E113", "this folder is a plan, made of stones already.", cure=cure)
 
 
-def check_not_uniform(census: Census, background: int) -> None:
-    """Refuse a picture of one value (E104)."""
+def check_not_uniform(census: Census, background: int, why: str = "") -> None:
+    """Refuse a picture of one value (E104); `why` says what became background."""
     if len(census.values) > 1:
         return
     value = int(census.values[0])
@@ -47,19 +47,24 @@ def check_not_uniform(census: Census, background: int) -> None:
     what = f"no stones: all {width} x {height} px are {value}"
     if value == background:
         hint = "Draw every stone in an id of its own, from 1."
-        raise LabelImageError("E104", f"{what} (background).", cure=hint)
+        raise LabelImageError("E104", " ".join((f"{what} (background).", why)).strip(), cure=hint)
     cure = f"Is {value} the background? Then the stones are missing; else leave a rim of 0."
     raise LabelImageError("E104", f"{what}, and nothing tells stone from background.", cure=cure)
 
 
 def check_background(
-    census: Census, background: int, cure: str = "Use --background {0} (background={0} in Python)"
+    census: Census,
+    background: int,
+    cure: str = "Use --background {0} (background={0} in Python)",
+    rim_px: int = 0,
 ) -> None:
     """Refuse a picture whose background is plainly another value (E105), {0} in the cure.
 
-    Of a mask the census has the two ends.
+    Of a mask the census has the two ends.  A rim of so many px is not looked at.
     """
     index = census.index
+    if 2 * rim_px < min(index.shape):
+        index = index[rim_px : len(index) - rim_px, rim_px : index.shape[1] - rim_px]
     common = int(counted(index, len(census.values)).argmax())
     value = int(census.values[common - 1])
     if value == background:
@@ -148,25 +153,36 @@ def blended(census: Census, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
     ``np.nonzero(chosen)``.
     """
     here = census.index[chosen]
-    low = ndimage.minimum_filter(census.index, 5)[chosen]
-    high = ndimage.maximum_filter(census.index, 5)[chosen]
+    if 8 * here.size > chosen.size:
+        low = ndimage.minimum_filter(census.index, 5)[chosen]
+        high = ndimage.maximum_filter(census.index, 5)[chosen]
+        return np.asarray((low < here) & (here < high))
+    rows, cols = np.nonzero(chosen)
+    low, high = here.copy(), here.copy()
+    bottom, right = chosen.shape[0] - 1, chosen.shape[1] - 1
+    for down, across in np.ndindex(5, 5):
+        near = np.clip(rows + down - 2, 0, bottom), np.clip(cols + across - 2, 0, right)
+        np.minimum(low, census.index[near], out=low)
+        np.maximum(high, census.index[near], out=high)
     return np.asarray((low < here) & (here < high))
 
 
 def check_not_resampled(census: Census, background: int) -> None:
     """Refuse labels that were blurred, anti-aliased or scaled by interpolation (E101)."""
-    _check_no_values_of_edges(census)
+    _check_no_values_of_edges(census, background)
     _check_no_edges_of_others(census, background)
 
 
-def _check_no_values_of_edges(census: Census) -> None:
+def _check_no_values_of_edges(census: Census, background: int) -> None:
     """Refuse values that are there at the edges of stones only."""
     if len(census.values) <= 20:
         return
     plain = np.zeros(len(census.values) + 1, bool)
     plain[census.index[census.solid]] = True
     thin = ~plain[1:]
-    if 2 * thin.sum() <= plain.sum():
+    # A few pixels are noise, and not the edges of stones.
+    few = 0.1 * np.count_nonzero(~census.solid & ~census.pixels(census.values == background))
+    if 2 * thin.sum() <= plain.sum() or census.counts[thin].sum() <= few:
         return
     if blended(census, census.pixels(thin)).mean() >= _BLENDED_SHARE:
         raise LabelImageError(
@@ -184,7 +200,7 @@ def _check_no_edges_of_others(census: Census, background: int) -> None:
         return
     # Joints between stones may be thin, and of any value.
     of_stones = ~census.pixels(census.values == background)
-    astray = _astray(census) & of_stones
+    astray = astray_px(census) & of_stones
     outline = int((~census.solid & of_stones)[1:-1, 1:-1].sum())
     if int(astray.sum()) < _ASTRAY_SHARE * outline:
         return
@@ -198,7 +214,7 @@ def _check_no_edges_of_others(census: Census, background: int) -> None:
         )
 
 
-def _astray(census: Census) -> NDArray[np.bool_]:
+def astray_px(census: Census) -> NDArray[np.bool_]:
     """Tell which pixels neither lie in 3 x 3 px of their value nor touch such; not on the rim."""
     wide = census.solid.copy()
     wide[1:] |= census.solid[:-1]

@@ -1,19 +1,25 @@
 """Values of a picture to ids: whole numbers from 0 to 2^32-1 (DESIGN 4.1); their census."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from drystone.errors import InputError, LabelImageError, Notice
 from drystone.io.file_errors import several_pages
+from drystone.io.images import Picture
 from drystone.kernels.ids import counted, looked_up, numbered
 
 MAX_ID = 2**32 - 1
 _GREY_TOLERANCE = 48
 """Colour fringe that an anti-aliased black-and-white picture may have, of 255."""
+
+
+_FEW_COLOURED = 0.001
+"""Share of the pixels of a black-and-white picture that may be coloured; measured: .0002."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,32 +73,150 @@ class IdImage:
     brightness: NDArray[Any] | None = None
     """(h, w), largest channel of a colour picture; None when `ids` are its values."""
     nearly_grey: bool = True  # False when the picture shows colours
-    notices: tuple[Notice, ...] = ()  # how colours became ids
+    notices: tuple[Notice, ...] = ()  # how colours became ids, and what is ground by the format
+    has_edges: bool = False  # some pixels are -1, as a watershed leaves edges and a rim
 
 
-def to_ids(values: NDArray[Any], background: int) -> IdImage:
+def to_ids(picture: Picture, background: int) -> IdImage:
     """Read ids from grey values, palette indices, numbers or colours; (h, w) or (h, w, c).
 
     Values are bools, integers or whole floats; c = 1, 2 (grey, alpha), 3 (RGB) or 4 (RGBA), where
-    alpha tells nothing that the other channels do not.  A background of -1 is allowed for arrays.
+    alpha tells nothing that the other channels do not.  A background below 0 is allowed.
 
-    Where R = G = B the id is the grey value, else R + 256 G + 65536 B; alpha is ignored.  When
-    that would give two colours one id, R + 256 G + 65536 B is used for the greys as well.
+    Where R = G = B the id is the grey value, else R + 256 G + 65536 B.  When that would give two
+    colours one id, R + 256 G + 65536 B is used for the greys as well.  What the format says is
+    nothing is ground: alpha 0, NaN, the value of no data; and so is -1, which is no id.
     """
-    values = _whole_numbers(_as_picture(values))
+    values, notices = _as_picture(picture.values), picture.notices
+    transparent, mask, said = _transparent(values, picture.alpha, max(background, 0))
+    if mask is not None:
+        return IdImage(mask, 0, notices=(*notices, *said))
+    no_ids = _no_numbers(values, picture.nodata, background)
+    ground = _united([transparent, *(there for _, there in no_ids)])
+    if ground is not None:
+        fill = max(background, 0)
+        if values.ndim == 3:
+            grey = fill <= 255 or values.shape[2] == 2
+            parts = [fill] * 4 if grey else [fill >> shift & 255 for shift in (0, 8, 16, 24)]
+            parts = parts[: values.shape[2]]
+            values = np.where(
+                ground[..., None], np.asarray(parts, _room_for(max(parts), values.dtype)), values
+            )
+        else:
+            values = np.where(ground, np.asarray(fill, _room_for(fill, values.dtype)), values)
+    values = _whole_numbers(values)
     if values.ndim == 2:
-        return _ids_of_numbers(values, background)
-    if values.shape[2] == 2:
-        image = _ids_of_numbers(values[:, :, 0], background)
+        image = _ids_of_numbers(values, max(background, 0))
+    elif values.shape[2] == 2:
+        image = _ids_of_numbers(values[:, :, 0], max(background, 0))
     else:
-        image = _ids_of_colours(values[:, :, :3], background)
-    if values.shape[2] in (2, 4):
+        image = _ids_of_colours(values[:, :, :3], max(background, 0))
+    if values.ndim == 3 and values.shape[2] in (2, 4):
         _check_alpha(values[:, :, -1], image)
-    return image
+    if ground is not None:
+        _check_no_stone_of_zero(image, ground, named=background < 0)
+        said += tuple(_ground_notice(name, there) for name, there in no_ids if name)
+    edges = picture.values.dtype.kind in "if" and bool((picture.values == -1).any())
+    return replace(image, notices=(*notices, *said, *image.notices), has_edges=edges)
 
 
-def _ids_of_numbers(values: NDArray[Any], background: int) -> IdImage:
-    ids, background = _without_negative_background(values, background)
+_EDGES = "-1 (edges, as a watershed leaves them)"
+_OPAQUE = "Make them opaque if stones should be there."
+
+
+def _transparent(
+    values: NDArray[Any], alpha: NDArray[Any] | None, background: int
+) -> tuple[NDArray[np.bool_] | None, NDArray[Any] | None, tuple[Notice, ...]]:
+    """Return where a picture is transparent, or its alpha if that is the mask; and what to say."""
+    if alpha is None or alpha.min() == alpha.max() != 0:
+        return None, None, ()
+    clear = alpha == 0
+    if clear.all():
+        return None, None, (Notice("W174", "alpha is 0 everywhere, so it was ignored."),)
+    visible = values[~clear]
+    if (visible == visible[0]).all():
+        soft = np.any((alpha != 0) & (alpha != alpha.max()))
+        if soft or (visible[0] == background).all() or (values == visible[0]).all():
+            what = "all that is not transparent has one colour: alpha was read in place of it."
+            cure = "Draw stones in ids of their own if they should keep them."
+            return None, alpha.view(np.uint8) if alpha.dtype == bool else alpha, (
+                Notice("W135", what, cure),
+            )  # fmt: skip
+    changed = values != background
+    changed = clear & (changed.any(axis=2) if changed.ndim == 3 else changed)
+    if not changed.any():
+        return clear, None, ()
+    return clear, None, (_ground_notice("transparent, whatever their colour", changed, _OPAQUE),)
+
+
+def _no_numbers(
+    values: NDArray[Any], nodata: float | None, background: int
+) -> list[tuple[str, NDArray[np.bool_]]]:
+    """Return where numbers stand for nothing, and their names; the named background has none."""
+    kind = values.dtype.kind
+    if values.ndim > 2 or kind not in "iuf":
+        return []
+    found = []
+    if kind == "f":
+        found.append(("NaN", np.isnan(values)))
+    if nodata is not None and nodata != background:
+        found.append((f"{nodata:g}, which the file says is no data", values == nodata))
+    if kind != "u":
+        found.append((_EDGES if background != -1 else "", values == -1))
+        if background < -1:
+            found.append(("", values == background))
+    return [(name, there) for name, there in found if there.any()]
+
+
+def _united(masks: list[NDArray[np.bool_] | None]) -> NDArray[np.bool_] | None:
+    found = [mask for mask in masks if mask is not None]
+    return np.logical_or.reduce(found) if found else None
+
+
+def _room_for(value: int, kind: np.dtype[Any]) -> np.dtype[Any]:
+    """Return a kind of numbers that has room for one value and those of another kind."""
+    return kind if kind.kind == "f" else np.result_type(kind, np.min_scalar_type(value))
+
+
+def _ground_notice(name: str, there: NDArray[np.bool_], cure: str = "") -> Notice:
+    what = f"{int(there.sum())} px are {name}: read as background."
+    return Notice("W135", what, cure or "Give them an id from 1 if stones should be there.")
+
+
+def _check_no_stone_of_zero(image: IdImage, ground: NDArray[np.bool_], *, named: bool) -> None:
+    """Refuse stones of the value 0 on ground that is something else (E108)."""
+    zero = (image.ids == 0) & ~ground
+    if image.background != 0 or not zero.any():
+        return
+    corners = ground[[0, 0, -1, -1], [0, -1, 0, -1]].sum() >= 3
+    inner = np.zeros_like(zero)
+    inner[_RIM:-_RIM, _RIM:-_RIM] = True
+    if named or (corners and not (zero & ~inner).any() and _lies_alone(zero, ground)):
+        raise LabelImageError(
+            "E108",
+            f"{int(zero.sum())} px are 0 on a background that is another value or transparent, "
+            "and no stone can be 0.",
+            cure="Give them a free id (add 1 to all ids), or make them background too.",
+        )
+
+
+_RIM = 2
+"""Pixels at the border of a picture that programs leave as they are."""
+
+
+def _lies_alone(zero: NDArray[np.bool_], ground: NDArray[np.bool_]) -> bool:
+    """Tell whether a piece as large as a stone has only ground around it."""
+    found, count = ndimage.label(zero, np.ones((3, 3)))
+    large = np.bincount(found.ravel(), minlength=count + 1) >= _LEAST_PX
+    around = ndimage.maximum_filter(found, 3)
+    large[around[~ground & ~zero]] = False
+    return bool(large[1:].any())
+
+
+_LEAST_PX = 10
+
+
+def _ids_of_numbers(ids: NDArray[Any], background: int) -> IdImage:
     low, high = int(ids.min()), int(ids.max())
     if low < 0 or high > MAX_ID:
         bad = (ids < 0) | (ids > MAX_ID)
@@ -129,9 +253,9 @@ def _whole_numbers(values: NDArray[Any]) -> NDArray[Any]:
     if values.dtype.itemsize < 4:
         # The largest id is beyond what 16 bits can be compared with.
         values = values.astype(np.float32)
-    with np.errstate(invalid="ignore"):  # some NaNs are warned of, and all are refused
+    with np.errstate(invalid="ignore"):
         found = (
-            ("not finite (NaN or infinite)", ~np.isfinite(values)),
+            ("not finite", ~np.isfinite(values)),
             ("no whole numbers", values != np.floor(values)),
             ("not from 0 to 2^32-1", np.abs(values) > MAX_ID),
         )
@@ -163,18 +287,9 @@ def _not_ids(what: str, bad: NDArray[np.bool_]) -> LabelImageError:
     return LabelImageError(
         "E108",
         f"{what} (first at column {col}, row {row}), so they cannot be ids.",
-        cure="Ids are whole numbers from 1 to 4294967295, 0 is the background; name any other "
-        "with --background (background in Python).",
+        cure="Ids are whole numbers from 1 to 4294967295. Background is 0, -1, NaN, or the "
+        "number of --background (background in Python).",
     )
-
-
-def _without_negative_background(ids: NDArray[Any], background: int) -> tuple[NDArray[Any], int]:
-    """Let 0 stand for a negative background; where 0 is taken, it stays and is refused later."""
-    if background >= 0:
-        return ids, background
-    if (ids == background).any() and not (ids == 0).any():
-        return np.where(ids == background, 0, ids), 0
-    return ids, 0
 
 
 def _ids_of_colours(colours: NDArray[Any], background: int) -> IdImage:
@@ -202,9 +317,11 @@ def _ids_of_colours(colours: NDArray[Any], background: int) -> IdImage:
     stones = len(present) - int((values == background).any())
     notice = Notice("W115", f"{len(present)} colours read as ids {rule}: {stones} stones.")
     brightest = parts.max(axis=1)
-    spread = int((brightest - parts.min(axis=1)).max())
+    # A mask keeps a few coloured pixels where a coloured picture was cut or drawn over.
+    coloured = census.counts[brightest - parts.min(axis=1) > _GREY_TOLERANCE].sum()
     brightness = census.of(brightest.astype(np.uint8))
-    return IdImage(codes, background, brightness, spread <= _GREY_TOLERANCE, (notice,))
+    nearly_grey = bool(coloured <= _FEW_COLOURED * codes.size)
+    return IdImage(codes, background, brightness, nearly_grey, (notice,))
 
 
 def check_no_zero(values: NDArray[Any], background: int) -> None:

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.io.file_errors import damaged
+from drystone.errors import InputError
+from drystone.io.file_errors import damaged, unread
 from drystone.io.foreign import foreign
 from drystone.io.pictures import check_size
 
@@ -24,7 +25,7 @@ def array_of(data: bytes, max_px: int) -> NDArray[Any]:
             read = np.lib.format.read_array_header_2_0
         shape, fortran, dtype = read(file)
     if dtype.hasobject:
-        raise damaged("it holds Python objects, and pickle is not read")
+        raise _pickled(data)
     if min(shape, default=0) < 0 or not dtype.itemsize:
         raise damaged("a side is below 0, or its values have no bytes")
     count, start = math.prod(shape), file.tell()
@@ -36,3 +37,17 @@ def array_of(data: bytes, max_px: int) -> NDArray[Any]:
     with foreign(damaged):
         values = np.frombuffer(data, dtype, count, start)
         return values.reshape(shape, order="F" if fortran else "C")
+
+
+def _pickled(data: bytes) -> InputError:
+    """Make the error for objects of Python; the masks of cellpose lie in such."""
+    cellpose = all(name in data for name in (b"masks", b"outlines"))
+    what = "objects of cellpose (_seg.npy)" if cellpose else "Python objects"
+    masks = "Save masks as PNG" if cellpose else "Save the array of ids by itself"
+    return unread(
+        f"it holds {what}, and pickle is not read, as it may run programs.",
+        f"Export the masks: in the cellpose window 'File > {masks}', or in Python "
+        "`np.save('masks.npy', np.load(FILE, allow_pickle=True).item()['masks'])`."
+        if cellpose
+        else f"{masks}, as whole numbers.",
+    )

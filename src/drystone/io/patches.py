@@ -1,5 +1,6 @@
 """Stones cut out of label images, with their holes and pieces put in order."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -24,6 +25,9 @@ SMALL_SHARE = 0.02
 """Pieces that together are less than this share of their stone are left out by default."""
 
 MIN_AREA_PX = 10
+_MOST_SPECK_PX = 50
+"""Of a mask; the authors of the published pictures skip regions of less than 50 px."""
+
 LARGE = 1.5
 """Times the median area: smaller stones are not suspected of being two."""
 _LARGE_PX, _PLAIN_PX = 2**20, 64
@@ -153,6 +157,8 @@ def stone_set(
     noticed = list(notices)
     if unknown := sorted(skip - known):
         noticed.append(Notice("W116", f"no stone {listed(unknown)} to skip.", "Check the ids."))
+    if unknown := sorted(set(settings.keep) - known):
+        noticed.append(Notice("W116", f"no stone {listed(unknown)} to keep.", "Check the ids."))
     # One of several numbers stays until it is split.
     patches = [p for p in found if not {p.id, *numbers.get(p.id, ())} <= skip]
     # What is split must not depend on what is skipped.
@@ -180,6 +186,18 @@ def _smallest_stone_px(patches: Sequence[StonePatch], settings: ReadSettings) ->
         return settings.min_area_px
     areas = [patch.area_px for patch in patches if patch.area_px >= MIN_AREA_PX]
     return max(MIN_AREA_PX, 0.001 * float(np.median(areas))) if areas else MIN_AREA_PX
+
+
+def smallest_of_mask_px(patches: Sequence[StonePatch], settings: ReadSettings) -> int:
+    """Return the same of the components of a mask, which have no ids that somebody gave them.
+
+    They are specks up to 1 % of the median area, and no more than 50 px.
+    """
+    least_px = _smallest_stone_px(patches, settings)
+    areas = [patch.area_px for patch in patches if patch.area_px >= MIN_AREA_PX]
+    if settings.min_area_px is None and areas:
+        least_px = max(least_px, min(_MOST_SPECK_PX, 0.01 * float(np.median(areas))))
+    return math.ceil(least_px)
 
 
 def _without_specks(

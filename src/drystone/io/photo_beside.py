@@ -40,13 +40,15 @@ class PhotoSidecar:
     """Base name of the photograph in the frame of the label image, beside it; empty for none."""
     details: Mapping[str, Any] = field(default_factory=dict)
     """What else was found out: markers, residuals, doubts.  For people."""
+    labels: str = LABELS
+    """Base name of the label image."""
 
 
 def write_sidecar(sidecar: PhotoSidecar, folder: Path) -> Path:
     """Write it into the folder of the label image."""
     data = {
         "schema": SCHEMA,
-        "labels": LABELS,
+        "labels": sidecar.labels,
         "width_px": sidecar.width_px,
         "height_px": sidecar.height_px,
         "px_per_m": sidecar.px_per_m,
@@ -61,16 +63,18 @@ def write_sidecar(sidecar: PhotoSidecar, folder: Path) -> Path:
 def read_sidecar(labels: Path) -> PhotoSidecar | None:
     """Read what stands beside a label image; None when there is nothing of this kind.
 
-    Only an image of the name `LABELS` has a sidecar.  A damaged one is refused (E112).
+    It names the image that it is of.  A damaged one of `LABELS` is refused (E112).
     """
-    if labels.name != LABELS:  # a folder such as "." has no name to replace
+    if not labels.name or labels.name == "..":  # a folder such as "." has no name to replace
         return None
     path = labels.with_name(SIDECAR)
-    if not path.is_file():
+    if not path.is_file() or path == labels:
         return None
     try:
         data = json_in(path)
         if not isinstance(data, dict) or data.get("schema") != SCHEMA:
+            return None
+        if data.get("labels", LABELS) != labels.name:
             return None
         scale = data["px_per_m"]
         if scale is not None and not 0.0 < float(scale) <= MOST_PX_PER_M:
@@ -80,11 +84,32 @@ def read_sidecar(labels: Path) -> PhotoSidecar | None:
             int(data["height_px"]),
             None if scale is None else float(scale),
             str(data.get("photo", "")),
+            labels=labels.name,
         )
     except (OSError, ValueError, KeyError, TypeError, OverflowError) as error:
+        if labels.name != LABELS:  # nobody knows what it is of
+            return None
         what = f"what it says of the photograph cannot be used ({short(error)})."
         cure = "Find the stones again with `drystone segment`, or remove the file."
         raise InputError("E112", what, where=str(path), cure=cure) from error
+
+
+def scale_beside(
+    sidecar: PhotoSidecar | None, size_px: tuple[int, ...], path: Path
+) -> float | None:
+    """Return the scale of a label image, width and height; E117 when it is of another picture."""
+    if sidecar is None:
+        return None
+    if size_px != (sidecar.width_px, sidecar.height_px):
+        raise InputError(
+            "E117",
+            f"it has {' x '.join(map(str, size_px))} px, but {SIDECAR} beside it is of one of "
+            f"{sidecar.width_px} x {sidecar.height_px}.",
+            where=str(path),
+            cure=f"Find the stones again with `drystone segment`, or remove {SIDECAR}, and give "
+            "the scale of the new picture.",
+        )
+    return sidecar.px_per_m
 
 
 def photo_of(stones: Path) -> Path | None:

@@ -16,7 +16,7 @@ from drystone.io import tiff
 from drystone.io.file_bytes import file_bytes
 from drystone.io.file_errors import naming, too_large, unread
 from drystone.io.pictures import check_size, format_of, opened
-from drystone.io.tiff import ORIENTATION
+from drystone.io.tiff import ORIENTATION, TURNED_BACK, TURNS, turned
 from drystone.model.stone import writable
 
 MAX_PX = 200_000_000
@@ -28,15 +28,10 @@ MAX_SIDE_PX = 32_766
 SAME_SHAPE = 0.02
 """Widths over heights may differ by this share: a photograph of few px rounds them."""
 
-_REDUCE = "Reduce it or crop it; only in Python can the limit be raised (max_px)."
+LEAST_JUDGED_PX, PLAIN = 5000, 0.7
+"""From so many px on a picture is one of ids if so many neighbours on its stones are equal."""
 
-_TURNS = {
-    2: "mirrored left to right", 3: "turned by 180 degrees", 4: "mirrored top to bottom",
-    5: "mirrored and turned", 6: "turned by 90 degrees clockwise", 7: "mirrored and turned",
-    8: "turned by 90 degrees counter-clockwise",
-}  # fmt: skip
-_BACK = {6: 8, 8: 6}
-"""Orientations whose opposite is another."""
+_REDUCE = "Reduce it or crop it; only in Python can the limit be raised (max_px)."
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,15 +56,34 @@ def read_photo(path: str | Path, max_px: int = MAX_PX) -> Photo:
     with naming(str(path)):
         data = _bytes_of(path)
         values, orientation, deep = _decode(data, partial(_check, max_px=max_px))
+        _refuse_labels(values, path.name)
         rgb, notices = _to_rgb(values)
     name = writable(path.name)
     if deep:
         notices = (Notice("W174", "16 bits a channel were scaled to 8."), *notices)
-    if orientation in _TURNS:
-        rgb = _turned(rgb, orientation)
-        said = f"{name} was {_TURNS[orientation]}, as its EXIF data say."
+    if orientation in TURNS:
+        rgb = turned(rgb, orientation)
+        said = f"{name} was {TURNS[orientation]}, as its EXIF data say."
         notices = (*notices, Notice("W173", said))
     return Photo(rgb, name, hashlib.sha256(data).hexdigest(), notices)
+
+
+def _refuse_labels(values: NDArray[Any], name: str) -> None:
+    """Refuse a label image (E175): plain areas of other values on 0; nothing is so even in light.
+
+    Pairs of neighbours of which one is no ground are looked at, and few px are not judged.
+    """
+    colours = np.atleast_3d(values)
+    colours = colours[..., :3] if colours.shape[2] > 2 else colours[..., :1]
+    level = colours.astype(np.int64) @ np.array([1, 1 << 16, 1 << 32])[: colours.shape[2]]
+    stone = level != 0
+    if level.size < LEAST_JUDGED_PX or stone.mean() > 0.95:
+        return
+    pairs = stone[:, :-1] | stone[:, 1:]
+    equal = level[:, :-1][pairs] == level[:, 1:][pairs]
+    if equal.size and equal.mean() > PLAIN:
+        what = "this is a label image already, plain areas on 0, and not a photograph."
+        raise InputError("E175", what, cure=f"`drystone plan {name}` reads it.")
 
 
 def _bytes_of(path: Path) -> bytes:
@@ -126,7 +140,7 @@ def _tiff(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any],
     if page.bits <= 8:
         # Pillow turns a TIFF by itself when it reads it: taken back, so that it is said.
         values, orientation = _by_pillow(data, check)
-        return _turned(values, _BACK.get(orientation, orientation)), orientation
+        return turned(values, TURNED_BACK.get(orientation, orientation)), orientation
     if page.unreadable:
         what = f"TIFF with {page.unreadable} cannot be read."
         raise unread(what, "Export it uncompressed or with LZW.")
@@ -140,15 +154,6 @@ def _tiff(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any],
         grey = np.atleast_3d(values)[..., :1]
         np.subtract(65535, grey, out=grey)
     return values, page.orientation
-
-
-def _turned(values: NDArray[Any], orientation: int) -> NDArray[Any]:
-    """Turn a picture as its orientation says."""
-    if orientation not in _TURNS:
-        return values
-    image = Image.fromarray(values)
-    image.getexif()[ORIENTATION] = orientation
-    return np.array(ImageOps.exif_transpose(image))
 
 
 def _to_rgb(values: NDArray[Any]) -> tuple[NDArray[np.uint8], tuple[Notice, ...]]:

@@ -15,17 +15,25 @@ from drystone.io.file_errors import listed, short, too_large, unfit
 from drystone.io.foreign import foreign
 from drystone.io.json_text import json_of
 from drystone.io.npy import BEGINNING
-from drystone.io.outlines_in.annotations import (
-    GEOJSON_KINDS,
-    read_coco,
-    read_geojson,
-    read_labelme,
-    read_sam,
-)
+from drystone.io.outlines_in.annotations import read_coco, read_labelme, read_sam
+from drystone.io.outlines_in.classes import of_classes
 from drystone.io.outlines_in.dxf import is_dxf, read_dxf
+from drystone.io.outlines_in.exports import (
+    is_cvat,
+    is_label_studio,
+    is_via,
+    is_yolo,
+    read_cvat,
+    read_label_studio,
+    read_via,
+    read_yolo,
+)
+from drystone.io.outlines_in.geojson import is_geojson, read_geojson
 from drystone.io.outlines_in.meshes import mesh_kind, read_mesh
 from drystone.io.outlines_in.model import METRES, OutlineFile, numbered, without_wedges
+from drystone.io.outlines_in.nesting import is_nesting, read_nesting
 from drystone.io.outlines_in.raster import rastered
+from drystone.io.outlines_in.shares import in_px
 from drystone.io.outlines_in.svg import is_svg, read_svg
 from drystone.io.patches import stone_set
 from drystone.io.photo_beside import LABELS, SCHEMA
@@ -39,8 +47,31 @@ MOST_TEXT_BYTES = 500_000_000
 """Larger files of outlines are refused; that of all images of COCO has 450 MB."""
 
 _EXPECTED = (
-    "labelme (shapes), COCO (annotations, images), masks of SAM (a list with segmentation each) "
-    "or GeoJSON (type, features)"
+    "labelme (shapes), COCO (annotations, images), masks of SAM (a list with segmentation each), "
+    "GeoJSON (type, features), Label Studio, VIA 2 or a nesting instance (items)"
+)
+
+
+def _holds(key: str) -> Callable[[Any], bool]:
+    """Return what tells a table with a list of that name."""
+    return lambda content: isinstance(content, Mapping) and isinstance(content.get(key), list)
+
+
+def _is_sam(content: Any) -> bool:
+    return isinstance(content, list) and all(
+        isinstance(found, Mapping) and "segmentation" in found for found in content
+    )
+
+
+# The first of these that a file is; an empty list is one of masks.
+_KINDS: tuple[tuple[Callable[[Any], bool], Callable[[Any, ReadSettings], OutlineFile]], ...] = (
+    (_is_sam, read_sam),
+    (is_label_studio, read_label_studio),
+    (_holds("shapes"), read_labelme),
+    (_holds("annotations"), read_coco),
+    (is_geojson, read_geojson),
+    (is_via, read_via),
+    (is_nesting, read_nesting),
 )
 
 
@@ -54,29 +85,25 @@ def outline_reader(data: bytes, name: str) -> Reader | None:
     if suffix in {".json", ".geojson"} or begins in (b"{", b"["):
         return _read_json
     # A drawing names itself; the text of an OBJ is told by its lines, so it comes last.
-    if is_svg(data, suffix):
-        return read_svg
-    if suffix == ".bmp":
-        return None
-    if is_dxf(data, suffix):
-        return read_dxf
-    kind = mesh_kind(data, suffix)
-    return None if kind is None else partial(read_mesh, kind)
+    readers: tuple[tuple[bool, Reader], ...] = (
+        (suffix == ".txt" and is_yolo(data), read_yolo),
+        (begins == b"<" and is_cvat(data), read_cvat),
+        (is_svg(data, suffix), read_svg),
+        (suffix != ".bmp" and is_dxf(data, suffix), read_dxf),
+    )
+    for is_one, reader in readers:
+        if is_one:
+            return reader
+    kind = "" if suffix == ".bmp" else mesh_kind(data, suffix)
+    return partial(read_mesh, kind) if kind else None
 
 
 def _read_json(data: bytes, settings: ReadSettings) -> OutlineFile:
     with foreign(lambda why: _no_stones(f"cannot be read, it may be cut short ({why})")):
         content = json_of(data.decode(json.detect_encoding(data), "surrogatepass"))
-    if isinstance(content, list):
-        if all(isinstance(found, Mapping) and "segmentation" in found for found in content):
-            return read_sam(content, settings)
-    elif isinstance(content, Mapping):
-        if isinstance(content.get("shapes"), list):
-            return read_labelme(content, settings)
-        if isinstance(content.get("annotations"), list):
-            return read_coco(content, settings)
-        if isinstance(kind := content.get("type"), str) and kind in GEOJSON_KINDS:
-            return read_geojson(content, settings)
+    for is_one, reader in _KINDS:
+        if is_one(content):
+            return reader(content, settings)
     raise _no_stones(*_what_else(content))
 
 
@@ -100,33 +127,42 @@ def _no_stones(what: str, cure: str = f"Stones are read from {_EXPECTED}.") -> I
 
 def stones_of(read: Reader, data: bytes, name: str, settings: ReadSettings) -> StoneSet:
     """Read a file of outlines; its source has a scale when the file has a unit."""
+    return stones_and_outlines(read, data, name, settings)[0]
+
+
+def stones_and_outlines(
+    read: Reader, data: bytes, name: str, settings: ReadSettings
+) -> tuple[StoneSet, OutlineFile]:
+    """Return the same, and the outlines under the same ids, some of which may be left out."""
     if len(data) > MOST_TEXT_BYTES:
         megabytes = f"{len(data) / 1e6:.0f} MB, and the limit is {MOST_TEXT_BYTES / 1e6:g} MB"
         cure = "Export the outlines of one image, with fewer corners."
         raise too_large(f"it has {megabytes}.", cure)
     # What is not finite is refused; NumPy would warn of it as well.
     with np.errstate(all="ignore"):
-        file = read(data, settings)
+        file = in_px(read(data, settings), settings)
     check_unit(file.unit_m, settings)
     # Outlines say themselves what tells stone from background in pictures.
     mask = "--no-mask" if settings.mask is False else "--mask"
     _check_not_given(settings.background != 0, "--background", "background")
     _check_not_given(settings.mask is not None, mask, "mask")
-    if not file.names_images:
-        check_no_image(settings)
+    there = {"image": file.names_images, "up": file.in_space}
+    check_not_asked(settings, *(option for option, has in there.items() if not has))
     # Half a character pair can be neither printed nor written.
     named = [
         replace(stone, name=stone.name.encode("utf-8", "replace").decode()) for stone in file.stones
     ]
     kept, wedges = without_wedges(named)
+    kept, classes = of_classes(kept, settings.label)
     stones, renumbered = numbered(kept)
-    patches, size_px, px_per_m, said = rastered(replace(file, stones=stones), settings)
+    file = replace(file, stones=stones)
+    patches, size_px, px_per_m, said = rastered(file, settings)
     # What has px of its own has no other resolution.
     reading = (settings if px_per_m else replace(settings, px_per_m=None)).changed()
     digest = hashlib.sha256(data).hexdigest()
     source = Source(name, digest, *size_px, reading=reading, px_per_m=px_per_m)
-    notices = [*file.notices, *wedges, *renumbered, *said]
-    return stone_set(patches, notices, source, settings)
+    notices = [*file.notices, *wedges, *classes, *renumbered, *said]
+    return stone_set(patches, notices, source, settings), file
 
 
 def check_unit(unit_m: float | None, settings: ReadSettings) -> None:
@@ -139,14 +175,24 @@ def check_unit(unit_m: float | None, settings: ReadSettings) -> None:
         raise unfit(f"this file is in {own}, not in {settings.unit}.", cure)
 
 
-def check_no_image(settings: ReadSettings) -> None:
-    """Refuse the name of an image where there are none to choose from (E118)."""
-    if settings.image:
-        raise unfit(
-            f"there is no choice of images here, as for {settings.image!r}.",
-            "Leave --image (image in Python) out: it is for annotations that name their images "
-            "(COCO, masks of SAM).",
-        )
+_ELSEWHERE = {
+    "image": (
+        "there is no choice of images here, as for {}.",
+        "annotations that name their images (COCO, masks of SAM)",
+    ),
+    "label": ("a picture of stones has no classes, as {}.", "annotations; --skip leaves out ids"),
+    "up": ("this file has no third axis that could be up, as for {}.", "meshes and DXF"),
+}
+"""Options that have no meaning for some files: what there is not, and what they are for."""
+
+
+def check_not_asked(settings: ReadSettings, *options: str) -> None:
+    """Refuse options that have no meaning for what is read (E118)."""
+    for option in options:
+        if value := getattr(settings, option):
+            what, kinds = _ELSEWHERE[option]
+            cure = f"Leave --{option} ({option} in Python) out: it is for {kinds}."
+            raise unfit(what.format(repr(value)), cure)
 
 
 def _check_not_given(given: bool, option: str, name: str) -> None:

@@ -8,6 +8,7 @@ from drystone.errors import UsageError
 Pieces = Literal["auto", "keep-largest", "split", "error"]
 Holes = Literal["fill", "keep"]
 Unit = Literal["", "px", "mm", "cm", "m", "in", "ft"]
+Up = Literal["", "y", "z", "y-back", "z-back"]
 
 MOST_PX_PER_M = 1e9
 """A larger scale is none: a px would be less than a nanometre."""
@@ -22,7 +23,7 @@ class ReadSettings:
     Parameters
     ----------
     background : int
-        The value that is not stone.
+        The value that is not stone; so are NaN and -1, whatever it is.
     pieces : {"auto", "keep-largest", "split", "error"}
         What to do with a stone of several pieces: "auto" keeps the largest when the others are
         less than 2 % of the stone and refuses the picture otherwise, "keep-largest" always keeps
@@ -32,11 +33,19 @@ class ReadSettings:
         Fill holes before areas and centroids are taken, or leave them open; outlines are the outer
         ones either way.
     min_area_px : int or None
-        Smaller stones are left out and listed; None is max(10 px, 0.1 % of the median area).
+        Smaller stones are left out and listed; None is max(10 px, 0.1 % of the median area), of the
+        components of a mask also 1 % of it, up to 50 px.
     mask : bool or None
-        True reads the picture as a binary mask, False as ids; None decides by its values.
+        True reads the picture as a binary mask, False as ids; None decides by its values, and takes
+        a net of edges around stones for background.
     skip : tuple of int
         Ids of stones to leave out.
+    keep : tuple of int
+        Ids of outlines or masks that are stones, though they look like a frame, the ground, a
+        repeat or a part of another.
+    label : tuple of str
+        The classes of annotations that are stones; empty leaves out those whose names say
+        something else (a marker, the ground …).
     max_image_mpx : float
         Largest picture that is decoded, in millions of pixels.
     px_per_m : float or None
@@ -44,9 +53,13 @@ class ReadSettings:
         longer side of the median stone has about 160 px.  Pictures, and annotations in px of an
         image, keep their own px.
     unit : {"px", "mm", "cm", "m", "in", "ft"}
-        Of a drawing or mesh that does not say its own; empty for none.
+        Of a drawing or mesh, also of a DXF or SVG that says another; empty is what the file says.
+    up : {"y", "z", "y-back", "z-back"}
+        Which axis of a mesh or a DXF is up; "-back" sees it from the other side.  Empty is Z,
+        unless the file cannot be told from its mirror image then.
     image : str
-        Which image of annotations of several: its file name or id in COCO, its id in masks of SAM.
+        Which image of annotations of several: its file name or id, its id in masks of SAM; or the
+        file of the picture of which coordinates are shares.
 
     Examples
     --------
@@ -60,9 +73,12 @@ class ReadSettings:
     min_area_px: int | None = None
     mask: bool | None = None
     skip: tuple[int, ...] = ()
+    keep: tuple[int, ...] = ()
+    label: tuple[str, ...] = ()
     max_image_mpx: float = 200.0
     px_per_m: float | None = None
     unit: Unit = ""
+    up: Up = ""
     image: str = ""
 
     def changed(self) -> tuple[tuple[str, Any], ...]:
@@ -79,6 +95,7 @@ class ReadSettings:
             ("pieces", self.pieces, get_args(Pieces)),
             ("holes", self.holes, get_args(Holes)),
             ("unit", self.unit, get_args(Unit)),
+            ("up", self.up, get_args(Up)),
         ):
             if value not in choices:
                 raise _usage(

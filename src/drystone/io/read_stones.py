@@ -22,13 +22,22 @@ from drystone.io.file_bytes import file_bytes
 from drystone.io.file_errors import listed, naming
 from drystone.io.images import FORMATS, SUFFIXES, Picture, decode
 from drystone.io.labels import Census, IdImage, check_no_zero, take_census, to_ids
+from drystone.io.mask_folder import ground_in, without_others
 from drystone.io.masks import BinaryMask, components, find_mask
 from drystone.io.outlines_in.model import OutlineFile
 from drystone.io.outlines_in.npz import is_npz, read_npz
-from drystone.io.patches import StonePatch, check_count, cut, stone_set
-from drystone.io.photo_beside import LABELS, SIDECAR, PhotoSidecar, read_sidecar
-from drystone.io.read_outlines import check_no_image, check_unit, outline_reader, stones_of
+from drystone.io.patches import (
+    MIN_AREA_PX,
+    StonePatch,
+    check_count,
+    cut,
+    smallest_of_mask_px,
+    stone_set,
+)
+from drystone.io.photo_beside import LABELS, read_sidecar, scale_beside
+from drystone.io.read_outlines import check_not_asked, check_unit, outline_reader, stones_of
 from drystone.io.read_settings import ReadSettings
+from drystone.io.repairs import without_blends, without_net
 from drystone.model.stone import Source, StoneSet, writable
 
 __all__ = ["ReadSettings", "read_stones"]
@@ -43,9 +52,9 @@ def read_stones(
     ----------
     source : str, Path or array
         A label image, a picture of ids in colours, a binary mask (PNG, TIFF, BMP, GIF, NPY, NPZ),
-        a folder of one-stone masks, an array like one of these; annotations in JSON (labelme,
-        COCO, SAM, GeoJSON), a drawing (DXF, SVG), a mesh (OBJ, PLY, STL); or what `drystone
-        segment` wrote.  The content tells them apart.
+        a folder of one-stone masks, an array like one of these; annotations (labelme, COCO, SAM,
+        GeoJSON, Label Studio, VIA, CVAT, YOLO), a drawing (DXF, SVG), a mesh (OBJ, PLY, STL); or
+        what `drystone segment` wrote.  The content tells them apart.
     settings : ReadSettings, optional
         Background, holes, pieces, units and the like.
 
@@ -96,31 +105,17 @@ def read_stones(
             picture = Picture(arrays)
         else:
             picture = decode(data, _max_px(settings))
-        scale = None if sidecar is None else _scale_beside(sidecar, picture, path)
+        # What has no two sides is refused below.
+        scale = scale_beside(sidecar, picture.values.shape[1::-1], path)
         digest = hashlib.sha256(data).hexdigest()
         del data  # as large as the picture when it is not compressed
         return _read_picture(picture, Source(name, digest, px_per_m=scale), settings)
 
 
-def _scale_beside(sidecar: PhotoSidecar, picture: Picture, path: Path) -> float | None:
-    """Return the scale of a photograph's label image; E117 when it is of another picture."""
-    height, width = picture.values.shape[:2]
-    if (width, height) != (sidecar.width_px, sidecar.height_px):
-        raise InputError(
-            "E117",
-            f"it has {width} x {height} px, but {SIDECAR} beside it is of one of "
-            f"{sidecar.width_px} x {sidecar.height_px}.",
-            where=str(path),
-            cure=f"Find the stones again with `drystone segment`, or remove {SIDECAR}, and give "
-            "the scale of the new picture.",
-        )
-    return sidecar.px_per_m
-
-
 def _of_px(settings: ReadSettings) -> tuple[tuple[str, Any], ...]:
     """Return what a plan must keep of the settings with which a picture was read."""
     check_unit(None, settings)
-    check_no_image(settings)
+    check_not_asked(settings, "image", "label", "up")
     return replace(settings, px_per_m=None).changed()
 
 
@@ -154,40 +149,61 @@ def _read_array(array: Any, settings: ReadSettings) -> StoneSet:
 def _read_picture(picture: Picture, source: Source, settings: ReadSettings) -> StoneSet:
     """Read a picture of several stones: a mask or ids."""
     reading = _of_px(settings)
-    image = to_ids(picture.values, settings.background)
+    image = to_ids(picture, settings.background)
     height, width = image.ids.shape
-    census = take_census(image.ids)
-    binary = _check(image, census, picture.lossy, settings)
+    given = image.ids
+    image, census, binary = _checked(image, picture.lossy, settings)
     if binary is None:
         check_count(len(census.values) - 1)
+        # What became background is left out already.
+        skip = (i for i in settings.skip if i in census.values or not (given == i).any())
+        settings = replace(settings, skip=tuple(skip))
         check_no_zero(census.values, image.background)
         ids = np.where(census.values == image.background, 0, census.values)
         patches, notices = cut(census.index, ids), image.notices
     else:
         labels, count = components(binary.mask)
         check_count(count)
-        patches, notices = cut(labels, np.arange(1, count + 1)), (_mask_notice(binary, count),)
+        patches = cut(labels, np.arange(1, count + 1))
+        settings = replace(settings, min_area_px=smallest_of_mask_px(patches, settings))
+        notices = (*_not_of_colours(image), _mask_notice(binary, count))
     source = replace(source, width_px=width, height_px=height, reading=reading)
     return stone_set(patches, notices, source, settings)
 
 
-def _check(
-    image: IdImage, census: Census, lossy: bool, settings: ReadSettings
-) -> BinaryMask | None:
-    """Refuse what is no picture of stones; return the mask if it is one."""
-    check_not_uniform(census, image.background)
+def _not_of_colours(image: IdImage) -> tuple[Notice, ...]:
+    """Return what is said of a mask: by which rule colours would be ids is not."""
+    return tuple(notice for notice in image.notices if notice.code != "W115")
+
+
+def _checked(
+    image: IdImage, lossy: bool, settings: ReadSettings
+) -> tuple[IdImage, Census, BinaryMask | None]:
+    """Refuse what is no picture of stones; return it repaired, and the mask if it is one."""
+    census = take_census(image.ids)
+    why = " ".join(notice.message for notice in image.notices)
+    check_not_uniform(census, image.background, why)
     if lossy and not settings.mask:
         check_not_lossy(census, image)
     binary = find_mask(image, census, settings.mask, lossy=lossy)
     if binary is None:
         check_not_photo(census)
-        check_background(census, image.background)
+        if settings.mask is None:
+            net = image
+            image, census = without_net(image, census)
+            if image is not net:
+                check_not_uniform(census, image.background, image.notices[-1].message)
+                binary = find_mask(image, census, settings.mask)
+    if binary is None:
+        check_background(census, image.background, rim_px=int(image.has_edges))
+        least_px = settings.min_area_px or MIN_AREA_PX
+        image, census = without_blends(image, census, least_px)
         check_not_resampled(census, image.background)
     else:
         ends = np.array([binary.background, binary.stone])
         two = Census(binary.mask.astype(np.int32) + np.int32(1), ends)
         check_background(two, binary.background)
-    return binary
+    return image, census, binary
 
 
 def _mask_notice(binary: BinaryMask, count: int) -> Notice:
@@ -215,18 +231,30 @@ def _read_folder(folder: Path, name: str, settings: ReadSettings) -> StoneSet:
     if ignored:
         notices.append(Notice("W117", f"not pictures, left aside: {writable(listed(ignored))}."))
     digest, patches, sizes = hashlib.sha256(), [], []
+    doubtful: dict[int, LabelImageError] = {}
     names = tuple(writable(file.name) for file in files)
     for number, (file, own) in enumerate(zip(files, names, strict=True), start=1):
         data = _bytes_of(file)
         digest.update(hashlib.sha256(data).digest())
         where = f"{name}/{own}"
         with naming(where):
-            mask, notice = _mask_of_one(decode(data, _max_px(settings)), where, settings)
+            picture = decode(data, _max_px(settings))
+            said: tuple[Notice, ...] = ()
+            try:
+                mask, said = _mask_of_one(picture, where, settings)
+            except LabelImageError as error:
+                if error.code != "E105":
+                    raise
+                error.where = where
+                doubtful[number] = error
+                mask = ground_in(picture, settings.background)
         sizes.append(mask.shape)
-        notices += [notice] if notice else []
+        notices += said
         patches += cut(mask.astype(np.int32), np.array([number]), own) or [
             StonePatch(np.zeros((1, 1), bool), 0, 0, number, len(mask), name=own)
         ]
+    patches, left_out = without_others(patches, sizes, doubtful, settings)
+    notices += left_out
     height, width = np.max(sizes, axis=0).tolist()
     source = Source(name, digest.hexdigest(), width, height, names, _of_px(settings))
     return stone_set(patches, notices, source, settings)
@@ -240,23 +268,25 @@ def _natural_order(path: Path) -> tuple[list[str | int], str]:
 
 def _mask_of_one(
     picture: Picture, where: str, settings: ReadSettings
-) -> tuple[NDArray[np.bool_], Notice | None]:
+) -> tuple[NDArray[np.bool_], tuple[Notice, ...]]:
     """Read the mask, (h, w), of one stone; an empty one has no pixel."""
-    image = to_ids(picture.values, settings.background)
+    image = to_ids(picture, settings.background)
     height, width = image.ids.shape
     value = int(image.ids.flat[0])
     if (image.ids == value).all():
         full = value != image.background
         text = f"{where} is stone to all its edges ({width} x {height} px of {value})."
-        notice = Notice("W118", text, "Check that it is not an empty picture.") if full else None
-        return np.full((height, width), full), notice
-    census = take_census(image.ids)
+        notice = Notice("W118", text, "Check that it is not an empty picture.")
+        return np.full((height, width), full), (notice,) if full else ()
     # mask=False is about pictures of many stones: here every picture is a mask.
-    binary = _check(image, census, picture.lossy, ReadSettings(mask=settings.mask or None))
+    image, census, binary = _checked(image, picture.lossy, ReadSettings(mask=settings.mask or None))
+    said = tuple(
+        replace(notice, message=f"{where}: {notice.message}") for notice in _not_of_colours(image)
+    )
     if binary is not None:
-        return binary.mask, None
+        return binary.mask, said
     if len(census.values) == 2:
-        return image.ids != image.background, None
+        return image.ids != image.background, said
     what = f"{len(census.values)} values in a mask of one stone."
     cure = "A folder holds one black-and-white mask a stone; give a label image by itself."
     raise LabelImageError("E111", what, cure=cure)

@@ -1,4 +1,7 @@
-"""TIFF pages to values: tifffile where it can, Pillow for the codecs that it lacks."""
+"""TIFF pages to values: tifffile reads the tags, and what it needs further packages for is here.
+
+Strips and tiles are unpacked one by one, each within the size that the tags give it.
+"""
 
 import io
 import math
@@ -13,17 +16,16 @@ from typing import Any
 import numpy as np
 import tifffile
 from numpy.typing import NDArray
-from PIL.Image import Transpose
 
 from drystone.io.file_errors import damaged, several_pages
 from drystone.io.foreign import foreign
 from drystone.io.pictures import opened
 
-_BY_TIFFFILE = {1, 8, 32773, 32946}
-"""No compression, deflate, PackBits: decoded by tifffile without further packages."""
+_PACKED = {1, 8, 32773, 32946}
+"""No compression, deflate, PackBits."""
 
-_BY_PILLOW = {2, 3, 4, 5}
-"""Fax codes and LZW."""
+_BY_LIBTIFF = {2, 3, 4, 5}
+"""Fax codes and LZW: unpacked by the library behind Pillow."""
 
 _LOSSY = {6, 7}
 """JPEG."""
@@ -40,17 +42,29 @@ ORIENTATION = 0x0112
 _PLANES = 33629
 """Tag of MetaMorph, of which the number of values is that of planes behind one page."""
 
-_BACK = {
-    2: Transpose.FLIP_LEFT_RIGHT, 3: Transpose.ROTATE_180, 4: Transpose.FLIP_TOP_BOTTOM,
-    5: Transpose.TRANSPOSE, 6: Transpose.ROTATE_90, 7: Transpose.TRANSVERSE,
-    8: Transpose.ROTATE_270,
+TURNS = {
+    2: "mirrored left to right", 3: "turned by 180 degrees", 4: "mirrored top to bottom",
+    5: "mirrored and turned", 6: "turned by 90 degrees clockwise", 7: "mirrored and turned",
+    8: "turned by 90 degrees counter-clockwise",
 }  # fmt: skip
-"""What takes back the turn of an orientation."""
+"""What is done to a picture of an orientation."""
+
+TURNED_BACK = {6: 8, 8: 6}
+"""Orientations that another one takes back; all others are their own opposite."""
+
+_NODATA = 42113
+"""Tag of GDAL: the number that stands for nothing."""
+
+_REVERSED = bytes(int(f"{byte:08b}"[::-1], 2) for byte in range(256))
+"""Bytes with their bits in the other order."""
 
 _MOST_PAGES = 10_000
 _MOST_BYTES_A_PX = 8
-_EXPANDS = 2**26
-"""Bytes that packed ones may become before it is looked at what they do become."""
+_ROOM = 2**26
+"""Bytes that tiles may have beyond those of the picture."""
+
+_BLOCK_PX = 2**20
+"""Numbers of few bits that are made at once."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +80,8 @@ class TiffPage:
     bits: int  # of a channel
     orientation: int  # how the camera was held, 1 to 8
     negative: bool  # 0 is white
+    nodata: float | None  # the number that stands for nothing
+    missing: str  # strips that are not in the file, which are ground; empty for none
 
 
 def inspect(data: bytes) -> TiffPage:
@@ -76,7 +92,8 @@ def inspect(data: bytes) -> TiffPage:
     with _page(data) as page:
         planes, channels = _planes(page), int(page.samplesperpixel)
         compression, photometric = int(page.compression), int(page.photometric)
-        orientation = page.tags.get(ORIENTATION)
+        orientation, nodata = page.tags.get(ORIENTATION), page.tags.get(_NODATA)
+        missing, chunks = sum(count == 0 for count in page.databytecounts), math.prod(page.chunked)
         lossy = compression in _LOSSY
         found = TiffPage(
             width=int(page.imagewidth),
@@ -88,6 +105,8 @@ def inspect(data: bytes) -> TiffPage:
             bits=int(np.max(page.bitspersample)),
             orientation=1 if orientation is None else int(orientation.value),
             negative=photometric == 0,
+            nodata=None if nodata is None else _number(str(nodata.value)),
+            missing=f"{missing} of {chunks} strips or tiles" if missing else "",
         )
     if planes > 1 or channels > 4:
         said = f"{planes} planes" if planes > 1 else f"{channels} channels"
@@ -98,28 +117,183 @@ def inspect(data: bytes) -> TiffPage:
 def values(data: bytes, check: Callable[[int, int], None]) -> NDArray[Any]:
     """Decode the only page of a TIFF, channels last; palette indices and numbers are kept.
 
-    Pixels are where the file has them: its orientation turns nothing, however it is compressed.
+    Pixels are where the file has them: its orientation turns nothing here.
     """
     with _page(data) as page:
-        compression, bits, kind = (
-            int(n) for n in (page.compression, page.bitspersample, page.sampleformat)
+        if int(page.compression) in _LOSSY:
+            return _values_by_pillow(data, check)
+        channels, planes = int(page.samplesperpixel), 1
+        if int(page.planarconfig) == 2:
+            channels, planes = 1, channels
+        height, width = int(page.imagelength), int(page.imagewidth)
+        rows = int(page.tilelength if page.is_tiled else min(int(page.rowsperstrip), height))
+        cols = int(page.tilewidth) if page.is_tiled else width
+        if min(rows, cols, height, width, channels) < 1:
+            raise damaged("a side of it is 0")
+        kind = np.dtype(page.dtype).newbyteorder(page.parent.byteorder)
+        options = {tag: int(page.tags[tag].value) for tag in _FAX_OPTIONS if tag in page.tags}
+        code = _Code(
+            int(page.compression), int(page.predictor), int(page.fillorder), options,
+            kind, int(page.bitspersample), cols, channels,
+        )  # fmt: skip
+        offsets, counts = page.dataoffsets, page.databytecounts
+        places = [(int(start), int(n)) for start, n in zip(offsets, counts, strict=False)]
+        nodata = page.tags.get(_NODATA)
+        nothing = None if nodata is None else _number(str(nodata.value))
+    down, across = math.ceil(height / rows), math.ceil(width / cols)
+    if len(places) < down * across * planes:
+        raise damaged("it does not hold all of its strips")
+    room = down * across * planes * rows * code.row_bytes
+    if room > 2 * planes * height * math.ceil(width / cols) * code.row_bytes + _ROOM:
+        raise damaged("its tiles are larger than the picture")
+    if sum(count for _, count in places) > len(data):
+        raise damaged("its strips lie in each other")
+    found = np.zeros((height, width, planes * channels), kind.newbyteorder("="))
+    if nothing is not None and _holds(found.dtype, nothing):
+        found[:] = nothing
+    for place, (plane, i, j) in enumerate(np.ndindex(planes, down, across)):
+        start, count = places[place]
+        if not count:  # sparse
+            continue
+        top, left = i * rows, j * cols
+        there = min(rows, height - top)
+        chunk = code.numbers(data[start : start + count], rows if page.is_tiled else there)
+        part = chunk[:there, : width - left]
+        found[top : top + there, left : left + cols, plane : plane + channels] = part
+    return found if found.shape[2] > 1 else found[:, :, 0]
+
+
+_FAX_OPTIONS = (292, 293)
+
+
+@dataclass(frozen=True)
+class _Code:
+    """How the numbers of strips and tiles are packed."""
+
+    compression: int
+    predictor: int
+    order: int  # 2 has the bits of every byte the other way round
+    options: dict[int, int]  # tags of fax codes
+    kind: np.dtype[Any]
+    bits: int
+    width: int  # px
+    channels: int
+
+    @property
+    def row_bytes(self) -> int:
+        """Bytes of a row that is not packed."""
+        return -(-self.width * self.channels * self.bits // 8)
+
+    def numbers(self, piece: bytes, rows: int) -> NDArray[Any]:
+        """Return the numbers of a strip or tile, (rows, width, channels)."""
+        want = rows * self.row_bytes
+        with foreign(damaged):
+            found = self._unpacked(piece, rows, want)
+        if len(found) < want:
+            raise damaged("a strip of it is too short")
+        table = np.frombuffer(found, np.uint8, want).reshape(rows, self.row_bytes)
+        shape = rows, self.width, self.channels
+        if self.predictor == 3:
+            return self._floats(table).reshape(shape)
+        if self.bits < 8 or self.bits % 8:
+            return _of_few_bits(table, self.bits, shape[1] * shape[2]).reshape(shape)
+        if self.predictor != 2:
+            return table.view(self.kind).reshape(shape)
+        whole = np.dtype(f"u{self.kind.itemsize}").newbyteorder(self.kind.byteorder)
+        steps = table.view(whole).reshape(shape)
+        whole = whole.newbyteorder("=")
+        return np.cumsum(steps, axis=1, dtype=whole).view(self.kind.newbyteorder("="))
+
+    def _unpacked(self, piece: bytes, rows: int, want: int) -> bytes:
+        """Return what a packed piece holds, as far as it is wanted."""
+        if self.compression in _BY_LIBTIFF:
+            return self._by_libtiff(piece, rows)
+        if self.order == 2:
+            piece = piece.translate(_REVERSED)
+        if self.compression == 1:
+            return piece
+        if self.compression == 32773:
+            return _unpacked_bits(piece, want)
+        decoder = zlib.decompressobj()
+        found = decoder.decompress(piece, want)
+        if len(found) == want and len(decoder.decompress(decoder.unconsumed_tail, _ROOM)) == _ROOM:
+            raise damaged("its strips are larger than the picture")
+        return found
+
+    def _by_libtiff(self, piece: bytes, rows: int) -> bytes:
+        """Unpack fax codes and LZW, as a TIFF of one strip; of LZW it gives the bytes."""
+        lzw = self.compression == 5
+        width = self.row_bytes if lzw else self.width
+        tags = {256: width, 257: rows, 258: 8 if lzw else 1, 259: self.compression, 262: 1}
+        tags |= {266: self.order, 273: 8, 277: 1, 278: rows, 279: len(piece), **self.options}
+        entries = b"".join(struct.pack("<HHII", tag, 4, 1, n) for tag, n in sorted(tags.items()))
+        place = 8 + len(piece) + len(piece) % 2
+        head = struct.pack("<2sHI", b"II", 42, place)
+        data = (
+            (head + piece).ljust(place, b"\0") + struct.pack("<H", len(tags)) + entries + b"\0" * 4
         )
-        if len(page.dataoffsets) < math.prod(page.chunked):
-            # tifffile fills the rest with 0.
-            raise damaged("it does not hold all of its strips")
-        negative = int(page.photometric) == 0
-        size = math.prod(page.shaped) * max(1, bits // 8)
-        packed = [
-            (int(a), int(n)) for a, n in zip(page.dataoffsets, page.databytecounts, strict=False)
-        ]
-    if compression not in _BY_TIFFFILE:
-        unsigned = bits == 32 and kind == 1
-        return _values_by_pillow(data, check, unsigned=unsigned, negative=negative)
-    if compression != 1:
-        _check_expanded(data, packed, compression, size)
-    with _page(data) as page:
-        found = np.asarray(page.asarray())
-        return np.moveaxis(found, 0, -1) if page.axes == "SYX" else found
+        with opened(data, lambda *_: None) as image:
+            found = np.asarray(image)
+        return bytes((found if lzw else np.packbits(found, axis=1)).data)
+
+    def _floats(self, table: NDArray[np.uint8]) -> NDArray[Any]:
+        """Undo the predictor of numbers with a point: bytes of one rank stand together."""
+        rows, size = len(table), self.kind.itemsize
+        by_channel = table.reshape(rows, -1, self.channels)
+        ranks = np.cumsum(by_channel, axis=1, dtype=np.uint8).reshape(rows, size, -1)
+        return np.ascontiguousarray(ranks.swapaxes(1, 2)).view(self.kind.newbyteorder(">"))
+
+
+def _of_few_bits(table: NDArray[np.uint8], bits: int, count: int) -> NDArray[Any]:
+    """Return the numbers of rows that are packed bit after bit, some rows at once."""
+    found = np.empty((len(table), count), np.uint8 if bits < 8 else np.uint16)
+    step = max(1, _BLOCK_PX // count)
+    for top in range(0, len(table), step):
+        part = np.unpackbits(table[top : top + step], axis=1)[:, : bits * count]
+        part = part.reshape(len(part), count, bits)
+        numbers = found[top : top + step]
+        numbers[:] = 0
+        for bit in range(bits):
+            numbers <<= 1
+            numbers |= part[:, :, bit]
+    return found
+
+
+def _unpacked_bits(piece: bytes, want: int) -> bytes:
+    """Return what PackBits holds, as far as it is wanted."""
+    found, place = bytearray(), 0
+    while place < len(piece) - 1 and len(found) < want:
+        number = piece[place]
+        if number < 128:
+            found += piece[place + 1 : place + 2 + number]
+        elif number > 128:
+            found += piece[place + 1 : place + 2] * (257 - number)
+        place += number + 2 if number < 128 else 2 if number > 128 else 1
+    return bytes(found)
+
+
+def turned(values: NDArray[Any], orientation: int) -> NDArray[Any]:
+    """Turn a picture as its orientation says, 1 to 8."""
+    if orientation in (5, 6, 7, 8):
+        values = values.swapaxes(0, 1)
+    down = slice(None, None, -1 if orientation in (3, 4, 7, 8) else 1)
+    right = slice(None, None, -1 if orientation in (2, 3, 6, 7) else 1)
+    return np.ascontiguousarray(values[down, right])
+
+
+def _holds(kind: np.dtype[Any], number: float) -> bool:
+    """Tell whether values of a kind can be a number."""
+    if kind.kind not in "iu":
+        return kind.kind == "f"
+    limits = np.iinfo(kind)
+    return bool(limits.min <= number <= limits.max and number == math.floor(number))
+
+
+def _number(text: str) -> float | None:
+    try:
+        return float(text.strip("\0 "))
+    except ValueError:
+        return None
 
 
 @contextmanager
@@ -173,65 +347,28 @@ def _planes(page: Any) -> int:
 def _unreadable(page: Any) -> str:
     """Say why a page cannot be decoded without loss; nothing when it can."""
     compression, channels = page.compression, int(page.samplesperpixel)
-    bits = page.bitspersample
-    if int(compression) not in _BY_TIFFFILE | _BY_PILLOW | _LOSSY:
+    bits, predictor, dtype = page.bitspersample, int(page.predictor), page.dtype
+    if int(compression) not in _PACKED | _BY_LIBTIFF | _LOSSY:
         return f"compression {getattr(compression, 'name', int(compression))}"
-    if page.dtype is None or page.dtype.itemsize * channels > _MOST_BYTES_A_PX:
+    if dtype is None or not isinstance(bits, int) or dtype.itemsize * channels > _MOST_BYTES_A_PX:
         return f"{channels} channels of {bits} bits"
-    if int(compression) not in _BY_TIFFFILE and channels > 1 and bits > 8:
-        return f"{bits} bits a colour channel and compression"
-    return ""
+    whole = bits == 8 * dtype.itemsize
+    wrong = {
+        f"numbers of {bits} bits": not whole and (bits > 16 or dtype.kind not in "bu"),
+        f"{bits} bits a channel and compression {int(compression)}": (
+            int(compression) in _BY_LIBTIFF - {5} and bits * channels != 1
+        ),
+        f"predictor {predictor} of {bits} bits": (
+            predictor not in (1, 2, 3)
+            or (predictor == 2 and (not whole or dtype.kind not in "iuf"))
+            or (predictor == 3 and dtype.kind != "f")
+        ),
+    }
+    return next((what for what, found in wrong.items() if found), "")
 
 
-def _check_expanded(
-    data: bytes, packed: list[tuple[int, int]], compression: int, size: int
-) -> None:
-    """Refuse packed bytes that become many more than the picture has."""
-    total, most = sum(count for _, count in packed), 2 * size + _EXPANDS
-    if total > len(data):
-        raise damaged("its strips lie in each other")
-    if total * 1032 <= _EXPANDS:  # the most that deflate can do
-        return
-    expanded = 0
-    for start, count in packed:
-        piece = data[start : start + count]
-        with foreign(damaged):
-            expanded += (_inflated if compression != 32773 else _unpacked)(piece, most)
-        if expanded > most:
-            raise damaged("its strips are larger than the picture")
-
-
-def _inflated(piece: bytes, most: int) -> int:
-    """Return how many bytes deflate makes of some, counted until there are too many."""
-    decoder, total = zlib.decompressobj(), 0
-    while piece and total <= most:
-        total += len(decoder.decompress(piece, 2**24))
-        piece = decoder.unconsumed_tail
-    return total
-
-
-def _unpacked(piece: bytes, most: int) -> int:
-    """Return the same of PackBits."""
-    place = total = 0
-    while place < len(piece) and total <= most:
-        number = piece[place]
-        total += number + 1 if number < 128 else 257 - number
-        place += number + 2 if number < 128 else 2
-    return total
-
-
-def _values_by_pillow(
-    data: bytes, check: Callable[[int, int], None], *, unsigned: bool, negative: bool
-) -> NDArray[Any]:
+def _values_by_pillow(data: bytes, check: Callable[[int, int], None]) -> NDArray[Any]:
+    """Decode JPEG in a TIFF; Pillow turns a picture when it loads it."""
     with opened(data, check) as image:
-        # Pillow turns a picture when it loads it.
-        back = _BACK.get(image.getexif().get(ORIENTATION, 1))
-        mode = image.mode
-        found = np.asarray(image if back is None else image.transpose(back))
-    if unsigned and found.dtype.itemsize == 4:
-        # Pillow has no unsigned 32-bit mode: the bits are right, the sign is not.
-        found = found.view(np.uint32)
-    if negative and mode in ("1", "L"):
-        # Pillow inverts white-is-zero pictures; values are the file's own, as in tifffile.
-        found = ~found
-    return found
+        orientation = int(image.getexif().get(ORIENTATION, 1))
+        return turned(np.asarray(image), TURNED_BACK.get(orientation, orientation))

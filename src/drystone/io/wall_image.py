@@ -7,7 +7,7 @@ import numpy as np
 import tifffile
 from PIL import Image
 
-from drystone.errors import InputError, UsageError
+from drystone.errors import InputError, Notice, UsageError
 from drystone.io.checks import (
     check_background,
     check_not_lossy,
@@ -19,10 +19,13 @@ from drystone.io.file_bytes import file_bytes
 from drystone.io.file_errors import naming
 from drystone.io.images import decode
 from drystone.io.labels import check_no_zero, take_census, to_ids
+from drystone.io.repairs import without_blends, without_net
 from drystone.model.wall import Labels
 from drystone.whole_files import write_whole
 
 _MAX_ID_16_BIT = 65535
+_BLENDED_PX = 4
+"""Of a piece of a blended edge, at most one less: wedges are small."""
 _CURE = "Set those pixels to 0, or use --background {0} (background={0} in Python)"
 
 
@@ -107,7 +110,16 @@ def read_wall_image(
         E101 values were blended (JPEG), E102 a photo, E104 no stone, E105 another background,
         E108 values that cannot be ids (0 too, when the background is another value).
     """
-    path = Path(path)
+    labels, _ = read_wall_picture(
+        Path(path), background=background, max_image_mpx=max_image_mpx, planned=planned
+    )
+    return labels
+
+
+def read_wall_picture(
+    path: Path, *, background: int = 0, max_image_mpx: float = 200.0, planned: bool = False
+) -> tuple[Labels, tuple[Notice, ...]]:
+    """Return the same, and what was made background, repaired or turned on the way."""
     try:
         data = file_bytes(path)
     except OSError as error:
@@ -116,19 +128,23 @@ def read_wall_image(
         raise InputError("E100", what, where=str(path), cure=cure) from error
     with naming(path.name):
         picture = decode(data, int(max_image_mpx * 1e6))
-        image = to_ids(picture.values, background)
+        image = to_ids(picture, background)
         census = take_census(image.ids)
         if picture.lossy:
             check_not_lossy(census, image)
         if len(census.values) > 1:
-            check_background(census, image.background, _CURE)
+            if not planned:
+                image, census = without_net(image, census, wall=True)
+            check_background(census, image.background, _CURE, int(image.has_edges))
             check_not_photo(census)
             if not planned:
+                image, census = without_blends(image, census, _BLENDED_PX, wall=True)
                 check_not_resampled(census, image.background)
         elif int(census.values[0]) == image.background:
             # One stone may fill the whole image; no stone may not.
-            check_not_uniform(census, image.background)
+            why = " ".join(notice.message for notice in image.notices)
+            check_not_uniform(census, image.background, why)
         check_no_zero(census.values, image.background)
     labels = image.ids.astype(np.uint32)
     labels[labels == image.background] = 0
-    return labels
+    return labels, tuple(notice for notice in image.notices if notice.code != "W115")

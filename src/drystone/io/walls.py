@@ -1,29 +1,40 @@
-"""Reading what `analyse` and `measure` are given: a label image, a plan, or a block model."""
+"""Reading what `analyse`, `measure` and `craft` are given: a plan, a block model, or stones."""
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from drystone.contacts.blocks import pieces_apart
 from drystone.contacts.given import polygons_from_json, read_mu
-from drystone.errors import InputError, Notice, UsageError
+from drystone.errors import InputError, LabelImageError, Notice, UsageError
 from drystone.io.file_bytes import file_bytes
-from drystone.io.file_errors import listed
+from drystone.io.file_errors import listed, naming
 from drystone.io.foreign import foreign
 from drystone.io.json_text import json_of
+from drystone.io.outlines_in.model import OutlineFile
+from drystone.io.outlines_in.npz import is_npz
+from drystone.io.painted import painted
+from drystone.io.photo_beside import read_sidecar, scale_beside
 from drystone.io.plan_folder import BLOCKS
 from drystone.io.plan_json import read_plan
-from drystone.io.wall_image import read_wall_image
+from drystone.io.read_outlines import outline_reader, stones_and_outlines
+from drystone.io.read_settings import ReadSettings
+from drystone.io.read_stones import read_stones
+from drystone.io.wall_image import read_wall_image, read_wall_picture
+from drystone.io.wall_outlines import not_cut, outlines_painted, wall_outlines
 from drystone.kernels.label_runs import label_runs
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.model.plan import Plan
+from drystone.model.stone import StoneSet, writable
 from drystone.model.wall import Labels
 from drystone.statics.joints import loose_blocks
-from drystone.statics.model import RigidBlockModel
+from drystone.statics.model import GROUND, RigidBlockModel
 
 _TOGETHER = "Keep the files of a plan together, or plan again."
 
@@ -49,6 +60,11 @@ class GivenWall:
     plan: Plan | None = None  # when the file was a plan; its image is the wall image beside it
     blocks: dict[str, Any] | None = None
     """A block model as it was written, also that of a plan on outlines."""
+    notices: tuple[Notice, ...] = ()  # what was left out, repaired or decided when it was read
+    outlines: dict[int, Points] | None = None
+    """Of a file of outlines, (n, 2) by id, closed, px of `labels`, y up from its lower edge."""
+    px_per_m: float | None = None  # of stones whose file says so itself
+    drawn: bool = False  # a drawing or mesh, whose px are those that it was drawn with
 
     @property
     def wedge_ids(self) -> frozenset[int]:
@@ -66,19 +82,48 @@ class GivenWall:
 MOST_MPX = 200.0
 """Largest picture of a wall that is decoded, in millions of pixels."""
 
+PLAN = "plan.json"
 
-def read_wall(path: Path, *, background: int = 0) -> GivenWall:
-    """Read a label image, a plan.json (with the wall image beside it), or a block model."""
+_OF_MASKS = (1, 255, 65535)
+"""The value of all stones of a mask, whose pieces are stones; another one is an id."""
+
+_TRACED = (
+    "Trace its stones first, as in docs/for-engineers.md#from-a-photograph-of-a-wall: outlines of "
+    "labelme or CVAT are read, or a label image with one id a stone."
+)
+_CURES = {
+    "E102": _TRACED,
+    "E111": "Give the folder of a plan, one of one-stone masks of the whole wall, or a file.",
+    "E113": "A wall is a plan.json, a block model (blocks), a label image, or outlines of its "
+    "stones (labelme, COCO, GeoJSON, DXF, SVG ...).",
+}
+"""What helps with a wall, by code; the cures of readers are for stones on the ground."""
+_STONES = "Stones are read from"
+_SEGMENTED = (
+    "find the stones in it with `drystone segment PHOTO`",
+    "trace its stones, as in docs/for-engineers.md#from-a-photograph-of-a-wall",
+)
+
+
+def read_wall(path: Path, settings: ReadSettings | None = None) -> GivenWall:
+    """Read a plan (with the wall image beside it), a block model, or whatever stones are read from.
+
+    A label image keeps every pixel of every id, unless settings of reading say otherwise; outlines
+    stay outlines.
+    """
+    settings = settings or ReadSettings()
     if path.is_dir():
-        path /= "plan.json"
+        if not (path / PLAN).exists() and any(path.iterdir()):
+            return _stones(path, settings)
+        path /= PLAN
     if path.suffix.lower() != ".json":
-        return GivenWall(read_wall_image(path, background=background))
-    if background:
-        what = f"a background of {background} is of a label image, and this is none."
-        cure = "Leave --background (background in Python) out."
-        raise UsageError("E118", what, where=str(path), cure=cure)
+        return _stones(path, settings)
     content = _read_json(path)
-    if isinstance(content, dict) and ("blocks" in content or "blocks_xywh" in content):
+    model = isinstance(content, dict) and ("blocks" in content or "blocks_xywh" in content)
+    if not model and not _is_plan(content):
+        return _stones(path, settings)
+    _refuse_reading(settings, "block model" if model else "plan", path)
+    if model:
         return GivenWall(None, blocks=content)
     plan = read_plan(path)
     labels = read_image_of(plan, path.parent)
@@ -94,6 +139,81 @@ def read_wall(path: Path, *, background: int = 0) -> GivenWall:
         _refuse_misplaced(labels, plan, path)
         return GivenWall(labels, plan)
     return GivenWall(labels, plan, _blocks_of(plan, path))
+
+
+def _is_plan(content: Any) -> bool:
+    """Tell whether JSON is, or once was, a plan."""
+    if not isinstance(content, dict):
+        return False
+    named = str(content.get("schema", "")).startswith("drystone-plan")
+    return named or {"steps", "source"} <= content.keys()
+
+
+def _refuse_reading(settings: ReadSettings, what: str, path: Path) -> None:
+    """Refuse settings of reading for what says itself what its stones are (E118)."""
+    asked = [name for name, _ in replace(settings, px_per_m=None).changed()]
+    if asked:
+        options = ", ".join(f"--{name.removesuffix('_px').replace('_', '-')}" for name in asked)
+        said = f"this is a {what}, which says itself what its stones are: {options} has no meaning."
+        cure = f"Leave {'it' if len(asked) == 1 else 'them'} out; it is for pictures and outlines."
+        raise UsageError("E118", said, where=str(path), cure=cure)
+
+
+def _stones(path: Path, settings: ReadSettings) -> GivenWall:
+    """Read the stones of a wall; what is wrong with them is cured otherwise than on the ground."""
+    try:
+        return _wall_of_stones(path, settings)
+    except InputError as error:
+        if error.code in _CURES and (error.code == "E102" or error.cure.startswith(_STONES)):
+            error.cure = _CURES[error.code]
+        error.cure = error.cure.replace(*_SEGMENTED)
+        raise
+
+
+def _wall_of_stones(path: Path, settings: ReadSettings) -> GivenWall:
+    data, name = b"", writable(path.name)
+    with naming(name), suppress(OSError):  # what cannot be read is no file of outlines
+        data = b"" if path.is_dir() else file_bytes(path)
+        reader = outline_reader(data, name)
+        if reader is not None:
+            return _outlined(*stones_and_outlines(reader, data, name, settings))
+    image = not path.is_dir() and not is_npz(data)
+    if image and not replace(settings, background=0, px_per_m=None).changed():
+        try:
+            labels, notices = read_wall_picture(path, background=settings.background)
+        except LabelImageError as error:
+            if error.code != "E101":  # a mask with blended edges is one too
+                raise
+        else:
+            ids = np.unique(labels[labels > 0]).tolist()
+            if len(ids) > 1 or ids[0] not in _OF_MASKS or not pieces_apart(labels):
+                height, width = labels.shape
+                scale = scale_beside(read_sidecar(path), (width, height), path)
+                return GivenWall(labels, notices=notices, px_per_m=scale)
+    return _painted(read_stones(path, settings=settings))
+
+
+def _painted(stones: StoneSet) -> GivenWall:
+    labels, said = painted(stones)
+    return GivenWall(labels, notices=(*stones.notices, *said), px_per_m=stones.source.px_per_m)
+
+
+def _outlined(stones: StoneSet, file: OutlineFile) -> GivenWall:
+    outlines = wall_outlines(file, stones)
+    if outlines is None:
+        return _painted(stones)
+    below_px = min(stone.bottom_px for stone in stones)
+    notices = not_cut(stones.notices)
+    if below_px > 0 and not file.y_up:
+        said = f"The lowest point is {below_px} px above the lower edge of the image"
+        notices = (*notices, Notice("W301", f"{said}: the wall stands on it."))
+    return GivenWall(
+        outlines_painted(outlines),
+        notices=notices,
+        outlines=outlines,
+        px_per_m=stones.source.px_per_m,
+        drawn=file.unit_m is not None,
+    )
 
 
 def shows(labels: Labels, plan: Plan) -> bool:
@@ -131,17 +251,44 @@ def read_blocks_of(plan: Plan, folder: Path) -> Any:
     return {} if content is None else content  # a null is there, and is no block model
 
 
-def unsupported(model: RigidBlockModel) -> Notice | None:
-    """Name the blocks that no chain of contacts connects with the ground (W302)."""
+BEAR = "Only edges that meet bear on each other"
+
+
+def unsupported(model: RigidBlockModel, wall: GivenWall, *, swept: bool = False) -> Notice | None:
+    """Name the blocks that no chain of contacts connects with the ground (W302).
+
+    `swept`: the gaps that could be closed are.
+    """
     loose = loose_blocks(model)
     if not loose:
         return None
-    return Notice(
-        "W302",
-        f"{len(loose)} of {len(model.blocks)} blocks touch neither the ground nor a block that is "
-        f"connected with it: {listed(loose)}.",
-        "Only edges that meet bear on each other: close the gaps that are drawn between stones.",
-    )
+    said = f"{len(loose)} of {len(model.blocks)} blocks"
+    height = lowest(wall.blocks)
+    if height is not None and not on_ground(model):
+        cure = "Move the wall down until it stands there, or give what carries it as fixed."
+        said += f" are in the air: nothing touches y = 0, and the lowest block is at y = {height:g}"
+        return Notice("W302", f"{said}.", cure)
+    said += f" touch neither the ground nor a block that is connected with it: {listed(loose)}."
+    cure = f"{BEAR}: --close-gaps auto of `drystone analyse` looks for the gaps to close."
+    if wall.blocks is not None:
+        cure = f"{BEAR}: move blocks until they touch."
+    elif swept:
+        cure = "Trace what carries them, or leave them out with --skip."
+    return Notice("W302", said, cure)
+
+
+def on_ground(model: RigidBlockModel) -> bool:
+    """Tell whether anything stands on the ground, or is fixed like it."""
+    fixed = any(block.fixed for block in model.blocks)
+    return fixed or any(face.other == GROUND for face in model.interfaces)
+
+
+def lowest(blocks: Mapping[str, Any] | None) -> float | None:
+    """Return the height of the lowest point of a block model; None for what is no such model."""
+    if blocks is None:
+        return None
+    polygons = polygons_from_json(blocks).values()
+    return min((float(polygon[:, 1].min()) for polygon in polygons), default=None)
 
 
 def _blocks_of(plan: Plan, path: Path) -> dict[str, Any]:

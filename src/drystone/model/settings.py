@@ -136,11 +136,13 @@ def _checked(value: Any, hint: Any, where: str) -> Any:
     if isinstance(value, int) and abs(value) > _MOST:
         raise _refused(f"the number of {where} is too large.", f"Give one of at most {_MOST}.")
     if get_origin(hint) is tuple:
-        numbers = value if isinstance(value, list | tuple) else [None]
-        if any(not isinstance(one, int) or isinstance(one, bool) for one in numbers):
+        kind = get_args(hint)[0]
+        several = value if isinstance(value, list | tuple) else [None]
+        if any(not isinstance(one, kind) or isinstance(one, bool) for one in several):
             wrong = f"{where} = {value!r} has the wrong type."
-            raise _refused(wrong, "Give a list of whole numbers.")
-        return tuple(_checked(one, int, where) for one in numbers)
+            wanted = "texts" if kind is str else "whole numbers"
+            raise _refused(wrong, f"Give a list of {wanted}.")
+        return tuple(_checked(one, kind, where) for one in several)
     kinds = get_args(hint) if get_origin(hint) in (Union, types.UnionType) else (hint,)
     if float in kinds and isinstance(value, int) and not isinstance(value, bool):
         return float(value)

@@ -1,4 +1,4 @@
-"""The two families of markers, and OpenCV, which knows their patterns."""
+"""The families of markers, and OpenCV, which knows their patterns."""
 
 from importlib import import_module
 from typing import Any
@@ -9,9 +9,35 @@ from numpy.typing import NDArray
 from drystone.errors import UsageError
 
 DICTIONARIES = {"aruco": "DICT_4X4_50", "apriltag": "DICT_APRILTAG_36h11"}
-"""Name of a family here and in OpenCV."""
+"""Name of a family that is printed, here and in OpenCV."""
 
-FAMILIES = {"aruco": "ArUco 4x4_50", "apriltag": "AprilTag 36h11"}
+OTHERS = {
+    "aruco5x5": "DICT_5X5_1000",
+    "aruco6x6": "DICT_6X6_1000",
+    "aruco7x7": "DICT_7X7_1000",
+    "original": "DICT_ARUCO_ORIGINAL",
+    "mip36h12": "DICT_ARUCO_MIP_36h12",
+    "apriltag25h9": "DICT_APRILTAG_25h9",
+    "apriltag36h10": "DICT_APRILTAG_36h10",
+    "aruco4x4": "DICT_4X4_1000",
+    "apriltag16h5": "DICT_APRILTAG_16h5",
+}
+"""Families that are read where there is none of the printed ones; the smaller dictionaries of
+OpenCV are the first ids of these."""
+
+FAMILIES = {
+    "aruco": "ArUco 4x4_50",
+    "apriltag": "AprilTag 36h11",
+    "aruco5x5": "ArUco 5x5",
+    "aruco6x6": "ArUco 6x6",
+    "aruco7x7": "ArUco 7x7",
+    "original": "ArUco Original",
+    "mip36h12": "ArUco MIP 36h12",
+    "apriltag25h9": "AprilTag 25h9",
+    "apriltag36h10": "AprilTag 36h10",
+    "aruco4x4": "ArUco 4x4",
+    "apriltag16h5": "AprilTag 16h5",
+}
 """Name of a family for people."""
 
 
@@ -30,11 +56,12 @@ def load_cv2() -> Any:
 
 def opencv_dictionary(name: str) -> Any:
     """Return OpenCV's dictionary of a family; E174 for a name that is none."""
-    if name not in DICTIONARIES:
+    known = DICTIONARIES | OTHERS
+    if name not in known:
         what, cure = f"{name!r} is no family of markers.", f"Known: {', '.join(DICTIONARIES)}."
         raise UsageError("E174", what, where="--dictionary", cure=cure)
     aruco = load_cv2().aruco
-    return aruco.getPredefinedDictionary(getattr(aruco, DICTIONARIES[name]))
+    return aruco.getPredefinedDictionary(getattr(aruco, known[name]))
 
 
 def id_count(name: str) -> int:

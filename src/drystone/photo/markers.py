@@ -5,13 +5,20 @@ looks for the corner itself finds it too far inside: the marker then reads small
 it.  Edges are not moved by blur.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.photo.dictionaries import DICTIONARIES, load_cv2, modules_across, opencv_dictionary
+from drystone.photo.dictionaries import (
+    DICTIONARIES,
+    OTHERS,
+    load_cv2,
+    modules_across,
+    opencv_dictionary,
+)
 
 Points = NDArray[np.float64]
 
@@ -33,6 +40,9 @@ The edge of the paper is a quadrangle near to the marker's and may be taken for 
 here and by another one there; what any of them reads without a wrong square is a marker.
 """
 
+FEW_SQUARES = 6
+"""Squares along the edge of a marker, its black border too, of which a chance find is likely."""
+
 
 @dataclass(frozen=True, eq=False)
 class FoundMarker:
@@ -45,7 +55,7 @@ class FoundMarker:
 
     id: int
     corners_px: NDArray[np.float64]
-    dictionary: str  # its family, "aruco" or "apriltag"
+    dictionary: str  # its family, a key of `dictionaries.FAMILIES`
 
     @property
     def side_px(self) -> float:
@@ -57,9 +67,9 @@ class FoundMarker:
 def find_markers(image: NDArray[np.uint8], dictionary: str = "auto") -> tuple[FoundMarker, ...]:
     """Find markers with the white border around them, in any position, in grey or RGB.
 
-    `dictionary` is "aruco", "apriltag", or "auto": the family with more markers in the picture.
-    They are in the order of their ids; an id may occur twice.  E305 without OpenCV, E174 for
-    another dictionary.
+    `dictionary` is a family, or "auto": "aruco" or "apriltag", the one with more markers in the
+    picture, and where there are not two of either the one with most of all families.  They are in
+    the order of their ids; an id may occur twice.  E305 without OpenCV, E174 for another name.
     """
     cv2 = load_cv2()
     grey = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_RGB2GRAY)
@@ -67,7 +77,14 @@ def find_markers(image: NDArray[np.uint8], dictionary: str = "auto") -> tuple[Fo
     if dictionary != "auto":
         return _find(grey, dictionary)
     # The patterns of AprilTag have more squares, so of two the same number they are the surer.
-    return max((_find(grey, name) for name in reversed(DICTIONARIES)), key=len)
+    best = max((_find(grey, name) for name in reversed(DICTIONARIES)), key=len)
+    if len(best) > 1:
+        return best
+    counts = {name: len(_quads(grey, name, SEARCHES[:1])) for name in OTHERS}
+    most = max(counts, key=lambda name: counts[name])
+    # Among quadrangles of stones one in twenty reads as a pattern of so few squares.
+    least = 1 if modules_across(most) > FEW_SQUARES else 2
+    return best if counts[most] < max(least, len(best) + 1) else _find(grey, most)
 
 
 def _find(grey: NDArray[np.uint8], dictionary: str) -> tuple[FoundMarker, ...]:
@@ -79,11 +96,13 @@ def _find(grey: NDArray[np.uint8], dictionary: str) -> tuple[FoundMarker, ...]:
     return tuple(sorted(found, key=lambda marker: (marker.id, *marker.corners_px[0])))
 
 
-def _quads(grey: NDArray[np.uint8], dictionary: str) -> list[tuple[int, NDArray[Any]]]:
+def _quads(
+    grey: NDArray[np.uint8], dictionary: str, searches: Sequence[tuple[float, float]] = SEARCHES
+) -> list[tuple[int, NDArray[Any]]]:
     """Return ids and corners of the patterns that are there, each once."""
     aruco = load_cv2().aruco
     quads: list[tuple[int, NDArray[Any]]] = []
-    for distance, accuracy in SEARCHES:
+    for distance, accuracy in searches:
         parameters = aruco.DetectorParameters()
         # Stones are many quadrangles: a pattern with a wrong square is no marker here.
         parameters.errorCorrectionRate = 0.0

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from drystone.errors import InputError, Notice
 from drystone.photo.common_plane import CommonPlane, Piece, direct, fit_plane
+from drystone.photo.dictionaries import DICTIONARIES, FAMILIES
 from drystone.photo.layout import MarkerLayout
 from drystone.photo.markers import FoundMarker
 from drystone.photo.rectify import refuse_horizon
@@ -70,6 +71,10 @@ def _usable(
     found: Sequence[FoundMarker], layout: MarkerLayout, limits: MarkerLimits
 ) -> tuple[tuple[FoundMarker, ...], tuple[Notice, ...]]:
     """Return at least two markers that can be measured, and say which were left out."""
+    notices: list[Notice] = []
+    family = found[0].dictionary if found else "aruco"
+    if family not in DICTIONARIES:
+        notices.append(_other_family(found, layout))
     known = [one for one in found if layout.lists(one.id)]
     twice = [one for one, count in Counter(marker.id for marker in known).items() if count > 1]
     if twice:
@@ -79,7 +84,6 @@ def _usable(
             where="markers",
             cure="Use every marker once: `drystone markers --ids` prints others.",
         )
-    notices = []
     strange = sorted({one.id for one in found} - {one.id for one in known})
     if strange:
         others = "of the sheet" if layout.page else "to be used"
@@ -101,6 +105,24 @@ def _usable(
     return used, tuple(notices)
 
 
+def _other_family(found: Sequence[FoundMarker], layout: MarkerLayout) -> Notice:
+    """Say that markers are not of those that are printed here; a sheet cannot be of such (E170)."""
+    what = f"{_markers(sorted({one.id for one in found}))} of {FAMILIES[found[0].dictionary]}"
+    printed = " and ".join(FAMILIES[name] for name in DICTIONARIES)
+    if layout.page is not None:
+        raise InputError(
+            "E170",
+            f"{what} found, of another dictionary than the sheets of `drystone markers` "
+            f"({printed}), so their distances are not known.",
+            where="markers",
+            cure="Say how large one is, such as --aruco 50mm, or print a sheet.",
+        )
+    cure = "Measure one, black square only, and give its size with --aruco."
+    return Notice(
+        "W184", f"The scale is that of {what}: `drystone markers` prints {printed}.", cure
+    )
+
+
 _NEARER = "Go nearer, photograph from above, or print larger markers."
 
 
@@ -117,7 +139,10 @@ def _too_few(
     notices: Sequence[Notice],
     strange: Sequence[int],
 ) -> InputError:
-    what = "no marker was found" if not found else "no marker can be used"
+    what = "no marker can be used"
+    if not found:
+        read = ", ".join(FAMILIES.values())
+        what = f"no marker was found (looked for {read}, all of their white border visible)"
     if used:
         what = f"only marker {used[0].id} can be used"
     left_out = "".join(f" {notice.message}" for notice in notices)

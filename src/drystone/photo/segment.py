@@ -8,6 +8,7 @@ from scipy import ndimage
 
 from drystone.errors import InputError
 from drystone.kernels.raster import Mask
+from drystone.photo.left_out import EDGE, FAINT, PAPER, SHADOW, SMALL, LeftOut, lost, shapes
 from drystone.photo.segment_ground import GroundModel, fit_ground
 from drystone.photo.segment_outline import contrast_along, refine_outlines
 from drystone.photo.segment_settings import SegmentSettings
@@ -21,6 +22,9 @@ _FLOOR_SHARE = 2e-4
 """Share of the picture of the smallest stone."""
 
 
+ROUGH = 6.0
+"""What a ground varies in CIELAB, robust standard deviation, that is no cloth, wood or gravel."""
+
 _HORN = 0.12
 """Half the thickness of ends that are no stone, over that of the stone."""
 
@@ -33,10 +37,7 @@ class FoundStones:
     necks: tuple[Neck, ...]  # cut and doubtful ones
     contrast: tuple[float, ...]  # along the weakest quarter of each outline, in CIELAB
     shaded: tuple[int, ...]  # stones with a part that may be shadow
-    # Middles (column, row) of stones that the edge of the photograph cuts.
-    cut_px: tuple[tuple[float, float], ...]
-    specks: int  # areas that were too small
-    beside_papers: int  # areas that touch a marker and were taken for its paper
+    left_out: tuple[LeftOut, ...]  # shapes that were not taken for stones
     ground: GroundModel
     shadow_level: float  # light in cast shadows over that beside them; 1 when there are none
 
@@ -61,16 +62,23 @@ def segment(
     papers = np.zeros(image.shape[:2], bool) if papers is None else papers
     usable = ~papers if inside is None else inside & ~papers
     ground = fit_ground(image, usable, settings.ground)
-    foreground = _unlike(ground, usable)
+    unlike, low = _unlike(ground, usable)
+    foreground = _surely(unlike, low, ground)
     shadows = find_shadows(ground, foreground, usable)
     stone = _solid(foreground & ~shadows.mask, usable)
     stone = refine_outlines(ground.lab, stone, usable)
     stone = _without_horns(_solid(stone, usable))
-    stone, beside = _without_papers(stone, papers)
-    labels, necks = split_stones(stone, ground.lab, settings)
-    found, cut, specks = _sorted_out(labels, usable | papers, settings)
+    beside = _beside(stone, papers)
+    labels, necks = split_stones(stone & ~beside, ground.lab, settings)
+    found, cut, small, least_px = _sorted_out(labels, usable | papers, settings)
     if not found.any():
-        raise _no_stones(len(cut), ground)
+        raise _no_stones(len(shapes(cut, EDGE)), ground)
+    causes = {SHADOW: shadows.mask, FAINT: unlike & ~foreground}
+    known = stone | (labels > 0)
+    left_out = (
+        *shapes(cut, EDGE), *shapes(beside, PAPER), *lost(unlike, known, causes, least_px),
+        *shapes(small, SMALL),
+    )  # fmt: skip
     count = int(found.max())
     contrast = contrast_along(ground.lab, found.astype(np.int32), count)
     return FoundStones(
@@ -78,23 +86,25 @@ def segment(
         necks=tuple(neck for neck in necks if stones_at(found, neck.at_px)),
         contrast=tuple(float(value) for value in contrast),
         shaded=_shaded(found, shadows, count),
-        cut_px=cut,
-        specks=specks,
-        beside_papers=beside,
+        left_out=left_out,
         ground=ground,
         shadow_level=shadows.level,
     )
 
 
-def _unlike(ground: GroundModel, usable: Mask) -> Mask:
-    """Return what is not ground: far from its colour, or less far and beside what is."""
+def _unlike(ground: GroundModel, usable: Mask) -> tuple[Mask, float]:
+    """Return what may not be ground: far from its colour by what the ground itself varies."""
     distance = np.where(usable, ground.distance, 0)
     near = distance[usable & (distance < 6)]
     low = float(np.clip(1.3 * np.percentile(near, 98), 3.0, 6.0)) if near.size else 3.0
-    mask = ndimage.binary_opening(distance > low)
-    pieces, count = ndimage.label(mask)
-    seen = ndimage.maximum(distance, pieces, np.arange(count + 1))
-    return np.asarray(mask & (np.asarray(seen) > 1.6 * low)[pieces])
+    return np.asarray(ndimage.binary_opening(distance > low)), low
+
+
+def _surely(unlike: Mask, low: float, ground: GroundModel) -> Mask:
+    """Return the pieces that are far from the colour of the ground somewhere."""
+    pieces, count = ndimage.label(unlike)
+    seen = ndimage.maximum(ground.distance, pieces, np.arange(count + 1))
+    return np.asarray(unlike & (np.asarray(seen) > 1.6 * low)[pieces])
 
 
 def _solid(mask: Mask, usable: Mask) -> Mask:
@@ -127,23 +137,23 @@ def _without_horns(stone: Mask) -> Mask:
     return stone
 
 
-def _without_papers(stone: Mask, papers: Mask) -> tuple[Mask, int]:
-    """Take away what touches markers; return the rest and how much was taken."""
+def _beside(stone: Mask, papers: Mask) -> Mask:
+    """Return what touches markers."""
     if not papers.any():
-        return stone, 0
+        return np.zeros_like(stone)
     pieces, count = ndimage.label(stone, np.ones((3, 3)))
     touched = np.zeros(count + 1, bool)
     touched[np.unique(pieces[ndimage.binary_dilation(papers, iterations=5)])] = True
     touched[0] = False
-    return stone & ~touched[pieces], int(touched.sum())
+    return np.asarray(stone & touched[pieces])
 
 
 def _sorted_out(
     labels: Labels, shown: Mask, settings: SegmentSettings
-) -> tuple[NDArray[np.uint16], tuple[tuple[float, float], ...], int]:
+) -> tuple[NDArray[np.uint16], Labels, Labels, float]:
     """Leave out what is too small or cut, and number the rest in rows.
 
-    Returns that, the middles (column, row) of what is cut, and how many were too small.
+    Returns that, what is cut, what is too small, and the least area.
     """
     areas = np.bincount(labels.ravel())
     areas[0] = 0
@@ -163,8 +173,8 @@ def _sorted_out(
         rows = np.floor(middles[kept - 1, 0] / size)
         order = np.lexsort((middles[kept - 1, 1], rows))
         new[kept[order]] = np.arange(1, len(kept) + 1)
-    cut_px = tuple((float(x), float(y)) for y, x in middles[np.flatnonzero(cut) - 1])
-    return new[labels], cut_px, int(((areas > 0) & ~large).sum())
+    small = (areas > 0) & ~large
+    return new[labels], np.where(cut[labels], labels, 0), np.where(small[labels], labels, 0), least
 
 
 def _usual(areas: NDArray[np.int64]) -> float:
@@ -191,10 +201,17 @@ def _shaded(labels: NDArray[np.uint16], shadows: Shadows, count: int) -> tuple[i
 
 def _no_stones(cut: int, ground: GroundModel) -> InputError:
     beside = f" ({cut} are cut by the edge of the photograph)" if cut else ""
-    return InputError(
-        "E175",
+    what = (
         f"no stones were found{beside}: {100 * ground.share:.0f} % of the photograph has the "
-        "colour of its ground.",
-        cure="Photograph whole stones on a ground of another colour; --min-area finds smaller "
-        "ones.",
+        "colour of its ground"
     )
+    cure = "Photograph whole stones on a ground of another colour; --min-area finds smaller ones."
+    varies = float(ground.spread.max())
+    if varies > ROUGH:
+        what += f", which is not plain (it varies by {varies:.0f} in CIELAB)"
+        cure = (
+            "Lay stones apart on a plain sheet of another colour. Stones of a river bed, a heap or "
+            "a wall are traced or found by other programs, and `drystone stones` reads their "
+            "masks (docs/photographs.md)."
+        )
+    return InputError("E175", f"{what}.", cure=cure)

@@ -9,6 +9,7 @@ from skimage.measure import regionprops
 
 from drystone.errors import Notice
 from drystone.model.stone_size import sizes_of
+from drystone.photo.left_out import EDGE, PAPER
 from drystone.photo.segment import FoundStones, stones_at
 from drystone.photo.segment_settings import SegmentSettings
 
@@ -27,12 +28,16 @@ RULED = 0.8
 """Share of the line of a ruler along which one stone lies that may be the ruler itself."""
 
 
+LISTED = 8
+"""Shapes that were left out and that a notice names."""
+
+
 @dataclass(frozen=True)
 class Doubt:
     """Something that may be wrong."""
 
-    # W175 neck, W176 left out at the edge, W177 shadow, W178 low contrast, W179 unusual size or
-    # a ruler.
+    # W175 neck, W176 left out at the edge or a marker, W177 shadow, W178 low contrast, W179
+    # unusual size or a ruler, W182 left out for another reason.
     code: str
     stones: tuple[int, ...]  # empty when it is none of them
     at_px: tuple[float, float]  # column and row of the label image
@@ -50,7 +55,8 @@ def doubts_of(
     known = {stone for doubt in doubts for stone in doubt.stones}
     doubts += [doubt for doubt in _hollow(found, at) if doubt.stones[0] not in known]
     doubts += [
-        Doubt("W176", (), place, f"cut by the edge at {_place(place)}") for place in found.cut_px
+        Doubt("W176" if one.why in (EDGE, PAPER) else "W182", (), one.at_px, one.text)
+        for one in found.left_out
     ]
     faint = [one for one, value in enumerate(found.contrast, start=1) if value < LOW_CONTRAST]
     doubts += [
@@ -96,21 +102,22 @@ def ruler_doubts(labels: NDArray[np.uint16], ends_px: ArrayLike) -> tuple[Doubt,
     )  # fmt: skip
 
 
-def notices_of(found: FoundStones, doubts: Iterable[Doubt]) -> tuple[Notice, ...]:
+def notices_of(doubts: Iterable[Doubt]) -> tuple[Notice, ...]:
     """Return the doubts as notices, one of each kind."""
     texts: dict[str, list[str]] = {}
     for doubt in doubts:
         texts.setdefault(doubt.code, []).append(doubt.text)
-    if found.beside_papers:
-        texts.setdefault("W176", []).append(
-            f"{found.beside_papers} beside a marker, which may be its paper"
-        )
-    if found.specks:
-        texts.setdefault("W179", []).append(f"{found.specks} specks were left out")
     return tuple(
-        Notice(code, f"{_KINDS[code][0]}: {'; '.join(said)}.", _KINDS[code][1])
+        Notice(code, f"{_KINDS[code][0]}: {_listed(code, said)}.", _KINDS[code][1])
         for code, said in sorted(texts.items())
     )
+
+
+def _listed(code: str, texts: list[str]) -> str:
+    """Return the texts; of many shapes that were left out the largest, as stones.json has all."""
+    if code != "W182" or len(texts) <= LISTED:
+        return "; ".join(texts)
+    return f"{'; '.join(texts[:LISTED])}; and {len(texts) - LISTED} more in stones.json"
 
 
 _KINDS = {
@@ -122,6 +129,10 @@ _KINDS = {
     "W177": ("a part may be shadow", "Look at preview.png; avoid hard light."),
     "W178": ("hardly differs from the ground", "Look at preview.png; take another ground."),
     "W179": ("unusual", "Is it a stone, and is it one? --min-area changes the limit."),
+    "W182": (
+        "not taken for stones",
+        "Is one of them a stone? Draw it in stones.png; --min-area keeps smaller ones.",
+    ),
 }
 """What a code means, and the cure."""
 

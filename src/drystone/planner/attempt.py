@@ -90,7 +90,7 @@ class Attempt:
         """
         for proposals in self._proposals(tuple(self._landscapes.values()), among):
             judged = self._judge(proposals)
-            found = [c for c in judged if c.sturdy and (c.indices.LLC or 0.0) > 0]
+            found = [c for c in judged if c.stands]
             if found:
                 return found
         return []

@@ -59,6 +59,11 @@ class Candidate:
         return f"<Candidate: {self.said}>"
 
     @property
+    def stands(self) -> bool:
+        """Whether the wall stands with it, also with fewer contacts (Algorithm 2: LLC > 0)."""
+        return self.sturdy and (self.indices.LLC or 0.0) > 0.0
+
+    @property
     def said(self) -> str:
         """Which stone it is, how far it is turned, and on how many wedges it stands."""
         angle_deg = self.stabilised.placement.posed.angle_deg

@@ -67,7 +67,7 @@ def choose_by_score(
     standing: list[Candidate] = []
     for start in range(0, len(order), settings.analysed):
         batch = judge([proposals[k] for k in order[start : start + settings.analysed]])
-        standing += [c for c in batch if c.sturdy and (c.indices.LLC or 0.0) > 0]
+        standing += [c for c in batch if c.stands]
         if len(standing) >= settings.analysed:
             break
 
@@ -92,6 +92,6 @@ def choose_by_policy(
     All proposals, those of all sides, are analysed; as with the other rules LLC must be positive.
     UsageError (E147): the policy failed.
     """
-    standing = [c for c in judge(proposals) if c.sturdy and (c.indices.LLC or 0.0) > 0]
+    standing = [c for c in judge(proposals) if c.stands]
     position = choice_of(name, policy, [offer(one, site) for one in standing], rng)
     return None if position is None else standing[position]

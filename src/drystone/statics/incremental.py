@@ -28,7 +28,12 @@ from drystone.kernels.certificate import Figures, figures
 from drystone.kernels.simplex import Added, Answer, Optimum
 from drystone.statics.limit import MESSAGES, lateral_resistance, resistance_between
 from drystone.statics.local_update import PrimalDual, local_update
-from drystone.statics.lp.certificate import fall_of, no_alpha_of, of_fall, optimum_of
+from drystone.statics.lp.certificate import (
+    certified_fall,
+    fall_certificate,
+    no_alpha_of,
+    optimum_of,
+)
 from drystone.statics.lp.cone_program import ConeProgram
 from drystone.statics.lp.extremes import Extreme, certified_extreme
 from drystone.statics.lp.highs import (
@@ -360,7 +365,7 @@ def highs_bound(program: EquilibriumProgram, starts: WarmBases, sign: int) -> "B
         return Bound(float("nan"), certificate, certificate, solution.solver)
     fall = None
     if sign * extreme.alpha < -TOLERANCE:
-        fall = of_fall(program, -solution.duals)
+        fall = fall_certificate(program, -solution.duals)
         if not fall.holds:
             return None
     return Bound(extreme.alpha, certificate, fall, solution.solver)
@@ -449,7 +454,7 @@ def certified_bound(found: Figures, alpha: float, sign: int, solver: str) -> Bou
         return None
     if not sign * alpha < -TOLERANCE:
         return Bound(alpha, certificate, None, solver)
-    fall = fall_of(found)
+    fall = certified_fall(found)
     return Bound(alpha, certificate, fall, solver) if fall.holds else None
 
 

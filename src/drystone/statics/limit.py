@@ -12,7 +12,7 @@ does not, the program is solved again from the start and by other algorithms.
 from typing import get_args
 
 from drystone.statics.loads import Loads
-from drystone.statics.lp.certificate import of_fall
+from drystone.statics.lp.certificate import fall_certificate
 from drystone.statics.lp.extremes import Extreme, Solver, extremes
 from drystone.statics.lp.highs import TOLERANCE
 from drystone.statics.lp.program import EquilibriumProgram, assemble
@@ -127,7 +127,7 @@ def _fall(program: EquilibriumProgram, least: Extreme, greatest: Extreme) -> Ext
             return answer
         if answer.status is LimitStatus.OPTIMAL and sign * answer.alpha < -TOLERANCE:
             assert answer.solution.duals is not None  # noqa: S101 - an optimal solution has them
-            return Extreme(answer.solution, of_fall(program, -answer.solution.duals))
+            return Extreme(answer.solution, fall_certificate(program, -answer.solution.duals))
     return None
 
 

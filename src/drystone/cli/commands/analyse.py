@@ -15,13 +15,13 @@ from drystone.cli.numbers import (
     friction,
     not_negative,
     refuse_outside,
-    scale_with,
     wall_picture_px,
+    wall_scale,
     whole_from,
 )
 from drystone.cli.output import note, prepare_files, print_json, print_table
 from drystone.cli.progress import counting_bar
-from drystone.cli.reading import add_wall
+from drystone.cli.reading import add_wall, reading_from
 from drystone.drawing.words.analysis import (
     Card,
     ModelledWall,
@@ -31,7 +31,13 @@ from drystone.drawing.words.analysis import (
     analysis_of,
     noise_unit,
 )
-from drystone.drawing.words.modelling import ModelRequest, modelled, scarcity, size_words
+from drystone.drawing.words.modelling import (
+    ModelRequest,
+    modelled,
+    scarcity,
+    size_words,
+    sweep_report,
+)
 from drystone.drawing.words.tables import NAMES as TABLES
 from drystone.drawing.words.tables import write_tables
 from drystone.errors import ExitCode, Notice, UsageError
@@ -61,8 +67,9 @@ def add(command: argparse.ArgumentParser) -> None:
     option("--mu-head", type=not_negative, metavar="MU", help="of head joints, 0 for open ones")
     option("--contacts", choices=["pixels", "outlines"], default="pixels",
            help="from the edges of pixels (default), or from sub-pixel outlines")
-    option("--close-gaps", metavar="PX|settle",
-           help="gaps up to PX between drawn stones bear, or stones are lowered until they touch")
+    option("--close-gaps", metavar="PX|auto|settle",
+           help="gaps up to PX between drawn stones bear; auto looks for the width; settle lowers "
+           "stones until they touch")
     option("--solver", choices=["auto", "highs", "highs-ipm", "clarabel"], default="auto",
            help="of the associative load multiplier and its certificate (default auto: by the "
            "number of blocks, and another one when a certificate fails)")
@@ -107,7 +114,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if shaken and not case.is_plain:
         raise UsageError("E138", "the scatter is that of the tilting table; leave loads out.")
     path = Path(arguments.wall_path)
-    given = read_wall(path, background=arguments.background)
+    given = read_wall(path, reading_from(arguments))
     wall = modelled(given, asked, arguments.wall_path)
     per_unit_m = _metres_per_unit(given, arguments)
     few = scarcity(wall, per_unit_m)
@@ -122,7 +129,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if case.is_range:
         return _print_range(replace(wall, model=model), loads, arguments, pictures)
     resistance = lateral_resistance(model, loads, mechanism=True, solver=arguments.solver)
-    note(None if resistance.stable else unsupported(model))
+    swept = wall.sweep is not None
+    note(None if resistance.stable else unsupported(model, given, swept=swept))
     card = analysis_of(
         wall, loads, resistance, _sha256(path),
         associative_only=arguments.associative_only, solver=arguments.solver,
@@ -130,6 +138,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if pictures:
         _write_all(pictures, wall, card, loads, per_unit_m)
     report, rows = card.report(), card.rows()
+    if wall.sweep is not None:
+        report["gaps"] = sweep_report(wall.sweep)
     if shaken:
         scattered = _scatter_of(wall, arguments, noise_unit(given))
         report, rows = {**report, "scatter": scattered.report()}, rows + scattered.rows()
@@ -194,7 +204,10 @@ def _print_range(
     else:
         print_table(f"{arguments.wall_path}: {_many(model)}", card.rows())
     failed = any(end.status is LimitStatus.FAILED for end in ends)
-    return _keep_failure(model, loads, pictures) if failed else ExitCode.DONE
+    if failed:
+        return _keep_failure(model, loads, pictures)
+    falls = any(end.status is LimitStatus.UNSTABLE for end in ends)
+    return ExitCode.CHECK_FAILED if falls else ExitCode.DONE
 
 
 def _keep_failure(model: RigidBlockModel, loads: Loads, pictures: list[Path]) -> ExitCode:
@@ -213,8 +226,7 @@ def _metres_per_unit(wall: GivenWall, arguments: argparse.Namespace) -> float | 
     the picture.
     """
     refuse_outside(arguments.px_per_m, wall_picture_px(wall))
-    plan = wall.plan
-    px_per_m = scale_with(arguments.px_per_m, None if plan is None else plan.px_per_m, "plan")
+    plan, px_per_m = wall.plan, wall_scale(arguments.px_per_m, wall)
     if px_per_m is None:
         return None
     if plan is None:

@@ -6,9 +6,10 @@ from pathlib import Path
 from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.numbers import finite, whole_from
 from drystone.cli.output import note, prepare_files, print_json
-from drystone.cli.reading import add_wall
+from drystone.cli.reading import add_wall, reading_from
 from drystone.contacts.blocks import notice_of_pieces
 from drystone.contacts.given import model_from_json, polygons_from_json
+from drystone.contacts.outlines import model_of_traced
 from drystone.craft import RULES, CraftReport, Finding, Limit, Masonry, look
 from drystone.craft.look import UNSEEN
 from drystone.errors import ExitCode, UsageError
@@ -28,7 +29,7 @@ def add(command: argparse.ArgumentParser) -> None:
            dest="limits",
            help="last good and last fair number of a rule, such as laps=.1:.3; repeatable")
     option("--wedges", nargs="+", action="extend", type=whole_from(1), default=[], metavar="ID",
-           help="ids that are wedges, in a label image or block model")
+           help="ids that are wedges, in a wall that is not a plan")
 
 
 def _limit(text: str) -> tuple[str, Limit]:
@@ -43,8 +44,9 @@ def _limit(text: str) -> tuple[str, Limit]:
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Print what each rule finds; a broken rule is a result, not an error."""
     path = Path(arguments.wall_path)
-    wall = read_wall(path, background=arguments.background)
-    if wall.labels is not None and wall.blocks is None:
+    wall = read_wall(path, reading_from(arguments))
+    note(*wall.notices)
+    if wall.labels is not None and wall.blocks is None and wall.outlines is None:
         note(*notice_of_pieces(wall.labels))
     if wall.plan is not None and arguments.wedges:
         cure = "Leave it out; it is for a label image or a block model."
@@ -73,6 +75,8 @@ def _masonry_of(wall: GivenWall, wedge_ids: frozenset[int]) -> Masonry:
         outlines, model = polygons_from_json(wall.blocks), model_from_json(wall.blocks)
         per_m = 1.0 if plan is not None and plan.px_per_m else None
         return Masonry(outlines, model, wedges, steps, cut=plan is not None, per_m=per_m)
+    if wall.outlines is not None:
+        return Masonry(wall.outlines, model_of_traced(wall.outlines, wall.mu), wedges)
     assert wall.labels is not None  # noqa: S101 - a wall without blocks has an image
     return Masonry.from_labels(wall.labels, wedges, steps=steps, mu=wall.mu)
 

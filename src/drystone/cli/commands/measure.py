@@ -11,12 +11,12 @@ from drystone.cli.numbers import (
     option_of,
     parse_wall,
     refuse_outside,
-    scale_with,
     share,
     wall_picture_px,
+    wall_scale,
 )
 from drystone.cli.output import note, prepare_files, print_json, print_table
-from drystone.cli.reading import add_wall
+from drystone.cli.reading import add_wall, reading_from
 from drystone.contacts.blocks import model_from_labels, notice_of_pieces
 from drystone.contacts.given import model_from_json
 from drystone.drawing.words.content import number
@@ -50,13 +50,15 @@ def add(command: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Print F_SF, F_AV, F_AH, F_LR, T_LEVEL and E_FLUSH."""
-    _refuse_idle_scale(arguments)
-    wall = read_wall(Path(arguments.wall_path), background=arguments.background)
+    wall = read_wall(Path(arguments.wall_path), reading_from(arguments))
+    if not wall.drawn:
+        _refuse_idle_scale(arguments)
     if wall.labels is None:
         raise UsageError("E134", "a block model has no pixels to measure.", where="measure")
     refuse_outside(arguments.px_per_m, wall_picture_px(wall))
     # Of the picture as it was given: reducing it may part what hangs together.
-    note(*(notice_of_pieces(wall.labels) if wall.blocks is None else ()))
+    pixels = wall.blocks is None and wall.outlines is None
+    note(*wall.notices, *(notice_of_pieces(wall.labels) if pixels else ()))
     labels = reduce_labels(wall.labels, arguments.scale) if arguments.scale != 1 else wall.labels
     metrics = _measured(wall, labels, arguments)
     if arguments.output is not None:
@@ -96,7 +98,7 @@ def _measured(wall: GivenWall, labels: Labels, arguments: argparse.Namespace) ->
     else:
         model = model_from_labels(labels, mu).model
     resistance = lateral_resistance(model)
-    loose = None if resistance.stable else unsupported(model)
+    loose = None if resistance.stable else unsupported(model, wall)
     note(None if loose is None else f"F_LR is not defined. {loose}")
     return measure_labels(
         labels,
@@ -115,7 +117,7 @@ def _size(
     None is what the picture says itself.
     """
     plan = wall.plan
-    scale = scale_with(arguments.px_per_m, None if plan is None else plan.px_per_m, "plan")
+    scale = wall_scale(arguments.px_per_m, wall)
     asked = None if arguments.wall is None else parse_wall(arguments.wall, scale)
     if plan is None:
         return None if asked is None else _reduced(asked, arguments.scale), None

@@ -20,7 +20,7 @@ from drystone.model.steps import grouped, piece_id
 from drystone.physics.table import load_engine
 from drystone.search.rehearsal import Groups, mean_size, rehearse, rehearse_in_engine
 
-_PART = re.compile(r"(\d+(?:\.\d*)?|\.\d+)(px|mm|cm|m|deg|%)")
+_PART = re.compile(r"(\d+(?:\.\d*)?|\.\d+)(px|mm|cm|m|ft|in|deg|%)")
 
 NOTHING = BuilderErrors(placement=0.0, angle_deg=0.0, outline=0.0)
 

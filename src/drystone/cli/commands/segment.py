@@ -22,6 +22,7 @@ from drystone.photo.layout import MarkerLayout, parse_layout, parse_size_m
 from drystone.photo.segment_doubts import Doubt, doubts_of, notices_of, ruler_doubts
 from drystone.photo.segment_photo import SegmentedPhoto, segment_photo
 from drystone.photo.segment_settings import SegmentSettings
+from drystone.photo.verdict import Verdict, verdict_of
 from drystone.photo.view import apply
 from drystone.whole_files import write_whole
 
@@ -90,8 +91,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if isinstance(scale, Ruled):
         ends_px = apply(result.from_photo, np.array(scale.ends_px))
         doubts += ruler_doubts(result.found.labels, ends_px)
-    notices = (*photo.notices, *result.notices, *notices_of(result.found, doubts))
-    details = _details(photo, result, doubts)
+    verdict = verdict_of(result.found, doubts)
+    notices = (*verdict.notices, *photo.notices, *result.notices, *notices_of(doubts))
+    details = _details(photo, result, doubts, verdict)
     _write(folder, result, doubts, details)
     sizes = sizes_of(result.found.labels)
     if arguments.json:
@@ -105,10 +107,12 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             }
         )
     else:
+        if verdict.doubtful:
+            print(f"doubtful: {'; '.join(verdict.reasons)}")
         _print(folder, result, sizes, notices)
     if result.px_per_m is None:
         note("no scale: sizes are px. --aruco, --px-per-m or --ruler give one")
-    return ExitCode.DONE
+    return ExitCode.CHECK_FAILED if verdict.doubtful else ExitCode.DONE
 
 
 def scale_from(arguments: argparse.Namespace) -> MarkerLayout | float | None:
@@ -154,9 +158,12 @@ def _save_image(values: np.ndarray[Any, Any], path: Path, kind: str, **settings:
     write_whole(path, file.getvalue())
 
 
-def _details(photo: Photo, result: SegmentedPhoto, doubts: Sequence[Doubt]) -> dict[str, Any]:
+def _details(
+    photo: Photo, result: SegmentedPhoto, doubts: Sequence[Doubt], verdict: Verdict
+) -> dict[str, Any]:
     view, found = result.view, result.found
     return {
+        "doubtful": list(verdict.reasons),
         "source": {"name": photo.name, "sha256": photo.sha256,
                    "width_px": photo.size_px[0], "height_px": photo.size_px[1]},
         "from_photo": np.asarray(result.from_photo).tolist(),
@@ -174,6 +181,11 @@ def _details(photo: Photo, result: SegmentedPhoto, doubts: Sequence[Doubt]) -> d
             {"code": doubt.code, "stones": list(doubt.stones), "x_px": round(doubt.at_px[0], 1),
              "y_px": round(doubt.at_px[1], 1), "text": doubt.text}
             for doubt in doubts
+        ],
+        "left_out": [
+            {"x_px": round(one.at_px[0], 1), "y_px": round(one.at_px[1], 1),
+             "area_px": one.area_px, "why": one.why}
+            for one in found.left_out
         ],
     }  # fmt: skip
 

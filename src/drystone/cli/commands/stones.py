@@ -12,11 +12,12 @@ from drystone.cli.numbers import (
     scale_notice,
     scale_with,
 )
-from drystone.cli.output import prepare_picture, print_json, print_table
+from drystone.cli.output import prepare_files, prepare_picture, print_json, print_table
 from drystone.cli.reading import STONES, add_reading, reading_from
 from drystone.clusters import cluster_stones
 from drystone.errors import ExitCode
 from drystone.io.read_stones import read_stones
+from drystone.io.write_stones import write_stones, written_as
 from drystone.model.stone_size import median_sides, sides_px
 from drystone.poses import PoseBook
 
@@ -25,16 +26,27 @@ def add(command: argparse.ArgumentParser) -> None:
     """Add its options."""
     command.add_argument("stones", metavar="STONES", help=STONES)
     command.add_argument("-o", "--output", metavar="PICTURE.png", help="draw the stones")
-    command.add_argument("--overwrite", action="store_true", help="replace the picture")
+    command.add_argument(
+        "--to", metavar="FILE",
+        help="write what was read as a label image (.png, .tif, .npy; its scale into stones.json "
+        "beside it), or as outlines for labelme (.json)",
+    )  # fmt: skip
+    command.add_argument("--overwrite", action="store_true", help="replace what is written")
     add_reading(command)
     add_scale(command)
     command.add_argument("--json", action="store_true", help="print as JSON")
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
-    """Print count, sizes, clusters and notices; draw the stones when asked."""
+    """Print count, sizes, clusters and notices; draw or convert the stones when asked."""
     picture = None if arguments.output is None else Path(arguments.output)
     path = Path(arguments.stones)
+    to = None if arguments.to is None else Path(arguments.to)
+    if to is not None:
+        files = written_as(to)
+        refuse_inputs(files_of(path), files)
+        refuse_among_masks(path, files)
+        prepare_files(files, overwrite=arguments.overwrite)
     if picture is not None:
         refuse_inputs(files_of(path), [picture])
         refuse_among_masks(path, [picture])
@@ -43,6 +55,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     source = stones.source
     refuse_outside(arguments.px_per_m, picture_size_px(source))
     px_per_m = scale_with(arguments.px_per_m, source.px_per_m)
+    converted = () if to is None else write_stones(stones, to, px_per_m)
     clusters = cluster_stones(stones, PoseBook())
     median_area = statistics.median(stone.area_px for stone in stones)
     sides = {stone.id: sides_px(stone.mask) for stone in stones}
@@ -53,7 +66,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         save(plot_stones(stones, clusters).figure, picture)
     median = median_sides(sides.values())
     odd = scale_notice(median[0], px_per_m)
-    notices = [str(notice) for notice in (*stones.notices, odd) if notice is not None]
+    notices = [str(notice) for notice in (*stones.notices, *converted, odd) if notice is not None]
     if arguments.json:
         print_json(
             {
@@ -80,6 +93,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             ("largest stone", f"{largest.id}: {_size(sides[largest.id], px_per_m)}"),
             ("clusters", str(max(clusters.values()))),
             *[("notice", notice) for notice in notices],
+            *([] if to is None else [("written", str(to))]),
         ],
     )
     return ExitCode.DONE

@@ -57,7 +57,7 @@ def write_analysis(
     view = view_of_wall(
         shapes, model, resistance, title="Limit analysis of a wall", unit=unit, noun=wall.noun,
         wedges=wall.wedge_ids, cards=_cards(card), inputs=[*rows, ("cite", cite)],
-        notices=wall.notices, load_case=card.load_case,
+        notices=wall.notices, load_case=card.load_case, why_not=card.why,
     )  # fmt: skip
     return write_report(path, view, pictures=path.parent)
 

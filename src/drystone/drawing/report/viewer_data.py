@@ -117,6 +117,7 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
     timings: Mapping[str, float] | None = None,
     load_case: str = content.TILTING,
     assumptions: Sequence[str] | None = None,
+    why_not: str = "",
 ) -> ViewerData:
     """Show a wall that was not planned: its blocks have ids and no steps.
 
@@ -149,6 +150,8 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
         Name of the loads of the analysis.
     assumptions : sequence of str, optional
         What the results rest on; None says those of the load case.
+    why_not : str
+        Why it does not stand, which is the only result then.
 
     Returns
     -------
@@ -163,6 +166,8 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
     strength = content.strength_cards(
         resistance.value, resistance.left.alpha, resistance.right.alpha, load_case=load_case
     )
+    if why_not:
+        strength, cards = (content.fallen_card(why_not),), ()
     if assumptions is None:
         assumptions = (*content.wall_assumptions(load_case), *content.model_assumptions(model))
     touching: dict[int, set[int]] = {region.id: set() for region in regions}

@@ -4,14 +4,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from math import atan, degrees, isfinite
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from drystone.contacts.gaps import GapSweep
 from drystone.drawing.words.content import number
 from drystone.errors import Notice
-from drystone.io.walls import GivenWall
+from drystone.io.walls import GivenWall, on_ground
 from drystone.model.wall import Labels
 from drystone.statics.failing.mechanism import Failure, Names, Noun, describe_mechanism
 from drystone.statics.flow.nonassociative import (
@@ -19,6 +20,7 @@ from drystone.statics.flow.nonassociative import (
     NonassociativeResult,
     nonassociative_resistance,
 )
+from drystone.statics.joints import loose_blocks
 from drystone.statics.loads import Loads
 from drystone.statics.lp.extremes import Solver
 from drystone.statics.model import RigidBlockModel
@@ -43,7 +45,8 @@ class ModelledWall:
     """A wall as blocks and contacts, and what it looks like.
 
     `noun` is what a block is called; `remarks` are lines for the card, such as what closing gaps
-    changes.
+    changes; `joints` is what is known of them: all, or what a drawing shows, whose gaps can be
+    closed.
     """
 
     model: RigidBlockModel
@@ -52,6 +55,15 @@ class ModelledWall:
     wedge_ids: frozenset[int] = frozenset()
     notices: tuple[Notice, ...] = ()
     remarks: Mapping[str, str] = field(default_factory=dict)
+    joints: Literal["known", "drawn", "outlines", "swept"] = "known"
+    sweep: GapSweep | None = None
+
+    @property
+    def lowest(self) -> float:
+        """Height of the lowest point of the blocks."""
+        if not isinstance(self.shapes, Mapping):
+            return 0.0
+        return min(float(shape[:, 1].min()) for shape in self.shapes.values())
 
     def failures(self, results: Iterable[LimitResult | NonassociativeResult]) -> dict[str, Failure]:
         """Describe the mechanisms that are known, by direction."""
@@ -90,6 +102,22 @@ class Card:
     sha256: str
     version: str
     remarks: Mapping[str, str]
+    lowest: float = 0.0  # height of the lowest point
+
+    @property
+    def why(self) -> str:
+        """Why the wall does not stand, in a sentence; empty when it does, or nobody knows."""
+        if self.resistance.stable or self.resistance.failed:
+            return ""
+        noun = self.names.noun
+        if not on_ground(self.model):
+            return f"Nothing touches y = 0: the lowest {noun} is at y = {self.lowest:g}."
+        if loose := loose_blocks(self.model):
+            have = "has" if len(loose) == 1 else "have"
+            said = self.names.listed(loose)
+            return f"{said[0].upper()}{said[1:]} {have} nothing below that stands."
+        failures = [failure.words for failure in self.failures.values()]
+        return failures[0] if failures else "Its own weight is not carried."
 
     @property
     def _ends(self) -> dict[str, LimitResult]:
@@ -121,6 +149,8 @@ class Card:
         return {
             **_alphas(self._ends),
             "F_LR": self.resistance.value,
+            "stands": None if self.resistance.failed else self.stands,
+            "why": self.why,
             "held_by_upright_faces": None if self.upright is None else list(self.upright),
             "mu": self.model.mu,
             "blocks": len(self.model.blocks),
@@ -157,7 +187,7 @@ class Card:
         if self.resistance.failed:
             return "not known: no answer could be certified"
         if not self.resistance.stable:
-            return "does not stand"
+            return f"does not stand: {self.why[:1].lower()}{self.why[1:].rstrip('.')}"
         said = "stands"
         if self.upright is None:
             said += "; not known whether without friction on upright faces"
@@ -233,6 +263,7 @@ def analysis_of(
         sha256=sha256,
         version=version("drystone"),
         remarks=wall.remarks,
+        lowest=wall.lowest,
     )
 
 

@@ -12,6 +12,7 @@ from drystone.settle.settings import SettleSettings
 from drystone.statics.model import RigidBlockModel
 
 UNDEFINED = "not defined"
+FALLS = "does not stand"
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
 TIMES = "\N{MULTIPLICATION SIGN}"
 INDICES = {
@@ -195,6 +196,11 @@ def strength_cards(
           for side, alpha in (("left", left), ("right", right))),
         ResultCard("", "Weaker direction", weaker_direction(left, right), "", weaker),
     )  # fmt: skip
+
+
+def fallen_card(why: str) -> ResultCard:
+    """Return the only result of a wall that does not stand."""
+    return ResultCard("", "Own weight", FALLS, "", why)
 
 
 def _multiplier_means(load_case: str, side: str) -> str:

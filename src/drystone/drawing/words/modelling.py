@@ -1,22 +1,31 @@
 """From a wall file to the rigid block model that is asked for; its size and scarce contacts."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+from scipy import ndimage
 
 from drystone.contacts.blocks import ImageModel, model_from_labels
-from drystone.contacts.gaps import gap_spread, model_with_closed_gaps, settle_gaps
+from drystone.contacts.gaps import (
+    GapSweep,
+    gap_spread,
+    gap_sweep,
+    model_with_closed_gaps,
+    settle_gaps,
+)
 from drystone.contacts.given import model_from_json, polygons_from_json
-from drystone.contacts.outlines import model_from_outlines, outlines_of_labels
+from drystone.contacts.outlines import model_of_traced, outlines_of_labels
 from drystone.contacts.scarce import scarce_contacts
 from drystone.contacts.settled import SETBACK
 from drystone.drawing.words.analysis import ModelledWall, Shapes
 from drystone.errors import InputError, Notice, UsageError
 from drystone.io.walls import GivenWall
+from drystone.model.stone_size import median_sides, sides_px
 from drystone.model.wall import Labels
 from drystone.statics.failing.mechanism import Noun
 from drystone.statics.joints import with_head_friction
@@ -33,7 +42,7 @@ class ModelRequest:
     mu: tuple[float, float] | None  # range of the coefficient of friction; None: the wall's
     mu_head: float | None  # that of head joints, when it is another
     contacts: str  # taken from "pixels" or "outlines"
-    close_gaps: str | None  # how wide gaps may be that bear, or "settle"
+    close_gaps: str | None  # how wide gaps may be that bear, "auto" or "settle"
     case: LoadCase
 
     @property
@@ -50,6 +59,7 @@ def modelled(wall: GivenWall, asked: ModelRequest, where: str) -> ModelledWall:
     else:
         assert wall.labels is not None  # noqa: S101 - a wall without blocks has an image
         found = _drawn(wall, wall.labels, mu, asked)
+        found = replace(found, notices=(*wall.notices, *found.notices))
     if asked.mu_head is not None:
         if wall.blocks is None:
             found = replace(found, model=with_head_friction(found.model, asked.mu_head))
@@ -89,40 +99,133 @@ def _given(wall: GivenWall, blocks: dict[str, Any], mu: float, asked: ModelReque
 def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> ModelledWall:
     if asked.close_gaps is not None:
         return _with_closed_gaps(wall, labels, mu, asked)
+    if asked.contacts == "pixels" and wall.outlines is not None:
+        model = model_of_traced(wall.outlines, mu)
+        return ModelledWall(model, wall.outlines, "stone", joints="drawn")
     picture = model_from_labels(labels, mu)
     if asked.contacts == "pixels":
-        return ModelledWall(picture.model, labels, "stone", wall.wedge_ids, picture.notices)
-    outlines = outlines_of_labels(labels[: picture.ground_row])
-    # What a picture weighs it weighs by its pixels, not by what smoothing made of them.
-    bare = replace(model_from_outlines(outlines, mu), blocks=picture.model.blocks)
-    found = model_from_outlines(outlines, mu, setback=SETBACK)
-    said = "from sub-pixel outlines, set back"
+        return ModelledWall(
+            picture.model, labels, "stone", wall.wedge_ids, picture.notices, joints="drawn"
+        )
+    outlines = wall.outlines or outlines_of_labels(labels[: picture.ground_row])
+    notices = picture.notices if wall.outlines is None else ()
+    bare = model_of_traced(outlines, mu)
+    if wall.outlines is None:
+        # What a picture weighs it weighs by its pixels, not by what smoothing made of them.
+        bare = replace(bare, blocks=picture.model.blocks)
+    found = model_of_traced(outlines, mu, setback=SETBACK)
+    said = f"from {'sub-pixel ' if wall.outlines is None else ''}outlines, set back"
     if asked.as_planned:
         strength = lateral_resistance(bare).value
         with_ends = "falls" if strength is None else f"F_LR {strength:.3f}"
         said += f"; {with_ends} with contacts up to the ends of faces"
     model, remarks = replace(bare, interfaces=found.interfaces), {"contacts": said}
-    return ModelledWall(model, outlines, "stone", wall.wedge_ids, picture.notices, remarks)
+    return ModelledWall(
+        model, outlines, "stone", wall.wedge_ids, notices, remarks, joints="outlines"
+    )
 
 
 def _with_closed_gaps(
     wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest
 ) -> ModelledWall:
     if asked.contacts != "pixels":
-        raise UsageError("E138", "--close-gaps goes with --contacts pixels only.")
-    drawn, done = labels, ""
+        what = "--close-gaps finds contacts on pixels, and --contacts outlines on outlines."
+        raise UsageError("E138", what, cure="Leave one of them out.")
+    if asked.close_gaps == "auto":
+        return _with_swept_gaps(wall, labels, mu, asked)
     reach = _reach(asked.close_gaps or "")
-    picture: ImageModel
-    if reach is None:
-        labels, moved = settle_gaps(labels)
-        picture = model_from_labels(labels, mu)
+    if reach is not None:
+        made, done = _closed(wall, labels, reach, mu), ""
+    else:
+        settled, moved = settle_gaps(labels)
+        made = _made(wall, settled, model_from_labels(settled, mu), moved)
         farthest = max((max(abs(dx), abs(dy)) for dx, dy in moved.values()), default=0)
         done = f"{len(moved)} stones lowered by up to {farthest} px; "
-    else:
-        picture = model_with_closed_gaps(labels, reach, mu)
-    spread = gap_spread(drawn, reach, mu, partial(_resistance, asked))
-    remarks = {"gaps": f"{done}{spread}"}
-    return ModelledWall(picture.model, labels, "stone", wall.wedge_ids, picture.notices, remarks)
+    spread = gap_spread(labels, reach, mu, partial(_resistance, asked))
+    return replace(made, remarks={"gaps": f"{done}{spread}"}, joints="drawn")
+
+
+def _with_swept_gaps(
+    wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest
+) -> ModelledWall:
+    """Close the gaps that have to be closed, and say how the answer depends on their width."""
+    made: dict[int, ModelledWall] = {}
+
+    def at(width: int) -> LateralResistance:
+        made[width] = _closed(wall, labels, width, mu)
+        return _resistance(asked, made[width].model)
+
+    _, usual_px = median_sides(_sides_px(labels))
+    sweep = gap_sweep(at, usual_px)
+    remarks = dict(sweep_rows(sweep, usual_px))
+    return replace(made[sweep.chosen_px], remarks=remarks, joints="swept", sweep=sweep)
+
+
+def _sides_px(labels: Labels) -> Iterator[tuple[float, float]]:
+    """Yield the sides of every stone."""
+    ids, place = np.unique(labels, return_inverse=True)
+    place = place.reshape(labels.shape)
+    for index, window in enumerate(ndimage.find_objects(place + 1)):
+        if ids[index] and window is not None:
+            yield sides_px(place[window] == index)
+
+
+def sweep_rows(sweep: GapSweep, usual_px: float) -> Iterator[tuple[str, str]]:
+    """Say from where a wall stands, and how the load multiplier depends on the width."""
+    chosen, first = sweep.chosen_px, sweep.stands_from_px
+    if first is None:
+        yield "gaps", f"does not stand with gaps up to {chosen} px closed, the widest tried"
+        return
+    said = f"up to {chosen} px closed; the same again: --close-gaps {chosen}px"
+    yield "gaps", said if chosen else "none closed: the wall stands as it is drawn"
+    if first:
+        yield "  stands", f"with gaps of {first} px and more closed, not with {first - 1} px"
+    for width, stands, alpha in sweep.tried:
+        if stands or width == first - 1:
+            known = "does not stand" if not stands else "no limit"
+            yield f"  {width} px", known if alpha is None else f"alpha = {alpha:.4f}"
+    low, high = sweep.within() or (None, None)
+    if low is not None and high is not None:
+        upto = f"from {chosen} px to half as much again alpha is {low:.3f} to {high:.3f}"
+        hangs = "it hangs on the width: measure the joints" if not sweep.steady else "steady"
+        yield "  how sure", f"{hangs}; {upto}"
+    if chosen:
+        share = 100.0 * chosen / usual_px
+        yield "  width", f"{chosen} px is {share:.0f} % of the height of a usual stone"
+
+
+def sweep_report(sweep: GapSweep) -> dict[str, Any]:
+    """Return the same as JSON; an alpha of null is that of a wall that falls, or has no limit."""
+    return {
+        "chosen_px": sweep.chosen_px,
+        "stands_from_px": sweep.stands_from_px,
+        "steady": sweep.steady,
+        "tried": [
+            {"px": width, "stands": stands, "alpha": alpha} for width, stands, alpha in sweep.tried
+        ],
+    }
+
+
+def _closed(wall: GivenWall, labels: Labels, reach: float, mu: float) -> ModelledWall:
+    """Let gaps up to a width bear."""
+    return _made(wall, labels, model_with_closed_gaps(labels, reach, mu))
+
+
+def _made(
+    wall: GivenWall,
+    labels: Labels,
+    picture: ImageModel,
+    moved: Mapping[int, tuple[int, int]] = MappingProxyType({}),
+) -> ModelledWall:
+    """Give outlines the contacts that were found on their pixels; pixels have them already."""
+    if wall.outlines is None:
+        return ModelledWall(picture.model, labels, "stone", wall.wedge_ids, picture.notices)
+    shapes = {
+        i: outline + (moved.get(i, (0, 0)) * np.array([1.0, -1.0]))
+        for i, outline in wall.outlines.items()
+    }
+    blocks = model_of_traced(shapes).blocks
+    return ModelledWall(replace(picture.model, blocks=blocks), shapes, "stone")
 
 
 def _resistance(asked: ModelRequest, model: RigidBlockModel) -> LateralResistance:
@@ -136,7 +239,7 @@ def _resistance(asked: ModelRequest, model: RigidBlockModel) -> LateralResistanc
 
 
 def _reach(text: str) -> float | None:
-    """Read `--close-gaps`; None to settle."""
+    """Read the width of `--close-gaps`; None to settle."""
     if text == "settle":
         return None
     try:
@@ -144,7 +247,8 @@ def _reach(text: str) -> float | None:
     except ValueError:
         reach = math.nan
     if not 0 < reach < math.inf:
-        raise UsageError("E138", f"{text!r} is no width in px, nor 'settle'.", where="--close-gaps")
+        what = f"{text!r} is not a width in px, nor 'auto' or 'settle'."
+        raise UsageError("E138", what, where="--close-gaps")
     return reach
 
 
@@ -177,12 +281,16 @@ def scarcity(wall: ModelledWall, per_unit_m: float | None) -> Notice | None:
     said = f"{len(few)} {noun} {have} fewer than two contact points: {named}{more}."
     if not gaps:
         return Notice("W305", said)
-    pixels = not isinstance(wall.shapes, Mapping)
-    unit = " px" if pixels else ""
+    unit = "" if wall.joints == "known" else " px"
     metres = "" if per_unit_m is None else f" ({1000.0 * per_unit_m * min(gaps):.0f} mm)"
     said += f" The narrowest gap beside them is {min(gaps):.3g}{unit}{metres}."
-    if not pixels:
-        return Notice("W305", said)
-    reach = int(np.ceil(np.median(gaps)))
-    which = "it" if len(few) == 1 else "half of them"
-    return Notice("W305", said, f"--close-gaps {reach}px lets {which} bear on the next one.")
+    cure = "--close-gaps auto looks for the width from which the wall stands."
+    return Notice("W305", said, _CURES.get(wall.joints, cure))
+
+
+_CURES = {
+    "known": "",
+    "swept": "Are stones missing beside them? --skip leaves out what is no stone of the wall.",
+    "outlines": "Leave --contacts out: --close-gaps auto looks for the width that lets them bear.",
+}
+"""What to do about stones that touch too little, by what is known of the joints."""

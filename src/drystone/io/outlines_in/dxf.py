@@ -5,27 +5,46 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from importlib import import_module
-from typing import Any
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.interpolate import BSpline
+from scipy.interpolate import BSpline, CubicSpline
 
 from drystone.errors import InputError, Notice
-from drystone.io.file_errors import damaged, too_large, unusable
+from drystone.io.file_errors import damaged, listed, too_large, unusable
 from drystone.io.foreign import extra, foreign
+from drystone.io.outlines_in.classes import layer
 from drystone.io.outlines_in.model import (
     METRES,
     OutlinedStone,
     OutlineFile,
     left_aside,
     number_in,
+    overruled,
     ring,
 )
 from drystone.io.outlines_in.silhouettes import with_holes
+from drystone.io.outlines_in.views import Vector, asked, plane_of, usual_side, view
 from drystone.io.read_settings import ReadSettings
 from drystone.kernels.polygons import Points
 
 BINARY = b"AutoCAD Binary DXF"
+_FOOT_OF_SURVEY = 1200 / 3937
+_INSUNITS_M = MappingProxyType(
+    {
+        1: 0.0254, 2: 0.3048, 3: 1609.344, 4: 1e-3, 5: 1e-2, 6: 1.0, 7: 1e3, 8: 0.0254e-6,
+        9: 0.0254e-3, 10: 0.9144, 11: 1e-10, 12: 1e-9, 13: 1e-6, 14: 1e-1, 15: 10.0, 16: 100.0,
+        17: 1e9, 18: 149597870700.0, 19: 9460730472580800.0, 20: 149597870700.0 * 648000 / np.pi,
+        21: _FOOT_OF_SURVEY, 22: _FOOT_OF_SURVEY / 12, 23: _FOOT_OF_SURVEY * 3,
+        24: _FOOT_OF_SURVEY * 5280,
+    }
+)  # fmt: skip
+"""Metres in each unit of $INSUNITS; ezdxf lacks some, and rounds others."""
+_FRAME = 16
+"""Flag of a vertex that shapes a spline-fit polyline, and is not drawn."""
+_EDGEWISE = 0.5
+"""Cosine of the angle to the plane of the drawing from which on an outline is not of it."""
 _OUTLINES = frozenset({"LWPOLYLINE", "POLYLINE", "CIRCLE", "ELLIPSE", "SPLINE"})
 _LAYER, _APPLICATION = "STONES", "DRYSTONE"
 """Of what drystone writes: the layer of stones, and whose extended data name them."""
@@ -37,6 +56,7 @@ _FLATNESS = 2e-4
 """How far chords may stay away from a curve, as a share of the size of the outline."""
 _MOST_CORNERS = 10_000_000
 _DEEPEST = 64
+_FURTHEST = 1e9
 _MOST_ENTITIES = 100_000
 """Entities and block references, those in rows and columns, and in blocks, one by one."""
 _MOST_DEGREE = 32
@@ -76,37 +96,100 @@ def read_dxf(data: bytes, settings: ReadSettings) -> OutlineFile:
     """
     ezdxf = extra("ezdxf", "reads DXF", "dxf", "cad")
     document = _document(ezdxf, data)
-    unit_m = _unit(ezdxf, document, settings)
+    unit_m, notices = _unit(document, settings)
     aside: Counter[str] = Counter()
     shown = drawn_entities(document, aside)
     named = [drawn for drawn in shown if drawn.layer.upper() == _LAYER]
     if named:
         aside["entities outside the layer STONES"] = len(shown) - len(named)
-    rings, names = [], []
+    outlines = []
     room = _MOST_CORNERS
     for drawn in named or shown:
-        corners = _outline(drawn, aside)
-        if corners is None:
+        outline = _outline(drawn, aside)
+        if outline is None:
             continue
-        room -= len(corners)
+        room -= len(outline.corners)
         if room < 0:
             what = f"the drawing has more than {_MOST_CORNERS} corners, those on curves."
             raise too_large(what, "Export the outlines of stones only, with fewer corners.")
-        rings.append(corners)
-        with foreign(lambda why: unusable(f"the name of an outline cannot be used ({why})")):
-            names.append(_name(drawn))
+        outlines.append(outline)
+    with foreign(lambda why: unusable(f"its outlines cannot be used ({why})")):
+        outlines, rings, seen = _in_plane(outlines, aside, settings)
     with foreign(lambda why: unusable(f"its outlines cannot be put in order ({why})")):
         found = with_holes(rings)
+    names = [outline.name for outline in outlines]
     # The one layer that all stones are on says nothing of a stone.
     names = names if len(set(names)) > 1 or len(names) == 1 else [""] * len(names)
-    stones = [OutlinedStone(number_in(names[i]), names[i], (area,)) for i, area in found]
+    stones = [
+        OutlinedStone(number_in(names[i]), names[i], (area,), label=layer(names[i]))
+        for i, area in found
+    ]
     cure = "Only closed outlines are read: join lines and arcs to polylines, bind references."
-    notices = left_aside(+aside, cure)
+    notices += left_aside(+aside, cure) + seen
+    if open_ended := [outline.handle for outline in outlines if outline.is_open]:
+        which = f"splines that say they are closed end apart ({listed(open_ended)})"
+        text = f"{which}: a straight line was drawn between their ends."
+        notices.append(Notice("W119", text, "Draw them again if they are other curves."))
     if len(found) < len(rings):
         text = f"{len(rings) - len(found)} outlines lie in others and are their holes."
         cure = "If they are stones in a frame, put them on a layer STONES, or hide the frame."
         notices.append(Notice("W119", text, cure))
-    return OutlineFile(stones, unit_m, y_up=True, notices=notices)
+    return OutlineFile(stones, unit_m, y_up=True, notices=notices, in_space=True)
+
+
+class _Outline(NamedTuple):
+    """A closed outline where it is drawn."""
+
+    corners: Vector  # (n, 3)
+    facing: Vector | None  # (3,), away from which it was drawn; None for a line in space
+    name: str
+    handle: str
+    is_open: bool = False  # it says that it is closed, but its ends are apart
+
+
+def _in_plane(
+    outlines: list[_Outline], aside: Counter[str], settings: ReadSettings
+) -> tuple[list[_Outline], list[Points], list[Notice]]:
+    """Return outlines in the plane of the drawing, their corners there, and what is to be said.
+
+    A plan is seen from the top.  An elevation is seen from the side that its outlines face.
+    """
+    if not outlines:
+        return [], [], []
+    for outline in outlines:
+        _check_reach(outline.corners)
+    normal, leaning = plane_of([outline.corners for outline in outlines])
+    aside["outlines that are seen edgewise"] = int((leaning < _EDGEWISE).sum())
+    kept = [one for one, lean in zip(outlines, leaning, strict=True) if lean >= _EDGEWISE]
+    normal, why = usual_side(normal, settings.up), "as CAD programs show it"
+    facing = {float(np.sign(one.facing @ normal)) for one in kept if one.facing is not None}
+    if facing == {-1.0} and normal[2] != 1.0:
+        normal, why = -normal, "the side that its outlines face"
+    seen = asked(normal, settings.up) if settings.up else view(normal, "z")
+    rings = [ring(seen.of(outline.corners)) for outline in kept]
+    notices = []
+    if settings.up or normal[2] != 1.0:
+        why = f"as --up {settings.up} says" if settings.up else why
+        text = f"the drawing is seen {seen.said} ({why})."
+        cure = "--up y takes another axis for up, and --up z or z-back one side or the other."
+        notices.append(Notice("W119", text, cure))
+    short = [(float(lean), one.handle) for one, lean in zip(outlines, leaning, strict=True)
+             if _EDGEWISE <= lean < 1.0]  # fmt: skip
+    if short:
+        least, handle = min(short)
+        text = (
+            f"{len(short)} outlines do not lie in the plane that is seen, and are shortened: most "
+            f"by {100 * (1 - least):.2g} % (handle {handle})."
+        )
+        notices.append(Notice("W119", text, "Draw them flat, in one plane."))
+    return kept, rings, notices
+
+
+def _check_reach(corners: Vector) -> None:
+    if not np.isfinite(corners).all():
+        raise ValueError("a coordinate is not finite")
+    if np.abs(corners).max() > _FURTHEST:
+        raise ValueError("a coordinate is beyond 1e9")
 
 
 def _document(ezdxf: Any, data: bytes) -> Any:
@@ -128,14 +211,17 @@ def _text(data: bytes) -> str:
         return data.decode(page, "surrogateescape")
 
 
-def _unit(ezdxf: Any, document: Any, settings: ReadSettings) -> float | None:
-    units = import_module("ezdxf.units")
+def _unit(document: Any, settings: ReadSettings) -> tuple[float | None, list[Notice]]:
+    """Return metres in the unit; that of the settings comes first."""
     with foreign(lambda why: unusable(f"its unit cannot be used ({why})")):
         number = int(document.header.get("$INSUNITS", 0))
-    if number in {int(known) for known in ezdxf.units.InsertUnits} - {0}:
-        return float(units.conversion_factor(ezdxf.units.InsertUnits(number), units.M))
+    own = _INSUNITS_M.get(number)
     if settings.unit:
-        return METRES.get(settings.unit)
+        told = METRES.get(settings.unit)
+        same = own is None or (told is not None and abs(told / own - 1.0) < 1e-9)
+        return told, [] if same else [overruled(f"$INSUNITS {number}, {own:g} m", settings)]
+    if own is not None:
+        return own, []
     raise InputError(
         "E116",
         f"the drawing does not say its unit ($INSUNITS is {number}), so its stones could be of "
@@ -145,38 +231,89 @@ def _unit(ezdxf: Any, document: Any, settings: ReadSettings) -> float | None:
     )
 
 
-def _outline(drawn: Drawn, aside: Counter[str]) -> Points | None:
-    """Return the corners of a closed outline; what is none is counted."""
+def _outline(drawn: Drawn, aside: Counter[str]) -> _Outline | None:
+    """Return a closed outline; what is none is counted."""
     entity = drawn.entity
-    kind, handle = entity.dxftype(), entity.dxf.get("handle", "?")
+    kind, handle = entity.dxftype(), str(entity.dxf.get("handle", "?"))
     named = f"the {kind} of handle {handle}"
     with foreign(lambda why: unusable(f"{named} cannot be used ({why})")):
         is_mesh = kind == "POLYLINE" and not (entity.is_2d_polyline or entity.is_3d_polyline)
         if kind not in _OUTLINES or is_mesh:
             aside[kind] += 1
             return None
-        if kind == "SPLINE" and len(entity.control_points):
-            control = [v.xyz for v in drawn.matrix.transform_vertices(entity.control_points)]
-            corners = spline(control, entity.knots, entity.weights, entity.dxf.degree)
-            if np.abs(corners[0] - corners[-1]).max() > _CLOSED * np.ptp(corners, axis=0).max():
-                aside["open SPLINE"] += 1
-                return None
-            return ring(corners[:-1])
-        path = import_module("ezdxf.path").make_path(entity)
-        if not len(path) or not path.is_closed:
+        is_spline = kind == "SPLINE" and (len(entity.control_points) or entity.closed)
+        curve = _spline_corners if is_spline else _path_corners
+        corners, is_open = curve(drawn)
+        if corners is None:
             aside[f"open {kind}"] += 1
             return None
-        # Curves stay curves also where a block is stretched, or mirrored.
-        path = path.transform(drawn.matrix)
-        # Few corners are enough to see how large it is.
-        rough = ring([(v.x, v.y) for v in path.control_vertices()])
-        size = float(np.ptp(rough, axis=0).max())
-        chords = path.flattening(max(size * _FLATNESS, 1e-12), segments=8)
-        return ring([(v.x, v.y) for v in chords])
+        facing = None
+        if kind != "SPLINE" and not (kind == "POLYLINE" and entity.is_3d_polyline):
+            front = drawn.matrix.transform_direction(entity.dxf.get("extrusion", (0, 0, 1)))
+            facing = np.array(front.xyz)
+    with foreign(lambda why: unusable(f"the name of an outline cannot be used ({why})")):
+        return _Outline(corners, facing, _name(drawn), handle, is_open)
 
 
-def spline(control: Any, knots: Any, weights: Any, degree: int) -> Points:
-    """Return points, (n, 2), on a B-spline, its ends included.
+def _path_corners(drawn: Drawn) -> tuple[Vector | None, bool]:
+    """Return the corners of what is no spline, if it is closed."""
+    entity = drawn.entity
+    if entity.dxftype() == "POLYLINE":
+        entity.vertices[:] = [v for v in entity.vertices if not v.dxf.get("flags", 0) & _FRAME]
+    path = import_module("ezdxf.path").make_path(entity)
+    if not len(path) or not path.is_closed:
+        return None, False
+    # Curves stay curves also where a block is stretched, or mirrored.
+    path = path.transform(drawn.matrix)
+    # Few corners are enough to see how large it is.
+    rough = np.array([v.xyz for v in path.control_vertices()])
+    _check_reach(rough)
+    size = float(np.ptp(rough, axis=0).max())
+    chords = path.flattening(max(size * _FLATNESS, 1e-12), segments=8)
+    return np.array([v.xyz for v in chords]), False
+
+
+def _spline_corners(drawn: Drawn) -> tuple[Vector | None, bool]:
+    """Return the corners of a spline that is or says it is closed, and if its ends are apart."""
+    entity = drawn.entity
+    given = entity.control_points if len(entity.control_points) else entity.fit_points
+    points = np.array([v.xyz for v in drawn.matrix.transform_vertices(given)]).reshape(-1, 3)
+    if not len(entity.control_points):
+        return closed_through(points), False
+    degree, knots, weights = entity.dxf.degree, entity.knots, entity.weights
+    corners = spline(points, knots, weights, degree)
+    if not _ends_apart(corners):
+        return corners[:-1], False
+    if not entity.closed:
+        return None, False
+    if knots[0] < knots[degree]:
+        # It has no ends; what makes its first points its last ones again was left out.
+        points = np.concatenate([points, points[:degree]])
+        weights = [*weights, *weights[:degree]]
+        corners = spline(points, np.arange(len(points) + degree + 1.0), weights, degree)
+    return corners, _ends_apart(corners)
+
+
+def _ends_apart(corners: Vector) -> bool:
+    size = np.ptp(corners, axis=0).max()
+    return bool(np.abs(corners[0] - corners[-1]).max() > _CLOSED * size)
+
+
+def closed_through(points: Vector) -> Vector | None:
+    """Return points on the smooth closed curve through some, or None when they are too few."""
+    points = points[(points != np.roll(points, 1, axis=0)).any(axis=1)]
+    if len(points) < 3:
+        return None
+    around = np.concatenate([points, points[:1]])
+    # Where it is at each point: as far as the chords are long.
+    at = np.concatenate([[0.0], np.linalg.norm(np.diff(around, axis=0), axis=1).cumsum()])
+    inner = np.arange(_CHORDS) / _CHORDS
+    on = (at[:-1, None] + inner * np.diff(at)[:, None]).ravel()
+    return np.asarray(CubicSpline(at, around, bc_type="periodic")(on))
+
+
+def spline(control: Any, knots: Any, weights: Any, degree: int) -> Vector:
+    """Return points, (n, 3), on a B-spline, its ends included.
 
     The curve lives between the ascending knots `degree` and n, the number of control points: of a
     periodic spline the others lie beyond its ends.  `weights` is empty for one that is not
@@ -184,7 +321,7 @@ def spline(control: Any, knots: Any, weights: Any, degree: int) -> Points:
     """
     if degree > _MOST_DEGREE:
         raise ValueError(f"its degree is {degree}; the limit is {_MOST_DEGREE}")
-    points = np.asarray(control, dtype=float)[:, :2]
+    points = np.asarray(control, dtype=float)
     heavy = np.asarray(weights, dtype=float) if len(weights) else np.ones(len(points))
     t = np.asarray(knots, dtype=float)
     curve = BSpline(t, np.column_stack([points * heavy[:, None], heavy]), degree)
@@ -192,7 +329,7 @@ def spline(control: Any, knots: Any, weights: Any, degree: int) -> Points:
     inner = np.arange(_CHORDS) / _CHORDS
     at = (spans[:-1, None] + inner * np.diff(spans)[:, None]).ravel()
     found = curve(np.append(at, spans[-1]))
-    return np.asarray(found[:, :2] / found[:, 2:])
+    return np.asarray(found[:, :-1] / found[:, -1:])
 
 
 def _name(drawn: Drawn) -> str:

@@ -2,33 +2,50 @@
 
 import io
 import re
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
 
 from drystone.errors import InputError, Notice
 from drystone.io.file_errors import damaged, listed, short, unusable
 from drystone.io.foreign import extra, foreign
-from drystone.io.outlines_in.model import METRES, OutlinedStone, OutlineFile, number_in
+from drystone.io.outlines_in.model import (
+    METRES,
+    OutlinedStone,
+    OutlineFile,
+    left_aside,
+    number_in,
+)
 from drystone.io.outlines_in.silhouettes import shadow
+from drystone.io.outlines_in.views import asked
 from drystone.io.read_settings import ReadSettings
 
-_VIEWS = {
-    0: ([1, 2], "along X, with Y to the right and Z up"),
-    1: ([0, 2], "along Y, with X to the right and Z up"),
-    2: ([0, 1], "along Z, with X to the right and Y up"),
-}
-"""Axes to the right and up, when one looks along the third: along -X, +Y, or -Z."""
 _OURS = (b"# drystone ", b"drystone, ")
 _HEAD = 400
+_FURTHEST = 1e9
+_NEAR, _STEPS = 4e-6, 4
+"""Corners are one vertex within a share of the mesh, or steps of the float32 that they are."""
+_EDGE = 0.01
+"""Share of the median edge that they are never further apart than."""
+_NEIGHBOURS = 8
 _STL_FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _STL_VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)")
 _PLY_FACES = re.compile(rb"^element\s+face\s+(\d{1,18})", re.MULTILINE)
+
+
+_OTHERWISE = "--up y, z, y-back or z-back see it otherwise."
+_OF_AXIS = {
+    0: "--up y turns it if Y is up, and --up z-back sees it from the other side.",
+    2: "--up z-back sees it from the other side.",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,28 +78,56 @@ def read_mesh(kind: str, data: bytes, settings: ReadSettings) -> OutlineFile:
 
     Named objects of an OBJ are a stone each; otherwise every connected body is one.  Meshes
     that drystone wrote are seen along Y with Z up, others along the axis in which all of it
-    together is thinnest.  Their unit is taken as the metre unless the settings name another.
+    together is thinnest.  Along Y that needs to be told whether Z or Y is up, as one is the mirror
+    image of the other.  Their unit is taken as the metre unless the settings name another.
     """
     bodies = _BODIES[kind](data)
     used = np.unique(np.concatenate([np.concatenate(list(b.faces)) for b in bodies]))
     vertices = bodies[0].vertices[used]
-    if not np.isfinite(vertices).all() or np.abs(vertices).max() > 1e9:
+    if not np.isfinite(vertices).all() or np.abs(vertices).max() > _FURTHEST:
         raise unusable("a vertex is not finite or beyond 1e9")
     ours = data.startswith(_OURS)
     axis = 1 if ours else int(np.argmin(np.ptp(vertices, axis=0)))
-    plane, view = _VIEWS[axis]
+    if axis == 1 and not (ours or settings.up):
+        raise InputError(
+            "E116",
+            "the mesh is thinnest along Y and does not say which axis is up: stones that lie "
+            "there with Y up are the mirror images of stones that stand there with Z up.",
+            cure="Say --up y (as Blender writes OBJ) or --up z (ReadSettings.up).",
+        )
+    seen = asked(np.eye(3)[axis], settings.up)
     with foreign(lambda why: unusable(f"its faces cannot be united ({why})")):
-        areas = [shadow([b.vertices[face][:, plane] for face in b.faces]) for b in bodies]
-    both = zip(bodies, areas, strict=True)
+        flat = seen.of(bodies[0].vertices)
+        areas = [shadow([flat[face] for face in b.faces]) for b in bodies]
+    both = [(body, area) for body, area in zip(bodies, areas, strict=True) if area]
     stones = [OutlinedStone(number_in(body.name), body.name, area) for body, area in both]
+    edgewise = Counter({"bodies without an area as they are seen": len(bodies) - len(stones)})
     why = "as drystone writes meshes" if ours else "in which the mesh is thinnest"
-    notices = [Notice("W119", f"{len(stones)} bodies, seen {view} ({why}).")]
+    text = f"{len(stones)} bodies, seen {seen.said} ({why})."
+    notices = [Notice("W119", text, _OTHERWISE if ours or settings.up else _OF_AXIS[axis])]
+    if axis != 2 and _is_inside_out(bodies):
+        text = "its faces look inwards: with axes of a left hand its stones are mirrored."
+        notices.append(Notice("W119", text, "Say --up y-back or z-back if they are."))
+    notices += left_aside(+edgewise, "Give every stone a closed surface.")
     notices += [_united(body) for body in bodies if len(body.said) > 1]
     if not settings.unit and not ours:
         text = f"{kind.upper()} has no unit: lengths were taken as metres."
         notices.append(Notice("W119", text, "Say --unit mm (or cm, in, ft) if they are not."))
     unit_m = METRES.get(settings.unit or "m")
-    return OutlineFile(stones, unit_m, y_up=True, notices=notices)
+    return OutlineFile(stones, unit_m, True, notices=notices, in_space=True, seen_by="either")
+
+
+def _is_inside_out(bodies: Sequence[MeshBody]) -> bool:
+    """Tell whether bodies have a volume below 0, by the sense of rotation of their faces."""
+    faces = [face for body in bodies for face in body.faces]
+    corners, sizes = np.concatenate(faces), np.array([len(face) for face in faces])
+    ends = sizes.cumsum()
+    after = np.roll(corners, -1)
+    after[ends - 1] = corners[ends - sizes]
+    vertices = bodies[0].vertices - bodies[0].vertices[corners].mean(axis=0)
+    first = vertices[np.repeat(corners[ends - sizes], sizes)]
+    sixths = np.einsum("ij,ij->i", first, np.cross(vertices[corners], vertices[after]))
+    return bool(sixths.sum() < -0.01 * np.abs(sixths).sum())
 
 
 def _united(body: MeshBody) -> Notice:
@@ -93,11 +138,10 @@ def _united(body: MeshBody) -> Notice:
 
 
 def _stl_bodies(data: bytes) -> list[MeshBody]:
-    """Read triangles; equal corners are one vertex, so that bodies hang together."""
+    """Read triangles."""
     is_text = data.lstrip().startswith(b"solid") and b"facet" in data[:_HEAD]
     corners = _stl_text(data) if is_text else _stl_binary(data)
-    vertices, places = np.unique(corners, axis=0, return_inverse=True)
-    return _bodies(vertices, list(places.reshape(-1, 3)))
+    return _bodies(corners, list(np.arange(len(corners)).reshape(-1, 3)))
 
 
 def _stl_text(data: bytes) -> NDArray[np.float64]:
@@ -123,11 +167,13 @@ def _stl_binary(data: bytes) -> NDArray[np.float64]:
 def _ply_bodies(data: bytes) -> list[MeshBody]:
     trimesh = extra("trimesh", "reads PLY", "mesh", "mesh")
     with foreign(_cut):
-        mesh = trimesh.load_mesh(io.BytesIO(data), file_type="ply", process=True)
+        mesh = trimesh.load_mesh(io.BytesIO(data), file_type="ply", process=False)
         vertices, faces = np.asarray(mesh.vertices, float), np.asarray(mesh.faces, np.int64)
     said = _PLY_FACES.search(data)
     if said and len(faces) < int(said[1]):
         raise _cut(f"{len(faces)} of {int(said[1])} faces")
+    if faces.size and not 0 <= faces.min() <= faces.max() < len(vertices):
+        raise _cut("a face of unknown vertices")
     return _bodies(vertices, list(faces))
 
 
@@ -162,7 +208,13 @@ def _obj_bodies(data: bytes) -> list[MeshBody]:
     vertices = np.array(points, float).reshape(-1, 3)
     if not any(part.kind for part in parts):
         return _bodies(vertices, parts.get(nameless, []))
-    return [MeshBody(part.name, vertices, parts[part], tuple(said[part])) for part in parts]
+    faces = [face for part in parts.values() for face in part]
+    vertices, faces = _welded(vertices, faces)
+    rest = iter(faces)
+    return [
+        MeshBody(part.name, vertices, list(islice(rest, len(old))), tuple(said[part]))
+        for part, old in parts.items()
+    ]
 
 
 class _Part(NamedTuple):
@@ -197,10 +249,40 @@ def _face(words: list[str], count: int) -> NDArray[np.int64]:
     return corners
 
 
+def _welded(
+    vertices: NDArray[np.float64], faces: list[NDArray[np.int64]]
+) -> tuple[NDArray[np.float64], list[NDArray[np.int64]]]:
+    """Make corners in one place one vertex, whatever normals or textures they have.
+
+    That place is as wide as what programs lose that turn and round each corner by itself.
+    """
+    places, index = np.unique(vertices, axis=0, return_inverse=True)
+    corners = index.ravel()[np.concatenate(faces)]
+    ends = np.cumsum([len(face) for face in faces])
+    if not np.isfinite(places).all() or np.abs(places).max() > _FURTHEST:
+        return places, np.split(corners, ends[:-1])
+    edges = places[corners] - places[np.roll(corners, -1)]
+    edges = np.linalg.norm(np.delete(edges, ends - 1, axis=0), axis=1)
+    near = _NEAR * float(np.ptp(places, axis=0).max())
+    steps = np.spacing(np.abs(places).astype(np.float32))
+    # The further from the origin, the coarser; text may have been rounded once more.
+    if np.median(np.abs(places - places.astype(np.float32)) / steps) < 0.1:
+        near = max(near, _STEPS * float(steps.max()))
+    near = min(near, _EDGE * float(np.median(edges)))
+    count = len(places)
+    distance, other = KDTree(places).query(places, k=_NEIGHBOURS, distance_upper_bound=near)
+    one, which = np.nonzero(np.isfinite(distance))
+    links = coo_array((np.ones(len(one), bool), (one, other[one, which])), shape=(count, count))
+    label = connected_components(links, directed=False)[1]
+    first = np.unique(label, return_index=True)[1]
+    return places[first], np.split(label[corners], ends[:-1])
+
+
 def _bodies(vertices: NDArray[np.float64], faces: list[NDArray[np.int64]]) -> list[MeshBody]:
     """Split faces into bodies that hang together, in the order of their first faces."""
     if not faces or not len(vertices):
         raise unusable("the mesh has no faces")
+    vertices, faces = _welded(vertices, faces)
     first = np.array([face[0] for face in faces])
     pairs = np.concatenate([np.column_stack([face, np.roll(face, 1)]) for face in faces])
     links = coo_array((np.ones(len(pairs), bool), pairs.T), shape=(len(vertices),) * 2)

@@ -1,8 +1,9 @@
 """Stones as a file describes them: outlines or masks, before they are pixels of one picture."""
 
+import math
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Literal
@@ -10,15 +11,18 @@ from typing import Any, Literal
 import numpy as np
 
 from drystone.errors import Notice
-from drystone.io.file_errors import listed, short
+from drystone.io.file_errors import MANY, listed, short
 from drystone.io.labels import MAX_ID
 from drystone.io.patches import PlacedMask
+from drystone.io.read_settings import ReadSettings
 from drystone.kernels.polygons import Points
 
 METRES = MappingProxyType({"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048})
 """Metres in each unit that a user may name."""
 
-_LARGEST = 10**9
+MOST_PX = 10**9
+"""No coordinate is further away."""
+_CORNERS_OF_ELLIPSE = 256
 _STONE_NAME = re.compile(r"(?:stones?[ _-]*)?0*([1-9][0-9]*)", re.IGNORECASE)
 _WEDGE_NAME = re.compile(r"wedge[ _-]*[0-9]+", re.IGNORECASE)
 
@@ -41,6 +45,7 @@ class OutlinedStone:
     name: str = ""  # the file's own name
     areas: tuple[Area, ...] = ()
     masks: tuple[PlacedMask, ...] = ()  # only in files in px
+    label: str = ""  # the class that the file gives it
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +57,12 @@ class OutlineFile:
     y_up: bool = False  # False when y runs down, as in images
     size_px: tuple[int, int] | None = None  # width, height of the image of a file in px, if said
     notices: Sequence[Notice] = ()
+    in_space: bool = False  # its coordinates have three axes, so it can be asked which is up
     names_images: bool = False  # it says of which image each stone is, so one can be asked for
+    seen_by: Literal["people", "program", "either", "none"] = "people"
+    """Who drew them: a program masks whatever it sees.  Masks and bodies may be "either" those of
+    one picture or each of its own; with "none" they are.
+    """
 
 
 def number_in(text: object) -> int | None:
@@ -107,6 +117,40 @@ def without_wedges(stones: Sequence[OutlinedStone]) -> tuple[list[OutlinedStone]
     return kept, [Notice("W119", f"{left} wedges of a planned wall were left out.")] if left else []
 
 
+class TooFewPointsError(ValueError):
+    """A ring of one or two points, which encloses nothing."""
+
+
+class Slivers:
+    """What has too few points to be an outline, which is left out and named."""
+
+    def __init__(self) -> None:
+        self._found: list[str] = []
+
+    def areas(self, name: str, polygons: Iterable[Sequence[Any]]) -> tuple[Area, ...]:
+        """Return polygons, an outer ring and its holes each, without those of too few points."""
+        areas = []
+        for outer, *holes in polygons:
+            rings = []
+            for points in (outer, *holes):
+                try:
+                    rings.append(ring(points))
+                except TooFewPointsError:
+                    self._found.append(f"{name} ({len(points)} points)")
+                    if points is outer:
+                        break
+            if rings:
+                areas.append(Area(tuple(rings)))
+        return tuple(areas)
+
+    def notices(self) -> list[Notice]:
+        """Name them all."""
+        if not self._found:
+            return []
+        text = f"outlines of less than 3 points left out: {listed(self._found, most=MANY)}."
+        return [Notice("W119", text, "Draw them again if they are stones.")]
+
+
 def left_aside(kinds: Counter[str], cure: str = "") -> list[Notice]:
     """Say what in a file is no outline of a stone."""
     if not kinds:
@@ -115,13 +159,35 @@ def left_aside(kinds: Counter[str], cure: str = "") -> list[Notice]:
     return [Notice("W119", f"no outlines of stones, left aside: {found}.", cure)]
 
 
+def ellipse(centre: tuple[float, float], radii: tuple[float, float], turned: float = 0.0) -> Points:
+    """Return the corners, (n, 2), of an ellipse that is turned by an angle (radians)."""
+    angles = np.arange(_CORNERS_OF_ELLIPSE) * (2.0 * math.pi / _CORNERS_OF_ELLIPSE)
+    x, y = radii[0] * np.cos(angles), radii[1] * np.sin(angles)
+    turn = np.exp(1j * turned) * (x + 1j * y)
+    return np.asarray(np.column_stack([turn.real, turn.imag]) + np.array(centre))
+
+
+def overruled(own: str, settings: ReadSettings) -> Notice:
+    """Say that the unit of the settings took the place of that of the file."""
+    text = f"the file gives another unit ({own}), but --unit {settings.unit} was said."
+    return Notice("W119", text, "Leave --unit out to take that of the file.")
+
+
 def side_px(value: Any) -> int:
     """Return a side of an image; ValueError when it is none."""
     number = int(value)
-    if not 0 < number <= _LARGEST:
+    if not 0 < number <= MOST_PX:
         shown = number if number <= 0 else "more than 1e9"
         raise ValueError(f"a side of it is {shown} px")
     return number
+
+
+def place_px(value: Any) -> int:
+    """Return a row or column of a mask; ValueError when no picture reaches there."""
+    number = float(value)
+    if not abs(number) <= MOST_PX:
+        raise ValueError("a coordinate is beyond 1e9")
+    return round(number)
 
 
 def ring(points: Any) -> Points:
@@ -130,12 +196,12 @@ def ring(points: Any) -> Points:
     if corners.ndim != 2 or corners.shape[1] < 2:
         raise ValueError("points are pairs of numbers")
     corners = corners[:, :2]
+    if not np.isfinite(corners).all():
+        raise ValueError("a coordinate is not finite")
+    if corners.size and np.abs(corners).max() > MOST_PX:
+        raise ValueError("a coordinate is beyond 1e9")
     if len(corners) > 1 and (corners[0] == corners[-1]).all():
         corners = corners[:-1]
     if len(corners) < 3:
-        raise ValueError(f"an outline needs 3 points, not {len(corners)}")
-    if not np.isfinite(corners).all():
-        raise ValueError("a coordinate is not finite")
-    if np.abs(corners).max() > _LARGEST:
-        raise ValueError("a coordinate is beyond 1e9")
+        raise TooFewPointsError(f"an outline needs 3 points, not {len(corners)}")
     return corners

@@ -1,19 +1,33 @@
-"""Which of many masks that lie in each other are stones."""
+"""The one rule for what is not a stone: frames, the ground, repeats, groups and parts."""
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
 
 import numpy as np
+import shapely
+from scipy import ndimage
 
 from drystone.errors import Notice
-from drystone.io.file_errors import MANY, listed, too_large
-from drystone.io.outlines_in.fill import pixels_of, united
-from drystone.io.outlines_in.model import OutlinedStone
+from drystone.io.file_errors import MANY, listed, short, too_large
 from drystone.io.patches import PlacedMask, enclosed
 
 INSIDE = 0.8
 """Share of a mask that lies in another one for it to count as its part."""
 
+_BESIDE = 0.25
+"""How large what lies beside a frame may be, compared with what lies in it."""
+_TOUCHING = 0.1
+"""Share of a mask from which it lies over another one."""
+_IN_EACH = 4
+"""How many lie, on average, in each of several frames."""
+_WHOLE_PICTURE = 0.9
+"""Share of its picture that a frame has which a program saw."""
+
+_MOST_IN_PIECES = 16
+"""Pieces of a group that are looked at one by one."""
+
+_AT_ONCE = 256
 _MOST_PAIRS = 200_000
 _MOST_SHARED_PX = 300_000_000
 
@@ -24,87 +38,163 @@ def meeting_boxes(masks: Sequence[PlacedMask]) -> list[tuple[int, int]]:
     More of them, or larger ones, than can be compared are refused (E110).
     """
     sides = np.array([mask.sides for mask in masks], dtype=np.int64).reshape(-1, 4)
+    boxes = shapely.box(*sides.T)
+    tree = shapely.STRtree(boxes)
     pairs: list[tuple[int, int]] = []
     shared_px = 0
-    for i, own in enumerate(sides):
-        rest = sides[i + 1 :]
-        shared = np.minimum(rest[:, 2:], own[2:]) - np.maximum(rest[:, :2], own[:2])
+    for begin in range(0, len(boxes), _AT_ONCE):
+        i, j = tree.query(boxes[begin : begin + _AT_ONCE])
+        i += begin
+        i, j = i[i < j], j[i < j]
+        shared = np.minimum(sides[i, 2:], sides[j, 2:]) - np.maximum(sides[i, :2], sides[j, :2])
         meet = (shared > 0).all(axis=1)
-        pairs += [(i, i + 1 + int(j)) for j in np.flatnonzero(meet)]
+        pairs += zip(i[meet].tolist(), j[meet].tolist(), strict=True)
         shared_px += int(shared[meet].prod(axis=1).sum())
         if len(pairs) > _MOST_PAIRS or shared_px > _MOST_SHARED_PX:
             what = "its stones lie over each other more often than can be compared."
             raise too_large(what, "Export every stone once.")
-    return pairs
+    return sorted(pairs)
 
 
-def without_nested(
-    stones: list[OutlinedStone], skip: tuple[int, ...] = ()
-) -> tuple[list[OutlinedStone], list[Notice]]:
-    """Leave out the ground, groups of stones, and parts of stones.
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """Masks of one picture, by the number of their stone."""
 
-    A program that masks whatever it sees finds the ground, heaps, stones, and spots on stones.
-    In this order:
+    masks: Mapping[int, PlacedMask]
+    size_px: tuple[int, int]  # width, height of the picture
+    keep: frozenset[int] = frozenset()
+    by_program: bool = False
+    """A program masks whatever it sees: heaps, stones, and spots on stones."""
 
-    1. a mask in whose holes `INSIDE` of another mask lies is the ground;
+
+def not_stones(seen: Seen) -> dict[int, str]:
+    """Say of each mask that is not a stone of its own what it is instead.
+
+    This is the one rule of all readers of outlines and masks, in this order:
+
+    1. a mask in whose holes `INSIDE` of others lies is the ground;
     2. of two masks that share `INSIDE` of their union, the smaller one is the same thing again;
-    3. a mask of which `INSIDE` is covered by two or more smaller ones is a group of those;
-    4. a mask of which `INSIDE` lies in a larger one that is kept is a part of it.
-
-    Ids in `skip` do not count, and their stones are kept as they are; naming parts there makes
-    their group a stone.
+    3. a mask in which nearly all others lie is a frame;
+    4. a mask of which `INSIDE` is covered by two or more smaller ones and the ground, or which has
+       some of them in each of its pieces, is a group of those;
+    5. a mask of which `INSIDE` lies in a larger one that is kept is a part of it.
     """
-    placed = {i: pixels_of(stone) for i, stone in enumerate(stones) if stone.id not in skip}
-    masks = {i: mask for i, mask in placed.items() if mask is not None}
+    masks, left = dict(seen.masks), {}
     keys = list(masks)
     meeting = [(keys[i], keys[j]) for i, j in meeting_boxes(list(masks.values()))]
-    ground = _with_stones_in_holes(masks, meeting)
-    shares = _Shares({i: mask for i, mask in masks.items() if i not in ground}, meeting)
-    again = shares.same()
-    shares.leave(again)
-    groups = shares.groups()
-    shares.leave(groups)
-    parts_of = shares.wholes()
-    left = {*ground, *again, *groups, *parts_of}
-    name = [stone.id for stone in stones]
-    said = [f"{name[i]} (the ground: others lie in its holes)" for i in sorted(ground)]
-    said += [f"{name[i]} ({name[whole]} again)" for i, whole in sorted(again.items())]
-    for i, parts in sorted(groups.items()):
-        said.append(f"{name[i]} (a group of {listed(name[part] for part in parts)})")
-    said += [f"{name[i]} (a part of {name[whole]})" for i, whole in sorted(parts_of.items())]
-    kept = [
-        stone if (mask := placed.get(i)) is None else replace(stone, areas=(), masks=(mask,))
-        for i, stone in enumerate(stones)
-        if i not in left
-    ]
-    if not said:
-        return kept, []
-    found = f"{len(said)} of {len(stones)} masks are no stones of their own"
-    text = f"{found}: {listed(said, most=MANY)}."
-    return kept, [Notice("W119", text, "Skip ids to decide otherwise.")]
-
-
-def _with_stones_in_holes(
-    masks: dict[int, PlacedMask], meeting: Iterable[tuple[int, int]]
-) -> set[int]:
     holes = {
         i: PlacedMask(inside, mask.row, mask.col)
         for i, mask in masks.items()
-        if (inside := enclosed(mask.mask)).any()
+        if i not in seen.keep and (inside := enclosed(mask.mask)).any()
     }
-    return {
-        i
-        for pair in meeting
-        for i, j in (pair, pair[::-1])
-        if i in holes and holes[i].common_px(masks[j]) >= INSIDE * masks[j].mask.sum()
-    }
+    around = _ground(seen, holes, meeting)
+    for i in around:
+        left[i] = "the ground: others lie in its holes"
+    shares = _Shares({i: m for i, m in masks.items() if i not in left}, meeting, seen.keep)
+    again = shares.same()
+    left |= {i: f"{whole} again" for i, whole in again.items()}
+    shares.leave(again)
+    found = shares.frames(seen, holes)
+    left |= {i: f"a frame around {listed(held, most=3)}" for i, held in found.items()}
+    shares.leave(found)
+    groups = shares.groups(seen.masks[i] for i in around)
+    left |= {i: f"a group of {listed(parts)}" for i, parts in groups.items()}
+    shares.leave(groups)
+    return left | {i: f"a part of {whole}" for i, whole in shares.wholes().items()}
+
+
+def said_of(left: Mapping[int, str], count: int, names: Mapping[int, str] | None = None) -> Notice:
+    """List what is not a stone, and how to keep it."""
+    shown = {i: f"{i} {short((names or {}).get(i, ''))}".rstrip() for i in left}
+    why = listed((f"{shown[i]} ({left[i]})" for i in sorted(left)), most=MANY)
+    text = f"{len(left)} of {count} outlines or masks are not stones of their own, left out: {why}."
+    return Notice("W119", text, "Use --keep ID (keep in Python) for each that is one.")
+
+
+def of_one_picture(masks: Sequence[PlacedMask]) -> bool:
+    """Tell masks of one picture from stones that each had a picture of its own.
+
+    Those lie all over each other, where masks of one picture lie beside or in each other.
+    """
+    sides = np.array([mask.sides for mask in masks]).reshape(-1, 4)
+    (above, before), (below, behind) = sides[:, :2].min(axis=0), sides[:, 2:].max(axis=0)
+    depth = np.zeros((below - above, behind - before), np.uint16)
+    for mask in masks:
+        top, left = mask.row - above, mask.col - before
+        height, width = mask.mask.shape
+        depth[top : top + height, left : left + width] += mask.mask
+    if 2 * int(depth.max(initial=0)) > len(masks):
+        return False
+    nested = partial = 0
+    for i, j in meeting_boxes(masks):
+        smaller = min(_area(masks[i]), _area(masks[j]))
+        share = masks[i].common_px(masks[j]) / max(1, smaller)
+        nested += share >= INSIDE
+        partial += _TOUCHING <= share < INSIDE
+    return partial <= nested
+
+
+def frames(
+    areas: Mapping[int, float],
+    inside: Mapping[int, AbstractSet[int]],
+    plain: AbstractSet[int] = frozenset(),
+) -> dict[int, list[int]]:
+    """Return the shapes that are drawn around the stones, and what lies in each.
+
+    A frame holds two others or more, and beside it there is little, compared with them; one that
+    is a `plain` rectangle may hold a single one.  Several frames share all others.
+    """
+    left, found, around = set(areas), {}, True
+    holders = sorted((i for i in areas if inside[i]), key=lambda i: -areas[i])
+    while around:
+        around, total = False, sum(areas[i] for i in left)
+        for i in (i for i in holders if i in left):
+            held = inside[i] & left
+            within = sum(areas[j] for j in held)
+            alone = i in plain and len(held) == len(left) - 1
+            few = len(held) < (1 if alone else 2)
+            if not few and total - areas[i] - within <= _BESIDE * within:
+                found[i], around = sorted(held), True
+                left.remove(i)
+                break
+    holding = {i: inside[i] & left for i in left}
+    outer = left.difference(*holding.values())
+    several = len(outer) > 1 and all(len(holding[i]) > 1 for i in outer)
+    if several and len(left) - len(outer) >= _IN_EACH * len(outer):
+        found |= {i: sorted(holding[i]) for i in outer}
+    return found
+
+
+def _ground(
+    seen: Seen, holes: Mapping[int, PlacedMask], meeting: Iterable[tuple[int, int]]
+) -> set[int]:
+    """Return the masks in whose holes others lie.
+
+    One stone drawn by hand may show in another; a program finds the ground like that.
+    """
+    held: dict[int, int] = dict.fromkeys(holes, 0)
+    for pair in meeting:
+        for i, j in (pair, pair[::-1]):
+            if i in holes and holes[i].common_px(seen.masks[j]) >= INSIDE * _area(seen.masks[j]):
+                held[i] += 1
+    least = 1 if seen.by_program else min(2, len(seen.masks) - 1)
+    return {i for i, count in held.items() if count >= max(1, least)}
+
+
+def _area(mask: PlacedMask) -> int:
+    return int(mask.mask.sum())
 
 
 class _Shares:
     """How much of which mask lies in which."""
 
-    def __init__(self, masks: dict[int, PlacedMask], meeting: Iterable[tuple[int, int]]) -> None:
-        self._masks = masks
+    def __init__(
+        self,
+        masks: dict[int, PlacedMask],
+        meeting: Iterable[tuple[int, int]],
+        keep: Collection[int] = (),
+    ) -> None:
+        self._masks, self._keep = masks, keep
         self._areas = {i: int(mask.mask.sum()) for i, mask in masks.items()}
         self._common: dict[int, dict[int, int]] = {i: {} for i in masks}
         for i, j in meeting:
@@ -131,15 +221,45 @@ class _Shares:
         """Return for each mask that lies in a larger one which that is."""
         return self._within(lambda i, _j, _common: self._areas[i])
 
-    def groups(self) -> dict[int, list[int]]:
-        """Return for each mask that smaller ones cover which those are."""
-        found = {}
+    def frames(self, seen: Seen, holes: Mapping[int, PlacedMask]) -> dict[int, list[int]]:
+        """Return for each mask that is drawn around the others which those are."""
+        inside: dict[int, set[int]] = {i: set() for i in self._masks}
+        for i, shares in self._common.items():
+            for j, common in shares.items():
+                if i in self._keep or self._order(i) > self._order(j):
+                    continue
+                in_holes = holes[i].common_px(self._masks[j]) if i in holes else 0
+                if common + in_holes >= INSIDE * self._areas[j]:
+                    inside[i].add(j)
+        if seen.by_program:
+            whole = _WHOLE_PICTURE * seen.size_px[0] * seen.size_px[1]
+            inside = {i: held if self._areas[i] >= whole else set() for i, held in inside.items()}
+        plain = {i for i, mask in self._masks.items() if mask.mask.all()}
+        return frames({i: self._areas[i] for i in self._masks}, inside, plain)
+
+    def groups(self, ground: Iterable[PlacedMask]) -> dict[int, list[int]]:
+        """Return for each mask that smaller ones cover, but for the ground, which those are."""
+        found, beside = {}, list(ground)
         for i, mask in self._masks.items():
-            parts = self._parts(i)
-            union = united([self._masks[j] for j in parts])
-            if union is not None and mask.common_px(union) >= INSIDE * self._areas[i]:
+            parts = [] if i in self._keep else self._parts(i)
+            if not parts:
+                continue
+            covered = PlacedMask(np.zeros_like(mask.mask), mask.row, mask.col)
+            for other in (*beside, *(self._masks[j] for j in parts)):
+                here, there = covered.shared(other)
+                here |= there
+            if mask.common_px(covered) >= INSIDE * self._areas[i] or self._in_each_piece(i, parts):
                 found[i] = parts
         return found
+
+    def _in_each_piece(self, i: int, parts: Iterable[int]) -> bool:
+        """Tell a mask in several pieces, which no stone is, with smaller masks in each of them."""
+        mask = self._masks[i]
+        labels, count = ndimage.label(mask.mask, np.ones((3, 3), bool))
+        if not 1 < count <= _MOST_IN_PIECES:
+            return False
+        pieces = [PlacedMask(labels == n, mask.row, mask.col) for n in range(1, count + 1)]
+        return all(any(one.common_px(self._masks[j]) for j in parts) for one in pieces)
 
     def _parts(self, i: int) -> list[int]:
         """Return the smaller masks that lie in one, and in no other that lies in it."""
@@ -155,13 +275,13 @@ class _Shares:
 
     def _within(self, of: Callable[[int, int, int], int]) -> dict[int, int]:
         """Return which masks share `INSIDE` of something with a larger one that is kept."""
-        kept: list[int] = []
+        kept: set[int] = set()
         found: dict[int, int] = {}
         for i in sorted(self._masks, key=self._order):
             common = self._common[i]
-            around = [j for j in kept if j in common and common[j] >= INSIDE * of(i, j, common[j])]
-            if around:
-                found[i] = around[0]
+            around = [j for j in common if j in kept and common[j] >= INSIDE * of(i, j, common[j])]
+            if around and i not in self._keep:
+                found[i] = min(around, key=self._order)
             else:
-                kept.append(i)
+                kept.add(i)
         return found

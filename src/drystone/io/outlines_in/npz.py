@@ -12,6 +12,7 @@ from drystone.errors import InputError
 from drystone.io.file_errors import damaged, too_large, unusable
 from drystone.io.foreign import foreign
 from drystone.io.npy import array_of
+from drystone.io.outlines_in.classes import class_of
 from drystone.io.outlines_in.fill import trimmed
 from drystone.io.outlines_in.model import OutlinedStone, OutlineFile, number_in
 from drystone.io.patches import PlacedMask
@@ -77,6 +78,7 @@ def _masks(found: Mapping[str, NDArray[Any]]) -> OutlineFile:
         if len(values) > 2 or array.dtype.kind not in "biuf" or (len(values) == 2 and values[0]):
             raise unusable(f"the array {name!r} is no mask (0 and one other value)")
         mask = trimmed(PlacedMask(array.astype(bool), 0, 0))
-        stones.append(OutlinedStone(number_in(name), name, masks=() if mask is None else (mask,)))
+        masks = () if mask is None else (mask,)
+        stones.append(OutlinedStone(number_in(name), name, (), masks, class_of(name)))
     height, width = next(iter(shapes))
-    return OutlineFile(stones, size_px=(width, height))
+    return OutlineFile(stones, size_px=(width, height), seen_by="either")

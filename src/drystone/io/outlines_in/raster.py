@@ -10,7 +10,13 @@ from drystone.errors import LabelImageError, Notice
 from drystone.io.file_errors import listed, short
 from drystone.io.outlines_in.fill import check_reach, pixels_of, trimmed
 from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile
-from drystone.io.outlines_in.nested import meeting_boxes
+from drystone.io.outlines_in.nested import (
+    Seen,
+    meeting_boxes,
+    not_stones,
+    of_one_picture,
+    said_of,
+)
 from drystone.io.patches import PlacedMask, StonePatch
 from drystone.io.pictures import check_size
 from drystone.io.read_settings import ReadSettings
@@ -51,9 +57,16 @@ def rastered(
     max_px = int(settings.max_image_mpx * 1e6)
     check_size(width, height, max_px, _TOO_FAR)
     check_reach(stones, max_px)
+    places = [pixels_of(stone) for stone in stones]
+    left = {} if file.seen_by == "none" else _not_stones(file, places, (width, height), settings)
+    if left:
+        said = said_of(left, len(stones), {stone.id or 0: stone.name for stone in stones})
+        kept = [stone for stone in file.stones if stone.id not in left]
+        rest = replace(file, stones=kept, seen_by="none")
+        patches, size_px, px_per_m, others = rastered(rest, settings)
+        return patches, size_px, px_per_m, [said, *others]
     patches, lost, empty = [], [], []
-    for stone in stones:
-        placed = pixels_of(stone)
+    for stone, placed in zip(stones, places, strict=True):
         inside = None if placed is None else _within(placed, width, height)
         name = f"stone {stone.id} ({short(stone.name)})" if stone.name else f"stone {stone.id}"
         outside = 0 if placed is None else int(placed.mask.sum())
@@ -71,6 +84,24 @@ def rastered(
         notices.append(Notice("W119", f"without a pixel, left out: {listed(empty, '; ')}."))
     patches, overlaps = _beside_others(patches)
     return patches, (width, height), px_per_m, notices + overlaps
+
+
+def _not_stones(
+    file: OutlineFile,
+    places: Sequence[PlacedMask | None],
+    size_px: tuple[int, int],
+    settings: ReadSettings,
+) -> dict[int, str]:
+    """Return what is not a stone of its own, by its id; what is skipped does not count."""
+    masks = {
+        stone.id or 0: mask
+        for stone, mask in zip(file.stones, places, strict=True)
+        if mask is not None and stone.id not in settings.skip
+    }
+    if file.seen_by == "either" and not (masks and of_one_picture(list(masks.values()))):
+        return {}
+    by_program = file.seen_by != "people"
+    return not_stones(Seen(masks, size_px, frozenset(settings.keep), by_program))
 
 
 def _usual_scale(file: OutlineFile) -> tuple[float, Notice]:

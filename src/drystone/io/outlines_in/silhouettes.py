@@ -8,10 +8,12 @@ import shapely
 from numpy.typing import NDArray
 
 from drystone.io.outlines_in.model import Area
+from drystone.io.outlines_in.nested import frames
 from drystone.kernels.polygons import Points
 
 _MOST_CROSSINGS = 2000
 _MOST_PAIRS = 200_000
+_MOST_TURNS = 20_000_000
 _AT_ONCE = 256
 
 
@@ -27,8 +29,9 @@ def areas_of(shape: Any) -> tuple[Area, ...]:
 def with_holes(rings: Sequence[Points]) -> list[tuple[int, Area]]:
     """Return outlines with the rings in them as holes, as drawings for cutting mean them.
 
-    Each comes with its position; a ring in a hole is an outline again.  ValueError when there are
-    too many crossings, or rings in each other, to find out.
+    Each comes with its position; a ring in a hole is an outline again.  What is drawn around
+    nearly all rings is a frame, and has no holes.  ValueError when there are too many crossings,
+    or rings in each other, to find out.
     """
     shapes = _valid(np.array([shapely.Polygon(ring) for ring in rings], dtype=object))
     tree = shapely.STRtree(shapes)
@@ -43,11 +46,42 @@ def with_holes(rings: Sequence[Points]) -> list[tuple[int, Area]]:
         for i, j in zip((pairs[0] + begin).tolist(), pairs[1].tolist(), strict=True):
             if i != j and size[i] < size[j]:
                 around[i].append(j)
+    inside: dict[int, set[int]] = {i: set() for i in around}
+    for i, found in around.items():
+        for j in found:
+            inside[j].add(i)
+    framed = frames(dict(enumerate(size.tolist())), inside)
+    around = {i: [j for j in found if j not in framed] for i, found in around.items()}
     holes: dict[int, list[int]] = {i: [] for i, found in around.items() if len(found) % 2 == 0}
     for i, found in around.items():
         if i not in holes:
             holes[min(found, key=lambda j: (size[j], j))].append(i)
     return [(i, Area((rings[i], *(rings[j] for j in of)))) for i, of in holes.items()]
+
+
+def region(rings: Sequence[Points], rule: str) -> Any:
+    """Return what rings enclose by a fill rule; ValueError when they cross too often."""
+    shapes = np.array([shapely.Polygon(ring) for ring in rings], dtype=object)
+    if len(shapes) == 1 and shapely.is_valid(shapes[0]):
+        return shapes[0]
+    edges = np.concatenate([np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in rings])
+    if _crossings(edges, _MOST_CROSSINGS) > _MOST_CROSSINGS:
+        raise ValueError(f"outlines cross themselves more than {_MOST_CROSSINGS} times")
+    lines = shapely.union_all(shapely.linestrings(edges))
+    faces = shapely.get_parts(shapely.polygonize(shapely.get_parts(lines)))
+    if len(faces) * len(edges) > _MOST_TURNS:
+        raise ValueError("outlines of too many corners lie in each other")
+    points = shapely.get_coordinates(shapely.point_on_surface(faces))
+    turns = np.array([_turns(edges, point) for point in points], dtype=int)
+    inside = turns % 2 == 1 if rule == "evenodd" else turns != 0
+    return shapely.union_all(faces[inside])
+
+
+def _turns(edges: NDArray[np.float64], point: Points) -> int:
+    """Count how often closed lines, (n, 2, 2) edges, turn around a point."""
+    (x0, y0), (x1, y1) = (edges - point).transpose(1, 2, 0)
+    left = x0 * y1 - x1 * y0 > 0.0
+    return int(((y0 <= 0.0) & (y1 > 0.0) & left).sum() - ((y1 <= 0.0) & (y0 > 0.0) & ~left).sum())
 
 
 def shadow(polygons: Sequence[Points]) -> tuple[Area, ...]:
@@ -69,15 +103,16 @@ def _valid(shapes: NDArray[Any]) -> NDArray[Any]:
     """Make valid polygons; ValueError when that takes too long, as it is quadratic in crossings."""
     left = _MOST_CROSSINGS
     for shape in shapes[~shapely.is_valid(shapes)]:
-        left -= _crossings(shapely.get_coordinates(shape.exterior), left)
+        ring = shapely.get_coordinates(shape.exterior)
+        left -= _crossings(np.stack([ring[:-1], ring[1:]], axis=1), left)
         if left < 0:
             raise ValueError(f"outlines cross themselves more than {_MOST_CROSSINGS} times")
     return np.asarray(shapely.make_valid(shapes))
 
 
-def _crossings(ring: Points, most: int) -> int:
-    """Count how often edges of a closed ring meet that are no neighbours, up to some number."""
-    edges = shapely.linestrings(np.stack([ring[:-1], ring[1:]], axis=1))
+def _crossings(ends: NDArray[np.float64], most: int) -> int:
+    """Count how often edges of closed rings meet that are no neighbours, up to some number."""
+    edges = shapely.linestrings(ends)
     tree, found = shapely.STRtree(edges), 0
     for begin in range(0, len(edges), _AT_ONCE):
         # Each meets itself and its two neighbours.

@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 from xml.etree import ElementTree as ET
 
 import numpy as np
@@ -10,7 +11,16 @@ import numpy as np
 from drystone.errors import InputError, Notice
 from drystone.io.file_errors import damaged, entry, too_large, unusable
 from drystone.io.foreign import foreign
-from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile, left_aside, number_in
+from drystone.io.outlines_in.classes import layer
+from drystone.io.outlines_in.model import (
+    Area,
+    OutlinedStone,
+    OutlineFile,
+    left_aside,
+    number_in,
+    overruled,
+)
+from drystone.io.outlines_in.svg_clip import Clips
 from drystone.io.outlines_in.svg_shapes import SHAPES, lines_of
 from drystone.io.outlines_in.svg_style import Styles, tag
 from drystone.io.outlines_in.svg_view import (
@@ -59,10 +69,12 @@ class _Place:
     rule: str = "nonzero"
     stones: bool = False
     name: str = ""
+    group: str = ""
     depth: int = 0
     visible: bool = True
     fill: str = "black"
     stroke: str = "none"
+    clip: Any = None  # a planar shape outside of which nothing is; None when there is none
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,10 +120,12 @@ def read_svg(data: bytes, settings: ReadSettings) -> OutlineFile:
             continue
         name = shape.place.name
         area = Area(shape.rings, "evenodd" if shape.place.rule == "evenodd" else "nonzero")
-        stones.append(OutlinedStone(number_in(name), name, (area,)))
+        stones.append(OutlinedStone(number_in(name), name, (area,), label=layer(shape.place.group)))
     px = page.size if page.unit_m is None else None
     size = None if px is None else (round(px[0]), round(px[1]))
-    notices = left_aside(+walk.aside, "Only closed shapes are read.")
+    notices = left_aside(+walk.aside, "Only closed shapes are read.") + walk.clips.notices()
+    if page.overruled:
+        notices.append(overruled(page.overruled, settings))
     if _SHEET in data:
         text = "a style sheet in another file was not read, whatever it hides or moves."
         notices.append(Notice("W119", text, "Put it into the drawing, in an element style."))
@@ -126,6 +140,7 @@ class _Walk:
         self.styles = Styles(root)
         self.aside: Counter[str] = Counter()
         self.known = {e.get("id"): e for e in root.iter() if e.get("id")}
+        self.clips = Clips(self.known, self.styles)
         self.count = 0
         self.left_text, self.left_corners = most_text, _MOST_CORNERS
 
@@ -185,9 +200,15 @@ class _Walk:
             if found is None:
                 self.aside[_UNSEEN] += 1
                 return
+            if found[2] is not None and self._is_cut(element):
+                corners = moved(place.matrix, found[2])
+                place = replace(place, clip=self.clips.viewport(corners, place.clip))
             place = replace(place, matrix=place.matrix @ found[0], view=found[1])
         for child in element:
             yield from self._draw(child, place)
+
+    def _is_cut(self, element: ET.Element) -> bool:
+        return self.styles.of(element).get("overflow", "hidden") not in {"visible", "auto"}
 
     def _within(self, element: ET.Element, place: _Place, style: Style) -> _Place:
         turn = transform(element.get("transform", ""))
@@ -209,10 +230,12 @@ class _Walk:
             rule=style.get("fill-rule", place.rule),
             stones=place.stones or (_LAYER in words and tag(element) == "g"),
             name=name if tag(element) not in {"g", "svg"} or number_in(name) else place.name,
+            group=(own[1] or own[0] or place.group) if tag(element) == "g" else place.group,
             depth=place.depth + 1,
             visible=_VISIBLE.get(style.get("visibility", ""), place.visible),
             fill=style.get("fill", place.fill),
             stroke=style.get("stroke", place.stroke),
+            clip=self.clips.within(element, style, matrix, place.view, place.clip),
         )
 
     def _shape(self, element: ET.Element, place: _Place) -> Iterator[_Shape]:
@@ -231,6 +254,12 @@ class _Walk:
         rings = tuple(moved(place.matrix, points) for points in closed)
         if not all(np.isfinite(ring).all() and np.abs(ring).max() < 1e9 for ring in rings):
             raise ValueError("a coordinate is not finite or beyond 1e9")
+        if rings and place.clip is not None:
+            name = place.name or f"a {kind}"
+            rings, rule = self.clips.rings(name, rings, place.rule, place.clip)
+            place = replace(place, rule=rule)
+            if not rings:
+                return
         if rings and any(np.ptp(ring, axis=0).min() > 0.0 for ring in rings):
             yield _Shape(rings, place, kind)
         elif rings:

@@ -115,6 +115,7 @@ class Page:
     unit_m: float | None  # metres in a unit of the page; None for px
     size: tuple[float, float] | None  # of the page, in its unit, if it is known
     view: View | None  # what per cents are of
+    overruled: str = ""  # its own unit, when the settings name another
 
 
 def page_of(root: Mapping[str, str], settings: ReadSettings) -> Page:
@@ -125,12 +126,16 @@ def page_of(root: Mapping[str, str], settings: ReadSettings) -> Page:
         raise ValueError("its width and height are in units that cannot be used together")
     box = view_box(root)
     given = not any(unit == "%" for _, unit in sides)
-    unit_m = METRES.get(settings.unit or "px")
+    unit_m, overruled = METRES.get(settings.unit or "px"), ""
+    if physical and settings.unit:
+        own = UNITS_M[sides[0][1]]
+        physical = unit_m is not None and abs(unit_m / own - 1.0) < 1e-9
+        overruled = "" if physical else f"its width is {root['width'][:30]}"
     size = [value for value, _ in sides] if given else box[2:]
     if physical:
         unit_m = UNITS_M[sides[0][1]]
         size = [value * UNITS_M[unit] / unit_m for value, unit in sides]
-    elif unit_m is not None:
+    elif unit_m is not None or overruled:
         # What the settings name is the user's unit, whatever px it is shown in.
         size = box[2:] or size
     if given and min(size, default=1.0) <= 0.0:
@@ -142,17 +147,18 @@ def page_of(root: Mapping[str, str], settings: ReadSettings) -> Page:
         # User units are the px of CSS then.
         matrix[0, 0] = matrix[1, 1] = PX_M / UNITS_M[sides[0][1]]
     if not size:
-        return Page(matrix, unit_m, None, None)
+        return Page(matrix, unit_m, None, None, overruled)
     view = (box[2], box[3]) if box else (size[0] / matrix[0, 0], size[1] / matrix[1, 1])
-    return Page(matrix, unit_m, (size[0], size[1]), view)
+    return Page(matrix, unit_m, (size[0], size[1]), view, overruled)
 
 
 def inner_view(
     element: ET.Element, use: ET.Element | None, around: View | None
-) -> tuple[Matrix, View | None] | None:
+) -> tuple[Matrix, View | None, Points | None] | None:
     """Return the way out of the viewport of an inner svg or a symbol, and what per cents are of.
 
-    The width and height of the `use` that shows it come first.  None when nothing can be seen.
+    Its corners are the last, if its size is known.  The width and height of the `use` that shows
+    it come first.  None when nothing can be seen.
     """
     said, box, size = dict(element.attrib), view_box(element.attrib), None
     for name in ("width", "height"):
@@ -166,9 +172,13 @@ def inner_view(
         return None
     matrix = np.eye(3)
     matrix[:2, 2] = [user_units(said, name, around) for name in ("x", "y")]
-    if not box or size is None:
-        return matrix, size
-    return matrix @ fitted(box, size, said.get("preserveAspectRatio", "")), (box[2], box[3])
+    if size is None:
+        return matrix, None, None
+    corners = moved(matrix, np.array([(0, 0), (1, 0), (1, 1), (0, 1)]) * size)
+    if not box:
+        return matrix, size, corners
+    inner = matrix @ fitted(box, size, said.get("preserveAspectRatio", ""))
+    return inner, (box[2], box[3]), corners
 
 
 def view_box(attributes: Mapping[str, str]) -> list[float]:

@@ -39,9 +39,9 @@ def in_equilibrium(program: EquilibriumProgram, solution: Solution) -> bool:
     return residual <= CERTIFIED and violation <= CERTIFIED
 
 
-def of_fall(program: EquilibriumProgram, velocity: Floats) -> Certificate:
+def fall_certificate(program: EquilibriumProgram, velocity: Floats) -> Certificate:
     """Certify that the dead load does work on a mechanism, one velocity a row of the program."""
-    return fall_of(_figures(program, None, velocity))
+    return certified_fall(_figures(program, None, velocity))
 
 
 def optimum_of(found: Figures, alpha: float, sign: float) -> Certificate:
@@ -62,7 +62,7 @@ def optimum_of(found: Figures, alpha: float, sign: float) -> Certificate:
     )
 
 
-def fall_of(found: Figures, live: float = 0.0) -> Certificate:
+def certified_fall(found: Figures, live: float = 0.0) -> Certificate:
     """Certify that the dead load does work on a mechanism.
 
     That no alpha holds the blocks up is a fall on which `live`, the work of the live load, is 0.
@@ -77,7 +77,7 @@ def fall_of(found: Figures, live: float = 0.0) -> Certificate:
 
 def no_alpha_of(found: Figures) -> Certificate:
     """Certify that no alpha holds the blocks up."""
-    return fall_of(found, found.live)
+    return certified_fall(found, found.live)
 
 
 def _figures(program: EquilibriumProgram, columns: Floats | None, velocity: Floats) -> Figures:

@@ -402,7 +402,7 @@ class Viewer {
     const cards = this.data.metrics.map((metric) =>
       make(
         "div",
-        { class: "ds-metric" },
+        { class: metric.value === "does not stand" ? "ds-metric ds-falls" : "ds-metric" },
         make("h3", {}, metric.name, metric.symbol ? make("span", { class: "ds-symbol" }, ` · ${metric.symbol}`) : null),
         make("p", { class: "ds-value" }, metric.value),
         metric.better ? make("p", { class: "ds-better" }, `${metric.better === "higher" ? "▲" : "▼"} ${metric.better} is better`) : null,

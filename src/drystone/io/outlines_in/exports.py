@@ -1,0 +1,329 @@
+"""Exports of labelling tools: Label Studio, VIA, CVAT, YOLO."""
+
+import math
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import PurePath
+from typing import Any
+from xml.etree import ElementTree as ET
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.errors import InputError
+from drystone.io.file_errors import damaged, entry, listed, short, too_large
+from drystone.io.foreign import foreign
+from drystone.io.outlines_in.classes import class_of
+from drystone.io.outlines_in.fill import Room, trimmed
+from drystone.io.outlines_in.model import (
+    OutlinedStone,
+    OutlineFile,
+    Slivers,
+    ellipse,
+    left_aside,
+    number_in,
+    place_px,
+    side_px,
+)
+from drystone.io.patches import PlacedMask
+from drystone.io.pictures import check_size
+from drystone.io.read_settings import ReadSettings
+
+_CLASSES = ("class", "label", "type", "category", "name")
+_MOST_ELEMENTS = 1_000_000
+_YOLO = re.compile(rb"\s*[0-9]+(?:[ \t]+-?[0-9.]+(?:[eE][-+]?[0-9]+)?){4,}[ \t]*\r?(?:\n|\Z)")
+
+
+@dataclass(frozen=True, eq=False)
+class _Picture:
+    """What is drawn on one picture."""
+
+    name: str
+    size_px: tuple[int, int] | None
+    shapes: Iterable[Any]
+    id: str = ""
+    earlier: int = 0  # versions of the same shapes
+
+
+def image_needed(what: str, names: Iterable[str]) -> InputError:
+    """Make the error for several images in one file (E115)."""
+    there = listed(map(short, names))
+    cure = f"Say which one with --image NAME (ReadSettings.image); there are {there}."
+    return InputError("E115", f"{what}.", cure=cure)
+
+
+def _chosen(pictures: list[_Picture], asked: str) -> _Picture:
+    """Return the picture that was asked for, or the only one with shapes."""
+    found = [picture for picture in pictures if picture.shapes] or pictures[:1]
+    names = [picture.name for picture in found]
+    if asked:
+        found = [p for p in found if asked in (p.name, PurePath(p.name).name, p.id)]
+        if len(found) != 1:
+            raise image_needed(f"no image or several are called {asked!r}", names)
+    if len(found) > 1:
+        raise image_needed(f"stones of {len(found)} images are in it", names)
+    return found[0] if found else _Picture("", None, ())
+
+
+def _text(value: Any) -> str:
+    """Return a class that is a text, or a list or table of what applies."""
+    if isinstance(value, Mapping):
+        value = [key for key, on in value.items() if on]
+    if isinstance(value, list):
+        value = value[0] if value else ""
+    return "" if value is None else str(value)
+
+
+# Label Studio
+
+
+def is_label_studio(content: Any) -> bool:
+    """Tell a list of tasks."""
+    tasks = content if isinstance(content, list) else [content]
+    return bool(tasks) and all(
+        isinstance(task, Mapping) and (_results(task) is not None) for task in tasks
+    )
+
+
+def _results(task: Mapping[str, Any]) -> list[list[Any]] | None:
+    """Return what each annotator of a task drew, in the long or the short form."""
+    for key in ("annotations", "completions"):
+        if isinstance(task.get(key), list) and "data" in task:
+            made = [a for a in task[key] if isinstance(a, Mapping) and not a.get("was_cancelled")]
+            drawn = [one.get("result") for one in made]
+            return [_tables(one) for one in drawn]
+    alone = [
+        {"value": one, **one}
+        for value in task.values()
+        if isinstance(value, list)
+        for one in value
+        if isinstance(one, Mapping) and "original_width" in one
+    ]
+    return [alone] if alone else None
+
+
+def _tables(found: Any) -> list[Any]:
+    return [one for one in found if isinstance(one, Mapping)] if isinstance(found, list) else []
+
+
+def read_label_studio(content: Any, settings: ReadSettings) -> OutlineFile:
+    """Read polygons, rectangles and ellipses, which are in per cent of their picture."""
+    pictures = []
+    with entry("the list of tasks"):
+        for task in content if isinstance(content, list) else [content]:
+            where = task.get("data") or task
+            name = next((v for k, v in where.items() if k != "id" and isinstance(v, str)), "")
+            made = _results(task) or [[]]
+            own = str(task.get("id", ""))
+            pictures.append(_Picture(name, None, made[-1], own, len(made) - 1))
+    picture = _chosen(pictures, settings.image)
+    stones: list[OutlinedStone] = []
+    aside, slivers, sizes = Counter[str](), Slivers(), set()
+    # Where shape and class are marked one after the other, both hold the outline.
+    aside.update({"earlier annotations of the same picture": picture.earlier})
+    drawn = {str(one.get("id") or i): one for i, one in enumerate(picture.shapes)}
+    for number, shape in enumerate(drawn.values()):
+        where = f"result {number}"
+        with entry(where):
+            value = shape.get("value") or {}
+            if not _is_outline(value):
+                aside[f"results of the type {short(shape.get('type', 'unknown'))}"] += 1
+                continue
+            size = side_px(shape["original_width"]), side_px(shape["original_height"])
+            sizes.add(size)
+            key = next((k for k in value if k.endswith("labels")), "")
+            label = _text(value.get(key))
+            corners = _of_label_studio(value, np.array(size) / 100.0)
+            areas = slivers.areas(where, [[corners]])
+        if areas:
+            stones.append(OutlinedStone(number_in(label), "", areas, label=class_of(label)))
+    cure = "Brush masks are read from its export as COCO or PNG." if "brush" in str(aside) else ""
+    notices = left_aside(+aside, cure) + slivers.notices()
+    size_px = next(iter(sizes)) if len(sizes) == 1 else None
+    return OutlineFile(stones, size_px=size_px, notices=notices, names_images=True)
+
+
+def _is_outline(value: Mapping[str, Any]) -> bool:
+    """Tell polygons, rectangles and ellipses from points, words and masks of pixels."""
+    sides = ({"points"}, {"radiusX", "radiusY"}, {"x", "y", "width", "height"})
+    return "format" not in value and any(names <= set(value) for names in sides)
+
+
+def _of_label_studio(value: Mapping[str, Any], px: NDArray[np.float64]) -> Any:
+    """Return corners in px, of which there are (2,) in a per cent."""
+    if "points" in value:
+        return np.array([list(map(float, point)) for point in value["points"]]) * px
+    x, y = float(value["x"]) * px[0], float(value["y"]) * px[1]
+    turn = float(value.get("rotation") or 0.0)
+    if "radiusX" in value:
+        radii = float(value["radiusX"]) * px[0], float(value["radiusY"]) * px[1]
+        return ellipse((x, y), radii, math.radians(turn))
+    width, height = float(value["width"]) * px[0], float(value["height"]) * px[1]
+    return _box((x, y, x + width, y + height), turn, (x, y))
+
+
+def _box(
+    sides: tuple[float, float, float, float], degrees: float, about: tuple[float, float]
+) -> Any:
+    """Return the corners of a box from its sides, turned clockwise as y runs down."""
+    x0, y0, x1, y1 = sides
+    corners = np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)]) - about
+    sine, cosine = math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
+    return corners @ np.array([[cosine, sine], [-sine, cosine]]) + about
+
+
+# VGG Image Annotator
+
+
+def is_via(content: Any) -> bool:
+    """Tell a project of VIA 2, or its annotations alone."""
+    images = content.get("_via_img_metadata", content) if isinstance(content, Mapping) else None
+    return (
+        isinstance(images, Mapping)
+        and bool(images)
+        and all(isinstance(one, Mapping) and "regions" in one for one in images.values())
+    )
+
+
+def read_via(content: Mapping[str, Any], settings: ReadSettings) -> OutlineFile:
+    """Read polygons, rectangles, circles and ellipses of VIA."""
+    pictures = []
+    with entry("the list of images"):
+        for key, image in content.get("_via_img_metadata", content).items():
+            regions = image["regions"]
+            shapes = list(regions.values()) if isinstance(regions, Mapping) else list(regions)
+            pictures.append(_Picture(str(image.get("filename", key)), None, shapes, str(key)))
+    picture = _chosen(pictures, settings.image)
+    stones: list[OutlinedStone] = []
+    aside, slivers = Counter[str](), Slivers()
+    for number, region in enumerate(picture.shapes):
+        where = f"region {number} (from 0)"
+        with entry(where):
+            shape = region["shape_attributes"]
+            corners = _of_via(shape)
+            if corners is None:
+                aside[f"{shape.get('name')}s"] += 1
+                continue
+            said = region.get("region_attributes") or {}
+            key = next((k for k in _CLASSES if k in said), next(iter(said), ""))
+            label = _text(said.get(key))
+            areas = slivers.areas(where, [[corners]])
+        if areas:
+            stones.append(OutlinedStone(number_in(label), label, areas, label=class_of(label)))
+    notices = left_aside(aside) + slivers.notices()
+    return OutlineFile(stones, notices=notices, names_images=True)
+
+
+def _of_via(shape: Mapping[str, Any]) -> Any:
+    kind = shape["name"]
+    if kind == "polygon":
+        return list(zip(shape["all_points_x"], shape["all_points_y"], strict=True))
+    if kind == "rect":
+        x, y, width, height = (float(shape[name]) for name in ("x", "y", "width", "height"))
+        return _box((x, y, x + width, y + height), 0.0, (x, y))
+    if kind in {"circle", "ellipse"}:
+        across, along = ("r", "r") if kind == "circle" else ("rx", "ry")
+        radii = float(shape[across]), float(shape[along])
+        return ellipse((shape["cx"], shape["cy"]), radii, float(shape.get("theta") or 0.0))
+    return None
+
+
+# CVAT
+
+
+def is_cvat(data: bytes) -> bool:
+    """Tell CVAT's own XML by its root element."""
+    return b"<annotations" in data[:4096]
+
+
+def read_cvat(data: bytes, settings: ReadSettings) -> OutlineFile:
+    """Read polygons, boxes, ellipses and masks of CVAT for images."""
+    if data.count(b"<") > 2 * _MOST_ELEMENTS:
+        cure = "Export the annotations of one image."
+        raise too_large(f"it has more than {_MOST_ELEMENTS} elements.", cure)
+    with foreign(lambda why: damaged(why, what="XML")):
+        root = ET.fromstring(data)  # noqa: S314 - expat bounds what entities expand to
+    pictures = []
+    with entry("the list of images"):
+        for image in root.iter("image"):
+            sides = image.get("width"), image.get("height")
+            size = None if None in sides else (side_px(sides[0]), side_px(sides[1]))
+            shapes = list(image)
+            pictures.append(_Picture(image.get("name", ""), size, shapes, image.get("id", "")))
+    picture = _chosen(pictures, settings.image)
+    room = Room(int(settings.max_image_mpx * 1e6))
+    stones: list[OutlinedStone] = []
+    aside, slivers = Counter[str](), Slivers()
+    for number, shape in enumerate(picture.shapes):
+        where = f"shape {number} (from 0)"
+        with entry(where):
+            mask = _mask_of_cvat(shape, room) if shape.tag == "mask" else None
+            corners = None if mask else _of_cvat(shape)
+            if mask is None and corners is None:
+                aside[f"{short(shape.tag)}s"] += 1
+                continue
+            label = shape.get("label", "")
+            areas = () if corners is None else slivers.areas(where, [[corners]])
+        if areas or mask:
+            masks = () if mask is None else (mask,)
+            stones.append(OutlinedStone(number_in(label), label, areas, masks, class_of(label)))
+    notices = left_aside(aside) + slivers.notices()
+    return OutlineFile(stones, size_px=picture.size_px, notices=notices, names_images=True)
+
+
+def _of_cvat(shape: ET.Element) -> Any:
+    turn = float(shape.get("rotation", 0.0))
+    if shape.tag == "polygon":
+        return [tuple(map(float, p.split(","))) for p in shape.attrib["points"].split(";")]
+    if shape.tag == "box":
+        x0, y0, x1, y1 = (float(shape.attrib[name]) for name in ("xtl", "ytl", "xbr", "ybr"))
+        return _box((x0, y0, x1, y1), turn, ((x0 + x1) / 2.0, (y0 + y1) / 2.0))
+    if shape.tag == "ellipse":
+        x, y, rx, ry = (float(shape.attrib[name]) for name in ("cx", "cy", "rx", "ry"))
+        return ellipse((x, y), (rx, ry), math.radians(turn))
+    return None
+
+
+def _mask_of_cvat(shape: ET.Element, room: Room) -> PlacedMask | None:
+    """Return a mask of run lengths along the rows of its box, background first."""
+    left, top, width, height = (
+        place_px(shape.attrib[name]) for name in ("left", "top", "width", "height")
+    )
+    check_size(side_px(width), side_px(height), room.max_px)
+    room.take(width * height)
+    runs = np.array([int(run) for run in shape.attrib["rle"].split(",")], np.int64)
+    if runs.min() < 0 or runs.max() > width * height or int(runs.sum()) != width * height:
+        raise ValueError(f"its run lengths do not fill {width} x {height} px")
+    flat = np.repeat(np.arange(len(runs)) % 2 == 1, runs)
+    return trimmed(PlacedMask(flat.reshape(height, width), top, left))
+
+
+# YOLO
+
+
+def is_yolo(data: bytes) -> bool:
+    """Tell lines of a class and coordinates."""
+    return _YOLO.match(data) is not None
+
+
+def read_yolo(data: bytes, _settings: ReadSettings) -> OutlineFile:
+    """Read segments of YOLO: a class and the corners, as shares of the picture, in a line."""
+    stones: list[OutlinedStone] = []
+    aside, slivers = Counter[str](), Slivers()
+    for number, line in enumerate(data.decode("utf-8", "replace").splitlines(), start=1):
+        where = f"line {number}"
+        with entry(where):
+            kind, *values = line.split() or [""]
+            if len(values) in {4, 5}:
+                aside["boxes"] += 1
+            elif values:
+                if len(values) % 2:
+                    raise ValueError("an odd number of coordinates")
+                corners = np.array(values, float).reshape(-1, 2)
+                areas = slivers.areas(where, [[corners]])
+                stones += [OutlinedStone(None, "", areas, label=kind)] if areas else []
+    cure = "Boxes have no outlines: train or label segments." if aside else ""
+    notices = left_aside(aside, cure) + slivers.notices()
+    return OutlineFile(stones, notices=notices, names_images=True)

@@ -1,0 +1,116 @@
+"""Instances of nesting programs (sparrow, jagua-rs): items, each as often as it is demanded."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import shapely
+
+from drystone.errors import Notice
+from drystone.io.file_errors import entry, short, too_large
+from drystone.io.outlines_in.model import (
+    METRES,
+    Area,
+    OutlinedStone,
+    OutlineFile,
+    Slivers,
+    number_in,
+)
+from drystone.io.read_settings import ReadSettings
+
+_MOST_COPIES = 10_000
+_GAP = 0.05
+"""Between pieces that are laid in a row, as a share of the largest."""
+
+
+def is_nesting(content: Any) -> bool:
+    """Tell an instance of sparrow or jagua-rs."""
+    items = _lower(content).get("items") if isinstance(content, Mapping) else None
+    return isinstance(items, list) and all(
+        isinstance(item, Mapping) and "shape" in _lower(item) for item in items
+    )
+
+
+def _lower(table: Mapping[str, Any]) -> dict[str, Any]:
+    return {str(key).lower(): value for key, value in table.items()}
+
+
+def read_nesting(content: Mapping[str, Any], settings: ReadSettings) -> OutlineFile:
+    """Read the items of an instance, each as often as it is demanded.
+
+    Where items lie over each other, as each has an origin of its own, they are laid in a row.
+    """
+    stones: list[OutlinedStone] = []
+    slivers, copies = Slivers(), 0
+    for number, item in enumerate(map(_lower, _lower(content)["items"])):
+        where = f"item {number} (from 0)"
+        with entry(where):
+            areas = slivers.areas(where, _of_nesting(_lower(item["shape"])))
+            demand = int(item.get("demand", 1))
+            if demand < 0:
+                raise ValueError(f"{demand} of it are demanded")
+            own = number_in(item.get("id")) if demand == 1 else None
+        copies += demand
+        if copies > _MOST_COPIES:
+            cure = "Ask for fewer of each."
+            raise too_large(f"more than {_MOST_COPIES} items are demanded.", cure)
+        stones += [OutlinedStone(own, "", areas)] * demand if areas else []
+    unit_m = METRES.get(settings.unit)
+    notices = slivers.notices()
+    if not settings.unit:
+        text = "an instance says no unit: its numbers are taken as px, with y down."
+        notices.append(Notice("W119", text, "Name the unit with --unit (unit in Python)."))
+    if _overlap(stones):
+        stones = list(_in_a_row(stones, whole=unit_m is None))
+        notices.append(Notice("W119", "items lie over each other: they are laid in a row."))
+    return OutlineFile(stones, unit_m, unit_m is not None, notices=notices, seen_by="none")
+
+
+def _of_nesting(shape: Mapping[str, Any]) -> Iterator[list[Any]]:
+    kind, data = str(shape.get("type", "")).lower().replace("_", ""), shape.get("data", shape)
+    if kind == "simplepolygon":
+        yield [data]
+    elif kind == "polygon":
+        data = _lower(data)
+        yield [data["outer"], *(data.get("inner") or ())]
+    elif kind == "multipolygon":
+        for part in map(_lower, data):
+            yield [part["outer"], *(part.get("inner") or ())]
+    elif kind == "rectangle":
+        data = _lower(data)
+        x, y = float(data.get("x_min", 0.0)), float(data.get("y_min", 0.0))
+        width, height = float(data["width"]), float(data["height"])
+        yield [[(x, y), (x + width, y), (x + width, y + height), (x, y + height)]]
+    else:
+        raise ValueError(f"a shape of the type {short(repr(shape.get('type')))}")
+
+
+def _overlap(stones: list[OutlinedStone]) -> bool:
+    """Tell whether the boxes of two stones share more than half of the smaller one."""
+    low, high = _boxes(stones)
+    boxes = shapely.box(*low.T, *high.T)
+    one, other = shapely.STRtree(boxes).query(boxes, predicate="intersects")
+    one, other = one[one < other], other[one < other]
+    if not len(one):
+        return False
+    shared = shapely.area(shapely.intersection(boxes[one], boxes[other]))
+    smaller = np.minimum(shapely.area(boxes[one]), shapely.area(boxes[other]))
+    return bool((shared > 0.5 * smaller).any())
+
+
+def _boxes(stones: list[OutlinedStone]) -> tuple[Any, Any]:
+    corners = [np.concatenate([r for area in s.areas for r in area.rings]) for s in stones]
+    low = np.array([points.min(axis=0) for points in corners]).reshape(-1, 2)
+    return low, np.array([points.max(axis=0) for points in corners]).reshape(-1, 2)
+
+
+def _in_a_row(stones: list[OutlinedStone], *, whole: bool) -> Iterator[OutlinedStone]:
+    """Move each behind the last one; by `whole` px, which changes no pixel of it."""
+    low, high = _boxes(stones)
+    gap, x = _GAP * float((high - low).max()), 0.0
+    for stone, start, end in zip(stones, low, high, strict=True):
+        shift = np.array([x, 0.0]) - start
+        shift = np.ceil(shift) if whole else shift
+        areas = tuple(Area(tuple(ring + shift for ring in area.rings)) for area in stone.areas)
+        yield OutlinedStone(stone.id, stone.name, areas)
+        x += float(end[0] - start[0]) + gap + whole

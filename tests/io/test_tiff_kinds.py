@@ -1,0 +1,206 @@
+"""TIFF of every depth, compression, layout and predictor gives the numbers that were written."""
+
+import io
+import struct
+import zlib
+from itertools import product
+
+import numpy as np
+import pytest
+import tifffile
+from PIL import Image
+
+from drystone.errors import InputError
+from drystone.io.images import decode
+from drystone.io.read_stones import read_stones
+from tests.io.pictures import areas, codes, two_stones
+from tests.io.test_formats import LIMIT
+
+NONE, GROUP3, GROUP4, LZW, DEFLATE, PACKBITS = 1, 3, 4, 5, 8, 32773
+KINDS = {(3, 16): "f2", (3, 32): "f4", (3, 64): "f8", (2, 8): "i1", (2, 16): "i2", (2, 32): "i4"}
+
+
+def packed(rows, bits, order, sample=1):
+    """Numbers of a strip, each row beginning with a byte of its own."""
+    if bits in (8, 16, 32, 64):
+        return rows.astype(np.dtype(KINDS.get((sample, bits), f"u{bits // 8}")).newbyteorder(order))
+    bit = rows[..., None].astype(int) >> np.arange(bits)[::-1] & 1
+    return np.packbits(bit.reshape(len(rows), -1).astype(np.uint8), axis=1)
+
+
+def predicted(rows, bits, order, predictor, sample):
+    """What a predictor makes of numbers, (rows, width, channels), and their bytes."""
+    if predictor == 2:
+        steps = rows.astype(np.int64).copy()
+        steps[:, 1:] -= rows.astype(np.int64)[:, :-1]
+        rows = steps
+    if predictor == 3:
+        planes = np.ascontiguousarray(rows.astype(f">f{bits // 8}")).view(np.uint8)
+        planes = planes.reshape(len(rows), -1, bits // 8).swapaxes(1, 2)
+        steps = planes.reshape(len(rows), -1, rows.shape[2]).copy()
+        steps[:, 1:] -= steps[:, :-1].copy()
+        return steps.reshape(len(rows), -1)
+    return packed(rows.reshape(len(rows), -1), bits, order, sample)
+
+
+def coded(table, compression, *, reverse):
+    """The bytes of a strip as a compression stores them."""
+    data = np.ascontiguousarray(table).tobytes()
+    if compression == DEFLATE:
+        data = zlib.compress(data)
+    if compression == PACKBITS:
+        data = b"".join(bytes([min(len(data) - i, 128) - 1]) + data[i : i + 128]
+                        for i in range(0, len(data), 128))  # fmt: skip
+    if compression in (LZW, GROUP3, GROUP4):
+        image = Image.fromarray(np.frombuffer(data, np.uint8).reshape(len(table), -1))
+        if compression != LZW:
+            image = Image.fromarray(np.unpackbits(np.asarray(image), axis=1)[:, :60] > 0)
+        name = {LZW: "tiff_lzw", GROUP3: "group3", GROUP4: "group4"}[compression]
+        image.save(buffer := io.BytesIO(), "TIFF", compression=name, tiffinfo={278: len(table)})
+        page = tifffile.TiffFile(io.BytesIO(buffer.getvalue())).pages[0]
+        data = buffer.getvalue()[page.dataoffsets[0] :][: page.databytecounts[0]]
+    if reverse:
+        data = bytes(int(f"{byte:08b}"[::-1], 2) for byte in data)
+    return data
+
+
+def tiff(
+    values, bits=8, compression=NONE, *, order="<", sample=1, predictor=1, tile=None, rows=None,
+    planar=False, reverse=False, photometric=1, sparse=(), tags=(),
+):  # fmt: skip
+    """The bytes of a TIFF; strips whose number is in `sparse` are not in it."""
+    values = values.reshape(*values.shape[:2], -1)
+    height, width, channels = values.shape
+    down, across = (tile, tile) if tile else (rows or height, width)
+    planes = [values[..., i : i + 1] for i in range(channels)] if planar else [values]
+    pieces = []
+    for plane, top, left in product(planes, range(0, height, down), range(0, width, across)):
+        part = plane[top : top + down, left : left + across]
+        if tile:
+            part = np.pad(part, [(0, tile - part.shape[0]), (0, tile - part.shape[1]), (0, 0)])
+        table = predicted(part, bits, order, predictor, sample)
+        pieces.append(coded(table, compression, reverse=reverse))
+    pieces = [b"" if number in sparse else piece for number, piece in enumerate(pieces)]
+    offsets = np.cumsum([8] + [len(piece) for piece in pieces])[:-1].tolist()
+    offsets = [offset if piece else 0 for offset, piece in zip(offsets, pieces, strict=True)]
+    found = {
+        256: [width], 257: [height], 258: [bits] * channels, 259: [compression],
+        262: [photometric if channels == 1 else 2], 277: [channels], 284: [2 if planar else 1],
+        317: [predictor], 339: [sample] * channels, 266: [2 if reverse else 1],
+        **({322: [tile], 323: [tile], 324: offsets, 325: list(map(len, pieces))} if tile else
+           {278: [down], 273: offsets, 279: list(map(len, pieces))}), **dict(tags),
+    }  # fmt: skip
+    body = b"".join(pieces)
+    body += b"\0" * (len(body) % 2)
+    extra, entries, place = b"", b"", 8 + len(body) + 2 + 12 * len(found) + 4
+    for tag, numbers in sorted(found.items()):
+        kind, data = 4, b""
+        if isinstance(numbers, bytes):
+            kind, count, data = 2, len(numbers), numbers
+        else:
+            count, data = len(numbers), struct.pack(f"{order}{len(numbers)}I", *numbers)
+        if len(data) > 4:
+            data, extra = struct.pack(f"{order}I", place + len(extra)), extra + data
+        entries += struct.pack(f"{order}HHI", tag, kind, count) + data.ljust(4, b"\0")
+    head = struct.pack(f"{order}2sHI", b"II" if order == "<" else b"MM", 42, 8 + len(body))
+    return head + body + struct.pack(f"{order}H", len(found)) + entries + b"\0" * 4 + extra
+
+
+def labels(bits):
+    """Ids up to the largest that the depth holds, in a picture whose rows end within a byte."""
+    return two_stones(1, 2 ** min(bits, 16) - 1, np.int64)[:, :59]
+
+
+LAYOUTS = [{}, {"rows": 7}, {"tile": 16}]
+
+
+@pytest.mark.parametrize("compression", [NONE, LZW, DEFLATE, PACKBITS])
+@pytest.mark.parametrize("bits", [1, 2, 4, 6, 8, 12, 16, 32])
+def test_whole_numbers(bits, compression):
+    for layout, order, reverse, photometric in product(LAYOUTS, "<>", (False, True), (0, 1)):
+        options = {**layout, "order": order, "reverse": reverse, "photometric": photometric}
+        data = tiff(labels(bits), bits, compression, **options)
+        found = decode(data, LIMIT).values.astype(np.int64)
+        np.testing.assert_array_equal(found, labels(bits), err_msg=str(options))
+
+
+@pytest.mark.parametrize("compression", [GROUP3, GROUP4])
+@pytest.mark.parametrize("photometric", [0, 1])
+@pytest.mark.parametrize("rows", [None, 7])
+def test_fax_codes(compression, photometric, rows):
+    mask = two_stones(1, 1, np.int64)
+    data = tiff(mask, 1, compression, photometric=photometric, rows=rows)
+    np.testing.assert_array_equal(decode(data, LIMIT).values, mask)
+
+
+@pytest.mark.parametrize("compression", [NONE, LZW, DEFLATE, PACKBITS])
+@pytest.mark.parametrize("bits", [8, 16, 32])
+@pytest.mark.parametrize("channels", [1, 3])
+def test_differences(bits, compression, channels):
+    values = np.dstack([labels(bits), labels(bits) // 2, labels(bits) // 3])[..., :channels]
+    for layout, order, planar in product(LAYOUTS, "<>", (False, True)):
+        if bits * channels > 64:
+            continue
+        options = {**layout, "order": order, "planar": planar, "predictor": 2}
+        found = decode(tiff(values, bits, compression, **options), LIMIT).values
+        np.testing.assert_array_equal(found, values.squeeze(), err_msg=str(options))
+
+
+@pytest.mark.parametrize("compression", [NONE, LZW, DEFLATE, PACKBITS])
+@pytest.mark.parametrize("bits", [16, 32, 64])
+@pytest.mark.parametrize("predictor", [1, 3])
+def test_numbers_with_a_point(bits, compression, predictor):
+    values = labels(8) + 0.5
+    for layout, order in product(LAYOUTS, "<>"):
+        data = tiff(values, bits, compression, sample=3, predictor=predictor, order=order, **layout)
+        np.testing.assert_array_equal(decode(data, LIMIT).values, values, err_msg=str(layout))
+
+
+@pytest.mark.parametrize("compression", [NONE, LZW, DEFLATE, PACKBITS])
+@pytest.mark.parametrize("bits", [1, 4, 8, 16])
+@pytest.mark.parametrize("layout", LAYOUTS[1:])
+def test_what_a_sparse_file_leaves_out_is_ground(tmp_path, bits, compression, layout):
+    values = two_stones(1, 1, np.int64)
+    values[:16] = 0  # two strips or four tiles
+    sparse = range(2 if "rows" in layout else 4)
+    (tmp_path / "a.tif").write_bytes(tiff(values, bits, compression, sparse=sparse, **layout))
+    np.testing.assert_array_equal(decode((tmp_path / "a.tif").read_bytes(), LIMIT).values, values)
+    stones = read_stones(tmp_path / "a.tif")
+    assert stones.total_area_px == values.sum()
+    count = {"rows": "2 of 6", "tile": "4 of 12"}[next(iter(layout))]
+    assert f"{count} strips or tiles are not in the file (sparse)" in str(stones.notices[0])
+
+
+@pytest.mark.parametrize(
+    ("ground", "bits", "sample", "said"),
+    [(-9999, 32, 3, b"-9999"), (-9999, 16, 2, b"-9999"), (200, 8, 1, b"200 "), (9, 8, 1, b"nan")],
+)
+def test_no_data_of_gdal_is_ground(tmp_path, ground, bits, sample, said):
+    values = np.where(two_stones() == 0, ground, two_stones(3, 7, np.int64))
+    values[0, 0] = 0
+    data = tiff(values, bits, DEFLATE, rows=5, sample=sample, tags={42113: said + b"\0"})
+    (tmp_path / "a.tif").write_bytes(data)
+    if said == b"nan":  # no whole number is
+        with pytest.raises(InputError, match=r"E105 .*value 9 fills"):
+            read_stones(tmp_path / "a.tif")
+        return
+    stones = read_stones(tmp_path / "a.tif")
+    assert areas(stones) == {3: 375, 7: 600}
+    assert codes(stones) == ["W135"]
+    assert f"1424 px are {ground}, which the file says is no data" in str(stones.notices[0])
+
+
+@pytest.mark.parametrize(
+    ("values", "options", "text"),
+    [
+        (labels(4), {"bits": 4, "predictor": 2}, r"E107 .*predictor 2 of 4 bits"),
+        (labels(8), {"tags": {317: [3]}}, r"E107 .*predictor 3 of 8 bits"),
+        (labels(8), {"tags": {317: [34892]}}, r"E107 .*predictor 34892"),
+        (labels(8), {"tags": {279: [50]}}, r"E106 .*too short"),
+        (labels(4), {"bits": 4, "tags": {257: [90], 278: [90]}}, r"E106 .*too short"),
+    ],
+)
+def test_what_cannot_be_read_is_refused(values, options, text):
+    options = {"bits": 8, **options}
+    with pytest.raises(InputError, match=text):
+        decode(tiff(values, options.pop("bits"), **options), LIMIT)

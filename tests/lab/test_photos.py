@@ -1,0 +1,29 @@
+"""Real photographs of the suite photos; without others those of scikit-image are there."""
+
+import numpy as np
+
+from drystone_lab.photographs.real import ALL, pixels_of, there, truth_of
+from drystone_lab.photos import REAL_COLUMNS, _real, whole_stones
+from drystone_lab.table import BenchSettings
+
+
+def test_photographs_that_are_installed_have_a_row(tmp_path):
+    table = _real(BenchSettings(data=tmp_path))
+    rows = {row["photograph"]: row for row in table.records()}
+    assert list(rows) == ["coins, light from one side", "gravel", "brick wall", "lawn"]
+    coins = rows["coins, light from one side"]
+    assert (coins["stones"], coins["verdict"], coins["exit code"]) == (24, "doubtful", 5)
+    assert coins["recall"] > 0.9
+    assert coins["precision"] == 1.0
+    assert {rows[name]["exit code"] for name in ("gravel", "brick wall", "lawn")} == {3}
+    assert f"4 of {len(ALL)} are there" in table.notes[0]
+    assert len(REAL_COLUMNS) == len(table.rows[0])
+
+
+def test_stones_that_the_edge_cuts_do_not_count():
+    (coins,) = [one for one in there(None) if one.file == "coins"]
+    image = pixels_of(coins, None)
+    truth = truth_of(coins, None, (image.shape[1], image.shape[0]))
+    assert truth.shape == image.shape[:2]
+    assert int(whole_stones(truth).max()) == 24
+    assert int(whole_stones(np.ascontiguousarray(truth[:, 20:])).max()) < 24
