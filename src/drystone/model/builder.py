@@ -82,7 +82,7 @@ class Built:
     @cached_property
     def corners(self) -> Points:
         """Corners in the wall frame, (n, 2)."""
-        return turn(self.outline, self.angle_deg) + np.array((self.x, self.y))
+        return np.asarray(turn(self.outline, self.angle_deg) + (self.x, self.y))  # noqa: RUF005
 
     @cached_property
     def size(self) -> float:

@@ -52,7 +52,7 @@ def put_down(
     near = nearby(built, around)
     pushed: dict[int, float] = {}
     if crosses_any(built.corners, near):
-        built, pushed = _squeezed_in(built, around)
+        built, pushed = _squeezed_in(built, around, 2.0 * settle.clearance_px)
         around = moved(around, pushed)
         near = nearby(built, around)
     turned = Turned.of(built.outline, built.angle_deg, "left", built.size)
@@ -117,8 +117,11 @@ class _Block(NamedTuple):
         return _Block(self.corners + np.array((x, 0.0)), (left + x, bottom, right + x, top))
 
 
-def _squeezed_in(built: Built, around: Polygons) -> tuple[Built, dict[int, float]]:
-    """Move a block aside to where it has room between its neighbours, or push these apart."""
+def _squeezed_in(built: Built, around: Polygons, gap: float) -> tuple[Built, dict[int, float]]:
+    """Move a block aside to where it has room between its neighbours, or push these apart.
+
+    What did overlap keeps a gap.
+    """
     (left, bottom), (right, top) = built.corners.min(axis=0), built.corners.max(axis=0)
     block = _Block(built.corners, (float(left), float(bottom), float(right), float(top)))
     others = {
@@ -126,12 +129,12 @@ def _squeezed_in(built: Built, around: Polygons) -> tuple[Built, dict[int, float
         for i, (x0, y0, x1, y1) in enumerate(around.boxes.tolist())
         if y0 < top and y1 > bottom
     }
-    left, right = (_most_into(block, others, sign) for sign in (-1.0, 1.0))
+    left, right = (_most_into(block, others, gap, sign) for sign in (-1.0, 1.0))
     shift = 0.5 * (left - right)
     if bool(left) != bool(right):
         # All the way where there is room, else half of what is missing.
         sign = math.copysign(1.0, shift)
-        missing = _most_into(block.shifted(2.0 * shift), others, sign)
+        missing = _most_into(block.shifted(2.0 * shift), others, gap, sign)
         shift = 2.0 * shift - 0.5 * sign * missing
     if not left + right or abs(shift) > ASIDE * built.size:
         return built, {}
@@ -141,7 +144,7 @@ def _squeezed_in(built: Built, around: Polygons) -> tuple[Built, dict[int, float
         while todo:
             by = todo.pop()
             for i, other in others.items():
-                over = _into(by, other, sign)
+                over = _into(by, other, gap, sign)
                 if 0.0 < over < ASIDE * built.size:
                     others[i] = other.shifted(sign * over)
                     pushed[i] = pushed.get(i, 0.0) + sign * over
@@ -149,11 +152,11 @@ def _squeezed_in(built: Built, around: Polygons) -> tuple[Built, dict[int, float
     return Built(built.outline, built.x + shift, built.y, built.angle_deg), pushed
 
 
-def _most_into(block: _Block, others: dict[int, _Block], sign: float) -> float:
-    return max((_into(block, other, sign) for other in others.values()), default=0.0)
+def _most_into(block: _Block, others: dict[int, _Block], gap: float, sign: float) -> float:
+    return max((_into(block, other, gap, sign) for other in others.values()), default=0.0)
 
 
-def _into(one: _Block, other: _Block, sign: float) -> float:
+def _into(one: _Block, other: _Block, gap: float, sign: float) -> float:
     """Return how far along x another block beside this one must go, to a side, to clear it.
 
     0 where it does not overlap, or where less is needed upwards: then one lies on the other.
@@ -168,11 +171,8 @@ def _into(one: _Block, other: _Block, sign: float) -> float:
         return 0.0
     across = _depth(one.corners[:, ::-1], other.corners[:, ::-1], low, high, sign)
     above = math.copysign(1.0, v0 + v1 - y0 - y1)
-    return (
-        across
-        if across < _depth(one.corners, other.corners, max(x0, u0), min(x1, u1), above)
-        else 0.0
-    )
+    up = _depth(one.corners, other.corners, max(x0, u0), min(x1, u1), above)
+    return across + gap if across < up else 0.0
 
 
 def _depth(one: Points, other: Points, low: float, high: float, sign: float) -> float:

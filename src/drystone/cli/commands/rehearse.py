@@ -13,9 +13,10 @@ from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.cli.progress import counting_bar
 from drystone.contacts.given import polygons_from_json
 from drystone.drawing.words.rehearsed import Rehearsed
-from drystone.errors import ExitCode, UsageError
+from drystone.errors import ExitCode, PlanError, UsageError
 from drystone.io.walls import GivenWall, read_wall
 from drystone.model.builder import BuilderErrors
+from drystone.model.plan import Plan
 from drystone.model.steps import grouped, piece_id
 from drystone.physics.table import load_engine
 from drystone.search.rehearsal import Groups, mean_size, rehearse, rehearse_in_engine
@@ -63,8 +64,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if arguments.physics:
         load_engine()
     wall = read_wall(path)
-    groups = _groups(wall, arguments.wall_path)
-    errors = _errors(arguments, groups, wall)
+    plan, groups = _planned(wall, arguments.wall_path)
+    errors = _errors(arguments, groups, plan.px_per_m)
     once = rehearse_in_engine if arguments.physics else rehearse
     planned = once(groups, NOTHING, np.random.default_rng(0), mu=wall.mu)
     found = []
@@ -73,7 +74,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             rng = np.random.default_rng([arguments.seed, number])
             found.append(once(groups, errors, rng, mu=wall.mu))
             on_run(number + 1)
-    card = Rehearsed(wall.plan, groups, errors, tuple(found), planned, engine=arguments.physics)
+    card = Rehearsed(plan, groups, errors, tuple(found), planned, engine=arguments.physics)
     if arguments.output:
         from drystone.drawing.files import save  # noqa: PLC0415 - slow import
         from drystone.drawing.pictures.rehearsed import plot_risk  # noqa: PLC0415
@@ -86,26 +87,28 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     return ExitCode.DONE if planned.first_fall is None else ExitCode.CHECK_FAILED
 
 
-def _groups(wall: GivenWall, name: str) -> Groups:
-    """Return the stones of a plan with their wedges, source px, in the order of placement."""
-    if wall.plan is None or wall.blocks is None or not wall.plan.steps:
+def _planned(wall: GivenWall, name: str) -> tuple[Plan, Groups]:
+    """Return a plan, and its stones with their wedges, source px, in the order of placement."""
+    plan = wall.plan
+    if plan is None or wall.blocks is None or not plan.steps:
         raise UsageError(
             "E138",
             "only a plan on outlines, with stones, can be rehearsed.",
             where=name,
             cure="Give a plan.json of `drystone plan`, with the blocks.json beside it.",
         )
-    outlines, px = polygons_from_json(wall.blocks), wall.plan.px_per_m or 1.0
-    return [
-        [(piece_id(step), outlines[piece_id(step)][:-1] * px) for step in steps]
-        for steps in grouped(wall.plan.steps)[0]
-    ]
+    outlines, px = polygons_from_json(wall.blocks), plan.px_per_m or 1.0
+    groups = [[piece_id(step) for step in steps] for steps in grouped(plan.steps)[0]]
+    missing = [str(i) for ids in groups for i in ids if i not in outlines]
+    if missing:
+        what = f"the blocks.json beside it lacks {', '.join(missing)}."
+        raise PlanError("E238", what, where=name, cure="Plan again, or see `drystone check`.")
+    return plan, [[(i, outlines[i][:-1] * px) for i in ids] for ids in groups]
 
 
-def _errors(arguments: argparse.Namespace, groups: Groups, wall: GivenWall) -> BuilderErrors:
+def _errors(arguments: argparse.Namespace, groups: Groups, px_per_m: float | None) -> BuilderErrors:
     """Return the errors that are asked for, source px; E131 for metres without a scale."""
-    assert wall.plan is not None  # noqa: S101 - there are groups
-    precision, px_per_m = arguments.precision, wall.plan.px_per_m
+    precision = arguments.precision
 
     def length(parts: dict[str, float], option: str) -> float:
         unit = next((unit for unit in parts if unit not in ("deg", "%")), None)

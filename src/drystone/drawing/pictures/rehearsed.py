@@ -23,11 +23,11 @@ def plot_risk(card: Rehearsed, ax: Axes | None = None) -> Axes:
     for region in regions:
         risk = card.risk.get(region.id)
         fill = PALE if risk is None else risk_colour(risk)
-        items.append(Surface(f"block-{region.id}", region.loops, fill))
+        area = Surface(f"block-{region.id}", region.loops, fill)
+        items.append(area)
         if risk:
-            room = items[-1].room
             text = f"{100 * risk:.0f}"
-            items.append(Words(f"risk-{region.id}", text, region.centroid, room, fill))
+            items.append(Words(f"risk-{region.id}", text, region.centroid, area.room, fill))
     legend = {
         "never falls": Surface("", (), SURE),
         "in half of the runs": Surface("", (), UNSURE),
