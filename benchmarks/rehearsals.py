@@ -6,6 +6,7 @@ method, and rehearses each with the errors of a robot and of a hand (docs/theory
 
 import argparse
 import os
+import sys
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -76,7 +77,8 @@ def main() -> None:
     option("--runs", type=int, default=20)
     option("--physics", action="store_true", help="rehearse in the rigid-body engine")
     asked = parser.parse_args()
-    print("wall | whole robot, hand | fallen robot, hand | placed | F_AV | F_AH | F_LR | CPU s")
+    columns = "wall | whole robot, hand | fallen robot, hand | placed | F_AV | F_AH | F_LR | CPU s"
+    sys.stdout.write(f"{columns}\n")
     for target in chosen(WALLS, asked.only):
         found = [one for k in range(asked.seeds) if (one := outcome(target, k, asked)) is not None]
         if found:
@@ -87,7 +89,8 @@ def main() -> None:
                 for name, digits in
                 (("placed", 0), ("F_AV", 1), ("F_AH", 1), ("F_LR", 2), ("seconds", 0))
             )  # fmt: skip
-            print(f"{target.name} | {whole} | {fallen} | {figures}", flush=True)
+            sys.stdout.write(f"{target.name} | {whole} | {fallen} | {figures}\n")
+            sys.stdout.flush()
 
 
 if __name__ == "__main__":

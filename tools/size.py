@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-LIMITS = {"src/drystone": 57_900, "src/drystone_lab": 13_900, "tests": 56_500}
+LIMITS = {"src/drystone": 58_650, "src/drystone_lab": 13_900, "tests": 56_800}
 """Most lines of each; lower them when the code shrinks, never raise them without a reason."""
 
 
