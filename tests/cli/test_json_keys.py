@@ -33,6 +33,12 @@ def test_of_craft(finished, run):
     assert set(run("craft", finished, "--json").json()) == listed("craft")
 
 
+def test_of_rehearse(settled, run):
+    report = run("rehearse", settled, "--json", "--runs", 2).json()
+    found = keys(report, "errors").union(*report["stones"], ("runs", "low", "median", "high"))
+    assert found == listed("rehearse")
+
+
 def test_of_plan(rubble, tmp_path, run):
     asked = ("plan", rubble, *WALL, "-o", tmp_path / "out", "--json", "--profile", "--pareto")
     report = run(*asked).json()

@@ -39,6 +39,7 @@ GOAL = GoalSettings()
         ({"F_LR_coulomb": 0.2}, -0.3 * GOAL.resistance),
         ({"F_LR_coulomb": 0.9}, 0.0),
         ({"missing": 2}, -20.0),
+        ({"fallen": 0.1}, -0.1 * GOAL.fallen),
     ],
 )
 def test_merit_rises_with_what_is_good_and_falls_with_what_is_bad(

@@ -13,7 +13,9 @@ if TYPE_CHECKING:  # they would bring NumPy
     from drystone.io.walls import GivenWall
     from drystone.model.stone import Source
 
-_METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
+METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048, "in": 0.0254}
+"""Units of lengths."""
+
 _LENGTH = r"(\d+(?:[.,]\d*)?|[.,]\d+)"
 _SIDE = rf"{_LENGTH}(px|mm|cm|m|ft|in|)"
 _WALL = re.compile(f"{_SIDE}[xX\N{MULTIPLICATION SIGN}]{_SIDE}")
@@ -109,7 +111,7 @@ def parse_wall(text: str, px_per_m: float | None) -> tuple[float, float]:
         raise _no_wall(f"{text!r} is not the size of a wall.", _SIZES)
     values = _plain(sides[1], text), _plain(sides[3], text)
     units = sides[2] or sides[4], sides[4]
-    metric = [unit in _METRES for unit in units]
+    metric = [unit in METRES for unit in units]
     if metric[0] != metric[1]:
         cure = "Give both sides a unit, as in 1.4mx0.4m, or both in px."
         raise _no_wall(f"{text!r} is px one way and metric the other.", cure)
@@ -130,7 +132,7 @@ def parse_wall(text: str, px_per_m: float | None) -> tuple[float, float]:
             cure="Give the source pixels in a metre with --px-per-m, or a length in the image with "
             "--ruler x1,y1,x2,y2=1.0m; or give the wall in px.",
         )  # fmt: skip
-    return values[0] * _METRES[units[0]] * px_per_m, values[1] * _METRES[units[1]] * px_per_m
+    return values[0] * METRES[units[0]] * px_per_m, values[1] * METRES[units[1]] * px_per_m
 
 
 def _plain(number: str, text: str) -> float:
@@ -169,7 +171,7 @@ def ruler(text: str) -> Ruled:
         message = f"{text!r} is not like 20,30,220,30=1.0m (or cm, mm, ft, in)"
         raise argparse.ArgumentTypeError(message)
     x1, y1, x2, y2, length = (float(number.replace(",", ".")) for number in found.groups()[:5])
-    px, metres = math.hypot(x2 - x1, y2 - y1), length * _METRES[found[6]]
+    px, metres = math.hypot(x2 - x1, y2 - y1), length * METRES[found[6]]
     if px == 0.0 or metres == 0.0:
         raise argparse.ArgumentTypeError(f"{text!r} has no length")
     scale = Ruled(px / metres)

@@ -34,6 +34,7 @@ _COMMANDS = {
     "analyse": "Compute which sideways load brings a wall down, and how.",
     "measure": "Measure how full, how regular and how strong a wall is.",
     "craft": "Judge a wall by masons' rules, stone by stone.",
+    "rehearse": "Build a plan again and again with a builder's errors.",
     "generate": "Make a set of artificial stones.",
     "cite": "Print how to cite drystone and the paper, as BibTeX.",
 }

@@ -24,6 +24,9 @@ class GoalSettings(Ranged):
         E_FLUSH; the last three count against a wall.
     bond : float
         Weight of faults of the bond for each stone (:func:`drystone.craft.bond.bond_faults`).
+    fallen : float
+        Weight of the share of the stones that fall when the wall is rehearsed
+        (:mod:`drystone.search.rehearsal`).
     F_SF, F_LR, F_AV, F_AH : float
         Aims: what is better than its aim counts no more than the aim; 0 is none.
     urgent : float
@@ -37,6 +40,7 @@ class GoalSettings(Ranged):
     level: float = 0.5
     flush: float = 0.25
     bond: float = 2.0
+    fallen: float = 15.0
     F_SF: float = ranged(0.0, least=0)
     F_LR: float = ranged(0.0, least=0)
     F_AV: float = ranged(0.0, least=0)

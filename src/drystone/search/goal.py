@@ -4,16 +4,20 @@ import math
 from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from drystone.craft.bond import bond_faults
 from drystone.craft.masonry import Masonry
 from drystone.craft.settings import CraftSettings
 from drystone.metrics.measure import measure_labels
+from drystone.model.builder import BETWEEN, BuilderErrors
 from drystone.planner.build import Build
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import GoalSettings
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.courses import CoursePlan
+from drystone.search.rehearsal import groups_of, mean_size, rehearse
 from drystone.search.yard import Yard
 from drystone.statics.flow.flow_search import STARTS, NonassociativeSettings
 from drystone.statics.flow.nonassociative import nonassociative_resistance
@@ -28,6 +32,10 @@ SCANNED = CraftSettings(sample=0.07)
 
 QUICK = NonassociativeSettings(starts=STARTS[:1], random_starts=0, let_go=False)
 """One start of twelve finds the least load without dilatancy of most walls."""
+
+
+RUNS, LAST_RUNS = 3, 12
+"""So often a wall of a search is rehearsed, and the best ones at the end."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +56,7 @@ class WallFigures:
     bond: float = 0.0  # `drystone.craft.bond.bond_faults`; 0 for a wall of pixels
     # F_LR without dilatancy, 0 where the wall can fall by itself; None where it was not asked for.
     F_LR_coulomb: float | None = None
+    fallen: float = 0.0  # mean share of the stones that fall in a rehearsal, once it was judged
 
     @property
     def carried(self) -> float:
@@ -105,6 +114,7 @@ def merit_of(figures: WallFigures | None, possible: float, goal: GoalSettings) -
             -goal.level * figures.T_LEVEL,
             -goal.flush * figures.E_FLUSH,
             -goal.bond * figures.bond,
+            -goal.fallen * figures.fallen,
             -MISSING * figures.missing,
         ]
     )
@@ -173,6 +183,23 @@ class FoundWall:
                 least = 0.0
             elif end.alpha is not None:
                 least = min(least, end.alpha / found.mu)
-        figures = replace(figures, F_LR_coulomb=least)
+        fallen = figures.fallen
+        if yard.settings.goal.fallen:
+            runs = RUNS if flow is None else LAST_RUNS
+            fallen = rehearsed(self.build, yard, runs)
+        figures = replace(figures, F_LR_coulomb=least, fallen=fallen)
         merit = merit_of(figures, possible_filling(yard.workshop), yard.settings.goal)
         return replace(self, figures=figures, merit=merit)
+
+
+def rehearsed(build: Build, yard: Yard, runs: int) -> float:
+    """Return the mean share of the stones of a wall of outlines that fall in some rehearsals."""
+    groups, settings = groups_of(build.wall), yard.settings
+    errors = BuilderErrors.of_precision(BETWEEN, mean_size(groups))
+    fallen = 0
+    for run in range(runs):
+        yard.until.look()
+        rng = np.random.default_rng(run)
+        found = rehearse(groups, errors, rng, mu=settings.mu, settle=settings.settle)
+        fallen += sum(end.fallen for end in found.stones)
+    return fallen / (runs * len(groups))

@@ -9,8 +9,10 @@ from numpy.random import Generator
 from drystone.metrics.frame import frame_wall
 from drystone.metrics.joints import joint_mask
 from drystone.metrics.paths import vertical_paths
+from drystone.model.builder import BETWEEN, BuilderErrors
 from drystone.planner.build import Build
 from drystone.planner.search_settings import SearchSettings
+from drystone.search.rehearsal import groups_of, mean_size, rehearse
 from drystone.statics.limit import lateral_resistance
 
 Ids = frozenset[int]
@@ -137,5 +139,16 @@ def mechanism(build: Build, count: int, rng: Generator) -> Ids:
     return _nearest(build, at[int(rng.choice(len(ids), p=speed / speed.sum()))], count)
 
 
-RUINS: tuple[Ruin, ...] = (disc, top, column, end, joint, step, mechanism)
+def unsure(build: Build, count: int, rng: Generator) -> Ids:
+    """Take the stones around the first one that falls in a rehearsal."""
+    groups = groups_of(build.wall)
+    errors = BuilderErrors.of_precision(BETWEEN, mean_size(groups))
+    first = rehearse(groups, errors, rng, mu=build.model.mu).first_fall
+    if first is None:
+        return disc(build, count, rng)
+    ids, at = centres(build)
+    return _nearest(build, at[ids.index(first)], count)
+
+
+RUINS: tuple[Ruin, ...] = (disc, top, column, end, joint, step, mechanism, unsure)
 """In the order in which they are drawn."""

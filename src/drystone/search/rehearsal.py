@@ -1,0 +1,144 @@
+"""A plan built again with a builder's errors, by exact settling (DESIGN 4.10).
+
+Each run draws errors of its own for every block (:mod:`drystone.model.builder`).  A block is put
+down and let go (:mod:`drystone.settle.putting`).  It has fallen when it ends far from the plan, or
+not at rest.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from drystone.kernels.polygons import area_and_centroid, no_polygons
+from drystone.model.builder import WEDGE_SHARE, BuilderErrors, Built
+from drystone.model.outlines import Outlined
+from drystone.model.wall import Wall, outlined
+from drystone.physics.building import BuildSettings, build_up, tilt_of
+from drystone.physics.scene import EngineSettings
+from drystone.settle.putting import (
+    FALLEN_DEG,
+    FALLEN_SHARE,
+    fallen_share,
+    moved,
+    put_down,
+)
+from drystone.settle.settings import SettleSettings
+
+Groups = Sequence[Sequence[Outlined]]
+"""Stones with their wedges, the stone of each first, in the order of placement.
+
+Corners, (n, 2), are in the wall frame, source px.
+"""
+
+IN_ENGINE = BuildSettings(
+    engine=EngineSettings(iterations=30, slop=3e-3, corner_radius=3e-3),
+    moved_share=FALLEN_SHARE,
+    turned_deg=FALLEN_DEG,
+    resting_time=0.5,
+    longest_rest=3.0,
+)
+"""How the engine is asked: where stones go astray by percents, no digits are needed."""
+
+
+@dataclass(frozen=True)
+class StoneEnd:
+    """What became of a stone in a run."""
+
+    stone: int
+    fallen: bool
+    share: float | None  # distance of its centroid from the plan, over its size; None: not at rest
+    turn_deg: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class RehearsalRun:
+    """One wall that was built with errors."""
+
+    stones: tuple[StoneEnd, ...]  # in the order of placement
+    blocks: tuple[Outlined, ...]  # where all that has not fallen lies
+    # Of a wall that stands in the engine: by how much it may be tilted, over mu; None without.
+    tilt: float | None = None
+
+    @property
+    def first_fall(self) -> int | None:
+        """The first stone that fell; None when none did."""
+        return next((end.stone for end in self.stones if end.fallen), None)
+
+
+def groups_of(wall: Wall) -> Groups:
+    """Return the stones of a wall of outlines with their wedges."""
+    return [outlined(group.placement, group.wedges) for group in wall.groups]
+
+
+def mean_size(groups: Groups) -> float:
+    """Return the mean over the stones of the root of their area, source px."""
+    return float(np.mean([area_and_centroid(group[0][1])[0] ** 0.5 for group in groups]))
+
+
+def errors_of(
+    groups: Groups, errors: BuilderErrors, rng: np.random.Generator
+) -> list[list[tuple[int, Built]]]:
+    """Return the blocks of a plan as they are and where they are put, the stone of each first."""
+    wedge = errors.times(WEDGE_SHARE)
+    return [
+        [(i, (wedge if k else errors).built(corners, rng)) for k, (i, corners) in enumerate(group)]
+        for group in groups
+    ]
+
+
+def rehearse(
+    groups: Groups,
+    errors: BuilderErrors,
+    rng: np.random.Generator,
+    *,
+    mu: float = 0.58,
+    settle: SettleSettings | None = None,
+) -> RehearsalRun:
+    """Build a wall once, stone after stone as planned, each with its own errors (open loop).
+
+    Stones may stand out over the ends of the wall.
+    """
+    settle = settle or SettleSettings()
+    laid: dict[int, Built] = {}
+    polygons = no_polygons()
+    for group in errors_of(groups, errors, rng):
+        for block, built in (*group[1:], group[0]):
+            rest, pushed = put_down(built, polygons, mu, settle)
+            if rest is not None:
+                ids = list(laid)
+                for place, shift in pushed.items():
+                    one = laid[ids[place]]
+                    laid[ids[place]] = replace(one, x=one.x + shift)
+                laid[block] = rest
+                polygons = moved(polygons, pushed).added([rest.corners])
+    ends = tuple(_end(group[0], laid.get(group[0][0])) for group in groups)
+    fallen = {end.stone for end in ends if end.fallen}
+    return RehearsalRun(ends, tuple((i, b.corners) for i, b in laid.items() if i not in fallen))
+
+
+def _end(planned: Outlined, built: Built | None) -> StoneEnd:
+    block, corners = planned
+    if built is None:
+        return StoneEnd(block, True, None, None)
+    _, x, y = area_and_centroid(corners)
+    way = built.x - x, built.y - y
+    fallen = fallen_share(*way, built.angle_deg, built.size) > 1.0
+    return StoneEnd(block, fallen, math.hypot(*way) / built.size, built.angle_deg)
+
+
+def rehearse_in_engine(
+    groups: Groups, errors: BuilderErrors, rng: np.random.Generator, *, mu: float = 0.58
+) -> RehearsalRun:
+    """Build a wall once with the same errors in a rigid-body engine (extra `physics`)."""
+    put = [[(i, one.corners) for i, one in group] for group in errors_of(groups, errors, rng)]
+    found = build_up(put, mu, IN_ENGINE)
+    moves = {move.id: move for move in found.moves}
+    stones = (moves[group[0][0]] for group in groups)
+    lies = tuple((i, corners) for i, corners in found.outlines.items() if not moves[i].fell)
+    ends = tuple(StoneEnd(m.id, m.fell, m.share, m.turn_deg) for m in stones)
+    if any(end.fallen for end in ends):
+        return RehearsalRun(ends, lies)
+    alphas = [one.alpha for one in tilt_of(found) or () if one.alpha is not None]
+    return RehearsalRun(ends, lies, min(alphas) / mu if alphas else None)

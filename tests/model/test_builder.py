@@ -1,0 +1,60 @@
+"""What a builder misses by."""
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.kernels.polygons import area_and_centroid
+from drystone.model.builder import HAND, LONGEST_EDGE, ROBOT, BuilderErrors, misjudged
+from tests.naive import builder as naive
+from tests.strategies import repeatable
+
+BRICK = np.array([[-20.0, -10.0], [20.0, -10.0], [20.0, 10.0], [-20.0, 10.0]])
+HOOK = np.array([[0.0, 0], [40, 0], [40, 8], [8, 8], [8, 40], [0, 40]]) - 13.0
+
+
+@pytest.mark.parametrize(("precision", "angle_deg"), [(ROBOT, 1.0), (HAND, 2.0)])
+def test_errors_of_a_precision(precision, angle_deg):
+    """DESIGN 4.10: p of the mean size along the wall, 2p/3 degrees for p in percent, p/2."""
+    errors = BuilderErrors.of_precision(precision, 200.0)
+    assert errors.placement == pytest.approx(200 * precision)
+    assert errors.angle_deg == pytest.approx(angle_deg)
+    assert errors.outline == pytest.approx(100 * precision)
+
+
+@repeatable()
+@given(st.integers(0, 2**31), st.floats(0.1, 4.0))
+def test_a_misjudged_outline_is_that_of_its_twin(seed, sigma):
+    found = misjudged(BRICK, sigma, np.random.default_rng(seed))
+    waves = np.random.default_rng(seed).standard_normal((2, 5)) * sigma / math.sqrt(5)
+    plain = np.array(naive.misjudged(BRICK, waves, LONGEST_EDGE * math.sqrt(800)))
+    _, x, y = area_and_centroid(plain)
+    assert found == pytest.approx(plain - (x, y))
+
+
+def test_the_error_has_the_given_deviation_at_any_angle():
+    circle = 50.0 * np.array([(math.cos(a), math.sin(a)) for a in np.arange(0, 6.28, 0.1)])
+    rng = np.random.default_rng(3)
+    radii = np.array([np.hypot(*misjudged(circle, 1.0, rng).T) for _ in range(400)])
+    assert radii.mean() == pytest.approx(50.0, abs=0.1)
+    assert radii.std(axis=0) == pytest.approx(np.ones(radii.shape[1]), abs=0.15)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_an_outline_of_any_shape_stays_simple(seed):
+    assert shapely.Polygon(misjudged(HOOK, 6.0, np.random.default_rng(seed))).is_valid
+
+
+def test_twice_the_errors_move_a_block_twice_as_far():
+    errors = BuilderErrors(placement=2.0, angle_deg=1.0, outline=0.0)
+    corners = BRICK + np.array((100.0, 10.0))
+    once, twice = (e.built(corners, np.random.default_rng(5)) for e in (errors, errors.times(2.0)))
+    assert twice.x - 100.0 == pytest.approx(2 * (once.x - 100.0))
+    assert twice.angle_deg == pytest.approx(2 * once.angle_deg)
+    assert once.x != 100.0
+    assert once.y == pytest.approx(10.0)
+    assert twice.size == pytest.approx(math.sqrt(800))

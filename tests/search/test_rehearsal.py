@@ -1,0 +1,71 @@
+"""Walls that are built again with a builder's errors."""
+
+import numpy as np
+import pytest
+
+from drystone.model.builder import HAND, ROBOT, BuilderErrors
+from drystone.search.rehearsal import mean_size, rehearse, rehearse_in_engine
+from tests.settle.test_putting import box
+
+NONE = BuilderErrors(placement=0.0, angle_deg=0.0, outline=0.0)
+
+BOND = [
+    [(10 * row + k, box(40.0 * k + 20.0 * row, 20.0 * row))]
+    for row in range(3)
+    for k in range(4 - row)
+]
+"""Nine bricks in bond."""
+
+TOWER = [*BOND, [(99, box(66.0, 60.0, 8.0, 30.0))], [(100, box(54.5, 90.0, 38.0, 10.0))]]
+"""A brick on a post on top."""
+
+
+def runs(groups, precision, count=8, once=rehearse):
+    errors = BuilderErrors.of_precision(precision, mean_size(groups))
+    return [once(groups, errors, np.random.default_rng(seed)) for seed in range(count)]
+
+
+@pytest.mark.parametrize("once", [rehearse, rehearse_in_engine])
+@pytest.mark.parametrize("groups", [BOND, TOWER])
+def test_without_errors_a_wall_stays_as_planned(groups, once):
+    if once is rehearse_in_engine:
+        pytest.importorskip("pymunk")
+    run = once(groups, NONE, np.random.default_rng(0))
+    assert run.first_fall is None
+    assert [end.stone for end in run.stones] == [group[0][0] for group in groups]
+    assert max(end.share for end in run.stones) < 0.02
+    assert {i for i, _ in run.blocks} == {i for group in groups for i, _ in group}
+
+
+def test_bricks_in_bond_survive_a_robot_and_a_brick_on_a_post_does_not_survive_a_hand():
+    assert all(run.first_fall is None for run in runs(BOND, ROBOT))
+    fallen = [{end.stone for end in run.stones if end.fallen} for run in runs(TOWER, HAND)]
+    assert sum(bool(stones & {99, 100}) for stones in fallen) >= 3
+    # What has fallen does not lie in the wall.
+    run = next(run for run in runs(TOWER, HAND) if run.first_fall is not None)
+    assert run.first_fall not in {i for i, _ in run.blocks}
+
+
+def test_the_engine_judges_the_same_errors():
+    pytest.importorskip("pymunk")
+    (bond,) = runs(BOND, ROBOT, 1, rehearse_in_engine)
+    assert bond.first_fall is None
+    assert bond.tilt > 0.7
+    (tower,) = runs(TOWER, 0.1, 1, rehearse_in_engine)
+    assert tower.tilt is None
+    assert tower.first_fall not in {i for i, _ in tower.blocks}
+
+
+def test_the_same_random_numbers_give_the_same_wall():
+    first, again = runs(BOND, HAND, 1)[0], runs(BOND, HAND, 1)[0]
+    assert first.stones == again.stones
+    assert all((a == b).all() for (_, a), (_, b) in zip(first.blocks, again.blocks, strict=True))
+
+
+def test_wedges_come_before_their_stone():
+    """A brick that only a wedge keeps level."""
+    leaning = [(2, box(4.0, 25.0)), (3, box(30.0, 20.0, 10.0, 5.0))]
+    low = np.array([[0.0, 0], [60, 0], [60, 20], [20, 20], [20, 25], [0, 25]])
+    run = rehearse([[(1, low)], leaning], NONE, np.random.default_rng(0))
+    assert run.first_fall is None
+    assert run.stones[1].turn_deg == pytest.approx(0.0, abs=0.5)

@@ -1,0 +1,78 @@
+"""Blocks that are put down not quite as planned."""
+
+import numpy as np
+import pytest
+
+from drystone.kernels.polygons import no_polygons
+from drystone.model.builder import Built
+from drystone.settle.putting import fallen_share, put_down
+from drystone.settle.settings import SettleSettings
+
+SETTLE = SettleSettings()
+
+
+def box(x, y, width=40.0, height=20.0):
+    """A box with its lower left corner at a place."""
+    return np.array([[x, y], [x + width, y], [x + width, y + height], [x, y + height]])
+
+
+def brick(x, y, angle_deg=0.0, width=40.0):
+    """A brick with its centroid at a place."""
+    return Built(box(-width / 2, -10.0, width), x, y, angle_deg)
+
+
+def put(built, *around, mu=0.58):
+    return put_down(built, no_polygons().added(around), mu, SETTLE)
+
+
+@pytest.mark.parametrize("angle_deg", [0.0, 3.0, -6.0])
+def test_a_brick_on_the_ground_comes_to_lie_flat(angle_deg):
+    rest, pushed = put(brick(0.0, 10.0, angle_deg))
+    assert rest is not None
+    assert rest.y == pytest.approx(10.0, abs=0.3)
+    assert rest.angle_deg == pytest.approx(0.0, abs=0.4)
+    assert pushed == {}
+
+
+def test_neighbours_on_both_sides_are_pushed_apart():
+    rest, pushed = put(brick(0.0, 10.0), box(-58.0, 0.0), box(18.0, 0.0))
+    assert rest is not None
+    assert rest.y == pytest.approx(10.0, abs=0.3)
+    assert pushed == {0: pytest.approx(-2.0, abs=0.2), 1: pytest.approx(2.0, abs=0.2)}
+
+
+def test_what_is_pushed_pushes_on():
+    walls = box(-58.0, 0.0), box(18.0, 0.0), box(58.5, 0.0), box(110.0, 0.0)
+    _, pushed = put(brick(0.0, 10.0), *walls)
+    assert pushed[2] == pytest.approx(1.5, abs=0.3)
+    assert 3 not in pushed
+
+
+def test_a_brick_moves_aside_where_there_is_room():
+    rest, pushed = put(brick(0.0, 10.0), box(-58.0, 0.0))
+    assert rest is not None
+    assert rest.x == pytest.approx(2.0, abs=0.3)
+    assert pushed == {}
+
+
+def test_a_brick_that_overlaps_what_is_below_is_lifted():
+    rest, pushed = put(brick(0.0, 29.0), box(-30.0, 0.0, 60.0))
+    assert rest is not None
+    assert rest.y == pytest.approx(30.0, abs=0.3)
+    assert pushed == {}
+
+
+@pytest.mark.parametrize(
+    ("below", "mu"),
+    [
+        (box(5.0, 0.0), 0.58),  # its centroid is beyond the edge
+        (np.array([[-30.0, 0.0], [30.0, 0.0], [30.0, 20.0], [-30.0, -1.0]]), 0.1),  # it slides
+    ],
+)
+def test_what_finds_no_rest_falls(below, mu):
+    assert put(brick(0.0, 30.0), below, mu=mu) == (None, {})
+
+
+def test_how_near_to_a_fall_a_stone_is():
+    assert fallen_share(0.3, 0.4, 0.0, 4.0) == pytest.approx(0.5)
+    assert fallen_share(0.0, 0.0, 348.0, 4.0) == pytest.approx(1.0)
