@@ -17,7 +17,7 @@ def asked(*options, stones=30):
 
 def test_a_budget_ends_a_search_unless_the_clock_shall(tmp_path):
     assert asked() == (600.0, 32)
-    assert asked(stones=64) == (640.0, 60)
+    assert asked(stones=64) == (640.0, 20)
     assert asked(stones=5000) == (50_000.0, 8)
     assert asked("--time", 2.5) == (2.5, UNLIMITED)
     assert asked("--budget", 7) == (None, 7)

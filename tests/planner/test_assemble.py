@@ -159,7 +159,9 @@ def test_a_wall_in_which_nothing_can_be_placed_is_an_incomplete_plan() -> None:
     tip = np.triu(np.ones((12, 12), bool))
     result = plan_wall(
         StoneSet((Stone(1, tip),)), 14, 14, scale=1.0,
-        settings=method_settings("paper").updated({"stabilise": {"method": "none"}}),
+        settings=method_settings("paper").updated(
+            {"orientations": "sf", "stabilise": {"method": "none"}}
+        ),
     )  # fmt: skip
     assert result.status == "incomplete"
     assert result.plan.steps == ()

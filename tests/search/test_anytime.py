@@ -134,7 +134,7 @@ def test_chains_go_on_from_planned_walls_that_promise_more_until_they_are_long()
 
 
 def test_the_first_wall_is_wedged_as_the_others_are() -> None:
-    planner = first(2, seed=8)
+    planner = first(2, seed=12)
     start = judged(planner)
     better = wedged(start, Yard.of(planner))
     assert better.merit > start.merit
@@ -161,7 +161,7 @@ def test_after_many_walls_in_vain_other_first_walls_begin_another_round(
 
     monkeypatch.setattr(anytime, "one_pass", one_pass)
     monkeypatch.setattr(anytime, "more_links", more_links)
-    whole = searched(first(25, seed=4, patience=1))
+    whole = searched(first(25, seed=1, patience=1))
     assert len(begun) > 3
     assert begun == list(range(1, len(begun) + 1))
     assert chained[:2] == [(0, 0), (1, 0)]
@@ -275,7 +275,7 @@ def test_an_interrupt_keeps_the_best_wall_so_far() -> None:
 
 
 def test_a_search_goes_on_from_where_it_stood_to_the_walls_that_it_would_have_found() -> None:
-    planner = first(25, seed=4, patience=1)
+    planner = first(25, seed=1, patience=1)
     whole = searched(planner)
     stood = [k for k, one in enumerate(whole) if one.standing is not None]
     rounds = {standing(whole[k]).number for k in stood}

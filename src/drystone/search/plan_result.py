@@ -209,7 +209,8 @@ def other_resistances(
     found: dict[str, float | None] = {}
     if resistance.stable and 0 < len(build.model.blocks) <= MOST_WITHOUT_DILATANCY:
         with suppress(TimeIsUp):
-            without = nonassociative_resistance(build.model, look=until.look)
+            # What is found goes by the order of blocks; `check` puts the wall together otherwise.
+            without = nonassociative_resistance(build.model.in_order(), look=until.look)
             found["F_LR_coulomb"] = without.carried
             found["alpha_left_coulomb"] = without.left.alpha
             found["alpha_right_coulomb"] = without.right.alpha

@@ -95,6 +95,12 @@ class RigidBlockModel:
         """Return the same model without knowledge of how it was made."""
         return self if self.added is None else replace(self)
 
+    def in_order(self) -> "RigidBlockModel":
+        """Return the same model with blocks and interfaces sorted, however it was put together."""
+        blocks = sorted(self.blocks, key=lambda block: block.id)
+        faces = sorted(self.interfaces, key=lambda f: (f.block, f.other, f.points.tolist()))
+        return RigidBlockModel(tuple(blocks), tuple(faces), self.mu)
+
     def friction(self, interface: Interface) -> float:
         """Return the coefficient of friction of an interface, at most `NO_SLIP`."""
         return min(self.mu if interface.mu is None else interface.mu, NO_SLIP)

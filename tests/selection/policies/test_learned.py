@@ -136,8 +136,8 @@ def edited(**changes: Any) -> str:
         (edited(weights=dict.fromkeys(FEATURES, 1.0)), "checksum"),
         (edited(sha256=""), "checksum"),
         ("[]", "version None"),
-        ("[1]", "no file of weights"),
-        ("{", "no file of weights"),
+        ("[1]", "not a file of weights"),
+        ("{", "not a file of weights"),
         ("{}", "version None"),
     ],
 )
