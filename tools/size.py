@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-LIMITS = {"src/drystone": 54_900, "src/drystone_lab": 13_600, "tests": 53_700}
+LIMITS = {"src/drystone": 54_900, "src/drystone_lab": 13_600, "tests": 53_750}
 """Most lines of each; lower them when the code shrinks, never raise them without a reason."""
 
 
