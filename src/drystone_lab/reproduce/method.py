@@ -53,10 +53,7 @@ def _table1(context: Context) -> Table:  # noqa: ARG001 - an item reads its stud
         ("component", "marks in the paper", *MARKS),
         tuple((name, count, *(cell(policy, part) for policy in MARKS))
               for part, (name, count, _who) in ROWS.items()),
-        (
-            f"An engine looks at what {' and '.join(ENGINE)} choose. Every policy is offered only "
-            "walls that stand; weights are 1, as none are in the paper.",
-        ),
+        (f"An engine looks at what {' and '.join(ENGINE)} choose. All weights are 1.",),
     )  # fmt: skip
 
 
