@@ -53,10 +53,7 @@ def _table1(context: Context) -> Table:  # noqa: ARG001 - an item reads its stud
         ("component", "marks in the paper", *MARKS),
         tuple((name, count, *(cell(policy, part) for policy in MARKS))
               for part, (name, count, _who) in ROWS.items()),
-        (
-            f"An engine looks at what {' and '.join(ENGINE)} choose. Every policy is offered only "
-            "walls that stand; weights are 1, as none are in the paper.",
-        ),
+        (f"An engine looks at what {' and '.join(ENGINE)} choose. All weights are 1.",),
     )  # fmt: skip
 
 
@@ -123,8 +120,6 @@ FILTERS = ("LLC > 0", "LLC", "NHR", "IWR or IS", "GDS", "LFR")
 class Selection:
     """A step of Algorithm 2: candidates after which the wall stands, and who passed what."""
 
-    before: Wall
-    clusters: Mapping[int, int]
     tried: int
     candidates: tuple[Candidate, ...]
     selected: Selected
@@ -153,7 +148,7 @@ def selection_step(context: Context, wall: Target = PR) -> Selection:
     selected = select_action([action_of(c, settings.selection) for c in standing])
     if selected is None:
         raise ValueError("no candidate stands")
-    return Selection(build.wall, shop.clusters, attempt.candidates, standing, selected)
+    return Selection(attempt.candidates, standing, selected)
 
 
 def _filters(step: Selection) -> Table:
@@ -181,8 +176,6 @@ def _filters(step: Selection) -> Table:
 
 
 def _selection_pictures(step: Selection) -> Iterator[ItemPicture]:
-    chosen = step.candidates[step.selected.position].stabilised
-    after = step.before.add(chosen.placement, chosen.wedges)
     figure = Figure(figsize=(6.4, 0.4 + 0.22 * len(step.candidates)), layout="constrained")
     ax = figure.add_subplot()
     for k, passed in enumerate(step.passed):
@@ -197,8 +190,6 @@ def _selection_pictures(step: Selection) -> Iterator[ItemPicture]:
         "fig10", figure,
         f"How far each candidate came through the filters ({counts}); orange: the action taken.",
     )  # fmt: skip
-    walls = [("before the step", step.before, step.clusters), ("after", after, step.clusters)]
-    yield ItemPicture("fig10-walls", plot_walls(walls, 2), "The wall before and after the step.")
 
 
 SELECTION = PaperItem(
@@ -245,11 +236,6 @@ def _contact_forces(found: TwoStones) -> Table:
 
 
 def _two_claims(found: TwoStones) -> Iterator[ClaimCheck]:
-    points = {len(face.points) for face in found.model.interfaces}
-    yield ClaimCheck(
-        "Forces act at the two ends of every interface.", f"{points} points an interface.",
-        points == {2},
-    )  # fmt: skip
     alpha, mu = found.both.right.alpha, found.model.mu
     yield ClaimCheck(
         "Eq. 23 bounds the load by sliding and by opening.",

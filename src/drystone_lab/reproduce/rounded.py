@@ -104,7 +104,7 @@ ROUNDED = PaperItem(
         walls=KINDS,
         ways={"two sides": TWO_SIDED},
         quick_seeds=1,
-        quick_walls=tuple(coarser(wall, 0.2) for wall in KINDS),
+        quick_walls=tuple(coarser(wall, 0.1) for wall in KINDS),
     ),
     claims=rounded_findings,
     tables={

@@ -227,7 +227,7 @@ def _panels(built: StudyWalls, wall: FiveWall) -> list[Panel]:
 
 TABLE2 = PaperItem(
     **paper("table2"),
-    study=partial(five_walls, study=Study(walls=FIVE, quick_seeds=4)),
+    study=partial(five_walls, study=Study(walls=FIVE, quick_seeds=2)),
     tables={"table2": _comparison, "table2_seeds": _spread},
     pictures=lambda found: (_fig18(found),),
     needs=tuple(wall.source.name for wall in MASONS),

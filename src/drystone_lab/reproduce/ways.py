@@ -36,6 +36,9 @@ from drystone_lab.walls import (
 
 MASONS_STONES = tuple(wall.source.name for wall in MASONS)
 
+COARSE = (coarser(R, 0.1), coarser(PR, 0.25))
+"""For quick versions: the many stones of IR take longest."""
+
 BETAS = ("0", "0.5", "0.7", "0.9")
 PAPERS = "0.7"
 """The threshold that the paper found best."""
@@ -57,7 +60,11 @@ def _beta_picture(found: StudyWalls) -> ItemPicture:
 
 BETA = PaperItem(
     **paper("beta"),
-    study=Study(walls=MASONS, ways={beta: (("placement.beta", float(beta)),) for beta in BETAS}),
+    study=Study(
+        walls=MASONS,
+        ways={beta: (("placement.beta", float(beta)),) for beta in BETAS},
+        quick_walls=COARSE,
+    ),
     tables={
         "beta": ways_table(
             "Walls by the threshold of GDS",
@@ -194,8 +201,8 @@ STABILISATION = PaperItem(
     study=Study(
         walls=(LIU_5, IR),
         ways={method: (("stabilise.method", method),) for method in STABILISED},
-        quick_seeds=4,
-        quick_walls=(coarser(LIU_5, 0.2), coarser(IR, 0.2)),
+        quick_seeds=2,
+        quick_walls=(coarser(LIU_5, 0.15), coarser(IR, 0.15)),
     ),
     claims=_stabilised_claims,
     tables={
@@ -233,7 +240,7 @@ def named_variants(
 ) -> StudyWalls:
     """Build the free walls by every variant, and by the paper's method those with their frames."""
     if context.quick:
-        walls, framed, count = (coarser(R, 0.1), coarser(PR, 0.25)), (), 2
+        walls, framed, count = COARSE, (), 2
     seeds = range(context.seed, context.seed + count)
     asked = [
         (wall, way, tuple(wall.run(seed, *changes) for seed in seeds))
@@ -272,7 +279,7 @@ FLUSH = (*METRICS, "E_FLUSH")
 
 
 BOTH_ENDS = PaperItem(**paper("fig21"),
-    study=Study(walls=MASONS, ways=SIDES, quick_seeds=4),
+    study=Study(walls=MASONS, ways=SIDES, quick_walls=COARSE),
     tables={
         "fig21": ways_table(
             "Walls built from one end and from both",
@@ -318,7 +325,7 @@ ALL_METHODS = PaperItem(**paper("figB30-32"),
         },
         seeds=1,
         quick_seeds=1,
-        quick_walls=(coarser(R, 0.1), coarser(PR, 0.25)),  # the many stones of IR take longest
+        quick_walls=COARSE,
     ),
     tables={
         "figB30_32": walls_table(

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from drystone.model.site import Site
@@ -50,9 +49,6 @@ def test_forces_on_two_stones_are_in_balance(tmp_path: Path) -> None:
     found = method.two_stones(context(tmp_path))
     assert found.both.right.alpha == pytest.approx(found.model.mu)
     table = rows(method.RIGID.make(context(tmp_path)), "forces")
-    on_ground = [row for row in table if row["on"] == "the ground"]
+    ground = [row for row in table if row["on"] == "the ground"]
     weight = int((found.labels > 0).sum())
-    assert sum(float(str(r["normal force"])) for r in on_ground) == pytest.approx(weight, abs=1e-3)
-    push = sum(float(str(r["tangential force"])) for r in on_ground)
-    assert abs(push) == pytest.approx(0.58 * weight, abs=1e-3)
-    assert np.unique(found.labels).tolist() == [0, 1, 2]
+    assert sum(float(str(r["normal force"])) for r in ground) == pytest.approx(weight, abs=1e-3)

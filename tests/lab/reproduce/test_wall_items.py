@@ -3,6 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 from statistics import median
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -192,26 +193,20 @@ def test_rounded_stones(here: Context) -> None:
     assert [picture.name for picture in output.pictures] == ["fig26", "fig27"]
 
 
-def test_more_walls_tell_a_difference(here: Context) -> None:
-    one, two = (replace(RUBBLE, name=name) for name in ("round, 1", "round, 2"))
-    (trials,) = on(ways.SAMPLING, RUBBLE).study(here).of("variant")
-
-    def filled(wall: Target, count: int, first: float) -> Any:
-        figures = trials.outcomes[0].figures
-        outcomes = [
-            replace(trials.outcomes[0], figures={**figures, "F_SF": first + k / 100})
-            for k in range(count)
-        ]
-        return replace(trials, wall=wall, outcomes=tuple(outcomes))
-
-    def holds(first: float, second: float, count: int = 5) -> bool | None:
-        walls = [filled(one, count, first), filled(two, count, second)]
-        walls += [replace(each, wall=replace(each.wall, name="elliptic")) for each in walls]
+def test_more_walls_tell_a_difference() -> None:
+    def holds(*firsts: float, count: int = 5) -> bool | None:
+        walls: list[Any] = [
+            SimpleNamespace(
+                wall=SimpleNamespace(name=shape),
+                outcomes=[SimpleNamespace(figures=dict.fromkeys(("F_SF", "F_AV"), first + k / 100))
+                          for k in range(count)],
+            )
+            for shape in rounded.SHAPES
+            for first in firsts
+        ]  # fmt: skip
         return next(rounded.rounded_findings(walls)).holds
 
-    assert holds(0.5, 0.6) is True
-    assert holds(0.6, 0.5) is False
-    assert holds(0.5, 0.6, 3) is None
+    assert [holds(0.5, 0.6), holds(0.6, 0.5), holds(0.5, 0.6, count=3)] == [True, False, None]
 
 
 def test_variants(here: Context) -> None:

@@ -1,7 +1,6 @@
 """The systems of Table 1: seven different choices, each with switches for what it looks at."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,7 @@ import pytest
 from drystone.selection.algorithm2 import SelectionSettings
 from drystone.selection.policies.registry import policy_named
 from drystone.selection.policies.settings import PolicySettings
-from drystone.selection.policies.table1 import MARKS, parts
+from drystone.selection.policies.table1 import MARKS
 from tests.selection.offers import offered
 
 BETTER: Mapping[str, dict[str, Any]] = {
@@ -54,9 +53,3 @@ def test_learned_values_leave_out_what_a_system_does_not_have() -> None:
     plain, strong = offered(1), offered(2, indices={"LLC": 0.9})
     assert chosen("liu2018", plain, strong) == 1
     assert chosen("menezes", plain, strong) == chosen("liu2018", plain, strong, lateral=False) == 0
-
-
-def test_parts_are_switched_off() -> None:
-    off = replace(PolicySettings(), packing=False)
-    assert parts("menezes", off) == ("gravity",)
-    assert len({parts(name, off) for name in MARKS}) == len(MARKS)
