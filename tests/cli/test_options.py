@@ -14,7 +14,7 @@ from tests.cli.conftest import WALL
 @pytest.mark.parametrize(
     ("options", "path", "value"),
     [
-        (["--sampling", "uniform", "--seed", "3"], ["sampling"], "uniform"),
+        (["--sampling", "uniform"], ["sampling"], "uniform"),
         (["--sampling", "shrinking"], ["sampling"], "shrinking"),
         (["--sampling", "twofold"], ["sampling"], "twofold"),
         (["--sampling", "full"], ["sampling"], "full"),
