@@ -31,7 +31,7 @@ def walk(folder: Path, *, full: bool) -> Walk:
     stones, wall = (60, "700x300") if full else (12, "240x110")
     one = Walk(folder)
     one.drystone(
-        "generate", "rubble", "-o", "stones.png", "--count", stones, "--seed", 3,
+        "generate", "rubble", "-o", "stones.png", "--count", stones, "--seed", 2,
         "--set", f"width_px={wall.split('x')[0]}", "--set", f"height_px={wall.split('x')[1]}",
         "--set", f"courses={5 if full else 3}",
     )  # fmt: skip

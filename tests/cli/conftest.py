@@ -78,7 +78,7 @@ WALL = ("--wall", "100x36", "--scale", "1", "--method", "paper")
 def finished(rubble: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a plan of the rubble; not to be changed."""
     folder = tmp_path_factory.mktemp("plans") / "finished"
-    assert main(["plan", str(rubble), *WALL, "-o", str(folder), "--seed", "2"]) in (0, 4)
+    assert main(["plan", str(rubble), *WALL, "-o", str(folder), "--seed", "1"]) in (0, 4)
     return folder
 
 
@@ -99,7 +99,7 @@ EXACT = ("--wall", "100x36", "--scale", "1", "--budget", "1")
 def settled(rubble: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a plan of the rubble on outlines; not to be changed."""
     folder = tmp_path_factory.mktemp("plans") / "settled"
-    assert main(["plan", str(rubble), *EXACT, "-o", str(folder), "--seed", "2"]) in (0, 4)
+    assert main(["plan", str(rubble), *EXACT, "-o", str(folder), "--seed", "1"]) in (0, 4)
     return folder
 
 

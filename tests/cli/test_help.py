@@ -13,7 +13,7 @@ HIDDEN = argparse.SUPPRESS
 TASKS = ("first", "build", "judge", "study")
 COMMANDS = (
     "demo", "stones", "markers", "segment", "trace", "plan", "settings", "export", "check",
-    "analyse", "measure", "craft", "reproduce", "bench", "fetch", "generate", "cite",
+    "analyse", "measure", "craft", "rehearse", "reproduce", "bench", "fetch", "generate", "cite",
 )  # fmt: skip
 
 

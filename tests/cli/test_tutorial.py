@@ -28,11 +28,11 @@ def test_the_photograph_becomes_a_wall_that_holds(
     segment, plan, check, *others = (shlex.split(line)[1:] for line in lines)
     assert [segment[0], plan[0], check[0]] == ["segment", "plan", "check"]
     assert [words[0] for words in others] == ["analyse", "craft", "export"]  # of what plan wrote
-    plan[plan.index("--budget") + 1] = "1"  # of twenty walls, one shows that the way leads on
+    plan[plan.index("--budget") + 1] = "1"  # of 32 walls, one shows that the way leads on
     told = [run(*words) for words in (segment, plan, check)]
     assert [one.code for one in told] == [0, 0, 0]
     text = printed("text")
     found = text[: next(k for k, line in enumerate(text) if line.startswith("complete"))]
     assert len(found) > 4
     assert set(found) <= set(told[0].out.splitlines())
-    assert told[2].out.startswith("wall/plan.json: holds")
+    assert told[2].out.startswith("OK: wall/plan.json is valid")

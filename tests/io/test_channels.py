@@ -90,7 +90,7 @@ def test_a_last_channel_that_may_be_a_stone_is_refused(tmp_path, values):
     np.save(tmp_path / "two.npy", values)
     np.savez(tmp_path / "two.npz", values)
     for source in (values, tmp_path / "two.npy", tmp_path / "two.npz"):
-        with pytest.raises(InputError, match=r"E109.*no transparency.*one channel.*a folder"):
+        with pytest.raises(InputError, match=r"E109.*not transparency.*one channel.*a folder"):
             read_stones(source)
 
 

@@ -86,7 +86,7 @@ def stood() -> tuple[Standing, Planner]:
     """Where chains stand, in the second round, with what they are of."""
     search = {**SMALL, "budget": 24, "patience": 1}
     settings = greedy({"geometry": "exact", "search": search})
-    planner = finish(Planner(rubble(), RUBBLE_SITE, seed=4, settings=settings))
+    planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
     standing = standings(searched(planner))[-1]
     assert standing.number > 0
     assert standing.chains is not None

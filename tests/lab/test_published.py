@@ -11,7 +11,7 @@ from drystone_lab.published import run
 from drystone_lab.statics_cases import closed_forms
 from drystone_lab.table import BenchSettings
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "validation.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "evidence" / "validation.md"
 
 FERRIS = {1: 0.64286, 2: 0.58000, 3: 0.40369, 4: 0.33195, 5: 0.23964, 6: 0.34782}
 

@@ -189,7 +189,7 @@ def test_unseen_sets_stay_the_same_and_suit_their_walls(target):
 
 def test_walls_are_chosen_by_the_beginnings_of_their_names():
     found = searched_walls(BenchSettings(only=("R", "PR 6")))
-    assert [target.name for target in found] == ["R", "PR 600x160"]
+    assert [target.name for target in found] == ["R framed", "PR 600x160"]
     with pytest.raises(UsageError, match="E138"):
         chosen(UNSEEN, ("rubble", "Q"))
 

@@ -13,7 +13,7 @@ from drystone_lab.table import BenchSettings
 
 WITHOUT = "without dilatancy"
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "validation.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "evidence" / "validation.md"
 
 
 @pytest.fixture(scope="module")

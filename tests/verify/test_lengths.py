@@ -35,7 +35,7 @@ def test_a_setting_out_of_range_is_the_one_of_the_plans_method(method: str) -> N
 def test_of_a_method_that_is_not_known_the_default_is_used() -> None:
     settings, (problem,) = plan_settings(plan_with({"orientations": "north"}, "custom"))
     assert settings == PlannerSettings()
-    assert "Used instead, the package's own: orientations = 'sf'." in problem.message
+    assert "Used instead, the package's own: orientations = 'quarter'." in problem.message
 
 
 def test_unknown_ones_are_left_out_and_wrong_groups_named() -> None:

@@ -185,7 +185,7 @@ def test_refuses_settings(wrong: dict[str, Any]) -> None:
 
 
 def test_example_of_the_documents_runs(capsys: pytest.CaptureFixture[str]) -> None:
-    page = (Path(__file__).parents[3] / "docs" / "learning.md").read_text("utf-8")
+    page = (Path(__file__).parents[3] / "docs" / "evidence" / "learning.md").read_text("utf-8")
     code = page.split("```python\n")[1].split("```")[0]
     names: dict[str, Any] = {}
     exec(code.replace("gymnasium.make(", "gymnasium.make(draw=draw, id="), names | {"draw": SMALL})  # noqa: S102 - ours

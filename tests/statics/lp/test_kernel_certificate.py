@@ -6,7 +6,7 @@ from drystone.kernels.certificate import Figures, figures
 from drystone.kernels.simplex import Added, Cones
 from drystone.statics.incremental import certified_bound
 from drystone.statics.lp.certificate import (
-    fall_of,
+    certified_fall,
     no_alpha_of,
     optimum_of,
 )
@@ -30,7 +30,7 @@ def test_figures_in_closed_form():
     assert (certificate.lower, certificate.upper, certificate.slack) == (0.25, 0.25, 0.375)
     other_end = optimum_of(found, 0.25, -1)
     assert (other_end.upper, other_end.slack, other_end.holds) == (None, None, False)
-    falls = fall_of(found)
+    falls = certified_fall(found)
     assert (falls.inadmissible, falls.fall_work) == (0.25, -0.5)
     assert no_alpha_of(found).inadmissible == 2.0
     assert no_alpha_of(found._replace(inadmissible=16.0)).inadmissible == 4.0
@@ -38,6 +38,6 @@ def test_figures_in_closed_form():
 
 def test_nothing_that_moves_is_no_fall():
     still = figures(*one_stone(), 0.0, np.empty(0), np.zeros(3))
-    assert fall_of(still).fall_work == no_alpha_of(still).fall_work == 0.0
-    assert not fall_of(still).holds
+    assert certified_fall(still).fall_work == no_alpha_of(still).fall_work == 0.0
+    assert not certified_fall(still).holds
     assert certified_bound(still, np.nan, 1, "some solver") is None

@@ -84,7 +84,7 @@ def inputs(plan: Plan) -> tuple[tuple[str, str], ...]:
         ("Stones are", STONES_ARE[geometry(plan)]),
         ("Method", plan.method),
         ("Seed", str(plan.seed)),
-        ("Walls tried", f"{plan.walls or UNDEFINED}"),
+        *([("Walls tried", str(plan.walls))] if plan.walls else []),
         ("drystone", f"version {plan.version}"),
     )
 
