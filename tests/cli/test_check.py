@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import sys
 from collections.abc import Callable
 from functools import partial
@@ -22,6 +23,7 @@ from drystone.physics.scatter import TiltResult
 from drystone.physics.tilt import TiltTrial
 from drystone.verify.check import check_plan
 from drystone.verify.outlines import plan_polygons
+from tests.cli.conftest import WALL
 from tests.verify.exact_examples import hanging_example
 
 NO_ENGINE = "pymunk is not installed (extra `physics`)"
@@ -62,9 +64,18 @@ def test_a_plan_is_checked_from_its_own_folder(plan_copy, run, monkeypatch):
         assert run("check", given).code == 0
 
 
-def test_a_wall_that_stands(plan_copy, run):
+@pytest.fixture
+def standing(rubble, tmp_path, run):
+    """A plan on pixels whose wall stands in the engine too, the stones beside it."""
+    folder = tmp_path / "standing"
+    assert run("plan", rubble, *WALL, "--seed", 2, "-o", folder).code in (0, 4)
+    shutil.copy(rubble, folder)
+    return folder
+
+
+def test_a_wall_that_stands(standing, run):
     pytest.importorskip("pymunk", reason=NO_ENGINE)
-    report = run("check", plan_copy, "--physics", "--json").json()
+    report = run("check", standing, "--physics", "--json").json()
     physics, metrics = report["physics"], report["metrics"]
     assert (report["ok"], physics["fallen"], physics["first_fall"]) == (True, [], None)
     assert 0.0 < physics["largest_move"] < 3.0
@@ -72,9 +83,9 @@ def test_a_wall_that_stands(plan_copy, run):
         assert physics[f"alpha_{side}"] == metrics[f"alpha_{side}"]
         # The same physics, by forces and by motion; on the raster not quite the same joints.
         assert physics[f"tilt_{side}"] == pytest.approx(metrics[f"alpha_{side}"], rel=0.15)
-    placed = [s["stone"] for s in json.loads((plan_copy / "plan.json").read_text())["steps"]]
+    placed = [s["stone"] for s in json.loads((standing / "plan.json").read_text())["steps"]]
     assert [move["id"] for move in physics["moves"]] == placed
-    assert not (plan_copy / "check.png").exists()
+    assert not (standing / "check.png").exists()
 
 
 def test_a_stone_that_falls_is_named_and_drawn(plan_copy, run, monkeypatch):
@@ -104,7 +115,7 @@ def test_a_stone_that_falls_is_named_and_drawn(plan_copy, run, monkeypatch):
     assert (physics["tilt_left"], physics["tilt_right"]) == (None, None)
 
 
-def test_a_claim_that_the_engine_contradicts_fails(plan_copy, run, monkeypatch):
+def test_a_claim_that_the_engine_contradicts_fails(standing, run, monkeypatch):
     """Also when all numbers of the plan are those of its limit analysis."""
     pytest.importorskip("pymunk", reason=NO_ENGINE)
 
@@ -112,12 +123,12 @@ def test_a_claim_that_the_engine_contradicts_fails(plan_copy, run, monkeypatch):
         TiltResult(side, (TiltTrial(side, 0.3, None, (), 0.0, 0.01),)) for side in ("left", "right")
     )
     monkeypatch.setattr(check_command, "tilt_of", lambda _: weak)
-    assert run("check", plan_copy).code == 0
-    ran = run("check", plan_copy, "--physics")
+    assert run("check", standing).code == 0
+    ran = run("check", standing, "--physics")
     assert (ran.code, " is valid, but the engine contradicts it\n" in ran.out) == (5, True)
     for side in ("left", "right"):
         assert f"E242 tilted to the {side} the wall comes down by alpha = 0.310 in" in ran.out
-    report = run("check", plan_copy, "--physics", "--json")
+    report = run("check", standing, "--physics", "--json")
     assert (report.code, report.json()["ok"]) == (5, False)
     assert [p["code"] for p in report.json()["problems"]] == ["E242", "E242"]
 

@@ -22,7 +22,7 @@ TINY = TrainSettings(
 def test_better_than_random_on_other_walls() -> None:
     said: list[str] = []
     model = train(TINY, said.append)
-    assert model.trained["merit_learned"] > model.trained["merit_random"] + 0.6
+    assert model.trained["merit_learned"] > model.trained["merit_random"] + 0.5
     assert model.trained["finished"] > 2 * TINY.rounds * TINY.walls
     assert len(said) == TINY.rounds + 1
 
