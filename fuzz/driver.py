@@ -6,6 +6,7 @@ import multiprocessing
 import os
 import shutil
 import signal
+import struct
 import tempfile
 import time
 import traceback
@@ -25,6 +26,8 @@ from fuzz.raw import FOREIGN
 from fuzz.sandbox import Fault, Limits, Sandbox, where_killed
 
 _FORK = multiprocessing.get_context("fork")
+_MOST_PX = 200_000_000
+"""Beyond it readers refuse, so that no time is due to pixels."""
 _AT_ONCE = 10
 """Executions of one process, for each of the weight of a format."""
 
@@ -139,6 +142,23 @@ def place(case: Case, folder: Path) -> Path:
     return folder / next(iter(case))
 
 
+def pixels_of(case: Case) -> int:
+    """Return how many pixels the headers of PNG, GIF and BMP files promise, 0 for others."""
+    total = 0
+    for data in case.values():
+        if isinstance(data, bytes) and len(data) > 26:
+            size = (0, 0)
+            head = data.find(b"IHDR") + 4
+            if 4 <= head <= len(data) - 8:
+                size = struct.unpack(">II", data[head : head + 8])
+            elif data.startswith(b"GIF8"):
+                size = struct.unpack("<HH", data[6:10])
+            elif data.startswith(b"BM"):
+                size = struct.unpack("<ii", data[18:26])
+            total += min(abs(size[0] * size[1]), _MOST_PX)
+    return total
+
+
 @dataclass(frozen=True)
 class _Part:
     """Executions of one format that one process is given."""
@@ -184,7 +204,7 @@ def _work(
             case, rng = source.case(part.format.name, number)
             path = place(case, folder / "case")
             path = path.parent if part.format.folder else path
-            for fault in sandbox.run(partial(part.format.run, path, rng)):
+            for fault in sandbox.run(partial(part.format.run, path, rng), pixels_of(case)):
                 connection.send((number, fault))
         now[:] = part.numbers.stop, time.process_time() - begun, sandbox.read
     except BaseException:  # of the fuzzer, not of what it tries
@@ -291,7 +311,9 @@ def _killed(worker: _Worker, limits: Limits) -> Fault:
     """Say what a process died of."""
     code, at = worker.process.exitcode or 0, where_killed(worker.trace)
     if code == -signal.SIGPROF:
-        return Fault("time", at, f"more than {limits.cpu_s} s of processor time")
+        return Fault(
+            "time", at, f"more processor time than {limits.cpu_s} s, and that of its pixels"
+        )
     if code == -signal.SIGALRM:
         return Fault("stuck", at, f"nothing for {limits.wall_s} s")
     name = signal.Signals(-code).name if code < 0 else f"exit {code}"

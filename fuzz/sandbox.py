@@ -61,6 +61,8 @@ class Limits:
     ----------
     cpu_s : float
         Processor time.
+    cpu_ns_px : float
+        More of it for each pixel of a picture: reading is linear in what its header says.
     wall_s : float
         Time in which nothing comes of it, of the clock: far more than a loaded machine takes.
     memory_bytes : int
@@ -68,6 +70,7 @@ class Limits:
     """
 
     cpu_s: float = 2.0
+    cpu_ns_px: float = 50.0
     wall_s: float = 60.0
     memory_bytes: int = 1_500_000_000
 
@@ -133,10 +136,11 @@ class Sandbox:
         _limit(limits)
         sys.addaudithook(self._audit)
 
-    def run(self, read: Callable[[], object]) -> list[Fault]:
-        """Execute once; return what must not be."""
+    def run(self, read: Callable[[], object], pixels: int = 0) -> list[Fault]:
+        """Execute once, what has so many pixels; return what must not be."""
         self._faults.clear()
-        signal.setitimer(signal.ITIMER_PROF, self._limits.cpu_s)
+        cpu_s = self._limits.cpu_s + 1e-9 * self._limits.cpu_ns_px * pixels
+        signal.setitimer(signal.ITIMER_PROF, cpu_s)
         signal.setitimer(signal.ITIMER_REAL, self._limits.wall_s)
         try:
             read()

@@ -1,12 +1,15 @@
 """The fuzzer finds every kind of defect, names its place, and goes on."""
 
+import io
 import json
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
+from fuzz.driver import pixels_of
 from tests.fuzz.planted import OUTSIDE, PLANTED
 
 ROOT = Path(__file__).parents[2]
@@ -94,3 +97,10 @@ def files_in(folder):
         for path in folder.rglob("*")
         if path.is_file()
     ]
+
+
+@pytest.mark.parametrize("kind", ["PNG", "GIF", "BMP"])
+def test_pixels_are_those_of_the_header(kind):
+    data = io.BytesIO()
+    Image.new("L", (70, 30)).save(data, kind)
+    assert pixels_of({"a": data.getvalue(), "b": b"of nothing that has pixels, and long"}) == 2100

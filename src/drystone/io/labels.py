@@ -185,8 +185,10 @@ def _ground_notice(name: str, there: NDArray[np.bool_], cure: str = "") -> Notic
 
 def _check_no_stone_of_zero(image: IdImage, ground: NDArray[np.bool_], *, named: bool) -> None:
     """Refuse stones of the value 0 on ground that is something else (E108)."""
+    if image.background != 0:
+        return
     zero = (image.ids == 0) & ~ground
-    if image.background != 0 or not zero.any():
+    if not zero.any():
         return
     corners = ground[[0, 0, -1, -1], [0, -1, 0, -1]].sum() >= 3
     inner = np.zeros_like(zero)

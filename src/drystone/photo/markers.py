@@ -106,7 +106,10 @@ def _quads(
         parameters = aruco.DetectorParameters()
         # Stones are many quadrangles: a pattern with a wrong square is no marker here.
         parameters.errorCorrectionRate = 0.0
-        parameters.minMarkerPerimeterRate = min(0.03, 4 * 20.0 / max(grey.shape))
+        # A square of less than a pixel cannot be read, and each speck is compared with all ids.
+        least_px = 4.0 * modules_across(dictionary)
+        longest_px = max(grey.shape)
+        parameters.minMarkerPerimeterRate = max(min(0.03 * longest_px, 80.0), least_px) / longest_px
         parameters.minMarkerDistanceRate = distance
         parameters.polygonalApproxAccuracyRate = accuracy
         detector = aruco.ArucoDetector(opencv_dictionary(dictionary), parameters)
