@@ -38,7 +38,12 @@ class Notice:
     cure: str = ""
 
     def __str__(self) -> str:
-        return f"{self.code} {self.message}" + (f" {self.cure}" if self.cure else "")
+        return _in_one_line(f"{self.code} {self.message}" + (f" {self.cure}" if self.cure else ""))
+
+
+def _in_one_line(text: str) -> str:
+    """Take out what moves the cursor of a terminal: names in a text are those of files."""
+    return "".join(c if c.isprintable() else " " for c in text)
 
 
 class DrystoneError(Exception):
@@ -68,7 +73,7 @@ class DrystoneError(Exception):
     def __str__(self) -> str:
         where = f"{self.where}: " if self.where else ""
         cure = f" {self.cure}" if self.cure else ""
-        return f"{self.code} {where}{self.what}{cure}"
+        return _in_one_line(f"{self.code} {where}{self.what}{cure}")
 
 
 class InputError(DrystoneError):

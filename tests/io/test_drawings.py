@@ -2,6 +2,7 @@
 
 import io
 import math
+import re
 
 import ezdxf
 import numpy as np
@@ -294,6 +295,17 @@ def test_svg_in_px_with_a_unit_that_is_told(tmp_path):
     told = ReadSettings(pieces="keep-largest", holes="keep", px_per_m=PX_PER_M, unit="cm")
     text = svg(paths(), "100%", "100%").replace("<path ", f'<path transform="scale({MM / 10})" ')
     close(compare(kept(text, tmp_path, told)))
+
+
+def test_stones_that_lie_far_apart_are_drawn_smaller(tmp_path):
+    """Most of their picture would be empty: at 160 px a stone it would have 100 million px."""
+    places = ((0, 0), (500, 0), (9, 700))
+    three = "".join(f'<rect x="{x}" y="{y}" width="9" height="9"/>' for x, y in places)
+    stones = read_stones(saved(svg(three, "509mm", "709mm", "0 0 509 709"), tmp_path))
+    assert len(stones) == 3
+    assert stones.source.width_px * stones.source.height_px < 3_000_000
+    (notice,) = [n for n in stones.notices if "median stone" in n.message]
+    assert int(re.search(r"it is (\d+) px", notice.message)[1]) < 160
 
 
 def test_svg_definitions_are_used_under_nested_transforms(tmp_path):

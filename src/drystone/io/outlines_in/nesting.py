@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
-import shapely
 
 from drystone.errors import Notice
 from drystone.io.file_errors import entry, short, too_large
@@ -88,14 +87,13 @@ def _of_nesting(shape: Mapping[str, Any]) -> Iterator[list[Any]]:
 def _overlap(stones: list[OutlinedStone]) -> bool:
     """Tell whether the boxes of two stones share more than half of the smaller one."""
     low, high = _boxes(stones)
-    boxes = shapely.box(*low.T, *high.T)
-    one, other = shapely.STRtree(boxes).query(boxes, predicate="intersects")
-    one, other = one[one < other], other[one < other]
-    if not len(one):
-        return False
-    shared = shapely.area(shapely.intersection(boxes[one], boxes[other]))
-    smaller = np.minimum(shapely.area(boxes[one]), shapely.area(boxes[other]))
-    return bool((shared > 0.5 * smaller).any())
+    areas = (high - low).prod(axis=1)
+    for i in range(1, len(stones)):
+        sides = np.minimum(high[:i], high[i]) - np.maximum(low[:i], low[i])
+        shared = sides.clip(0.0).prod(axis=1)
+        if (shared > 0.5 * np.minimum(areas[:i], areas[i])).any():
+            return True
+    return False
 
 
 def _boxes(stones: list[OutlinedStone]) -> tuple[Any, Any]:
