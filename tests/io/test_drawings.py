@@ -301,7 +301,7 @@ def test_stones_that_lie_far_apart_are_drawn_smaller(tmp_path):
     """Most of their picture would be empty: at 160 px a stone it would have 100 million px."""
     places = ((0, 0), (500, 0), (9, 700))
     three = "".join(f'<rect x="{x}" y="{y}" width="9" height="9"/>' for x, y in places)
-    stones = read_stones(saved(svg(three, "509mm", "709mm", "0 0 509 709"), tmp_path))
+    stones = kept(svg(three, "509mm", "709mm", "0 0 509 709"), tmp_path, ReadSettings())
     assert len(stones) == 3
     assert stones.source.width_px * stones.source.height_px < 3_000_000
     (notice,) = [n for n in stones.notices if "median stone" in n.message]
