@@ -8,14 +8,8 @@ import shapely
 
 from drystone.errors import Notice
 from drystone.io.file_errors import entry, short, too_large
-from drystone.io.outlines_in.model import (
-    METRES,
-    Area,
-    OutlinedStone,
-    OutlineFile,
-    Slivers,
-    number_in,
-)
+from drystone.io.outlines_in.gathered import Gathered
+from drystone.io.outlines_in.model import METRES, Area, OutlinedStone, OutlineFile, number_in
 from drystone.io.read_settings import ReadSettings
 
 _MOST_COPIES = 10_000
@@ -41,11 +35,11 @@ def read_nesting(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
     Where items lie over each other, as each has an origin of its own, they are laid in a row.
     """
     stones: list[OutlinedStone] = []
-    slivers, copies = Slivers(), 0
+    gathered, copies = Gathered(), 0
     for number, item in enumerate(map(_lower, _lower(content)["items"])):
         where = f"item {number} (from 0)"
         with entry(where):
-            areas = slivers.areas(where, _of_nesting(_lower(item["shape"])))
+            areas = gathered.areas(where, _of_nesting(_lower(item["shape"])))
             demand = int(item.get("demand", 1))
             if demand < 0:
                 raise ValueError(f"{demand} of it are demanded")
@@ -56,7 +50,7 @@ def read_nesting(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
             raise too_large(f"more than {_MOST_COPIES} items are demanded.", cure)
         stones += [OutlinedStone(own, "", areas)] * demand if areas else []
     unit_m = METRES.get(settings.unit)
-    notices = slivers.notices()
+    notices = gathered.notices()
     if not settings.unit:
         text = "an instance says no unit: its numbers are taken as px, with y down."
         notices.append(Notice("W119", text, "Name the unit with --unit (unit in Python)."))
