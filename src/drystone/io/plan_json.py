@@ -16,6 +16,7 @@ import jsonschema
 import numpy as np
 
 from drystone.errors import PlanError
+from drystone.indices import INDEX_NAMES
 from drystone.io.file_bytes import file_bytes
 from drystone.io.foreign import foreign
 from drystone.io.json_text import json_of
@@ -25,7 +26,6 @@ from drystone.whole_files import write_whole
 MOST_PLAN_BYTES = 100_000_000
 """Larger plans are refused: of a hundred thousand stones, and their wedges."""
 
-_INDEX_NAMES = ("SF", "LFR", "GDS", "NHR", "IWR", "IS", "LLC")
 _METRIC_NAMES = tuple(PlanMetrics.__dataclass_fields__)
 _SOURCE_NAMES = ("path", "sha256", "stones", "width_px", "height_px", "files", "reading")
 _LONGEST_MESSAGE = 240
@@ -127,8 +127,8 @@ def _whole(value: int) -> int:
 
 
 def _indices(values: Mapping[str, float | None]) -> dict[str, float | None]:
-    others = sorted(set(values) - set(_INDEX_NAMES))
-    return {name: _number(values[name]) for name in (*_INDEX_NAMES, *others) if name in values}
+    others = sorted(set(values) - set(INDEX_NAMES))
+    return {name: _number(values[name]) for name in (*INDEX_NAMES, *others) if name in values}
 
 
 def _point(pair: Sequence[float]) -> Point:
@@ -147,7 +147,7 @@ _FORMS: Mapping[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
     "source_centroid": _POINT,
     "centroid": _POINT,
     "side": (_same, _same),
-    "indices": (_indices, lambda data: {name: _number(data[name]) for name in _INDEX_NAMES}),
+    "indices": (_indices, lambda data: {name: _number(data[name]) for name in INDEX_NAMES}),
     "course_height": _NUMBER,
     "alpha_left": _NUMBER,
     "alpha_right": _NUMBER,

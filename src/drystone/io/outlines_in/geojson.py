@@ -60,7 +60,7 @@ def read_geojson(content: Any, settings: ReadSettings) -> OutlineFile:
     unit_m = METRES.get(unit if "unit" in content else settings.unit or "px")
     upwards = unit_m is not None or str(content.get("frame")).startswith("wall")
     notices = gathered.notices()
-    rings = [one for stone in gathered.stones for area in stone.areas for one in area.rings]
+    rings = [one for stone in gathered.stones for one in stone.rings]
     # Below a picture's upper edge with y up, where y down has no pixel: nearly all, as an outline
     # may reach over the edge.
     if not upwards and rings and float(np.median(np.concatenate(rings)[:, 1])) < 0.0:

@@ -3,7 +3,7 @@
 import math
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Literal
@@ -46,6 +46,16 @@ class OutlinedStone:
     areas: tuple[Area, ...] = ()
     masks: tuple[PlacedMask, ...] = ()  # only in files in px
     label: str = ""  # the class that the file gives it
+
+    @property
+    def rings(self) -> list[Points]:
+        """All rings of its areas."""
+        return [one for area in self.areas for one in area.rings]
+
+    def moved(self, move: Callable[[Points], Points]) -> "OutlinedStone":
+        """Return it with other corners."""
+        areas = (Area(tuple(map(move, area.rings)), area.rule) for area in self.areas)
+        return replace(self, areas=tuple(areas))
 
 
 @dataclass(frozen=True, eq=False)
