@@ -13,13 +13,12 @@ from pathlib import Path
 from typing import Any
 
 import jsonschema
-import numpy as np
 
 from drystone.errors import PlanError
 from drystone.indices import INDEX_NAMES
 from drystone.io.file_bytes import file_bytes
 from drystone.io.foreign import foreign
-from drystone.io.json_text import json_of
+from drystone.io.json_text import json_of, plain
 from drystone.model.plan import SCHEMA, Plan, PlanMetrics, Point, StoneStep, WedgeStep
 from drystone.whole_files import write_whole
 
@@ -94,14 +93,15 @@ def plan_to_json(plan: Plan) -> dict[str, Any]:
         "version": plan.version,
         "method": plan.method,
         "seed": _whole(plan.seed),
-        "settings": _plain(plan.settings),
+        "settings": plain(plan.settings, ordered=True),
         "units": {
             "length": plan.length_unit,
             "px_per_m": _number(plan.px_per_m),
             "working_scale": _number(plan.working_scale),
         },
-        "source": _plain(source, ordered=False) | _plain(
-            {name: value for name, value in plan.source.items() if name not in source}
+        "source": plain(source) | plain(
+            {name: value for name, value in plan.source.items() if name not in source},
+            ordered=True,
         ),
         "wall": {"width": _number(plan.width), "height": _number(plan.height)},
         "steps": [_step_to_json(step) for step in plan.steps],
@@ -175,18 +175,6 @@ def _step_from_json(data: Mapping[str, Any]) -> StoneStep | WedgeStep:
     # A plan of other hands may leave out what the contract does not ask for: None.
     values = {name: _FORMS.get(name, _WHOLE)[1](data.get(name)) for name in _names(step)}
     return step(**values)
-
-
-def _plain(value: Any, *, ordered: bool = True) -> Any:
-    """Return a value of JSON's own types, mappings in alphabetical order if `ordered`."""
-    if isinstance(value, Mapping):
-        keys = sorted(value) if ordered else value
-        return {str(key): _plain(value[key]) for key in keys}
-    if isinstance(value, Sequence) and not isinstance(value, str):
-        return [_plain(item) for item in value]
-    if isinstance(value, np.generic):
-        return _plain(value.item())
-    return value + 0.0 if isinstance(value, float) else value
 
 
 def plan_from_json(data: Any, where: str = "plan") -> Plan:
