@@ -7,6 +7,7 @@ import io
 import math
 import re
 import struct
+import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -20,9 +21,9 @@ from drystone.io.file_errors import damaged, several_pages
 from drystone.io.foreign import foreign
 from drystone.io.pictures import opened
 
-_FAX = {2, 3, 4}
-_PACKED = _FAX | {5, 8, 32773, 32946}
-"""Fax codes, LZW, deflate, PackBits: unpacked by the library behind Pillow."""
+_FAX, _DEFLATE = {2, 3, 4}, {8, 32946}
+_PACKED = _FAX | _DEFLATE | {5, 32773}
+"""Also LZW and PackBits: all but deflate are unpacked by the library behind Pillow."""
 
 _LOSSY = {6, 7}
 """JPEG."""
@@ -185,7 +186,7 @@ class _Code:
         """Return the numbers of a strip or tile, (rows, width, channels)."""
         want = rows * self.row_bytes
         with foreign(damaged):
-            found = self._unpacked(piece, rows)
+            found = self._unpacked(piece, rows, want)
         if len(found) < want:
             raise damaged("a strip of it is too short")
         table = np.frombuffer(found, np.uint8, want).reshape(rows, self.row_bytes)
@@ -201,10 +202,11 @@ class _Code:
         whole = whole.newbyteorder("=")
         return np.cumsum(steps, axis=1, dtype=whole).view(self.kind.newbyteorder("="))
 
-    def _unpacked(self, piece: bytes, rows: int) -> bytes:
+    def _unpacked(self, piece: bytes, rows: int, want: int) -> bytes:
         """Return what a packed piece holds."""
-        if self.compression == 1:
-            return piece.translate(_REVERSED) if self.order == 2 else piece
+        if self.compression in _DEFLATE | {1}:
+            piece = piece.translate(_REVERSED) if self.order == 2 else piece
+            return piece if self.compression == 1 else _inflated(piece, want)
         # A TIFF of one strip, whose bytes are wanted, or bits of fax codes.
         bits = 1 if self.compression in _FAX else 8
         width = self.width if bits == 1 else self.row_bytes
@@ -240,6 +242,15 @@ def _of_few_bits(table: NDArray[np.uint8], bits: int, count: int) -> NDArray[Any
         for bit in range(bits):
             numbers <<= 1
             numbers |= part[:, :, bit]
+    return found
+
+
+def _inflated(piece: bytes, want: int) -> bytes:
+    """Return what deflate holds, as far as it is wanted; refuse what holds far more (E106)."""
+    decoder = zlib.decompressobj()
+    found = decoder.decompress(piece, want)
+    if len(found) == want and len(decoder.decompress(decoder.unconsumed_tail, _ROOM)) == _ROOM:
+        raise damaged("its strips are larger than the picture")
     return found
 
 
