@@ -2,7 +2,6 @@
 
 import json
 
-import pytest
 from PIL import Image
 
 
@@ -37,23 +36,3 @@ def test_a_wall_that_falls_as_it_is_planned_is_a_failed_check(settled_copy, run)
     ran = run("rehearse", settled_copy, "--runs", 1)
     assert ran.code == 5
     assert f"stone {last['id']} falls even where it is planned" in ran.out
-
-
-@pytest.mark.parametrize(
-    ("options", "code"),
-    [
-        (("--precision", "5mm,1deg"), "E131"),
-        (("--precision", "2deg"), "E138"),
-        (("--precision", "much"), "E138"),
-        (("--outline", "1%"), "E138"),
-        (("-o", "risk.bmp"), "E139"),
-    ],
-)
-def test_what_makes_no_sense_is_refused(settled, run, options, code):
-    ran = run("rehearse", settled, *options)
-    assert ran.code == 2
-    assert code in ran.err
-
-
-def test_a_plan_of_pixels_is_refused(finished, run):
-    assert "E138" in run("rehearse", finished).err

@@ -74,8 +74,7 @@ def not_cut(notices: Collection[Notice]) -> tuple[Notice, ...]:
 
 def _outer(stone: OutlinedStone) -> Points:
     """Return the largest outer ring of a stone, not closed; ValueError for too many crossings."""
-    rings = [ring for area in stone.areas for ring in area.rings]
-    parts = [area.rings[0] for area in shadow(rings)]
+    parts = [area.rings[0] for area in shadow(stone.rings)]
     if not parts:
         raise ValueError("no area")
     return max(parts, key=lambda ring: shapely.Polygon(ring).area)

@@ -180,7 +180,7 @@ def result_of(planner: Planner) -> PlanResult:
     site = planner.build.wall.site
     stopped = planner.stopped or INTERRUPTED
     result = finish(planner, Frame(*site.extent_px, site), stopped, provenance, 0.0)
-    return replace(result, solves=Solves(planner.failed_solves, planner.cold_solves))
+    return replace(result, solves=planner.solves)
 
 
 def missing_stones(planner: Planner) -> tuple[int, ...]:

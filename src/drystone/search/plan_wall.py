@@ -19,7 +19,6 @@ from drystone.planner.events import INTERRUPTED, OUT_OF_TIME, Callbacks
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import UNLIMITED
 from drystone.planner.settings import PlannerSettings, method_settings
-from drystone.planner.solves import Solves
 from drystone.search.interrupts import held
 from drystone.search.plan_result import PlanResult, finish, missing_stones, provenance_of
 from drystone.search.processes import processes, threads
@@ -282,7 +281,7 @@ class _PlanOrigin:
         return replace(
             plans[0],
             notices=tuple(_notices(first, ended, left_out, cut=cut, short=short)),
-            solves=Solves(first.failed_solves, first.cold_solves),
+            solves=first.solves,
             choice=tuple(plans) if to_choose else (),
         )
 
@@ -350,10 +349,10 @@ def _notices(
             f"{first.settings.search.budget}; this is the best of them.",
             f"--budget {ended.walls} gives the same plan again, more --time a better one.",
         )
-    if first.failed_solves:
+    if first.solves.failed:
         yield Notice(
             "W303",
-            f"the solver gave up on {first.failed_solves} candidates, which were passed over.",
+            f"the solver gave up on {first.solves.failed} candidates, which were passed over.",
             "Please report this with the stones and the settings.",
         )
 

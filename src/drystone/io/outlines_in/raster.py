@@ -9,7 +9,7 @@ import numpy as np
 from drystone.errors import LabelImageError, Notice
 from drystone.io.file_errors import listed, short
 from drystone.io.outlines_in.fill import check_reach, pixels_of, trimmed
-from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile
+from drystone.io.outlines_in.model import OutlinedStone, OutlineFile
 from drystone.io.outlines_in.nested import (
     Seen,
     meeting_boxes,
@@ -132,8 +132,7 @@ def _usual_scale(file: OutlineFile) -> tuple[float, Notice]:
 
 
 def _corners(stone: OutlinedStone) -> Points:
-    rings = [ring for area in stone.areas for ring in area.rings]
-    return np.concatenate(rings) if rings else np.zeros((1, 2))
+    return np.concatenate(stone.rings) if stone.areas else np.zeros((1, 2))
 
 
 def _in_picture(
@@ -154,21 +153,14 @@ def _in_picture(
     def move(ring: Points) -> Points:
         return np.asarray(ring * (scale, sign * scale) - shift)
 
-    stones = tuple(
-        replace(
-            stone,
-            areas=tuple(Area(tuple(map(move, area.rings)), area.rule) for area in stone.areas),
-        )
-        for stone in file.stones
-    )
-    return stones, (width, height)
+    return [stone.moved(move) for stone in file.stones], (width, height)
 
 
 def _reach(stones: Sequence[OutlinedStone]) -> tuple[int, int]:
     """Return how far an image must reach from its corner to hold all stones."""
     ends = [(1.0, 1.0)]
     for stone in stones:
-        ends += [tuple(ring.max(axis=0)) for area in stone.areas for ring in area.rings]
+        ends += [tuple(ring.max(axis=0)) for ring in stone.rings]
         ends += [(m.col + m.mask.shape[1], m.row + m.mask.shape[0]) for m in stone.masks]
     width, height = np.array(ends).max(axis=0).tolist()
     return math.ceil(width), math.ceil(height)
