@@ -20,7 +20,6 @@ from drystone_lab.reproduce.study import (
     ways_table,
 )
 from drystone_lab.runs.spec import Changes
-from drystone_lab.table import Table
 from drystone_lab.walls import (
     FRAMED,
     IR,
@@ -85,7 +84,6 @@ BETA = PaperItem(
 
 SAMPLINGS = ("variant", "uniform", "twofold", "full")
 SAMPLED: dict[str, Changes] = {name: (("sampling", name),) for name in SAMPLINGS}
-PARTS = ("placement", "stabilisation", "contacts", "limit analysis", "indices")
 
 
 def _sampling_claims(found: StudyWalls) -> Iterator[ClaimCheck]:
@@ -120,23 +118,6 @@ def _whole(trials: Trials) -> int:
     return sum(o.figures["placed"] == o.figures["stones"] for o in trials.outcomes)
 
 
-def _sampling_times(found: StudyWalls) -> Table:
-    return Table(
-        "Seconds a wall by the sampling of candidates, medians",
-        ("sampling", "wall, s", *(f"{part}, s" for part in PARTS)),
-        tuple(
-            (
-                one.way,
-                *(
-                    float(f"{median(outcome.times[part] for outcome in one.outcomes):.3g}")
-                    for part in ("wall", *PARTS)
-                ),
-            )
-            for one in found
-        ),
-    )
-
-
 SAMPLING = PaperItem(
     **paper("fig16"),
     study=Study(walls=(PR,), ways=SAMPLED),
@@ -150,7 +131,6 @@ SAMPLING = PaperItem(
             lambda one: (rounded(one.median("candidates")),),
         )
     },
-    times={"fig16_times": _sampling_times},
     pictures=lambda found: (
         sheet(found, "fig16", 2, lambda one: one.way, f"Walls of seed {found.seeds[0]}."),
         strips(found, "fig16_seeds", (*METRICS, "placed", "candidates"), lambda one: one.way),
@@ -222,14 +202,31 @@ STABILISATION = PaperItem(
 )
 
 NAMED: dict[str, Changes] = {
-    "paper": (),
     "sf: one pose a stone": (("orientations", "sf"),),
     "shrinking sets": (("sampling", "shrinking"),),
     "NHR at most 1": (("selection.clip_nhr", True),),
     "turns of up to 45 degrees": (("stabilise.max_turn_deg", 45.0), ("stabilise.max_pivots", 10)),
+}
+"""What else the paper's method could be."""
+
+EVERYWHERE: dict[str, Changes] = {
+    "paper": (),
     "two-fold, two-sided": (("sampling", "twofold"), *TWO_SIDED),
 }
-"""What else the paper's method could be; the last is what the released code comes with."""
+"""What framed walls are built by, too; the second is what the released code comes with."""
+
+CAUSES: dict[str, Changes] = {
+    "full batch": SAMPLED["full"],
+    "steps of 10 degrees": (("orientations", "10deg"),),
+    "six places a stone": (("placement.tries", 6),),
+    "reach from above": (("placement.reach", "above"),),
+    "wedges of up to two stones": (("stabilise.max_wedge_height", 2.0),),
+    "rule lowest": (("placement.rule", "lowest"),),
+    "rule lowest, two-fold, two-sided": (
+        ("placement.rule", "lowest"), ("sampling", "twofold"), *TWO_SIDED,
+    ),
+}  # fmt: skip
+"""What might keep PR from its 32 stones; the last are the released code's rule and its own way."""
 
 
 def named_variants(
@@ -238,15 +235,16 @@ def named_variants(
     framed: Sequence[Target] = (*FRAMED, PR_FREE_596),
     count: int = 20,
 ) -> StudyWalls:
-    """Build the free walls by every variant, and by the paper's method those with their frames."""
+    """Build the free walls by every variant, and those with their frames by two."""
     if context.quick:
         walls, framed, count = COARSE, (), 2
     seeds = range(context.seed, context.seed + count)
     asked = [
         (wall, way, tuple(wall.run(seed, *changes) for seed in seeds))
         for wall in (*walls, *framed)
-        for way, changes in NAMED.items()
-        if wall in walls or not changes
+        for way, changes in (
+            EVERYWHERE | (NAMED if wall in walls else {}) | (CAUSES if wall == PR else {})
+        ).items()
     ]
     return StudyWalls(context, trials_of(context, asked))
 
