@@ -228,6 +228,9 @@ CAUSES: dict[str, Changes] = {
 }  # fmt: skip
 """What might keep PR from its 32 stones; the last are the released code's rule and its own way."""
 
+PRS = (PR, PR_FREE_596)
+"""The wall that the paper prints, and the one that its released times are of."""
+
 
 def named_variants(
     context: Context,
@@ -243,7 +246,7 @@ def named_variants(
         (wall, way, tuple(wall.run(seed, *changes) for seed in seeds))
         for wall in (*walls, *framed)
         for way, changes in (
-            EVERYWHERE | (NAMED if wall in walls else {}) | (CAUSES if wall == PR else {})
+            EVERYWHERE | (NAMED if wall in walls else {}) | (CAUSES if wall in PRS else {})
         ).items()
     ]
     return StudyWalls(context, trials_of(context, asked))
