@@ -1,7 +1,7 @@
 """Items that compare settings: beta, Fig. 16, Fig. 20, Fig. 21, Figs. B.30 to B.32."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from statistics import median
 
 from drystone_lab.pictures.charts import group_panels, plot_two_figures
@@ -209,45 +209,45 @@ NAMED: dict[str, Changes] = {
 }
 """What else the paper's method could be."""
 
-EVERYWHERE: dict[str, Changes] = {
-    "paper": (),
-    "two-fold, two-sided": (("sampling", "twofold"), *TWO_SIDED),
-}
-"""What framed walls are built by, too; the second is what the released code comes with."""
+RELEASED: dict[str, Changes] = {"two-fold, two-sided": (("sampling", "twofold"), *TWO_SIDED)}
+"""What the released code comes with."""
 
 CAUSES: dict[str, Changes] = {
     "full batch": SAMPLED["full"],
-    "steps of 10 degrees": (("orientations", "10deg"),),
     "six places a stone": (("placement.tries", 6),),
     "reach from above": (("placement.reach", "above"),),
     "wedges of up to two stones": (("stabilise.max_wedge_height", 2.0),),
     "rule lowest": (("placement.rule", "lowest"),),
     "rule lowest, two-fold, two-sided": (
-        ("placement.rule", "lowest"), ("sampling", "twofold"), *TWO_SIDED,
+        ("placement.rule", "lowest"), *RELEASED["two-fold, two-sided"],
     ),
 }  # fmt: skip
 """What might keep PR from its 32 stones; the last are the released code's rule and its own way."""
 
-PRS = (PR, PR_FREE_596)
-"""The wall that the paper prints, and the one that its released times are of."""
+VARIED: tuple[tuple[Target, Mapping[str, Changes]], ...] = (
+    (R, NAMED | RELEASED),
+    (PR, NAMED | RELEASED | CAUSES),
+    # That of the authors' released times, whatever width the paper prints
+    (PR_FREE_596, RELEASED | CAUSES),
+    (IR, RELEASED),
+    *((wall, {}) for wall in FRAMED),
+)
+"""Walls, and by what they are built beside the paper's method."""
 
 
 def named_variants(
     context: Context,
-    walls: Sequence[Target] = MASONS,
-    framed: Sequence[Target] = (*FRAMED, PR_FREE_596),
+    varied: Sequence[tuple[Target, Mapping[str, Changes]]] = VARIED,
     count: int = 20,
 ) -> StudyWalls:
-    """Build the free walls by every variant, and those with their frames by two."""
+    """Build walls by variants of the paper's method."""
     if context.quick:
-        walls, framed, count = COARSE, (), 2
+        varied, count = [(wall, NAMED) for wall in COARSE], 2
     seeds = range(context.seed, context.seed + count)
     asked = [
         (wall, way, tuple(wall.run(seed, *changes) for seed in seeds))
-        for wall in (*walls, *framed)
-        for way, changes in (
-            EVERYWHERE | (NAMED if wall in walls else {}) | (CAUSES if wall in PRS else {})
-        ).items()
+        for wall, ways in varied
+        for way, changes in ({"paper": ()} | ways).items()
     ]
     return StudyWalls(context, trials_of(context, asked))
 
