@@ -193,7 +193,7 @@ def _selection_pictures(step: Selection) -> Iterator[ItemPicture]:
     counts = " > ".join(str(len(survivors)) for survivors in step.selected.survivors)
     yield ItemPicture(
         "fig10", figure,
-        f"How far each candidate came through the filters ({counts}); orange: the action taken.",
+        f"How far each candidate came through the filters ({counts}); yellow: the action taken.",
     )  # fmt: skip
 
 

@@ -58,8 +58,6 @@ class StepWalls(NamedTuple):
     data: Path | None
 
 
-ProcedureShares = Mapping[str, float]
-
 PROCEDURES: Mapping[str, tuple[Part, ...]] = {
     "placement": ("placement",),
     "stabilisation": ("stabilisation",),
