@@ -22,7 +22,7 @@ from drystone.statics.result import LimitResult, LimitStatus
 from drystone_lab.pictures.charts import group_panels
 from drystone_lab.pictures.walls import Panel, sheet_of, wall_aspect
 from drystone_lab.reproduce import cells
-from drystone_lab.reproduce.cells import METRICS, ClaimCheck, rounded
+from drystone_lab.reproduce.cells import ClaimCheck, rounded
 from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials, sheet
 from drystone_lab.table import Cell, Table
@@ -63,23 +63,6 @@ def base_case(context: Context, study: Study) -> BaseCase:
     without = nonassociative_resistance(model)
     pairs = ((both.left, without.left), (both.right, without.right))
     return BaseCase(found, wall, model, pairs)
-
-
-def _seeds(case: BaseCase) -> Table:
-    rows = []
-    for spec, outcome in zip(case.trials.specs, case.trials.outcomes, strict=True):
-        ends = [outcome.figures[f"alpha_{side}"] for side in ALPHAS]
-        over = [None if alpha is None else alpha / case.model.mu for alpha in ends]
-        numbers = [rounded(value) for value in (*ends, *over)]
-        rows.append((spec.seed, outcome.figures["placed"], *cells.metric_cells(outcome), *numbers))
-    return Table(
-        f"The base case {case.built.name} seed by seed",
-        (
-            "seed", "placed", *METRICS, "alpha left", "alpha right", "alpha left / mu",
-            "alpha right / mu",
-        ),
-        tuple(rows),
-    )  # fmt: skip
 
 
 def _summary(case: BaseCase) -> Table:
@@ -153,7 +136,7 @@ def _pictures(case: BaseCase) -> Iterator[ItemPicture]:
 BASE_CASE = PaperItem(
     **paper("fig14-15"),
     study=partial(base_case, study=Study(walls=(PR,), quick_seeds=5)),
-    tables={"fig14_seeds": _seeds, "fig14": _summary, "fig15": _rules},
+    tables={"fig14": _summary, "fig15": _rules},
     pictures=lambda case: tuple(_pictures(case)),
     needs=(PR.source.name,),
 )
