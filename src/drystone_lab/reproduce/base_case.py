@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import accumulate
 from statistics import fmean, median
 
 from matplotlib.axes import Axes
@@ -195,9 +196,11 @@ def _wedges_picture(trials: Trials, wall: Wall) -> ItemPicture:
     title = f"Wall {trials.wall.number}, {trials.wall.name}\n"
     title += cells.in_words(trials.outcomes[0].figures)
     aspect = wall_aspect(wall.site.height_px / wall.site.width_px)
+    sizes = accumulate((1 + len(group.wedges) for group in wall.groups), initial=1)
+    steps = dict(zip((group.placement.stone_id for group in wall.groups), sizes, strict=False))
     zooms = [
-        Panel(f"{letter}: wedge {wedge.id} under stone {wedge.under}", ZOOM_ASPECT,
-              partial(_draw_zoom, wall, box))
+        Panel(f"{letter}: a wedge under stone {wedge.under} (step {steps[wedge.under]})",
+              ZOOM_ASPECT, partial(_draw_zoom, wall, box))
         for letter, wedge, box in zip("abc", shown(wall), boxes, strict=False)
     ]  # fmt: skip
     figure: Figure = sheet_of([Panel(title, aspect, partial(_draw_whole, wall, boxes)), *zooms], 2)
@@ -205,7 +208,7 @@ def _wedges_picture(trials: Trials, wall: Wall) -> ItemPicture:
         f"fig19_wall{trials.wall.number}",
         figure,
         f"Wall {trials.wall.number} ({trials.wall.name}): all wedges in dark red, and the "
-        "largest ones from near. Numbers on stones are steps of the plan; titles have ids.",
+        "largest ones from near. Numbers on stones are steps of the plan.",
     )
 
 
@@ -230,8 +233,10 @@ def _middle(wall: Wall, wedge: Wedge) -> tuple[float, float]:
 def _box(wall: Wall, wedge: Wedge) -> ZoomBox:
     """Return what a zoom on a wedge shows."""
     x, y = _middle(wall, wedge)
-    half = ZOOM * wall.site.width_px * wall.site.units_per_px / 2
-    # Little of the ground, which is of no interest.
+    width = wall.site.width_px * wall.site.units_per_px
+    half = ZOOM * width / 2
+    # Little of the ground and nothing beyond the ends, which are of no interest.
+    x = min(max(x, half), width - half)
     y0 = max(y - ZOOM_ASPECT * half, -0.1 * half)
     return x - half, y0, x + half, y0 + 2 * ZOOM_ASPECT * half
 

@@ -268,9 +268,11 @@ VARIANTS = PaperItem(
             lambda one: (_whole(one),),
         ),
     },
-    pictures=lambda found: (
-        strips(found, "variants", ("F_SF", "F_LR"), lambda one: f"{one.wall.name}\n{one.way}"),
-    ),
+    pictures=lambda found: [
+        strips(group, f"variants_{number}", ("placed", "F_SF", "F_LR"), lambda one: one.way)
+        for number, group in enumerate(found.by_wall, 1)
+        if len(group.all) > 1
+    ],
     needs=MASONS_STONES,
 )  # fmt: skip
 
