@@ -34,7 +34,6 @@ FILLED = 0.99
 FILLED_TOP = 0.9
 """A plan is incomplete when its mean top stays below this share of the wall's height."""
 
-
 MOST_WITHOUT_DILATANCY = 150
 """Twelve starts take some ten seconds for so many blocks, and the time grows with their square."""
 

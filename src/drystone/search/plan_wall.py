@@ -99,6 +99,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     choice: bool = False,
     keep: Callable[[SoFar], None] | None = None,
     standing: Standing | None = None,
+    coulomb: bool = True,
 ) -> PlanResult:
     """Plan a wall.
 
@@ -145,13 +146,14 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         stones may be used and stand (:func:`drystone.search.warm_start.begin_with`).
     choice : bool
         Keep the walls of the search that none beats in every figure of merit.
-
     keep : callable, optional
         Told of what there is so far, whenever a stone of the first wall is placed or walls of the
         search are built: to be kept, so that a program that is killed loses little.
     standing : Standing, optional
         Where a search of the same stones, wall, seed and settings was cut off
         (:class:`SoFar`): it goes on from there to the plan that it would have come to itself.
+    coulomb : bool
+        Look for `F_LR_coulomb`, which takes longer than a wall of ``"paper"``.
 
     Returns
     -------
@@ -226,7 +228,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
             )
         asked = replace(asked, took=time.perf_counter() - asked.started)
         if ended.stopped is not INTERRUPTED:
-            grace = Deadline.after(grace_s)
+            grace = Deadline.after(grace_s if coulomb else -math.inf)
             return asked.result(first, ended, left_out, grace, choice=choice)
     except KeyboardInterrupt:
         if ended is None:
