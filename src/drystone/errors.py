@@ -2,6 +2,7 @@
 
 import errno
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -113,6 +114,21 @@ def counted(count: int, noun: str) -> str:
 
 NO_ROOM = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))
 """What the system says when the disk, or the user's share of it, is full."""
+
+
+def meant(word: str, known: Iterable[str], before: str = "") -> str:
+    """Ask whether the nearest of the words that are known was meant; nothing when none is near.
+
+    Of dotted ones the last part is enough.
+
+    >>> meant("bugdet", ["search.budget", "search.passes"])
+    'Did you mean `search.budget`? '
+    """
+    from difflib import get_close_matches  # noqa: PLC0415 - costs start-up time
+
+    names = {(name if "." in word else name.rpartition(".")[2]).lower(): name for name in known}
+    near = get_close_matches(word.lower(), names, 1)
+    return f"Did you mean `{before}{names[near[0]]}`? " if near else ""
 
 
 def not_written(error: OSError) -> PlanError:

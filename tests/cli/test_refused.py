@@ -91,6 +91,7 @@ CASES = [
     (f"{PLAN} --sampling some", 2, "E138", "'some'"),
     (f"{EXACT} --geometry wurst", 2, "E138", "wurst"),
     (f"{EXACT} --budget 0", 2, "E138", "--budget"),
+    (f"{EXACT} --bugdet 1", 2, "E138", "Did you mean `--budget`?"),
     (f"{PLAN} --orientations north", 2, "E122", "--orientations: 'north' is not a set"),
     (f"{PLAN} --method wurst", 2, "E124", ""),
     (f"{PLAN} --mu -1", 2, "E123", "--mu: mu must be in (0, 1e+06], not -1.0. Change mu."),
@@ -131,6 +132,7 @@ CASES = [
     # Generators, markers and photographs.
     ("generate rubble -o {out}/x.png --count 0", 2, "E138", "--count: '0'"),
     (f"{BRICKS} --set wonder=1", 2, "E123", ""),
+    (f"{BRICKS} --set cuont=1", 2, "E123", "Did you mean `count`?"),
     (f"{BRICKS} --set height_px", 2, "E135", "Known: count"),
     (f"{BRICKS} --set height_px=tall", 2, "E135", ""),
     (f"{BRICKS} --set height_px=-4", 2, "E130", ""),
@@ -215,7 +217,8 @@ def test_what_cannot_be_is_refused(line, exit_code, code, said, places, tmp_path
     [
         ("mu = -1.0", "E123", "{}: mu must be in (0, 1e+06], not -1.0. Change mu."),
         ("wonder = 1", "E123", "{}: there is no setting 'wonder'."),
-        ("[placement]\nwonder = 1", "E123", ""),
+        ("[placement]\nwonder = 1", "E123", "Known here: rule,"),
+        ("bugdet = 1", "E123", "{}: there is no setting 'bugdet'. Did you mean `search.budget`?"),
         ("[stop]\nfilling = 2.0", "E123", "{} [stop]: filling must be in (0, 1]"),
         ("[stop]\nfailures = 'five'", "E123", "{}: stop.failures = 'five' has the wrong type."),
         ("orientations = 'north'", "E122", "{}: 'north' is not a set of orientations."),

@@ -94,8 +94,8 @@ _ALL = (
         "The paper, section 2 (shards fill openings or prevent rocking); rockinwalls.com, Pinning "
         "& Chinks, 2011 (pins that lift a large stone fall out or are crushed); Delaware Quarries, "
         "rule 10 (fill cracks after the wall is complete). The number: own definition",
-        "greatest load that a wedge cannot help carrying under the wall's own weight, with open "
-        "upright joints, over the weight of the stones that lie on it",
+        "greatest load that a wedge cannot help carrying, over the weight of the stones on it; "
+        "under the wall's own weight, with open upright joints",
         Limit(0.1, 0.5), pins, by_limit=True,
     ),
     Rule(

@@ -47,7 +47,7 @@ class PlanResult:
     success : bool
         True unless the wall is incomplete or planning was interrupted.
     status : {"complete", "incomplete", "interrupted"}
-        Incomplete: filling below .99 and a mean top below .9 of the height, or without a stone
+        Incomplete: filling below 0.99 and a mean top below 0.9 of the height, or without a stone
         that is pinned.
     message : str
         Why construction ended.

@@ -65,7 +65,7 @@ def working_scale(stones: StoneSet) -> float:
     Returns
     -------
     scale : float
-        Working px over source px, in (0, 1] and steps of .01: never finer than the source.
+        Working px over source px, in (0, 1] and steps of 0.01: never finer than the source.
 
     Examples
     --------
