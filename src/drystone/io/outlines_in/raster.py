@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+import shapely
 
 from drystone.errors import LabelImageError, Notice
 from drystone.io.file_errors import listed, short
@@ -17,7 +18,8 @@ from drystone.io.outlines_in.nested import (
     of_one_picture,
     said_of,
 )
-from drystone.io.patches import PlacedMask, StonePatch
+from drystone.io.outlines_in.silhouettes import areas_of, shadow
+from drystone.io.patches import SMALL_SHARE, PlacedMask, StonePatch
 from drystone.io.pictures import check_size
 from drystone.io.read_settings import ReadSettings
 from drystone.kernels.polygons import Points
@@ -26,6 +28,9 @@ _TOO_FAR = (
     "Is something drawn far away from the stones, or in another unit? Remove it, give a smaller "
     "--px-per-m (px_per_m in Python), or raise max_image_mpx in Python."
 )
+
+FEW_CORNERS = 12
+"""Of a brick or a dressed stone, whose sides may all be level and upright."""
 
 USUAL_SIDE_PX = 160.0
 """Longer side of the median stone of a drawing without a resolution."""
@@ -77,7 +82,8 @@ def rastered(
             empty.append(name)
             continue
         place = inside.mask, inside.row, inside.col
-        patches.append(StonePatch(*place, stone.id or 0, height, None, stone.name))
+        drawn = _drawn(stone, width, height)
+        patches.append(StonePatch(*place, stone.id or 0, height, None, stone.name, drawn))
     if lost:
         notices.append(Notice("W119", f"outside the image, cut off: {listed(lost, '; ')}."))
     if empty:
@@ -152,6 +158,35 @@ def _in_picture(
         for stone in file.stones
     )
     return stones, (width, height)
+
+
+def _drawn(stone: OutlinedStone, width: int, height: int) -> Points | None:
+    """Return the outer edge, (n, 2), of a stone in px of its picture, clockwise as y is down.
+
+    None when it is known by its pixels only.
+    """
+    rings = [ring for area in stone.areas for ring in area.rings]
+    if stone.masks or any(map(_is_of_pixels, rings)):
+        return None
+    try:
+        seen = shapely.union_all([shapely.Polygon(part.rings[0]) for part in shadow(rings)])
+    except ValueError:  # crossings without end
+        return None
+    parts = areas_of(seen & shapely.box(0.0, 0.0, width, height))
+    shapes = [shapely.Polygon(part.rings[0]) for part in parts]
+    largest = max(shapes, key=shapely.area, default=shapely.Polygon())
+    if not largest.area > (1.0 - SMALL_SHARE) * sum(map(shapely.area, shapes)):
+        return None
+    largest = shapely.remove_repeated_points(largest, 1e-9)
+    turned = shapely.orient_polygons(largest, exterior_cw=True)
+    return np.asarray(shapely.get_coordinates(turned.exterior)[:-1])
+
+
+def _is_of_pixels(ring: Points) -> bool:
+    """Tell a line along pixels, whose steps are not those of a stone: all eight ways, no other."""
+    across, down = np.abs(np.roll(ring, -1, axis=0) - ring).T
+    least = np.minimum(np.minimum(across, down), np.abs(across - down))
+    return len(ring) > FEW_CORNERS and bool((least < 1e-6).all())
 
 
 def _reach(stones: Sequence[OutlinedStone]) -> tuple[int, int]:
