@@ -60,10 +60,6 @@ class Stone:
             raise ValueError("mask must be a two-dimensional array with at least one pixel")
         mask.flags.writeable = False
         object.__setattr__(self, "mask", mask)
-        if self.drawn is not None:
-            drawn = np.array(self.drawn, float)
-            drawn.flags.writeable = False
-            object.__setattr__(self, "drawn", drawn)
         object.__setattr__(self, "name", writable(self.name))
 
     def __repr__(self) -> str:
@@ -78,10 +74,7 @@ class Stone:
 
     @cached_property
     def local_centroid(self) -> tuple[float, float]:
-        """Centroid (x, y) from the mask's bottom-left corner, y up.
-
-        It is that of the outline that was drawn, else, or with a hole, that of the pixel squares.
-        """
+        """Centroid of the drawn outline, else of the pixels, (x, y) from the mask's bottom left."""
         if self.drawn is not None and np.array_equal(self.solid, self.mask):
             return self._outline_centre
         return centroid_of(self.mask)
@@ -91,8 +84,7 @@ class Stone:
         """Centroid of what the outline encloses."""
         if self.drawn is None:
             return centroid_of(self.solid)
-        _, x, y = area_and_centroid(self.drawn)
-        return x, y
+        return area_and_centroid(self.drawn)[1:]
 
     @cached_property
     def solid(self) -> Mask:

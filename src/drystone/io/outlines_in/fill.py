@@ -70,7 +70,7 @@ def check_reach(stones: Iterable[OutlinedStone], max_px: int) -> None:
                 "limit be raised (max_image_mpx).",
             )
         room.take(width * height)
-        heights = (np.ceil(ring[:, 1] - 0.5) for area in stone.areas for ring in area.rings)
+        heights = (np.ceil(ring[:, 1] - 0.5) for ring in stone.rings)
         crossed = sum(int(np.abs(np.diff(rows, append=rows[:1])).sum()) for rows in heights)
         if crossed > width * height + _FREE_ROWS:
             raise too_large(

@@ -3,7 +3,7 @@
 import math
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Literal
@@ -46,6 +46,16 @@ class OutlinedStone:
     areas: tuple[Area, ...] = ()
     masks: tuple[PlacedMask, ...] = ()  # only in files in px
     label: str = ""  # the class that the file gives it
+
+    @property
+    def rings(self) -> list[Points]:
+        """All lines of all areas."""
+        return [ring for area in self.areas for ring in area.rings]
+
+    def moved(self, move: Callable[[Points], Points]) -> "OutlinedStone":
+        """Return the stone with its areas moved."""
+        areas = tuple(Area(tuple(map(move, area.rings)), area.rule) for area in self.areas)
+        return replace(self, areas=areas)
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +11,7 @@ import shapely
 from drystone.errors import LabelImageError, Notice
 from drystone.io.file_errors import listed, short
 from drystone.io.outlines_in.fill import check_reach, pixels_of, trimmed
-from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile
+from drystone.io.outlines_in.model import OutlinedStone, OutlineFile
 from drystone.io.outlines_in.nested import (
     Seen,
     meeting_boxes,
@@ -18,8 +19,8 @@ from drystone.io.outlines_in.nested import (
     of_one_picture,
     said_of,
 )
-from drystone.io.outlines_in.silhouettes import areas_of, shadow
-from drystone.io.patches import SMALL_SHARE, PlacedMask, StonePatch
+from drystone.io.outlines_in.silhouettes import outer_edge
+from drystone.io.patches import PlacedMask, StonePatch
 from drystone.io.pictures import check_size
 from drystone.io.read_settings import ReadSettings
 from drystone.kernels.polygons import Points
@@ -28,9 +29,6 @@ _TOO_FAR = (
     "Is something drawn far away from the stones, or in another unit? Remove it, give a smaller "
     "--px-per-m (px_per_m in Python), or raise max_image_mpx in Python."
 )
-
-FEW_CORNERS = 12
-"""Of a brick or a dressed stone, whose sides may all be level and upright."""
 
 USUAL_SIDE_PX = 160.0
 """Longer side of the median stone of a drawing without a resolution."""
@@ -128,8 +126,7 @@ def _usual_scale(file: OutlineFile) -> tuple[float, Notice]:
 
 
 def _corners(stone: OutlinedStone) -> Points:
-    rings = [ring for area in stone.areas for ring in area.rings]
-    return np.concatenate(rings) if rings else np.zeros((1, 2))
+    return np.concatenate(stone.rings) if stone.rings else np.zeros((1, 2))
 
 
 def _in_picture(
@@ -150,14 +147,7 @@ def _in_picture(
     def move(ring: Points) -> Points:
         return np.asarray(ring * (scale, sign * scale) - shift)
 
-    stones = tuple(
-        replace(
-            stone,
-            areas=tuple(Area(tuple(map(move, area.rings)), area.rule) for area in stone.areas),
-        )
-        for stone in file.stones
-    )
-    return stones, (width, height)
+    return tuple(stone.moved(move) for stone in file.stones), (width, height)
 
 
 def _drawn(stone: OutlinedStone, width: int, height: int) -> Points | None:
@@ -165,35 +155,26 @@ def _drawn(stone: OutlinedStone, width: int, height: int) -> Points | None:
 
     None when it is known by its pixels only.
     """
-    rings = [ring for area in stone.areas for ring in area.rings]
-    if stone.masks or any(map(_is_of_pixels, rings)):
+    if stone.masks or any(map(_is_of_pixels, stone.rings)):
         return None
-    try:
-        seen = shapely.union_all([shapely.Polygon(part.rings[0]) for part in shadow(rings)])
-    except ValueError:  # crossings without end
-        return None
-    parts = areas_of(seen & shapely.box(0.0, 0.0, width, height))
-    shapes = [shapely.Polygon(part.rings[0]) for part in parts]
-    largest = max(shapes, key=shapely.area, default=shapely.Polygon())
-    if not largest.area > (1.0 - SMALL_SHARE) * sum(map(shapely.area, shapes)):
-        return None
-    largest = shapely.remove_repeated_points(largest, 1e-9)
-    turned = shapely.orient_polygons(largest, exterior_cw=True)
-    return np.asarray(shapely.get_coordinates(turned.exterior)[:-1])
+    with suppress(ValueError):  # crossings without end
+        edge = outer_edge(stone.rings, shapely.box(0.0, 0.0, width, height))
+        return None if edge is None else edge[::-1]
+    return None
 
 
 def _is_of_pixels(ring: Points) -> bool:
     """Tell a line along pixels, whose steps are not those of a stone: all eight ways, no other."""
     across, down = np.abs(np.roll(ring, -1, axis=0) - ring).T
     least = np.minimum(np.minimum(across, down), np.abs(across - down))
-    return len(ring) > FEW_CORNERS and bool((least < 1e-6).all())
+    return len(ring) > 12 and bool((least < 1e-6).all())  # a dressed stone may have 12
 
 
 def _reach(stones: Sequence[OutlinedStone]) -> tuple[int, int]:
     """Return how far an image must reach from its corner to hold all stones."""
     ends = [(1.0, 1.0)]
     for stone in stones:
-        ends += [tuple(ring.max(axis=0)) for area in stone.areas for ring in area.rings]
+        ends += [tuple(ring.max(axis=0)) for ring in stone.rings]
         ends += [(m.col + m.mask.shape[1], m.row + m.mask.shape[0]) for m in stone.masks]
     width, height = np.array(ends).max(axis=0).tolist()
     return math.ceil(width), math.ceil(height)

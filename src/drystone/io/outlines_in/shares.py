@@ -8,7 +8,7 @@ import numpy as np
 from drystone.errors import InputError, Notice
 from drystone.io.file_bytes import file_bytes
 from drystone.io.file_errors import naming
-from drystone.io.outlines_in.model import Area, OutlineFile
+from drystone.io.outlines_in.model import OutlineFile
 from drystone.io.pictures import format_of, opened
 from drystone.io.read_settings import ReadSettings
 from drystone.io.tiff import ORIENTATION
@@ -32,28 +32,16 @@ def in_px(file: OutlineFile, settings: ReadSettings) -> OutlineFile:
             "its coordinates are shares of a picture (0 ... 1), and it does not say its size.",
             cure="Name the picture with --image PHOTO.jpg (ReadSettings.image), or export in px.",
         )
-    stones = [
-        replace(
-            stone,
-            areas=tuple(
-                Area(tuple(np.asarray(ring * size) for ring in area.rings), area.rule)
-                for area in stone.areas
-            ),
-        )
-        for stone in file.stones
-    ]
+    stones = [stone.moved(lambda ring: ring * size) for stone in file.stones]
     text = f"its coordinates are shares of the picture: taken times {size[0]} x {size[1]} px."
     return replace(file, stones=stones, size_px=size, notices=[*file.notices, Notice("W119", text)])
 
 
 def _are_shares(file: OutlineFile) -> bool:
-    if (
-        file.unit_m is not None
-        or file.seen_by == "none"
-        or any(stone.masks for stone in file.stones)
-    ):
+    masks = any(stone.masks for stone in file.stones)
+    if file.unit_m is not None or file.seen_by == "none" or masks:
         return False
-    rings = [ring for stone in file.stones for area in stone.areas for ring in area.rings]
+    rings = [ring for stone in file.stones for ring in stone.rings]
     if not rings or (file.size_px and max(file.size_px) < 3):
         return False
     points = np.concatenate(rings)
