@@ -132,11 +132,7 @@ def _write(
     """Write stones.png, photo.jpg, stones.json, preview.png and outlines.html."""
     from drystone.drawing.files import save  # noqa: PLC0415 - matplotlib is slow
     from drystone.drawing.pictures.stones import plot_photo  # noqa: PLC0415
-    from drystone.drawing.tracing.page import (  # noqa: PLC0415
-        OutlinePage,
-        rings_of,
-        write_outline_page,
-    )
+    from drystone.drawing.tracing.page import OutlinePage, rings_of, write_outline_page  # noqa: PLC0415
 
     labels, px_per_m = result.found.labels, result.px_per_m
     _save_image(labels, folder / LABELS, "PNG")

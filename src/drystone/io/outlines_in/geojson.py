@@ -68,7 +68,7 @@ def read_geojson(content: Any, settings: ReadSettings) -> OutlineFile:
     unit_m = METRES.get(unit if "unit" in content else settings.unit or "px")
     upwards = unit_m is not None or str(content.get("frame")).startswith("wall")
     notices = left_aside(aside) + slivers.notices()
-    rings = [ring for stone in stones for ring in stone.rings]
+    rings = [one for stone in stones for area in stone.areas for one in area.rings]
     # Below a picture's upper edge with y up, where y down has no pixel: nearly all, as an outline
     # may reach over the edge.
     if not upwards and rings and float(np.median(np.concatenate(rings)[:, 1])) < 0.0:

@@ -49,13 +49,13 @@ class OutlinedStone:
 
     @property
     def rings(self) -> list[Points]:
-        """All lines of all areas."""
-        return [ring for area in self.areas for ring in area.rings]
+        """All rings of its areas."""
+        return [one for area in self.areas for one in area.rings]
 
     def moved(self, move: Callable[[Points], Points]) -> "OutlinedStone":
-        """Return the stone with its areas moved."""
-        areas = tuple(Area(tuple(map(move, area.rings)), area.rule) for area in self.areas)
-        return replace(self, areas=areas)
+        """Return it with other corners."""
+        areas = (Area(tuple(map(move, area.rings)), area.rule) for area in self.areas)
+        return replace(self, areas=tuple(areas))
 
 
 @dataclass(frozen=True, eq=False)

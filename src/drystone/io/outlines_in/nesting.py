@@ -1,7 +1,6 @@
 """Instances of nesting programs (sparrow, jagua-rs): items, each as often as it is demanded."""
 
 from collections.abc import Iterator, Mapping
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,6 +10,7 @@ from drystone.errors import Notice
 from drystone.io.file_errors import entry, short, too_large
 from drystone.io.outlines_in.model import (
     METRES,
+    Area,
     OutlinedStone,
     OutlineFile,
     Slivers,
@@ -99,7 +99,7 @@ def _overlap(stones: list[OutlinedStone]) -> bool:
 
 
 def _boxes(stones: list[OutlinedStone]) -> tuple[Any, Any]:
-    corners = [np.concatenate(stone.rings) for stone in stones]
+    corners = [np.concatenate([r for area in s.areas for r in area.rings]) for s in stones]
     low = np.array([points.min(axis=0) for points in corners]).reshape(-1, 2)
     return low, np.array([points.max(axis=0) for points in corners]).reshape(-1, 2)
 
@@ -111,5 +111,6 @@ def _in_a_row(stones: list[OutlinedStone], *, whole: bool) -> Iterator[OutlinedS
     for stone, start, end in zip(stones, low, high, strict=True):
         shift = np.array([x, 0.0]) - start
         shift = np.ceil(shift) if whole else shift
-        yield stone.moved(partial(np.add, shift))
+        areas = tuple(Area(tuple(ring + shift for ring in area.rings)) for area in stone.areas)
+        yield OutlinedStone(stone.id, stone.name, areas)
         x += float(end[0] - start[0]) + gap + whole

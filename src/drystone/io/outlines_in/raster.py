@@ -12,13 +12,7 @@ from drystone.errors import LabelImageError, Notice
 from drystone.io.file_errors import listed, short
 from drystone.io.outlines_in.fill import check_reach, pixels_of, trimmed
 from drystone.io.outlines_in.model import OutlinedStone, OutlineFile
-from drystone.io.outlines_in.nested import (
-    Seen,
-    meeting_boxes,
-    not_stones,
-    of_one_picture,
-    said_of,
-)
+from drystone.io.outlines_in.nested import Seen, meeting_boxes, not_stones, of_one_picture, said_of
 from drystone.io.outlines_in.silhouettes import outer_edge
 from drystone.io.patches import PlacedMask, StonePatch
 from drystone.io.pictures import check_size
@@ -126,7 +120,7 @@ def _usual_scale(file: OutlineFile) -> tuple[float, Notice]:
 
 
 def _corners(stone: OutlinedStone) -> Points:
-    return np.concatenate(stone.rings) if stone.rings else np.zeros((1, 2))
+    return np.concatenate(stone.rings) if stone.areas else np.zeros((1, 2))
 
 
 def _in_picture(
@@ -147,7 +141,7 @@ def _in_picture(
     def move(ring: Points) -> Points:
         return np.asarray(ring * (scale, sign * scale) - shift)
 
-    return tuple(stone.moved(move) for stone in file.stones), (width, height)
+    return [stone.moved(move) for stone in file.stones], (width, height)
 
 
 def _drawn(stone: OutlinedStone, width: int, height: int) -> Points | None:

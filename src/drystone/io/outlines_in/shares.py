@@ -32,14 +32,17 @@ def in_px(file: OutlineFile, settings: ReadSettings) -> OutlineFile:
             "its coordinates are shares of a picture (0 ... 1), and it does not say its size.",
             cure="Name the picture with --image PHOTO.jpg (ReadSettings.image), or export in px.",
         )
-    stones = [stone.moved(lambda ring: ring * size) for stone in file.stones]
+    stones = [stone.moved(lambda ring: np.asarray(ring * size)) for stone in file.stones]
     text = f"its coordinates are shares of the picture: taken times {size[0]} x {size[1]} px."
     return replace(file, stones=stones, size_px=size, notices=[*file.notices, Notice("W119", text)])
 
 
 def _are_shares(file: OutlineFile) -> bool:
-    masks = any(stone.masks for stone in file.stones)
-    if file.unit_m is not None or file.seen_by == "none" or masks:
+    if (
+        file.unit_m is not None
+        or file.seen_by == "none"
+        or any(stone.masks for stone in file.stones)
+    ):
         return False
     rings = [ring for stone in file.stones for ring in stone.rings]
     if not rings or (file.size_px and max(file.size_px) < 3):
