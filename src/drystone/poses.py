@@ -9,13 +9,7 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from drystone.errors import UsageError
-from drystone.kernels.raster import (
-    quantise,
-    rasterise,
-    rasterise_to_area,
-    rotation,
-    turned_boxes,
-)
+from drystone.kernels.raster import quantise, rasterise, rasterise_to_area, rotation, turned_boxes
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
 

@@ -82,11 +82,7 @@ def test_times_against_pixels_and_the_numbers_of_the_paper():
 def test_times_against_stones_are_those_of_eight_steps_and_grow_by_the_candidate():
     steps = [step(n, candidates=n or 1, seconds=0.001 * (n or 1) ** 3) for n in range(12)]
     rows = steps_table("PR", {"variant": wall(280, 80, *steps)}).records()
-    assert [row["stones placed"] for row in rows] == [
-        "0 to 7",
-        "8 to 11",
-        "exponent a candidate",
-    ]
+    assert [row["stones placed"] for row in rows] == ["0 to 7", "8 to 11", "exponent a candidate"]
     assert rows[1]["candidates a step"] == 9.5
     assert rows[1]["all"] == pytest.approx((512 + 729 + 1000 + 1331) / 4)
     assert rows[1]["ms a candidate"] == pytest.approx(rows[1]["all"] / 9.5, abs=0.05)

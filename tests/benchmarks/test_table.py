@@ -8,12 +8,7 @@ import pytest
 from benchmarks import table
 from drystone.planner.profile import PARTS
 
-WALL = {
-    "elapsed": 2.0,
-    "parts": dict.fromkeys(PARTS, 0.25),
-    "steps": 3,
-    "candidates": 12,
-}
+WALL = {"elapsed": 2.0, "parts": dict.fromkeys(PARTS, 0.25), "steps": 3, "candidates": 12}
 
 
 def entry(what, size, grows, seconds, twin=None, count=1, **facts):

@@ -57,10 +57,7 @@ def test_polygons_in_either_sense_with_density_and_fixed():
     model = model_from_json(data)
     assert model.mu == 0.58
     assert [(b.id, b.weight, b.fixed) for b in model.blocks] == [(7, 4, True), (3, 10, False)]
-    assert told(model) == [
-        (7, GROUND, [(0, 0), (2, 0)], (0, 1)),
-        (7, 3, [(2, 2), (0, 2)], (0, -1)),
-    ]
+    assert told(model) == [(7, GROUND, [(0, 0), (2, 0)], (0, 1)), (7, 3, [(2, 2), (0, 2)], (0, -1))]
 
 
 def test_a_tilted_joint_has_its_own_normal():

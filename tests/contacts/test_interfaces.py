@@ -42,11 +42,7 @@ def test_the_normal_points_into_the_larger_id_on_all_four_sides():
     assert normals == {(5, 2): (0, 1), (5, 3): (1, 0), (5, 4): (0, -1), (6, 5): (1, 0)}
 
 
-@given(
-    angle_deg=st.floats(-180, 180),
-    offset=st.floats(-1, 1),
-    size=st.integers(10, 60),
-)
+@given(angle_deg=st.floats(-180, 180), offset=st.floats(-1, 1), size=st.integers(10, 60))
 @repeatable(200)
 def test_a_tilted_joint_is_one_run_with_a_bounded_error_of_its_normal(angle_deg, offset, size):
     angle = math.radians(angle_deg)

@@ -9,11 +9,7 @@ from shapely.geometry.polygon import orient
 
 from drystone.contacts.given import model_from_json
 from drystone.contacts.outlines import model_of_traced
-from drystone.contacts.settled import (
-    PlacedPolygons,
-    model_of_outlines,
-    model_with_outlines,
-)
+from drystone.contacts.settled import PlacedPolygons, model_of_outlines, model_with_outlines
 from drystone.kernels.polygons import area_and_centroid
 from drystone.kernels.raster import turn
 from drystone.statics.limit import lateral_resistance

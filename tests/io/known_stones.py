@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.path import Path as Outline
 
 from drystone.io.read_stones import ReadSettings, read_stones
+from drystone.model.outline import centroid_of
 
 WIDTH, HEIGHT = 320, 200
 
@@ -92,5 +93,7 @@ def compare(stones, settings=PIECES, ids=None):
         want[HEIGHT:, :WIDTH] = placed(true, WIDTH, HEIGHT)
         ious.append((mask & want).sum() / (mask | want).sum())
         areas.append(abs(found.area_px / true.area_px - 1.0))
-        centroids.append(math.dist(found.centroid, np.subtract(true.centroid, (left, bottom))))
+        # Of the pixels: a stone that was drawn has the centroid of its outline.
+        centre = np.add(centroid_of(found.mask), (found.left_px, found.bottom_px))
+        centroids.append(math.dist(centre, np.subtract(true.centroid, (left, bottom))))
     return float(min(ious)), max(areas), round(max(centroids), 9)

@@ -13,6 +13,7 @@ from drystone.errors import InputError
 from drystone.io.photo_beside import photo_of
 from drystone.io.read_stones import read_stones
 from drystone.io.walls import read_wall
+from tests.io.test_photo_sidecar import FRAME, MARKER
 
 WIDTH, HEIGHT = 300, 200
 WALL = {
@@ -46,11 +47,46 @@ def test_scale_frame_and_numbers_survive_and_marked_stones_are_left_out_and_said
     assert photo_of(path) == tmp_path / "photo.jpg"
 
 
+def test_outlines_stay_what_was_drawn(tmp_path):
+    """Each stone is the polygon of its file, where it was; pixels are what it covers."""
+    loop = shapely.Polygon([(230, 30), (280, 31), (281, 90), (229.5, 88), (231.5, 33), (229, 29)])
+    beyond = shapely.Polygon([(5, 5), (50, 4.5), (60, 60), (-20.25, 55)])
+    stones = read_stones(saved(tmp_path, {**WALL, 12: loop, 13: beyond}, px_per_m=250))
+    for i, drawn in {**WALL, 12: loop, 13: beyond}.items():
+        stone = stones.by_id(i)
+        outline = (stone.outline + np.array(stone.centroid)) * (1, -1) + (0, HEIGHT)
+        seen = shapely.make_valid(drawn) & shapely.box(0, 0, WIDTH, HEIGHT)
+        share = shapely.Polygon(outline) & seen
+        assert share.area > (0.998 if i == 12 else 1 - 1e-9) * seen.area
+        assert shapely.Polygon(outline).area == pytest.approx(share.area, rel=1e-9)
+        assert math.dist(stone.centroid, (seen.centroid.x, HEIGHT - seen.centroid.y)) < 0.05
+        assert stone.area_px == pytest.approx(seen.area, rel=0.01)
+
+
+def test_lines_along_the_edges_of_pixels_are_pixels(tmp_path):
+    """The steps of a slope are those of a grid, and not of a stone."""
+    edges = [(x + dx, 20 + (x - 20) // 2) for x in range(20, 80) for dx in (0, 1)]
+    centres = [(x, 30 + max(0, x - 80) // 2) for x in range(110, 180)]
+    for i, steps in enumerate((edges, centres), 1):
+        (x0, _), (x1, _) = steps[0], steps[-1]
+        stair = shapely.Polygon([*steps, (x1, 120), (x0, 120)])
+        stone = read_stones(saved(tmp_path, {i: stair})).by_id(i)
+        assert stone.drawn is None
+        assert len(stone.outline) < len(steps)
+
+
+def test_the_frame_of_the_photograph_survives(tmp_path):
+    details = {"source": {"name": "pile.jpg"}, "markers": [MARKER], "P_from_marker": FRAME}
+    photograph = dict(read_stones(saved(tmp_path, **details)).source.photograph)
+    assert photograph == {"name": "pile.jpg", "markers": [MARKER], "P_from_marker": FRAME}
+
+
 @pytest.mark.parametrize(
     "own",
     [
         {"px_per_m": -2}, {"px_per_m": math.nan}, {"px_per_m": "a"}, {"ground": [[1, 2]]},
-        {"ground": [[5, 1], [5, 9]]}, {"ground": [[0, 1], [1e300, 9]]}, {"not_used": [[3]]},
+        {"ground": [[5, 1], [5, 9]]}, {"markers": [7], "P_from_marker": FRAME},
+        {"ground": [[0, 1], [1e300, 9]]}, {"not_used": [[3]]},
     ],
 )  # fmt: skip
 def test_what_nobody_can_use_is_refused(tmp_path, own):

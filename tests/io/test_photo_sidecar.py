@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from drystone.errors import InputError, UsageError
 from drystone.io.photo_beside import (
@@ -18,6 +19,7 @@ from drystone.io.photo_beside import (
     read_sidecar,
     write_sidecar,
 )
+from drystone.io.read_stones import read_stones
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
@@ -69,6 +71,18 @@ def test_damaged_markers_are_said(tmp_path: Path, markers: Any, frame: Any) -> N
     write_sidecar(PhotoSidecar(640, 480, 512.5, "photo.jpg", details), tmp_path)
     with pytest.raises(InputError, match="E112"):
         read_sidecar(tmp_path / "stones.png")
+
+
+def test_a_pile_in_doubt_is_said_again(tmp_path: Path) -> None:
+    labels = np.zeros((40, 60), np.uint8)
+    labels[5:30, 5:40] = 1
+    Image.fromarray(labels).save(tmp_path / "stones.png")
+    for doubtful in ([], ["little was found", "the light is uneven"]):
+        write_sidecar(PhotoSidecar(60, 40, details={"doubtful": doubtful}), tmp_path)
+        said = [str(one) for one in read_stones(tmp_path).notices if one.code == "W183"]
+        assert len(said) == bool(doubtful)
+    assert "little was found; the light is uneven" in said[0]
+    assert "outlines.html" in said[0]
 
 
 def segmented(folder: Path, picture: bytes = b"a picture") -> Path:

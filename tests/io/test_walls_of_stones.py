@@ -145,9 +145,7 @@ def test_options_of_reading_leave_out_blocks(tmp_path: Path) -> None:
         read_wall(labelme(tmp_path), ReadSettings(background=255))
 
 
-def test_what_reaches_beyond_its_image_is_whole_and_may_not_fill_the_memory(
-    tmp_path: Path,
-) -> None:
+def test_what_reaches_beyond_its_image_is_whole_and_may_not_fill_the_memory(tmp_path: Path) -> None:
     def drawn(far: float) -> Path:
         outside = [(-far, 50.0), (20.0, 50.0), (20.0, 40.0), (-far, 40.0)]
         shapes = [

@@ -6,14 +6,7 @@ import numpy as np
 import pytest
 
 from drystone.kernels import course_types
-from drystone.kernels.course_types import (
-    PIXEL_UNITS,
-    STARTS,
-    Arrangement,
-    Ground,
-    Rules,
-    Weights,
-)
+from drystone.kernels.course_types import PIXEL_UNITS, STARTS, Arrangement, Ground, Rules, Weights
 from drystone.kernels.courses import evaluate, path_starts
 from drystone.kernels.raster import turn
 from drystone.metrics import joints as metric_joints

@@ -6,12 +6,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.coverage import (
-    Grid,
-    coverage,
-    newly_filled,
-    windows,
-)
+from drystone.kernels.coverage import Grid, coverage, newly_filled, windows
 from drystone.kernels.polygons import Points
 from tests.naive import coverage as naive
 from tests.polygons import simple_polygons
@@ -43,8 +38,7 @@ def test_cells_inside_are_full_and_cells_outside_empty_to_the_last_bit(x: int, y
         for col in range(shares.shape[1]):
             cell = shapely.box(0, 0, 1, 1)
             cell = shapely.transform(
-                cell,
-                lambda p, c=col, r=row: p + np.array([left + c, bottom + len(shares) - 1 - r]),
+                cell, lambda p, c=col, r=row: p + np.array([left + c, bottom + len(shares) - 1 - r])
             )
             assert (shares[row, col] == 1.0) == shape.contains(cell)
             assert (shares[row, col] == 0.0) == (shape.intersection(cell).area < 1e-12)

@@ -105,10 +105,7 @@ def test_edges() -> None:
 def test_of_equal_ways_always_the_same_is_taken() -> None:
     ring = np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], bool)
     found = row_ways(ring, np.array([1, 0]))
-    assert [way.tolist() for way in found] == [
-        [[1, 0], [2, 1], [1, 2]],
-        [[0, 0], [0, 1], [0, 2]],
-    ]
+    assert [way.tolist() for way in found] == [[[1, 0], [2, 1], [1, 2]], [[0, 0], [0, 1], [0, 2]]]
     longer = np.insert(ring, [1, 2], True, axis=1)
     assert row_ways(longer, np.array([1]))[0].tolist() == [[1, 0], [2, 1], [2, 2], [1, 3], [1, 4]]
     assert row_ways(ring[:, :1], np.array([2]))[0].tolist() == [[2, 0]]

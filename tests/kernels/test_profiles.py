@@ -6,14 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.kernels.polygons import Points
-from drystone.kernels.profiles import (
-    HeightProfile,
-    bare,
-    extremes,
-    hanging,
-    in_a_row,
-    raised,
-)
+from drystone.kernels.profiles import HeightProfile, bare, extremes, hanging, in_a_row, raised
 from tests.naive.drops import column_span, height_profile
 from tests.polygons import simple_polygons
 from tests.strategies import repeatable

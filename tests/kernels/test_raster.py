@@ -110,12 +110,7 @@ def test_rasterising_is_counting_samples_one_by_one(
     tolerance=st.sampled_from([0.0, 0.6, 1.0, 2.0, math.inf]),
 )
 def test_the_area_is_sought_at_sixteen_positions_one_after_the_other(
-    mask: Mask,
-    angle: float,
-    scale: float,
-    phase: tuple[float, float],
-    off: float,
-    tolerance: float,
+    mask: Mask, angle: float, scale: float, phase: tuple[float, float], off: float, tolerance: float
 ) -> None:
     wanted = (round(int(mask.sum()) * scale**2) + off, tolerance)
     expected, best = naive.rasterised_to_area(mask, (0.5, 0.5), angle, scale, phase, wanted)

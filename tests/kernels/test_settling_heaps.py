@@ -11,14 +11,7 @@ from hypothesis import strategies as st
 from drystone.kernels.firmness import rest_margin
 from drystone.kernels.settling import Settling, Status
 from tests.kernels.heaps import WIDTH, Drop, drops
-from tests.naive.settling import (
-    best_nearby,
-    contacts,
-    distances,
-    overlap_area,
-    placed,
-    unbalanced,
-)
+from tests.naive.settling import best_nearby, contacts, distances, overlap_area, placed, unbalanced
 from tests.strategies import repeatable
 
 STONES = 25

@@ -208,10 +208,7 @@ def test_the_wall_bears_what_the_stone_cannot():
 
 @pytest.mark.parametrize(
     ("held", "restarts"),
-    [
-        (((-1, 0, 0.3),), 0),
-        (((-1, 1, 1), (-1, -1, 0), (-1, 1, 0), (-1, -1, -1)), 1),
-    ],
+    [(((-1, 0, 0.3),), 0), (((-1, 1, 1), (-1, -1, 0), (-1, 1, 0), (-1, -1, -1)), 1)],
 )
 def test_a_stone_in_a_pit_props_the_wall(held, restarts):
     """The mechanism of the wall does not extend to a stone that cannot move to the right.
@@ -225,9 +222,7 @@ def test_a_stone_in_a_pit_props_the_wall(held, restarts):
     optimum = optimum.extended(first, optimum.solved_with(first))
     ground = [[*edge, 0, 0, 0] for edge in (*SQUARE, *held)]
     pit = cones(
-        [1] * (len(ground) + 1),
-        [GROUND] * len(ground) + [0],
-        [*ground, [1, 0, -0.3, -1, 0, 0.3]],
+        [1] * (len(ground) + 1), [GROUND] * len(ground) + [0], [*ground, [1, 0, -0.3, -1, 0, 0.3]]
     )
     added = Added(np.ones(1), pit, NOTHING)
     answer = optimum.solved_with(added)

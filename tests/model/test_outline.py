@@ -140,10 +140,7 @@ def test_outlines_stay_near_the_rim_of_the_pixels(mask: Mask, tolerance: float) 
 
 
 @repeatable(40)
-@given(
-    mask=blobs(min_px=14, max_px=40),
-    tolerance=st.sampled_from([0.1, TOLERANCE, 1.0]),
-)
+@given(mask=blobs(min_px=14, max_px=40), tolerance=st.sampled_from([0.1, TOLERANCE, 1.0]))
 def test_outlines_go_nowhere_else(mask: Mask, tolerance: float) -> None:
     """√2/4 px for a corner that is put back or cut off, beside what the rim shows."""
     stone = Stone(1, mask)

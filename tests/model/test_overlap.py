@@ -10,13 +10,7 @@ from hypothesis import strategies as st
 
 from drystone.kernels.polygons import Points
 from drystone.kernels.raster import turn
-from drystone.model.overlap import (
-    CIRCLE,
-    common_parts,
-    deepest_overlap,
-    overlap_depth,
-    shape_of,
-)
+from drystone.model.overlap import CIRCLE, common_parts, deepest_overlap, overlap_depth, shape_of
 from tests.naive import overlap as naive
 from tests.polygons import simple_polygons
 from tests.strategies import repeatable

@@ -131,12 +131,7 @@ class SlowPlanner:
         ]
         return self.judged(stabilised.placement, stabilised.wedges, others)
 
-    def judged(
-        self,
-        at: Placement,
-        wedges: tuple[Wedge, ...],
-        other_heights: list[float],
-    ) -> Tried:
+    def judged(self, at: Placement, wedges: tuple[Wedge, ...], other_heights: list[float]) -> Tried:
         """Everything that selection asks for."""
         occupied = self.labels > 0
         grown = self.labels.copy()

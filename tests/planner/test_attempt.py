@@ -125,9 +125,7 @@ def test_the_height_of_a_course_is_the_mean_of_other_stones() -> None:
     assert chosen.indices.NHR == pytest.approx(0.3)
 
 
-def test_orientations_are_candidates_or_the_rule_picks_one(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_orientations_are_candidates_or_the_rule_picks_one(monkeypatch: pytest.MonkeyPatch) -> None:
     stones = blocks({1: (20, 10), 2: (16, 8)})
     for choice, tried in (("candidates", 4), ("placement", 2)):
         settings = PlannerSettings(sampling="full", orientations="quarter").updated(

@@ -160,10 +160,7 @@ def test_walls_with_wedges_are_restored_as_they_were() -> None:
     assert again.workshop.next_wedge(again.build) == 6 + len(first.build.wall.wedges)
     for state, other in zip(again.build.states(), first.build.states(), strict=True):
         assert isinstance(state.wall.outlines, Outlines)
-        for made, sought in (
-            (state.model, other.model),
-            (state.sturdy_model, other.sturdy_model),
-        ):
+        for made, sought in ((state.model, other.model), (state.sturdy_model, other.sturdy_model)):
             assert made is not None
             assert sought is not None
             assert made.blocks == sought.blocks

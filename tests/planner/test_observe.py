@@ -368,11 +368,7 @@ def test_pictures_that_make_no_sense_are_refused() -> None:
     labels = picture(planned(one), one.workshop.stones, 1.0)
     half = np.where(np.arange(250) < planned(one)[step.stone_id][0], labels, 0)
     unknown = np.where(labels > 0, 99, 0)
-    bad = {
-        "E196": [labels[:-1], labels * 1.0, labels[None]],
-        "E197": [half],
-        "E195": [unknown],
-    }
+    bad = {"E196": [labels[:-1], labels * 1.0, labels[None]], "E197": [half], "E195": [unknown]}
     for code, pictures in bad.items():
         for array in pictures:
             with pytest.raises(InputError) as raised:

@@ -11,16 +11,7 @@ from drystone.planner.measured import MeasuredPose
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings, StopSettings
 from drystone.search.plan_result import result_of
-from tests.planner.scenes import (
-    RUBBLE_SITE,
-    blocks,
-    bricks,
-    finish,
-    greedy,
-    order,
-    rubble,
-    same,
-)
+from tests.planner.scenes import RUBBLE_SITE, blocks, bricks, finish, greedy, order, rubble, same
 
 
 def test_it_stops_when_the_wall_is_filled() -> None:

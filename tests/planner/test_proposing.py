@@ -9,14 +9,7 @@ from drystone.model.landscape import Landscape
 from drystone.planner.build import Proposal
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
-from drystone.planner.proposing import (
-    SPARE,
-    Key,
-    RasterProposer,
-    Spotted,
-    StoneTrial,
-    one_by_one,
-)
+from drystone.planner.proposing import SPARE, Key, RasterProposer, Spotted, StoneTrial, one_by_one
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settling import ExactProposer
 from tests.planner.scenes import RUBBLE_SITE, greedy, rubble

@@ -31,11 +31,7 @@ class _Step:
     """What is tried on the wall after some steps of the default method."""
 
     def __init__(
-        self,
-        stones: StoneSet,
-        site: Site,
-        built: int = 0,
-        changes: dict[str, Any] | None = None,
+        self, stones: StoneSet, site: Site, built: int = 0, changes: dict[str, Any] | None = None
     ) -> None:
         self.settings = greedy({"vary": 0.0, **(changes or {})})
         planner = Planner(stones, site, settings=self.settings)

@@ -42,15 +42,7 @@ from drystone.search.standing import Link, Progress, Standing
 from drystone.search.whole_search import run_to_end
 from drystone.search.yard import Yard
 from drystone.verify.check import check_plan
-from tests.planner.scenes import (
-    RUBBLE_SITE,
-    Ticks,
-    after_looks,
-    blocks,
-    finish,
-    greedy,
-    rubble,
-)
+from tests.planner.scenes import RUBBLE_SITE, Ticks, after_looks, blocks, finish, greedy, rubble
 
 SMALL = {"passes": 3, "chains": 2, "share_every": 2, "cycle": 3}
 """A search that does everything within ten walls."""

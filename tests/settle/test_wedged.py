@@ -6,13 +6,7 @@ import numpy as np
 import pytest
 
 from drystone.kernels.firmness import rest_margin
-from drystone.kernels.polygons import (
-    GRID,
-    Points,
-    area_and_centroid,
-    mirrored_polygon,
-    no_polygons,
-)
+from drystone.kernels.polygons import GRID, Points, area_and_centroid, mirrored_polygon, no_polygons
 from drystone.model.placement import Side
 from drystone.settle.rest import SettlingScene, Turned
 from drystone.settle.settings import SettleSettings

@@ -14,15 +14,7 @@ from drystone.stabilise.memory import StabiliseMemory
 from drystone.stabilise.settings import Method, StabiliseSettings
 from drystone.stabilise.stabilise import Outcome, WedgeStock, make_stable, stabilise
 from tests.naive.overlap import lowered, overlaps
-from tests.stabilise.scenes import (
-    BAR,
-    BLOCK,
-    BOOK,
-    Pose,
-    bar_on_the_ledge,
-    high_walls,
-    ledge,
-)
+from tests.stabilise.scenes import BAR, BLOCK, BOOK, Pose, bar_on_the_ledge, high_walls, ledge
 from tests.strategies import posed_on_walls, repeatable
 
 SETTINGS = StabiliseSettings()

@@ -65,9 +65,7 @@ def test_a_stone_balanced_on_a_point_is_wedged_on_both_sides_or_refused() -> Non
 
 @repeatable(120)
 @given(
-    scene=posed_on_walls(),
-    method=st.sampled_from(METHODS),
-    margin=st.sampled_from([0.0, 0.1, 0.2]),
+    scene=posed_on_walls(), method=st.sampled_from(METHODS), margin=st.sampled_from([0.0, 0.1, 0.2])
 )
 def test_whatever_comes_out_is_a_stable_rigid_copy_inside_the_site(
     scene: tuple[Wall, PosedStone, int, int], method: Method, margin: float

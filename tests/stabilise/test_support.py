@@ -40,12 +40,7 @@ def test_support_is_that_of_every_pixel_on_its_own(
 
 
 def test_a_stone_that_bridges_two_pillars_is_stable() -> None:
-    occupied = scene(
-        "..........",
-        "..........",
-        "##......##",
-        "##......##",
-    )
+    occupied = scene("..........", "..........", "##......##", "##......##")
     support = support_polyline(occupied, block(2, 10), 0, 0)
     assert support == Support(left_x=0, right_x=10, left_row=2, right_row=2)
     assert support.falls(5.0) == 0

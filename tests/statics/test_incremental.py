@@ -252,8 +252,7 @@ def test_an_end_beyond_0_needs_a_proof_of_the_fall_too(sign, alpha):
 
 
 @pytest.mark.parametrize(
-    "error",
-    [{"residual": 2e-8}, {"violation": 2e-8}, {"inadmissible": 2e-8}, {"rhs": -0.5 + 1e-7}],
+    "error", [{"residual": 2e-8}, {"violation": 2e-8}, {"inadmissible": 2e-8}, {"rhs": -0.5 + 1e-7}]
 )
 def test_no_bound_without_a_certificate(error):
     assert certified_bound(PROVED._replace(**error), -0.5, 1, "") is None

@@ -83,12 +83,7 @@ def plan_of(
     """Return the plan of a wall of 84 x 30 px, with what the planner finds true of it."""
     planner = Planner(stones, wall.site, settings=settings)
     planner.restore(wall, heights)
-    provenance = {
-        "version": "0.1.0",
-        "method": "custom",
-        "seed": 1,
-        "settings": settings.as_dict(),
-    }
+    provenance = {"version": "0.1.0", "method": "custom", "seed": 1, "settings": settings.as_dict()}
     stopped = Stopped("stones", "all stones that fit are placed")
     made = finish(planner, Frame(*WALL_PX, wall.site), stopped, provenance, 0.0)
     return Example(made.plan, stones, wall)

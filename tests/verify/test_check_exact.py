@@ -14,14 +14,7 @@ from drystone.verify.check import check_plan
 from drystone.verify.report import PrefixAlpha
 from tests.verify.exact_examples import GAP_PX, block_model, exact_example, hanging_example
 from tests.verify.examples import L_STONE, SLAB, WEDGE, Example
-from tests.verify.tampering import (
-    changed,
-    codes,
-    moved,
-    reshaped,
-    step_of,
-    with_setting,
-)
+from tests.verify.tampering import changed, codes, moved, reshaped, step_of, with_setting
 
 
 @pytest.fixture(scope="module")

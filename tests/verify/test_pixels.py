@@ -61,14 +61,14 @@ def test_outlines_of_stones_are_those_of_their_pixels(mask: Mask, angle_deg: flo
 def test_a_scaled_outline_is_named(mask: Mask, angle_deg: float, factor: float) -> None:
     """Also one that stays within the tolerance of every pixel."""
     (*_, said) = problems(mask, Stone(1, mask).outline * factor, angle_deg)
-    assert f"has {factor**2:.6g} times the area of its pixels" in said
+    assert f"has {factor**2:.6g} times the area that was read" in said
 
 
 @pytest.mark.parametrize("shift", [(0.9, 0.0), (-0.9, 0.0), (0.0, 0.9), (0.0, -0.9)])
 def test_an_outline_beside_its_pixels_is_named(shift: tuple[float, float]) -> None:
     brick = np.ones((12, 20), bool)
     (said,) = problems(brick, Stone(1, brick).outline + shift)
-    assert "is 0.9 source px from the rim of its pixels; 0.5 are allowed" in said
+    assert "is 0.9 source px from the rim that was read; 0.5 are allowed" in said
     assert problems(brick, Stone(1, brick).outline + 0.5 * np.array(shift)) == []
 
 

@@ -18,6 +18,7 @@ from drystone.io.necks import neck_width_px
 from drystone.io.read_settings import Pieces, ReadSettings
 from drystone.kernels.ids import counted
 from drystone.kernels.label_runs import label_runs, runs_in_pieces
+from drystone.kernels.polygons import Points
 from drystone.kernels.raster import Mask
 from drystone.model.stone import Source, Stone, StoneSet
 
@@ -77,6 +78,7 @@ class StonePatch(PlacedMask):
     picture_height: int  # px
     others: Mask | None = None  # (h, w), pixels of the box that belong to other stones
     name: str = ""  # file name of a one-stone mask
+    drawn: Points | None = None  # (n, 2), the outline in the picture, px, y down
 
     @cached_property
     def area_px(self) -> int:
@@ -105,7 +107,7 @@ class StonePatch(PlacedMask):
         for label, (rows, cols) in enumerate(ndimage.find_objects(found), start=1):
             mask, row, col = found[rows, cols] == label, rows.start, cols.start
             place = {"row": self.row + row, "col": self.col + col}
-            pieces.append(replace(self, mask=mask, **place, others=None))
+            pieces.append(replace(self, mask=mask, **place, others=None, drawn=None))
         return sorted(pieces, key=lambda piece: -piece.area_px)
 
     def __str__(self) -> str:
@@ -113,8 +115,10 @@ class StonePatch(PlacedMask):
 
     def to_stone(self) -> Stone:
         """Make the stone, in the frame of the picture (y up from its bottom edge)."""
-        bottom = self.picture_height - self.row - self.mask.shape[0]
-        return Stone(self.id, self.mask, self.col, bottom, self.name)
+        end = self.row + self.mask.shape[0]
+        bottom, corner = self.picture_height - end, np.array((self.col, end))
+        drawn = None if self.drawn is None else (self.drawn - corner) * (1.0, -1.0)
+        return Stone(self.id, self.mask, self.col, bottom, self.name, drawn)
 
 
 def check_count(count: int) -> None:

@@ -49,6 +49,8 @@ class PhotoSidecar:
     """Base name of the label image."""
     photograph: tuple[tuple[str, Any], ...] = ()
     """Of the details, what a plan keeps (see `Source`); for one that was read."""
+    doubtful: tuple[str, ...] = ()
+    """Of the details, what speaks against all that was found; for one that was read."""
 
 
 def write_sidecar(sidecar: PhotoSidecar, folder: Path) -> Path:
@@ -92,7 +94,8 @@ def read_sidecar(labels: Path) -> PhotoSidecar | None:
             None if scale is None else float(scale),
             str(data.get("photo", "")),
             labels=labels.name,
-            photograph=tuple(_photograph(data).items()),
+            photograph=photograph_in(data),
+            doubtful=tuple(map(str, data.get("doubtful") or ())),
         )
     except (OSError, ValueError, KeyError, TypeError, OverflowError) as error:
         if labels.name != LABELS:  # nobody knows what it is of
@@ -102,7 +105,7 @@ def read_sidecar(labels: Path) -> PhotoSidecar | None:
         raise InputError("E112", what, where=str(path), cure=cure) from error
 
 
-def _photograph(data: dict[str, Any]) -> dict[str, Any]:
+def photograph_in(data: Mapping[str, Any]) -> tuple[tuple[str, Any], ...]:
     """Return the name of the photograph, and where its markers are; ValueError for nonsense."""
 
     def numbers(one: dict[str, Any], name: str, shape: tuple[int, int]) -> dict[str, Any]:
@@ -117,7 +120,7 @@ def _photograph(data: dict[str, Any]) -> dict[str, Any]:
     if data.get("markers") and data.get("P_from_marker"):
         known["markers"] = [numbers(one, "corners_m", (4, 2)) for one in data["markers"]]
         known["P_from_marker"] = numbers(data["P_from_marker"], "matrix", (4, 4))
-    return known
+    return tuple(known.items())
 
 
 def scale_beside(

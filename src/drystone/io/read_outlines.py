@@ -161,7 +161,7 @@ def stones_and_outlines(
     reading = (settings if px_per_m else replace(settings, px_per_m=None)).changed()
     px_per_m = px_per_m or file.px_per_m
     digest = hashlib.sha256(data).hexdigest()
-    source = Source(name, digest, *size_px, reading=reading, px_per_m=px_per_m)
+    source = Source(name, digest, *size_px, (), reading, px_per_m, file.photograph)
     notices = [*file.notices, *wedges, *classes, *renumbered, *said]
     return stone_set(patches, notices, source, settings), file
 

@@ -34,7 +34,7 @@ from drystone.io.patches import (
     smallest_of_mask_px,
     stone_set,
 )
-from drystone.io.photo_beside import LABELS, read_sidecar, scale_beside
+from drystone.io.photo_beside import LABELS, PAGE, read_sidecar, scale_beside
 from drystone.io.read_outlines import check_not_asked, check_unit, outline_reader, stones_of
 from drystone.io.read_settings import ReadSettings
 from drystone.io.repairs import without_blends, without_net
@@ -111,7 +111,12 @@ def read_stones(
         digest = hashlib.sha256(data).hexdigest()
         del data  # as large as the picture when it is not compressed
         taken = Source(name, digest, px_per_m=scale, photograph=photograph)
-        return _read_picture(picture, taken, settings)
+        found = _read_picture(picture, taken, settings)
+    if sidecar is None or not sidecar.doubtful:
+        return found
+    text = f"what was found in the photograph is doubtful: {'; '.join(sidecar.doubtful)}."
+    notice = Notice("W183", text, f"Correct it in {PAGE} beside it, and give what that saves.")
+    return replace(found, notices=(notice, *found.notices))
 
 
 def _of_px(settings: ReadSettings) -> tuple[tuple[str, Any], ...]:

@@ -8,8 +8,8 @@ import shapely
 
 from drystone.errors import LabelImageError, Notice
 from drystone.io.outlines_in.fill import filled_area
-from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile
-from drystone.io.outlines_in.silhouettes import shadow
+from drystone.io.outlines_in.model import Area, OutlineFile
+from drystone.io.outlines_in.silhouettes import outer_edge
 from drystone.io.pictures import check_size
 from drystone.kernels.polygons import Points
 from drystone.model.stone import StoneSet
@@ -34,8 +34,11 @@ def wall_outlines(file: OutlineFile, stones: StoneSet) -> dict[int, Points] | No
     scale = 1.0 if file.unit_m is None else file.unit_m * (stones.source.px_per_m or 1.0)
     sign = 1.0 if file.y_up else -1.0
     try:
-        found = {i: _outer(known[i]) * (scale, sign * scale) for i in ids}
+        edges = {i: outer_edge(known[i].rings) for i in ids}
     except ValueError:  # crossings without end
+        return None
+    found = {i: edge * (scale, sign * scale) for i, edge in edges.items() if edge is not None}
+    if len(found) < len(ids):
         return None
     if file.ground is not None:
         found = _on_ground(found, file.ground * (1.0, -1.0))
@@ -70,14 +73,6 @@ def outlines_painted(outlines: Mapping[int, Points]) -> Labels:
 def not_cut(notices: Collection[Notice]) -> tuple[Notice, ...]:
     """Leave out that outlines were cut at the edges of their image: blocks are not."""
     return tuple(one for one in notices if "outside the image, cut off" not in one.message)
-
-
-def _outer(stone: OutlinedStone) -> Points:
-    """Return the largest outer ring of a stone, not closed; ValueError for too many crossings."""
-    parts = [area.rings[0] for area in shadow(stone.rings)]
-    if not parts:
-        raise ValueError("no area")
-    return max(parts, key=lambda ring: shapely.Polygon(ring).area)
 
 
 def _on_ground(rings: Mapping[int, Points], ground: Points) -> dict[int, Points]:

@@ -127,12 +127,10 @@ def read_wall(path: Path, settings: ReadSettings | None = None) -> GivenWall:
         return GivenWall(None, blocks=content)
     plan = read_plan(path)
     labels = read_image_of(plan, path.parent)
-    if labels is None:
-        what = f"there is no {image_name(plan)} beside the plan."
-        cure = "Keep the files of a plan together, or give the label image itself."
-        raise InputError("E133", what, where=str(path), cure=cure)
-    if not shows(labels, plan):
+    if labels is None or not shows(labels, plan):
         what = f"the {image_name(plan)} beside the plan shows other stones than the plan."
+        if labels is None:
+            what = f"there is no {image_name(plan)} beside the plan."
         cure = "Keep the files of a plan together, or give the label image itself."
         raise InputError("E133", what, where=str(path), cure=cure)
     if plan.settings.get("geometry") != "exact":

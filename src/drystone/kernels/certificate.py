@@ -37,12 +37,7 @@ class Figures(NamedTuple):
 
 
 def figures(
-    wall: Cones,
-    weights: Floats,
-    added: Added,
-    alpha: float,
-    forces: Floats,
-    velocity: Floats,
+    wall: Cones, weights: Floats, added: Added, alpha: float, forces: Floats, velocity: Floats
 ) -> Figures:
     """Measure the forces and the mechanism of one answer.
 

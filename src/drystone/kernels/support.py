@@ -117,12 +117,7 @@ def free_beside(occupied: Mask, mask: Mask, row: int, col: int) -> tuple[int, in
 
 
 def gap_filling(
-    occupied: Mask,
-    mask: Mask,
-    row: int,
-    col: int,
-    columns: tuple[int, int],
-    sizes: tuple[int, int],
+    occupied: Mask, mask: Mask, row: int, col: int, columns: tuple[int, int], sizes: tuple[int, int]
 ) -> tuple[Mask, int, int] | None:
     """Return the gap under a mask where it is lowest, as a piece that fills it (§3.7, Fig. 9c).
 

@@ -60,14 +60,29 @@ def stone_outline(mask: Mask, tolerance_px: float) -> Points:
 
 
 def _traced(pixels: Mask, tolerance_px: float) -> Points:
-    contour = _contour(pixels)
-    area_px = float(np.count_nonzero(pixels))
-    mended, about_centroid = _mended(contour), contour - np.array(centroid_of(pixels))
+    contour, area_px = _contour(pixels), float(np.count_nonzero(pixels))
+    about_centroid = contour - np.array(centroid_of(pixels))
+    return _within(_mended(contour), about_centroid, area_px, tolerance_px)
+
+
+def drawn_outline(ring: Points, tolerance_px: float) -> Points:
+    """Return a drawn outline, counter-clockwise, about its centroid, with no idle corners.
+
+    Area and centroid are its own.  What the tolerance leaves of the corners is what it leaves of a
+    contour of pixels (:func:`stone_outline`): those that a person drew all stay.
+    """
+    area, *centre = area_and_centroid(ring)
+    about_centroid = ring - np.array(centre)
+    return _within(about_centroid, about_centroid, area, tolerance_px)
+
+
+def _within(ring: Points, contour: Points, area_px: float, tolerance_px: float) -> Points:
+    """Simplify a ring as long as it stays near its contour, which is about the centroid."""
     for halving in range(HALVINGS):
-        corners = _without_straight_ones(_simplified(mended, tolerance_px / 2.0**halving))
+        corners = _without_straight_ones(_simplified(ring, tolerance_px / 2.0**halving))
         if len(corners) > 2 and shapely.Polygon(corners).is_valid:
             fitted = _fitted(corners, area_px)
-            if farthest_px(about_centroid, fitted) <= reach_px(tolerance_px):
+            if farthest_px(contour, fitted) <= reach_px(tolerance_px):
                 return fitted
     return _fitted(_without_straight_ones(contour), area_px)
 

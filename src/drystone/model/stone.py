@@ -9,9 +9,9 @@ import numpy as np
 
 from drystone.errors import Notice, PlanError
 from drystone.kernels.hull import pixel_hull
-from drystone.kernels.polygons import Points
+from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.kernels.raster import Mask
-from drystone.model.outline import centroid_of, solid, stone_outline
+from drystone.model.outline import centroid_of, drawn_outline, solid, stone_outline
 
 OUTLINE_TOLERANCE_PX = 0.35
 """How far the outline may stay away from the contour of the pixels (DESIGN 4.9)."""
@@ -34,6 +34,9 @@ class Stone:
         image's bottom-left corner).
     name : str
         File name of a one-stone mask; empty for label images.
+    drawn : (n, 2) array, optional
+        The outline that its file draws, simple, counter-clockwise, from the mask's bottom-left
+        corner, y up, px.  The mask is its pixels; without it the outline is that of the mask.
 
     Examples
     --------
@@ -47,6 +50,7 @@ class Stone:
     left_px: int = 0
     bottom_px: int = 0
     name: str = ""
+    drawn: Points | None = None
 
     def __post_init__(self) -> None:
         mask = np.array(self.mask, dtype=bool)
@@ -70,8 +74,17 @@ class Stone:
 
     @cached_property
     def local_centroid(self) -> tuple[float, float]:
-        """Centroid of the pixel squares, (x, y) from the mask's bottom-left corner, y up."""
+        """Centroid of the drawn outline, else of the pixels, (x, y) from the mask's bottom left."""
+        if self.drawn is not None and np.array_equal(self.solid, self.mask):
+            return self._outline_centre
         return centroid_of(self.mask)
+
+    @cached_property
+    def _outline_centre(self) -> tuple[float, float]:
+        """Centroid of what the outline encloses."""
+        if self.drawn is None:
+            return centroid_of(self.solid)
+        return area_and_centroid(self.drawn)[1:]
 
     @cached_property
     def solid(self) -> Mask:
@@ -96,13 +109,16 @@ class Stone:
 
         A simple polygon (x, y) relative to the stone's centroid, counter-clockwise; area and
         centroid are those of its solid (:func:`drystone.model.outline.stone_outline`), which of a
-        stone with a hole are others than its own.  It is worked out once for each tolerance.
+        stone with a hole are others than its own.  One that was drawn has its own area and
+        centroid.  It is worked out once for each tolerance.
         """
         outline = self._outlines.get(tolerance_px)
         if outline is None:
-            outline = stone_outline(self.solid, tolerance_px)
-            if not np.array_equal(self.solid, self.mask):
-                outline += np.array(centroid_of(self.solid)) - np.array(self.local_centroid)
+            if self.drawn is None:
+                outline = stone_outline(self.solid, tolerance_px)
+            else:
+                outline = drawn_outline(self.drawn, tolerance_px)
+            outline += np.array(self._outline_centre) - np.array(self.local_centroid)
             outline.flags.writeable = False
             self._outlines[tolerance_px] = outline
         return outline

@@ -128,10 +128,7 @@ def _listed(code: str, texts: list[str]) -> str:
 
 
 _KINDS = {
-    "W175": (
-        "necks and hollows",
-        "Look at them in outlines.html, which cuts and merges them.",
-    ),
+    "W175": ("necks and hollows", "Look at them in outlines.html, which cuts and merges them."),
     "W176": ("left out", "Photograph whole stones, clear of markers."),
     "W177": ("a part may be shadow", "Look at outlines.html; avoid hard light."),
     "W178": ("hardly differs from the ground", "Look at outlines.html; take another ground."),

@@ -14,14 +14,7 @@ from drystone.kernels.profiles import OVER, HeightProfile, StoneProfile, in_a_ro
 from drystone.model.placement import Side
 from drystone.model.wall import Group
 from drystone.planner.build import Proposal
-from drystone.planner.dropping import (
-    Drop,
-    Dropped,
-    drop_terms,
-    in_order,
-    shortlist,
-    wedge_limits,
-)
+from drystone.planner.dropping import Drop, Dropped, drop_terms, in_order, shortlist, wedge_limits
 from drystone.planner.proposing import Apply, Key, Proposer, StoneTrial, one_by_one
 from drystone.planner.settled import settled_in
 from drystone.settle.rest import Repose, SettlingScene, come_to_rest

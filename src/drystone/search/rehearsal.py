@@ -17,13 +17,7 @@ from drystone.model.outlines import Outlined
 from drystone.model.wall import Wall, outlined
 from drystone.physics.building import BuildSettings, build_up, tilt_of
 from drystone.physics.scene import EngineSettings
-from drystone.settle.putting import (
-    FALLEN_DEG,
-    FALLEN_SHARE,
-    fallen_share,
-    moved,
-    put_down,
-)
+from drystone.settle.putting import FALLEN_DEG, FALLEN_SHARE, fallen_share, moved, put_down
 from drystone.settle.settings import SettleSettings
 
 Groups = Sequence[Sequence[Outlined]]

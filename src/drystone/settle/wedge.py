@@ -13,13 +13,7 @@ from numpy.typing import NDArray
 
 from drystone.kernels.crevice import SAME, Crevice, between, crevice, slabs
 from drystone.kernels.firmness import rest_margin
-from drystone.kernels.polygons import (
-    Points,
-    Polygons,
-    area_and_centroid,
-    mirrored_polygon,
-    on_grid,
-)
+from drystone.kernels.polygons import Points, Polygons, area_and_centroid, mirrored_polygon, on_grid
 from drystone.model.wedge_shape import ROUNDING, WedgeRule, WedgeShape, open_sides
 
 Span = tuple[float, float]

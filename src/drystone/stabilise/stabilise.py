@@ -111,11 +111,7 @@ def wedge_sizes_px(mean_height_px: float, settings: StabiliseSettings) -> tuple[
 
 
 def wedge_under(
-    occupied: Mask,
-    pose: Pose,
-    wedge_id: int,
-    mean_height_px: float,
-    settings: StabiliseSettings,
+    occupied: Mask, pose: Pose, wedge_id: int, mean_height_px: float, settings: StabiliseSettings
 ) -> Wedge | None:
     """Cut the wedge that keeps an unstable stone where it is (§3.7, Fig. 9c); None when none does.
 

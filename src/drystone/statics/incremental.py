@@ -36,12 +36,7 @@ from drystone.statics.lp.certificate import (
 )
 from drystone.statics.lp.cone_program import ConeProgram
 from drystone.statics.lp.extremes import Extreme, certified_extreme
-from drystone.statics.lp.highs import (
-    TOLERANCE,
-    HighsSession,
-    WarmBasis,
-    WarmSession,
-)
+from drystone.statics.lp.highs import TOLERANCE, HighsSession, WarmBasis, WarmSession
 from drystone.statics.lp.program import EquilibriumProgram, Units, assemble
 from drystone.statics.model import GROUND, Addition, Direction, RigidBlockModel
 from drystone.statics.result import Certificate, LateralResistance, LimitResult, LimitStatus

@@ -51,17 +51,21 @@ def check_outline(
     edge between the stone and what is around it must be within
     :func:`drystone.model.outline.reach_px` of the outline, on either side, and the outline must
     have the area of the pixels.  The corner of a pixel may be √2/4 px further out than the middles
-    of its edges.
+    of its edges.  Of a stone that its file draws, corners and area are those of the drawing.
     """
-    pixels = ndimage.binary_fill_holes(stone.mask)
-    rim = turn(rim_px(pixels) - np.array(stone.local_centroid), step.angle_deg) + centroid_px
+    if stone.drawn is None:
+        pixels = ndimage.binary_fill_holes(stone.mask)
+        rim, area = rim_px(pixels), float(pixels.sum())
+    else:
+        rim, area = stone.drawn, area_and_centroid(stone.drawn)[0]
+    rim = turn(rim - np.array(stone.local_centroid), step.angle_deg) + centroid_px
     off, allowed = farthest_px(rim, corners), reach_px(tolerance_px)
-    share = area_and_centroid(corners)[0] / int(pixels.sum())
+    share = area_and_centroid(corners)[0] / area
     said = []
     if off > allowed:
-        said.append(f"is {off:.3g} source px from the rim of its pixels; {allowed:.3g} are allowed")
+        said.append(f"is {off:.3g} source px from the rim that was read; {allowed:.3g} are allowed")
     if abs(share - 1.0) > SAME_AREA:
-        said.append(f"has {share:.6g} times the area of its pixels")
+        said.append(f"has {share:.6g} times the area that was read")
     return [Problem("E240", step.step, f"the outline of stone {stone.id} {why}.") for why in said]
 
 

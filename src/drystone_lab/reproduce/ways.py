@@ -247,7 +247,7 @@ def named_variants(
     asked = [
         (wall, way, tuple(wall.run(seed, *changes) for seed in seeds))
         for wall, ways in varied
-        for way, changes in ({"paper": ()} | ways).items()
+        for way, changes in (("paper", ()), *ways.items())
     ]
     return StudyWalls(context, trials_of(context, asked))
 

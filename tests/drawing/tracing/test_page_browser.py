@@ -291,6 +291,44 @@ def test_undo_leads_back_to_the_beginning(visit):
     assert page.get_by_role("button", name="Undo").is_disabled()
 
 
+def test_what_is_shown_is_what_there_is(visit):
+    """Photograph and stones are painted anew when they change, and the line over them always."""
+    page = visit(viewport={"width": 1280, "height": 800})
+    view, canvas = View(page), page.locator("canvas")
+    page.keyboard.press("d")
+
+    def shown():
+        page.evaluate("() => new Promise((done) => requestAnimationFrame(() => done()))")
+        return canvas.screenshot()
+
+    seen = [shown()]
+    page.mouse.move(*view(300, 250))
+    page.mouse.down()
+    for at in ((500, 250), (520, 400)):
+        page.mouse.move(*view(*at), steps=4)
+        seen.append(shown())  # a longer line
+    page.mouse.up()
+    seen.append(shown())  # a stone of three corners, chosen
+    page.keyboard.press("Delete")
+    assert shown() == seen[0]
+    page.keyboard.press("Escape")
+    page.keyboard.press("v")
+    page.mouse.click(*view(130, 350))
+    seen.append(shown())  # another one is chosen
+    page.keyboard.press("u")
+    seen.append(shown())  # nobody builds with it
+    page.keyboard.press("Escape")
+    page.keyboard.press("Control+z")
+    page.mouse.move(*view(600, 460))
+    page.mouse.down()
+    page.mouse.move(*view(660, 440), steps=3)
+    seen.append(shown())  # all of it is moved
+    page.mouse.up()
+    page.keyboard.press("0")
+    assert shown() == seen[0]
+    assert len(set(seen)) == len(seen)
+
+
 def test_a_stone_that_is_redrawn_or_numbered_keeps_its_number(visit):
     page = visit(viewport={"width": 1280, "height": 800})
     view = View(page)

@@ -3,10 +3,7 @@
 import numpy as np
 import pytest
 
-from drystone_lab.reproduce.noise_sets import (
-    measured,
-    reference_of,
-)
+from drystone_lab.reproduce.noise_sets import measured, reference_of
 from drystone_lab.walls import NOISY
 
 

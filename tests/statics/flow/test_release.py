@@ -221,11 +221,7 @@ def pull_that_slides_it_out(model, half_angle_deg, mu):
     arms = (np.array([-1.0 - x, 5.0 - s / c - y]), np.array([-x, 5.0 - y]))
     turning = [arm[0] * f[1] - arm[1] * f[0] for arm, f in zip(arms, (on_lip, at_tip), strict=True)]
     equations = np.array(
-        [
-            [on_lip[0], at_tip[0], -block.weight],
-            [on_lip[1], at_tip[1], 0.0],
-            [*turning, 0.0],
-        ]
+        [[on_lip[0], at_tip[0], -block.weight], [on_lip[1], at_tip[1], 0.0], [*turning, 0.0]]
     )
     first, second, alpha = np.linalg.solve(equations, [0.0, block.weight, 0.0])
     assert min(first, second, alpha) > 0.0

@@ -13,12 +13,7 @@ from scipy.sparse import csc_array
 from drystone.contacts.blocks import model_from_labels
 from drystone.statics.incremental import HighsAnalysis
 from drystone.statics.local_update import least
-from drystone.statics.lp.highs import (
-    HighsSession,
-    WarmBasis,
-    WarmSession,
-    corrected,
-)
+from drystone.statics.lp.highs import HighsSession, WarmBasis, WarmSession, corrected
 from drystone.statics.lp.program import assemble
 from drystone.statics.result import LimitStatus
 from tests.statics.growth import PX, Pivots, empty, upwards, with_block

@@ -29,6 +29,8 @@ from drystone.whole_files import write_whole
 PHOTO, PREVIEW = "photo.jpg", "preview.png"
 WRITTEN = (LABELS, PHOTO, SIDECAR, PREVIEW, PAGE)
 QUALITY = 90
+KEPT = ("source", "from_photo", "markers", "P_from_marker")
+"""What the page saves beside the outlines."""
 
 
 def add(command: argparse.ArgumentParser) -> None:
@@ -130,11 +132,7 @@ def _write(
     """Write stones.png, photo.jpg, stones.json, preview.png and outlines.html."""
     from drystone.drawing.files import save  # noqa: PLC0415 - matplotlib is slow
     from drystone.drawing.pictures.stones import plot_photo  # noqa: PLC0415
-    from drystone.drawing.tracing.page import (  # noqa: PLC0415
-        OutlinePage,
-        rings_of,
-        write_outline_page,
-    )
+    from drystone.drawing.tracing.page import OutlinePage, rings_of, write_outline_page  # noqa: PLC0415
 
     labels, px_per_m = result.found.labels, result.px_per_m
     _save_image(labels, folder / LABELS, "PNG")
@@ -147,7 +145,7 @@ def _write(
     save(axes.figure, folder / PREVIEW, dpi=150)
     found = cut(labels.astype(np.int32), np.arange(1, result.found.count + 1))
     rings = rings_of([patch.to_stone() for patch in found], height)
-    kept = {name: details[name] for name in ("source", "from_photo")}
+    kept = {name: details[name] for name in KEPT}
     title = f"Stones of {details['source']['name']}"
     write_outline_page(
         folder / PAGE,

@@ -27,11 +27,7 @@ def add(command: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Write the page, and say what to do with it."""
-    from drystone.drawing.tracing.page import (  # noqa: PLC0415 - slow import
-        OutlinePage,
-        rings_of,
-        write_outline_page,
-    )
+    from drystone.drawing.tracing.page import OutlinePage, rings_of, write_outline_page  # noqa: PLC0415 - slow import
 
     path, folder = Path(arguments.photo), Path(arguments.output)
     asked = [path] if arguments.proposals is None else [path, Path(arguments.proposals)]

@@ -110,6 +110,8 @@ class Page {
     this.card = make("section", { class: "card", "aria-label": "Chosen stones" });
     this.doubtBox = make("section", { class: "doubts", "aria-label": "Doubts" });
     this.list = make("ul", { class: "stones" });
+    this.all = make("details", { toggle: () => this.fillList() }, make("summary", {}, "All stones"), this.list);
+    this.still = make("canvas");
     const actions = [
       button("Merge", "M", () => this.merge()), button("Delete", "Del", () => this.remove()),
       this.acceptButton, this.undoButton, this.redoButton,
@@ -129,11 +131,11 @@ class Page {
       make("main", {},
         make("div", { class: "stage" }, this.canvas, this.said),
         make("aside", {}, this.card, this.doubtBox,
-          make("details", {}, make("summary", {}, "All stones"), this.list),
+          this.all,
           make("details", {}, make("summary", {}, "Keys"), this.keys()))),
     );
     this.image = new Image();
-    this.image.addEventListener("load", () => this.draw());
+    this.image.addEventListener("load", () => this.reduce());
     this.image.src = data.photo.shown;
     for (const name of ["pointerdown", "pointermove", "pointerup", "pointercancel"]) {
       this.canvas.addEventListener(name, (event) => this.pointer(event));
@@ -418,7 +420,8 @@ class Page {
       if (event.type === "pointerup" && this.drag) this.end(at, reach, event);
       this.drag = null;
     }
-    this.draw();
+    const lineOnly = this.drag ? this.drag.kind === "stroke" || !this.drag.moved : this.fingers.size === 0;
+    this.draw(!(lineOnly && /down|move/.test(event.type)));
   }
 
   begin(at, reach, event) {
@@ -640,12 +643,17 @@ class Page {
     for (const [name, one] of Object.entries(this.buttons)) one.setAttribute("aria-pressed", String(name === this.tool));
     this.fillCard();
     this.fillDoubts();
-    refill(this.list, [...state.stones].sort((a, b) => a.id - b.id).map((stone) =>
+    this.fillList();
+    this.draw();
+  }
+
+  fillList() {
+    if (!this.all.open) return;
+    refill(this.list, [...this.state.stones].sort((a, b) => a.id - b.id).map((stone) =>
       make("li", {}, make("button", {
         type: "button", "aria-pressed": String(this.chosen.includes(stone.id)),
         click: () => { this.choose([stone.id]); this.look(boxOf(stone.ring)); },
       }, this.sayStone(stone)))));
-    this.draw();
   }
 
   fillCard() {
@@ -691,10 +699,23 @@ class Page {
     const ratio = window.devicePixelRatio || 1;
     const [wide, high] = [this.canvas.clientWidth, this.canvas.clientHeight];
     if (!wide || !high) return;
-    this.canvas.width = Math.round(wide * ratio);
-    this.canvas.height = Math.round(high * ratio);
+    for (const one of [this.canvas, this.still]) {
+      one.width = Math.round(wide * ratio);
+      one.height = Math.round(high * ratio);
+    }
     if (!this.touched) this.fit();
+    this.stale = true;
     this.paint();
+  }
+
+  /** Keep smaller copies: a large photograph takes too long to be scaled in every frame. */
+  async reduce() {
+    this.copies = [this.image];
+    this.draw();
+    while (this.copies[0].width > 1000) {
+      const resizeWidth = Math.ceil(this.copies[0].width / 2);
+      this.copies.unshift(await createImageBitmap(this.copies[0], { resizeWidth, resizeQuality: "medium" }));
+    }
   }
 
   fit() {
@@ -722,7 +743,9 @@ class Page {
     this.draw();
   }
 
-  draw() {
+  /** Paint in the next frame; photograph and stones only where they are not as before. */
+  draw(all = true) {
+    this.stale ||= all;
     this.frame ??= window.requestAnimationFrame(() => {
       this.frame = null;
       this.paint();
@@ -734,22 +757,23 @@ class Page {
     const ratio = window.devicePixelRatio || 1;
     const style = window.getComputedStyle(this.canvas);
     const colour = (name) => style.getPropertyValue(name).trim();
-    context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    const [wide, high] = [this.canvas.clientWidth, this.canvas.clientHeight];
-    context.clearRect(0, 0, wide, high);
-    // Nothing but the line changes during a stroke: large photographs are scaled once.
-    const place = this.drag?.kind === "stroke" ? [this.left, this.top, this.k, wide, high].join() : "";
-    if (place && place === this.still?.place) context.drawImage(this.still.picture, 0, 0, wide, high);
-    else this.paintStones(context, colour);
-    if (!place) this.still = null;
-    else if (place !== this.still?.place) {
-      const picture = make("canvas", { width: this.canvas.width, height: this.canvas.height });
-      picture.getContext("2d").drawImage(this.canvas, 0, 0);
-      this.still = { place, picture };
+    const cleared = (one) => {
+      one.setTransform(1, 0, 0, 1, 0, 0);
+      one.clearRect(0, 0, this.canvas.width, this.canvas.height);
+    };
+    if (this.stale) {
+      const under = this.still.getContext("2d");
+      cleared(under);
+      under.setTransform(ratio, 0, 0, ratio, 0, 0);
+      this.paintStones(under, colour, ratio);
+      this.stale = false;
     }
+    cleared(context);
+    context.drawImage(this.still, 0, 0);
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
     if (this.line.length) {
       this.stroke(context, this.path(this.line), colour("--chosen"), []);
-      for (const point of place ? [] : this.line) this.ring(context, this.toScreen(point), 4, colour("--chosen"));
+      for (const point of this.drag?.kind === "stroke" ? [] : this.line) this.ring(context, this.toScreen(point), 4, colour("--chosen"));
     }
     if (this.cursor) {
       const [u, v] = this.cursor;
@@ -758,23 +782,32 @@ class Page {
     }
   }
 
-  paintStones(context, colour) {
+  paintStones(context, colour, ratio) {
     const { width, height } = this.data.photo;
-    if (this.image.complete && this.image.naturalWidth) {
+    if (this.copies) {
       context.imageSmoothingEnabled = this.k < 4;
-      context.drawImage(this.image, this.left, this.top, width * this.k, height * this.k);
+      const copy = this.copies.find((one) => one.width >= width * this.k * ratio) ?? this.image;
+      context.drawImage(copy, this.left, this.top, width * this.k, height * this.k);
     }
     const state = this.drag?.next ?? this.state;
     const [open, now] = [this.doubts, this.lookedAt];
     const doubtful = new Set(open.flatMap((doubt) => doubt.stones));
+    // Outlines of one look are one path.
+    const looks = new Map();
     for (const stone of state.stones) {
-      const chosen = this.chosen.includes(stone.id);
-      const path = this.path(stone.ring, true);
-      context.fillStyle = chosen ? colour("--fill") : stone.use ? "transparent" : colour("--unused");
-      context.fill(path);
-      this.stroke(context, path, chosen ? colour("--chosen") : doubtful.has(stone.id) ? colour("--doubt") : colour("--stone"), stone.proposed ? [7, 5] : []);
-      this.label(context, stone);
+      const [chosen, dash] = [this.chosen.includes(stone.id), stone.proposed ? [7, 5] : []];
+      const line = chosen ? "--chosen" : doubtful.has(stone.id) ? "--doubt" : "--stone";
+      const fill = chosen ? "--fill" : stone.use ? "" : "--unused";
+      const name = [line, fill, dash].join();
+      if (!looks.has(name)) looks.set(name, { line, fill, dash, path: new Path2D() });
+      this.path(stone.ring, true, looks.get(name).path);
     }
+    for (const { line, fill, dash, path } of looks.values()) {
+      context.fillStyle = colour(fill);
+      if (fill) context.fill(path);
+      this.stroke(context, path, colour(line), dash);
+    }
+    for (const stone of state.stones) this.label(context, stone);
     if (this.chosen.length === 1 && this.tool === "select") this.handles(context, stoneOf(state, this.chosen[0]), colour);
     // Where it is, when that is not a stone with an outline of that colour.
     for (const doubt of open) {
@@ -784,8 +817,7 @@ class Page {
     if (state.ground) this.stroke(context, this.path(state.ground), colour("--ground"), [12, 6]);
   }
 
-  path(points, closed = false) {
-    const path = new Path2D();
+  path(points, closed = false, path = new Path2D()) {
     points.forEach((point, i) => {
       const [u, v] = this.toScreen(point);
       if (i) path.lineTo(u, v);

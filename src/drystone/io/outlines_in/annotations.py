@@ -25,6 +25,7 @@ from drystone.io.outlines_in.model import (
     side_px,
 )
 from drystone.io.patches import PlacedMask
+from drystone.io.photo_beside import photograph_in
 from drystone.io.pictures import check_size, opened
 from drystone.io.read_settings import MOST_PX_PER_M, ReadSettings
 
@@ -85,8 +86,8 @@ def _of_page(file: OutlineFile, notices: list[Notice], own: Mapping[str, Any]) -
     ground = None if ends is None else np.array(ends, float).reshape(2, 2)
     if ground is not None and not (np.ptp(ground[:, 0]) > 0.0 and np.abs(ground).max() <= MOST_PX):
         raise ValueError("the ground is not a line from left to right")
-    scale = None if scale is None else float(scale)
-    return replace(file, stones=kept, notices=notices, px_per_m=scale, ground=ground)
+    file = replace(file, stones=kept, notices=notices, photograph=photograph_in(own))
+    return replace(file, px_per_m=None if scale is None else float(scale), ground=ground)
 
 
 def _corners(kind: str, points: Any) -> Any:

@@ -17,13 +17,7 @@ from scipy.spatial import KDTree
 from drystone.errors import InputError, Notice
 from drystone.io.file_errors import damaged, listed, short, unusable
 from drystone.io.foreign import extra, foreign
-from drystone.io.outlines_in.model import (
-    METRES,
-    OutlinedStone,
-    OutlineFile,
-    left_aside,
-    number_in,
-)
+from drystone.io.outlines_in.model import METRES, OutlinedStone, OutlineFile, left_aside, number_in
 from drystone.io.outlines_in.silhouettes import shadow
 from drystone.io.outlines_in.views import asked
 from drystone.io.read_settings import ReadSettings

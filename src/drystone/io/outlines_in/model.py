@@ -68,6 +68,7 @@ class OutlineFile:
     size_px: tuple[int, int] | None = None  # width, height of the image of a file in px, if said
     px_per_m: float | None = None  # px of that image in a metre, if said
     ground: Points | None = None  # (2, 2), two points of the ground that a wall stands on, if said
+    photograph: tuple[tuple[str, Any], ...] = ()  # see `Source`
     notices: Sequence[Notice] = ()
     in_space: bool = False  # its coordinates have three axes, so it can be asked which is up
     names_images: bool = False  # it says of which image each stone is, so one can be asked for

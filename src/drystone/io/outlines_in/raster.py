@@ -2,21 +2,18 @@
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
+import shapely
 
 from drystone.errors import LabelImageError, Notice
 from drystone.io.file_errors import listed, short
 from drystone.io.outlines_in.fill import check_reach, pixels_of, trimmed
 from drystone.io.outlines_in.model import OutlinedStone, OutlineFile
-from drystone.io.outlines_in.nested import (
-    Seen,
-    meeting_boxes,
-    not_stones,
-    of_one_picture,
-    said_of,
-)
+from drystone.io.outlines_in.nested import Seen, meeting_boxes, not_stones, of_one_picture, said_of
+from drystone.io.outlines_in.silhouettes import outer_edge
 from drystone.io.patches import PlacedMask, StonePatch
 from drystone.io.pictures import check_size
 from drystone.io.read_settings import ReadSettings
@@ -79,7 +76,8 @@ def rastered(
             empty.append(name)
             continue
         place = inside.mask, inside.row, inside.col
-        patches.append(StonePatch(*place, stone.id or 0, height, None, stone.name))
+        drawn = _drawn(stone, width, height)
+        patches.append(StonePatch(*place, stone.id or 0, height, None, stone.name, drawn))
     if lost:
         notices.append(Notice("W119", f"outside the image, cut off: {listed(lost, '; ')}."))
     if empty:
@@ -154,6 +152,26 @@ def _in_picture(
         return np.asarray(ring * (scale, sign * scale) - shift)
 
     return [stone.moved(move) for stone in file.stones], (width, height)
+
+
+def _drawn(stone: OutlinedStone, width: int, height: int) -> Points | None:
+    """Return the outer edge, (n, 2), of a stone in px of its picture, clockwise as y is down.
+
+    None when it is known by its pixels only.
+    """
+    if stone.masks or any(map(_is_of_pixels, stone.rings)):
+        return None
+    with suppress(ValueError):  # crossings without end
+        edge = outer_edge(stone.rings, shapely.box(0.0, 0.0, width, height))
+        return None if edge is None else edge[::-1]
+    return None
+
+
+def _is_of_pixels(ring: Points) -> bool:
+    """Tell a line along pixels, whose steps are not those of a stone: all eight ways, no other."""
+    across, down = np.abs(np.roll(ring, -1, axis=0) - ring).T
+    least = np.minimum(np.minimum(across, down), np.abs(across - down))
+    return len(ring) > 12 and bool((least < 1e-6).all())  # a dressed stone may have 12
 
 
 def _reach(stones: Sequence[OutlinedStone]) -> tuple[int, int]:

@@ -99,6 +99,21 @@ def shadow(polygons: Sequence[Points]) -> tuple[Area, ...]:
     return areas_of(shapely.union_all(_valid(shapes)))
 
 
+def outer_edge(rings: Sequence[Points], within: Any = None) -> Points | None:
+    """Return the edge, (n, 2), counter-clockwise and not closed, of what rings enclose.
+
+    Holes are filled, and of pieces the largest counts; None without an area.  ValueError for too
+    many crossings.
+    """
+    filled = shapely.union_all([shapely.Polygon(part.rings[0]) for part in shadow(rings)])
+    parts = [area.rings[0] for area in areas_of(filled if within is None else filled & within)]
+    if not parts:
+        return None
+    largest = max(map(shapely.Polygon, parts), key=shapely.area)
+    shape = shapely.orient_polygons(shapely.remove_repeated_points(largest, 1e-9))
+    return np.asarray(shapely.get_coordinates(shape.exterior)[:-1])
+
+
 def _valid(shapes: NDArray[Any]) -> NDArray[Any]:
     """Make valid polygons; ValueError when that takes too long, as it is quadratic in crossings."""
     left = _MOST_CROSSINGS

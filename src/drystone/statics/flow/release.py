@@ -145,9 +145,7 @@ class _States:
         forth, back = slip > clear, slip < -clear
         none = np.column_stack((~presses | forth, ~presses | back)).ravel()
         upper = np.where(none, 0.0, INFINITY)
-        least = np.concatenate(
-            (np.zeros(len(slip)), np.where(presses & ~back, 0.0, -INFINITY)),
-        )
+        least = np.concatenate((np.zeros(len(slip)), np.where(presses & ~back, 0.0, -INFINITY)))
         greatest = np.concatenate(
             (np.where(presses, 0.0, INFINITY), np.where(presses & ~forth, 0.0, INFINITY))
         )

@@ -101,11 +101,7 @@ def _with_friction(
 
 
 def _shaken_interfaces(
-    model: RigidBlockModel,
-    settings: ScatterSettings,
-    steps: Floats,
-    errors: Floats,
-    turns: Floats,
+    model: RigidBlockModel, settings: ScatterSettings, steps: Floats, errors: Floats, turns: Floats
 ) -> tuple[Interface, ...]:
     """Move the ends of all k interfaces with their stones, and turn them.
 
