@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from threading import Timer
 
 from rich.console import Console
 from rich.progress import (
@@ -78,13 +79,33 @@ def busy(*, quiet: bool) -> Iterator[Callable[[str], None]]:
 
 
 @contextmanager
-def _shown(*columns: ProgressColumn, quiet: bool) -> Iterator[Progress | None]:
-    """Show a bar; None when nobody wants one, or stderr is not a terminal."""
+def waiting(text: str, *, quiet: bool) -> Iterator[None]:
+    """Show that something is being done once it has taken two seconds."""
+    with _shown(TimeElapsedColumn(), quiet=quiet, after_s=2.0) as bar:
+        if bar is not None:
+            bar.add_task(text, total=None)
+        yield
+
+
+@contextmanager
+def _shown(
+    *columns: ProgressColumn, quiet: bool, after_s: float = 0.0
+) -> Iterator[Progress | None]:
+    """Show a bar after some time; None when nobody wants one, or stderr is not a terminal."""
     console = Console(stderr=True)
     if quiet or not console.is_terminal:
         yield None
         return
     text = TextColumn("{task.description}")
     eta = (BarColumn(bar_width=16), TextColumn("eta"), TimeRemainingColumn(compact=True))
-    with Progress(text, *columns, *eta, console=console, transient=True) as bar:
+    bar = Progress(text, *columns, *eta, console=console, transient=True)
+    timer = Timer(after_s, bar.start)
+    timer.daemon = True
+    (timer.start if after_s else bar.start)()
+    try:
         yield bar
+    finally:
+        timer.cancel()
+        if after_s:
+            timer.join()  # it may be starting the bar just now
+        bar.stop()
