@@ -161,13 +161,15 @@ def main() -> None:
     option("--plans-of", default=".", metavar="CHECKOUT", help="source tree that plans")
     option("--against", nargs="*", default=[], metavar="FOLDER", help="compare with these")
     asked = parser.parse_args()
-    errors = [f"{loop}, {level}" for loop in asked.loops for level in ("robot", "hand")]
-    heads = ["wall", *(f"{one}: whole, fallen" for one in errors), *(f"weakest tilt over mu, {one}" for one in asked.loops),
-             "placed", "F_AV", "F_AH", "F_LR", "CPU s"]  # fmt: skip
+    heads = ["wall"]
+    heads += [f"{x}, {y}: whole, fallen" for x in asked.loops for y in ("robot", "hand")]
+    heads += [f"tilt/mu none, robot, hand, {loop}" for loop in asked.loops]
+    heads += ["placed", "F_AV", "F_AH", "F_LR", "CPU s"]
     sys.stdout.write(f"{' | '.join(heads)}\n")
     for target in chosen(WALLS, asked.only):
         for folder in [asked.folder, *asked.against]:
-            rows, plans = [], []
+            rows: list[dict[str, Any]] = []
+            plans: list[dict[str, float]] = []
             for seed in range(asked.seeds):
                 mine = argparse.Namespace(**{**vars(asked), "folder": folder})
                 place = planned(target.name, seed, mine)

@@ -23,6 +23,9 @@ def test_errors_can_be_given_as_lengths(settled, run):
     assert report["errors"] == {"placement": 2.0, "angle_deg": 1.5, "outline": 0.5}
     assert report == run("rehearse", settled, *asked).json()
     assert report != run("rehearse", settled, *asked, "--seed", 1).json()
+    # Friction does not change the other errors; hardly any lets stones slide off each other.
+    assert report == run("rehearse", settled, *asked, "--mu", 0.58).json()
+    assert report != run("rehearse", settled, *asked, "--mu", "0.05:0.06").json()
 
 
 def test_the_rest_is_planned_again_after_every_stone(settled, run):

@@ -13,6 +13,11 @@ KITE = np.array([[0.0, 0.0], [0.8, 1.0], [0.0, 1.2], [-0.8, 1.0]])
 """A stone with a point below."""
 
 
+def at(loop, x, y):
+    """A stone moved to a place."""
+    return loop + np.array([x, y])
+
+
 def wall(**stones):
     """The foot and stones named by letters, from 3 on."""
     return Masonry(FOOT | dict(enumerate(stones.values(), 3)))
@@ -35,9 +40,9 @@ def test_bricks_in_bond_keep_the_rules(rule, masonry):
 @pytest.mark.parametrize(
     ("stone", "words"),
     [
-        (KITE + (1.0, 1.0), "rests on a point, 0.05 of its size wide"),
+        (at(KITE, 1.0, 1.0), "rests on a point, 0.05 of its size wide"),
         # Down in the gap, between steep sides.
-        (KITE + (2.3, 0.63), "hangs between its neighbours, on no seat"),
+        (at(KITE, 2.3, 0.63), "hangs between its neighbours, on no seat"),
         (box(3.9, 1, 2, 1), "its middle is 0.20 of its size beyond its seat"),
         (box(3.65, 1, 2, 1), "its middle is 0.03 of its size beyond its seat"),
         (box(3.5, 1, 2, 1), "its middle is only 0.06 of its size within its seat"),
@@ -51,7 +56,7 @@ def test_a_stone_shall_sit(stone, words):
 
 
 def test_a_wall_and_its_mirror_image_are_named_alike():
-    loops = FOOT | {3: KITE + (1.0, 1.0), 4: box(3.9, 1, 2, 1)}
+    loops = FOOT | {3: at(KITE, 1.0, 1.0), 4: box(3.9, 1, 2, 1)}
     for rule in ("seats", "voids"):
         assert said(rule, Masonry(loops))[0] == said(rule, Masonry(mirrored(loops)))[0]
         one, other = (find(rule, Masonry(both_ways)) for both_ways in (loops, mirrored(loops)))
@@ -64,7 +69,7 @@ def test_small_stones_shall_not_make_a_tower():
     assert (number, cases) == (3.0, [((3, 4, 5), "3 small stones on each other")])
     # Chips beside each other, or with a stone between, are no tower; nor is one that leans on a
     # large stone too.
-    beside = wall(a=chips[0], b=chips[0] + (0.6, 0), c=box(0, 1.3, 2, 1), d=chips[0] + (0, 1.3))
+    beside = wall(a=chips[0], b=chips[0] + [0.6, 0], c=box(0, 1.3, 2, 1), d=chips[0] + [0, 1.3])
     assert said("towers", beside) == (1.0, [])
     step = wall(a=chips[0], b=box(0.9, 1, 2, 0.3), c=box(0.5, 1.3, 0.7, 0.3))
     assert said("towers", step) == (1.0, [])
@@ -85,7 +90,7 @@ def test_no_corner_shall_hang_over_a_void():
 def test_a_wedge_shall_be_a_chip():
     slope = np.array([[0.2, 1.0], [1.2, 1.5], [1.2, 1.6], [0.2, 1.6]])
     below = {1: np.array([[0.0, 0], [2.0, 0], [2.0, 1.9], [0.0, 0.9]]), 3: box(0, 1.9, 2, 1)}
-    loops = below | {7: slope + (0, 0.02)}
+    loops = below | {7: at(slope, 0, 0.02)}
     number, cases = said("wedge_sizes", Masonry(loops, wedge_ids={7}))
     assert number == pytest.approx(0.35 / 2)
     assert cases == [((7, 3), "the wedge is 0.18 of the stone on it, on a slope of 27°")]

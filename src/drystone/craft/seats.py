@@ -12,9 +12,6 @@ from drystone.craft.finding import Case, Evidence, Limit, Line
 from drystone.craft.masonry import Masonry
 from drystone.kernels.profiles import Floats
 
-GROUND = 0
-"""What is below a stone of the foot; no stone has this id."""
-
 
 @dataclass(frozen=True, eq=False)
 class Under:
@@ -23,7 +20,6 @@ class Under:
     x: Floats  # (n,)
     low: Floats  # (n,) height of the stone's lower side
     gap: Floats  # (n,) air down to the next stone, wedge or the ground
-    below: tuple[int, ...]  # (n,) the next, `GROUND` for the ground
     spacing: float  # of columns
 
     def seat(self, near: float, steepest: float, joint: float) -> Floats:
@@ -38,18 +34,18 @@ class Under:
         level &= self.gap <= joint
         if not level.any():
             return self.x[:0]
-        return self.x[level & (self.gap <= self.gap[level].min() + near)]
+        return np.asarray(self.x[level & (self.gap <= self.gap[level].min() + near)])
 
 
 def undersides(masonry: Masonry) -> dict[int, Under]:
     """Return the lower sides of all stones that any column cuts."""
-    found: dict[int, list[tuple[float, float, float, int]]] = {i: [] for i in masonry.stones}
+    found: dict[int, list[tuple[float, float, float]]] = {i: [] for i in masonry.stones}
     ground, columns = masonry.box[1], masonry.columns
     for x, runs in zip(columns.places.tolist(), columns.runs, strict=True):
-        top, owner = ground, GROUND
+        top, owner = ground, 0
         for run in runs:
             if run.id in found and owner != run.id:
-                found[run.id].append((x, run.begin, max(0.0, run.begin - top), owner))
+                found[run.id].append((x, run.begin, max(0.0, run.begin - top)))
             if run.end > top:
                 top, owner = run.end, run.id
     sides = {}
@@ -57,8 +53,8 @@ def undersides(masonry: Masonry) -> dict[int, Under]:
         # Of a stone that a column cuts twice the lower piece is its lower side.
         lowest = {cell[0]: cell for cell in reversed(cells)}
         if lowest:
-            x, low, gap, below = zip(*(lowest[x] for x in sorted(lowest)), strict=True)
-            sides[stone] = Under(*map(np.array, (x, low, gap)), below, columns.spacing)
+            told = [lowest[x] for x in sorted(lowest)]
+            sides[stone] = Under(*np.array(told).T, columns.spacing)
     return sides
 
 
@@ -72,7 +68,8 @@ def seats(masonry: Masonry) -> Evidence:
         size, middle = masonry.areas[stone] ** 0.5, masonry.centroids[stone][0]
         bearing = under.seat(settings.near * height, settings.slope, settings.joint * height)
         if not len(bearing):
-            low, left, right = float(under.low.min()), *under.x[[0, -1]].tolist()
+            low = float(under.low.min())
+            left, right = under.x[[0, -1]].tolist()
             line = np.array([[left, low], [right, low]])
             cases.append(Case((stone,), 1.0, "hangs between its neighbours, on no seat", (line,)))
             continue
@@ -156,9 +153,9 @@ def wedge_sizes(masonry: Masonry, limit: Limit) -> Evidence:
     widest = masonry.settings.joint * masonry.mean_height
     for x, runs in zip(masonry.columns.places.tolist(), masonry.columns.runs, strict=True):
         for run, above in pairwise(runs):
-            if run.id in carried and above.id in masonry.stones:
-                if above.begin - run.end <= widest:
-                    carried[run.id].add(above.id)
+            near = above.begin - run.end <= widest
+            if near and run.id in carried and above.id in masonry.stones:
+                carried[run.id].add(above.id)
         for run in runs:
             if run.id in foot:
                 foot[run.id].append((x, run.begin))
