@@ -42,8 +42,8 @@ from drystone import plan_wall
 from drystone.io.plan_folder import write_plan_folder
 from drystone_lab import walls
 name, seed, folder, data, budget = sys.argv[1:]
-every = [one for one in (walls.R, walls.PR_600, walls.IR, *walls.NOISY, *walls.UNSEEN)]
-(target,) = (one for one in every if one.name == name)
+known = [one for of in vars(walls).values() for one in (of if isinstance(of, tuple) else (of,))]
+target = next(one for one in known if isinstance(one, walls.Target) and one.name == name)
 stones = target.stones(Path(data) if data else None)
 if stones is not None:
     start = time.process_time()
@@ -146,7 +146,7 @@ def line(
     return " | ".join(cells)
 
 
-def main() -> None:
+def main(argv: list[str] | None = None) -> None:
     """Print a row for each wall and folder."""
     parser = argparse.ArgumentParser(description=__doc__)
     option = parser.add_argument
@@ -160,7 +160,7 @@ def main() -> None:
     option("--budget", type=int, help="walls of a search (default: that of the settings)")
     option("--plans-of", default=".", metavar="CHECKOUT", help="source tree that plans")
     option("--against", nargs="*", default=[], metavar="FOLDER", help="compare with these")
-    asked = parser.parse_args()
+    asked = parser.parse_args(argv)
     heads = ["wall"]
     heads += [f"{x}, {y}: whole, fallen" for x in asked.loops for y in ("robot", "hand")]
     heads += [f"tilt/mu none, robot, hand, {loop}" for loop in asked.loops]

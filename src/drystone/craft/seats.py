@@ -54,7 +54,8 @@ def undersides(masonry: Masonry) -> dict[int, Under]:
         lowest = {cell[0]: cell for cell in reversed(cells)}
         if lowest:
             told = [lowest[x] for x in sorted(lowest)]
-            sides[stone] = Under(*np.array(told).T, columns.spacing)
+            x, low, gap = np.array(told).T
+            sides[stone] = Under(x, low, gap, columns.spacing)
     return sides
 
 
