@@ -92,7 +92,8 @@ def rows_of(
         errors = BuilderErrors.of_precision(precision, mean_size(groups))
         for loop in ["open"] if level == "none" else asked.loops:
             for run in range(1 if level == "none" else asked.runs):
-                if (level, loop, run) not in have:
+                there = have.get((level, loop, run))
+                if there is None or (run < asked.tilts and there["tilt"] is None):
                     start = time.process_time()
                     found = LOOPS[loop](groups, errors, np.random.default_rng([99, run]))
                     if run < asked.tilts and found.tilt is None:

@@ -71,20 +71,14 @@ def counting_bar(name: str, total: int, *, quiet: bool) -> Iterator[Callable[[in
 
 
 @contextmanager
-def busy(*, quiet: bool) -> Iterator[Callable[[str], None]]:
-    """Show that something is being done, and for how long; yields what is to be told what."""
-    with _shown(TimeElapsedColumn(), quiet=quiet) as bar:
-        task = TaskID(0) if bar is None else bar.add_task("", total=None)
+def busy(text: str = "", *, quiet: bool, after_s: float = 0.0) -> Iterator[Callable[[str], None]]:
+    """Show, once it has taken some time, that something is being done, and for how long.
+
+    Yields what is to be told what.
+    """
+    with _shown(TimeElapsedColumn(), quiet=quiet, after_s=after_s) as bar:
+        task = TaskID(0) if bar is None else bar.add_task(text, total=None)
         yield lambda text: None if bar is None else bar.update(task, description=text)
-
-
-@contextmanager
-def waiting(text: str, *, quiet: bool) -> Iterator[None]:
-    """Show that something is being done once it has taken two seconds."""
-    with _shown(TimeElapsedColumn(), quiet=quiet, after_s=2.0) as bar:
-        if bar is not None:
-            bar.add_task(text, total=None)
-        yield
 
 
 @contextmanager

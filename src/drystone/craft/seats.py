@@ -4,12 +4,12 @@ All is read off the columns of the wall: what is next below each stone, and how 
 """
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
 from drystone.craft.finding import Case, Evidence, Limit, Line
 from drystone.craft.masonry import Masonry
+from drystone.craft.pins import resting_on
 from drystone.kernels.profiles import Floats
 
 
@@ -149,31 +149,22 @@ def wedge_sizes(masonry: Masonry, limit: Limit) -> Evidence:
     wedges = sorted(set(masonry.wedge_ids))
     if not wedges:
         return Evidence(None, note="No wedges are known.")
-    carried: dict[int, set[int]] = {wedge: set() for wedge in wedges}
-    foot: dict[int, list[tuple[float, float]]] = {wedge: [] for wedge in wedges}
-    widest = masonry.settings.joint * masonry.mean_height
-    for x, runs in zip(masonry.columns.places.tolist(), masonry.columns.runs, strict=True):
-        for run, above in pairwise(runs):
-            near = above.begin - run.end <= widest
-            if near and run.id in carried and above.id in masonry.stones:
-                carried[run.id].add(above.id)
-        for run in runs:
-            if run.id in foot:
-                foot[run.id].append((x, run.begin))
     shares, cases = [0.0], []
     for wedge in wedges:
-        if not carried[wedge]:
+        carried = resting_on(masonry, wedge)
+        if not carried:
             continue
-        stone = min(carried[wedge], key=lambda i: (masonry.areas[i], i))
-        share = masonry.areas[wedge] / masonry.areas[stone]
-        shares.append(share)
-        if share > limit.good + 1e-9:
-            x, low = np.array(foot[wedge]).T
-            slope = np.polyfit(x, low, 1)[0] if len(x) > 1 else 0.0
-            steep = float(np.degrees(np.arctan(abs(slope))))
+        stone = min(carried, key=lambda i: (masonry.areas[i], i))
+        shares.append(masonry.areas[wedge] / masonry.areas[stone])
+        if shares[-1] > limit.good + 1e-9:
+            lower = masonry.loops[wedge]
+            # The face that it stands on: of its edges that look down, the longest.
+            edges = np.roll(lower, -1, axis=0) - lower
+            at = int(np.where(edges[:, 0] > 0, np.hypot(*edges.T), -1.0).argmax())
+            steep = float(np.degrees(np.arctan2(abs(edges[at, 1]), edges[at, 0])))
             on = f", on a slope of {steep:.0f}°" if steep > masonry.settings.steep_deg else ""
-            words = f"the wedge is {share:.2f} of the stone on it{on}"
-            line = np.column_stack([x, low])[[0, -1]]
-            cases.append(Case((wedge, stone), round(share, 6), words, (line,)))
+            words = f"the wedge is {shares[-1]:.2f} of the stone on it{on}"
+            line = np.array([lower[at], lower[at] + edges[at]])
+            cases.append(Case((wedge, stone), round(shares[-1], 6), words, (line,)))
     cases.sort(key=lambda case: (-case.value, case.stones))
     return Evidence(round(max(shares), 9), tuple(cases), {"wedges": float(len(wedges))})
