@@ -6,6 +6,7 @@ from concurrent.futures import Executor
 from dataclasses import replace
 from functools import partial
 from itertools import chain
+from operator import itemgetter
 from statistics import fmean
 from typing import TypeVar
 
@@ -76,6 +77,8 @@ class Attempt:
         sides: tuple[Side, ...] = ("left", "right") if settings.two_sided else ("left",)
         self._landscapes = {side: Landscape.of(build.wall, side) for side in sides}
         self._judged: dict[Key, Candidate] = {}
+        # Those that stand, but fall in so large a share of trials.
+        self._unsure: list[tuple[float, Candidate]] = []
 
     @property
     def candidates(self) -> int:
@@ -127,7 +130,21 @@ class Attempt:
             chosen = self._best(proposals, rng)
             if chosen is not None:
                 return chosen
-        return None
+        # Nothing is sure: a large stone may stay where it falls seldom.
+        return min(self._unsure, key=itemgetter(0), default=(0.0, None))[1]
+
+    def _sure(self, candidate: Candidate) -> bool:
+        """Say whether a stone falls in no trial (:mod:`drystone.planner.seats`)."""
+        wall, workshop = self.build.wall, self._workshop
+        if wall.outlines is None:
+            return True
+        self._until.look()
+        most = workshop.bearable(candidate)
+        with self._profile.part("stabilisation"):
+            falls = workshop.seats.falls(candidate.stabilised, wall, most)
+        if falls <= most:
+            self._unsure.append((falls / most, candidate))
+        return falls == 0.0
 
     def _best(self, proposals: Sequence[Proposal], rng: np.random.Generator) -> Candidate | None:
         if self._policy is not None:
@@ -137,7 +154,10 @@ class Attempt:
                 settings=settings, rng=rng,
             )  # fmt: skip
         if self._settings.selection_rule == "score":
-            return choose_by_score(proposals, self._judge, self._settings.score)
+            if (wall := self.build.wall).outlines is not None:
+                refused = self._workshop.seats.refused
+                proposals = [p for p in proposals if not refused(p.stabilised, wall)]
+            return choose_by_score(proposals, self._judge, self._settings.score, self._sure)
         return choose_by_algorithm2(proposals, self._judge, self._settings.selection)
 
     def _proposals(

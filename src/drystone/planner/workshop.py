@@ -1,20 +1,26 @@
 """Everything that is prepared once for a stone set and a site (Algorithm 1, line 2)."""
 
 from dataclasses import dataclass, field
+from statistics import fmean
 
 from drystone.clusters import cluster_stones
 from drystone.errors import UsageError
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
-from drystone.planner.build import Build
+from drystone.planner.build import Build, Candidate
 from drystone.planner.craft import PoseCosts
+from drystone.planner.seats import Seats
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Rest, SideCounts, Stock, sides_of
 from drystone.planner.views import Views
 from drystone.poses import PoseBook, wrap_deg
 from drystone.settle.book import OutlineBook
 from drystone.stabilise.memory import StabiliseMemory
+
+import os
+FALL = float(os.environ.get("DS_FALL", "2.0"))
+"""What a fall costs, in mean stone areas."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +41,7 @@ class Workshop:
     outlines: OutlineBook  # turned outlines, for stones that settle on them
     costs: PoseCosts  # of their poses, wherever they go
     views: Views  # of walls of outlines
+    seats: Seats  # on them
     _angles: dict[int, tuple[float, ...]] = field(default_factory=dict, init=False, repr=False)
 
     @classmethod
@@ -48,9 +55,11 @@ class Workshop:
         clusters = cluster_stones(stones, book, settings.clusters)
         memory = StabiliseMemory(book, stock.mean_height_px, settings.stabilise)
         outlines = OutlineBook(settings.settle.outline_px, 1.0 / site.scale)
+        mean_size = fmean(stone.area_px**0.5 for stone in stones)
         return cls(
             stones, site, book, clusters, settings.orientations, fitting, stock, sides, memory,
             outlines, PoseCosts(stock, frozenset(settings.pin)), Views(site),
+            Seats(mean_size, outlines, settings.settle, settings.mu),
         )  # fmt: skip
 
     def poses(self, stone_id: int) -> tuple[PosedStone, ...]:
@@ -75,6 +84,11 @@ class Workshop:
         """Return the ids of the stones that are left and fit into the wall, Omega_i."""
         placed = {action.stone_id for action in build.actions}
         return tuple(i for i in self.fitting if i not in placed)
+
+    def bearable(self, action: Candidate) -> float:
+        """Return in which share of the trials a stone may fall that is placed all the same."""
+        area = action.stabilised.placement.posed.stone.area_px * self.site.scale**2
+        return area / self.stock.mean_area_px / FALL
 
     def next_wedge(self, build: Build) -> int:
         """Return the id of the next wedge: after the largest of a stone and those of wedges."""

@@ -7,7 +7,7 @@ plan, keeps the course's width, and leaves a wall that stands.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain
 from operator import attrgetter
 from typing import Literal
@@ -166,26 +166,31 @@ class Mason:
         highest_px = site.extent_px[1] + self.yard.settings.settle.beyond_px
         stone = workshop.stones.by_id(planned.stone_id)
         reasons: list[Status] = []
-        solves = Solves()
+        solves, unsure = Solves(), None
         for status, half_deg in HALVES:
             angle_deg = wrap_deg(planned.angle_deg + half_deg)
             turned = workshop.outlines.hung(stone, angle_deg, side).turned
             aim = Aim(left, planned.top_px, angle_deg, highest_px, unit_px)
             starts = self.hand.starts(turned, view, aim)
             resting = self.hand.resting(turned, view, aim, starts)
-            action, trouble = self._best(build, stone, angle_deg, side, resting)
+            action, trouble, sure = self._best(build, stone, angle_deg, side, resting)
             solves += trouble
-            if action is not None:
+            if sure:
                 return StoneLaying(planned, status, action, solves)
+            if action is not None:
+                unsure = unsure or StoneLaying(planned, status, action)
             reasons.append("falls" if resting else "no rest" if starts else "no place")
+        if unsure is not None:
+            return replace(unsure, solves=solves)
         # Why not: how far the pose came that came furthest.
         order: tuple[Status, ...] = ("falls", "no rest", "no place")
         return StoneLaying(planned, min(reasons, key=order.index), None, solves)
 
     def _best(
         self, build: Build, stone: Stone, angle_deg: float, side: Side, resting: Sequence[Resting]
-    ) -> tuple[Candidate | None, Solves]:
+    ) -> tuple[Candidate | None, Solves, bool]:
         """Compare the cheapest places, and return the best after which the wall stands."""
+        best: tuple[float, Candidate | None] = 1.0, None
         places = list(enumerate(resting[: self.laying.judged]))
         solves = Solves()
         while places:
@@ -212,8 +217,13 @@ class Mason:
                 landscape = Landscape.of(build.wall, side)
                 action = self.evaluator.candidate(landscape, proposal, one.loaded, sturdy)
                 if action.sturdy:
-                    return action, solves
-        return None, solves
+                    most = self.yard.workshop.bearable(action)
+                    falls = self.yard.workshop.seats.falls(stabilised, build.wall, most)
+                    if not falls:
+                        return action, solves, True
+                    if falls <= most and falls < best[0]:
+                        best = falls, action
+        return best[1], solves, False
 
     def _rated(
         self, build: Build, stone: Stone, places: Sequence[tuple[int, Resting]]
