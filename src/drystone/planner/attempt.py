@@ -139,7 +139,7 @@ class Attempt:
         if wall.outlines is None:
             return True
         self._until.look()
-        most = workshop.bearable(candidate)
+        most = workshop.bearable(candidate.stone_id)
         with self._profile.part("stabilisation"):
             falls = workshop.seats.falls(candidate.stabilised, wall, most)
         if falls <= most:
@@ -155,8 +155,12 @@ class Attempt:
             )  # fmt: skip
         if self._settings.selection_rule == "score":
             if (wall := self.build.wall).outlines is not None:
-                refused = self._workshop.seats.refused
-                proposals = [p for p in proposals if not refused(p.stabilised, wall)]
+                shop = self._workshop
+                proposals = [
+                    p
+                    for p in proposals
+                    if not shop.seats.known_to_fall(p.stabilised, wall, shop.bearable(p.stone_id))
+                ]
             return choose_by_score(proposals, self._judge, self._settings.score, self._sure)
         return choose_by_algorithm2(proposals, self._judge, self._settings.selection)
 

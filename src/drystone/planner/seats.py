@@ -1,142 +1,157 @@
-"""How surely stones rest where they are planned: the wall is built some times with a builder's errors.
+"""How surely stones rest where they are planned (DESIGN 4.10).
 
-Beside the wall as planned stand a few as a builder would have it (DESIGN 4.10): each stone a little
-aside, turned, and of another shape than it was seen.  A place is tried in all of them; a stone that
-falls there is laid elsewhere.
+Beside the wall as planned some stand as a builder would have built it: each stone a little aside,
+turned, and of another shape than it was seen.  A place is tried in all of them, and a stone that
+falls there is laid elsewhere; what fell all the same is put where it was planned.
 """
 
-import os
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from drystone.kernels.polygons import Points, Polygons, no_polygons
-from drystone.model.builder import WEDGE_SHARE, BuilderErrors, Built, misjudged
+from drystone.model.builder import BuilderErrors, Built, misjudged
 from drystone.model.stone import Stone
 from drystone.model.wall import Group, Wall, outlined
-from drystone.poses import wrap_deg
+from drystone.poses import RecentlyUsed, wrap_deg
 from drystone.settle.book import OutlineBook
 from drystone.settle.putting import fallen_share, moved, put_down
 from drystone.settle.settings import SettleSettings
+from drystone.settle.wedge import in_order
 
-PRECISION = float(os.environ.get("DS_PREC", "0.025"))
+PRECISION = 0.025
 """Of the errors: between those of a robot and of a hand."""
 
+NEAR = 1.0
+"""What is farther from a stone than this, over its size, takes no part when it is put down."""
 
-NEAR_PX = 1.0
-
-
-class _Laid(NamedTuple):
-    """What became of a step in one of the walls."""
-
-    blocks: list[Points]  # corners of its wedges, and of the stone last
-    pushed: dict[int, float]  # by how much which blocks that were there are pushed along x
-    fell: bool  # then it is where it was planned
+KNOWN_BYTES = 1 << 26
+"""Trials that are remembered at most, about: fifty thousand."""
 
 
-class _Seen(NamedTuple):
-    """How a stone is misjudged, and how it is put down beside its place."""
+class Trial(NamedTuple):
+    """What became of a stone that was put down with errors."""
 
-    outline: Points  # of the stone, not turned
+    fell: bool
+    corners: Points  # where it rests; as planned where it fell
+    pushed: dict[int, float]  # by how much which polygons of those near it are pushed along x
+
+
+class _Errors(NamedTuple):
+    outline: Points  # of the stone as it is, not turned
     aside: float
     turned_deg: float
 
 
 @dataclass(frozen=True, eq=False)
 class Seats:
-    """Builds walls with errors; every stone has errors of its own, the same wherever it lies."""
+    """Tries places; every stone has errors of its own, the same wherever it is laid.
+
+    What it remembers makes it quicker and changes nothing.
+    """
 
     mean_size: float  # of the stones of the set, source px
     book: OutlineBook
     settle: SettleSettings
     mu: float
-    _seen: dict[int, list[_Seen]] = field(default_factory=dict, init=False, repr=False)
-    _refused: set[tuple[float, ...]] = field(default_factory=set, init=False, repr=False)
-    _laid: WeakKeyDictionary[Group, list[_Laid]] = field(
-        default_factory=WeakKeyDictionary, init=False, repr=False
+    _errors: dict[int, list[_Errors]] = field(default_factory=dict, init=False, repr=False)
+    _known: RecentlyUsed[tuple[object, ...], Trial] = field(
+        default_factory=lambda: RecentlyUsed(KNOWN_BYTES), init=False, repr=False
     )
-    _last: list[tuple[tuple[Group, ...], list[Polygons]]] = field(
-        default_factory=list, init=False, repr=False
+    # the walls that were asked for last
+    _last: dict[str, tuple[tuple[Group, ...], list[Polygons]]] = field(
+        default_factory=dict, init=False, repr=False
     )
-
-    def refused(self, group: Group, wall: Wall) -> bool:
-        """Say whether a stone was refused at this very place of what is built."""
-        return self._key(group, wall) in self._refused
-
-    def _key(self, group: Group, wall: Wall) -> tuple[float, ...]:
-        """Return what tells a place: a stone, where it lies, and how many blocks are near."""
-        placement = group.placement
-        settled, posed = placement.exact, placement.posed
-        low, high = settled.corners.min(axis=0), settled.corners.max(axis=0)
-        boxes = wall.exact.polygons.boxes
-        near = (boxes[:, :2] <= high + NEAR_PX).all(axis=1) & (boxes[:, 2:] >= low - NEAR_PX).all(axis=1)
-        ids = wall.exact.ids
-        return (
-            posed.stone.id, settled.x_px, settled.y_px, posed.angle_deg,
-            *(ids[i] for i in np.flatnonzero(near).tolist())
-        )
 
     def falls(self, group: Group, wall: Wall, most: float) -> float:
-        """Return in which share of the walls a stone falls that is laid after the steps before.
+        """Return in which share of the trials a stone falls that is laid next, at most `most`.
 
-        1 when it is more than `most`.
+        1 where it falls in more of them: then not all need to be made.
         """
-        laid, trials = list[_Laid](), self.settle.trials
-        for one in self._laying(group, self._walls(wall.groups)):
-            laid.append(one)
-            if sum(one.fell for one in laid) > most * trials:
-                self._refused.add(self._key(group, wall))
+        fallen, trials = 0, self.settle.trials
+        for k, built in enumerate(self._built(wall.groups)):
+            fallen += self._trial(group, k, built, self._near(group, built)).fell
+            if fallen > most * trials:
                 return 1.0
-        self._laid[group] = laid
-        return sum(one.fell for one in laid) / trials if trials else 0.0
+        return fallen / trials if trials else 0.0
 
-    def _walls(self, groups: tuple[Group, ...]) -> list[Polygons]:
-        """Return the walls after some steps; those of the last call are at hand."""
-        done, walls = self._last[0] if self._last else ((), [])
-        if not (0 < len(done) <= len(groups) and all(a is b for a, b in zip(done, groups))):
+    def known_to_fall(self, group: Group, wall: Wall, most: float) -> bool:
+        """Return whether `falls` is 1 by what is known of the same place, without a trial."""
+        fallen = 0
+        for k, built in enumerate(self._built(wall.groups)):
+            known = self._known.get(_key(group, k, built, self._near(group, built)))
+            if known is None:
+                return False
+            fallen += known.fell
+            if fallen > most * self.settle.trials:
+                return True
+        return False
+
+    def _built(self, groups: tuple[Group, ...]) -> list[Polygons]:
+        """Return the walls of all trials after some steps, the wedges of each before its stone."""
+        done, walls = self._last.get("", ((), []))
+        known = len(done) <= len(groups) and all(a is b for a, b in zip(done, groups, strict=False))
+        if not (done and known):
             done, walls = (), [no_polygons()] * self.settle.trials
         for group in groups[len(done) :]:
-            laid = self._laid.get(group)
-            if laid is None:
-                laid = self._laid[group] = list(self._laying(group, walls))
-            walls = [moved(w, one.pushed).added(one.blocks) for w, one in zip(walls, laid)]
-        self._last[:] = [(groups, walls)]
+            wedges = [corners for _, corners in outlined(group.placement, group.wedges)[1:]]
+            for k, built in enumerate(walls):
+                near = self._near(group, built)
+                trial = self._trial(group, k, built, near)
+                pushed = {near[i]: x for i, x in trial.pushed.items() if i < len(near)}
+                walls[k] = moved(built, pushed).added([*wedges, trial.corners])
+        self._last[""] = groups, walls
         return walls
 
-    def _laying(self, group: Group, walls: list[Polygons]) -> Iterator[_Laid]:
-        """Take a step in all walls, one after the other."""
+    def _near(self, group: Group, built: Polygons) -> list[int]:
         placement = group.placement
-        settled, outline = placement.exact, self.book.outline(placement.posed.stone)
-        planned = Built(outline, settled.x_px, settled.y_px, placement.posed.angle_deg)
+        far, corners = NEAR * placement.posed.stone.area_px**0.5, placement.exact.corners
+        low, high, boxes = corners.min(axis=0) - far, corners.max(axis=0) + far, built.boxes
+        near = (boxes[:, :2] <= high).all(axis=1) & (boxes[:, 2:] >= low).all(axis=1)
+        return np.flatnonzero(near).tolist()
+
+    def _trial(self, group: Group, k: int, built: Polygons, near: list[int]) -> Trial:
+        """Put a stone down with its errors of a trial, in the wall of that trial."""
+        key = _key(group, k, built, near)
+        known = self._known.get(key)
+        if known is not None:
+            return known
+        placement = group.placement
+        stone, at, angle_deg = placement.posed.stone, placement.exact, placement.posed.angle_deg
+        errors = self._of(stone)[k]
         wedges = [corners for _, corners in outlined(placement, group.wedges)[1:]]
-        for seen, wall in zip(self._errors(placement.posed.stone), walls, strict=True):
-            yield self._put(planned, seen, wedges, wall)
+        put = Built(errors.outline, at.x_px + errors.aside, at.y_px, angle_deg + errors.turned_deg)
+        around = in_order(built, near)
+        rest, pushed = put_down(
+            put, around.added(wedges) if wedges else around, self.mu, self.settle
+        )
+        trial = Trial(True, at.corners, {})
+        if rest is not None:
+            way, turned = (rest.x - at.x_px, rest.y - at.y_px), wrap_deg(rest.angle_deg - angle_deg)
+            if fallen_share(*way, turned, stone.area_px**0.5) <= 1.0:
+                trial = Trial(False, rest.corners, pushed)
+        return self._known.keep(key, trial, 600 + trial.corners.nbytes + 40 * len(near))
 
-    def _put(self, planned: Built, seen: _Seen, wedges: Sequence[Points], wall: Polygons) -> _Laid:
-        around = wall.added(wedges) if wedges else wall
-        angle_deg = planned.angle_deg
-        put = Built(seen.outline, planned.x + seen.aside, planned.y, angle_deg + seen.turned_deg)
-        rest, pushed = put_down(put, around, self.mu, self.settle)
-        if rest is None:
-            return _Laid([*wedges, planned.corners], {}, True)
-        way = rest.x - planned.x, rest.y - planned.y
-        if fallen_share(*way, wrap_deg(rest.angle_deg - angle_deg), planned.size) > 1.0:
-            return _Laid([*wedges, planned.corners], {}, True)
-        pushed = {i: x for i, x in pushed.items() if i < len(wall)}
-        return _Laid([*wedges, rest.corners], pushed, False)
-
-    def _errors(self, stone: Stone) -> list[_Seen]:
-        """Return how a stone is misjudged, and how far it is put aside and turned, each time."""
-        if stone.id not in self._seen:
+    def _of(self, stone: Stone) -> list[_Errors]:
+        """Return the errors with which a stone is put down."""
+        if stone.id not in self._errors:
             errors = BuilderErrors.of_precision(PRECISION, self.mean_size)
-            rng = np.random.default_rng([7, stone.id])
-            found = []
-            for _ in range(self.settle.trials):
-                outline = misjudged(self.book.outline(stone), errors.outline, rng)
-                aside, turned = rng.standard_normal(2).tolist()
-                found.append(_Seen(outline, errors.placement * aside, errors.angle_deg * turned))
-            self._seen[stone.id] = found
-        return self._seen[stone.id]
+            rng, outline = np.random.default_rng([7, stone.id]), self.book.outline(stone)
+            self._errors[stone.id] = [
+                _Errors(
+                    misjudged(outline, errors.outline, rng),
+                    errors.placement * rng.standard_normal(),
+                    errors.angle_deg * rng.standard_normal(),
+                )
+                for _ in range(self.settle.trials)
+            ]
+        return self._errors[stone.id]
+
+
+def _key(group: Group, k: int, built: Polygons, near: list[int]) -> tuple[object, ...]:
+    """Return what tells a trial: its errors, the place, and what is near."""
+    posed, at = group.placement.posed, group.placement.exact
+    wedges = (corners.tobytes() for _, corners in outlined(group.placement, group.wedges)[1:])
+    boxes = built.boxes[near].tobytes()
+    return k, posed.stone.id, posed.angle_deg, at.x_px, at.y_px, boxes, *wedges

@@ -8,7 +8,7 @@ from drystone.errors import UsageError
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
-from drystone.planner.build import Build, Candidate
+from drystone.planner.build import Build
 from drystone.planner.craft import PoseCosts
 from drystone.planner.seats import Seats
 from drystone.planner.settings import PlannerSettings
@@ -18,8 +18,7 @@ from drystone.poses import PoseBook, wrap_deg
 from drystone.settle.book import OutlineBook
 from drystone.stabilise.memory import StabiliseMemory
 
-import os
-FALL = float(os.environ.get("DS_FALL", "2.0"))
+FALL = 2.0
 """What a fall costs, in mean stone areas."""
 
 
@@ -85,9 +84,9 @@ class Workshop:
         placed = {action.stone_id for action in build.actions}
         return tuple(i for i in self.fitting if i not in placed)
 
-    def bearable(self, action: Candidate) -> float:
+    def bearable(self, stone_id: int) -> float:
         """Return in which share of the trials a stone may fall that is placed all the same."""
-        area = action.stabilised.placement.posed.stone.area_px * self.site.scale**2
+        area = self.stones.by_id(stone_id).area_px * self.site.scale**2
         return area / self.stock.mean_area_px / FALL
 
     def next_wedge(self, build: Build) -> int:

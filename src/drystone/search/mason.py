@@ -217,7 +217,7 @@ class Mason:
                 landscape = Landscape.of(build.wall, side)
                 action = self.evaluator.candidate(landscape, proposal, one.loaded, sturdy)
                 if action.sturdy:
-                    most = self.yard.workshop.bearable(action)
+                    most = self.yard.workshop.bearable(stone.id)
                     falls = self.yard.workshop.seats.falls(stabilised, build.wall, most)
                     if not falls:
                         return action, solves, True

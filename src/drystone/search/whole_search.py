@@ -8,6 +8,8 @@ from contextlib import suppress
 from itertools import islice
 from typing import NamedTuple
 
+import numpy as np
+
 from drystone.errors import PlanError
 from drystone.planner.build import Build
 from drystone.planner.deadline import NEVER, Deadline, TimeIsUp
@@ -16,10 +18,11 @@ from drystone.planner.planner import Planner
 from drystone.planner.replay import stands
 from drystone.planner.sturdy import ROUNDS
 from drystone.search.anytime import searching
-from drystone.search.chain import forget
-from drystone.search.goal import FoundWall, WallFigures
+from drystone.search.chain import forget, without
+from drystone.search.goal import LAST_RUNS, FoundWall, WallFigures, first_falls
 from drystone.search.interrupts import held
 from drystone.search.packed import PackedWall, archived, found_again
+from drystone.search.ruin import with_all_above
 from drystone.search.standing import Progress, Standing
 from drystone.search.yard import Yard
 from drystone.statics.flow.flow_search import NonassociativeSettings
@@ -30,6 +33,9 @@ _FOUND = Stopped("search", "kept as the search found it")
 
 THOROUGH = NonassociativeSettings()
 """How the load without dilatancy is looked for at the end."""
+
+REPAIRS = 4
+"""So often the best wall is repaired at most, where its stones fall in rehearsals."""
 
 JUDGED_AGAIN = 4
 """So many of the best walls of a search are looked at thoroughly at most."""
@@ -138,6 +144,8 @@ def _ended(planner: Planner, progress: Progress, grace: Deadline, *, lost: bool)
     kept = progress.kept
     surer, unsure = surest(planner, kept, grace)
     best = surer or progress.best
+    with suppress(TimeIsUp):
+        best = repaired(planner, best, grace)
     last, stopped, cut = with_the_rest(planner, best, grace)
     planner.failed_solves += last.failed_solves
     planner.cold_solves += last.cold_solves
@@ -202,6 +210,34 @@ def surest(
             return _best(sound or fallen or [wall]), True
     looked_at = sound or fallen
     return _best(looked_at) if looked_at else None, False
+
+
+def repaired(planner: Planner, best: PackedWall, until: Deadline = NEVER) -> PackedWall:
+    """Return a wall without stones that fall in its rehearsals, or with others in their place.
+
+    Where that makes it better: what rests on them is built up again, at most :data:`REPAIRS` times.
+    """
+    yard = Yard.of(planner, until)
+    found = found_again(best, yard).judged(yard, THOROUGH)
+    if found.build.wall.outlines is None or found.figures is None:
+        return best
+    for turn in range(REPAIRS):
+        gone = first_falls(found.build, yard, LAST_RUNS)
+        if not gone:
+            break
+        rng = np.random.default_rng([planner.seed, 5_000_000, turn])
+        walls = []
+        for chosen in (gone, with_all_above(found.build, gone)):
+            build, _, solves = without(found.build, chosen, yard)
+            for one in (build, yard.built_up(build, rng).build):
+                wall = FoundWall.measured(one, yard, found.solves + solves, found.courses)
+                if wall.merit > found.merit:
+                    walls.append(wall.judged(yard, THOROUGH))
+        better = max(walls, key=lambda one: one.merit, default=found)
+        if better.merit <= found.merit:
+            break
+        found = better
+    return PackedWall.of(found)
 
 
 def stays_at_every_step(build: Build, until: Deadline = NEVER) -> bool:
