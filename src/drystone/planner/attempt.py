@@ -77,7 +77,7 @@ class Attempt:
         sides: tuple[Side, ...] = ("left", "right") if settings.two_sided else ("left",)
         self._landscapes = {side: Landscape.of(build.wall, side) for side in sides}
         self._judged: dict[Key, Candidate] = {}
-        # Those that stand, but fall in so large a share of trials.
+        # Those that stand, but fall in so large a share of the trials, which is bearable.
         self._unsure: list[tuple[float, Candidate]] = []
 
     @property
@@ -130,20 +130,19 @@ class Attempt:
             chosen = self._best(proposals, rng)
             if chosen is not None:
                 return chosen
-        # Nothing is sure: a large stone may stay where it falls seldom.
+        # Nothing is sure.
         return min(self._unsure, key=itemgetter(0), default=(0.0, None))[1]
 
     def _sure(self, candidate: Candidate) -> bool:
         """Say whether a stone falls in no trial (:mod:`drystone.planner.seats`)."""
-        wall, workshop = self.build.wall, self._workshop
+        wall = self.build.wall
         if wall.outlines is None:
             return True
         self._until.look()
-        most = workshop.bearable(candidate.stone_id)
         with self._profile.part("stabilisation"):
-            falls = workshop.seats.falls(candidate.stabilised, wall, most)
-        if falls <= most:
-            self._unsure.append((falls / most, candidate))
+            falls = self._workshop.seats.falls(candidate.stabilised, wall)
+        if falls:
+            self._unsure.append((falls, candidate))
         return falls == 0.0
 
     def _best(self, proposals: Sequence[Proposal], rng: np.random.Generator) -> Candidate | None:
@@ -155,12 +154,8 @@ class Attempt:
             )  # fmt: skip
         if self._settings.selection_rule == "score":
             if (wall := self.build.wall).outlines is not None:
-                shop = self._workshop
-                proposals = [
-                    p
-                    for p in proposals
-                    if not shop.seats.known_to_fall(p.stabilised, wall, shop.bearable(p.stone_id))
-                ]
+                fall = self._workshop.seats.known_to_fall
+                proposals = [p for p in proposals if not fall(p.stabilised, wall)]
             return choose_by_score(proposals, self._judge, self._settings.score, self._sure)
         return choose_by_algorithm2(proposals, self._judge, self._settings.selection)
 

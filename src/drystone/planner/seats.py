@@ -5,7 +5,6 @@ turned, and of another shape than it was seen.  A place is tried in all of them,
 falls there is laid elsewhere; what fell all the same is put where it was planned.
 """
 
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +25,9 @@ PRECISION = 0.025
 NEAR = 1.0
 """What is farther from a stone than this, over its size, takes no part when it is put down."""
 
+FALL = 2.0
+"""A stone that would fall in all trials is laid when it is larger than so many mean stones."""
+
 KNOWN_BYTES = 1 << 26
 """Trials that are remembered at most, about: fifty thousand."""
 
@@ -44,56 +46,61 @@ class _Errors(NamedTuple):
     turned_deg: float
 
 
-@dataclass(frozen=True, eq=False)
 class Seats:
     """Tries places; every stone has errors of its own, the same wherever it is laid.
 
-    What it remembers makes it quicker and changes nothing.
+    `mean_size` is the mean over the stones of the set of the root of their area, source px.  What
+    is remembered makes it quicker and changes nothing.
     """
 
-    mean_size: float  # of the stones of the set, source px
-    book: OutlineBook
-    settle: SettleSettings
-    mu: float
-    _errors: dict[int, list[_Errors]] = field(default_factory=dict, init=False, repr=False)
-    _known: RecentlyUsed[tuple[object, ...], Trial] = field(
-        default_factory=lambda: RecentlyUsed(KNOWN_BYTES), init=False, repr=False
-    )
-    # the walls that were asked for last
-    _last: dict[str, tuple[tuple[Group, ...], list[Polygons]]] = field(
-        default_factory=dict, init=False, repr=False
-    )
+    def __init__(
+        self, mean_size: float, book: OutlineBook, settle: SettleSettings, mu: float
+    ) -> None:
+        self.mean_size = mean_size
+        self._book, self._settle, self._mu = book, settle, mu
+        self._errors: dict[int, list[_Errors]] = {}
+        self._known = RecentlyUsed[tuple[object, ...], Trial](KNOWN_BYTES)
+        self._last: tuple[tuple[Group, ...], list[Polygons]] = (), []
 
-    def falls(self, group: Group, wall: Wall, most: float) -> float:
-        """Return in which share of the trials a stone falls that is laid next, at most `most`.
+    def bearable(self, stone: Stone) -> float:
+        """Return in which share of the trials a stone may fall where no other place is sure.
 
-        1 where it falls in more of them: then not all need to be made.
+        The wall lacks more where a large one is left out.
         """
-        fallen, trials = 0, self.settle.trials
+        return stone.area_px / self.mean_size**2 / FALL
+
+    def falls(self, group: Group, wall: Wall) -> float | None:
+        """Return in which share of the trials a stone falls that is laid next.
+
+        None where it falls in more of them than is bearable: then not all need to be made.
+        """
+        most = self.bearable(group.placement.posed.stone)
+        fallen, trials = 0, self._settle.trials
         for k, built in enumerate(self._built(wall.groups)):
             fallen += self._trial(group, k, built, self._near(group, built)).fell
             if fallen > most * trials:
-                return 1.0
+                return None
         return fallen / trials if trials else 0.0
 
-    def known_to_fall(self, group: Group, wall: Wall, most: float) -> bool:
-        """Return whether `falls` is 1 by what is known of the same place, without a trial."""
-        fallen = 0
+    def known_to_fall(self, group: Group, wall: Wall) -> bool:
+        """Say whether `falls` is None by what is known of the same place, without a trial."""
+        most, fallen = self.bearable(group.placement.posed.stone), 0
         for k, built in enumerate(self._built(wall.groups)):
             known = self._known.get(_key(group, k, built, self._near(group, built)))
             if known is None:
                 return False
             fallen += known.fell
-            if fallen > most * self.settle.trials:
+            if fallen > most * self._settle.trials:
                 return True
         return False
 
     def _built(self, groups: tuple[Group, ...]) -> list[Polygons]:
         """Return the walls of all trials after some steps, the wedges of each before its stone."""
-        done, walls = self._last.get("", ((), []))
+        done, walls = self._last
         known = len(done) <= len(groups) and all(a is b for a, b in zip(done, groups, strict=False))
         if not (done and known):
-            done, walls = (), [no_polygons()] * self.settle.trials
+            done, walls = (), [no_polygons()] * self._settle.trials
+        walls = list(walls)
         for group in groups[len(done) :]:
             wedges = [corners for _, corners in outlined(group.placement, group.wedges)[1:]]
             for k, built in enumerate(walls):
@@ -101,7 +108,7 @@ class Seats:
                 trial = self._trial(group, k, built, near)
                 pushed = {near[i]: x for i, x in trial.pushed.items() if i < len(near)}
                 walls[k] = moved(built, pushed).added([*wedges, trial.corners])
-        self._last[""] = groups, walls
+        self._last = groups, walls
         return walls
 
     def _near(self, group: Group, built: Polygons) -> list[int]:
@@ -124,7 +131,7 @@ class Seats:
         put = Built(errors.outline, at.x_px + errors.aside, at.y_px, angle_deg + errors.turned_deg)
         around = in_order(built, near)
         rest, pushed = put_down(
-            put, around.added(wedges) if wedges else around, self.mu, self.settle
+            put, around.added(wedges) if wedges else around, self._mu, self._settle
         )
         trial = Trial(True, at.corners, {})
         if rest is not None:
@@ -137,14 +144,14 @@ class Seats:
         """Return the errors with which a stone is put down."""
         if stone.id not in self._errors:
             errors = BuilderErrors.of_precision(PRECISION, self.mean_size)
-            rng, outline = np.random.default_rng([7, stone.id]), self.book.outline(stone)
+            rng, outline = np.random.default_rng([7, stone.id]), self._book.outline(stone)
             self._errors[stone.id] = [
                 _Errors(
                     misjudged(outline, errors.outline, rng),
                     errors.placement * rng.standard_normal(),
                     errors.angle_deg * rng.standard_normal(),
                 )
-                for _ in range(self.settle.trials)
+                for _ in range(self._settle.trials)
             ]
         return self._errors[stone.id]
 

@@ -18,9 +18,6 @@ from drystone.poses import PoseBook, wrap_deg
 from drystone.settle.book import OutlineBook
 from drystone.stabilise.memory import StabiliseMemory
 
-FALL = 2.0
-"""What a fall costs, in mean stone areas."""
-
 
 @dataclass(frozen=True, eq=False)
 class Workshop:
@@ -40,7 +37,7 @@ class Workshop:
     outlines: OutlineBook  # turned outlines, for stones that settle on them
     costs: PoseCosts  # of their poses, wherever they go
     views: Views  # of walls of outlines
-    seats: Seats  # on them
+    seats: Seats  # tries places on them
     _angles: dict[int, tuple[float, ...]] = field(default_factory=dict, init=False, repr=False)
 
     @classmethod
@@ -83,11 +80,6 @@ class Workshop:
         """Return the ids of the stones that are left and fit into the wall, Omega_i."""
         placed = {action.stone_id for action in build.actions}
         return tuple(i for i in self.fitting if i not in placed)
-
-    def bearable(self, stone_id: int) -> float:
-        """Return in which share of the trials a stone may fall that is placed all the same."""
-        area = self.stones.by_id(stone_id).area_px * self.site.scale**2
-        return area / self.stock.mean_area_px / FALL
 
     def next_wedge(self, build: Build) -> int:
         """Return the id of the next wedge: after the largest of a stone and those of wedges."""

@@ -189,8 +189,11 @@ class Mason:
     def _best(
         self, build: Build, stone: Stone, angle_deg: float, side: Side, resting: Sequence[Resting]
     ) -> tuple[Candidate | None, Solves, bool]:
-        """Compare the cheapest places, and return the best after which the wall stands."""
-        best: tuple[float, Candidate | None] = 1.0, None
+        """Compare the cheapest places, and return the best after which the wall stands.
+
+        Says too whether the stone is sure there: it falls in no trial.
+        """
+        best: tuple[float, Candidate | None] = math.inf, None
         places = list(enumerate(resting[: self.laying.judged]))
         solves = Solves()
         while places:
@@ -217,11 +220,10 @@ class Mason:
                 landscape = Landscape.of(build.wall, side)
                 action = self.evaluator.candidate(landscape, proposal, one.loaded, sturdy)
                 if action.sturdy:
-                    most = self.yard.workshop.bearable(stone.id)
-                    falls = self.yard.workshop.seats.falls(stabilised, build.wall, most)
-                    if not falls:
+                    falls = self.yard.workshop.seats.falls(stabilised, build.wall)
+                    if falls == 0.0:
                         return action, solves, True
-                    if falls <= most and falls < best[0]:
+                    if falls is not None and falls < best[0]:
                         best = falls, action
         return best[1], solves, False
 
