@@ -126,7 +126,7 @@ class Seats:
             return known
         placement = group.placement
         stone, at, angle_deg = placement.posed.stone, placement.exact, placement.posed.angle_deg
-        errors = self._of(stone)[k]
+        errors = self.errors(stone)[k]
         wedges = [corners for _, corners in outlined(placement, group.wedges)[1:]]
         put = Built(errors.outline, at.x_px + errors.aside, at.y_px, angle_deg + errors.turned_deg)
         around = in_order(built, near)
@@ -140,7 +140,7 @@ class Seats:
                 trial = Trial(False, rest.corners, pushed)
         return self._known.keep(key, trial, 600 + trial.corners.nbytes + 40 * len(near))
 
-    def _of(self, stone: Stone) -> list[_Errors]:
+    def errors(self, stone: Stone) -> list[_Errors]:
         """Return the errors with which a stone is put down."""
         if stone.id not in self._errors:
             errors = BuilderErrors.of_precision(PRECISION, self.mean_size)

@@ -40,6 +40,8 @@ LAID: tuple[Status, ...] = ("as planned", "half turn", "elsewhere")
 HALVES: tuple[tuple[Status, float], ...] = (("as planned", 0.0), ("half turn", 180.0))
 """Turns from the planned pose that are tried, one after the other."""
 
+EASY = 0.125
+
 SIDES: tuple[Side, ...] = ("left", "right")
 
 
@@ -221,7 +223,7 @@ class Mason:
                 action = self.evaluator.candidate(landscape, proposal, one.loaded, sturdy)
                 if action.sturdy:
                     falls = self.yard.workshop.seats.falls(stabilised, build.wall)
-                    if falls == 0.0:
+                    if falls is not None and falls <= EASY:
                         return action, solves, True
                     if falls is not None and falls < best[0]:
                         best = falls, action
