@@ -19,13 +19,13 @@ from drystone.settle.putting import fallen_share, moved, put_down
 from drystone.settle.settings import SettleSettings
 from drystone.settle.wedge import in_order
 
-PRECISION = 0.025
-"""Of the errors: between those of a robot and of a hand."""
+PRECISION = 0.03
+"""Of the errors: those of a hand."""
 
 NEAR = 1.0
 """What is farther from a stone than this, over its size, takes no part when it is put down."""
 
-FALL = 2.0
+FALL = 4.0
 """A stone that would fall in all trials is laid when it is larger than so many mean stones."""
 
 KNOWN_BYTES = 1 << 26

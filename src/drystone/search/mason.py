@@ -7,7 +7,7 @@ plan, keeps the course's width, and leaves a wall that stands.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import chain
 from operator import attrgetter
 from typing import Literal
@@ -39,8 +39,6 @@ LAID: tuple[Status, ...] = ("as planned", "half turn", "elsewhere")
 
 HALVES: tuple[tuple[Status, float], ...] = (("as planned", 0.0), ("half turn", 180.0))
 """Turns from the planned pose that are tried, one after the other."""
-
-EASY = 0.125
 
 SIDES: tuple[Side, ...] = ("left", "right")
 
@@ -168,35 +166,27 @@ class Mason:
         highest_px = site.extent_px[1] + self.yard.settings.settle.beyond_px
         stone = workshop.stones.by_id(planned.stone_id)
         reasons: list[Status] = []
-        solves, unsure = Solves(), None
+        solves = Solves()
         for status, half_deg in HALVES:
             angle_deg = wrap_deg(planned.angle_deg + half_deg)
             turned = workshop.outlines.hung(stone, angle_deg, side).turned
             aim = Aim(left, planned.top_px, angle_deg, highest_px, unit_px)
             starts = self.hand.starts(turned, view, aim)
             resting = self.hand.resting(turned, view, aim, starts)
-            action, trouble, sure = self._best(build, stone, angle_deg, side, resting)
+            action, trouble = self._best(build, stone, angle_deg, side, resting)
             solves += trouble
-            if sure:
-                return StoneLaying(planned, status, action, solves)
             if action is not None:
-                unsure = unsure or StoneLaying(planned, status, action)
+                return StoneLaying(planned, status, action, solves)
             reasons.append("falls" if resting else "no rest" if starts else "no place")
-        if unsure is not None:
-            return replace(unsure, solves=solves)
         # Why not: how far the pose came that came furthest.
         order: tuple[Status, ...] = ("falls", "no rest", "no place")
         return StoneLaying(planned, min(reasons, key=order.index), None, solves)
 
     def _best(
         self, build: Build, stone: Stone, angle_deg: float, side: Side, resting: Sequence[Resting]
-    ) -> tuple[Candidate | None, Solves, bool]:
-        """Compare the cheapest places, and return the best after which the wall stands.
-
-        Says too whether the stone is sure there: it falls in no trial.
-        """
-        best: tuple[float, Candidate | None] = math.inf, None
-        places = list(enumerate(resting[: self.laying.judged]))
+    ) -> tuple[Candidate | None, Solves]:
+        """Compare the cheapest places, and return the best after which the wall stands."""
+        places, seats = list(enumerate(resting[: self.laying.judged])), self.yard.workshop.seats
         solves = Solves()
         while places:
             rated = self._rated(build, stone, places)
@@ -221,13 +211,9 @@ class Mason:
                 proposal = Proposal(stabilised, angle_deg, cost=place.cost, spot=one.spot)
                 landscape = Landscape.of(build.wall, side)
                 action = self.evaluator.candidate(landscape, proposal, one.loaded, sturdy)
-                if action.sturdy:
-                    falls = self.yard.workshop.seats.falls(stabilised, build.wall)
-                    if falls is not None and falls <= EASY:
-                        return action, solves, True
-                    if falls is not None and falls < best[0]:
-                        best = falls, action
-        return best[1], solves, False
+                if action.sturdy and seats.falls(stabilised, build.wall) is not None:
+                    return action, solves
+        return None, solves
 
     def _rated(
         self, build: Build, stone: Stone, places: Sequence[tuple[int, Resting]]
