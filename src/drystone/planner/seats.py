@@ -5,6 +5,7 @@ turned, and of another shape than it was seen.  A place is tried in all of them,
 falls there is laid elsewhere; what fell all the same is put where it was planned.
 """
 
+from collections.abc import Collection
 from typing import NamedTuple
 
 import numpy as np
@@ -54,10 +55,16 @@ class Seats:
     """
 
     def __init__(
-        self, mean_size: float, book: OutlineBook, settle: SettleSettings, mu: float
+        self,
+        mean_size: float,
+        book: OutlineBook,
+        settle: SettleSettings,
+        mu: float,
+        pinned: Collection[int] = (),
     ) -> None:
         self.mean_size = mean_size
         self._book, self._settle, self._mu = book, settle, mu
+        self._pinned = pinned
         self._errors: dict[int, list[_Errors]] = {}
         self._known = RecentlyUsed[tuple[object, ...], Trial](KNOWN_BYTES)
         self._last: tuple[tuple[Group, ...], list[Polygons]] = (), []
@@ -65,8 +72,10 @@ class Seats:
     def bearable(self, stone: Stone) -> float:
         """Return in which share of the trials a stone may fall where no other place is sure.
 
-        The wall lacks more where a large one is left out.
+        The wall lacks more where a large one is left out, and pinned ones must be in it.
         """
+        if stone.id in self._pinned:
+            return 1.0
         return stone.area_px / self.mean_size**2 / FALL
 
     def falls(self, group: Group, wall: Wall) -> float | None:

@@ -143,13 +143,13 @@ def _ended(planner: Planner, progress: Progress, grace: Deadline, *, lost: bool)
     """Judge the best walls of a search thoroughly, and add what finds a place on the best."""
     kept = progress.kept
     surer, unsure = surest(planner, kept, grace)
-    best = surer or progress.best
+    best = found = surer or progress.best
     with suppress(TimeIsUp):
-        best = repaired(planner, best, grace)
+        best = repaired(planner, found, grace)
     last, stopped, cut = with_the_rest(planner, best, grace)
     planner.failed_solves += last.failed_solves
     planner.cold_solves += last.cold_solves
-    if len(last.build.actions) > len(best.groups):
+    if best is not found or len(last.build.actions) > len(best.groups):
         kept = archived(kept, [PackedWall.of(FoundWall.of(last))])
     return SearchEnd(last, stopped, progress.walls, kept, lost, unsure or cut)
 
@@ -213,31 +213,29 @@ def surest(
 
 
 def repaired(planner: Planner, best: PackedWall, until: Deadline = NEVER) -> PackedWall:
-    """Return a wall without stones that fall in its rehearsals, or with others in their place.
+    """Return a wall without the stones that fall first in its rehearsals, where that is better.
 
-    Where that makes it better: what rests on them is built up again, at most :data:`REPAIRS` times.
+    They are taken out, alone or with all that rests on them, and what they leave is built up again
+    or stays open; so the best of four walls goes on, at most :data:`REPAIRS` times.
     """
     yard = Yard.of(planner, until)
-    found = found_again(best, yard).judged(yard, THOROUGH)
-    if found.build.wall.outlines is None or found.figures is None:
-        return best
+    now, found = best, found_again(best, yard)
     for turn in range(REPAIRS):
         gone = first_falls(found.build, yard, LAST_RUNS)
         if not gone:
             break
-        rng = np.random.default_rng([planner.seed, 5_000_000, turn])
         walls = []
         for chosen in (gone, with_all_above(found.build, gone)):
+            rng = np.random.default_rng([planner.seed, 5_000_000, turn])
             build, _, solves = without(found.build, chosen, yard)
-            for one in (build, yard.built_up(build, rng).build):
-                wall = FoundWall.measured(one, yard, found.solves + solves, found.courses)
-                if wall.merit > found.merit:
-                    walls.append(wall.judged(yard, THOROUGH))
-        better = max(walls, key=lambda one: one.merit, default=found)
-        if better.merit <= found.merit:
+            walls += [FoundWall.measured(build, yard, solves)]
+            walls += [FoundWall.of(yard.built_up(build, rng), before=solves)]
+        judged = (one.judged(yard, THOROUGH) for one in walls if one.merit > now.merit)
+        better = max(judged, key=lambda one: one.merit, default=found)
+        if better.merit <= now.merit or not stays_at_every_step(better.build, until):
             break
-        found = better
-    return PackedWall.of(found)
+        now, found = PackedWall.of(better), better
+    return now
 
 
 def stays_at_every_step(build: Build, until: Deadline = NEVER) -> bool:
