@@ -224,9 +224,8 @@ def repaired(planner: Planner, best: PackedWall, until: Deadline = NEVER) -> Pac
         gone = first_falls(found.build, yard, LAST_RUNS)
         if not gone:
             break
-        walls = []
+        walls, rng = [], np.random.default_rng([planner.seed, 5_000_000, turn])
         for chosen in (gone, with_all_above(found.build, gone)):
-            rng = np.random.default_rng([planner.seed, 5_000_000, turn])
             build, _, solves = without(found.build, chosen, yard)
             walls += [FoundWall.measured(build, yard, solves)]
             walls += [FoundWall.of(yard.built_up(build, rng), before=solves)]
