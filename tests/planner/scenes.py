@@ -5,7 +5,14 @@ from typing import Any
 
 import numpy as np
 
-from drystone.generate import BrickSettings, RubbleSettings, brick_stones, rubble_stones
+from drystone.generate import (
+    BrickSettings,
+    FourierSettings,
+    RubbleSettings,
+    brick_stones,
+    fourier_stones,
+    rubble_stones,
+)
 from drystone.kernels.raster import Mask
 from drystone.model.site import Site
 from drystone.model.stone import Source, Stone, StoneSet
@@ -16,6 +23,13 @@ from drystone.planner.settings import PlannerSettings, method_settings
 
 RUBBLE_SITE = Site(100, 36)
 """What :func:`rubble` is for."""
+
+ROUNDED = fourier_stones(
+    FourierSettings(count=16, smallest_radius_px=9, largest_radius_px=36, D2=0.15),
+    np.random.default_rng(2),
+)
+ROUNDED_SITE = Site.from_source(330, 130, 0.5)
+"""Rounded stones, large and small, of which some fall where no trial is made of their places."""
 
 WITH_WEDGES: Mapping[str, Any] = {
     "selection_rule": "algorithm2",

@@ -1,6 +1,6 @@
 """Choosing between sides (Eq. 29) and by cost."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -87,12 +87,16 @@ def test_algorithm_2_analyses_everything_and_gives_the_candidate_back() -> None:
 
 
 def _by_score(
-    costs: dict[int, float], found: dict[int, float | None], **settings: float
+    costs: dict[int, float],
+    found: dict[int, float | None],
+    sure: Collection[int] | None = None,
+    **settings: float,
 ) -> tuple[Candidate | None, _Judge]:
     judge = _Judge(found)
     proposals = [_proposal(i, cost=cost) for i, cost in costs.items()]
     weights = ScoreSettings(**{"llc": 0.0, "analysed": 2, **settings})  # type: ignore[arg-type]
-    return choose_by_score(proposals, judge, weights), judge
+    surely = (lambda one: one.stone_id in sure) if sure is not None else lambda _: True
+    return choose_by_score(proposals, judge, weights, surely), judge
 
 
 def test_the_cheapest_that_stands_is_chosen() -> None:
@@ -107,6 +111,19 @@ def test_analysing_ends_when_enough_stand() -> None:
     assert judge.batches == [[5, 6]]
     assert chosen is not None
     assert chosen.stone_id == 5  # equal costs: the lower id
+
+
+@pytest.mark.parametrize(
+    ("sure", "chosen", "batches"),
+    [({1, 2}, 1, 1), ({2, 3}, 2, 1), ({4}, 4, 2), ({5}, 5, 3), (set(), None, 3)],
+)
+def test_the_cheapest_that_is_sure_is_chosen(
+    sure: set[int], chosen: int | None, batches: int
+) -> None:
+    costs = {i: float(i) for i in range(1, 6)}
+    found, judge = _by_score(costs, dict.fromkeys(costs, 0.5), sure)
+    assert (None if found is None else found.stone_id) == chosen
+    assert judge.batches == [[1, 2], [3, 4], [5]][:batches]
 
 
 def test_what_carries_nothing_does_not_stand() -> None:

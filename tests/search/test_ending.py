@@ -8,25 +8,39 @@ import numpy as np
 import pytest
 
 from drystone import generate
+from drystone.model.site import Site
 from drystone.planner.deadline import Deadline, TimeIsUp
 from drystone.planner.events import INTERRUPTED, Stopped
 from drystone.planner.planner import Planner
 from drystone.planner.settings import method_settings
 from drystone.planner.solves import Solves
 from drystone.search.chain import _opened
-from drystone.search.goal import FoundWall
-from drystone.search.packed import PackedWall
+from drystone.search.goal import LAST_RUNS, FoundWall, first_falls
+from drystone.search.packed import PackedWall, found_again
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
 from drystone.search.whole_search import (
+    THOROUGH,
     as_found,
+    repaired,
     run_to_end,
     stays_at_every_step,
     surest,
     with_the_rest,
 )
+from drystone.search.yard import Yard
 from drystone.statics.model import RigidBlockModel
-from tests.planner.scenes import RUBBLE_SITE, Ticks, after_looks, greedy, rubble
+from tests.planner.scenes import (
+    ROUNDED,
+    ROUNDED_SITE,
+    RUBBLE_SITE,
+    Ticks,
+    after_looks,
+    bricks,
+    finish,
+    greedy,
+    rubble,
+)
 
 FEW = {"search": {"budget": 4, "passes": 4, "chains": 2, "share_every": 2}}
 
@@ -66,6 +80,28 @@ def test_stones_that_find_a_place_stay_where_that_is_better(planner: Planner) ->
     assert not interrupted
     assert ids(left) == before
     assert why == Stopped("search", "the stones that are left do not make the wall better")
+
+
+def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere() -> None:
+    careless = greedy({"search": {"budget": 2}, "settle": {"trials": 0}})
+    planner = finish(Planner(ROUNDED, ROUNDED_SITE, settings=careless))
+    yard = Yard.of(planner)
+    wall = PackedWall.of(FoundWall.of(planner).judged(yard, THOROUGH))
+    better = repaired(planner, wall)
+    assert wall.figures is not None
+    assert better.figures is not None
+    assert better.merit > wall.merit
+    assert better.figures.fallen < wall.figures.fallen
+    found = found_again(better, yard)
+    assert found.judged(yard, THOROUGH).merit == pytest.approx(better.merit)
+    assert repaired(planner, wall).groups == better.groups
+    assert first_falls(planner.build, yard, LAST_RUNS)
+    # Where nothing falls, and where nothing is better without it, the wall stays.
+    still = repaired(planner, replace(wall, merit=math.inf))
+    assert still.groups == wall.groups
+    flat = finish(Planner(bricks(), Site(60, 20), settings=careless))
+    laid = PackedWall.of(FoundWall.of(flat))
+    assert repaired(flat, laid) is laid
 
 
 def test_a_wall_to_choose_is_as_it_was_found(planner: Planner) -> None:

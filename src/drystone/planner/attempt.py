@@ -6,6 +6,7 @@ from concurrent.futures import Executor
 from dataclasses import replace
 from functools import partial
 from itertools import chain
+from operator import itemgetter
 from statistics import fmean
 from typing import TypeVar
 
@@ -76,6 +77,8 @@ class Attempt:
         sides: tuple[Side, ...] = ("left", "right") if settings.two_sided else ("left",)
         self._landscapes = {side: Landscape.of(build.wall, side) for side in sides}
         self._judged: dict[Key, Candidate] = {}
+        # Those that stand, but fall in so large a share of the trials, which is bearable.
+        self._unsure: list[tuple[float, Candidate]] = []
 
     @property
     def candidates(self) -> int:
@@ -127,7 +130,20 @@ class Attempt:
             chosen = self._best(proposals, rng)
             if chosen is not None:
                 return chosen
-        return None
+        # Nothing is sure.
+        return min(self._unsure, key=itemgetter(0), default=(0.0, None))[1]
+
+    def _sure(self, candidate: Candidate) -> bool:
+        """Say whether a stone falls in no trial (:mod:`drystone.planner.seats`)."""
+        wall = self.build.wall
+        if wall.outlines is None:
+            return True
+        self._until.look()
+        with self._profile.part("stabilisation"):
+            falls = self._workshop.seats.falls(candidate.stabilised, wall)
+        if falls:
+            self._unsure.append((falls, candidate))
+        return falls == 0.0
 
     def _best(self, proposals: Sequence[Proposal], rng: np.random.Generator) -> Candidate | None:
         if self._policy is not None:
@@ -137,7 +153,10 @@ class Attempt:
                 settings=settings, rng=rng,
             )  # fmt: skip
         if self._settings.selection_rule == "score":
-            return choose_by_score(proposals, self._judge, self._settings.score)
+            if (wall := self.build.wall).outlines is not None:
+                fall = self._workshop.seats.known_to_fall
+                proposals = [p for p in proposals if not fall(p.stabilised, wall)]
+            return choose_by_score(proposals, self._judge, self._settings.score, self._sure)
         return choose_by_algorithm2(proposals, self._judge, self._settings.selection)
 
     def _proposals(

@@ -63,26 +63,33 @@ def action_of(candidate: Candidate, settings: SelectionSettings) -> Action:
 
 
 def choose_by_score(
-    proposals: Sequence[Proposal], judge: Judge, settings: ScoreSettings
+    proposals: Sequence[Proposal],
+    judge: Judge,
+    settings: ScoreSettings,
+    sure: Callable[[Candidate], bool] = lambda _: True,
 ) -> Candidate | None:
     """Return the action of the least cost, lateral resistance included.
 
-    Proposals are analysed from the cheapest on, in batches, until enough of them stand.
+    Proposals are analysed from the cheapest on, in batches, until enough of them stand, and one of
+    these is sure.
     """
     keys = [(p.stone_id, float(p.side != "left"), p.spot) for p in proposals]
     order = cheapest_first([p.cost for p in proposals], keys)
-    standing: list[Candidate] = []
-    for start in range(0, len(order), settings.analysed):
-        batch = judge([proposals[k] for k in order[start : start + settings.analysed]])
-        standing += [c for c in batch if c.stands]
-        if len(standing) >= settings.analysed:
-            break
 
     def cost(candidate: Candidate) -> float:
         bonus = settings.llc * (candidate.indices.LLC or 0.0)
         return round(candidate.proposal.cost - bonus, TIE_DIGITS)
 
-    return min(standing[: settings.analysed], key=cost, default=None)
+    standing: list[Candidate] = []
+    for start in range(0, len(order), settings.analysed):
+        batch = judge([proposals[k] for k in order[start : start + settings.analysed]])
+        standing += [c for c in batch if c.stands]
+        if len(standing) >= settings.analysed or start + settings.analysed >= len(order):
+            compared, standing = standing[: settings.analysed], standing[settings.analysed :]
+            for candidate in sorted(compared, key=cost):
+                if sure(candidate):
+                    return candidate
+    return next((c for c in standing if sure(c)), None)
 
 
 def choose_by_policy(

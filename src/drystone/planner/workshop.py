@@ -1,6 +1,7 @@
 """Everything that is prepared once for a stone set and a site (Algorithm 1, line 2)."""
 
 from dataclasses import dataclass, field
+from statistics import fmean
 
 from drystone.clusters import cluster_stones
 from drystone.errors import UsageError
@@ -9,6 +10,7 @@ from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.planner.build import Build
 from drystone.planner.craft import PoseCosts
+from drystone.planner.seats import Seats
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Rest, SideCounts, Stock, sides_of
 from drystone.planner.views import Views
@@ -35,6 +37,7 @@ class Workshop:
     outlines: OutlineBook  # turned outlines, for stones that settle on them
     costs: PoseCosts  # of their poses, wherever they go
     views: Views  # of walls of outlines
+    seats: Seats  # tries places on them
     _angles: dict[int, tuple[float, ...]] = field(default_factory=dict, init=False, repr=False)
 
     @classmethod
@@ -48,9 +51,11 @@ class Workshop:
         clusters = cluster_stones(stones, book, settings.clusters)
         memory = StabiliseMemory(book, stock.mean_height_px, settings.stabilise)
         outlines = OutlineBook(settings.settle.outline_px, 1.0 / site.scale)
+        mean_size = fmean(stone.area_px**0.5 for stone in stones)
         return cls(
             stones, site, book, clusters, settings.orientations, fitting, stock, sides, memory,
             outlines, PoseCosts(stock, frozenset(settings.pin)), Views(site),
+            Seats(mean_size, outlines, settings.settle, settings.mu, settings.pin),
         )  # fmt: skip
 
     def poses(self, stone_id: int) -> tuple[PosedStone, ...]:

@@ -1,7 +1,7 @@
 """Finished walls, and how good they are: figures of merit, weighed into one number."""
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -17,7 +17,7 @@ from drystone.planner.search_settings import GoalSettings
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.courses import CoursePlan
-from drystone.search.rehearsal import groups_of, mean_size, rehearse
+from drystone.search.rehearsal import RehearsalRun, groups_of, mean_size, rehearse
 from drystone.search.yard import Yard
 from drystone.statics.flow.flow_search import STARTS, NonassociativeSettings
 from drystone.statics.flow.nonassociative import nonassociative_resistance
@@ -34,7 +34,10 @@ QUICK = NonassociativeSettings(starts=STARTS[:1], random_starts=0, let_go=False)
 """One start of twelve finds the least load without dilatancy of most walls."""
 
 
-RUNS, LAST_RUNS = 3, 12
+STOPPED = 3
+"""A builder who has to mend a wall loses as much as with so many stones."""
+
+RUNS, LAST_RUNS = 4, 24
 """So often a wall of a search is rehearsed, and the best ones at the end."""
 
 
@@ -193,13 +196,27 @@ class FoundWall:
 
 
 def rehearsed(build: Build, yard: Yard, runs: int) -> float:
-    """Return the mean share of the stones of a wall of outlines that fall in some rehearsals."""
+    """Return what falls in some rehearsals of a wall of outlines, over all its stones.
+
+    A run that is not whole counts as :data:`STOPPED` more stones that fall.
+    """
+    falls = 0
+    for run in _rehearsals(build, yard, runs):
+        falls += sum(end.fallen for end in run.stones)
+        falls += STOPPED * (run.first_fall is not None)
+    return falls / (runs * len(build.actions))
+
+
+def first_falls(build: Build, yard: Yard, runs: int) -> frozenset[int]:
+    """Return the stones with which falls begin in some rehearsals of a wall of outlines."""
+    firsts = (run.first_fall for run in _rehearsals(build, yard, runs))
+    return frozenset(first for first in firsts if first is not None)
+
+
+def _rehearsals(build: Build, yard: Yard, runs: int) -> Iterator[RehearsalRun]:
     groups, settings = groups_of(build.wall), yard.settings
     errors = BuilderErrors.of_precision(BETWEEN, mean_size(groups))
-    fallen = 0
     for run in range(runs):
         yard.until.look()
         rng = np.random.default_rng(run)
-        found = rehearse(groups, errors, rng, mu=settings.mu, settle=settings.settle)
-        fallen += sum(end.fallen for end in found.stones)
-    return fallen / (runs * len(groups))
+        yield rehearse(groups, errors, rng, mu=settings.mu, settle=settings.settle)

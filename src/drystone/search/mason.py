@@ -186,7 +186,7 @@ class Mason:
         self, build: Build, stone: Stone, angle_deg: float, side: Side, resting: Sequence[Resting]
     ) -> tuple[Candidate | None, Solves]:
         """Compare the cheapest places, and return the best after which the wall stands."""
-        places = list(enumerate(resting[: self.laying.judged]))
+        places, seats = list(enumerate(resting[: self.laying.judged])), self.yard.workshop.seats
         solves = Solves()
         while places:
             rated = self._rated(build, stone, places)
@@ -211,7 +211,7 @@ class Mason:
                 proposal = Proposal(stabilised, angle_deg, cost=place.cost, spot=one.spot)
                 landscape = Landscape.of(build.wall, side)
                 action = self.evaluator.candidate(landscape, proposal, one.loaded, sturdy)
-                if action.sturdy:
+                if action.sturdy and seats.falls(stabilised, build.wall) is not None:
                     return action, solves
         return None, solves
 

@@ -8,6 +8,8 @@ from contextlib import suppress
 from itertools import islice
 from typing import NamedTuple
 
+import numpy as np
+
 from drystone.errors import PlanError
 from drystone.planner.build import Build
 from drystone.planner.deadline import NEVER, Deadline, TimeIsUp
@@ -16,10 +18,11 @@ from drystone.planner.planner import Planner
 from drystone.planner.replay import stands
 from drystone.planner.sturdy import ROUNDS
 from drystone.search.anytime import searching
-from drystone.search.chain import forget
-from drystone.search.goal import FoundWall, WallFigures
+from drystone.search.chain import forget, without
+from drystone.search.goal import LAST_RUNS, FoundWall, WallFigures, first_falls
 from drystone.search.interrupts import held
 from drystone.search.packed import PackedWall, archived, found_again
+from drystone.search.ruin import with_all_above
 from drystone.search.standing import Progress, Standing
 from drystone.search.yard import Yard
 from drystone.statics.flow.flow_search import NonassociativeSettings
@@ -30,6 +33,9 @@ _FOUND = Stopped("search", "kept as the search found it")
 
 THOROUGH = NonassociativeSettings()
 """How the load without dilatancy is looked for at the end."""
+
+REPAIRS = 4
+"""So often the best wall is repaired at most, where its stones fall in rehearsals."""
 
 JUDGED_AGAIN = 4
 """So many of the best walls of a search are looked at thoroughly at most."""
@@ -136,10 +142,12 @@ def _ended(planner: Planner, progress: Progress, grace: Deadline, *, lost: bool)
     """Judge the best walls of a search thoroughly, and add what finds a place on the best."""
     kept = progress.kept
     surer, unsure = surest(planner, kept, grace)
-    best = surer or progress.best
+    best = found = surer or progress.best
+    with suppress(TimeIsUp):
+        best = repaired(planner, found, grace)
     last, stopped, cut = with_the_rest(planner, best, grace)
     planner.solves += last.solves
-    if len(last.build.actions) > len(best.groups):
+    if best is not found or len(last.build.actions) > len(best.groups):
         kept = archived(kept, [PackedWall.of(FoundWall.of(last))])
     return SearchEnd(last, stopped, progress.walls, kept, lost, unsure or cut)
 
@@ -200,6 +208,31 @@ def surest(
             return _best(sound or fallen or [wall]), True
     looked_at = sound or fallen
     return _best(looked_at) if looked_at else None, False
+
+
+def repaired(planner: Planner, best: PackedWall, until: Deadline = NEVER) -> PackedWall:
+    """Return a wall without the stones that fall first in its rehearsals, where that is better.
+
+    They are taken out, alone or with all that rests on them, and what they leave is built up again
+    or stays open; so the best of four walls goes on, at most :data:`REPAIRS` times.
+    """
+    yard = Yard.of(planner, until)
+    now, found = best, found_again(best, yard)
+    for turn in range(REPAIRS):
+        gone = first_falls(found.build, yard, LAST_RUNS)
+        if not gone:
+            break
+        walls, rng = [], np.random.default_rng([planner.seed, 5_000_000, turn])
+        for chosen in (gone, with_all_above(found.build, gone)):
+            build, _, solves = without(found.build, chosen, yard)
+            walls += [FoundWall.measured(build, yard, solves)]
+            walls += [FoundWall.of(yard.built_up(build, rng), before=solves)]
+        judged = (one.judged(yard, THOROUGH) for one in walls if one.merit > now.merit)
+        better = max(judged, key=lambda one: one.merit, default=found)
+        if better.merit <= now.merit or not stays_at_every_step(better.build, until):
+            break
+        now, found = PackedWall.of(better), better
+    return now
 
 
 def stays_at_every_step(build: Build, until: Deadline = NEVER) -> bool:

@@ -18,6 +18,7 @@ from drystone.model.builder import Built
 from drystone.poses import wrap_deg
 from drystone.settle.rest import SettlingScene, Turned, let_go, repose, straight_down
 from drystone.settle.settings import SettleSettings
+from drystone.settle.wedge import in_order
 
 FALLEN_SHARE, FALLEN_DEG = 0.25, 12.0
 """A stone has fallen when it ends farther from the plan, over its size, or turned by more."""
@@ -93,16 +94,18 @@ def nearby(built: Built, around: Polygons, reach: float = ASIDE) -> Polygons:
     meets &= (boxes[:, 1] <= top) & (boxes[:, 3] >= bottom)
     if meets.all():
         return around
-    return no_polygons().added(around.polygon(i) for i in np.flatnonzero(meets).tolist())
+    return in_order(around, np.flatnonzero(meets).tolist())
 
 
 def moved(around: Polygons, pushed: dict[int, float]) -> Polygons:
     """Return polygons of which some are moved along x."""
     if not pushed:
         return around
-    return no_polygons().added(
-        around.polygon(i) + np.array((pushed.get(i, 0.0), 0.0)) for i in range(len(around))
-    )
+    corners, boxes = around.corners.copy(), around.boxes.copy()
+    for i, x in pushed.items():
+        corners[around.first[i] : around.first[i + 1], 0] += x
+        boxes[i, ::2] += x
+    return Polygons(corners, around.first, boxes, around.edges)
 
 
 class _Block(NamedTuple):

@@ -55,6 +55,9 @@ class SettleSettings(Ranged):
         Proposals that are settled in a step, the cheapest ones.
     per_stone : int
         Most of them of one stone.
+    trials : int
+        How often a place is tried again with the errors of a hand
+        (:mod:`drystone.planner.seats`); a stone that falls there is laid elsewhere.
     """
 
     method: Method = "energy"
@@ -73,6 +76,7 @@ class SettleSettings(Ranged):
     apart: float = ranged(0.2, least=0)
     shortlist: int = ranged(24, least=1)
     per_stone: int = ranged(4, least=1)
+    trials: int = ranged(10, least=0)
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -1,0 +1,173 @@
+"""How surely stones rest where they are planned (DESIGN 4.10).
+
+Beside the wall as planned some stand as a builder would have built it: each stone a little aside,
+turned, and of another shape than it was seen.  A place is tried in all of them, and a stone that
+falls there is laid elsewhere; what fell all the same is put where it was planned.
+"""
+
+from collections.abc import Collection
+from typing import NamedTuple
+
+import numpy as np
+
+from drystone.kernels.polygons import Points, Polygons, no_polygons
+from drystone.model.builder import BuilderErrors, Built, misjudged
+from drystone.model.stone import Stone
+from drystone.model.wall import Group, Wall, outlined
+from drystone.poses import RecentlyUsed, wrap_deg
+from drystone.settle.book import OutlineBook
+from drystone.settle.putting import fallen_share, moved, put_down
+from drystone.settle.settings import SettleSettings
+from drystone.settle.wedge import in_order
+
+PRECISION = 0.03
+"""Of the errors: those of a hand."""
+
+NEAR = 1.0
+"""What is farther from a stone than this, over its size, takes no part when it is put down."""
+
+FALL = 4.0
+"""A stone that would fall in all trials is laid when it is larger than so many mean stones."""
+
+KNOWN_BYTES = 1 << 26
+"""Trials that are remembered at most, about: fifty thousand."""
+
+
+class Trial(NamedTuple):
+    """What became of a stone that was put down with errors."""
+
+    fell: bool
+    corners: Points  # where it rests; as planned where it fell
+    pushed: dict[int, float]  # by how much which polygons of those near it are pushed along x
+
+
+class _Errors(NamedTuple):
+    outline: Points  # of the stone as it is, not turned
+    aside: float
+    turned_deg: float
+
+
+class Seats:
+    """Tries places; every stone has errors of its own, the same wherever it is laid.
+
+    `mean_size` is the mean over the stones of the set of the root of their area, source px.  What
+    is remembered makes it quicker and changes nothing.
+    """
+
+    def __init__(
+        self,
+        mean_size: float,
+        book: OutlineBook,
+        settle: SettleSettings,
+        mu: float,
+        pinned: Collection[int] = (),
+    ) -> None:
+        self.mean_size = mean_size
+        self._book, self._settle, self._mu = book, settle, mu
+        self._pinned = pinned
+        self._errors: dict[int, list[_Errors]] = {}
+        self._known = RecentlyUsed[tuple[object, ...], Trial](KNOWN_BYTES)
+        self._last: tuple[tuple[Group, ...], list[Polygons]] = (), []
+
+    def bearable(self, stone: Stone) -> float:
+        """Return in which share of the trials a stone may fall where no other place is sure.
+
+        The wall lacks more where a large one is left out, and pinned ones must be in it.
+        """
+        if stone.id in self._pinned:
+            return 1.0
+        return stone.area_px / self.mean_size**2 / FALL
+
+    def falls(self, group: Group, wall: Wall) -> float | None:
+        """Return in which share of the trials a stone falls that is laid next.
+
+        None where it falls in more of them than is bearable: then not all need to be made.
+        """
+        most = self.bearable(group.placement.posed.stone)
+        fallen, trials = 0, self._settle.trials
+        for k, built in enumerate(self._built(wall.groups)):
+            fallen += self._trial(group, k, built, self._near(group, built)).fell
+            if fallen > most * trials:
+                return None
+        return fallen / trials if trials else 0.0
+
+    def known_to_fall(self, group: Group, wall: Wall) -> bool:
+        """Say whether `falls` is None by what is known of the same place, without a trial."""
+        most, fallen = self.bearable(group.placement.posed.stone), 0
+        for k, built in enumerate(self._built(wall.groups)):
+            known = self._known.get(_key(group, k, built, self._near(group, built)))
+            if known is None:
+                return False
+            fallen += known.fell
+            if fallen > most * self._settle.trials:
+                return True
+        return False
+
+    def _built(self, groups: tuple[Group, ...]) -> list[Polygons]:
+        """Return the walls of all trials after some steps, the wedges of each before its stone."""
+        done, walls = self._last
+        known = len(done) <= len(groups) and all(a is b for a, b in zip(done, groups, strict=False))
+        if not (done and known):
+            done, walls = (), [no_polygons()] * self._settle.trials
+        walls = list(walls)
+        for group in groups[len(done) :]:
+            wedges = [corners for _, corners in outlined(group.placement, group.wedges)[1:]]
+            for k, built in enumerate(walls):
+                near = self._near(group, built)
+                trial = self._trial(group, k, built, near)
+                pushed = {near[i]: x for i, x in trial.pushed.items() if i < len(near)}
+                walls[k] = moved(built, pushed).added([*wedges, trial.corners])
+        self._last = groups, walls
+        return walls
+
+    def _near(self, group: Group, built: Polygons) -> list[int]:
+        placement = group.placement
+        far, corners = NEAR * placement.posed.stone.area_px**0.5, placement.exact.corners
+        low, high, boxes = corners.min(axis=0) - far, corners.max(axis=0) + far, built.boxes
+        near = (boxes[:, :2] <= high).all(axis=1) & (boxes[:, 2:] >= low).all(axis=1)
+        return np.flatnonzero(near).tolist()
+
+    def _trial(self, group: Group, k: int, built: Polygons, near: list[int]) -> Trial:
+        """Put a stone down with its errors of a trial, in the wall of that trial."""
+        key = _key(group, k, built, near)
+        known = self._known.get(key)
+        if known is not None:
+            return known
+        placement = group.placement
+        stone, at, angle_deg = placement.posed.stone, placement.exact, placement.posed.angle_deg
+        errors = self.errors(stone)[k]
+        wedges = [corners for _, corners in outlined(placement, group.wedges)[1:]]
+        put = Built(errors.outline, at.x_px + errors.aside, at.y_px, angle_deg + errors.turned_deg)
+        around = in_order(built, near)
+        rest, pushed = put_down(
+            put, around.added(wedges) if wedges else around, self._mu, self._settle
+        )
+        trial = Trial(True, at.corners, {})
+        if rest is not None:
+            way, turned = (rest.x - at.x_px, rest.y - at.y_px), wrap_deg(rest.angle_deg - angle_deg)
+            if fallen_share(*way, turned, stone.area_px**0.5) <= 1.0:
+                trial = Trial(False, rest.corners, pushed)
+        return self._known.keep(key, trial, 600 + trial.corners.nbytes + 40 * len(near))
+
+    def errors(self, stone: Stone) -> list[_Errors]:
+        """Return the errors with which a stone is put down."""
+        if stone.id not in self._errors:
+            errors = BuilderErrors.of_precision(PRECISION, self.mean_size)
+            rng, outline = np.random.default_rng([7, stone.id]), self._book.outline(stone)
+            self._errors[stone.id] = [
+                _Errors(
+                    misjudged(outline, errors.outline, rng),
+                    errors.placement * rng.standard_normal(),
+                    errors.angle_deg * rng.standard_normal(),
+                )
+                for _ in range(self._settle.trials)
+            ]
+        return self._errors[stone.id]
+
+
+def _key(group: Group, k: int, built: Polygons, near: list[int]) -> tuple[object, ...]:
+    """Return what tells a trial: its errors, the place, and what is near."""
+    posed, at = group.placement.posed, group.placement.exact
+    wedges = (corners.tobytes() for _, corners in outlined(group.placement, group.wedges)[1:])
+    boxes = built.boxes[near].tobytes()
+    return k, posed.stone.id, posed.angle_deg, at.x_px, at.y_px, boxes, *wedges

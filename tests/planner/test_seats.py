@@ -1,0 +1,84 @@
+"""How surely stones rest where they are planned."""
+
+import numpy as np
+import pytest
+
+from drystone.model.builder import Built
+from drystone.model.wall import outlined
+from drystone.planner.planner import Planner
+from drystone.planner.seats import NEAR, Seats
+from tests.naive import seats as naive
+from tests.planner.scenes import ROUNDED, ROUNDED_SITE, finish, greedy
+
+
+def seats_of(workshop, settings):
+    return Seats(workshop.seats.mean_size, workshop.outlines, settings.settle, settings.mu)
+
+
+@pytest.fixture(scope="module")
+def careless():
+    """A planner that has built without trials."""
+    return finish(Planner(ROUNDED, ROUNDED_SITE, settings=greedy({"settle": {"trials": 0}})))
+
+
+def shares(seats, wall, states):
+    """The share of falls of every step; None where it is more than bearable."""
+    return [seats.falls(group, state) for group, state in zip(wall.groups, states, strict=True)]
+
+
+def walls_of(planner):
+    """The wall before every step."""
+    walls, wall = [], type(planner.build.wall).empty(ROUNDED_SITE, exact=True)
+    for group in planner.build.wall.groups:
+        walls.append(wall)
+        wall = wall.add(group.placement, group.wedges)
+    return walls
+
+
+def test_trials_are_those_of_walls_that_are_built_anew(careless):
+    settings = greedy()
+    seats, wall = seats_of(careless.workshop, settings), careless.build.wall
+    steps = []
+    for group in wall.groups:
+        at, posed = group.placement.exact, group.placement.posed
+        outline = careless.workshop.outlines.outline(posed.stone)
+        wedges = [corners for _, corners in outlined(group.placement, group.wedges)[1:]]
+        steps.append((Built(outline, at.x_px, at.y_px, posed.angle_deg), wedges))
+    fallen = np.zeros(len(steps))
+    for trial in range(settings.settle.trials):
+        errors = [seats.errors(g.placement.posed.stone)[trial] for g in wall.groups]
+        fallen += naive.falls(steps, errors, settings.mu, settings.settle, NEAR)
+    assert fallen.any()
+    fallen /= settings.settle.trials
+    for group, share, state in zip(wall.groups, fallen, walls_of(careless), strict=True):
+        bearable = share <= seats.bearable(group.placement.posed.stone)
+        assert seats.falls(group, state) == (pytest.approx(share) if bearable else None)
+
+
+def test_what_was_asked_before_changes_nothing(careless):
+    wall, before = careless.build.wall, walls_of(careless)
+    settings = greedy()
+    used = seats_of(careless.workshop, settings)
+    asked = shares(used, wall, before)
+    assert asked == shares(used, wall, before)
+    for k in (len(before) - 1, 3, 7):  # in another order, each by one that remembers nothing
+        assert seats_of(careless.workshop, settings).falls(wall.groups[k], before[k]) == asked[k]
+
+
+def test_a_refused_place_is_known_and_a_sure_one_is_not(careless):
+    seats, wall = seats_of(careless.workshop, greedy()), careless.build.wall
+    for group, state in zip(wall.groups, walls_of(careless), strict=True):
+        assert not seats.known_to_fall(group, state)
+        refused = seats.falls(group, state) is None
+        assert seats.known_to_fall(group, state) == refused
+
+
+def test_no_stone_is_laid_where_it_falls_more_often_than_is_bearable(careless):
+    assert None in shares(
+        seats_of(careless.workshop, greedy()), careless.build.wall, walls_of(careless)
+    )
+    careful = finish(Planner(ROUNDED, ROUNDED_SITE, settings=greedy()))
+    found = shares(careful.workshop.seats, careful.build.wall, walls_of(careful))
+    assert None not in found
+    assert len(found) >= len(ROUNDED) - 2
+    assert np.mean(found) < 0.02
