@@ -153,7 +153,6 @@ CASES = [
     # Generators, markers and photographs.
     ("generate rubble -o {out}/x.png --count 0", 2, "E138", "--count: '0'"),
     ("generate rubble -o {out}/x.png --seed 1.5", 2, "E138", "--seed: '1.5'"),
-    (f"{BRICKS} --set wonder=1", 2, "E123", ""),
     (f"{BRICKS} --set cuont=1", 2, "E123", "Did you mean `count`?"),
     (f"{BRICKS} --set height_px", 2, "E135", "Known: count"),
     (f"{BRICKS} --set height_px=tall", 2, "E135", ""),

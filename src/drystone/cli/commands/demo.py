@@ -22,19 +22,11 @@ from drystone.planner.search_settings import UNLIMITED
 
 STONES, WALL = "stones.png", (1120, 320)
 
-STOCK = 1.16
-"""The pile is for a wall so much longer: a mason has stones to choose from."""
-
 
 def add(command: argparse.ArgumentParser) -> None:
     """Add what `drystone demo` takes."""
-    command.add_argument(
-        "-o",
-        "--output",
-        default="drystone-demo",
-        metavar="DIR",
-        help="folder to write to (default drystone-demo)",
-    )
+    command.add_argument("-o", "--output", default="drystone-demo", metavar="DIR",
+                         help="folder to write to (default drystone-demo)")  # fmt: skip
     add_scale(command)
     add_settings(command)
     add_writing(command)
@@ -52,7 +44,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     own = () if arguments.settings is None else (Path(arguments.settings),)
     names = (STONES, *WRITTEN)
     refuse_inputs(own, [*(folder / name for name in names), *files_of_choice(folder)])
-    settings = RubbleSettings(count=28, width_px=round(STOCK * WALL[0]), height_px=WALL[1])
+    settings = RubbleSettings(count=28, width_px=1299, height_px=WALL[1])  # some to choose from
     made = rubble_stones(settings, np.random.default_rng(arguments.seed))
     if arguments.scale is None:
         # Outlines four times finer than the planner's pixels, as photographs give them.
