@@ -12,7 +12,7 @@ from drystone.cli.numbers import add_scale
 from drystone.cli.output import working_in
 from drystone.cli.parser import list_only
 from drystone.cli.planning import add_writing, plan_and_write
-from drystone.cli.settings import LEAST_WALLS, add_settings, request_from, settings_from
+from drystone.cli.settings import add_settings, request_from, settings_from
 from drystone.errors import ExitCode
 from drystone.generate.layout import lay_out
 from drystone.generate.rubble import RubbleSettings, rubble_stones
@@ -39,7 +39,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     """Plan a wall of coursed rubble and name the report."""
     asked = settings_from(arguments)  # wrong options are refused before anything is written
     if arguments.time is None and asked.search.budget == UNLIMITED:
-        arguments.budget = LEAST_WALLS  # where nothing is compiled, more would take minutes
+        arguments.budget = 4  # where nothing is compiled, more would take minutes
     folder = Path(arguments.output)
     own = () if arguments.settings is None else (Path(arguments.settings),)
     names = (STONES, *WRITTEN)
