@@ -117,9 +117,7 @@ NO_ROOM = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))
 
 
 def meant(word: str, known: Iterable[str], before: str = "") -> str:
-    """Ask whether the nearest of the words that are known was meant; nothing when none is near.
-
-    Of dotted ones the last part is enough.
+    """Ask whether the nearest known word, or last part of one, was meant; "" when none is near.
 
     >>> meant("bugdet", ["search.budget", "search.passes"])
     'Did you mean `search.budget`? '

@@ -142,7 +142,7 @@ def test_a_stone_that_only_its_own_squeeze_holds_falls(side: float) -> None:
     caught = seat(*turned, centroid=(0.0, 55.7))
     assert stands(caught)
     assert falls_when_let_go(caught)
-    assert falls_when_let_go(seat(centroid=(0.0, 55.7)))  # it touches nothing
+    assert falls_when_let_go(seat(centroid=(0.0, 55.7)))
     assert not falls_when_let_go(seat(*turned, centroid=(side * 4.0, 55.7)))
 
 

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from drystone.drawing.assembly.parts import Assembly
-from drystone.drawing.drawing import Drawable, Drawing, Lines, Surface, Words, ground
+from drystone.drawing.drawing import Drawable, Drawing, Surface, Words, ground
 from drystone.drawing.outlines import (
     Loop,
     Region,
@@ -72,10 +72,7 @@ def drawing_of_wall(
                 Surface(f"wedge-{wedge.id}", loops[wedge.id], WEDGE_COLOUR, z=2.0, layer="WEDGES",
                      step=steps[wedge.id])
             )  # fmt: skip
-    used = {clusters[placement.stone_id] for placement in wall.placements} if clusters else set()
-    legend = cluster_legend(used)
-    if wall.wedges:
-        legend["wedge"] = Surface("", (), WEDGE_COLOUR)
+    legend = {"wedge": Surface("", (), WEDGE_COLOUR)} if wall.wedges else {}
     size = site.width_px * site.units_per_px, site.height_px * site.units_per_px
     made = wall_drawing(items, size, "m" if site.px_per_m else "px", title)
     return Drawing(made.items, made.box, made.unit, title, legend)
@@ -104,11 +101,6 @@ def loops_of_wall(
         region.id: tuple(loop * units for loop in region.loops)
         for region in label_regions(wall.labels)
     }
-
-
-def cluster_legend(clusters: Iterable[int]) -> dict[str, Surface | Lines]:
-    """Return what the colours of some clusters mean."""
-    return {f"cluster {one}": Surface("", (), cluster_colour(one)) for one in sorted(set(clusters))}
 
 
 def drawing_of_assembly(assembly: Assembly, title: str = "") -> Drawing:

@@ -70,8 +70,8 @@ def read_plan(path: str | Path) -> Plan:
     Raises
     ------
     PlanError
-        E202: it cannot be read; E203: it is no JSON; E204: it is no plan of this version; E205: it
-        is not as the schema says.
+        E202: it cannot be read; E203: it is not JSON; E204: it is not a plan of this version; E205:
+        it is not as the schema says.
     """
     path = Path(path)
     if path.is_dir():

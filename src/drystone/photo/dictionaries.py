@@ -64,11 +64,6 @@ def opencv_dictionary(name: str) -> Any:
     return aruco.getPredefinedDictionary(getattr(aruco, known[name]))
 
 
-def id_count(name: str) -> int:
-    """Return how many markers a family has: their ids are 0 to one less."""
-    return len(opencv_dictionary(name).bytesList)
-
-
 def modules_across(name: str) -> int:
     """Return how many squares a marker of this family is wide, with its black border."""
     return int(opencv_dictionary(name).markerSize) + 2

@@ -12,7 +12,7 @@ from drystone.cli.numbers import add_scale
 from drystone.cli.output import working_in
 from drystone.cli.parser import list_only
 from drystone.cli.planning import add_writing, plan_and_write
-from drystone.cli.settings import LEAST_WALLS, add_settings, request_from, settings_from
+from drystone.cli.settings import add_settings, request_from, settings_from
 from drystone.errors import ExitCode
 from drystone.generate.layout import lay_out
 from drystone.generate.rubble import RubbleSettings, rubble_stones
@@ -22,19 +22,11 @@ from drystone.planner.search_settings import UNLIMITED
 
 STONES, WALL = "stones.png", (1120, 320)
 
-STOCK = 1.16
-"""The pile is for a wall so much longer: a mason has stones to choose from."""
-
 
 def add(command: argparse.ArgumentParser) -> None:
     """Add what `drystone demo` takes."""
-    command.add_argument(
-        "-o",
-        "--output",
-        default="drystone-demo",
-        metavar="DIR",
-        help="folder to write to (default drystone-demo)",
-    )
+    command.add_argument("-o", "--output", default="drystone-demo", metavar="DIR",
+                         help="folder to write to (default drystone-demo)")  # fmt: skip
     add_scale(command)
     add_settings(command)
     add_writing(command)
@@ -47,12 +39,12 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     """Plan a wall of coursed rubble and name the report."""
     asked = settings_from(arguments)  # wrong options are refused before anything is written
     if arguments.time is None and asked.search.budget == UNLIMITED:
-        arguments.budget = LEAST_WALLS  # where nothing is compiled, more would take minutes
+        arguments.budget = 4  # where nothing is compiled, more would take minutes
     folder = Path(arguments.output)
     own = () if arguments.settings is None else (Path(arguments.settings),)
     names = (STONES, *WRITTEN)
     refuse_inputs(own, [*(folder / name for name in names), *files_of_choice(folder)])
-    settings = RubbleSettings(count=28, width_px=round(STOCK * WALL[0]), height_px=WALL[1])
+    settings = RubbleSettings(count=28, width_px=1299, height_px=WALL[1])  # some to choose from
     made = rubble_stones(settings, np.random.default_rng(arguments.seed))
     if arguments.scale is None:
         # Outlines four times finer than the planner's pixels, as photographs give them.

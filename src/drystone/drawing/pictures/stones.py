@@ -11,7 +11,6 @@ from drystone.drawing.canvas import add, draw, draw_legend, fit_axes
 from drystone.drawing.drawing import Dots, Drawable, Drawing, Lines, Surface, Words
 from drystone.drawing.outlines import label_regions, rectangle
 from drystone.drawing.palette import GREY, PALE, PLAIN_COLOUR, WEDGE_COLOUR, cluster_colour
-from drystone.drawing.wall import cluster_legend
 from drystone.model.stone import Stone, StoneSet
 from drystone.model.wall import Labels
 
@@ -55,7 +54,8 @@ def plot_stones(
         fill = PLAIN_COLOUR if clusters is None else cluster_colour(clusters[stone.id])
         area = Surface(f"stone-{stone.id}", (stone.outline + centroid,), fill)
         items += [area, Words(f"number-{stone.id}", str(stone.id), centroid, area.room, fill)]
-    legend = cluster_legend(clusters[stone.id] for stone in stone_set) if clusters else {}
+    used = sorted({clusters[stone.id] for stone in stone_set}) if clusters else []
+    legend = {f"cluster {one}": Surface("", (), cluster_colour(one)) for one in used}
     pad = 0.01 * right
     box = (-pad, -pad, right + pad, top + pad)
     return draw(Drawing(tuple(items), box, "px", legend=legend), ax)

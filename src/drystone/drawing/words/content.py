@@ -24,7 +24,6 @@ INDICES = {
     "IS": "slope of the upper edge; positive falls inwards, higher is better",
     "LLC": "limit load coefficient: min(alpha) / mu after the step; higher is better",
 }
-STONES_ARE = {"exact": "their outlines", "raster": "their pixels at the working resolution"}
 TOUCHING = {
     "exact": "Stones touch where their outlines are within the contact tolerance, {contact_px:g} "
     "px of the image, of each other.",
@@ -77,11 +76,10 @@ def inputs(plan: Plan) -> tuple[tuple[str, str], ...]:
         ("SHA-256 of the input", str(source.get("sha256") or UNDEFINED)),
         ("Stones in the input", str(source.get("stones", UNDEFINED))),
         ("Size of the image", f"{source.get('width_px')} {TIMES} {source.get('height_px')} px"),
-        ("Building ended", plan.stopped),
         ("Wall", f"{plan.width:.{digits}f} {TIMES} {plan.height:.{digits}f} {unit}"),
         ("Scale", scale),
         ("Working resolution", f"{plan.working_scale:g} of the source's"),
-        ("Stones are", STONES_ARE[geometry(plan)]),
+        ("Geometry", str(plan.settings.get("geometry", "raster"))),
         ("Method", plan.method),
         ("Seed", str(plan.seed)),
         *([("Walls tried", str(plan.walls))] if plan.walls else []),
@@ -89,15 +87,13 @@ def inputs(plan: Plan) -> tuple[tuple[str, str], ...]:
     )
 
 
-def geometry(plan: Plan) -> Literal["raster", "exact"]:
-    """Return what the stones of a plan are."""
-    return "exact" if plan.settings.get("geometry") == "exact" else "raster"
-
-
 def assumptions(plan: Plan) -> tuple[str, ...]:
     """Return what the results of a plan rest on."""
     contact_px = plan.settings.get("settle", {}).get("contact_px", SettleSettings().contact_px)
-    return (*ASSUMPTIONS, TOUCHING[geometry(plan)].format(contact_px=contact_px))
+    return (
+        *ASSUMPTIONS,
+        TOUCHING[str(plan.settings.get("geometry", "raster"))].format(contact_px=contact_px),
+    )
 
 
 def wall_assumptions(load_case: str = TILTING) -> tuple[str, ...]:
