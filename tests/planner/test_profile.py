@@ -2,19 +2,16 @@
 
 import pytest
 
-from drystone.planner import profile as module
 from drystone.planner.profile import Profile
 
 
-@pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+def clocked() -> tuple[Profile, list[float]]:
     now = [0.0]
-    monkeypatch.setattr(module.time, "perf_counter", lambda: now[0])
-    return now
+    return Profile(lambda: now[0]), now
 
 
-def test_parts_belong_to_the_step_in_which_they_end(clock: list[float]) -> None:
-    profile = Profile()
+def test_parts_belong_to_the_step_in_which_they_end() -> None:
+    profile, clock = clocked()
     with profile.part("preparation"):
         clock[0] += 2.0
     profile.begin_step()
@@ -37,8 +34,8 @@ def test_parts_belong_to_the_step_in_which_they_end(clock: list[float]) -> None:
     assert profile.total("metrics") == 0.0
 
 
-def test_attempts_without_an_action_count_outside_of_steps(clock: list[float]) -> None:
-    profile = Profile()
+def test_attempts_without_an_action_count_outside_of_steps() -> None:
+    profile, clock = clocked()
     profile.begin_step()
     with profile.part("indices"):
         clock[0] += 1.0
@@ -49,8 +46,8 @@ def test_attempts_without_an_action_count_outside_of_steps(clock: list[float]) -
     assert profile.total("indices") == 1.0
 
 
-def test_what_fails_is_measured_too(clock: list[float]) -> None:
-    profile = Profile()
+def test_what_fails_is_measured_too() -> None:
+    profile, clock = clocked()
 
     def fails() -> None:
         with profile.part("stabilisation"):

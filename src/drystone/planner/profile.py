@@ -1,7 +1,7 @@
 """Where the time of a plan goes: by step, and by part of the work."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Literal
@@ -33,7 +33,7 @@ class StepTime:
 
 
 class Profile:
-    """Times of a planner at work; :attr:`drystone.planner.planner.Planner.profile`.
+    """Times of a planner at work, by any clock; :attr:`drystone.planner.planner.Planner.profile`.
 
     Examples
     --------
@@ -48,32 +48,33 @@ class Profile:
     True
     """
 
-    def __init__(self) -> None:
+    def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
+        self._clock = clock
         self.steps: list[StepTime] = []
         # Appending is one operation: threads may do it without a lock.
         self._pending: list[tuple[Part, float]] = []
         self._other: list[tuple[Part, float]] = []
-        self._since = time.perf_counter()
+        self._since = self._clock()
         self._candidates_in_vain = 0
 
     @contextmanager
     def part(self, name: Part) -> Iterator[None]:
         """Return a context whose duration counts for a part."""
-        since, into = time.perf_counter(), self._pending
+        since, into = self._clock(), self._pending
         try:
             yield
         finally:
-            into.append((name, time.perf_counter() - since))
+            into.append((name, self._clock() - since))
 
     def begin_step(self) -> None:
         """Say that an attempt at a new action begins; what came before belongs to no step."""
         self._other += self._pending
         self._pending = []
-        self._since = time.perf_counter()
+        self._since = self._clock()
 
     def end_step(self, stones: int, candidates: int) -> None:
         """Say that the action is chosen."""
-        seconds = time.perf_counter() - self._since
+        seconds = self._clock() - self._since
         self.steps.append(StepTime(stones, candidates, seconds, _sums(self._pending)))
         self._pending = []
 

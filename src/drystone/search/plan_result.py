@@ -111,12 +111,11 @@ class PlanResult:
 
 def provenance_of(settings: PlannerSettings, method: str, seed: int, budget: int) -> dict[str, Any]:
     """Say how a plan was made; `budget` is that which repeats it."""
-    search = replace(settings.search, budget=budget)
     return {
         "version": version("drystone"),
         "method": method,
         "seed": seed,
-        "settings": replace(settings, search=search).as_dict(),
+        "settings": settings.updated({"search": {"budget": budget}}).as_dict(),
     }
 
 

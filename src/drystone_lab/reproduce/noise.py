@@ -417,9 +417,7 @@ def _turned_pictures(found: StudyWalls) -> Iterator[ItemPicture]:
     )  # fmt: skip
     panels = {
         figure: {
-            f"{one.wall.number} %{' gen.' if one.wall.stand_in else ''}\n{one.way}": one.values(
-                figure
-            )
+            f"{one.wall.number} %{' gen.' * one.wall.stand_in}, {one.way}": one.values(figure)
             for one in found
         }
         for figure in ("F_SF", "F_LR")

@@ -130,17 +130,9 @@ def built(
         for wall in walls
         for way, changes in ways.items()
     ]
-    return StudyWalls(context, trials_of(context, asked))
-
-
-def trials_of(
-    context: Context, asked: Sequence[tuple[Target, str, tuple[RunSpec, ...]]]
-) -> tuple[Trials, ...]:
-    """Do the runs of several walls and ways, all at once."""
     outcomes = iter(context.run([spec for *_, specs in asked for spec in specs]))
-    return tuple(
-        Trials(wall, way, specs, tuple(next(outcomes) for _ in specs)) for wall, way, specs in asked
-    )
+    trials = [Trials(*one, tuple(next(outcomes) for _ in one[-1])) for one in asked]
+    return StudyWalls(context, tuple(trials))
 
 
 TrialCells = Callable[[Trials], tuple[Cell, ...]]

@@ -1,4 +1,4 @@
-"""Items by the clock: Fig. 28, a step by part; Fig. 29, resolution; §6.2, stones and clusters."""
+"""Items that are timed: Fig. 28, a step by part; Fig. 29, resolution; §6.2, stones and clusters."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -42,7 +42,7 @@ REPEATS = 5
 
 
 def timed(context: Context, wall: Target, changes: Mapping[str, object]) -> TimedWall:
-    """Plan a wall by the paper's method and the clock."""
+    """Plan a wall by the paper's method, and time it."""
     settings = method_settings("paper").updated(changes)
     repeats = 1 if context.quick else REPEATS
     return planned(wall, context.data, settings, seed=context.seed, repeats=repeats)
@@ -73,7 +73,7 @@ STABLE = 1.5
 
 
 def by_sampling(context: Context, wall: Target = PR) -> StepWalls:
-    """Plan a wall by the clock with either sampling."""
+    """Time a wall with either sampling."""
     walls = {sampling: timed(context, wall, {"sampling": sampling}) for sampling in SAMPLINGS}
     return StepWalls(walls, context.data)
 

@@ -12,10 +12,10 @@ from drystone_lab.reproduce.study import (
     Study,
     StudyWalls,
     Trials,
+    built,
     pairs_table,
     sheet,
     strips,
-    trials_of,
     walls_table,
     ways_table,
 )
@@ -244,12 +244,8 @@ def named_variants(
     if context.quick:
         varied, count = [(wall, NAMED) for wall in COARSE], 2
     seeds = range(context.seed, context.seed + count)
-    asked = [
-        (wall, way, tuple(wall.run(seed, *changes) for seed in seeds))
-        for wall, ways in varied
-        for way, changes in (("paper", ()), *ways.items())
-    ]
-    return StudyWalls(context, trials_of(context, asked))
+    walls = [built(context, (wall,), {"paper": (), **ways}, seeds) for wall, ways in varied]
+    return StudyWalls(context, tuple(one for found in walls for one in found))
 
 
 VARIANTS = PaperItem(
