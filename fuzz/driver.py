@@ -148,7 +148,7 @@ def pixels_of(case: Case) -> int:
     for data in case.values():
         if isinstance(data, bytes) and len(data) > 26:
             size = (0, 0)
-            head = data.find(b"IHDR") + 4
+            head = data.rfind(b"IHDR") + 4
             if 4 <= head <= len(data) - 8:
                 size = struct.unpack(">II", data[head : head + 8])
             elif data.startswith(b"GIF8"):

@@ -1,7 +1,7 @@
 """What a result looks like in a session: a line that says what it is, not its arrays."""
 
 import drystone as ds
-from drystone.errors import Notice
+from drystone.errors import InputError, Notice
 from drystone.model.plan import PlanMetrics
 from drystone.model.stone import Source
 from tests.planner.scenes import RUBBLE_SITE, rubble
@@ -60,3 +60,10 @@ def test_a_step_says_which_stone_goes_where() -> None:
     )
     assert repr(step) == f"<Step 1: {said}, centroid at ({x_px:.1f}, {y_px:.1f}) px>"
     assert repr(step.action) == f"<Candidate: {said}>"
+
+
+def test_names_of_files_do_not_move_the_cursor() -> None:
+    name = "a\nb\x1b[2J\u2028c\x85é"
+    for text in (Notice("W119", name, name), InputError("E100", name, where=name, cure=name)):
+        assert str(text).isprintable()
+        assert "é" in str(text)

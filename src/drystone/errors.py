@@ -2,6 +2,7 @@
 
 import errno
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -38,7 +39,12 @@ class Notice:
     cure: str = ""
 
     def __str__(self) -> str:
-        return f"{self.code} {self.message}" + (f" {self.cure}" if self.cure else "")
+        return _in_one_line(f"{self.code} {self.message}" + (f" {self.cure}" if self.cure else ""))
+
+
+def _in_one_line(text: str) -> str:
+    """Take out what moves the cursor of a terminal: names in a text are those of files."""
+    return "".join(c if c.isprintable() else " " for c in text)
 
 
 class DrystoneError(Exception):
@@ -68,7 +74,7 @@ class DrystoneError(Exception):
     def __str__(self) -> str:
         where = f"{self.where}: " if self.where else ""
         cure = f" {self.cure}" if self.cure else ""
-        return f"{self.code} {where}{self.what}{cure}"
+        return _in_one_line(f"{self.code} {where}{self.what}{cure}")
 
 
 class InputError(DrystoneError):
@@ -108,6 +114,21 @@ def counted(count: int, noun: str) -> str:
 
 NO_ROOM = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))
 """What the system says when the disk, or the user's share of it, is full."""
+
+
+def meant(word: str, known: Iterable[str], before: str = "") -> str:
+    """Ask whether the nearest of the words that are known was meant; nothing when none is near.
+
+    Of dotted ones the last part is enough.
+
+    >>> meant("bugdet", ["search.budget", "search.passes"])
+    'Did you mean `search.budget`? '
+    """
+    from difflib import get_close_matches  # noqa: PLC0415 - costs start-up time
+
+    names = {(name if "." in word else name.rpartition(".")[2]).lower(): name for name in known}
+    near = get_close_matches(word.lower(), names, 1)
+    return f"Did you mean `{before}{names[near[0]]}`? " if near else ""
 
 
 def not_written(error: OSError) -> PlanError:

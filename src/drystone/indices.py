@@ -1,7 +1,7 @@
 """The indices of one action (§3.5; DESIGN 4.5)."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -46,10 +46,11 @@ class Indices:
 
     def as_dict(self) -> dict[str, float | None]:
         """Return the seven indices under their names in the paper."""
-        return {
-            "SF": self.SF, "LFR": self.LFR, "GDS": self.GDS, "NHR": self.NHR,
-            "IWR": self.IWR, "IS": self.IS, "LLC": self.LLC,
-        }  # fmt: skip
+        return {name: getattr(self, name) for name in INDEX_NAMES}
+
+
+INDEX_NAMES = tuple(field.name for field in fields(Indices) if field.name != "boundary")
+"""The indices of the paper, in the order of plan.json."""
 
 
 def shape_factor(posed: PosedStone) -> float:

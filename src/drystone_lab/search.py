@@ -96,7 +96,7 @@ def _paired(rows: Sequence[tuple[Cell, ...]], seconds: float) -> Table:
         tuple(rows),
         (
             "Percentile bootstrap over the seeds with fixed random numbers. It cannot be wider "
-            "than the differences that were seen, which hold the median of all with "
+            "than the differences that were seen. They hold the median of all with "
             "1 - 0.5^(n - 1) where there are n.",
             "Fewer is better for F_AH, T_LEVEL and E_FLUSH.",
         ),

@@ -3,6 +3,7 @@
 import csv
 import hashlib
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from PIL import Image
 
 from drystone.cli.commands import analyse
 from drystone.io.wall_image import write_labels
+from drystone.model.builder import HAND, BuilderErrors
 from drystone.statics.lp.program import EquilibriumProgram
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone_lab.statics_cases import WALLS
@@ -212,6 +214,18 @@ def test_noise_is_told_with_its_unit(tmp_path, tower, run):
     assert "outlines +- 0.2 px, placement +- 0.02 px" in drawn.out
     given = run("analyse", tower, "--associative-only", *noise)
     assert "outlines +- 0.2 lengths of the block model" in given.out
+
+
+def test_the_noise_of_a_builder_is_defined_once(tmp_path, run):
+    """Bricks of 60 x 20 px, and the errors that walls are rehearsed with."""
+    write_labels(coursed(3, 3, 60), tmp_path / "wall.png")
+    asked = ("analyse", tmp_path / "wall.png", "--associative-only", "--scatter", 2)
+    sizes = [np.sqrt((coursed(3, 3, 60) == i).sum()) for i in np.unique(coursed(3, 3, 60))[1:]]
+    errors = BuilderErrors.of_precision(HAND, float(np.mean(sizes)))
+    said = run(*asked, "--precision", "3%").out
+    told = [float(number) for number in re.findall(r"\+- (\S+) px", said)]
+    assert told == pytest.approx([errors.outline, errors.placement], rel=0.02)
+    assert run(*asked, "--precision", "3").code == 2
 
 
 def test_noise_of_a_plan_in_metres_is_in_px_of_its_source(rubble, settled, tmp_path, run):

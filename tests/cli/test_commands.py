@@ -1,7 +1,6 @@
 """The commands beside `plan`: what they print and write."""
 
 import json
-import shutil
 from importlib.metadata import version
 from pathlib import Path
 
@@ -41,20 +40,6 @@ def test_stones(rubble, tmp_path, run):
     assert "W123" in run("stones", rubble, "--px-per-m", 20_000).out
     with Image.open(tmp_path / "new" / "stones.png") as picture:
         assert min(picture.size) > 100
-
-
-def test_stones_never_draws_over_a_file(rubble, tmp_path, run):
-    mine = tmp_path / "mine.png"
-    shutil.copy(rubble, mine)
-    ran = run("stones", mine, "-o", mine)
-    assert (ran.code, ran.out) == (2, "")
-    assert "E129" in ran.err
-    assert mine.read_bytes() == rubble.read_bytes()
-    assert "E129" in run("stones", mine, "-o", tmp_path / "mine.png" / "x.png").err
-    assert "E139" in run("stones", mine, "-o", tmp_path / "picture.txt").err
-    assert "E139" in run("stones", mine, "-o", tmp_path).err
-    assert run("stones", rubble, "-o", mine, "--overwrite").code == 0
-    assert mine.read_bytes() != rubble.read_bytes()
 
 
 def test_analyse_a_block_model(tmp_path, run):
@@ -152,13 +137,6 @@ def test_the_stones_of_a_mask_are_told_apart_in_every_command(tmp_path, run):
     assert "W304" not in run("measure", _tower(tmp_path / "tower.png")).err
 
 
-def test_measure_draws_and_never_over_a_file(finished, tmp_path, run):
-    assert run("measure", finished, "-o", tmp_path).code == 0
-    assert {path.name for path in tmp_path.iterdir()} == {"paths_F_AV.png", "paths_F_AH.png"}
-    assert "E129" in run("measure", finished, "-o", tmp_path).err
-    assert run("measure", finished, "-o", tmp_path, "--overwrite").code == 0
-
-
 def test_check_finds_the_stones_or_asks(plan_copy, rubble, tmp_path, run):
     assert run("check", plan_copy).code == 0
     (plan_copy / "rubble.png").rename(tmp_path / "rubble.png")  # above the folder
@@ -199,17 +177,6 @@ def test_generate_takes_parameters(tmp_path, run):
     plain = ("--count", 2, "--set", "height_px=6", "--set", "aspect=0.5")
     run("generate", "brick", "-o", other, *plain)
     assert first.read_bytes() == other.read_bytes()
-
-
-def test_generate_never_writes_over_a_file(bricks, tmp_path, run):
-    path = tmp_path / "mine.png"
-    shutil.copy(bricks, path)
-    assert "E129" in run("generate", "brick", "-o", path).err
-    assert path.read_bytes() == bricks.read_bytes()
-    assert "E129" in run("generate", "brick", "-o", path / "x.png").err
-    assert "E139" in run("generate", "brick", "-o", tmp_path / "x.jpg").err
-    assert run("generate", "brick", "-o", path, "--overwrite").code == 0
-    assert path.read_bytes() != bricks.read_bytes()
 
 
 def test_demo_needs_nothing_and_can_be_checked(tmp_path, run, monkeypatch):

@@ -100,7 +100,7 @@ def test_settings_are_listed_with_value_range_and_meaning(run):
     some = run("settings", "search", "--method", "paper", "--json").json()
     assert some["search.budget"]["value"] == 1
     assert {*some} == {name for name in every if name.startswith("search.")}
-    assert "E123" in run("settings", "serach").err
+    assert "Did you mean `search`?" in run("settings", "serach").err
 
 
 def test_version(run):

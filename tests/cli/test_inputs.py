@@ -210,3 +210,33 @@ def test_pictures_may_lie_beside_the_stones_of_a_photograph(rubble, tmp_path, ru
         write_sidecar(PhotoSidecar(*picture.size), tmp_path)
     assert run("stones", tmp_path, "-o", tmp_path / "drawn.png").code == 0
     assert run("stones", tmp_path).code == 0
+
+
+@pytest.mark.parametrize(
+    ("line", "name"),
+    [
+        ("stones {rubble} -o {at}", "stones.pdf"),
+        ("stones {rubble} --labels {at}", "labels.tif"),
+        ("generate brick -o {at}", "bricks.png"),
+        ("markers -o {at}", "sheet.pdf"),
+        ("analyse {wall} --associative-only -o {folder}", "blocks.csv"),
+        ("measure {wall} -o {folder}", "paths_F_AH.png"),
+        ("craft {wall} -o {folder}", "laps.png"),
+        ("export {plan} --to geojson csv -o {folder}", "steps.csv"),
+        ("check {plan} --stones {rubble} --picture {at}", "wall.svg"),
+        ("rehearse {plan} --runs 1 -o {at}", "risk.png"),
+    ],
+)
+def test_a_file_is_replaced_only_when_that_is_said(line, name, rubble, settled, tmp_path, run):
+    at, wall = tmp_path / name, settled / "wall.png"
+    at.write_bytes(b"mine")
+    known = {"at": at, "folder": tmp_path, "rubble": rubble, "plan": settled, "wall": wall}
+    words = [word.format(**known) for word in line.split()]
+    ran = run(*words)
+    assert (ran.code, ran.out) == (2, "")
+    assert f"E129 {at}: exists" in ran.err
+    assert contents(tmp_path) == {name: b"mine"}
+    assert run(*words, "--overwrite").code == 0
+    assert at.read_bytes() != b"mine"
+    inside = [word.replace(str(tmp_path), str(at)) for word in words]
+    assert "E129" in run(*inside).err  # a file is no folder

@@ -122,14 +122,3 @@ def test_the_options_that_are_said_find_the_markers(run, tmp_path, options, said
     named = build_parser().parse_args(["segment", "photo.jpg", "-o", "out", *told["options"]])
     layout = scale_from(named)
     assert all(layout.lists(one) for one in told["ids"])
-
-
-def test_an_existing_file_is_kept(run, tmp_path):
-    path = tmp_path / "sheet.pdf"
-    path.write_text("mine")
-    ran = run("markers", "-o", path)
-    assert (ran.code, path.read_text()) == (2, "mine")
-    assert "E129" in ran.err
-    assert run("markers", "-o", path, "--overwrite").code == 0
-    assert path.read_bytes().startswith(b"%PDF")
-    assert "E139" in run("markers", "-o", tmp_path / "sheet.png").err

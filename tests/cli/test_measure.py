@@ -52,16 +52,6 @@ def test_a_ruler_of_a_plan_lies_in_the_picture_of_its_stones(finished, run):
     assert f"which is {width} x {height} px" in ran.err
 
 
-@pytest.mark.parametrize("wall", [(), ("--wall", "20x40")])
-@pytest.mark.parametrize(("option", "value"), [("--px-per-m", "100"), ("--ruler", "0,0,20,0=20cm")])
-def test_a_scale_that_would_do_nothing_is_refused(option, value, wall, tower, run):
-    ran = run("measure", tower, *wall, option, value)
-    assert (ran.code, ran.out) == (2, "")
-    assert f"E138 {option}: would do nothing" in ran.err
-    assert "--wall in metres" in ran.err
-    assert run("measure", tower, "--wall", "20cmx.4m", option, value).code == 0
-
-
 def test_another_scale_than_that_of_a_plan(metric, run):
     asked = ("--wall", ".5mx.18m")
     for option, value in (("--ruler", "0,0,50,0=5cm"), ("--px-per-m", "1000")):

@@ -121,21 +121,3 @@ def test_stones_says_the_scale_and_what_was_decided(tmp_path, run):
     out = run("stones", dxf(tmp_path)).out
     assert "2100 px a metre" in out
     assert "W119 the longer side of the median stone is 0.078 m" in out
-
-
-@pytest.mark.parametrize(
-    ("name", "code", "text"),
-    [("drawing", 3, "E116"), ("coco", 3, "E115"), ("plan", 3, "E113"), ("up", 2, "E118")],
-)
-def test_what_cannot_be_read(tmp_path, run, name, code, text):
-    (tmp_path / "plan.json").write_text('{"steps": [], "source": {}}')
-    Image.fromarray(np.pad(np.ones((9, 9), np.uint8), 3)).save(tmp_path / "labels.png")
-    options = {
-        "drawing": lambda: [dxf(tmp_path, 0)],
-        "coco": lambda: [coco(tmp_path)],
-        "plan": lambda: [tmp_path / "plan.json"],
-        "up": lambda: [tmp_path / "labels.png", "--up", "y"],
-    }
-    ran = run("stones", *options[name]())
-    assert (ran.code, text in ran.err) == (code, True)
-    assert ran.out == ""

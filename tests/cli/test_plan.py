@@ -126,20 +126,6 @@ def test_best_does_not_depend_on_jobs(rubble, tmp_path, run):
     assert plans[0] == plans[1]
 
 
-def test_settings_of_a_plan_make_it_again(rubble, tmp_path, run):
-    options = ("--sampling", "uniform", "--placement", "lowest", "--mu", ".65", "--seed", 3)
-    size = ("--wall", "100x36", "--scale", "1", "--method", "paper", "--seed", 3)
-    run("plan", rubble, *size, *options, "-o", tmp_path / "first")
-    toml = tmp_path / "first" / "settings.toml"
-    run("plan", rubble, *size, "--settings", toml, "-o", tmp_path / "second")
-    plans = [(tmp_path / name / "plan.json").read_bytes() for name in ("first", "second")]
-    assert plans[0] == plans[1]
-    settings = json.loads(plans[0])["settings"]
-    assert (settings["sampling"], settings["placement"]["rule"], settings["mu"]) == (
-        "uniform", "lowest", 0.65,
-    )  # fmt: skip
-
-
 def test_stones_too_large(rubble, tmp_path, run):
     small = ("--wall", "60x17", "--scale", "1", "--method", "paper", "-o", tmp_path / "out")
     ran = run("plan", rubble, *small)

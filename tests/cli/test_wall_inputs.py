@@ -91,13 +91,3 @@ def test_what_cannot_be_converted_is_refused_before_anything_is_written(
     told = run("stones", masks, "--to", tmp_path / "all.png")
     assert "in common went to the smaller one, from: 1 (30 px)" in told.out
     assert np.unique(read_wall_image(tmp_path / "all.png")).tolist() == [0, 1, 2]
-
-
-@pytest.mark.parametrize("command", ["analyse", "measure", "craft"])
-def test_what_is_no_wall_is_told_what_one_is(command: str, tmp_path: Path, run: Run) -> None:
-    for text in ('{"a": 1}', "3", '"x"'):
-        (tmp_path / "other.json").write_text(text)
-        told = run(command, tmp_path / "other.json")
-        assert told.code == 3
-        assert "E113" in told.err
-        assert "A wall is a plan.json, a block model (blocks), a label image, or" in told.err

@@ -11,7 +11,6 @@ from hypothesis.extra.numpy import arrays
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.gaps import (
     close_gaps,
-    gap_spread,
     gap_sweep,
     model_with_closed_gaps,
     settle_gaps,
@@ -164,25 +163,6 @@ def test_settling_moves_stones_as_rigid_bodies_until_they_rest(labels, push):
         there = np.argwhere(settled == block).tolist()
         assert there == (np.argwhere(labels == block) + np.array([down, aside])).tolist()
         assert any(below[row + 1, col] not in (0, block) for row, col in there)
-
-
-def test_the_spread_says_what_the_reach_decides():
-    labels = bond(6, 20, 38, 2)
-    assert gap_spread(labels, 2) == (
-        "F_LR .596 with gaps up to 2 px closed (unstable with gaps up to 1 px closed,"
-        " .596 with gaps up to 4 px closed)"
-    )
-    settled, left, right = (
-        lateral_resistance(model_from_labels(settle_gaps(labels, push)[0]).model).value
-        for push in (None, "left", "right")
-    )
-    assert gap_spread(labels, None) == (
-        f"F_LR {settled:.3f} with stones settled ({left:.3f} with stones pushed left,"
-        f" {right:.3f} with stones pushed right)"
-    ).replace("0.", ".")
-    stack = np.kron([[1], [0], [2]], np.ones((2, 8), int))
-    without = gap_spread(stack, 2, mu=0.0)
-    assert without.startswith("F_LR not defined with gaps up to 2 px closed (unstable")
 
 
 def test_no_toe_grows_beyond_its_stone():

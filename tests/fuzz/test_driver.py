@@ -7,9 +7,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from fuzz.driver import pixels_of
 from PIL import Image
 
-from fuzz.driver import pixels_of
 from tests.fuzz.planted import OUTSIDE, PLANTED
 
 ROOT = Path(__file__).parents[2]

@@ -4,39 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import shapely
 import trimesh
 
 from drystone.errors import InputError
 from drystone.io.read_stones import ReadSettings, read_stones
-from tests.io.known_stones import HEIGHT, STONES, compare, masks
+from tests.io.known_stones import STONES, compare, masks
 from tests.io.pictures import codes
+from tests.io.test_planes import APART, KINDS, METRIC, PX_PER_M, scene, solid
 
-PX_PER_M = 500.0
-METRIC = ReadSettings(pieces="keep-largest", holes="keep", px_per_m=PX_PER_M)
-AXES = {
-    "z": np.eye(4),
-    "y": trimesh.transformations.rotation_matrix(np.pi / 2, (1, 0, 0)),
-    "x": np.array([[0, 0, 1, 0], [1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 1]], float),
-}
-"""Turns that put the plane of the stones where one looks along an axis."""
-
-
-def solid(polygons, turn, unit):
-    """The first piece of a stone as a prism of 2 cm, in metres over `unit`."""
-    outer, *holes = ([(x, HEIGHT - y) for x, y in ring] for ring in polygons[0])
-    polygon = shapely.Polygon(outer, holes)
-    triangles = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon))
-    corners = shapely.get_coordinates(shapely.orient_polygons(triangles)).reshape(-1, 4, 2)[:, :3]
-    vertices, faces = np.unique(corners.reshape(-1, 2), axis=0, return_inverse=True)
-    mesh = trimesh.creation.extrude_triangulation(vertices, faces.reshape(-1, 3), 10.0)
-    mesh.apply_transform(turn)
-    mesh.apply_scale(1 / PX_PER_M / unit)
-    return mesh
-
-
-def meshes(axis="z", unit=1.0):
-    return {i: solid(polygons, AXES[axis], unit) for i, polygons in STONES.items()}
+PLACE = {"x": "right", "y": "front", "z": "top"}
+"""Where the stones are that one sees looking along an axis."""
 
 
 def saved(tmp_path, data, name):
@@ -47,33 +24,26 @@ def saved(tmp_path, data, name):
 
 def apart(axis="z", unit=1.0):
     """The bodies that touch nothing, as one mesh without names, and their ids in order."""
-    found = meshes(axis, unit)
-    names = [i for i in STONES if i not in (13, 21)]
-    return trimesh.util.concatenate([found[i] for i in names]), names
+    found = trimesh.util.concatenate([solid(STONES[i], PLACE[axis]) for i in APART])
+    return found.apply_scale(1 / unit), APART
 
 
 @pytest.mark.parametrize("axis", ["x", "y", "z"])
 def test_obj_with_named_objects(tmp_path, axis):
-    scene = trimesh.Scene()
-    for i, mesh in meshes(axis).items():
-        scene.add_geometry(mesh, geom_name=f"stone_{i:03d}")
-    path = saved(tmp_path, scene.export(file_type="obj"), "s.obj")
+    path = saved(tmp_path, scene(PLACE[axis]).export(file_type="obj"), "s.obj")
     stones = read_stones(path, settings=replace(METRIC, up="z"))
     iou, area, centroid = compare(stones)
     assert iou > 0.998
     assert area < 2e-3
     assert centroid < 0.02
     assert stones.source.px_per_m == PX_PER_M
-    assert stones.by_id(21).name == "stone_021"
+    assert stones.by_id(21).name == "stone_21"
     seen, unit = stones.notices[:2]
     assert f"seen along {axis.upper()}, with" in seen.message
     assert "taken as metres" in unit.message
 
 
-@pytest.mark.parametrize(
-    ("kind", "options"),
-    [("stl", {}), ("stl_ascii", {}), ("ply", {}), ("ply", {"encoding": "ascii"}), ("obj", {})],
-)
+@pytest.mark.parametrize(("kind", "options"), KINDS)
 def test_bodies_without_names(tmp_path, kind, options):
     mesh, names = apart("y", unit=0.001)
     suffix = kind.removesuffix("_ascii")
@@ -196,10 +166,7 @@ def test_damaged_meshes(tmp_path, data, name, text):
         read_stones(saved(tmp_path, data, name))
 
 
-@pytest.mark.parametrize(
-    ("kind", "options"),
-    [("stl", {}), ("stl_ascii", {}), ("ply", {}), ("ply", {"encoding": "ascii"})],
-)
+@pytest.mark.parametrize(("kind", "options"), KINDS[:-1])
 @pytest.mark.parametrize("share", [0.5, 0.95])
 def test_meshes_that_are_cut_short(tmp_path, kind, options, share):
     data = apart()[0].export(file_type=kind, **options)

@@ -106,7 +106,7 @@ def test_sam_of_several_images(tmp_path):
     stones = read_stones(tmp_path / "stones.json", settings=ReadSettings(image="2"))
     assert len(stones) == 1
     (tmp_path / "stones.json").write_text(json.dumps(content[:1]))
-    with pytest.raises(InputError, match=r"E115 .*no image is called '2'.*there are 1"):
+    with pytest.raises(InputError, match=r"E115 .*no image or several are called '2'.*there are 1"):
         read_stones(tmp_path / "stones.json", settings=ReadSettings(image="2"))
 
 

@@ -30,7 +30,16 @@ def test_numbers_are_places_among_the_sorted_values(ids: NDArray[np.integer]) ->
         expected, sorted_values = naive.index_of(image)
         assert index.tolist() == expected.tolist()
         assert found.tolist() == sorted_values
-        assert (index.dtype, found.dtype) == (np.int32, np.int64)
+        assert index.dtype == np.uint8  # there are few
+        assert found.dtype == np.int64
+
+
+@pytest.mark.parametrize(("most", "kind"), [(255, np.uint8), (256, np.uint16), (65536, np.int32)])
+def test_numbers_have_no_more_bytes_than_they_need(most: int, kind: type[np.integer]) -> None:
+    for ids in (np.arange(most), 10**6 * np.arange(most)):
+        index, _ = numbered(ids.reshape(1, -1))
+        assert index.dtype == kind
+        assert index[0].tolist() == list(range(1, most + 1))
 
 
 @pytest.mark.parametrize("block", [1, 5, 1 << 20])

@@ -12,6 +12,7 @@ from drystone.planner.deadline import Deadline, TimeIsUp
 from drystone.planner.events import INTERRUPTED, Stopped
 from drystone.planner.planner import Planner
 from drystone.planner.settings import method_settings
+from drystone.planner.solves import Solves
 from drystone.search.chain import _opened
 from drystone.search.goal import FoundWall
 from drystone.search.packed import PackedWall
@@ -164,7 +165,7 @@ def test_what_the_solver_gave_up_on_at_the_end_is_counted(monkeypatch: pytest.Mo
         first: Planner, best: PackedWall, until: Deadline
     ) -> tuple[Planner, Stopped, bool]:
         last, stopped, cut = with_the_rest(first, best, until)
-        last.failed_solves += 5
+        last.solves += Solves(failed=5)
         return last, stopped, cut
 
     monkeypatch.setattr("drystone.search.whole_search.with_the_rest", with_trouble)

@@ -112,7 +112,7 @@ def test_steps_that_the_solver_gave_up_on_are_counted(monkeypatch: pytest.Monkey
     monkeypatch.setattr("drystone.search.yard.replayed", trouble)
     planner = new(old.settings)
     begin_with(planner, old.build.wall, {})
-    assert (planner.failed_solves, planner.cold_solves) == (2, 3)
+    assert planner.solves == Solves(2, 3)
 
 
 def test_what_stands_out_further_than_now_allowed_is_taken_out() -> None:

@@ -8,7 +8,7 @@ from importlib import import_module
 from itertools import chain
 from typing import Any, NamedTuple, NoReturn
 
-from drystone.errors import ExitCode, UsageError
+from drystone.errors import ExitCode, UsageError, meant
 
 GROUP = "drystone.commands"
 """Of entry points; each names a :class:`Command`."""
@@ -174,20 +174,22 @@ class _Parser(argparse.ArgumentParser):
     """Says what is wrong in one line, with a code (E138), and where help is."""
 
     def error(self, message: str) -> NoReturn:
-        coded = UsageError("E138", f"{message}.", cure=f"`{self.prog} --help` explains.")
+        cure = f"`{self.prog} --help` explains."
         if (unknown := _UNKNOWN.search(message)) is not None:
-            coded = _unknown(unknown[1], re.findall(r"[\w-]+", unknown[2]))
+            message = f"there is no command {unknown[1]!r}"
+            known = re.findall(r"[\w-]+", unknown[2])
+            cure = f"{meant(unknown[1], known, 'drystone ')}`drystone --help` lists the commands."
+        elif (option := re.match(r"unrecognized arguments: (--[\w-]+)", message)) is not None:
+            cure = meant(option[1], self._option_string_actions) + cure
+        coded = UsageError("E138", f"{message}.", cure=cure)
         self.exit(int(coded.exit_code), f"drystone: {coded}\n")
 
-
-def _unknown(word: str, commands: Sequence[str]) -> UsageError:
-    """Return the error for a command that there is not, with the one that was meant."""
-    from difflib import get_close_matches  # noqa: PLC0415 - only for this
-
-    meant = get_close_matches(word.lower(), commands, 1)
-    cure = f"Did you mean `drystone {meant[0]}`? " if meant else ""
-    what = f"there is no command {word!r}."
-    return UsageError("E138", what, cure=f"{cure}`drystone --help` lists the commands.")
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Refuse what a command does not know: it knows what was meant."""
+        found, rest = super().parse_known_args(args, namespace)
+        if rest:
+            self.error(f"unrecognized arguments: {' '.join(rest)}")
+        return found, rest
 
 
 class _Version(argparse.Action):

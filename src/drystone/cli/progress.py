@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from threading import Timer
 
 from rich.console import Console
 from rich.progress import (
@@ -70,21 +71,35 @@ def counting_bar(name: str, total: int, *, quiet: bool) -> Iterator[Callable[[in
 
 
 @contextmanager
-def busy(*, quiet: bool) -> Iterator[Callable[[str], None]]:
-    """Show that something is being done, and for how long; yields what is to be told what."""
-    with _shown(TimeElapsedColumn(), quiet=quiet) as bar:
-        task = TaskID(0) if bar is None else bar.add_task("", total=None)
+def busy(text: str = "", *, quiet: bool, after_s: float = 0.0) -> Iterator[Callable[[str], None]]:
+    """Show, once it has taken some time, that something is being done, and for how long.
+
+    Yields what is to be told what.
+    """
+    with _shown(TimeElapsedColumn(), quiet=quiet, after_s=after_s) as bar:
+        task = TaskID(0) if bar is None else bar.add_task(text, total=None)
         yield lambda text: None if bar is None else bar.update(task, description=text)
 
 
 @contextmanager
-def _shown(*columns: ProgressColumn, quiet: bool) -> Iterator[Progress | None]:
-    """Show a bar; None when nobody wants one, or stderr is not a terminal."""
+def _shown(
+    *columns: ProgressColumn, quiet: bool, after_s: float = 0.0
+) -> Iterator[Progress | None]:
+    """Show a bar after some time; None when nobody wants one, or stderr is not a terminal."""
     console = Console(stderr=True)
     if quiet or not console.is_terminal:
         yield None
         return
     text = TextColumn("{task.description}")
     eta = (BarColumn(bar_width=16), TextColumn("eta"), TimeRemainingColumn(compact=True))
-    with Progress(text, *columns, *eta, console=console, transient=True) as bar:
+    bar = Progress(text, *columns, *eta, console=console, transient=True)
+    timer = Timer(after_s, bar.start)
+    timer.daemon = True
+    (timer.start if after_s else bar.start)()
+    try:
         yield bar
+    finally:
+        timer.cancel()
+        if after_s:
+            timer.join()  # it may be starting the bar just now
+        bar.stop()

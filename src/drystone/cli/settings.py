@@ -39,7 +39,7 @@ SHOWN = (
 _PLAIN = ("sampling", "two_sided", "orientations", "mu", "skip_too_large")
 """Settings that have an option of their own name."""
 
-_Asked = tuple[str, dict[str, Any]]
+_Change = tuple[str, dict[str, Any]]
 """Options, as an error names them, and what they change."""
 
 
@@ -123,7 +123,7 @@ def settings_from(arguments: argparse.Namespace) -> PlannerSettings:
         raise UsageError(error.code, error.what, where="--set", cure=cure) from None
     _check_geometry(arguments.geometry or settings.geometry, arguments)
     asked = settings
-    for where, changes in [*_asked(settings, arguments)]:
+    for where, changes in [*_changes(settings, arguments)]:
         try:
             asked = asked.updated(changes)
         except UsageError as error:
@@ -176,7 +176,7 @@ def _blamed(error: UsageError, where: str) -> UsageError:
     return UsageError(error.code, error.what, where=where, cure=error.cure)
 
 
-def _asked(settings: PlannerSettings, arguments: argparse.Namespace) -> Iterator[_Asked]:
+def _changes(settings: PlannerSettings, arguments: argparse.Namespace) -> Iterator[_Change]:
     """Yield what the options ask for; what only makes sense together is one change."""
 
     def given(**options: str) -> dict[str, Any]:

@@ -13,8 +13,7 @@ from drystone.contacts.blocks import ImageModel, model_from_labels
 from drystone.kernels.raster import Mask
 from drystone.kernels.runs import narrow_gaps
 from drystone.model.wall import Labels
-from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import GROUND, Interface, RigidBlockModel
+from drystone.statics.model import GROUND, Interface
 from drystone.statics.result import LateralResistance
 
 LADDER = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 36, 40)
@@ -293,39 +292,3 @@ def _alike(one: float | None, other: float | None) -> bool:
     if one is None or other is None:
         return one is other
     return abs(other - one) <= LITTLE * max(one, 1e-9)
-
-
-def gap_spread(
-    labels: Labels,
-    reach_px: float | None,
-    mu: float = 0.58,
-    analyse: Callable[[RigidBlockModel], LateralResistance] = lateral_resistance,
-) -> str:
-    """Say F_LR with gaps closed at a reach, and in brackets at half and twice of it, or settled.
-
-    `reach_px` is above 0; None settles stones, and compares with stones pushed to either side.
-    The sentence has no full stop.
-    """
-    if reach_px is None:
-        models = {
-            "stones settled": model_from_labels(settle_gaps(labels)[0], mu),
-            "stones pushed left": model_from_labels(settle_gaps(labels, "left")[0], mu),
-            "stones pushed right": model_from_labels(settle_gaps(labels, "right")[0], mu),
-        }
-    else:
-        models = {
-            f"gaps up to {reach:g} px closed": model_with_closed_gaps(labels, reach, mu)
-            for reach in (reach_px, reach_px / 2.0, 2.0 * reach_px)
-        }
-    chosen, *others = (
-        f"{_in_words(analyse(picture.model))} with {name}" for name, picture in models.items()
-    )
-    return f"F_LR {chosen} ({', '.join(others)})"
-
-
-def _in_words(both: LateralResistance) -> str:
-    if both.value is not None:
-        return f"{both.value:.3f}".removeprefix("0")
-    unknown = next((r.status for r in (both.left, both.right) if r.alpha is None), None)
-    # Without friction F_LR, which is over mu, is not defined.
-    return "not defined" if unknown is None else str(unknown)

@@ -46,7 +46,7 @@ def model_from_json(data: Mapping[str, Any]) -> RigidBlockModel:
     Parameters
     ----------
     data : mapping
-        `{"blocks_xywh": [[x, y, w, h], ...], "mu": .65}`: rectangles by their lower left corner
+        `{"blocks_xywh": [[x, y, w, h], ...], "mu": 0.65}`: rectangles by their lower left corner
         and size, numbered from 1; or `{"blocks": [{"id", "polygon": [[x, y], ...], "density",
         "fixed", "held"}, ...], "mu"}`, where density is 1 and fixed false unless given, and held
         lists what a guide keeps a block from: "x", "y", "turn".  Any unit of length, y up; what

@@ -1,7 +1,7 @@
 """A wall as a mason looks at it: rules that name stones and steps.
 
 :func:`look` takes a :class:`Masonry`, made of outlines, a label image or a plan, and judges it by
-eleven rules (docs/craft.md).
+fifteen rules (docs/craft.md).
 """
 
 from drystone.craft.finding import Case, Finding, Limit, Rule

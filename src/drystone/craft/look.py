@@ -10,6 +10,7 @@ from drystone.craft.finding import Finding, Limit, Rule
 from drystone.craft.lie import big_low, flush_ends, inward_edges, level_beds, level_top, on_end
 from drystone.craft.masonry import Masonry
 from drystone.craft.pins import pins
+from drystone.craft.seats import seats, towers, voids, wedge_sizes
 from drystone.errors import UsageError
 
 UNSEEN = (
@@ -94,9 +95,40 @@ _ALL = (
         "The paper, section 2 (shards fill openings or prevent rocking); rockinwalls.com, Pinning "
         "& Chinks, 2011 (pins that lift a large stone fall out or are crushed); Delaware Quarries, "
         "rule 10 (fill cracks after the wall is complete). The number: own definition",
-        "greatest load that a wedge cannot help carrying under the wall's own weight, with open "
-        "upright joints, over the weight of the stones that lie on it",
+        "greatest load that a wedge cannot help carrying, over the weight of the stones on it; "
+        "under the wall's own weight, with open upright joints",
         Limit(0.1, 0.5), pins, by_limit=True,
+    ),
+    Rule(
+        "seats", "seats",
+        "A stone sits; none stands on a point or hangs between its neighbours.",
+        "The paper, section 3.7 (centroid above the supports); Welch and Post, The Stone Trust, "
+        "rule 1 (stones level). The numbers: own definition",
+        "share of the stones above the foot that rest on a point, or with their middle hardly over "
+        "their seat or beyond it",
+        Limit(0.05, 0.15), seats,
+    ),
+    Rule(
+        "towers", "small on small",
+        "Small stones fill between large ones; they make no tower.",
+        "Adcock 1994, principle 5, says that large stones lie below. The rest: own definition",
+        "most small stones on each other that lie on no large one",
+        Limit(1, 2), towers, unit="stones",
+    ),
+    Rule(
+        "voids", "hollow corners",
+        "Fill what is hollow: no corner of a stone hangs over a void.",
+        "The paper, section 2 (shards fill openings). The number: own definition",
+        "share of the stones with a lower corner that has nothing under it",
+        Limit(0.05, 0.15), voids,
+    ),
+    Rule(
+        "wedge_sizes", "large wedges",
+        "A wedge is a chip: what is as thick as a stone is a stone, and wants a bed of its own.",
+        "rockinwalls.com, Pinning & Chinks, 2011 (pins that lift a large stone fall out or are "
+        "crushed). The number: own definition",
+        "area of the largest wedge over that of the stone on it",
+        Limit(0.1, 0.25), wedge_sizes, by_limit=True,
     ),
     Rule(
         "level_top", "level top",

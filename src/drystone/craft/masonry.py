@@ -140,6 +140,11 @@ class Masonry:
         return {i: area_and_centroid(loop)[0] for i, loop in self.loops.items()}
 
     @cached_property
+    def centroids(self) -> Mapping[int, tuple[float, float]]:
+        """Of stones and wedges."""
+        return {i: area_and_centroid(loop)[1:] for i, loop in self.loops.items()}
+
+    @cached_property
     def median_size(self) -> float:
         """Root of the median area of the stones; 1 when there are none."""
         areas = [self.areas[i] for i in self.stones]

@@ -35,7 +35,7 @@ def pins(masonry: Masonry, limit: Limit) -> Evidence:
     wedges = sorted(set(masonry.wedge_ids))
     if not wedges:
         return Evidence(None, note="No wedges are known.")
-    resting = {wedge: _resting(masonry, wedge) for wedge in wedges}
+    resting = {wedge: resting_on(masonry, wedge) for wedge in wedges}
     outside = [case for wedge in wedges for case in _outside(masonry, wedge, resting[wedge])]
     unfit = [case for wedge in wedges for case in _unfit(masonry, wedge, resting[wedge])]
     figures: dict[str, float | None] = {
@@ -92,7 +92,7 @@ def _frame(masonry: Masonry, wedge: int) -> tuple[Line, ...]:
     return (np.array([low, (high[0], low[1]), high, (low[0], high[1]), low]),)
 
 
-def _resting(masonry: Masonry, wedge: int) -> tuple[int, ...]:
+def resting_on(masonry: Masonry, wedge: int) -> tuple[int, ...]:
     """Return the stones that lie on a wedge: next above it in a column, within a joint."""
     found: set[int] = set()
     widest = masonry.settings.joint * masonry.mean_height

@@ -35,6 +35,16 @@ class CraftSettings:
         Outward slope (rise over run) from which the upper edge of an end stone is named.
     stick_out : float
         How far a wedge may reach out beyond the stone that lies on it.
+    near, slope : float
+        Air by which a column of a stone's lower side that bears may exceed the nearest one, and
+        its greatest slope (rise over run): what is steeper is a side, not a seat.
+    seat, middle : float
+        Least width of a seat, and least distance of the stone's middle from its ends; both over
+        the root of the stone's area.
+    small : float
+        A stone whose size (root of the area) is below this share of that of the mean area is small.
+    void : float
+        Share of a stone's width at a lower corner from which nothing beneath it is a void.
     """
 
     joint: float = 0.3
@@ -48,6 +58,12 @@ class CraftSettings:
     steep_deg: float = 15.0
     outward: float = 0.1
     stick_out: float = 0.1
+    near: float = 0.06
+    slope: float = 0.7
+    seat: float = 0.2
+    middle: float = 0.1
+    small: float = 0.5
+    void: float = 0.25
 
     def __post_init__(self) -> None:
         for field in fields(self):

@@ -1,12 +1,14 @@
 """Polygons to draw: along the pixel edges of label images, or the stones' own outlines."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from drystone.kernels.boundary import boundary_of
+from drystone.kernels.polygons import area_and_centroid
 from drystone.kernels.raster import Mask, turn
 from drystone.model.wall import Labels, Wall
 
@@ -50,13 +52,8 @@ def _of_polygon(block: int, corners: Loop) -> Region:
     loop = np.asarray(corners, float)
     if (loop[0] == loop[-1]).all():
         loop = loop[:-1]
-    # About a corner, so that a polygon far from the origin loses no digits.
-    x, y = (loop - loop[0]).T
-    cross = x * np.roll(y, -1) - np.roll(x, -1) * y
-    area = float(cross.sum()) / 2.0
-    middle = np.array([(x + np.roll(x, -1)) @ cross, (y + np.roll(y, -1)) @ cross]) / (6.0 * area)
-    cx, cy = (loop[0] + middle).tolist()
-    return Region(block, (loop if area > 0 else loop[::-1],), (cx, cy))
+    area, x, y = area_and_centroid(loop)
+    return Region(block, (loop if area > 0 else loop[::-1],), (x, y))
 
 
 def wall_regions(wall: Labels | Mapping[int, Loop]) -> tuple[Region, ...]:
@@ -103,47 +100,13 @@ def pixel_loops(mask: Mask) -> tuple[Loop, ...]:
 
     The origin is its lower left corner.  Pixels that touch only at a corner get loops of their own.
     """
-    outgoing: dict[tuple[int, int], list[tuple[int, int]]] = {}
-    for start, end in _edges(mask):
-        outgoing.setdefault(start, []).append(end)
-    # The first corner left is never one where two pixels touch: those have an edge to their left.
-    return tuple(_trace(first, outgoing) for first in sorted(outgoing) if first in outgoing)
-
-
-def _edges(mask: Mask) -> Iterator[tuple[tuple[int, int], tuple[int, int]]]:
-    """Yield the unit edges of the boundary with the stone on their left."""
-    flipped = np.pad(mask[::-1], 1)
-    inside = flipped[1:-1, 1:-1]
-    # Start and end of each edge from the pixel's lower left corner, and the neighbour beyond it.
-    sides = (
-        ((0, 0), (1, 0), flipped[:-2, 1:-1]),
-        ((1, 0), (1, 1), flipped[1:-1, 2:]),
-        ((1, 1), (0, 1), flipped[2:, 1:-1]),
-        ((0, 1), (0, 0), flipped[1:-1, :-2]),
-    )
-    for (x0, y0), (x1, y1), beyond in sides:
-        for y, x in np.argwhere(inside & ~beyond).tolist():
-            yield (x + x0, y + y0), (x + x1, y + y1)
-
-
-def _trace(first: tuple[int, int], outgoing: dict[tuple[int, int], list[tuple[int, int]]]) -> Loop:
-    """Take one closed loop out of the edges, turning left where two pixels touch at a corner."""
-    corners = [first]
-    here, step = first, (0, 0)
-    while True:
-        ends = outgoing[here]
-        ends.sort(key=lambda end: step[0] * (end[1] - here[1]) - step[1] * (end[0] - here[0]))
-        end = ends.pop()
-        if not ends:
-            del outgoing[here]
-        step = (end[0] - here[0], end[1] - here[1])
-        here = end
-        if here == first:
-            break
-        corners.append(here)
-    points = np.array(corners, float)
-    ahead, behind = np.roll(points, -1, axis=0) - points, points - np.roll(points, 1, axis=0)
-    return np.asarray(points[(ahead != behind).any(axis=1)])
+    found = boundary_of(np.pad(mask, 1).astype(np.int64))
+    loops = []
+    for chain in np.split(found.nodes, found.begins[1:-1]) if len(found.labels) else ():
+        points = np.column_stack([chain[:-1, 1] - 1.0, len(mask) + 1.0 - chain[:-1, 0]])
+        steps = np.roll(points, -1, axis=0) - points
+        loops.append(points[(steps != np.roll(steps, 1, axis=0)).any(axis=1)])
+    return tuple(sorted(loops, key=lambda loop: tuple(loop[0])))
 
 
 def wall_outlines(wall: Wall) -> dict[int, Loop]:

@@ -41,20 +41,16 @@ class StonePhoto:
         top, bottom = (self.height_px - y1) * down, (self.height_px - y0) * down
         shrink = min(1.0, longest_px / max(right - left, bottom - top))
         size = max(1, round((right - left) * shrink)), max(1, round((bottom - top) * shrink))
-        # An affine map, so that the piece shows the very box and not the px that it cuts.
-        step_x, step_y = (right - left) / size[0], (bottom - top) / size[1]
-        source = self.image
-        if shrink < 1.0:
-            source, left, top, step_x, step_y = _reduced(
-                source, left, top, step_x, step_y, longest_px
-            )
-        piece = source.transform(
-            size,
-            Image.Transform.AFFINE,
-            (step_x, 0.0, left, 0.0, step_y, top),
-            resample=Image.Resampling.BILINEAR,
-            fillcolor="white",
-        )
+        piece = Image.new("RGB", size, "white")
+        finer = np.array(size) / (right - left, bottom - top)
+        corner = np.array([left, top])
+        inside = np.clip([corner, (right, bottom)], 0, self.image.size)
+        at, end = np.rint((inside - corner) * finer).astype(int).tolist()
+        if end[0] > at[0] and end[1] > at[1]:
+            part = (end[0] - at[0], end[1] - at[1])
+            there = tuple(inside.ravel().tolist())
+            shrunk = self.image.resize(part, Image.Resampling.BILINEAR, there, reducing_gap=2.0)
+            piece.paste(shrunk, tuple(at))
         return np.asarray(piece)
 
     def viewer_crops(self, outlines: Mapping[int, Points]) -> dict[int, dict[str, Any]]:
@@ -88,17 +84,3 @@ def read_photo(assembly: Assembly) -> StonePhoto | None:
                      ("width", "height"))  # fmt: skip
     image = read_photo_picture(assembly.photo, (width, height))
     return StonePhoto(image, width, height)
-
-
-def _reduced(
-    image: Image.Image, left: float, top: float, step_x: float, step_y: float, longest_px: int
-) -> tuple[Image.Image, float, float, float, float]:
-    """Return a photograph of about the px that are wanted: sampling it would leave px out."""
-    factor = max(1, int(min(step_x, step_y)))
-    if factor == 1:
-        return image, left, top, step_x, step_y
-    x0, y0 = max(0, int(left) - factor), max(0, int(top) - factor)
-    x1 = min(image.width, int(left + step_x * longest_px) + 2 * factor)
-    y1 = min(image.height, int(top + step_y * longest_px) + 2 * factor)
-    small = image.crop((x0, y0, x1, y1)).reduce(factor)
-    return small, (left - x0) / factor, (top - y0) / factor, step_x / factor, step_y / factor

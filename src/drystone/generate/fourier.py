@@ -24,7 +24,7 @@ LARGEST_TABLE = 50_000_000
 
 @dataclass(frozen=True, kw_only=True)
 class FourierSettings:
-    """How rounded stones look; the paper's four sets are D2 = 0 or .2 with either radius.
+    """How rounded stones look; the paper's four sets are D2 = 0 or 0.2 with either radius.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class FourierSettings:
         Range of the mean radius, uniform in between, at least 1 px.  The paper has 30 for both,
         and 10 to 50.
     D2 : float
-        Elongation: 0 gives round stones, .2 ellipses.
+        Elongation: 0 gives round stones, 0.2 ellipses.
     D3, D8 : float
         Irregularity and roughness, positive.
     alpha, beta : float

@@ -35,7 +35,7 @@ class PolygonSettings:
     width_px, height_px : float
         Of the brick before noise, at least 4 px.
     noise : float
-        Standard deviation of each coordinate of a corner over the brick's shorter side: .1 ... .8
+        Standard deviation of each coordinate of a corner over the brick's shorter side: 0.1 ... 0.8
         for the paper's sets of 10 ... 80 %.  At most 2.
     convex : bool
         Take the convex hull of the moved corners, as all published stones are convex; else keep

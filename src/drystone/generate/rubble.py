@@ -30,18 +30,18 @@ class RubbleSettings:
     width_px, height_px : float
         Of the wall that they are for.
     area_ratio : float
-        Area of all stones over the area of the wall, above 0, at most .95.
+        Area of all stones over the area of the wall, above 0, at most 0.95.
     courses : int
         Number of course heights.
     spread : float
         How much higher the highest course is than the lowest, over their mean; 0 ... 1.
     roughness : float
         How far corners are moved inwards at most, over the stone's height, outwards half as far;
-        0 ... .3.
+        0 ... 0.3.
     pentagons : float
         Share of the stones that have a fifth corner, on the upper face; 0 ... 1.
     rounding : float
-        How much of a side is cut away at each corner; 0 ... .3.
+        How much of a side is cut away at each corner; 0 ... 0.3.
     tilt_deg : float
         Stones lie turned by up to this angle to either side; 0 ... 360.
     """

@@ -14,8 +14,8 @@ from drystone.io.pictures import check_size, format_of, opened
 from drystone.io.tiff import ORIENTATION, TURNS, turned
 
 FORMATS = (
-    "PNG, TIFF, BMP, GIF, NPY, NPZ, JSON of labelme, COCO, SAM, Label Studio or VIA, GeoJSON, CVAT "
-    "XML, YOLO segments, DXF, SVG, OBJ, PLY, STL or a folder of one-stone masks"
+    "PNG, TIFF, BMP, GIF, NPY, NPZ; JSON of labelme, COCO, SAM, Label Studio or VIA; GeoJSON, CVAT "
+    "XML, YOLO segments; DXF, SVG, OBJ, PLY, STL; a folder of one-stone masks"
 )
 SUFFIXES = (".png", ".tif", ".tiff", ".bmp", ".gif", ".npy", ".jpg", ".jpeg")
 _MODES = frozenset({"1", "L", "P", "LA", "PA", "I", "I;16", "F", "RGB", "RGBA"})

@@ -1,7 +1,8 @@
-"""JSON of any origin."""
+"""JSON of any origin, and values of its own types."""
 
 import json
 import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,19 @@ def json_of(text: str, **hooks: Any) -> Any:
 def json_in(path: Path) -> Any:
     """Return what a JSON file says; OSError when it cannot be read, ValueError when it is none."""
     return json_of(file_bytes(path).decode("utf-8-sig"))
+
+
+def plain(value: Any, *, ordered: bool = False) -> Any:
+    """Return a value of JSON's own types, mappings in alphabetical order if `ordered`."""
+    if isinstance(value, np.ndarray | np.generic):
+        return plain(value.tolist())
+    if isinstance(value, Mapping):
+        keys = sorted(value) if ordered else value
+        return {str(key): plain(value[key], ordered=ordered) for key in keys}
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return [plain(item, ordered=ordered) for item in value]
+    # Adding zero turns -0.0 into 0.0: equal values are equal text.
+    return value + 0.0 if isinstance(value, float) else value
 
 
 def _depth(text: str) -> int:

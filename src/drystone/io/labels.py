@@ -18,6 +18,8 @@ _GREY_TOLERANCE = 48
 """Colour fringe that an anti-aliased black-and-white picture may have, of 255."""
 
 
+_AT_ONCE_PX = 1_000_000
+
 _FEW_COLOURED = 0.001
 """Share of the pixels of a black-and-white picture that may be coloured; measured: .0002."""
 
@@ -26,7 +28,7 @@ _FEW_COLOURED = 0.001
 class Census:
     """The different values of an image."""
 
-    index: NDArray[np.int32]  # (h, w), 1 + the position of its value in `values`
+    index: NDArray[Any]  # (h, w), integers: 1 + the position of its value in `values`
     values: NDArray[np.int64]  # (n,), different values, ascending
 
     @cached_property
@@ -43,11 +45,14 @@ class Census:
     def solid(self) -> NDArray[np.bool_]:
         """True where the 3 x 3 px around a pixel all have its value; (h, w), the rim is False."""
         solid = np.zeros(self.index.shape, bool)
-        a = self.index
-        if min(a.shape) >= 3:
+        # By rows, for a picture may have 200 million pixels.
+        step = max(1, _AT_ONCE_PX // len(solid[0]))
+        for top in range(1, len(solid) - 1, step):
+            bottom = min(top + step, len(solid) - 1)
+            a = self.index[top - 1 : bottom + 1]
             same = (a[:, :-2] == a[:, 1:-1]) & (a[:, 1:-1] == a[:, 2:])
             down = a[:-1, 1:-1] == a[1:, 1:-1]
-            solid[1:-1, 1:-1] = same[:-2] & same[1:-1] & same[2:] & down[:-1] & down[1:]
+            solid[top:bottom, 1:-1] = same[:-2] & same[1:-1] & same[2:] & down[:-1] & down[1:]
         return solid
 
     def pixels(self, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:

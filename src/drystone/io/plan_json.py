@@ -13,19 +13,18 @@ from pathlib import Path
 from typing import Any
 
 import jsonschema
-import numpy as np
 
 from drystone.errors import PlanError
+from drystone.indices import INDEX_NAMES
 from drystone.io.file_bytes import file_bytes
 from drystone.io.foreign import foreign
-from drystone.io.json_text import json_of
+from drystone.io.json_text import json_of, plain
 from drystone.model.plan import SCHEMA, Plan, PlanMetrics, Point, StoneStep, WedgeStep
 from drystone.whole_files import write_whole
 
 MOST_PLAN_BYTES = 100_000_000
 """Larger plans are refused: of a hundred thousand stones, and their wedges."""
 
-_INDEX_NAMES = ("SF", "LFR", "GDS", "NHR", "IWR", "IS", "LLC")
 _METRIC_NAMES = tuple(PlanMetrics.__dataclass_fields__)
 _SOURCE_NAMES = ("path", "sha256", "stones", "width_px", "height_px", "files", "reading")
 _LONGEST_MESSAGE = 240
@@ -94,14 +93,15 @@ def plan_to_json(plan: Plan) -> dict[str, Any]:
         "version": plan.version,
         "method": plan.method,
         "seed": _whole(plan.seed),
-        "settings": _plain(plan.settings),
+        "settings": plain(plan.settings, ordered=True),
         "units": {
             "length": plan.length_unit,
             "px_per_m": _number(plan.px_per_m),
             "working_scale": _number(plan.working_scale),
         },
-        "source": _plain(source, ordered=False) | _plain(
-            {name: value for name, value in plan.source.items() if name not in source}
+        "source": plain(source) | plain(
+            {name: value for name, value in plan.source.items() if name not in source},
+            ordered=True,
         ),
         "wall": {"width": _number(plan.width), "height": _number(plan.height)},
         "steps": [_step_to_json(step) for step in plan.steps],
@@ -127,8 +127,8 @@ def _whole(value: int) -> int:
 
 
 def _indices(values: Mapping[str, float | None]) -> dict[str, float | None]:
-    others = sorted(set(values) - set(_INDEX_NAMES))
-    return {name: _number(values[name]) for name in (*_INDEX_NAMES, *others) if name in values}
+    others = sorted(set(values) - set(INDEX_NAMES))
+    return {name: _number(values[name]) for name in (*INDEX_NAMES, *others) if name in values}
 
 
 def _point(pair: Sequence[float]) -> Point:
@@ -147,7 +147,7 @@ _FORMS: Mapping[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
     "source_centroid": _POINT,
     "centroid": _POINT,
     "side": (_same, _same),
-    "indices": (_indices, lambda data: {name: _number(data[name]) for name in _INDEX_NAMES}),
+    "indices": (_indices, lambda data: {name: _number(data[name]) for name in INDEX_NAMES}),
     "course_height": _NUMBER,
     "alpha_left": _NUMBER,
     "alpha_right": _NUMBER,
@@ -175,18 +175,6 @@ def _step_from_json(data: Mapping[str, Any]) -> StoneStep | WedgeStep:
     # A plan of other hands may leave out what the contract does not ask for: None.
     values = {name: _FORMS.get(name, _WHOLE)[1](data.get(name)) for name in _names(step)}
     return step(**values)
-
-
-def _plain(value: Any, *, ordered: bool = True) -> Any:
-    """Return a value of JSON's own types, mappings in alphabetical order if `ordered`."""
-    if isinstance(value, Mapping):
-        keys = sorted(value) if ordered else value
-        return {str(key): _plain(value[key]) for key in keys}
-    if isinstance(value, Sequence) and not isinstance(value, str):
-        return [_plain(item) for item in value]
-    if isinstance(value, np.generic):
-        return _plain(value.item())
-    return value + 0.0 if isinstance(value, float) else value
 
 
 def plan_from_json(data: Any, where: str = "plan") -> Plan:

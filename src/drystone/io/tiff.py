@@ -21,11 +21,9 @@ from drystone.io.file_errors import damaged, several_pages
 from drystone.io.foreign import foreign
 from drystone.io.pictures import opened
 
-_PACKED = {1, 8, 32773, 32946}
-"""No compression, deflate, PackBits."""
-
-_BY_LIBTIFF = {2, 3, 4, 5}
-"""Fax codes and LZW: unpacked by the library behind Pillow."""
+_FAX, _DEFLATE = {2, 3, 4}, {8, 32946}
+_PACKED = _FAX | _DEFLATE | {5, 32773}
+"""Also LZW and PackBits: all but deflate are unpacked by the library behind Pillow."""
 
 _LOSSY = {6, 7}
 """JPEG."""
@@ -205,26 +203,14 @@ class _Code:
         return np.cumsum(steps, axis=1, dtype=whole).view(self.kind.newbyteorder("="))
 
     def _unpacked(self, piece: bytes, rows: int, want: int) -> bytes:
-        """Return what a packed piece holds, as far as it is wanted."""
-        if self.compression in _BY_LIBTIFF:
-            return self._by_libtiff(piece, rows)
-        if self.order == 2:
-            piece = piece.translate(_REVERSED)
-        if self.compression == 1:
-            return piece
-        if self.compression == 32773:
-            return _unpacked_bits(piece, want)
-        decoder = zlib.decompressobj()
-        found = decoder.decompress(piece, want)
-        if len(found) == want and len(decoder.decompress(decoder.unconsumed_tail, _ROOM)) == _ROOM:
-            raise damaged("its strips are larger than the picture")
-        return found
-
-    def _by_libtiff(self, piece: bytes, rows: int) -> bytes:
-        """Unpack fax codes and LZW, as a TIFF of one strip; of LZW it gives the bytes."""
-        lzw = self.compression == 5
-        width = self.row_bytes if lzw else self.width
-        tags = {256: width, 257: rows, 258: 8 if lzw else 1, 259: self.compression, 262: 1}
+        """Return what a packed piece holds."""
+        if self.compression in _DEFLATE | {1}:
+            piece = piece.translate(_REVERSED) if self.order == 2 else piece
+            return piece if self.compression == 1 else _inflated(piece, want)
+        # A TIFF of one strip, whose bytes are wanted, or bits of fax codes.
+        bits = 1 if self.compression in _FAX else 8
+        width = self.width if bits == 1 else self.row_bytes
+        tags = {256: width, 257: rows, 258: bits, 259: self.compression, 262: 1}
         tags |= {266: self.order, 273: 8, 277: 1, 278: rows, 279: len(piece), **self.options}
         entries = b"".join(struct.pack("<HHII", tag, 4, 1, n) for tag, n in sorted(tags.items()))
         place = 8 + len(piece) + len(piece) % 2
@@ -234,7 +220,7 @@ class _Code:
         )
         with opened(data, lambda *_: None) as image:
             found = np.asarray(image)
-        return bytes((found if lzw else np.packbits(found, axis=1)).data)
+        return bytes((found if bits == 8 else np.packbits(found, axis=1)).data)
 
     def _floats(self, table: NDArray[np.uint8]) -> NDArray[Any]:
         """Undo the predictor of numbers with a point: bytes of one rank stand together."""
@@ -259,17 +245,13 @@ def _of_few_bits(table: NDArray[np.uint8], bits: int, count: int) -> NDArray[Any
     return found
 
 
-def _unpacked_bits(piece: bytes, want: int) -> bytes:
-    """Return what PackBits holds, as far as it is wanted."""
-    found, place = bytearray(), 0
-    while place < len(piece) - 1 and len(found) < want:
-        number = piece[place]
-        if number < 128:
-            found += piece[place + 1 : place + 2 + number]
-        elif number > 128:
-            found += piece[place + 1 : place + 2] * (257 - number)
-        place += number + 2 if number < 128 else 2 if number > 128 else 1
-    return bytes(found)
+def _inflated(piece: bytes, want: int) -> bytes:
+    """Return what deflate holds, as far as it is wanted; refuse what holds far more (E106)."""
+    decoder = zlib.decompressobj()
+    found = decoder.decompress(piece, want)
+    if len(found) == want and len(decoder.decompress(decoder.unconsumed_tail, _ROOM)) == _ROOM:
+        raise damaged("its strips are larger than the picture")
+    return found
 
 
 def turned(values: NDArray[Any], orientation: int) -> NDArray[Any]:
@@ -348,7 +330,7 @@ def _unreadable(page: Any) -> str:
     """Say why a page cannot be decoded without loss; nothing when it can."""
     compression, channels = page.compression, int(page.samplesperpixel)
     bits, predictor, dtype = page.bitspersample, int(page.predictor), page.dtype
-    if int(compression) not in _PACKED | _BY_LIBTIFF | _LOSSY:
+    if int(compression) not in _PACKED | _LOSSY | {1}:
         return f"compression {getattr(compression, 'name', int(compression))}"
     if dtype is None or not isinstance(bits, int) or dtype.itemsize * channels > _MOST_BYTES_A_PX:
         return f"{channels} channels of {bits} bits"
@@ -356,7 +338,7 @@ def _unreadable(page: Any) -> str:
     wrong = {
         f"numbers of {bits} bits": not whole and (bits > 16 or dtype.kind not in "bu"),
         f"{bits} bits a channel and compression {int(compression)}": (
-            int(compression) in _BY_LIBTIFF - {5} and bits * channels != 1
+            int(compression) in _FAX and bits * channels != 1
         ),
         f"predictor {predictor} of {bits} bits": (
             predictor not in (1, 2, 3)

@@ -49,7 +49,7 @@ RIM = 4.0
 
 Pixels on the rim are all stone or none, and the longer and thinner a stone is the further that
 moves its centroid.  A square may be off by 1.2 px with this; spikes and slivers that were drawn in
-thousands of poses and scales came to .6 of what it allows."""
+thousands of poses and scales came to 0.6 of what it allows."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +73,7 @@ class GivenWall:
 
     @property
     def mu(self) -> float:
-        """Coefficient of friction of the block model or the plan, or .58."""
+        """Coefficient of friction of the block model or the plan, or 0.58."""
         if self.blocks is not None:
             return read_mu(self.blocks, "mu", 0.58)
         return float(self.plan.settings.get("mu", 0.58)) if self.plan else 0.58

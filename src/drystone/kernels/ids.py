@@ -10,7 +10,7 @@ BLOCK_PX = 1 << 20
 _CACHED_PX = 1 << 16
 
 
-def counted(index: NDArray[np.int32], most: int) -> NDArray[np.int64]:
+def counted(index: NDArray[Any], most: int) -> NDArray[np.int64]:
     """Return how often each of the numbers 0 ... `most` is in an image."""
     flat = index.ravel()
     counts = np.zeros(most + 1, np.int64)
@@ -31,21 +31,25 @@ def looked_up(
     return found
 
 
-def numbered(ids: NDArray[Any]) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+def numbered(ids: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.int64]]:
     """Return an image with 1 + the place of each id among its different ids, and these, ascending.
 
-    At least one pixel, no id below 0.
+    At least one pixel, no id below 0.  The image has the smallest integers that hold its numbers.
     """
     top = int(ids.max())
     if top < max(1 << 16, 4 * ids.size):
         present = np.zeros(top + 1, bool)
         present[ids.ravel()] = True
-        table = np.cumsum(present, dtype=np.int32)
-        return looked_up(table, ids), np.flatnonzero(present).astype(np.int64)
+        table = np.cumsum(present)
+        return looked_up(table.astype(_least(table[-1])), ids), np.flatnonzero(present)
     # Ids come in runs: only the first pixel of each run is sorted.
     flat = ids.ravel()
     starts = np.concatenate(([0], np.flatnonzero(flat[1:] != flat[:-1]) + 1))
     values, position = np.unique(flat[starts], return_inverse=True)
     lengths = np.diff(starts, append=flat.size)
-    index = np.repeat(position.astype(np.int32) + np.int32(1), lengths).reshape(ids.shape)
+    index = np.repeat((position + 1).astype(_least(len(values))), lengths).reshape(ids.shape)
     return index, values.astype(np.int64)
+
+
+def _least(most: int) -> type[Any]:
+    return next((kind for kind in (np.uint8, np.uint16) if most <= np.iinfo(kind).max), np.int32)

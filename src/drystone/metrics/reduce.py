@@ -12,7 +12,7 @@ def reduce_labels(labels: Labels, scale: float) -> Labels:
     Pixel i of the result takes source pixel floor(i * source size / size), so the first row and
     column stay what they are.  This is the sampling with which the published figures of the
     masons' walls were measured; other choices of the sample point move F_AV by up to two points.
-    Each side becomes floor(size * scale + .5) px, at least one; the result is a copy.
+    Each side becomes floor(size * scale + 0.5) px, at least one; the result is a copy.
     """
     if not scale > 0:
         raise ValueError(f"scale must be positive, not {scale}")

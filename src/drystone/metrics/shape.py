@@ -59,11 +59,11 @@ def level_deviation(labels: Labels, mean_stone_height_px: float) -> float:
 
     The mean over all columns of |top profile - mean of the top profile|, over the mean height of
     the stones' bounding boxes as they lie in the wall.  0 is a level top; a wall of which one
-    half is a whole stone higher than the other has .5.  Lower is better.  It exposes walls whose
+    half is a whole stone higher than the other has 0.5.  Lower is better.  It exposes walls whose
     F_AV is high because of towers.
 
     The profile is the plain one: in a head joint that is open at the top it drops to what lies
-    below, so walls traced with wide joints read higher (the masons' level wall R: .12).
+    below, so walls traced with wide joints read higher (the masons' level wall R: 0.12).
     """
     profile = top_profile(labels)
     return float(np.abs(profile - profile.mean()).mean()) / mean_stone_height_px
@@ -76,7 +76,7 @@ def flush_deviation(frame: WallFrame, mean_stone_width_px: float) -> float:
     outermost stone pixel and the end line, over the mean width of the stones' bounding boxes as
     they lie in the wall.  Rows without any stone, open bed joints, have no end and are left out.
     0 is two straight ends; a wall that lacks half a stone at one end of every other course has
-    .125.  Lower is better.  It exposes walls whose F_AV is high because of ragged ends.
+    0.125.  Lower is better.  It exposes walls whose F_AV is high because of ragged ends.
     """
     filled = frame.labels > 0
     filled = filled[filled.any(axis=1)]

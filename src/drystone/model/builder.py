@@ -36,7 +36,7 @@ class BuilderErrors:
 
     @classmethod
     def of_precision(cls, precision: float, mean_size: float) -> "BuilderErrors":
-        """Return the errors of a precision p: .015 is a good robot, .03 a hand.
+        """Return the errors of a precision p: 0.015 is a good robot, 0.03 a hand.
 
         `mean_size` is the mean over the stones of the root of their area.
 

@@ -4,10 +4,10 @@ import dataclasses
 import math
 import re
 import types
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
-from drystone.errors import UsageError
+from drystone.errors import UsageError, meant
 
 Settings = TypeVar("Settings")
 
@@ -38,7 +38,9 @@ def updated(settings: Settings, changes: Mapping[str, Any], prefix: str = "") ->
     for name, value in changes.items():
         where = f"{prefix}{name}"
         if name not in hints:
-            raise _refused(f"there is no setting {where!r}.", f"Known here: {', '.join(hints)}.")
+            near = meant(name, _names(settings), prefix).strip()
+            cure = near or f"Known here: {', '.join(hints)}."
+            raise _refused(f"there is no setting {where!r}.", cure)
         current = getattr(settings, name)
         if dataclasses.is_dataclass(current):
             if not isinstance(value, Mapping):
@@ -53,6 +55,14 @@ def updated(settings: Settings, changes: Mapping[str, Any], prefix: str = "") ->
         where = f"settings {prefix.removesuffix('.')}".rstrip()
         cure = _to_change(str(error), list(values), prefix)
         raise UsageError("E123", f"{error}.", where=where, cure=cure) from None
+
+
+def _names(settings: Any) -> Iterator[str]:
+    """Yield the names of settings, with those of the settings within them."""
+    for field in dataclasses.fields(settings):
+        yield field.name
+        if dataclasses.is_dataclass(value := getattr(settings, field.name)):
+            yield from (f"{field.name}.{name}" for name in _names(value))
 
 
 def ranged(

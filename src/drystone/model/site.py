@@ -60,7 +60,7 @@ class Site:
     def from_source(
         cls, width: float, height: float, scale: float = 1.0, px_per_m: float | None = None
     ) -> "Site":
-        """Make the site of a wall given in source px: working size floor(size * scale + .5).
+        """Make the site of a wall given in source px: working size floor(size * scale + 0.5).
 
         UsageError: E121: it is too small or too large at this scale; E127: its size is not a finite
         number; E138: the px in a metre are not positive.
@@ -94,5 +94,5 @@ class Site:
 
 
 def working_px(length_px: float, scale: float) -> int:
-    """Turn a length in source px into whole working px: floor(length * scale + .5)."""
+    """Turn a length in source px into whole working px: floor(length * scale + 0.5)."""
     return math.floor(length_px * scale + 0.5)

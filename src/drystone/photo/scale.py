@@ -205,8 +205,8 @@ def _disagreement(what: str) -> InputError:
         "E172",
         f"the markers disagree with each other. {what}.",
         where="markers",
-        cure="Check that all were printed in the same size (at 100 %) and that it is the size "
-        "that was given, that they lie flat in one plane, and that a sheet was not cut up.",
+        cure="Print all at 100 %, in the size that was given. Lay them flat in one plane, with all "
+        "of the white border in the picture, and do not cut a sheet up.",
     )
 
 

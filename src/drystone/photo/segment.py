@@ -210,8 +210,8 @@ def _no_stones(cut: int, ground: GroundModel) -> InputError:
     if varies > ROUGH:
         what += f", which is not plain (it varies by {varies:.0f} in CIELAB)"
         cure = (
-            "Lay stones apart on a plain sheet of another colour. Stones of a river bed, a heap or "
-            "a wall are traced or found by other programs, and `drystone stones` reads their "
+            "Lay stones apart on a plain sheet of another colour. Trace stones of a river bed, a "
+            "heap or a wall, or find them with other programs: `drystone stones` reads their "
             "masks (docs/photographs.md)."
         )
     return InputError("E175", f"{what}.", cure=cure)

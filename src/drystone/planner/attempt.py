@@ -27,6 +27,7 @@ from drystone.planner.profile import Profile
 from drystone.planner.proposing import Proposer, RasterProposer, StoneTrial, one_by_one
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settling import ExactProposer
+from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.selection.policies.registry import policy_named
 from drystone.selection.policy import Policy
@@ -58,8 +59,7 @@ class Attempt:
         until: Deadline = NEVER,
     ) -> None:
         self.build = build
-        self.failed_solves = 0
-        self.cold_solves = 0
+        self.solves = Solves()
         self._workshop = workshop
         self._settings = settings
         self._executor = executor
@@ -170,8 +170,7 @@ class Attempt:
             [proposals[k] for k in new],
         )
         self._judged.update(zip([keys[k] for k in new], results, strict=True))
-        self.failed_solves += sum(result.failed for result in results)
-        self.cold_solves += sum(result.solved_cold for result in results)
+        self.solves = sum(map(Solves.of, results), self.solves)
         # NHR depends on the other candidates, which differ between the folds.
         return [
             self._evaluator.compared(self._landscapes[proposal.side], proposal, self._judged[key])

@@ -18,6 +18,7 @@ from drystone.planner.observe import Measurement, Observation, observed, without
 from drystone.planner.profile import Profile
 from drystone.planner.replay import judged
 from drystone.planner.settings import PlannerSettings
+from drystone.planner.solves import Solves
 from drystone.planner.vary import varied
 from drystone.planner.workshop import Workshop
 
@@ -80,8 +81,7 @@ class Planner:
         self._weighted = varied(self.settings, spread, rng) if spread else self.settings
         self.build = self._empty()
         self.stopped: Stopped | None = None
-        self.failed_solves = 0
-        self.cold_solves = 0
+        self.solves = Solves()
         self.callbacks = callbacks or Callbacks()
 
     def steps(self, until: Deadline = NEVER) -> Iterator[Step]:
@@ -111,7 +111,7 @@ class Planner:
             if action is None:
                 failures += 1  # lines 23-26: resample
                 continue
-            self._count_solves(attempt)
+            self.solves += attempt.solves
             self.build = self._added(self.build, action)  # lines 18-22
             step = Step(len(self.build.actions), action, self.build, attempt.candidates)
             self.profile.end_step(step.number - 1, step.candidates)
@@ -119,7 +119,7 @@ class Planner:
             yield step
             # After it: the wall may have been measured meanwhile.
             attempt, failures = self._attempt(until), 0
-        self._count_solves(attempt)
+        self.solves += attempt.solves
         self.profile.end_without_action(attempt.candidates)
         self.stopped = stopped
 
@@ -156,10 +156,6 @@ class Planner:
         return Attempt(
             self.workshop, self._weighted, self.build, self.executor, self.profile, until
         )
-
-    def _count_solves(self, attempt: Attempt) -> None:
-        self.failed_solves += attempt.failed_solves
-        self.cold_solves += attempt.cold_solves
 
     def _empty(self) -> Build:
         exact, mean_area_px = self.settings.geometry == "exact", self.workshop.stock.mean_area_px

@@ -153,7 +153,7 @@ class FoundWall:
         cls, planner: Planner, courses: Courses | None = None, before: Solves | None = None
     ) -> "FoundWall":
         """Measure what a planner has built, after what trouble there was before."""
-        solves = (before or Solves()) + Solves(planner.failed_solves, planner.cold_solves)
+        solves = (before or Solves()) + planner.solves
         return cls.measured(planner.build, Yard.of(planner), solves, courses)
 
     @classmethod

@@ -34,7 +34,6 @@ FILLED = 0.99
 FILLED_TOP = 0.9
 """A plan is incomplete when its mean top stays below this share of the wall's height."""
 
-
 MOST_WITHOUT_DILATANCY = 150
 """Twelve starts take some ten seconds for so many blocks, and the time grows with their square."""
 
@@ -48,7 +47,7 @@ class PlanResult:
     success : bool
         True unless the wall is incomplete or planning was interrupted.
     status : {"complete", "incomplete", "interrupted"}
-        Incomplete: filling below .99 and a mean top below .9 of the height, or without a stone
+        Incomplete: filling below 0.99 and a mean top below 0.9 of the height, or without a stone
         that is pinned.
     message : str
         Why construction ended.
@@ -180,7 +179,7 @@ def result_of(planner: Planner) -> PlanResult:
     site = planner.build.wall.site
     stopped = planner.stopped or INTERRUPTED
     result = finish(planner, Frame(*site.extent_px, site), stopped, provenance, 0.0)
-    return replace(result, solves=Solves(planner.failed_solves, planner.cold_solves))
+    return replace(result, solves=planner.solves)
 
 
 def missing_stones(planner: Planner) -> tuple[int, ...]:

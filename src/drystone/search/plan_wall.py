@@ -19,7 +19,6 @@ from drystone.planner.events import INTERRUPTED, OUT_OF_TIME, Callbacks
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import UNLIMITED
 from drystone.planner.settings import PlannerSettings, method_settings
-from drystone.planner.solves import Solves
 from drystone.search.interrupts import held
 from drystone.search.plan_result import PlanResult, finish, missing_stones, provenance_of
 from drystone.search.processes import processes, threads
@@ -66,7 +65,7 @@ def working_scale(stones: StoneSet) -> float:
     Returns
     -------
     scale : float
-        Working px over source px, in (0, 1] and steps of .01: never finer than the source.
+        Working px over source px, in (0, 1] and steps of 0.01: never finer than the source.
 
     Examples
     --------
@@ -100,6 +99,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     choice: bool = False,
     keep: Callable[[SoFar], None] | None = None,
     standing: Standing | None = None,
+    coulomb: bool = True,
 ) -> PlanResult:
     """Plan a wall.
 
@@ -146,13 +146,14 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         stones may be used and stand (:func:`drystone.search.warm_start.begin_with`).
     choice : bool
         Keep the walls of the search that none beats in every figure of merit.
-
     keep : callable, optional
         Told of what there is so far, whenever a stone of the first wall is placed or walls of the
         search are built: to be kept, so that a program that is killed loses little.
     standing : Standing, optional
         Where a search of the same stones, wall, seed and settings was cut off
         (:class:`SoFar`): it goes on from there to the plan that it would have come to itself.
+    coulomb : bool
+        Look for `F_LR_coulomb`, which takes longer than a wall of ``"paper"``.
 
     Returns
     -------
@@ -227,7 +228,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
             )
         asked = replace(asked, took=time.perf_counter() - asked.started)
         if ended.stopped is not INTERRUPTED:
-            grace = Deadline.after(grace_s)
+            grace = Deadline.after(grace_s if coulomb else -math.inf)
             return asked.result(first, ended, left_out, grace, choice=choice)
     except KeyboardInterrupt:
         if ended is None:
@@ -282,7 +283,7 @@ class _PlanOrigin:
         return replace(
             plans[0],
             notices=tuple(_notices(first, ended, left_out, cut=cut, short=short)),
-            solves=Solves(first.failed_solves, first.cold_solves),
+            solves=first.solves,
             choice=tuple(plans) if to_choose else (),
         )
 
@@ -350,10 +351,10 @@ def _notices(
             f"{first.settings.search.budget}; this is the best of them.",
             f"--budget {ended.walls} gives the same plan again, more --time a better one.",
         )
-    if first.failed_solves:
+    if first.solves.failed:
         yield Notice(
             "W303",
-            f"the solver gave up on {first.failed_solves} candidates, which were passed over.",
+            f"the solver gave up on {first.solves.failed} candidates, which were passed over.",
             "Please report this with the stones and the settings.",
         )
 

@@ -36,8 +36,7 @@ def begin_with(
             groups.append(_outlined_as_here(_well_wedged(wall, group, limits), workshop))
             last = stone_id
     planner.build, _, solves = yard.replayed(planner.build, groups, course_heights_px, strict=False)
-    planner.failed_solves += solves.failed
-    planner.cold_solves += solves.cold
+    planner.solves += solves
     used = {action.stone_id for action in planner.build.actions}
     return tuple(p.stone_id for p in wall.placements if p.stone_id not in used)
 

@@ -104,8 +104,7 @@ def _improved(
         yard = Yard.of(planner, until)
         with planner.profile.part("search"):
             for progress in searching(begun, yard, planner.seed, executor):
-                planner.failed_solves = progress.solves.failed
-                planner.cold_solves = progress.solves.cold
+                planner.solves = progress.solves
                 planner.callbacks.on_walls(_incumbent(progress))
                 told(progress)
     except BrokenProcessPool:
@@ -139,8 +138,7 @@ def _ended(planner: Planner, progress: Progress, grace: Deadline, *, lost: bool)
     surer, unsure = surest(planner, kept, grace)
     best = surer or progress.best
     last, stopped, cut = with_the_rest(planner, best, grace)
-    planner.failed_solves += last.failed_solves
-    planner.cold_solves += last.cold_solves
+    planner.solves += last.solves
     if len(last.build.actions) > len(best.groups):
         kept = archived(kept, [PackedWall.of(FoundWall.of(last))])
     return SearchEnd(last, stopped, progress.walls, kept, lost, unsure or cut)

@@ -16,7 +16,7 @@ from drystone.kernels.profiles import extremes
 from drystone.kernels.settling import SettlingRules, Status
 from drystone.model.builder import Built
 from drystone.poses import wrap_deg
-from drystone.settle.rest import SettlingScene, Turned, let_go, repose, ways
+from drystone.settle.rest import SettlingScene, Turned, let_go, repose, straight_down
 from drystone.settle.settings import SettleSettings
 
 FALLEN_SHARE, FALLEN_DEG = 0.25, 12.0
@@ -70,7 +70,7 @@ def put_down(
 
 def _rules(turned: Turned, scene: SettlingScene, settle: SettleSettings) -> SettlingRules:
     size = turned.size_px
-    return ways(turned, scene, settle)[-1]._replace(
+    return straight_down(turned, scene, settle)._replace(
         stop=0.0,
         near=STEP * size,
         far=2.0 * STEP * size,

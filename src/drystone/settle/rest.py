@@ -130,7 +130,7 @@ def touch_down(
 
     Whether it rests there, its margin says.
     """
-    rules = ways(stone, scene, settings, turns=False)[-1]._replace(lean=0.0, stop=-1.0)
+    rules = straight_down(stone, scene, settings, turns=False)._replace(stop=-1.0)
     found = let_go(stone, scene, start, rules)
     if found.status not in (Status.RESTS, Status.FALLS):
         return None
@@ -144,7 +144,7 @@ def lay(
 
     What it overlaps a little there it is brought apart from.  None when it does not rest nearby.
     """
-    rules = ways(stone, scene, replace(settings, method="energy"))[-1]._replace(stop=0.0)
+    rules = straight_down(stone, scene, replace(settings, method="energy"))._replace(stop=0.0)
     found = let_go(stone, scene, start, rules)
     return repose(stone, scene, found) if found.status == Status.RESTS else None
 
@@ -155,6 +155,13 @@ def let_go(
     """Settle a stone in one way; one that may not turn has not turned, not even by rounding."""
     found = settle(stone.corners, stone.edges, (*start, 0.0), scene.polygons, scene.width_px, rules)
     return found if rules.turns else found._replace(angle=0.0)
+
+
+def straight_down(
+    stone: Turned, scene: SettlingScene, settings: SettleSettings, *, turns: bool = True
+) -> SettlingRules:
+    """Return the way that is tried last: nothing pushes the stone to a side."""
+    return ways(stone, scene, settings, turns=turns)[-1]
 
 
 def ways(

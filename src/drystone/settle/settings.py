@@ -36,7 +36,7 @@ class SettleSettings(Ranged):
         mu.
     steep : float
         When it is asked whether a stone rests, contacts whose normal goes up by less than this have
-        no friction, and those whose normal goes down by more than .1 do not count: upright faces
+        no friction, and those whose normal goes down by more than 0.1 do not count: upright faces
         and hooks hold only what was pressed in between before.
     beyond_px : float
         How far a stone may stand out over the ends and the top of the wall: the clearances of a

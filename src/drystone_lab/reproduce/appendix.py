@@ -124,11 +124,10 @@ also shows an opening and wide joints."""
 
 
 def irregular_walls(context: Context) -> StudyWalls:
-    """Build a wall from one end and from both."""
+    """Build walls from one end and from both; in the full version at two working resolutions."""
     wall = RUBBLE.here(context.data)
-    if context.quick:
-        wall = coarser(wall, 0.25)
-    return built(context, (wall,), SIDES, (context.seed,))
+    walls = (coarser(wall, 0.25), *(() if context.quick else (wall,)))
+    return built(context, walls, SIDES, (context.seed,))
 
 
 def _irregular_table(found: StudyWalls) -> Table:
@@ -138,19 +137,22 @@ def _irregular_table(found: StudyWalls) -> Table:
         clusters = len({*outcome.clusters.values()})
         figures = outcome.figures
         rows.append(
-            (found.name, one.wall.said, one.way, figures["placed"], figures["stones"], clusters,
-             *metric_cells(outcome), figures["wedges"])
+            (found.name, one.wall.said, one.wall.scale, one.way, figures["placed"],
+             figures["stones"], clusters, *metric_cells(outcome), figures["wedges"])
         )  # fmt: skip
-    rows += [("the paper's", "published", f"wall {n}", placed, 91, *[None] * 6)
+    rows += [("the paper's", "published", None, f"wall {n}", placed, 91, *[None] * 6)
              for n, placed in enumerate(PAPER_PLACED, 1)]  # fmt: skip
     columns = (
-        "stones", "stones are", "built from", "placed", "of", "clusters", *METRICS, "wedges",
+        "stones", "stones are", "scale", "built from", "placed", "of", "clusters", *METRICS,
+        "wedges",
     )  # fmt: skip
     return Table("Walls of many irregular stones", columns, tuple(rows))
 
 
 def _irregular_picture(found: StudyWalls) -> ItemPicture:
-    walls = [found.titled(one, f"{found.name}, from {one.way}") for one in found]
+    walls = [
+        found.titled(one, f"{found.name} at {one.wall.scale:g}, from {one.way}") for one in found
+    ]
     return ItemPicture(
         "figB33", plot_walls(walls, 2),
         f"Walls of {found.name}, built from one end and from both; stones of one cluster have "

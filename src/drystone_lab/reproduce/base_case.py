@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import accumulate
 from statistics import fmean, median
 
 from matplotlib.axes import Axes
@@ -22,7 +23,7 @@ from drystone.statics.result import LimitResult, LimitStatus
 from drystone_lab.pictures.charts import group_panels
 from drystone_lab.pictures.walls import Panel, sheet_of, wall_aspect
 from drystone_lab.reproduce import cells
-from drystone_lab.reproduce.cells import METRICS, ClaimCheck, rounded
+from drystone_lab.reproduce.cells import ClaimCheck, rounded
 from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials, sheet
 from drystone_lab.table import Cell, Table
@@ -63,23 +64,6 @@ def base_case(context: Context, study: Study) -> BaseCase:
     without = nonassociative_resistance(model)
     pairs = ((both.left, without.left), (both.right, without.right))
     return BaseCase(found, wall, model, pairs)
-
-
-def _seeds(case: BaseCase) -> Table:
-    rows = []
-    for spec, outcome in zip(case.trials.specs, case.trials.outcomes, strict=True):
-        ends = [outcome.figures[f"alpha_{side}"] for side in ALPHAS]
-        over = [None if alpha is None else alpha / case.model.mu for alpha in ends]
-        numbers = [rounded(value) for value in (*ends, *over)]
-        rows.append((spec.seed, outcome.figures["placed"], *cells.metric_cells(outcome), *numbers))
-    return Table(
-        f"The base case {case.built.name} seed by seed",
-        (
-            "seed", "placed", *METRICS, "alpha left", "alpha right", "alpha left / mu",
-            "alpha right / mu",
-        ),
-        tuple(rows),
-    )  # fmt: skip
 
 
 def _summary(case: BaseCase) -> Table:
@@ -153,7 +137,7 @@ def _pictures(case: BaseCase) -> Iterator[ItemPicture]:
 BASE_CASE = PaperItem(
     **paper("fig14-15"),
     study=partial(base_case, study=Study(walls=(PR,), quick_seeds=5)),
-    tables={"fig14_seeds": _seeds, "fig14": _summary, "fig15": _rules},
+    tables={"fig14": _summary, "fig15": _rules},
     pictures=lambda case: tuple(_pictures(case)),
     needs=(PR.source.name,),
 )
@@ -212,9 +196,11 @@ def _wedges_picture(trials: Trials, wall: Wall) -> ItemPicture:
     title = f"Wall {trials.wall.number}, {trials.wall.name}\n"
     title += cells.in_words(trials.outcomes[0].figures)
     aspect = wall_aspect(wall.site.height_px / wall.site.width_px)
+    sizes = accumulate((1 + len(group.wedges) for group in wall.groups), initial=1)
+    steps = dict(zip((group.placement.stone_id for group in wall.groups), sizes, strict=False))
     zooms = [
-        Panel(f"{letter}: wedge {wedge.id} under stone {wedge.under}", ZOOM_ASPECT,
-              partial(_draw_zoom, wall, box))
+        Panel(f"{letter}: a wedge under stone {wedge.under} (step {steps[wedge.under]})",
+              ZOOM_ASPECT, partial(_draw_zoom, wall, box))
         for letter, wedge, box in zip("abc", shown(wall), boxes, strict=False)
     ]  # fmt: skip
     figure: Figure = sheet_of([Panel(title, aspect, partial(_draw_whole, wall, boxes)), *zooms], 2)
@@ -222,7 +208,7 @@ def _wedges_picture(trials: Trials, wall: Wall) -> ItemPicture:
         f"fig19_wall{trials.wall.number}",
         figure,
         f"Wall {trials.wall.number} ({trials.wall.name}): all wedges in dark red, and the "
-        "largest ones from near. Numbers on stones are steps of the plan; titles have ids.",
+        "largest ones from near. Numbers on stones are steps of the plan.",
     )
 
 
@@ -247,8 +233,10 @@ def _middle(wall: Wall, wedge: Wedge) -> tuple[float, float]:
 def _box(wall: Wall, wedge: Wedge) -> ZoomBox:
     """Return what a zoom on a wedge shows."""
     x, y = _middle(wall, wedge)
-    half = ZOOM * wall.site.width_px * wall.site.units_per_px / 2
-    # Little of the ground, which is of no interest.
+    width = wall.site.width_px * wall.site.units_per_px
+    half = ZOOM * width / 2
+    # Little of the ground and nothing beyond the ends, which are of no interest.
+    x = min(max(x, half), width - half)
     y0 = max(y - ZOOM_ASPECT * half, -0.1 * half)
     return x - half, y0, x + half, y0 + 2 * ZOOM_ASPECT * half
 

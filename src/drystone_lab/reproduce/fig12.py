@@ -201,8 +201,8 @@ def _picture(found: Blocks) -> ItemPicture:
     third.set_title("(c) rigid blocks", fontsize=9, loc="left")
     return ItemPicture(
         "fig12", figure,
-        f"Pic-to-Ri on three stones of {found.wall.name}: (a) label image, (b) pixel edges between "
-        "two stones or a stone and the ground with their normals, (c) interfaces with their end "
+        f"Pic-to-Ri on three stones of {found.wall.name}: (a) label image; (b) pixel edges between "
+        "two stones or a stone and the ground with their normals; (c) interfaces with their end "
         "points and normals; triangles are centres of mass.",
     )  # fmt: skip
 
@@ -211,9 +211,9 @@ def _claims(found: Blocks) -> Iterator[ClaimCheck]:
     angles = sorted(_apart_deg(i) for i in found.whole.interfaces if len(i.points) == 2)
     yield ClaimCheck(
         "The normal of an interface is the mean of the normals of its pixels.",
-        "the planner takes that of the fitted line, which differs by more than "
+        "the planner takes that of the fitted line. In the finished wall it differs by more than "
         f"{TILTED_DEG:g} degree in {sum(angle > TILTED_DEG for angle in angles)} of {len(angles)} "
-        f"interfaces of the finished wall, by {angles[-1]:.1f} degrees at most.",
+        f"interfaces, by {angles[-1]:.1f} degrees at most.",
         None,
     )
 

@@ -21,7 +21,6 @@ from drystone_lab.table import Cell, Table
 from drystone_lab.walls import MASONS, PR, Target
 
 SQUARE_IN = (4.6, 4.0)
-COUNTS_IN = (5.6, 3.6)
 MARKERS = ("o", "s", "D", "^", "v", "P", "X", "p")
 """By cluster, then round again: colour alone need not tell them apart."""
 

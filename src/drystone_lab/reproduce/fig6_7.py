@@ -212,8 +212,8 @@ def _picture7(moment: Moment, place: RestingPlace) -> ItemPicture:
     return ItemPicture(
         "fig7", figure,
         "What the indices of one stone (orange) are computed from: swept by its rays (yellow, "
-        "darker where filled), box B (dark blue), left neighbour (green) and the tops, the two "
-        "stones below (light blue) and the distances to their joints, its bounding box (dashed).",
+        "darker where filled), box B (dark blue), left neighbour (green) and the tops; the two "
+        "stones below (light blue) and the distances to their joints; its bounding box (dashed).",
     )  # fmt: skip
 
 

@@ -90,7 +90,7 @@ def _workflow(run: Construction) -> tuple[ItemPicture, ...]:
     size = stones.source
     shown = sorted({1, max(1, count // 3), max(1, 2 * count // 3), count})
     walls = [
-        (f"after {number} of {count} stones", run.stages[number - 1].after, run.workshop.clusters)
+        (f"after {number} stones", run.stages[number - 1].after, run.workshop.clusters)
         for number in shown
     ]
     empty = Wall.empty(run.wall.site)
@@ -100,7 +100,12 @@ def _workflow(run: Construction) -> tuple[ItemPicture, ...]:
         wall_panel("the landscape before the first stone: free between its bounds", empty, {}),
     ]  # fmt: skip
     return (
-        ItemPicture("fig3", plot_walls(walls, 2), "The run of Algorithm 1, in four moments."),
+        ItemPicture(
+            "fig3",
+            plot_walls(walls, 2),
+            f"The run of Algorithm 1 in four moments; it places {count} of {len(stones)} stones. "
+            "Numbers are steps of the plan, in which a wedge (dark red) is one too.",
+        ),
         ItemPicture("fig4", sheet_of(panels, 2), "What a run begins with."),
     )
 
@@ -188,7 +193,7 @@ def _selection_pictures(step: Selection) -> Iterator[ItemPicture]:
     counts = " > ".join(str(len(survivors)) for survivors in step.selected.survivors)
     yield ItemPicture(
         "fig10", figure,
-        f"How far each candidate came through the filters ({counts}); orange: the action taken.",
+        f"How far each candidate came through the filters ({counts}); yellow: the action taken.",
     )  # fmt: skip
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import cycle
 from statistics import median
 
 from matplotlib.figure import Figure
@@ -43,6 +44,9 @@ RULES = {"paper": TWO_SIDED, "random": (*TWO_SIDED, ("selection_rule", "random")
 
 FILLED = 0.6
 """Filling above which walls are told apart (Fig. 24)."""
+
+OFFSETS_PT = ((9, 9), (9, -14), (-18, 9), (-18, -14))
+"""Of the names of the walls that are drawn: neighbours in noise often lie together."""
 
 MIXED = 60
 """Noise in % below which the paper's walls are always filled above :data:`FILLED`."""
@@ -307,12 +311,12 @@ def _scatter(levels: NoiseLevels) -> ItemPicture:
     figure = Figure(figsize=TWO_IN)
     ax = plot_two_figures(groups, figure.add_subplot(), across="F_LR", up="F_SF")
     ax.margins(0.09)
-    for level in levels.all:
+    for level, offset in zip(levels.all, cycle(OFFSETS_PT), strict=False):
         drawn = level.ours.outcomes[level.ours.middle].figures
         resistance, filling = drawn["F_LR"], drawn["F_SF"]
         if resistance is not None and filling is not None:
             ax.annotate(
-                f"{level.noise}", (resistance, filling), (9, 9), textcoords="offset points",
+                f"{level.noise}", (resistance, filling), offset, textcoords="offset points",
                 fontsize=6.5, arrowprops={"arrowstyle": "-|>", "linewidth": 0.7, "shrinkB": 1.5},
                 gid=f"example-{level.noise}",
             )  # fmt: skip

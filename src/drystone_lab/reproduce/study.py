@@ -203,7 +203,8 @@ def strips(
 ) -> ItemPicture:
     """Draw a point a wall: a panel a figure, a group a set and way."""
     panels = {figure: {label(one): one.values(figure) for one in found} for figure in figures}
-    return ItemPicture(name, group_panels(panels), "A point a wall; lines are medians.")
+    names = ", ".join(dict.fromkeys(one.wall.name for one in found))
+    return ItemPicture(name, group_panels(panels), f"{names}: a point a wall; lines are medians.")
 
 
 def sheet(

@@ -1,7 +1,7 @@
 """Items that compare settings: beta, Fig. 16, Fig. 20, Fig. 21, Figs. B.30 to B.32."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from statistics import median
 
 from drystone_lab.pictures.charts import group_panels, plot_two_figures
@@ -20,7 +20,6 @@ from drystone_lab.reproduce.study import (
     ways_table,
 )
 from drystone_lab.runs.spec import Changes
-from drystone_lab.table import Table
 from drystone_lab.walls import (
     FRAMED,
     IR,
@@ -85,7 +84,6 @@ BETA = PaperItem(
 
 SAMPLINGS = ("variant", "uniform", "twofold", "full")
 SAMPLED: dict[str, Changes] = {name: (("sampling", name),) for name in SAMPLINGS}
-PARTS = ("placement", "stabilisation", "contacts", "limit analysis", "indices")
 
 
 def _sampling_claims(found: StudyWalls) -> Iterator[ClaimCheck]:
@@ -120,23 +118,6 @@ def _whole(trials: Trials) -> int:
     return sum(o.figures["placed"] == o.figures["stones"] for o in trials.outcomes)
 
 
-def _sampling_times(found: StudyWalls) -> Table:
-    return Table(
-        "Seconds a wall by the sampling of candidates, medians",
-        ("sampling", "wall, s", *(f"{part}, s" for part in PARTS)),
-        tuple(
-            (
-                one.way,
-                *(
-                    float(f"{median(outcome.times[part] for outcome in one.outcomes):.3g}")
-                    for part in ("wall", *PARTS)
-                ),
-            )
-            for one in found
-        ),
-    )
-
-
 SAMPLING = PaperItem(
     **paper("fig16"),
     study=Study(walls=(PR,), ways=SAMPLED),
@@ -150,7 +131,6 @@ SAMPLING = PaperItem(
             lambda one: (rounded(one.median("candidates")),),
         )
     },
-    times={"fig16_times": _sampling_times},
     pictures=lambda found: (
         sheet(found, "fig16", 2, lambda one: one.way, f"Walls of seed {found.seeds[0]}."),
         strips(found, "fig16_seeds", (*METRICS, "placed", "candidates"), lambda one: one.way),
@@ -222,31 +202,52 @@ STABILISATION = PaperItem(
 )
 
 NAMED: dict[str, Changes] = {
-    "paper": (),
     "sf: one pose a stone": (("orientations", "sf"),),
     "shrinking sets": (("sampling", "shrinking"),),
     "NHR at most 1": (("selection.clip_nhr", True),),
     "turns of up to 45 degrees": (("stabilise.max_turn_deg", 45.0), ("stabilise.max_pivots", 10)),
-    "two-fold, two-sided": (("sampling", "twofold"), *TWO_SIDED),
 }
-"""What else the paper's method could be; the last is what the released code comes with."""
+"""What else the paper's method could be."""
+
+RELEASED: dict[str, Changes] = {"two-fold, two-sided": (("sampling", "twofold"), *TWO_SIDED)}
+"""What the released code comes with."""
+
+CAUSES: dict[str, Changes] = {
+    "full batch": SAMPLED["full"],
+    "six places a stone": (("placement.tries", 6),),
+    "reach from above": (("placement.reach", "above"),),
+    "wedges of up to two stones": (("stabilise.max_wedge_height", 2.0),),
+    "rule lowest": (("placement.rule", "lowest"),),
+    "rule lowest, two-fold, two-sided": (
+        ("placement.rule", "lowest"), *RELEASED["two-fold, two-sided"],
+    ),
+}  # fmt: skip
+"""What might keep PR from its 32 stones; the last are the released code's rule and its own way."""
+
+VARIED: tuple[tuple[Target, Mapping[str, Changes]], ...] = (
+    (R, NAMED | RELEASED),
+    (PR, NAMED | RELEASED | CAUSES),
+    # That of the authors' released times, whatever width the paper prints
+    (PR_FREE_596, RELEASED | CAUSES),
+    (IR, RELEASED),
+    *((wall, {}) for wall in FRAMED),
+)
+"""Walls, and by what they are built beside the paper's method."""
 
 
 def named_variants(
     context: Context,
-    walls: Sequence[Target] = MASONS,
-    framed: Sequence[Target] = (*FRAMED, PR_FREE_596),
+    varied: Sequence[tuple[Target, Mapping[str, Changes]]] = VARIED,
     count: int = 20,
 ) -> StudyWalls:
-    """Build the free walls by every variant, and by the paper's method those with their frames."""
+    """Build walls by variants of the paper's method."""
     if context.quick:
-        walls, framed, count = COARSE, (), 2
+        varied, count = [(wall, NAMED) for wall in COARSE], 2
     seeds = range(context.seed, context.seed + count)
     asked = [
         (wall, way, tuple(wall.run(seed, *changes) for seed in seeds))
-        for wall in (*walls, *framed)
-        for way, changes in NAMED.items()
-        if wall in walls or not changes
+        for wall, ways in varied
+        for way, changes in (("paper", ()), *ways.items())
     ]
     return StudyWalls(context, trials_of(context, asked))
 
@@ -267,9 +268,11 @@ VARIANTS = PaperItem(
             lambda one: (_whole(one),),
         ),
     },
-    pictures=lambda found: (
-        strips(found, "variants", ("F_SF", "F_LR"), lambda one: f"{one.wall.name}\n{one.way}"),
-    ),
+    pictures=lambda found: [
+        strips(group, f"variants_{number}", ("placed", "F_SF", "F_LR"), lambda one: one.way)
+        for number, group in enumerate(found.by_wall, 1)
+        if len(group.all) > 1
+    ],
     needs=MASONS_STONES,
 )  # fmt: skip
 

@@ -77,6 +77,7 @@ def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) ->
         method=spec.method,
         settings=spec.settings(),
         scale=spec.scale,
+        coulomb=False,  # no figure of a run
     )
     if result.status == "interrupted":  # planning takes Ctrl-C for the end of its time
         raise KeyboardInterrupt

@@ -195,6 +195,13 @@ class RunSpec:
 
     @property
     def key(self) -> str:
-        """Name under which the outcome is kept: equal for equal runs of one version."""
-        text = json.dumps(self.as_dict() | {"version": version("drystone")}, sort_keys=True)
+        """Name under which the outcome is kept: equal for equal runs of one version.
+
+        A change to what the method has anyway is no change.
+        """
+        usual = {} if self.method == STRIPS else method_settings(self.method).as_dict()
+        has = flat(usual)
+        changes = {name: value for name, value in self.changes if (name, value) not in has}
+        about = self.as_dict() | {"changes": changes, "version": version("drystone")}
+        text = json.dumps(about, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:24]

@@ -174,18 +174,6 @@ def test_what_is_in_the_way_down_is_what_small_steps_down_run_into(name: str) ->
     assert max(found) < (1.0 if name == "exact" else 2.1)
 
 
-def test_a_stone_under_another_one_cannot_be_lowered() -> None:
-    wall = assembly("exact")
-    (wedge,) = wall.wedges
-    above = wall.part(wedge.under or 0)
-    late = handling.Part(wall.parts[-1].plan_step, wedge.corners, wedge.centroid)
-    overlap = shapely.Polygon(above.corners).bounds
-    left, right = late.corners[:, 0].min(), late.corners[:, 0].max()
-    covered = min(right, overlap[2]) - max(left, overlap[0])
-    assert covered > 0.0
-    assert handling.blocked_m(wall, late) >= covered - 1e-9
-
-
 @pytest.mark.parametrize("overlap_m", [0.0, 1e-12, -1e-12])
 def test_what_a_stone_rests_on_is_not_in_its_way(overlap_m: float) -> None:
     wall = assembly("exact")

@@ -142,6 +142,9 @@ def slider(page):
 def test_the_slider_goes_through_the_steps(page):
     last = shown()["steps"]
     assert seen(page) == placed(last)
+    card = page.locator(".ds-card").inner_text()
+    assert card.startswith("It stands")
+    assert shown()["summary"] in card
     slider(page).fill("3")
     assert seen(page) == placed(3)
     part = shown()["parts"][2]
@@ -457,13 +460,6 @@ def test_light_dark_and_the_choice_between_them(visit):
     page.emulate_media(color_scheme="light")
     button.click()
     assert page.evaluate(colour) == "rgb(255, 255, 255)"
-
-
-def test_a_report_opens_on_the_whole_wall(page):
-    assert seen(page) == placed(shown()["steps"])
-    card = page.locator(".ds-card").inner_text()
-    assert card.startswith("It stands")
-    assert shown()["summary"] in card
 
 
 def test_the_build_view_goes_on_from_what_is_set(visit, tmp_path):

@@ -12,8 +12,12 @@ from tests.lab.runs.bricks import SOURCE, run
 
 def test_it_is_what_plan_wall_gives() -> None:
     outcome = execute(run(3), None)
-    result = plan_wall(SOURCE.stones(None), 60, 20, seed=3, method="paper", scale=1.0)
+    stones, rest = SOURCE.stones(None), {"seed": 3, "method": "paper", "scale": 1.0}
+    result = plan_wall(stones, 60, 20, **rest, coulomb=False)
     assert outcome.as_plan == result.plan
+    # No figure of a run, and it takes longer than the wall.
+    assert result.metrics.F_LR_coulomb is None
+    assert plan_wall(stones, 60, 20, **rest).metrics.F_LR_coulomb is not None
     assert tuple(outcome.figures) == FIGURES
     assert outcome.figures["placed"] == outcome.figures["stones"] == 6
     assert outcome.figures["F_LR"] == result.metrics.F_LR

@@ -8,6 +8,8 @@ from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
+import numpy as np
+
 from drystone.cli.inputs import files_of_wall, refuse_inputs, refuse_plans_own
 from drystone.cli.numbers import (
     add_scale,
@@ -25,7 +27,6 @@ from drystone.cli.reading import add_wall, reading_from
 from drystone.drawing.words.analysis import (
     Card,
     ModelledWall,
-    NoiseUnit,
     RangeCard,
     ScatterCard,
     analysis_of,
@@ -42,6 +43,7 @@ from drystone.drawing.words.tables import NAMES as TABLES
 from drystone.drawing.words.tables import write_tables
 from drystone.errors import ExitCode, Notice, UsageError, counted
 from drystone.io.walls import GivenWall, read_wall, unsupported
+from drystone.model.builder import BuilderErrors
 from drystone.statics.limit import lateral_resistance, load_range
 from drystone.statics.loads import LoadCase, Loads, load_case
 from drystone.statics.lp.program import assemble
@@ -89,11 +91,21 @@ def add(command: argparse.ArgumentParser) -> None:
     group = command.add_argument_group("scatter of the load multiplier (Monte Carlo)")
     option = group.add_argument
     option("--scatter", type=whole_from(1), metavar="N", help="samples (default 200)")
+    option("--precision", type=_precision, metavar="P%",
+           help="noise of a builder: outlines P/2, places P of the mean stone size (a robot 1.5%%, "
+           "a hand 3%%)")
     for name, text in (("outline", "the outlines"), ("placement", "where stones lie")):
         option(f"--{name}-noise", type=not_negative, default=0.0, metavar="PX",
                help=f"standard deviation of {text} (of a block model: in its lengths)")
     option("--seed", type=whole_from(0), default=0, help="of the random choices (default 0)")
     option("--jobs", type=whole_from(1), default=1, metavar="N", help="number of processes")
+
+
+def _precision(text: str) -> float:
+    """Read a share of the mean stone size, such as 1.5%."""
+    if not text.endswith("%"):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a precision such as 1.5%")
+    return not_negative(text[:-1]) / 100
 
 
 def _load(text: str) -> str:
@@ -140,7 +152,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if wall.sweep is not None:
         report["gaps"] = sweep_report(wall.sweep)
     if shaken:
-        scattered = _scatter_of(wall, arguments, noise_unit(given))
+        scattered = _scatter_of(wall, arguments, given)
         report, rows = {**report, "scatter": scattered.report()}, rows + scattered.rows()
     if arguments.json:
         print_json(report)
@@ -238,22 +250,30 @@ def _metres_per_unit(wall: GivenWall, arguments: argparse.Namespace) -> float | 
 def _wants_scatter(arguments: argparse.Namespace) -> bool:
     """Whether there is something that varies; E138 when samples would all be the same wall."""
     mu = arguments.mu
-    varied = bool(arguments.outline_noise or arguments.placement_noise or (mu and mu[0] < mu[1]))
+    noise = arguments.precision, arguments.outline_noise, arguments.placement_noise
+    varied = any(noise) or bool(mu and mu[0] < mu[1])
     if arguments.scatter is not None and not varied:
-        cure = "Say what is not known: --mu LOW:HIGH, --outline-noise or --placement-noise."
+        cure = (
+            "Say what is not known: --mu LOW:HIGH, --outline-noise or --placement-noise, or "
+            "--precision."
+        )
         raise UsageError(
             "E138", "all samples would be the same wall.", where="--scatter", cure=cure
         )
     return varied
 
 
-def _scatter_of(wall: ModelledWall, arguments: argparse.Namespace, unit: NoiseUnit) -> ScatterCard:
+def _scatter_of(wall: ModelledWall, arguments: argparse.Namespace, given: GivenWall) -> ScatterCard:
     """Shake the wall and analyse it each time; draw the distribution into the folder."""
+    unit = noise_unit(given)
+    areas = (b.area for b in wall.model.blocks if b.id not in given.wedge_ids)
+    size = float(np.mean(np.sqrt(list(areas))))
+    errors = BuilderErrors.of_precision(arguments.precision or 0.0, size)
     settings = ScatterSettings(
         samples=SAMPLES if arguments.scatter is None else arguments.scatter,
         mu=arguments.mu,
-        outline_noise=arguments.outline_noise * unit.lengths,
-        placement_noise=arguments.placement_noise * unit.lengths,
+        outline_noise=arguments.outline_noise * unit.lengths or errors.outline,
+        placement_noise=arguments.placement_noise * unit.lengths or errors.placement,
     )
     path = None if arguments.output is None else Path(arguments.output) / SCATTER
     if path is not None:

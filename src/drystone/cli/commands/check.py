@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from drystone.cli.inputs import files_of, files_of_wall, refuse_among_masks, refuse_inputs
 from drystone.cli.output import prepare_picture, print_json, print_table
-from drystone.cli.progress import counting_bar
+from drystone.cli.progress import busy, counting_bar
 from drystone.cli.reading import reading_of
 from drystone.drawing.words.checked import PICTURE, Checked, PhysicsCard
 from drystone.errors import ExitCode, InputError, PlanError
@@ -61,8 +61,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     labels = read_image_of(plan, folder) if plan.steps else None
     blocks = _blocks_beside(plan, folder)
     stones = read_stones(source, settings=reading_of(plan.source))
-    report = check_plan(plan, stones, wall_labels=labels, blocks=blocks)
-    polygons = plan_polygons(plan, stones)
+    with busy("checking every step", quiet=arguments.json, after_s=2.0):
+        report = check_plan(plan, stones, wall_labels=labels, blocks=blocks)
+        polygons = plan_polygons(plan, stones)
     checked = Checked(plan, stones, report, polygons, asked_physics=arguments.physics)
     if arguments.physics:
         checked = replace(checked, physics=_physics_of(checked, quiet=arguments.json))

@@ -6,6 +6,7 @@ from pathlib import Path
 from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.numbers import finite, whole_from
 from drystone.cli.output import note, prepare_files, print_json
+from drystone.cli.progress import busy
 from drystone.cli.reading import add_wall, reading_from
 from drystone.contacts.blocks import notice_of_pieces
 from drystone.contacts.given import model_from_json, polygons_from_json
@@ -53,7 +54,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         cure = "Leave it out; it is for a label image or a block model."
         what = "a plan says itself what its wedges are."
         raise UsageError("E138", what, where="--wedges", cure=cure)
-    report = look(_masonry_of(wall, frozenset(arguments.wedges)), dict(arguments.limits))
+    with busy("looking at the wall", quiet=arguments.json, after_s=2.0):
+        report = look(_masonry_of(wall, frozenset(arguments.wedges)), dict(arguments.limits))
     if arguments.output is not None:
         names = ("craft", *report.findings)
         pictures = [Path(arguments.output) / f"{name}.png" for name in names]

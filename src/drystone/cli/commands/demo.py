@@ -12,14 +12,18 @@ from drystone.cli.numbers import add_scale
 from drystone.cli.output import working_in
 from drystone.cli.parser import list_only
 from drystone.cli.planning import add_writing, plan_and_write
-from drystone.cli.settings import add_settings, request_from, settings_from
+from drystone.cli.settings import LEAST_WALLS, add_settings, request_from, settings_from
 from drystone.errors import ExitCode
 from drystone.generate.layout import lay_out
 from drystone.generate.rubble import RubbleSettings, rubble_stones
 from drystone.io.read_stones import read_stones
 from drystone.io.wall_image import write_labels
+from drystone.planner.search_settings import UNLIMITED
 
-STONES = "stones.png"
+STONES, WALL = "stones.png", (1120, 320)
+
+STOCK = 1.16
+"""The pile is for a wall so much longer: a mason has stones to choose from."""
 
 
 def add(command: argparse.ArgumentParser) -> None:
@@ -36,17 +40,19 @@ def add(command: argparse.ArgumentParser) -> None:
     add_writing(command)
     list_only(command, "-o", "--seed", "--time", "--json")
     # What only `plan` has options for.
-    command.set_defaults(ban=[], pin=[], fixed_order=False, resume=False, begin=None)
+    command.set_defaults(ban=[], pin=[], fixed_order=False, resume=False, begin=None, seed=1)
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Plan a wall of coursed rubble and name the report."""
-    settings_from(arguments)  # wrong options are refused before anything is written
+    asked = settings_from(arguments)  # wrong options are refused before anything is written
+    if arguments.time is None and asked.search.budget == UNLIMITED:
+        arguments.budget = LEAST_WALLS  # where nothing is compiled, more would take minutes
     folder = Path(arguments.output)
     own = () if arguments.settings is None else (Path(arguments.settings),)
     names = (STONES, *WRITTEN)
     refuse_inputs(own, [*(folder / name for name in names), *files_of_choice(folder)])
-    settings = RubbleSettings(count=24, width_px=1120, height_px=320)
+    settings = RubbleSettings(count=28, width_px=round(STOCK * WALL[0]), height_px=WALL[1])
     made = rubble_stones(settings, np.random.default_rng(arguments.seed))
     if arguments.scale is None:
         # Outlines four times finer than the planner's pixels, as photographs give them.
@@ -55,6 +61,5 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         # The stones lie beside the plan, so that `drystone check` finds them.
         write_labels(lay_out(made), folder / STONES)
         stones = read_stones(folder / STONES)
-        wall = settings.width_px, settings.height_px
-        request = request_from(stones, wall, arguments.px_per_m, arguments)
+        request = request_from(stones, WALL, arguments.px_per_m, arguments)
         return plan_and_write(request, prepared=True)

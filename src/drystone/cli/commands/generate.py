@@ -47,7 +47,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
 
 
 def _changes(items: list[str], settings_type: type[Any]) -> dict[str, Any]:
-    """Turn NAME=VALUE into values; VALUE is written as in TOML, or as .2."""
+    """Turn NAME=VALUE into values; VALUE is written as in TOML, or as 0.2."""
     changes: dict[str, Any] = {}
     for item in items:
         name, sign, text = item.partition("=")

@@ -16,6 +16,7 @@ from drystone.cli.numbers import (
     wall_scale,
 )
 from drystone.cli.output import note, prepare_files, print_json, print_table
+from drystone.cli.progress import busy
 from drystone.cli.reading import add_wall, reading_from
 from drystone.contacts.blocks import model_from_labels, notice_of_pieces
 from drystone.contacts.given import model_from_json
@@ -61,7 +62,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     pixels = wall.blocks is None and wall.outlines is None
     note(*wall.notices, *(notice_of_pieces(wall.labels) if pixels else ()))
     labels = reduce_labels(wall.labels, arguments.scale) if arguments.scale != 1 else wall.labels
-    metrics = _measured(wall, labels, arguments)
+    with busy("measuring the wall", quiet=arguments.json, after_s=2.0):
+        metrics = _measured(wall, labels, arguments)
     if arguments.output is not None:
         whole = wall.plan is None and arguments.wall is None
         _draw(labels, None if whole else metrics.width, arguments)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from drystone.cli.inputs import files_of_wall, refuse_inputs
-from drystone.cli.numbers import METRES, whole_from
+from drystone.cli.numbers import METRES, friction, whole_from
 from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.cli.progress import counting_bar
 from drystone.contacts.given import polygons_from_json
@@ -19,6 +19,7 @@ from drystone.model.builder import BuilderErrors
 from drystone.model.plan import Plan
 from drystone.model.steps import grouped, piece_id
 from drystone.physics.table import load_engine
+from drystone.search.closed_loop import rehearse_closed, tilt_as_built
 from drystone.search.rehearsal import Groups, mean_size, rehearse, rehearse_in_engine
 
 _PART = re.compile(r"(\d+(?:\.\d*)?|\.\d+)(px|mm|cm|m|ft|in|deg|%)")
@@ -36,10 +37,15 @@ def add(command: argparse.ArgumentParser) -> None:
            "stone size (a good robot 1.5%%, a hand 3%%: default), or such as 5mm,1deg")
     option("--outline", type=_parts, metavar="LENGTH",
            help="how precisely outlines are known (default: half the precision)")
+    option("--mu", type=friction, metavar="MU",
+           help="coefficient of friction (default that of the plan); LOW:HIGH for one of each run")
     option("--runs", type=whole_from(1), default=50, metavar="N", help="default 50")
     option("--seed", type=whole_from(0), default=0)
+    option("--closed-loop", action="store_true",
+           help="look at the wall after every stone and plan the rest again")
     option("--physics", action="store_true",
-           help="build in a rigid-body engine, which takes longer (extra `physics`)")
+           help="build in a rigid-body engine, which takes longer (extra `physics`); with "
+           "--closed-loop it tilts the finished walls")
     option("-o", "--output", metavar="FILE.png",
            help="draw the wall, every stone in the colour of its risk")
     option("--overwrite", action="store_true", help="replace the picture")
@@ -66,15 +72,21 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     wall = read_wall(path)
     plan, groups = _planned(wall, arguments.wall_path)
     errors = _errors(arguments, groups, plan.px_per_m)
-    once = rehearse_in_engine if arguments.physics else rehearse
+    closed = arguments.closed_loop
+    once = rehearse_closed if closed else rehearse_in_engine if arguments.physics else rehearse
+    least, most = arguments.mu or (wall.mu, wall.mu)
     planned = once(groups, NOTHING, np.random.default_rng(0), mu=wall.mu)
     found = []
     with counting_bar("walls", arguments.runs, quiet=arguments.json) as on_run:
         for number in range(arguments.runs):
             rng = np.random.default_rng([arguments.seed, number])
-            found.append(once(groups, errors, rng, mu=wall.mu))
+            mu = np.random.default_rng([arguments.seed, number, 1]).uniform(least, most)
+            ran = once(groups, errors, rng, mu=mu)
+            tilts = closed and arguments.physics and ran.first_fall is None
+            found.append(replace(ran, tilt=tilt_as_built(ran, mu)) if tilts else ran)
             on_run(number + 1)
-    card = Rehearsed(plan, groups, errors, tuple(found), planned, engine=arguments.physics)
+    engine = arguments.physics and not closed
+    card = Rehearsed(plan, groups, errors, tuple(found), planned, engine=engine)
     if arguments.output:
         from drystone.drawing.files import save  # noqa: PLC0415 - slow import
         from drystone.drawing.pictures.rehearsed import plot_risk  # noqa: PLC0415

@@ -10,7 +10,7 @@ from itertools import groupby
 from typing import Any, NamedTuple
 
 from drystone.cli.output import print_json
-from drystone.errors import ExitCode, UsageError
+from drystone.errors import ExitCode, UsageError, meant
 from drystone.model.settings import range_text
 from drystone.planner.settings import METHODS, PlannerSettings, method_settings
 from drystone.selection.scored import Craft
@@ -49,7 +49,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
                 listed[dotted] = {"value": value, "range": limits or None, "meaning": text}
     for asked in arguments.names:
         if not any(name == asked or name.startswith(f"{asked}.") for name in listed):
-            cure = "`drystone settings` lists all."
+            cure = f"{meant(asked, [*listed, *planner_tables()])}`drystone settings` lists all."
             raise UsageError("E123", f"there is no setting {asked!r}.", where="settings", cure=cure)
     tops = tuple(f"{name}." for name in arguments.names)
     chosen = {n: one for n, one in listed.items() if not tops or f"{n}.".startswith(tops)}

@@ -179,7 +179,7 @@ def _view(assembly: Assembly, settings: ExportSettings) -> PixelView:
     raise UsageError(
         "E187",
         f"a wall of {width_m:.3g} m x {height_m:.3g} m at {per_m:g} px a metre is {width:.0f} x "
-        f"{height:.0f} px, and with its margins that is more than the projector's {wide} x {high}.",
+        f"{height:.0f} px. With margins that is more than the projector's {wide} x {high}.",
         where="--projector",
         cure=f"Move the projector away: --projector {wide}x{high}@{int(fits)} is the largest that "
         "fits.",

@@ -44,14 +44,14 @@ FRAMES = {
     "S": "Part. Origin in the middle of its thickness at the centroid that the plan gives; X "
     "and Z as the picture's x and y in the source image, Y into the wall.",
     "pick and place": "A stone lies on its back under the camera: the face that the camera sees "
-    "is the one that is seen in the wall's front. It is tilted up by 90 degrees about X, then "
-    "turned by -angle_deg about Y of W, which is angle_deg counter-clockwise as seen from the "
-    "front, and moved. `pick_to_place` is all of it, P to W: place.matrix times the inverse of "
+    "is the one that is seen in the wall's front. It is tilted up by 90 degrees about X, turned "
+    "by -angle_deg about Y of W, and moved. Seen from the front that is a turn by angle_deg, "
+    "counter-clockwise. `pick_to_place` is all of it, P to W: place.matrix times the inverse of "
     "pick.matrix. No part is mirrored.",
     "approach": "The part moves straight along `direction`, over `stand_off_m`, from `start` "
     "(where its origin is then) to its pose. Stones come from above, from clearance_m over "
     "everything that stands there before; wedges are pushed in from the front. `blocked_m` is the "
-    "longest horizontal piece of the way down that stones take up which stand already; 0 when the "
+    "longest horizontal piece of the way down that is blocked by stones already placed; 0 when the "
     "way is free. Settling moves a stone by a fraction of a px after it was let down, which "
     "shows here.",
     "grasp": "Two parallel jaws across the least width of the outline: how far apart, and the unit "

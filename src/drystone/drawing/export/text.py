@@ -1,10 +1,9 @@
 """Numbers and JSON as text, equal for equal assemblies."""
 
 import json
-from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
+from drystone.io.json_text import plain
 
 LINE = 320  # characters; a matrix of 16 numbers with all digits is shorter
 
@@ -15,7 +14,7 @@ def json_text(value: Any, depth: int = 0) -> str:
     Floats have all digits; a list of rows, such as a matrix, counts as plain.  What is longer
     than 320 characters is broken up all the same.  NaN and infinities are refused (ValueError).
     """
-    value = _plain(value)
+    value = plain(value)
     line = json.dumps(value, ensure_ascii=False, allow_nan=False)
     if not value or not isinstance(value, dict | list):
         return line
@@ -41,16 +40,6 @@ def number(value: float) -> str:
     text = repr(float(value) + 0.0)
     head, e, tail = text.partition("e")
     return text if not e or "." in head else f"{head}.0e{tail}"
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, np.ndarray | np.generic):
-        return _plain(value.tolist())
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, Sequence) and not isinstance(value, str):
-        return [_plain(item) for item in value]
-    return value + 0.0 if isinstance(value, float) else value
 
 
 def _height(value: Any) -> int:

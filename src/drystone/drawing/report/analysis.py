@@ -23,7 +23,7 @@ from drystone.statics.sensitivity import AtFriction, friction_curve
 FRICTION = "friction.png"
 
 CITATION = (
-    "drystone {version} (MIT licence), limit analysis of rigid blocks as in Wang, dos Santos and "
+    "drystone {version} (MIT licence). Limit analysis of rigid blocks as in Wang, dos Santos and "
     "Beyer (2024), An image-based stacking method for 2D dry-stone masonry walls; input sha256 "
     "{sha256}."
 )

@@ -24,11 +24,11 @@ from drystone.drawing.sheet.words import beside_words, step_words, turn_words
 from drystone.drawing.words import content
 from drystone.drawing.words.analysis import ModelledWall
 from drystone.drawing.words.content import masons_words
-from drystone.drawing.words.wall_verdict import judge_wall
+from drystone.drawing.words.wall_verdict import WallVerdict, judge_wall
 from drystone.errors import Notice, counted
 from drystone.io.plan_json import plan_digest
 from drystone.kernels.polygons import Points
-from drystone.model.plan import Point, StoneStep
+from drystone.model.plan import Plan, Point, StoneStep
 from drystone.model.wall import Labels
 from drystone.statics.failing.mechanism import Failure, Names, Noun
 from drystone.statics.model import RigidBlockModel
@@ -78,7 +78,7 @@ def view_of_assembly(
 
     Plain JSON; equal arguments give an equal one.
     """
-    plan, source = assembly.plan, assembly.plan.source
+    plan = assembly.plan
     digits = part_digits(assembly.size)
     shapes = {part.id: part.corners for part in assembly.parts}
     names = Names("stone", frozenset(part.id for part in assembly.wedges), plan.step_by_id)
@@ -92,26 +92,15 @@ def view_of_assembly(
     cards = content.cards(plan, stands=verdict.stands)
     # The wall as ordered, and all that sticks out of it.
     corners = np.concatenate([[(0.0, 0.0), assembly.size], *shapes.values()])
-    return {
-        "title": f"Dry-stone wall from {content.source_name(plan) or 'stones'}",
-        "unit": assembly.unit,
-        "summary": f"{verdict.words}.",
-        "stands": verdict.stands,
-        "size": rounded(assembly.size, digits),
-        "box": rounded((*corners.min(axis=0), *corners.max(axis=0)), digits),
-        "version": plan.version,
-        "method": plan.method,
-        "seed": plan.seed,
-        "plan": plan_digest(plan),
-        "steps": len(plan.steps),
-        "parts": _planned_parts(assembly, digits),
-        "unused": list(plan.unused),
-        **_of_statics(wall, assembly.resistance, digits, timings,
-                      {part.id: part.centroid for part in assembly.parts}),
-        "index_meanings": dict(content.INDICES),
-        **_about(cards, source.get("sha256"), content.inputs(plan), plan.settings,
-                 content.assumptions(plan)),
-    }  # fmt: skip
+    return _view(
+        wall, assembly.resistance, verdict, digits,
+        title=f"Dry-stone wall from {content.source_name(plan) or 'stones'}", unit=assembly.unit,
+        size=assembly.size, box=(*corners.min(axis=0), *corners.max(axis=0)),
+        parts=_planned_parts(assembly, digits),
+        centroids={part.id: part.centroid for part in assembly.parts},
+        timings=timings, cards=cards, inputs=content.inputs(plan), settings=plan.settings,
+        assumptions=content.assumptions(plan), plan=plan,
+    )  # fmt: skip
 
 
 def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
@@ -135,44 +124,14 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
 ) -> ViewerData:
     """Show a wall that was not planned: its blocks have ids and no steps.
 
-    Parameters
-    ----------
-    wall : (h, w) integer array, or mapping of int to (n, 2) float array
-        What the blocks look like in the frame of the model: a label image, row 0 at the top, or
-        polygons by id.
-    model : RigidBlockModel
-        Its blocks and contacts.
-    resistance : LateralResistance
-        Of the model, with mechanisms.
-    title : str
-        For people.
-    unit : {"px", "m", "units"}
-        Of lengths; "units" are those of a block model that says no other.
-    noun : {"stone", "block"}
-        What a block is called.
-    wedges : collection of int
-        Blocks that are wedges.
-    steps : mapping of int to int, optional
-        Steps of a plan by id; words name them.
-    cards : iterable of ResultCard
-        Further results, after those of the strength, of a wall that stands.
-    inputs : iterable of (str, str)
-        What the analysis was made from, names and values.
-    settings : mapping, optional
-        Every parameter of the analysis; tables in it become names with points.
-    notices, timings
-        As for :func:`view_of_assembly`.
-    load_case : str
-        Name of the loads of the analysis.
-    assumptions : sequence of str, optional
-        What the results rest on; None says those of the load case.
-    without_dilatancy : mapping of str to float or None
-        Load multipliers by Coulomb's law, to the "left" and "right", where they are known.
+    `wall` is what the blocks look like in the frame of the model: a label image, row 0 at the top,
+    or polygons by id.  Lengths in "units" are those of a block model that says no other; `steps` of
+    a plan, by id, are named in words.  `cards` are further results, after those of the strength,
+    of a wall that stands; `inputs` what the analysis was made from.  `load_case` is the name of its
+    loads, whose assumptions are said where there are none; `without_dilatancy` has load multipliers
+    by Coulomb's law, to the "left" and "right", where they are known.
 
-    Returns
-    -------
-    view : dict
-        Plain JSON, as of a plan, with 0 ``steps``.
+    The view is as of a plan, with 0 ``steps``.
     """
     regions = wall_regions(wall)
     x0, y0, x1, y1 = regions_box(region.loops for region in regions)
@@ -203,36 +162,69 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
         )
         for region in regions
     ]  # fmt: skip
+    return _view(
+        shown, resistance, verdict, digits, title=title, unit=unit, size=size,
+        box=(x0, min(y0, 0.0), x1, y1), parts=parts,
+        centroids={region.id: region.centroid for region in regions}, timings=timings,
+        cards=results, inputs=inputs, settings=settings or {}, assumptions=assumptions,
+        load_case=load_case,
+    )  # fmt: skip
+
+
+def _view(  # noqa: PLR0913 - what is said of a wall, all by keyword
+    wall: ModelledWall,
+    resistance: LateralResistance,
+    verdict: WallVerdict,
+    digits: int,
+    *,
+    title: str,
+    unit: str,
+    size: Point,
+    box: tuple[float, float, float, float],
+    parts: list[ViewerData],
+    centroids: Mapping[int, Point],
+    timings: Mapping[str, float] | None,
+    cards: Iterable[content.ResultCard],
+    inputs: Iterable[tuple[str, str]],
+    settings: Mapping[str, Any],
+    assumptions: Sequence[str],
+    load_case: str = content.TILTING,
+    plan: Plan | None = None,
+) -> ViewerData:
+    """Return all keys; results come with their meaning and with what walls of masons have."""
+    ends = (resistance.left, resistance.right)
+    failures, dead = wall.failures(ends), content.dead_load(load_case)
+    sha256 = None if plan is None else plan.source.get("sha256")
     return {
         "title": title,
         "unit": unit,
         "summary": f"{verdict.words}.",
         "stands": verdict.stands,
         "size": rounded(size, digits),
-        "box": rounded((x0, min(y0, 0.0), x1, y1), digits),
-        "version": version("drystone"),
-        "method": None,
-        "seed": None,
-        "plan": None,
-        "steps": 0,
+        "box": rounded(box, digits),
+        "version": version("drystone") if plan is None else plan.version,
+        "method": plan and plan.method,
+        "seed": None if plan is None else plan.seed,
+        "plan": plan and plan_digest(plan),
+        "steps": 0 if plan is None else len(plan.steps),
         "parts": parts,
-        "unused": [],
-        **_of_statics(shown, resistance, digits, timings,
-                      {region.id: region.centroid for region in regions}, load_case),
-        "index_meanings": {},
-        **_about(results, None, inputs, settings or {}, assumptions),
-    }  # fmt: skip
-
-
-def _about(
-    cards: Iterable[content.ResultCard],
-    sha256: str | None,
-    inputs: Iterable[tuple[str, str]],
-    settings: Mapping[str, Any],
-    assumptions: Sequence[str],
-) -> ViewerData:
-    """Return results with their meaning and what walls of masons have, and what they rest on."""
-    return {
+        "unused": [] if plan is None else list(plan.unused),
+        "schema": SCHEMA,
+        "noun": wall.names.noun,
+        "mu": wall.model.mu,
+        "contacts": _contacts(wall.model, _forces_by_case(*ends), failures, digits + 1),
+        "mechanisms": {
+            end.direction: {
+                **_mechanism(wall, end, failures.get(end.direction), centroids),
+                "load": content.load_words(load_case, end.direction),
+            }
+            for end in ends
+        },
+        "dead_load": dead,
+        "forces_words": FORCES.format(dead),
+        "notices": [asdict(notice) for notice in wall.notices],
+        "timings": [[name, round(seconds, 3)] for name, seconds in (timings or {}).items()],
+        "index_meanings": {} if plan is None else dict(content.INDICES),
         "metrics": [
             {**asdict(card), "masons": masons_words(card.symbol, sha256)} for card in cards
         ],
@@ -313,36 +305,6 @@ def _part(
         "words": "",
         "indices": {},
         **known,
-    }
-
-
-def _of_statics(
-    wall: ModelledWall,
-    resistance: LateralResistance,
-    digits: int,
-    timings: Mapping[str, float] | None,
-    centroids: Mapping[int, Point],
-    load_case: str = content.TILTING,
-) -> ViewerData:
-    ends = (resistance.left, resistance.right)
-    failures, dead = wall.failures(ends), content.dead_load(load_case)
-    mechanisms = {
-        end.direction: {
-            **_mechanism(wall, end, failures.get(end.direction), centroids),
-            "load": content.load_words(load_case, end.direction),
-        }
-        for end in ends
-    }
-    return {
-        "schema": SCHEMA,
-        "noun": wall.names.noun,
-        "mu": wall.model.mu,
-        "contacts": _contacts(wall.model, _forces_by_case(*ends), failures, digits + 1),
-        "mechanisms": mechanisms,
-        "dead_load": dead,
-        "forces_words": FORCES.format(dead),
-        "notices": [asdict(notice) for notice in wall.notices],
-        "timings": [[name, round(seconds, 3)] for name, seconds in (timings or {}).items()],
     }
 
 

@@ -1,7 +1,7 @@
 """From a wall file to the rigid block model that is asked for; its size and scarce contacts."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from types import MappingProxyType
@@ -13,7 +13,6 @@ from scipy import ndimage
 from drystone.contacts.blocks import ImageModel, model_from_labels
 from drystone.contacts.gaps import (
     GapSweep,
-    gap_spread,
     gap_sweep,
     model_with_closed_gaps,
     settle_gaps,
@@ -143,6 +142,42 @@ def _with_closed_gaps(
         done = f"{len(moved)} stones lowered by up to {farthest} px; "
     spread = gap_spread(labels, reach, mu, partial(_resistance, asked))
     return replace(made, remarks={"gaps": f"{done}{spread}"}, joints="drawn")
+
+
+def gap_spread(
+    labels: Labels,
+    reach_px: float | None,
+    mu: float = 0.58,
+    analyse: Callable[[RigidBlockModel], LateralResistance] = lateral_resistance,
+) -> str:
+    """Say F_LR with gaps closed at a reach, and in brackets at half and twice of it, or settled.
+
+    `reach_px` is above 0; None settles stones, and compares with stones pushed to either side.
+    The sentence has no full stop.
+    """
+    if reach_px is None:
+        models = {
+            "stones settled": model_from_labels(settle_gaps(labels)[0], mu),
+            "stones pushed left": model_from_labels(settle_gaps(labels, "left")[0], mu),
+            "stones pushed right": model_from_labels(settle_gaps(labels, "right")[0], mu),
+        }
+    else:
+        models = {
+            f"gaps up to {reach:g} px closed": model_with_closed_gaps(labels, reach, mu)
+            for reach in (reach_px, reach_px / 2.0, 2.0 * reach_px)
+        }
+    chosen, *others = (
+        f"{_f_lr_words(analyse(picture.model))} with {name}" for name, picture in models.items()
+    )
+    return f"F_LR {chosen} ({', '.join(others)})"
+
+
+def _f_lr_words(both: LateralResistance) -> str:
+    if both.value is not None:
+        return f"{both.value:.3f}".removeprefix("0")
+    unknown = next((r.status for r in (both.left, both.right) if r.alpha is None), None)
+    # Without friction F_LR, which is over mu, is not defined.
+    return "not defined" if unknown is None else str(unknown)
 
 
 def _with_swept_gaps(

@@ -10,6 +10,7 @@ import numpy as np
 
 from drystone.model.builder import BuilderErrors
 from drystone.model.plan import Plan
+from drystone.search.closed_loop import ClosedRun
 from drystone.search.rehearsal import Groups, RehearsalRun
 
 NAMED = 5
@@ -41,6 +42,12 @@ class Rehearsed:
         return f"whole in {self.whole} of {len(self.runs)} rehearsals"
 
     @cached_property
+    def again(self) -> float | None:
+        """How often a stone fell on the way, mean of the runs; None in open loop."""
+        counts = [run.again for run in self.runs if isinstance(run, ClosedRun)]
+        return sum(counts) / len(counts) if counts else None
+
+    @cached_property
     def risk(self) -> dict[int, float]:
         """Share of the runs in which a stone fell, by its id."""
         fallen = Counter(end.stone for run in self.runs for end in run.stones if end.fallen)
@@ -68,6 +75,8 @@ class Rehearsed:
         )
         return {
             "judge": "engine" if self.engine else "settling",
+            "loop": "open" if self.again is None else "closed",
+            "put_down_again": self.again,
             "errors": asdict(self.errors),
             "runs": len(self.runs),
             "whole": self.whole,
@@ -94,10 +103,16 @@ class Rehearsed:
         rows = [
             ("errors (one sigma)", f"{put}; outlines {errors.outline * per_px:.3g} {unit}"),
             ("judge", "a rigid-body engine" if self.engine else "exact settling"),
+            ("loop", "open" if self.again is None else "closed: planned again after every stone"),
             ("as planned", "stands" if self.planned.first_fall is None else self.verdict),
             ("whole", f"{self.whole} of {len(self.runs)}"),
             ("stones fallen", f"{told['fallen_share']:.1%}"),
         ]
+        if self.again is not None:
+            rows[5:] = [
+                ("stones that found no place", f"{told['fallen_share']:.1%}"),
+                ("fell on the way, a wall", f"{self.again:.1f}"),
+            ]
         for one in told["first_falls"][:NAMED]:
             words = f"stone {one['stone']} (step {one['step']}), {one['runs']} of {len(self.runs)}"
             rows.append(("falls begin with", words))

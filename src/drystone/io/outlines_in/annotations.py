@@ -2,10 +2,8 @@
 
 import base64
 import math
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import PurePath
 from typing import Any
 
 import numpy as np
@@ -14,16 +12,14 @@ from numpy.typing import NDArray
 from drystone.errors import InputError, Notice
 from drystone.io.file_errors import MANY, entry, listed
 from drystone.io.outlines_in.classes import class_of
-from drystone.io.outlines_in.exports import image_needed
 from drystone.io.outlines_in.fill import Room, trimmed
+from drystone.io.outlines_in.gathered import Gathered, Pictured, chosen
 from drystone.io.outlines_in.model import (
     MOST_PX,
     Area,
     OutlinedStone,
     OutlineFile,
-    Slivers,
     ellipse,
-    left_aside,
     number_in,
     place_px,
     side_px,
@@ -47,17 +43,16 @@ def read_labelme(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
     the word stone, is its id.  The table ``drystone`` is that of our own page of outlines.
     """
     parts: dict[object, tuple[str, list[Area], list[PlacedMask]]] = {}
-    aside, slivers = Counter[str](), Slivers()
-    room = Room(int(settings.max_image_mpx * 1e6))
+    gathered = Gathered(settings)
     for number, shape in enumerate(content["shapes"]):
         with entry(f"shape {number} (from 0)"):
             kind, label = shape.get("shape_type") or "polygon", str(shape.get("label") or "")
-            mask = _mask(shape, room) if kind == "mask" else None
+            mask = _mask(shape, gathered.room) if kind == "mask" else None
             corners = None if mask else _corners(kind, shape["points"])
             if mask is None and corners is None:
-                aside[f"{kind}s"] += 1
+                gathered.aside[f"{kind}s"] += 1
                 continue
-            found = () if corners is None else slivers.areas(f"shape {number}", [[corners]])
+            found = () if corners is None else gathered.areas(f"shape {number}", [[corners]])
             if mask is None and not found:
                 continue
             group = shape.get("group_id")
@@ -72,9 +67,9 @@ def read_labelme(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
     with entry("the size of the image"):
         sides = content.get("imageWidth"), content.get("imageHeight")
         size = None if None in sides else (side_px(sides[0]), side_px(sides[1]))
-    notices = left_aside(aside) + slivers.notices()
     with entry("the table drystone"):
-        return _of_page(OutlineFile(stones, size_px=size), notices, content.get("drystone") or {})
+        file = OutlineFile(stones, size_px=size)
+        return _of_page(file, gathered.notices(), content.get("drystone") or {})
 
 
 def _of_page(file: OutlineFile, notices: list[Notice], own: Mapping[str, Any]) -> OutlineFile:
@@ -128,53 +123,32 @@ def _mask(shape: Mapping[str, Any], room: Room) -> PlacedMask:
     return PlacedMask(mask, place_px(y0), place_px(x0))
 
 
-class _Stones:
-    """Stones that are read one by one, and the size of the image that they are in."""
+def _outline(segmentation: Any, room: Room) -> tuple[Any, tuple[int, int] | None]:
+    """Return polygons, or a mask of run lengths or rows, which take of the room, and its size.
 
-    def __init__(self, settings: ReadSettings) -> None:
-        self.settings = settings
-        self.room = Room(int(settings.max_image_mpx * 1e6))
-        self.stones: list[OutlinedStone] = []
-        self.sizes: set[tuple[int, int]] = set()
-        self.slivers = Slivers()
-
-    def add(
-        self, segmentation: Any, number: int | None, where: str, name: str = "", label: str = ""
-    ) -> None:
-        """Add a stone of polygons or run lengths, which take of the room."""
-        areas: tuple[Area, ...] = ()
-        mask = None
-        if _is_runs(segmentation):
-            mask = mask_of(segmentation, self.room)
-            self.sizes.add(_size_of(segmentation))
-        else:
-            if any(len(flat) % 2 for flat in segmentation):
-                raise ValueError("a polygon has an odd number of coordinates")
-            flats = [list(zip(flat[0::2], flat[1::2], strict=True)) for flat in segmentation]
-            areas = self.slivers.areas(where, [[flat] for flat in flats])
-            if not areas:
-                return
-        masks = () if mask is None else (mask,)
-        self.stones.append(OutlinedStone(number, name, areas, masks, label))
-
-    def add_rows(self, segmentation: Any, number: int) -> None:
-        """Add a stone of rows of truth values."""
+    Rows of truth values are told from polygons, which have at least 6 numbers that are none.
+    """
+    if isinstance(segmentation, Mapping) and "counts" in segmentation:
+        return mask_of(segmentation, room), _size_of(segmentation)
+    first = segmentation[0] if isinstance(segmentation, list) and segmentation else None
+    if isinstance(first, list) and all(value in (0, 1) for value in first):
         rows = np.asarray(segmentation)
         if rows.ndim != 2 or rows.dtype.kind not in "biu":
             raise ValueError("its rows are not of one length, or of no truth values")
-        self.sizes.add((rows.shape[1], rows.shape[0]))
-        mask = trimmed(PlacedMask(rows.astype(bool), 0, 0))
-        self.stones.append(OutlinedStone(number, masks=() if mask is None else (mask,)))
+        return trimmed(PlacedMask(rows.astype(bool), 0, 0)), (rows.shape[1], rows.shape[0])
+    if any(len(flat) % 2 for flat in segmentation):
+        raise ValueError("a polygon has an odd number of coordinates")
+    return [[list(zip(flat[0::2], flat[1::2], strict=True))] for flat in segmentation], None
 
-    def size_in(self, image: Mapping[str, Any] | None) -> tuple[int, int] | None:
-        """Return the size that the image and all masks agree on; E114 when they do not."""
-        with entry("the image"):
-            if image is not None and image.get("width") and image.get("height"):
-                self.sizes.add((side_px(image["width"]), side_px(image["height"])))
-            if len(self.sizes) > 1:
-                found = listed(f"{width} x {height}" for width, height in sorted(self.sizes))
-                raise ValueError(f"its sizes differ: {found} px")
-        return next(iter(self.sizes), None)
+
+def _agreed(sizes: set[tuple[int, int] | None]) -> tuple[int, int] | None:
+    """Return the size that an image and all masks agree on; E114 when they do not."""
+    known = sorted(size for size in sizes if size)
+    with entry("the image"):
+        if len(known) > 1:
+            found = listed(f"{width} x {height}" for width, height in known)
+            raise ValueError(f"its sizes differ: {found} px")
+    return known[0] if known else None
 
 
 def read_coco(content: Mapping[str, Any], settings: ReadSettings) -> OutlineFile:
@@ -184,40 +158,37 @@ def read_coco(content: Mapping[str, Any], settings: ReadSettings) -> OutlineFile
     lengths.  Files that the automatic masks of SAM were released in have ``image`` instead of
     ``images``; their masks may lie in each other, as those of :func:`read_sam`.
     """
-    chosen, image = _chosen(content, settings.image)
+    picture = _picture_of(content, settings.image)
     with entry("the list of categories"):
         classes = {c.get("id"): str(c.get("name", "")) for c in content.get("categories") or ()}
-    stones, aside, masks_of_crowds = _Stones(settings), Counter[str](), 0
-    only_crowds = all(map(_is_crowd, chosen))
-    for number, found in enumerate(chosen):
-        with entry(f"annotation {found.get('id', number)}"):
+    gathered, masks_of_crowds, sizes = Gathered(settings), 0, {picture.size_px}
+    only_crowds = all(map(_is_crowd, picture.shapes))
+    for number, found in enumerate(picture.shapes):
+        where = f"annotation {found.get('id', number)}"
+        with entry(where):
             segmentation = found.get("segmentation")
             if _is_crowd(found):
                 # CVAT (datumaro) calls every mask a crowd; the attributes are its own, too.
-                if not _is_runs(segmentation) or not (only_crowds or "attributes" in found):
-                    aside["crowd regions (several stones as one)"] += 1
+                runs = isinstance(segmentation, Mapping) and "counts" in segmentation
+                if not runs or not (only_crowds or "attributes" in found):
+                    gathered.aside["crowd regions (several stones as one)"] += 1
                     continue
                 masks_of_crowds += 1
             if not segmentation:
-                aside["annotations without an outline"] += 1
+                gathered.aside["annotations without an outline"] += 1
                 continue
             label = classes.get(found.get("category_id"), "")
             name = label if len(classes) > 1 else ""
-            where = f"annotation {found.get('id', number)}"
-            stones.add(segmentation, number_in(found.get("id")), where, name, label)
-    size = stones.size_in(image)
-    notices = left_aside(aside) + stones.slivers.notices()
+            outline, size = _outline(segmentation, gathered.room)
+            sizes.add(size)
+            gathered.add(where, outline, number_in(found.get("id")), name, label)
+    notices = gathered.notices()
     if masks_of_crowds:
         text = f"{masks_of_crowds} masks are marked as crowds, as CVAT marks all: a stone each."
         notices.append(Notice("W119", text, "Skip the ids of those that are several stones."))
-    by_model = any(name in found for found in chosen for name in _OF_MODEL)
-    return OutlineFile(
-        stones.stones,
-        size_px=size,
-        notices=notices,
-        names_images=True,
-        seen_by="program" if by_model else "people",
-    )
+    by_model = any(name in found for found in picture.shapes for name in _OF_MODEL)
+    seen_by = "program" if by_model else "people"
+    return gathered.file(size_px=_agreed(sizes), notices=notices, seen_by=seen_by)
 
 
 def read_sam(content: list[Mapping[str, Any]], settings: ReadSettings) -> OutlineFile:
@@ -226,71 +197,47 @@ def read_sam(content: list[Mapping[str, Any]], settings: ReadSettings) -> Outlin
     Masks may lie in each other: what is ground, a group or a part of a stone is left out as
     :func:`~drystone.io.outlines_in.nested.not_stones` says.
     """
-    images = {str(found["image_id"]) for found in content if "image_id" in found}
-    several = len({str(found.get("image_id")) for found in content}) > 1
-    if images and (several or settings.image):
-        if settings.image not in images:
-            no_such = f"no image is called {settings.image!r}"
-            what = no_such if settings.image else f"masks of {len(images)} images are in it"
-            raise image_needed(what, sorted(images))
-        content = [found for found in content if str(found.get("image_id")) == settings.image]
-    stones = _Stones(settings)
+    images: dict[str, list[Any]] = {}
+    for found in content:
+        images.setdefault(str(found.get("image_id", "")), []).append(found)
+    named = bool(images.keys() - {""})
+    if named:
+        pictures = [Pictured(name, None, found) for name, found in images.items()]
+        content = list(chosen(pictures, settings.image).shapes)
+    gathered, sizes = Gathered(settings), set[tuple[int, int] | None]()
     for number, found in enumerate(content, start=1):
         with entry(f"mask {number}"):
-            segmentation = found["segmentation"]
-            if _is_nested_list(segmentation):
-                stones.add_rows(segmentation, number)
-            else:
-                stones.add(segmentation, number, f"mask {number}")
-    return OutlineFile(
-        stones.stones,
-        size_px=stones.size_in(None),
-        notices=stones.slivers.notices(),
-        names_images=bool(images),
-        seen_by="program",
-    )
-
-
-def _is_nested_list(segmentation: Any) -> bool:
-    """Tell rows of truth values from polygons, which have at least 6 numbers that are none."""
-    if not isinstance(segmentation, list) or not segmentation:
-        return False
-    first = segmentation[0]
-    return isinstance(first, list) and all(value in (0, 1) for value in first)
+            outline, size = _outline(found["segmentation"], gathered.room)
+            sizes.add(size)
+            gathered.add(f"mask {number}", outline, number)
+    return gathered.file(size_px=_agreed(sizes), names_images=named, seen_by="program")
 
 
 def _is_crowd(found: Mapping[str, Any]) -> bool:
     return found.get("iscrowd") not in (None, 0, "0", "")
 
 
-def _chosen(
-    content: Mapping[str, Any], name: str
-) -> tuple[list[Mapping[str, Any]], Mapping[str, Any] | None]:
+def _picture_of(content: Mapping[str, Any], asked: str) -> Pictured:
     """Return the annotations of the image that was asked for, or of the only one."""
-    annotations = content["annotations"]
     images = content.get("images") or ()
     if isinstance(content.get("image"), Mapping):
         images = ({**content["image"], "id": None},)
+    shapes: dict[Any, list[Any]] = {}
     with entry("the list of images"):
-        if not all(isinstance(found, Mapping) for found in annotations):
-            raise TypeError("annotations are not objects")
         known = {image.get("id"): image for image in images}
-        names = {i: str(image.get("file_name", i)) for i, image in known.items()}
-        used = list(dict.fromkeys(found.get("image_id") for found in annotations))
-    if name:
-        used = [i for i in known if name in (names[i], PurePath(names[i]).name, str(i))]
-        if len(used) != 1:
-            raise image_needed(f"no image or several are called {name!r}", names.values())
-    if len(used) > 1:
-        what = f"stones of {len(used)} images are in it"
-        raise image_needed(what, [names.get(i, str(i)) for i in used])
-    only = used[0] if used else None
-    image = known.get(only) or (next(iter(known.values())) if len(known) == 1 else None)
-    return [found for found in annotations if found.get("image_id") == only], image
-
-
-def _is_runs(value: object) -> bool:
-    return isinstance(value, Mapping) and "counts" in value
+        for found in content["annotations"]:
+            if not isinstance(found, Mapping):
+                raise TypeError("annotations are not objects")
+            shapes.setdefault(found.get("image_id"), []).append(found)
+        only = next(iter(known.values())) if len(known) == 1 else {}
+        pictures = []
+        for i in dict.fromkeys((*known, *shapes)):
+            image = known.get(i, only)
+            sides = image.get("width"), image.get("height")
+            size = (side_px(sides[0]), side_px(sides[1])) if all(sides) else None
+            name = str(known.get(i, {}).get("file_name", i))
+            pictures.append(Pictured(name, size, shapes.get(i, []), str(i)))
+    return chosen(pictures, asked)
 
 
 def _size_of(value: Mapping[str, Any]) -> tuple[int, int]:

@@ -2,31 +2,19 @@
 
 import math
 import re
-from collections import Counter
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from pathlib import PurePath
+from collections.abc import Mapping
 from typing import Any
 from xml.etree import ElementTree as ET
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.errors import InputError
-from drystone.io.file_errors import damaged, entry, listed, short, too_large
+from drystone.io.file_errors import damaged, entry, short, too_large
 from drystone.io.foreign import foreign
 from drystone.io.outlines_in.classes import class_of
 from drystone.io.outlines_in.fill import Room, trimmed
-from drystone.io.outlines_in.model import (
-    OutlinedStone,
-    OutlineFile,
-    Slivers,
-    ellipse,
-    left_aside,
-    number_in,
-    place_px,
-    side_px,
-)
+from drystone.io.outlines_in.gathered import Gathered, Pictured, chosen
+from drystone.io.outlines_in.model import OutlineFile, ellipse, number_in, place_px, side_px
 from drystone.io.patches import PlacedMask
 from drystone.io.pictures import check_size
 from drystone.io.read_settings import ReadSettings
@@ -34,37 +22,6 @@ from drystone.io.read_settings import ReadSettings
 _CLASSES = ("class", "label", "type", "category", "name")
 _MOST_ELEMENTS = 1_000_000
 _YOLO = re.compile(rb"\s*[0-9]+(?:[ \t]+-?[0-9.]+(?:[eE][-+]?[0-9]+)?){4,}[ \t]*\r?(?:\n|\Z)")
-
-
-@dataclass(frozen=True, eq=False)
-class _Picture:
-    """What is drawn on one picture."""
-
-    name: str
-    size_px: tuple[int, int] | None
-    shapes: Iterable[Any]
-    id: str = ""
-    earlier: int = 0  # versions of the same shapes
-
-
-def image_needed(what: str, names: Iterable[str]) -> InputError:
-    """Make the error for several images in one file (E115)."""
-    there = listed(map(short, names))
-    cure = f"Say which one with --image NAME (ReadSettings.image); there are {there}."
-    return InputError("E115", f"{what}.", cure=cure)
-
-
-def _chosen(pictures: list[_Picture], asked: str) -> _Picture:
-    """Return the picture that was asked for, or the only one with shapes."""
-    found = [picture for picture in pictures if picture.shapes] or pictures[:1]
-    names = [picture.name for picture in found]
-    if asked:
-        found = [p for p in found if asked in (p.name, PurePath(p.name).name, p.id)]
-        if len(found) != 1:
-            raise image_needed(f"no image or several are called {asked!r}", names)
-    if len(found) > 1:
-        raise image_needed(f"stones of {len(found)} images are in it", names)
-    return found[0] if found else _Picture("", None, ())
 
 
 def _text(value: Any) -> str:
@@ -117,32 +74,28 @@ def read_label_studio(content: Any, settings: ReadSettings) -> OutlineFile:
             name = next((v for k, v in where.items() if k != "id" and isinstance(v, str)), "")
             made = _results(task) or [[]]
             own = str(task.get("id", ""))
-            pictures.append(_Picture(name, None, made[-1], own, len(made) - 1))
-    picture = _chosen(pictures, settings.image)
-    stones: list[OutlinedStone] = []
-    aside, slivers, sizes = Counter[str](), Slivers(), set()
+            pictures.append(Pictured(name, None, made[-1], own, len(made) - 1))
+    picture = chosen(pictures, settings.image)
+    found, sizes = Gathered(settings), set()
+    found.aside["earlier annotations of the same picture"] = picture.earlier
     # Where shape and class are marked one after the other, both hold the outline.
-    aside.update({"earlier annotations of the same picture": picture.earlier})
     drawn = {str(one.get("id") or i): one for i, one in enumerate(picture.shapes)}
     for number, shape in enumerate(drawn.values()):
         where = f"result {number}"
         with entry(where):
             value = shape.get("value") or {}
             if not _is_outline(value):
-                aside[f"results of the type {short(shape.get('type', 'unknown'))}"] += 1
+                found.aside[f"results of the type {short(shape.get('type', 'unknown'))}"] += 1
                 continue
             size = side_px(shape["original_width"]), side_px(shape["original_height"])
             sizes.add(size)
             key = next((k for k in value if k.endswith("labels")), "")
             label = _text(value.get(key))
             corners = _of_label_studio(value, np.array(size) / 100.0)
-            areas = slivers.areas(where, [[corners]])
-        if areas:
-            stones.append(OutlinedStone(number_in(label), "", areas, label=class_of(label)))
-    cure = "Brush masks are read from its export as COCO or PNG." if "brush" in str(aside) else ""
-    notices = left_aside(+aside, cure) + slivers.notices()
-    size_px = next(iter(sizes)) if len(sizes) == 1 else None
-    return OutlineFile(stones, size_px=size_px, notices=notices, names_images=True)
+            found.add(where, [[corners]], number_in(label), "", class_of(label))
+    brushes = "brush" in str(found.aside)
+    cure = "Brush masks are read from its export as COCO or PNG." if brushes else ""
+    return found.file(cure, size_px=next(iter(sizes)) if len(sizes) == 1 else None)
 
 
 def _is_outline(value: Mapping[str, Any]) -> bool:
@@ -194,26 +147,20 @@ def read_via(content: Mapping[str, Any], settings: ReadSettings) -> OutlineFile:
         for key, image in content.get("_via_img_metadata", content).items():
             regions = image["regions"]
             shapes = list(regions.values()) if isinstance(regions, Mapping) else list(regions)
-            pictures.append(_Picture(str(image.get("filename", key)), None, shapes, str(key)))
-    picture = _chosen(pictures, settings.image)
-    stones: list[OutlinedStone] = []
-    aside, slivers = Counter[str](), Slivers()
-    for number, region in enumerate(picture.shapes):
+            pictures.append(Pictured(str(image.get("filename", key)), None, shapes, str(key)))
+    found = Gathered(settings)
+    for number, region in enumerate(chosen(pictures, settings.image).shapes):
         where = f"region {number} (from 0)"
         with entry(where):
             shape = region["shape_attributes"]
             corners = _of_via(shape)
             if corners is None:
-                aside[f"{shape.get('name')}s"] += 1
+                found.aside[f"{shape.get('name')}s"] += 1
                 continue
             said = region.get("region_attributes") or {}
             key = next((k for k in _CLASSES if k in said), next(iter(said), ""))
-            label = _text(said.get(key))
-            areas = slivers.areas(where, [[corners]])
-        if areas:
-            stones.append(OutlinedStone(number_in(label), label, areas, label=class_of(label)))
-    notices = left_aside(aside) + slivers.notices()
-    return OutlineFile(stones, notices=notices, names_images=True)
+            found.labelled(where, _text(said.get(key)), [[corners]])
+    return found.file()
 
 
 def _of_via(shape: Mapping[str, Any]) -> Any:
@@ -251,26 +198,18 @@ def read_cvat(data: bytes, settings: ReadSettings) -> OutlineFile:
             sides = image.get("width"), image.get("height")
             size = None if None in sides else (side_px(sides[0]), side_px(sides[1]))
             shapes = list(image)
-            pictures.append(_Picture(image.get("name", ""), size, shapes, image.get("id", "")))
-    picture = _chosen(pictures, settings.image)
-    room = Room(int(settings.max_image_mpx * 1e6))
-    stones: list[OutlinedStone] = []
-    aside, slivers = Counter[str](), Slivers()
+            pictures.append(Pictured(image.get("name", ""), size, shapes, image.get("id", "")))
+    picture, found = chosen(pictures, settings.image), Gathered(settings)
     for number, shape in enumerate(picture.shapes):
-        where = f"shape {number} (from 0)"
+        where, label = f"shape {number} (from 0)", shape.get("label", "")
         with entry(where):
-            mask = _mask_of_cvat(shape, room) if shape.tag == "mask" else None
-            corners = None if mask else _of_cvat(shape)
-            if mask is None and corners is None:
-                aside[f"{short(shape.tag)}s"] += 1
-                continue
-            label = shape.get("label", "")
-            areas = () if corners is None else slivers.areas(where, [[corners]])
-        if areas or mask:
-            masks = () if mask is None else (mask,)
-            stones.append(OutlinedStone(number_in(label), label, areas, masks, class_of(label)))
-    notices = left_aside(aside) + slivers.notices()
-    return OutlineFile(stones, size_px=picture.size_px, notices=notices, names_images=True)
+            if shape.tag == "mask":
+                found.labelled(where, label, _mask_of_cvat(shape, found.room))
+            elif (corners := _of_cvat(shape)) is not None:
+                found.labelled(where, label, [[corners]])
+            else:
+                found.aside[f"{short(shape.tag)}s"] += 1
+    return found.file(size_px=picture.size_px)
 
 
 def _of_cvat(shape: ET.Element) -> Any:
@@ -308,22 +247,18 @@ def is_yolo(data: bytes) -> bool:
     return _YOLO.match(data) is not None
 
 
-def read_yolo(data: bytes, _settings: ReadSettings) -> OutlineFile:
+def read_yolo(data: bytes, settings: ReadSettings) -> OutlineFile:
     """Read segments of YOLO: a class and the corners, as shares of the picture, in a line."""
-    stones: list[OutlinedStone] = []
-    aside, slivers = Counter[str](), Slivers()
+    found = Gathered(settings)
     for number, line in enumerate(data.decode("utf-8", "replace").splitlines(), start=1):
         where = f"line {number}"
         with entry(where):
             kind, *values = line.split() or [""]
             if len(values) in {4, 5}:
-                aside["boxes"] += 1
+                found.aside["boxes"] += 1
             elif values:
                 if len(values) % 2:
                     raise ValueError("an odd number of coordinates")
                 corners = np.array(values, float).reshape(-1, 2)
-                areas = slivers.areas(where, [[corners]])
-                stones += [OutlinedStone(None, "", areas, label=kind)] if areas else []
-    cure = "Boxes have no outlines: train or label segments." if aside else ""
-    notices = left_aside(aside, cure) + slivers.notices()
-    return OutlineFile(stones, notices=notices, names_images=True)
+                found.add(where, [[corners]], label=kind)
+    return found.file("Boxes have no outlines: train or label segments." if found.aside else "")

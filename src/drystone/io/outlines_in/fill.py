@@ -148,4 +148,5 @@ def _add_crossings(turns: NDArray[np.int32], ring: Points, top: int, left: int) 
     row = first[edge] + np.arange(len(edge)) - (np.cumsum(number) - number)[edge]
     x = x0[edge] + (row + 0.5 - y0[edge]) / (y1 - y0)[edge] * (x1 - x0)[edge]
     col = np.clip(np.ceil(x - 0.5) - left, 0, width).astype(int)
-    np.add.at(turns, (row - top, col), sense[edge])
+    place = (row - top) * (width + 1) + col
+    turns += np.bincount(place, sense[edge], turns.size).reshape(turns.shape).astype(np.int32)

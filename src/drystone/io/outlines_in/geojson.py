@@ -1,6 +1,5 @@
 """GeoJSON: polygons of image tools in px, of GIS programs, and of drawings in metres."""
 
-from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -9,14 +8,8 @@ import numpy as np
 from drystone.errors import InputError, Notice
 from drystone.io.file_errors import entry, short
 from drystone.io.outlines_in.classes import class_of
-from drystone.io.outlines_in.model import (
-    METRES,
-    OutlinedStone,
-    OutlineFile,
-    Slivers,
-    left_aside,
-    number_in,
-)
+from drystone.io.outlines_in.gathered import Gathered
+from drystone.io.outlines_in.model import METRES, OutlineFile, number_in
 from drystone.io.read_settings import ReadSettings
 
 _KINDS = frozenset(
@@ -60,22 +53,21 @@ def read_geojson(content: Any, settings: ReadSettings) -> OutlineFile:
     if unit not in (*METRES, "px"):
         what = f"its unit {short(repr(unit))} is not known."
         raise _no_unit(what, f"Use one of px, {', '.join(METRES)}.")
-    stones: list[OutlinedStone] = []
-    aside, slivers = Counter[str](), Slivers()
+    gathered = Gathered()
     for number, feature in enumerate(_features(content)):
         with entry(f"feature {number} (from 0)"):
-            stones += _stones_of_feature(feature, f"feature {number}", aside, slivers)
+            _add_feature(feature, f"feature {number}", gathered)
     unit_m = METRES.get(unit if "unit" in content else settings.unit or "px")
     upwards = unit_m is not None or str(content.get("frame")).startswith("wall")
-    notices = left_aside(aside) + slivers.notices()
-    rings = [one for stone in stones for area in stone.areas for one in area.rings]
+    notices = gathered.notices()
+    rings = [one for stone in gathered.stones for one in stone.rings]
     # Below a picture's upper edge with y up, where y down has no pixel: nearly all, as an outline
     # may reach over the edge.
     if not upwards and rings and float(np.median(np.concatenate(rings)[:, 1])) < 0.0:
         upwards = True
         text = "most y are negative: y runs up, as GIS programs have it over a picture."
         notices.append(Notice("W119", text))
-    return OutlineFile(stones, unit_m, upwards, notices=notices)
+    return OutlineFile(gathered.stones, unit_m, upwards, notices=notices)
 
 
 def _no_unit(what: str, cure: str) -> InputError:
@@ -92,12 +84,10 @@ def _features(content: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
             yield {"geometry": content}
 
 
-def _stones_of_feature(
-    feature: Mapping[str, Any], where: str, aside: Counter[str], slivers: Slivers
-) -> Iterator[OutlinedStone]:
+def _add_feature(feature: Mapping[str, Any], where: str, gathered: Gathered) -> None:
     geometry = feature["geometry"]
     if geometry is None:
-        aside["features without a geometry"] += 1
+        gathered.aside["features without a geometry"] += 1
         return
     said = {**(feature.get("properties") or {})}
     own = number_in(feature.get("id"))
@@ -107,18 +97,16 @@ def _stones_of_feature(
     kind = geometry["type"]
     if kind == "GeometryCollection":
         for part in geometry["geometries"]:
-            yield from _stones_of_feature({**feature, "geometry": part}, where, aside, slivers)
+            _add_feature({**feature, "geometry": part}, where, gathered)
     elif said.get("kind", "stone") != "stone":
-        aside[f"features of the kind {said['kind']!r}"] += 1
+        gathered.aside[f"features of the kind {said['kind']!r}"] += 1
     elif kind in {"Polygon", "MultiPolygon"}:
         polygons = [geometry["coordinates"]] if kind == "Polygon" else geometry["coordinates"]
         if not polygons or not all(polygons):
             raise ValueError("a polygon has no ring")
-        areas = slivers.areas(where, polygons)
-        if areas:
-            yield OutlinedStone(own, name, areas, label=_class_in(said))
+        gathered.add(where, polygons, own, name, _class_in(said))
     else:
-        aside[f"{kind}s"] += 1
+        gathered.aside[f"{kind}s"] += 1
 
 
 def _class_in(said: Mapping[str, Any]) -> str:

@@ -3,7 +3,7 @@
 import math
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Literal
@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 
 from drystone.errors import Notice
-from drystone.io.file_errors import MANY, listed, short
+from drystone.io.file_errors import listed, short
 from drystone.io.labels import MAX_ID
 from drystone.io.patches import PlacedMask
 from drystone.io.read_settings import ReadSettings
@@ -132,36 +132,6 @@ def without_wedges(stones: Sequence[OutlinedStone]) -> tuple[list[OutlinedStone]
 
 class TooFewPointsError(ValueError):
     """A ring of one or two points, which encloses nothing."""
-
-
-class Slivers:
-    """What has too few points to be an outline, which is left out and named."""
-
-    def __init__(self) -> None:
-        self._found: list[str] = []
-
-    def areas(self, name: str, polygons: Iterable[Sequence[Any]]) -> tuple[Area, ...]:
-        """Return polygons, an outer ring and its holes each, without those of too few points."""
-        areas = []
-        for outer, *holes in polygons:
-            rings = []
-            for points in (outer, *holes):
-                try:
-                    rings.append(ring(points))
-                except TooFewPointsError:
-                    self._found.append(f"{name} ({len(points)} points)")
-                    if points is outer:
-                        break
-            if rings:
-                areas.append(Area(tuple(rings)))
-        return tuple(areas)
-
-    def notices(self) -> list[Notice]:
-        """Name them all."""
-        if not self._found:
-            return []
-        text = f"outlines of less than 3 points left out: {listed(self._found, most=MANY)}."
-        return [Notice("W119", text, "Draw them again if they are stones.")]
 
 
 def left_aside(kinds: Counter[str], cure: str = "") -> list[Notice]:

@@ -1,21 +1,15 @@
 """Instances of nesting programs (sparrow, jagua-rs): items, each as often as it is demanded."""
 
 from collections.abc import Iterator, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
-import shapely
 
 from drystone.errors import Notice
 from drystone.io.file_errors import entry, short, too_large
-from drystone.io.outlines_in.model import (
-    METRES,
-    Area,
-    OutlinedStone,
-    OutlineFile,
-    Slivers,
-    number_in,
-)
+from drystone.io.outlines_in.gathered import Gathered
+from drystone.io.outlines_in.model import METRES, OutlinedStone, OutlineFile, number_in
 from drystone.io.read_settings import ReadSettings
 
 _MOST_COPIES = 10_000
@@ -41,11 +35,11 @@ def read_nesting(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
     Where items lie over each other, as each has an origin of its own, they are laid in a row.
     """
     stones: list[OutlinedStone] = []
-    slivers, copies = Slivers(), 0
+    gathered, copies = Gathered(), 0
     for number, item in enumerate(map(_lower, _lower(content)["items"])):
         where = f"item {number} (from 0)"
         with entry(where):
-            areas = slivers.areas(where, _of_nesting(_lower(item["shape"])))
+            areas = gathered.areas(where, _of_nesting(_lower(item["shape"])))
             demand = int(item.get("demand", 1))
             if demand < 0:
                 raise ValueError(f"{demand} of it are demanded")
@@ -56,7 +50,7 @@ def read_nesting(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
             raise too_large(f"more than {_MOST_COPIES} items are demanded.", cure)
         stones += [OutlinedStone(own, "", areas)] * demand if areas else []
     unit_m = METRES.get(settings.unit)
-    notices = slivers.notices()
+    notices = gathered.notices()
     if not settings.unit:
         text = "an instance says no unit: its numbers are taken as px, with y down."
         notices.append(Notice("W119", text, "Name the unit with --unit (unit in Python)."))
@@ -88,18 +82,17 @@ def _of_nesting(shape: Mapping[str, Any]) -> Iterator[list[Any]]:
 def _overlap(stones: list[OutlinedStone]) -> bool:
     """Tell whether the boxes of two stones share more than half of the smaller one."""
     low, high = _boxes(stones)
-    boxes = shapely.box(*low.T, *high.T)
-    one, other = shapely.STRtree(boxes).query(boxes, predicate="intersects")
-    one, other = one[one < other], other[one < other]
-    if not len(one):
-        return False
-    shared = shapely.area(shapely.intersection(boxes[one], boxes[other]))
-    smaller = np.minimum(shapely.area(boxes[one]), shapely.area(boxes[other]))
-    return bool((shared > 0.5 * smaller).any())
+    areas = (high - low).prod(axis=1)
+    for i in range(1, len(stones)):
+        sides = np.minimum(high[:i], high[i]) - np.maximum(low[:i], low[i])
+        shared = sides.clip(0.0).prod(axis=1)
+        if (shared > 0.5 * np.minimum(areas[:i], areas[i])).any():
+            return True
+    return False
 
 
 def _boxes(stones: list[OutlinedStone]) -> tuple[Any, Any]:
-    corners = [np.concatenate([r for area in s.areas for r in area.rings]) for s in stones]
+    corners = [np.concatenate(stone.rings) for stone in stones]
     low = np.array([points.min(axis=0) for points in corners]).reshape(-1, 2)
     return low, np.array([points.max(axis=0) for points in corners]).reshape(-1, 2)
 
@@ -110,7 +103,5 @@ def _in_a_row(stones: list[OutlinedStone], *, whole: bool) -> Iterator[OutlinedS
     gap, x = _GAP * float((high - low).max()), 0.0
     for stone, start, end in zip(stones, low, high, strict=True):
         shift = np.array([x, 0.0]) - start
-        shift = np.ceil(shift) if whole else shift
-        areas = tuple(Area(tuple(ring + shift for ring in area.rings)) for area in stone.areas)
-        yield OutlinedStone(stone.id, stone.name, areas)
+        yield stone.moved(partial(np.add, np.ceil(shift) if whole else shift))
         x += float(end[0] - start[0]) + gap + whole

@@ -25,7 +25,9 @@ _TOO_FAR = (
 )
 
 USUAL_SIDE_PX = 160.0
-"""Longer side of the median stone of a drawing without a resolution."""
+_MOST_EMPTY, _FAR_PX = 32.0, 2e8
+"""Squares of that side in the picture for each stone; a picture beyond so many pixels is refused,
+for something was drawn far away."""
 
 
 def rastered(
@@ -103,13 +105,21 @@ def _not_stones(
 
 
 def _usual_scale(file: OutlineFile) -> tuple[float, Notice]:
-    """Choose a scale of two digits for which the median stone has a usual size."""
+    """Choose a scale of two digits for which the median stone has a usual size.
+
+    It is less where they lie so far apart that almost all of their picture would be empty.
+    """
     unit = file.unit_m or 1.0
-    sides = [float(np.ptp(_corners(stone), axis=0).max()) * unit for stone in file.stones]
-    side = float(np.median(sides))
+    corners = [_corners(stone) for stone in file.stones]
+    side = float(np.median([np.ptp(one, axis=0).max() * unit for one in corners]))
     if not side > 0.0:
         raise LabelImageError("E104", "the stones have no area.", cure="Draw closed outlines.")
     exact = USUAL_SIDE_PX / side
+    whole_px = float(np.ptp(np.concatenate(corners), axis=0).prod()) * (unit * exact) ** 2
+    if whole_px < _FAR_PX:
+        exact *= min(
+            1.0, USUAL_SIDE_PX * math.sqrt(_MOST_EMPTY * len(corners) / max(whole_px, 1.0))
+        )
     step = 10.0 ** (math.floor(math.log10(exact)) - 1)
     px_per_m = float(f"{round(exact / step) * step:.2g}")
     text = (

@@ -20,14 +20,14 @@ from drystone.io.outlines_in.model import (
     number_in,
     overruled,
 )
-from drystone.io.outlines_in.svg_clip import Clips
+from drystone.io.outlines_in.svg_clip import Clips, Rings
 from drystone.io.outlines_in.svg_shapes import SHAPES, lines_of
 from drystone.io.outlines_in.svg_style import Styles, tag
 from drystone.io.outlines_in.svg_view import (
+    PLAIN,
     Matrix,
     Page,
     View,
-    inner_view,
     moved,
     page_of,
     transform,
@@ -40,7 +40,7 @@ _HIDDEN = frozenset(
     {"defs", "symbol", "clipPath", "mask", "marker", "pattern", "title", "desc", "metadata",
      "style", "script", "linearGradient", "radialGradient", "filter", "namedview"}
 )  # fmt: skip
-_GROUPS = frozenset({"svg", "g", "a", "switch"})
+_GROUPS = frozenset({"g", "a", "switch"})
 _LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
 _XLINK = "{http://www.w3.org/1999/xlink}href"
 _SHEET = b"<?xml-stylesheet"
@@ -65,7 +65,6 @@ class _Place:
     """Where in the tree an element is drawn."""
 
     matrix: Matrix
-    view: View | None = None  # what per cents are of
     rule: str = "nonzero"
     stones: bool = False
     name: str = ""
@@ -75,6 +74,7 @@ class _Place:
     fill: str = "black"
     stroke: str = "none"
     clip: Any = None  # a planar shape outside of which nothing is; None when there is none
+    clipping: bool = False  # what is drawn is a clip path, and its paint does not count
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,8 +96,8 @@ def read_svg(data: bytes, settings: ReadSettings) -> OutlineFile:
 
     Where there is a group of the name stones, only what is in it counts.  Lines that are neither
     closed nor filled, text, what is hidden or has no paint, and a rectangle over the whole page
-    are left aside.  A width in mm (cm, in, pt …) makes it a drawing to scale; otherwise its unit
-    is px, or what the settings say.
+    are left aside; drawings in the drawing are refused.  A width in mm (cm, in, pt …) makes it a
+    drawing to scale; otherwise its unit is px, or what the settings say.
     """
     if data.count(b"<") > 2 * _MOST_ELEMENTS:
         raise _too_large(f"more than {_MOST_ELEMENTS} elements")
@@ -106,8 +106,8 @@ def read_svg(data: bytes, settings: ReadSettings) -> OutlineFile:
     if tag(root) != "svg":
         raise unusable(f"its root element is {tag(root)[:40]}, not svg")
     with entry("the element svg"):
-        walk = _Walk(root, _MOST_TEXT + 2 * len(data))
         page = page_of(root.attrib, settings)
+        walk = _Walk(root, page.view, _MOST_TEXT + 2 * len(data))
     shapes = list(walk.shapes(page))
     if any(shape.place.stones for shape in shapes):
         outside = [shape for shape in shapes if not shape.place.stones]
@@ -135,12 +135,12 @@ def read_svg(data: bytes, settings: ReadSettings) -> OutlineFile:
 class _Walk:
     """Through all that is drawn."""
 
-    def __init__(self, root: ET.Element, most_text: int) -> None:
-        self.root = root
+    def __init__(self, root: ET.Element, view: View | None, most_text: int) -> None:
+        self.root, self.view = root, view
         self.styles = Styles(root)
         self.aside: Counter[str] = Counter()
         self.known = {e.get("id"): e for e in root.iter() if e.get("id")}
-        self.clips = Clips(self.known, self.styles)
+        self.clips = Clips(self.known)
         self.count = 0
         self.left_text, self.left_corners = most_text, _MOST_CORNERS
 
@@ -148,17 +148,15 @@ class _Walk:
         """Yield the shapes in the order in which they are drawn."""
         with entry("the element svg"):
             style = self.styles.of(self.root)
-            place = self._within(self.root, _Place(page.matrix, page.view), style)
+            place = self._within(self.root, _Place(page.matrix), style)
         for child in self.root:
             yield from self._draw(child, place)
 
-    def _draw(
-        self, element: ET.Element, place: _Place, use: ET.Element | None = None
-    ) -> Iterator[_Shape]:
-        """Draw an element; `use` is what shows it when it is not shown where it stands."""
+    def _draw(self, element: ET.Element, place: _Place, *, used: bool = False) -> Iterator[_Shape]:
+        """Draw an element; `used` when it is not shown where it stands."""
         kind, name = tag(element), element.get("id")
-        is_symbol = kind == "symbol" and use is not None
-        if kind in _HIDDEN and not is_symbol:
+        inner = kind == "svg" or (kind == "symbol" and used)
+        if kind in _HIDDEN and not inner:
             return
         self.count += 1
         if self.count > _MOST or place.depth > _DEEPEST:
@@ -169,18 +167,24 @@ class _Walk:
         what = f"the {kind} {name!r}" if name else f"a {kind}"
         with entry(what):
             style = self.styles.of(element)
-            if _vanishes(element, style):
+            if _vanishes(style):
                 self.aside[_UNSEEN] += 1
             elif kind in SHAPES:
                 yield from self._shape(element, self._within(element, place, style))
-            elif kind in _GROUPS or is_symbol:
-                yield from self._group(element, self._within(element, place, style), use)
+            elif kind in _GROUPS:
+                here = self._within(element, place, style)
+                for child in element:
+                    yield from self._draw(child, here)
             elif kind == "use":
                 here, target = self._within(element, place, style), self._shown(element, what)
                 own = target.get("id", "")
                 if number_in(own) is not None:
                     here = replace(here, name=own)
-                yield from self._draw(target, here, element)
+                yield from self._draw(target, here, used=True)
+            elif inner:
+                raise ValueError(f"a drawing in the drawing is not read. {PLAIN}")
+            elif place.clipping:
+                raise ValueError(f"a {kind} in a clip path is not read. {PLAIN}")
             else:
                 self.aside[kind] += 1
 
@@ -192,23 +196,16 @@ class _Walk:
             raise unusable(f"{what} is of {link!r}, which is not there")
         return target
 
-    def _group(
-        self, element: ET.Element, place: _Place, use: ET.Element | None
-    ) -> Iterator[_Shape]:
-        if tag(element) in {"svg", "symbol"}:
-            found = inner_view(element, use, place.view)
-            if found is None:
-                self.aside[_UNSEEN] += 1
-                return
-            if found[2] is not None and self._is_cut(element):
-                corners = moved(place.matrix, found[2])
-                place = replace(place, clip=self.clips.viewport(corners, place.clip))
-            place = replace(place, matrix=place.matrix @ found[0], view=found[1])
-        for child in element:
-            yield from self._draw(child, place)
-
-    def _is_cut(self, element: ET.Element) -> bool:
-        return self.styles.of(element).get("overflow", "hidden") not in {"visible", "auto"}
+    def _clip(self, clip: ET.Element, matrix: Matrix, depth: int) -> list[Rings]:
+        """Return the shapes of a clip path; what else it holds is not spoken of."""
+        if depth > _DEEPEST:
+            raise unusable("clip paths use each other too often or too deeply")
+        aside = self.aside.copy()
+        here = _Place(matrix, depth=depth, clipping=True)
+        here = self._within(clip, here, self.styles.of(clip))
+        shapes = [shape for child in clip for shape in self._draw(child, here)]
+        self.aside = aside
+        return [(shape.rings, shape.place.rule) for shape in shapes]
 
     def _within(self, element: ET.Element, place: _Place, style: Style) -> _Place:
         turn = transform(element.get("transform", ""))
@@ -218,7 +215,7 @@ class _Walk:
         matrix = place.matrix @ turn
         if tag(element) == "use":
             shift = np.eye(3)
-            shift[:2, 2] = [user_units(element.attrib, name, place.view) for name in ("x", "y")]
+            shift[:2, 2] = [user_units(element.attrib, name, self.view) for name in ("x", "y")]
             matrix = matrix @ shift
         own = (element.get("id", ""), element.get(_LABEL, ""))
         words = {word.lower() for word in (*own, *element.get("class", "").split())}
@@ -227,7 +224,7 @@ class _Walk:
         return replace(
             place,
             matrix=matrix,
-            rule=style.get("fill-rule", place.rule),
+            rule=style.get("clip-rule" if place.clipping else "fill-rule", place.rule),
             stones=place.stones or (_LAYER in words and tag(element) == "g"),
             name=name if tag(element) not in {"g", "svg"} or number_in(name) else place.name,
             group=(own[1] or own[0] or place.group) if tag(element) == "g" else place.group,
@@ -235,15 +232,17 @@ class _Walk:
             visible=_VISIBLE.get(style.get("visibility", ""), place.visible),
             fill=style.get("fill", place.fill),
             stroke=style.get("stroke", place.stroke),
-            clip=self.clips.within(element, style, matrix, place.view, place.clip),
+            clip=self.clips.within(
+                style, matrix, place.clip, lambda clip: self._clip(clip, matrix, place.depth + 1)
+            ),
         )
 
     def _shape(self, element: ET.Element, place: _Place) -> Iterator[_Shape]:
-        kind, filled = tag(element), place.fill not in _UNPAINTED
+        kind, filled = tag(element), place.clipping or place.fill not in _UNPAINTED
         if not place.visible or not (filled or place.stroke not in _UNPAINTED):
             self.aside[_UNSEEN] += 1
             return
-        lines = lines_of(kind, element.attrib, place.view)
+        lines = lines_of(kind, element.attrib, self.view)
         # What is filled is closed by that.
         closed = [one.points for one in lines if (one.closed or filled) and len(one.points) > 2]
         if len(closed) < len(lines):
@@ -255,9 +254,9 @@ class _Walk:
         if not all(np.isfinite(ring).all() and np.abs(ring).max() < 1e9 for ring in rings):
             raise ValueError("a coordinate is not finite or beyond 1e9")
         if rings and place.clip is not None:
-            name = place.name or f"a {kind}"
-            rings, rule = self.clips.rings(name, rings, place.rule, place.clip)
-            place = replace(place, rule=rule)
+            name = "" if place.clipping else place.name or f"a {kind}"
+            found, rule = self.clips.inside(name, rings, place.rule, place.clip)
+            rings, place = tuple(found), replace(place, rule=rule)
             if not rings:
                 return
         if rings and any(np.ptp(ring, axis=0).min() > 0.0 for ring in rings):
@@ -277,10 +276,9 @@ def _covers(shape: _Shape, page: tuple[float, float]) -> bool:
     return bool((ring.min(axis=0) <= slack).all() and (ring.max(axis=0) >= page - slack).all())
 
 
-def _vanishes(element: ET.Element, style: Style) -> bool:
+def _vanishes(style: Style) -> bool:
     """Tell what is hidden with all that is in it."""
-    # A symbol that is used is shown, whatever is said of it.
-    if style.get("display") == "none" and tag(element) != "symbol":
+    if style.get("display") == "none":
         return True
     try:
         return float(style.get("opacity", "1").removesuffix("%")) <= 0.0

@@ -8,7 +8,7 @@ SEEN = frozenset(
     {"display", "visibility", "opacity", "fill", "fill-rule", "stroke", "clip-path", "mask"}
 )
 """Properties that say whether a shape is seen, and what of it is filled."""
-_ASIDE = frozenset({"clip-rule", "overflow"})
+_ASIDE = frozenset({"clip-rule"})
 """Those that say so only together with others; a rule of another kind is passed over."""
 
 _MOVING = {

@@ -1,10 +1,9 @@
-"""Lengths, transforms and viewports of SVG: what makes a drawing of user units."""
+"""Lengths, transforms and the page of SVG: what makes a drawing of user units."""
 
 import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from xml.etree import ElementTree as ET
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,9 +27,8 @@ UNITS_M = {
 """Metres in a unit of length."""
 PX_M = 0.0254 / 96.0
 """Metres in a px of CSS, which a user unit is."""
-_RATIO = re.compile(r"(?:defer\s+)?(?:none|x(Min|Mid|Max)Y(Min|Mid|Max))(?:\s+(meet|slice))?")
-_SHARES = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
-"""Of the free space before the box."""
+PLAIN = "Save it as plain SVG"
+"""The cure for what few drawings have."""
 
 
 def bounded(text: str) -> float:
@@ -152,35 +150,6 @@ def page_of(root: Mapping[str, str], settings: ReadSettings) -> Page:
     return Page(matrix, unit_m, (size[0], size[1]), view, overruled)
 
 
-def inner_view(
-    element: ET.Element, use: ET.Element | None, around: View | None
-) -> tuple[Matrix, View | None, Points | None] | None:
-    """Return the way out of the viewport of an inner svg or a symbol, and what per cents are of.
-
-    Its corners are the last, if its size is known.  The width and height of the `use` that shows
-    it come first.  None when nothing can be seen.
-    """
-    said, box, size = dict(element.attrib), view_box(element.attrib), None
-    for name in ("width", "height"):
-        given = (one.get(name, "auto") for one in (use, element) if one is not None)
-        said[name] = next((text for text in given if text != "auto"), "100%")
-    if box or around is not None or "%" not in said["width"] + said["height"]:
-        size = (user_units(said, "width", around), user_units(said, "height", around))
-    if size is not None and min(size) < 0.0:
-        raise ValueError("its width or height is below 0")
-    if size is not None and min(size) == 0.0:
-        return None
-    matrix = np.eye(3)
-    matrix[:2, 2] = [user_units(said, name, around) for name in ("x", "y")]
-    if size is None:
-        return matrix, None, None
-    corners = moved(matrix, np.array([(0, 0), (1, 0), (1, 1), (0, 1)]) * size)
-    if not box:
-        return matrix, size, corners
-    inner = matrix @ fitted(box, size, said.get("preserveAspectRatio", ""))
-    return inner, (box[2], box[3]), corners
-
-
 def view_box(attributes: Mapping[str, str]) -> list[float]:
     """Return the four numbers of a viewBox; none when there is none, ValueError for others."""
     text = attributes.get("viewBox", "").strip()
@@ -191,16 +160,17 @@ def view_box(attributes: Mapping[str, str]) -> list[float]:
 
 
 def fitted(box: Sequence[float], size: Sequence[float], ratio: str = "") -> Matrix:
-    """Return the way from the units of a viewBox to a viewport with its origin at (0, 0)."""
-    found = _RATIO.fullmatch(ratio.strip() or "xMidYMid")
-    if found is None:
-        raise ValueError(f"its preserveAspectRatio is {ratio!r}")
-    origin, sides = np.array(box[:2]), np.array(box[2:])
-    scale = np.array(size) / sides
-    if found[1]:
-        scale[:] = scale.max() if found[3] == "slice" else scale.min()
-    before = [_SHARES[word] if word else 0.0 for word in found.groups()[:2]]
+    """Return the way from the units of a viewBox to a page with its origin at (0, 0).
+
+    The drawing lies in the middle of the page, as it does unless a ratio says another thing.
+    """
+    if ratio.strip() not in {"", "none", "xMidYMid", "xMidYMid meet"}:
+        raise ValueError(f"its preserveAspectRatio {ratio[:30]!r} is not read. {PLAIN}")
+    sides, room = np.array(box[2:]), np.array(size)
+    scale = room / sides
+    if ratio.strip() != "none":
+        scale[:] = scale.min()
     matrix = np.eye(3)
     matrix[:2, :2] = np.diag(scale)
-    matrix[:2, 2] = before * (np.array(size) - scale * sides) - scale * origin
+    matrix[:2, 2] = (room - scale * sides) / 2.0 - scale * box[:2]
     return matrix

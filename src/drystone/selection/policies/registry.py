@@ -1,6 +1,6 @@
 """Policies by their names: those built in, and those of other packages."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib.metadata import entry_points
 
 from drystone.errors import UsageError
@@ -21,11 +21,23 @@ PAPER = "paper"
 RULES = ("algorithm2", "score")
 """Values of `selection_rule` that are no policies."""
 
-BUILT_IN = (
-    "random", "lowest", "scalarised", "filter", "towers", "learned",
-    "johns", "lambert", "liu2021", "thangavelu", "menezes", "liu2018",
-)  # fmt: skip
-"""Policies of this package beside the paper's."""
+Maker = Callable[[PolicySettings, SelectionSettings], Policy]
+
+BUILT_IN: Mapping[str, Maker] = {
+    "random": lambda *_: Random(),
+    "lowest": lambda *_: Lowest(),
+    "scalarised": lambda settings, weights: Scalarised(weights, settings.w_sf),
+    "filter": lambda settings, _: Filters(settings),
+    "towers": lambda settings, _: Towers(settings),
+    "learned": lambda *_: Learned(),
+    "johns": lambda settings, _: Summed(parts("johns", settings)),
+    "lambert": lambda settings, _: Summed(parts("lambert", settings)),
+    "liu2021": lambda settings, _: Filtered(parts("liu2021", settings)),
+    "thangavelu": lambda settings, _: Filtered(parts("thangavelu", settings), contacts=True),
+    "menezes": lambda settings, _: Learned(learned_parts(parts("menezes", settings))),
+    "liu2018": lambda settings, _: Learned(learned_parts(parts("liu2018", settings))),
+}
+"""Policies of this package beside the paper's, and what makes them."""
 
 
 def rule_of(name: str) -> str:
@@ -43,22 +55,8 @@ def policy_named(name: str, settings: PolicySettings, weights: SelectionSettings
     `weights` are those of the weighted sum.  UsageError: E146: there is none of this name; E147:
     that of another package cannot be loaded.
     """
-    built_in: dict[str, Callable[[], Policy]] = {
-        "random": Random,
-        "lowest": Lowest,
-        "scalarised": lambda: Scalarised(weights, settings.w_sf),
-        "filter": lambda: Filters(settings),
-        "towers": lambda: Towers(settings),
-        "learned": Learned,
-        "johns": lambda: Summed(parts(name, settings)),
-        "lambert": lambda: Summed(parts(name, settings)),
-        "liu2021": lambda: Filtered(parts(name, settings)),
-        "thangavelu": lambda: Filtered(parts(name, settings), contacts=True),
-        "menezes": lambda: Learned(learned_parts(parts(name, settings))),
-        "liu2018": lambda: Learned(learned_parts(parts(name, settings))),
-    }
-    make = built_in.get(name)
-    return make() if make is not None else _of_another_package(name)
+    make = BUILT_IN.get(name)
+    return make(settings, weights) if make is not None else _of_another_package(name)
 
 
 def _of_another_package(name: str) -> Policy:

@@ -255,8 +255,8 @@ def _least_verified(
         message = f"Lowest of {count}; range {least:.4f} to {alphas[-1]:.4f}."
         return replace(found, message=message)
     message = (
-        "Without dilatancy the blocks can move this way under their dead load alone, and even"
-        f" against a load of {-least:.4f}, although other forces would hold them;"
+        "Without dilatancy the blocks can move this way under their dead load alone, even against"
+        f" a load of {-least:.4f}. Other forces would hold them:"
         f" {count} reach up to {alphas[-1]:.4f}."
     )
     return replace(found, status=LimitStatus.UNSTABLE, alpha=None, message=message)

@@ -1,0 +1,285 @@
+"""A plan built by someone who looks at the wall after every stone (DESIGN 4.10, closed loop).
+
+The builder knows where everything lies, but not what he misses by next: neither the outline of the
+stone in his hand nor his own slip.  So the rest is planned again after every stone.  Only the next
+stone of a plan is ever laid, so only that one is: it is let go where it was planned, and tried
+there with errors that he may make.  Where it would fall he tries beside it and turned a little.  A
+stone without a sure place, or that fell, goes back into the heap; it comes last, to its own place
+if it rests there now, else to the lowest one on the wall where it rests surely.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from drystone.kernels.polygons import Polygons, area_and_centroid, no_polygons
+from drystone.kernels.profiles import HeightProfile, bare, hanging, raised
+from drystone.model.builder import BuilderErrors, Built
+from drystone.model.outlines import Outlined
+from drystone.physics.building import build_up, tilt_of
+from drystone.physics.scatter import Variation
+from drystone.physics.tilt import TiltSettings
+from drystone.search.rehearsal import (
+    IN_ENGINE,
+    Groups,
+    RehearsalRun,
+    StoneEnd,
+    errors_of,
+    mean_size,
+)
+from drystone.settle.putting import fallen_share, moved, put_down
+from drystone.settle.settings import SettleSettings
+
+TRIALS = 8
+"""So often a place is tried before a stone is put there."""
+
+SURE = 0.75
+"""A planned place is used when the stone rests there in this share of the trials; others wait."""
+
+TRIES = 3
+"""So often a stone that falls is put down again before it goes back into the heap."""
+
+BESIDE = [(aside, turn) for turn in (0.0, -5.0, 5.0) for aside in (0.0, -0.1, 0.1, -0.2, 0.2)]
+"""Places that are tried for a stone: from the planned one, over its size, and degrees."""
+
+QUARTERS = (0.0, 180.0, 90.0, 270.0)
+"""Turns in which a stone of the heap is tried, degrees."""
+
+SPOTS, APART, COLUMNS = 8, 0.3, 16
+"""Places of the heap for each turn, their least distance over the size, columns in a mean size."""
+
+OVER_TOP = 0.25
+"""A stone of the heap may stand out over the plan by so much, mean sizes."""
+
+PATIENT = replace(IN_ENGINE, longest_rest=20.0)
+TILT = Variation(
+    "as built", IN_ENGINE.engine, TiltSettings(coarse=0.13, fine=0.02, longest_hold=20)
+)
+"""How a wall as it was built is let go and tilted: stones that rest at a few points go on to roll
+for a while, and errors of percents leave no digits to look for."""
+
+
+@dataclass(frozen=True, eq=False)
+class ClosedRun(RehearsalRun):
+    """A wall that was built with errors, looked at after every stone.
+
+    A stone is fallen when it does not lie in the finished wall.
+    """
+
+    again: int = 0  # how often a stone fell on the way, and was taken up or left where it lay
+
+
+class _Aim(NamedTuple):
+    """A place for a stone: where its outline as it was seen rests, and how surely."""
+
+    sure: float  # share of the trials in which it rests there
+    start: Built
+    rest: Built
+
+
+@dataclass(frozen=True, eq=False)
+class _AsBuilt:
+    """A wall as it is."""
+
+    mu: float
+    settle: SettleSettings
+    laid: Mapping[int, Built] = field(default_factory=dict)  # in the order of `polygons`
+    polygons: Polygons = field(default_factory=no_polygons)
+
+    def put(self, pieces: Sequence[tuple[int, Built]]) -> tuple["_AsBuilt", Built | None]:
+        """Put wedges down and the stone last; also return where that rests, None if nowhere."""
+        laid, polygons, rest = dict(self.laid), self.polygons, None
+        for block, built in pieces:
+            rest, pushed = put_down(built, polygons, self.mu, self.settle)
+            if rest is not None:
+                ids = list(laid)
+                for place, shift in pushed.items():
+                    one = laid[ids[place]]
+                    laid[ids[place]] = replace(one, x=one.x + shift)
+                laid[block] = rest
+                polygons = moved(polygons, pushed).added([rest.corners])
+        return replace(self, laid=laid, polygons=polygons), rest
+
+
+class _Stone:
+    """A stone of a plan with its wedges, as they were seen."""
+
+    def __init__(self, group: Sequence[Outlined], errors: BuilderErrors) -> None:
+        rng = np.random.default_rng([7, group[0][0]])
+        nothing = errors.times(0.0)
+        self.id = group[0][0]
+        self.seen, *wedges = [nothing.built(corners, rng) for _, corners in group]
+        self.wedges = [(i, one) for (i, _), one in zip(group[1:], wedges, strict=True)]
+        # How it may be put down, the same wherever that is.
+        self.trials = [errors.built(group[0][1], rng) for _ in range(TRIALS)]
+
+    def pieces(
+        self, start: Built, put: Sequence[tuple[int, Built]] | None = None
+    ) -> list[tuple[int, Built]]:
+        """Return what is put down, the stone last: at its planned height the wedges come too."""
+        if abs(start.y - self.seen.y) > 1e-9:
+            return [(self.id, start)]
+        aside = start.x - self.seen.x
+        wedges = self.wedges if put is None else put
+        return [*((i, replace(one, x=one.x + aside)) for i, one in wedges), (self.id, start)]
+
+    def missed(self, start: Built, real: Built) -> Built:
+        """Return where it is put instead of at a place: as far off as from the planned one."""
+        aside, turn = real.x - self.seen.x, real.angle_deg
+        return Built(real.outline, start.x + aside, start.y, start.angle_deg + turn)
+
+    def aim(self, wall: _AsBuilt, start: Built, least: float) -> _Aim | None:
+        """Let it go at a place, and try that; None where it rests less surely than `least`."""
+        rest = wall.put(self.pieces(start))[1]
+        if rest is None or _astray(rest, start):
+            return None
+        falls = 0
+        for trial in self.trials:
+            found = wall.put(self.pieces(self.missed(start, trial)))[1]
+            falls += found is None or _astray(found, rest)
+            if TRIALS - falls < least * TRIALS:
+                return None
+        return _Aim(1.0 - falls / TRIALS, start, rest)
+
+    def surest(self, wall: _AsBuilt, starts: Iterator[Built], least: float) -> _Aim | None:
+        """Return the first sure place of some, or the surest of all; None when all are unsure."""
+        best: _Aim | None = None
+        for start in starts:
+            found = self.aim(wall, start, least if best is None else best.sure + 1 / TRIALS)
+            best = found or best
+            if best is not None and best.sure == 1.0:
+                break
+        return best
+
+    def planned(self) -> Iterator[Built]:
+        """List places at the planned one and beside it."""
+        for aside, turn in BESIDE:
+            yield replace(self.seen, x=self.seen.x + aside * self.seen.size, angle_deg=turn)
+
+    def anywhere(self, wall: _AsBuilt, box: tuple[float, float, float], cell: float) -> list[Built]:
+        """List places on top of what is built, the lowest first; box: left, right, top."""
+        left, right, top = box
+        profile = bare(math.floor((right - left) / cell))
+        for i in range(len(wall.polygons)):
+            profile = raised(profile, wall.polygons.polygon(i) - (left, 0.0), i, cell)
+        found = []
+        for turn in QUARTERS:
+            start = replace(self.seen, angle_deg=turn)
+            for x, y, high in _lowest(start, profile, cell):
+                if high <= top:
+                    found.append((high, replace(start, x=left + x, y=y)))
+        return [start for _, start in sorted(found, key=lambda one: round(one[0], 9))]
+
+
+def _lowest(
+    start: Built, profile: HeightProfile, cell: float
+) -> Iterator[tuple[float, float, float]]:
+    """List where the centroid of a block may be let go on a profile, and how high its top is."""
+    hung = hanging(start.corners - (start.x, start.y), cell)
+    count = len(hung.bottoms)
+    if count > len(profile.tops):
+        return
+    under = np.lib.stride_tricks.sliding_window_view(profile.tops, count)
+    lift = (under - hung.bottoms).max(axis=1)
+    free, apart = lift.copy(), max(1, math.ceil(APART * start.size / cell))
+    for _ in range(SPOTS):
+        at = int(free.argmin())
+        if free[at] == np.inf:
+            return
+        yield at * cell - hung.left, float(lift[at]), float(lift[at]) + hung.top
+        free[max(0, at - apart + 1) : at + apart] = np.inf
+
+
+def _astray(one: Built, other: Built) -> bool:
+    """Say whether a block has fallen from one place to the other."""
+    way = one.x - other.x, one.y - other.y, one.angle_deg - other.angle_deg
+    return fallen_share(*way, one.size) > 1.0
+
+
+def rehearse_closed(
+    groups: Groups,
+    errors: BuilderErrors,
+    rng: np.random.Generator,
+    *,
+    mu: float = 0.58,
+    settle: SettleSettings | None = None,
+) -> ClosedRun:
+    """Build a wall once with errors, and plan the rest again after every stone.
+
+    The outlines and the first slip with every stone are those of
+    :func:`drystone.search.rehearsal.rehearse` for the same random numbers.
+    """
+    work = _Work(groups, errors, rng, _AsBuilt(mu, settle or SettleSettings()))
+    heap = [stone for stone in work.stones if not work.lay(stone, stone.planned(), SURE)]
+    left = len(heap) + 1
+    while heap and len(heap) < left:
+        left = len(heap)
+        heap = [stone for stone in heap if not work.lay(stone, work.places(stone), 1 / TRIALS)]
+    laid, ends = work.wall.laid, []
+    for group in groups:
+        block, corners = group[0]
+        built = laid.get(block)
+        if built is None or _astray(built, work.rested[block]):
+            ends.append(StoneEnd(block, True, None, None))
+            continue
+        _, x, y = area_and_centroid(corners)
+        away = math.hypot(built.x - x, built.y - y) / built.size
+        ends.append(StoneEnd(block, False, away, math.remainder(built.angle_deg, 360.0)))
+    return ClosedRun(tuple(ends), tuple((i, b.corners) for i, b in laid.items()), again=work.again)
+
+
+class _Work:
+    """A wall that is being built of a plan."""
+
+    def __init__(
+        self, groups: Groups, errors: BuilderErrors, rng: np.random.Generator, wall: _AsBuilt
+    ) -> None:
+        self.wall, self.again = wall, 0
+        self.stones = [_Stone(group, errors) for group in groups]
+        self.rested: dict[int, Built] = {}
+        self._errors, self._rng = errors, rng
+        real = errors_of(groups, errors, rng)
+        self._real = {blocks[0][0]: blocks for blocks in real}
+        corners = np.concatenate([group[0][1] for group in groups])
+        (x0, _), (x1, y1) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
+        size = mean_size(groups)
+        self._box, self._cell = (x0, x1, y1 + OVER_TOP * size), size / COLUMNS
+
+    def places(self, stone: _Stone) -> Iterator[Built]:
+        """List where a stone of the heap may go."""
+        yield from stone.planned()
+        yield from stone.anywhere(self.wall, self._box, self._cell)
+
+    def lay(self, stone: _Stone, starts: Iterator[Built], least: float) -> bool:
+        """Put a stone where it rests most surely; False when it goes back into the heap."""
+        aim = stone.surest(self.wall, starts, least)
+        if aim is None:
+            return False
+        (_, real), *wedges = self._real[stone.id]
+        for _ in range(TRIES):
+            put = stone.pieces(stone.missed(aim.start, real), wedges)
+            wall, rest = self.wall.put(put)
+            if rest is not None:
+                # What lies firmly stays, wherever it is: the rest is planned from there.
+                self.again += _astray(rest, aim.rest)
+                self.wall, self.rested[stone.id] = wall, rest
+                return True
+            self.again += 1
+            aside, turn = self._rng.standard_normal(2).tolist()
+            x = stone.seen.x + self._errors.placement * aside
+            real = replace(real, x=x, angle_deg=self._errors.angle_deg * turn)
+        return False
+
+
+def tilt_as_built(run: RehearsalRun, mu: float = 0.58) -> float:
+    """Return by how much what has not fallen of a wall may be tilted, over mu: the smaller side.
+
+    Its outlines as they lie are let go in the rigid-body engine (extra `physics`) and tilted from
+    where they come to rest.  0 where some fall then.
+    """
+    built = build_up([run.blocks], mu, PATIENT)
+    alphas = [one.alpha for one in tilt_of(built, (TILT,)) or () if one.alpha is not None]
+    return min(alphas) / mu if alphas else 0.0
