@@ -144,10 +144,14 @@ class View:
         self.cross = tuple(place)
 
 
-def saved(page):
+def bytes_saved(page):
     with page.expect_download() as waiting:
         page.keyboard.press("Control+s")
-    return json.loads(Path(waiting.value.path()).read_text())
+    return Path(waiting.value.path()).read_bytes()
+
+
+def saved(page):
+    return json.loads(bytes_saved(page))
 
 
 def says(page, words):
@@ -269,7 +273,7 @@ def test_corrected_with_keys_alone(visit):
 def test_undo_leads_back_to_the_beginning(visit):
     page = visit(viewport={"width": 1280, "height": 800})
     view = View(page)
-    first = saved(page)
+    first = bytes_saved(page)
     page.mouse.click(*view(130, 350))
     for _ in range(99):
         page.keyboard.press("u")
@@ -287,7 +291,7 @@ def test_undo_leads_back_to_the_beginning(visit):
     says(page, "3 stones")
     for _ in range(200):
         page.keyboard.press("Control+z")
-    assert saved(page) == first
+    assert bytes_saved(page) == first
     assert page.get_by_role("button", name="Undo").is_disabled()
 
 

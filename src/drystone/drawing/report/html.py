@@ -3,7 +3,8 @@
 import base64
 import html
 import json
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from drystone.drawing.words import content
 from drystone.whole_files import write_whole
 
 HERE = Path(__file__).parent
+DOM = HERE / "viewer" / "dom.js"
 
 POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 """The browser itself keeps a page with this from asking any host for anything."""
@@ -51,10 +53,11 @@ def write_report(path: str | Path, view: ViewerData, *, pictures: str | Path | N
     """
     path = Path(path)
     folder = None if pictures is None else Path(pictures)
-    text = _rendered(
+    text = rendered(
         "template.html",
         view,
         view=view,
+        title=view["title"],
         picture=_embedded(folder, PICTURE),
         mechanisms={side: _embedded(folder, name) for side, name in MECHANISMS.items()},
         unused=", ".join(map(str, view["unused"])) or "none",
@@ -79,7 +82,7 @@ def viewer_page(view: ViewerData, options: Mapping[str, Any] | None = None) -> s
     ``step``.
     """
     chosen = json_in_html(dict(options or {}))
-    return _rendered("viewer_page.html", view, title=view["title"], options=chosen)
+    return rendered("viewer_page.html", view, title=view["title"], options=chosen)
 
 
 def viewer_frame(view: ViewerData) -> str:
@@ -93,15 +96,15 @@ def viewer_frame(view: ViewerData) -> str:
     return f'<iframe title="{title}" style="{look}" srcdoc="{page}"></iframe>'
 
 
-def _rendered(template: str, wall: ViewerData, **more: Any) -> str:
-    loader = FileSystemLoader(HERE)
+def rendered(template: str, data: Any, **more: Any) -> str:
+    """Return a page, whose script and style are those of the viewer when no others are given."""
+    loader = FileSystemLoader([HERE, HERE.parent / "tracing"])
     templates = Environment(
         loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True,
         lstrip_blocks=True,
     )  # fmt: skip
-    return templates.get_template(template).render(
-        policy=POLICY, data=json_in_html(wall), script=viewer_script(), style=viewer_style(), **more
-    )
+    own = {"data": json_in_html(data), "script": viewer_script(), "style": viewer_style()}
+    return templates.get_template(template).render(own | more, policy=POLICY)
 
 
 def _embedded(folder: Path | None, name: str) -> str | None:
@@ -115,7 +118,13 @@ def _embedded(folder: Path | None, name: str) -> str | None:
 @cache
 def viewer_script() -> Markup:
     """Return the ES module of the viewer, to stand in a script element."""
-    return Markup((HERE / "viewer" / "viewer.js").read_text(encoding="utf-8"))  # noqa: S704
+    return joined([DOM, HERE / "viewer" / "viewer.js"])
+
+
+def joined(modules: Iterable[Path]) -> Markup:
+    """Join modules into one, in which nothing is imported."""
+    text = "\n".join(module.read_text(encoding="utf-8") for module in modules)
+    return Markup(re.sub(r"^import [^;]*;$|^export ", "", text, flags=re.MULTILINE))  # noqa: S704
 
 
 @cache

@@ -1,6 +1,7 @@
 // The page: a photograph, the outlines over it, and what a hand, a pen or keys do to them.
 
-import { area, boxOf, centroid, distance, sidesOf, simplified, simplifiedLine, snapped } from "./shapes.js";
+import { boxOf, make } from "../report/viewer/dom.js";
+import { area, centroid, distance, sidesOf, simplified, simplifiedLine, snapped } from "./shapes.js";
 import { proposed } from "./propose.js";
 import {
   History, SCHEMA, accepted, fileOf, openDoubts, pxPerMetre, stateOf, stoneAt, stoneOf,
@@ -35,17 +36,6 @@ const UNITS = { cm: 0.01, mm: 0.001, m: 1, in: 0.0254, ft: 0.3048 };
  */
 export function mount(element, data) {
   return new Page(element, data);
-}
-
-function make(tag, attributes = {}, ...children) {
-  const node = document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) {
-    if (typeof value === "function") node.addEventListener(name, value);
-    else if (value === true) node.setAttribute(name, "");
-    else if (value !== false && value !== null && value !== undefined) node.setAttribute(name, value);
-  }
-  node.append(...children.flat().filter((child) => child !== null));
-  return node;
 }
 
 /** Put other nodes into a box; the button of the same name keeps the focus. */
@@ -612,14 +602,14 @@ class Page {
   /** A length in px of the photograph, in cm when there is a scale. */
   length(px) {
     const scale = pxPerMetre(this.state);
-    return scale ? `${((100 * px) / scale).toFixed(1)} cm` : `${px.toFixed(0)} px`;
+    return scale ? `${((100 * px) / scale).toFixed(1)}\u00a0cm` : `${px.toFixed(0)}\u00a0px`;
   }
 
   areaOf(px) {
     const scale = pxPerMetre(this.state);
-    if (!scale) return `${px.toFixed(0)} px²`;
+    if (!scale) return `${px.toFixed(0)}\u00a0px²`;
     const square = px / scale ** 2;
-    return square < 1 ? `${(1e4 * square).toFixed(0)} cm²` : `${square.toFixed(2)} m²`;
+    return square < 1 ? `${(1e4 * square).toFixed(0)}\u00a0cm²` : `${square.toFixed(2)}\u00a0m²`;
   }
 
   sayStone(stone) {
@@ -865,10 +855,12 @@ class Page {
     context.fillStyle = colour("--chosen");
     stone.ring.forEach((point, i) => {
       const [u, v] = this.toScreen(point);
-      const half = i === this.corner ? 6 : 4;
+      const near = this.k * distance(point, stone.ring.at(i - 1)) < 9;
+      const half = i === this.corner ? 6 : near ? 2 : 4;
       context.fillRect(u - half, v - half, 2 * half, 2 * half);
     });
-    for (const point of middles(stone.ring)) {
+    for (const [i, point] of middles(stone.ring).entries()) {
+      if (this.k * distance(point, stone.ring[i]) < 9) continue; // there is no room for it
       const [u, v] = this.toScreen(point);
       context.beginPath();
       context.arc(u, v, 2.5, 0, 2 * Math.PI);

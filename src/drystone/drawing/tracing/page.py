@@ -3,24 +3,21 @@
 import base64
 import hashlib
 import io
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cache
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from jinja2 import StrictUndefined, Template
-from markupsafe import Markup
 from numpy.typing import NDArray
 from PIL import Image
 
-from drystone.drawing.report.html import POLICY, json_in_html
+from drystone.drawing.report.html import DOM, joined, json_in_html, rendered
 from drystone.model.stone import Stone
 from drystone.photo.segment_doubts import Doubt
 from drystone.whole_files import write_whole
 
+HERE = Path(__file__).parent
 _MODULES = ("shapes.js", "propose.js", "sketch.js", "page.js")
 _TOLERANCE_PX = 1.0
 """Of outlines from pixels: a person moves their corners, so there are not too many."""
@@ -82,25 +79,10 @@ def write_outline_page(path: Path, page: OutlinePage) -> Path:
             for doubt in page.doubts
         ],
     }  # fmt: skip
-    template = Template(_text("page.html"), autoescape=True, undefined=StrictUndefined)
-    text = template.render(
-        policy=POLICY, title=page.title, data=json_in_html(data), script=_script(),
-        style=Markup(_text("page.css")),  # noqa: S704 - our own
-    )  # fmt: skip
+    script, style = joined([DOM, *(HERE / name for name in _MODULES)]), joined([HERE / "page.css"])
+    text = rendered("page.html", data, title=page.title, script=script, style=style)
     write_whole(path, text.encode("utf-8"))
     return path
-
-
-def _text(name: str) -> str:
-    return (Path(__file__).parent / name).read_text(encoding="utf-8")
-
-
-@cache
-def _script() -> Markup:
-    """Join the modules into one, in which nothing is imported."""
-    joined = "\n".join(map(_text, _MODULES))
-    joined = re.sub(r"^import [^;]*;$", "", joined, flags=re.MULTILINE)
-    return Markup(re.sub(r"^export ", "", joined, flags=re.MULTILINE))  # noqa: S704 - our own
 
 
 def _embedded(picture: NDArray[np.uint8]) -> bytes:

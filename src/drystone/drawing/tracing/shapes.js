@@ -1,6 +1,8 @@
 // Closed outlines as arrays of [x, y]: arithmetic without a page, so that it can be tested alone.
 // Coordinates are px of the photograph, x to the right and y down.
 
+import { boxOf } from "../report/viewer/dom.js";
+
 /** Area in px²; the sign says which way round the corners go. */
 export function signedArea(ring) {
   let twice = 0;
@@ -25,17 +27,6 @@ export function centroid(ring) {
     y += (ay + by) * cross;
   }
   return Math.abs(whole) < 1e-12 ? [ox, oy] : [ox + x / (6 * whole), oy + y / (6 * whole)];
-}
-
-export function boxOf(points) {
-  const box = [Infinity, Infinity, -Infinity, -Infinity];
-  for (const [x, y] of points) {
-    box[0] = Math.min(box[0], x);
-    box[1] = Math.min(box[1], y);
-    box[2] = Math.max(box[2], x);
-    box[3] = Math.max(box[3], y);
-  }
-  return box;
 }
 
 export function contains(ring, [x, y]) {

@@ -1,8 +1,9 @@
 // Shows a dry-stone wall: data of the schema "drystone-view/1" as a drawing that one can go through.
-// One file, no dependencies, no network.  Everything that comes from the data is set as text or as
+// No dependencies, no network.  Everything that comes from the data is set as text or as
 // an attribute, never as markup.
 
-const SVG = "http://www.w3.org/2000/svg";
+import { boxOf, draw, make } from "./dom.js";
+
 const WIDTH = 1000;
 const STEP_MS = 700;
 const SWING_MS = 2600;
@@ -46,44 +47,12 @@ export function mount(element, data, options = {}) {
   return new Viewer(element, data, options).handle();
 }
 
-function make(tag, attributes = {}, ...children) {
-  return fill(document.createElement(tag), attributes, children);
-}
-
-function draw(tag, attributes = {}, ...children) {
-  return fill(document.createElementNS(SVG, tag), attributes, children);
-}
-
-function fill(node, attributes, children) {
-  for (const [name, value] of Object.entries(attributes)) {
-    if (value === true) node.setAttribute(name, "");
-    else if (value !== false && value !== null && value !== undefined) node.setAttribute(name, value);
-  }
-  for (const child of children.flat()) {
-    if (child !== null && child !== undefined && child !== false) node.append(child);
-  }
-  return node;
-}
-
 function text(value, digits = 3) {
   return typeof value === "number" && Number.isFinite(value) ? value.toFixed(digits) : "–";
 }
 
 function sum(values) {
   return values.reduce((total, value) => total + value, 0);
-}
-
-function bounds(loops) {
-  const box = [Infinity, Infinity, -Infinity, -Infinity];
-  for (const loop of loops) {
-    for (const [x, y] of loop) {
-      box[0] = Math.min(box[0], x);
-      box[1] = Math.min(box[1], y);
-      box[2] = Math.max(box[2], x);
-      box[3] = Math.max(box[3], y);
-    }
-  }
-  return box;
 }
 
 function pathOf(loops, x, y) {
@@ -302,7 +271,7 @@ class Viewer {
       const at = { x: this.x(part.centroid[0]).toFixed(1), y: this.y(part.centroid[1]).toFixed(1) };
       const halo = part.text_colour === "#000000" ? "ds-on-light" : "ds-on-dark";
       const label = draw("text", { ...at, class: `ds-number ${halo}`, fill: part.text_colour, "aria-hidden": "true" });
-      const [x0, y0, x1, y1] = bounds(part.points);
+      const [x0, y0, x1, y1] = boxOf(part.points.flat());
       this.labels.set(part.id, { label, part, high: this.k * (y1 - y0), wide: (this.k * (x1 - x0)) / 0.62 });
     }
     const choose = () => this.select(part.id);
@@ -938,7 +907,7 @@ class Viewer {
   figure(part) {
     const placed = part.points;
     const outline = part.source ? [part.source] : placed;
-    const [a, b] = [bounds(outline), bounds(placed)];
+    const [a, b] = [boxOf(outline.flat()), boxOf(placed.flat())];
     const size = Math.max(a[2] - a[0], a[3] - a[1], 1e-9);
     const perUnit = part.source ? Math.max(...part.size, 1e-9) / size : 1;
     const reach = Math.max((a[2] - a[0]) * perUnit, (a[3] - a[1]) * perUnit, b[2] - b[0], b[3] - b[1]);
@@ -982,7 +951,7 @@ class Viewer {
     else {
       const from = [sum(known.map((p) => p[0])) / known.length, sum(known.map((p) => p[1])) / known.length];
       const to = [sum(placed.map((p) => p[0])) / placed.length, sum(placed.map((p) => p[1])) / placed.length];
-      const box = bounds([known]);
+      const box = boxOf(known);
       const own = Math.max(box[2] - box[0], box[3] - box[1]);
       const unit = (scale * Math.max(...part.size)) / own;
       const [cx, cy] = [x(to[0]), y(to[1])];
