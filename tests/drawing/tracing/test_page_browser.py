@@ -376,8 +376,8 @@ def test_a_wall_is_traced_and_analysed(browser, run, tmp_path):  # noqa: F811
     file, path = saved(page), folder / "outlines.json"
     path.write_text(json.dumps(file))
     shapes = [shapely.Polygon(shape["points"]) for shape in file["shapes"]]
-    for shape, corners in zip(shapes, traced.STONES, strict=True):
-        truth = shapely.Polygon(corners)
+    for shape, corners in zip(shapes, traced.TRACED, strict=True):
+        truth = shapely.Polygon(np.array(corners) / 2)
         assert shape.intersection(truth).area / shape.union(truth).area > 0.93
     ran = run("analyse", path, "--close-gaps", "auto", "--associative-only")
     assert ran.code == 0, ran.err
