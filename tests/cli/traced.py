@@ -4,10 +4,60 @@ import json
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, ImageDraw
+import shapely
+from PIL import Image, ImageDraw, ImageFilter
 
 WIDTH, HEIGHT, FOOT = 640, 440, 390
 """Of the photograph, px, and where the ground is in it."""
+
+# Corners, px, y down; joints are some px wide, and the last course is level with nothing.
+STONES = (
+    [(62, 390), (66, 312), (120, 305), (196, 309), (201, 352), (198, 390)],
+    [(205, 390), (207, 352), (203, 311), (262, 318), (318, 316), (321, 390)],
+    [(326, 390), (324, 318), (398, 309), (441, 314), (444, 390)],
+    [(449, 390), (447, 330), (452, 313), (520, 309), (577, 316), (580, 390)],
+    [(70, 307), (74, 236), (131, 229), (141, 300), (121, 300)],
+    [(146, 299), (136, 231), (196, 224), (262, 233), (266, 312), (200, 304)],
+    [(271, 313), (267, 234), (340, 236), (391, 227), (395, 304), (322, 312)],
+    [(400, 304), (396, 228), (450, 223), (492, 229), (496, 304), (450, 308)],
+    [(501, 304), (497, 230), (548, 227), (571, 240), (573, 310), (522, 304)],
+    [(80, 231), (86, 150), (150, 143), (212, 152), (215, 221), (196, 219), (133, 224)],
+    [(220, 222), (217, 152), (290, 140), (346, 149), (349, 231), (264, 228)],
+    [(354, 230), (351, 150), (420, 146), (470, 160), (474, 219), (450, 218), (391, 222)],
+    [(479, 221), (475, 161), (520, 152), (561, 158), (563, 228), (548, 222), (496, 225)],
+)
+
+
+def photograph(path: Path) -> Path:
+    """Render the wall: stones in shades, with grain and dark joints, grass, sky, a staff."""
+    random = np.random.default_rng(35)
+    image = Image.new("RGB", (WIDTH, HEIGHT), (176, 198, 222))
+    draw = ImageDraw.Draw(image)
+    draw.rectangle((0, FOOT - 4, WIDTH, HEIGHT), fill=(96, 122, 62))
+    draw.polygon([(58, 392), (78, 140), (568, 140), (584, 392)], fill=(46, 42, 40))
+    for corners in STONES:
+        grey = int(random.integers(120, 175))
+        draw.polygon(_rounded(corners), fill=(grey, grey - 8, grey - 20))
+    draw.rectangle((606, 190, 614, 390), fill=(250, 250, 250))  # a metre of staff
+    for y in range(190, 390, 40):
+        draw.rectangle((606, y, 614, y + 19), fill=(200, 30, 30))
+    grain = random.normal(0.0, 9.0, (HEIGHT, WIDTH, 1)) + _clouds(random)
+    values = np.clip(np.asarray(image, float) + grain, 0, 255).astype(np.uint8)
+    Image.fromarray(values).filter(ImageFilter.GaussianBlur(0.8)).save(path, quality=90)
+    return path
+
+
+def _rounded(corners: list[tuple[int, int]]) -> list[tuple[float, float]]:
+    shape = shapely.Polygon(corners).buffer(-6).buffer(6)
+    return [(float(x), float(y)) for x, y in shape.exterior.coords]
+
+
+def _clouds(random: np.random.Generator) -> np.ndarray:
+    small = Image.fromarray(
+        random.normal(0.0, 14.0, (HEIGHT // 12, WIDTH // 12)).astype(np.float32)
+    )
+    return np.asarray(small.resize((WIDTH, HEIGHT), Image.Resampling.BICUBIC))[..., None]
+
 
 TRACED = (
     [(124, 780), (129, 625), (240, 611), (392, 617), (402, 700), (397, 780)],
@@ -25,19 +75,6 @@ TRACED = (
     [(958, 440), (951, 322), (1040, 305), (1122, 317), (1125, 446), (1095, 444), (990, 449)],
 )
 """As clicked by eye on the rendered picture, shown at twice its size; joints stay open."""
-
-
-def photograph(path: Path) -> Path:
-    """Render the wall: grey stones with dark joints under a sky, all with grain."""
-    image = Image.new("RGB", (WIDTH, HEIGHT), (176, 198, 222))
-    draw = ImageDraw.Draw(image)
-    draw.polygon([(58, 392), (78, 140), (568, 140), (584, 392)], fill=(46, 42, 40))
-    for corners in TRACED:
-        draw.polygon([(x / 2, y / 2) for x, y in corners], fill=(150, 142, 130))
-    grain = np.random.default_rng(35).normal(0.0, 9.0, (HEIGHT, WIDTH, 3))
-    values = np.clip(np.asarray(image, float) + grain, 0, 255).astype(np.uint8)
-    Image.fromarray(values).save(path, quality=90)
-    return path
 
 
 def labelme(path: Path) -> Path:
