@@ -27,8 +27,7 @@ class StepTime:
     stones: int  # stones that were there before it
     candidates: int  # how many candidates were evaluated
     seconds: float  # from its first attempt to its action
-    # seconds by part of the work; what is missing to `seconds` is sampling, selection and
-    # keeping books.  With several threads the parts of all of them, waiting included.
+    # s by part, of all threads, waiting included; the rest is sampling, selection, keeping books
     parts: dict[Part, float]
 
 

@@ -45,8 +45,7 @@ RULES = {"paper": TWO_SIDED, "random": (*TWO_SIDED, ("selection_rule", "random")
 FILLED = 0.6
 """Filling above which walls are told apart (Fig. 24)."""
 
-OFFSETS_PT = ((9, 9), (9, -14), (-18, 9), (-18, -14))
-"""Of the names of the walls that are drawn: neighbours in noise often lie together."""
+OFFSETS_PT = ((9, 9), (9, -14), (-18, 9), (-18, -14))  # Of names: neighbours lie together
 
 MIXED = 60
 """Noise in % below which the paper's walls are always filled above :data:`FILLED`."""

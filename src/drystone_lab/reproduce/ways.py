@@ -227,12 +227,11 @@ CAUSES: dict[str, Changes] = {
 VARIED: tuple[tuple[Target, Mapping[str, Changes]], ...] = (
     (R, NAMED | RELEASED),
     (PR, NAMED | RELEASED | CAUSES),
-    # That of the authors' released times, whatever width the paper prints
     (PR_FREE_596, RELEASED | CAUSES),
     (IR, RELEASED),
     *((wall, {}) for wall in FRAMED),
 )
-"""Walls, and by what they are built beside the paper's method."""
+"""Walls, and by what else they are built; 596 px is the width of the authors' released times."""
 
 
 def named_variants(

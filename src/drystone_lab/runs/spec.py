@@ -199,9 +199,7 @@ class RunSpec:
 
         A change to what the method has anyway is no change.
         """
-        usual = {} if self.method == STRIPS else method_settings(self.method).as_dict()
-        has = flat(usual)
+        has = () if self.method == STRIPS else flat(method_settings(self.method).as_dict())
         changes = {name: value for name, value in self.changes if (name, value) not in has}
         about = self.as_dict() | {"changes": changes, "version": version("drystone")}
-        text = json.dumps(about, sort_keys=True)
-        return hashlib.sha256(text.encode()).hexdigest()[:24]
+        return hashlib.sha256(json.dumps(about, sort_keys=True).encode()).hexdigest()[:24]

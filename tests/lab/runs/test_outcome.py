@@ -15,7 +15,6 @@ def test_it_is_what_plan_wall_gives() -> None:
     stones, rest = SOURCE.stones(None), {"seed": 3, "method": "paper", "scale": 1.0}
     result = plan_wall(stones, 60, 20, **rest, coulomb=False)
     assert outcome.as_plan == result.plan
-    # No figure of a run, and it takes longer than the wall.
     assert result.metrics.F_LR_coulomb is None
     assert plan_wall(stones, 60, 20, **rest).metrics.F_LR_coulomb is not None
     assert tuple(outcome.figures) == FIGURES
