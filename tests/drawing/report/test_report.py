@@ -123,7 +123,7 @@ def test_results_inputs_and_notices_are_said(report):
         "0.672", "4.25 %", "Load multiplier (adequacy factor) to the left",
         "in three walls of masons, of other stones", f"44.0 {TIMES} 20.0 px", "0" * 64, "W112",
         "3.46 s", "upper bound", "placement.rule", "1 (6.0 px²)",
-        "Stones are their pixels at the working resolution",
+        "Geometry raster",
         "Stones touch where their pixels have edges or corners in common",
     ):  # fmt: skip
         assert said in text
@@ -136,7 +136,7 @@ def test_a_plan_on_outlines_says_so(tmp_path):
     page = Page(
         write_report(tmp_path / "one.html", example_view(plan, made.wall)).read_text("utf-8")
     )
-    assert "Stones are their outlines" in page.text
+    assert "Geometry exact" in page.text
     assert "within the contact tolerance, 0.1 px of the image" in page.text
     assert "pixels have edges" not in page.text
     for (block, corners), part in zip(made.wall.outlines.blocks, page.data["parts"], strict=True):

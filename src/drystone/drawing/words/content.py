@@ -76,6 +76,7 @@ def inputs(plan: Plan) -> tuple[tuple[str, str], ...]:
         ("SHA-256 of the input", str(source.get("sha256") or UNDEFINED)),
         ("Stones in the input", str(source.get("stones", UNDEFINED))),
         ("Size of the image", f"{source.get('width_px')} {TIMES} {source.get('height_px')} px"),
+        ("Building ended", plan.stopped),
         ("Wall", f"{plan.width:.{digits}f} {TIMES} {plan.height:.{digits}f} {unit}"),
         ("Scale", scale),
         ("Working resolution", f"{plan.working_scale:g} of the source's"),
