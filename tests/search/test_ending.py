@@ -102,6 +102,8 @@ def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere() -> Non
     flat = finish(Planner(bricks(), Site(60, 20), settings=careless))
     laid = PackedWall.of(FoundWall.of(flat))
     assert repaired(flat, laid) is laid
+    nothing = PackedWall.of(FoundWall.of(Planner(bricks(), Site(60, 20), settings=careless)))
+    assert repaired(flat, nothing) is nothing
 
 
 def test_a_wall_to_choose_is_as_it_was_found(planner: Planner) -> None:

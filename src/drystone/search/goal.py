@@ -215,6 +215,8 @@ def first_falls(build: Build, yard: Yard, runs: int) -> frozenset[int]:
 
 def _rehearsals(build: Build, yard: Yard, runs: int) -> Iterator[RehearsalRun]:
     groups, settings = groups_of(build.wall), yard.settings
+    if not groups:
+        return
     errors = BuilderErrors.of_precision(BETWEEN, mean_size(groups))
     for run in range(runs):
         yard.until.look()
