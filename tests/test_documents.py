@@ -225,7 +225,7 @@ def test_the_python_of_the_readme_runs(tmp_path: Path, monkeypatch: pytest.Monke
     write_labels(lay_out(made), tmp_path / "stones.png")
     monkeypatch.chdir(tmp_path)
     programs = blocks(ROOT / "README.md", "python")
-    assert len(programs) >= 2
+    assert programs
     for program in programs:
         exec(compile(program, "README.md", "exec"), {})  # noqa: S102 - our own document
 
