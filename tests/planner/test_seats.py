@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from drystone.model.builder import Built
+from drystone.model.builder import BuilderErrors
 from drystone.model.wall import outlined
 from drystone.planner.planner import Planner
-from drystone.planner.seats import NEAR, Seats
+from drystone.planner.seats import NEAR, PRECISION, Seats
 from tests.naive import seats as naive
 from tests.planner.scenes import ROUNDED, ROUNDED_SITE, finish, greedy
 
 
 def seats_of(workshop, settings):
-    return Seats(workshop.seats.mean_size, workshop.outlines, settings.settle, settings.mu)
+    return Seats(workshop.seats.mean_size, settings.settle, settings.mu)
 
 
 @pytest.fixture(scope="module")
@@ -40,14 +40,12 @@ def test_trials_are_those_of_walls_that_are_built_anew(careless):
     seats, wall = seats_of(careless.workshop, settings), careless.build.wall
     steps = []
     for group in wall.groups:
-        at, posed = group.placement.exact, group.placement.posed
-        outline = careless.workshop.outlines.outline(posed.stone)
-        wedges = [corners for _, corners in outlined(group.placement, group.wedges)[1:]]
-        steps.append((Built(outline, at.x_px, at.y_px, posed.angle_deg), wedges))
+        (stone, corners), *wedges = outlined(group.placement, group.wedges)
+        steps.append((stone, corners, [cut for _, cut in wedges]))
+    errors = BuilderErrors.of_precision(PRECISION, seats.mean_size)
     fallen = np.zeros(len(steps))
     for trial in range(settings.settle.trials):
-        errors = [seats.errors(g.placement.posed.stone)[trial] for g in wall.groups]
-        fallen += naive.falls(steps, errors, settings.mu, settings.settle, NEAR)
+        fallen += naive.falls(steps, errors, trial, settings.mu, settings.settle, NEAR)
     assert fallen.any()
     fallen /= settings.settle.trials
     for group, share, state in zip(wall.groups, fallen, walls_of(careless), strict=True):

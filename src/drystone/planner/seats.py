@@ -10,12 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from drystone.kernels.polygons import Points, Polygons, no_polygons
-from drystone.model.builder import BuilderErrors, Built, misjudged
+from drystone.kernels.polygons import Points, Polygons, area_and_centroid, no_polygons
+from drystone.model.builder import BuilderErrors
 from drystone.model.stone import Stone
 from drystone.model.wall import Group, Wall, outlined
-from drystone.poses import RecentlyUsed, wrap_deg
-from drystone.settle.book import OutlineBook
+from drystone.poses import RecentlyUsed
 from drystone.settle.putting import fallen_share, moved, put_down
 from drystone.settle.settings import SettleSettings
 from drystone.settle.wedge import in_order
@@ -41,12 +40,6 @@ class Trial(NamedTuple):
     pushed: dict[int, float]  # by how much which polygons of those near it are pushed along x
 
 
-class _Errors(NamedTuple):
-    outline: Points  # of the stone as it is, not turned
-    aside: float
-    turned_deg: float
-
-
 class Seats:
     """Tries places; every stone has errors of its own, the same wherever it is laid.
 
@@ -57,15 +50,14 @@ class Seats:
     def __init__(
         self,
         mean_size: float,
-        book: OutlineBook,
         settle: SettleSettings,
         mu: float,
         pinned: Collection[int] = (),
     ) -> None:
         self.mean_size = mean_size
-        self._book, self._settle, self._mu = book, settle, mu
+        self._settle, self._mu = settle, mu
         self._pinned = pinned
-        self._errors: dict[int, list[_Errors]] = {}
+        self._errors = BuilderErrors.of_precision(PRECISION, mean_size)
         self._known = RecentlyUsed[tuple[object, ...], Trial](KNOWN_BYTES)
         self._last: tuple[tuple[Group, ...], list[Polygons]] = (), []
 
@@ -134,35 +126,20 @@ class Seats:
         if known is not None:
             return known
         placement = group.placement
-        stone, at, angle_deg = placement.posed.stone, placement.exact, placement.posed.angle_deg
-        errors = self.errors(stone)[k]
+        stone, planned = placement.posed.stone, placement.exact.corners
         wedges = [corners for _, corners in outlined(placement, group.wedges)[1:]]
-        put = Built(errors.outline, at.x_px + errors.aside, at.y_px, angle_deg + errors.turned_deg)
         around = in_order(built, near)
+        # Drawn as it lies in the wall, so that it does not matter how its photograph was turned.
+        put = self._errors.built(planned, np.random.default_rng([7, k, stone.id]))
         rest, pushed = put_down(
             put, around.added(wedges) if wedges else around, self._mu, self._settle
         )
-        trial = Trial(True, at.corners, {})
+        trial = Trial(True, planned, {})
         if rest is not None:
-            way, turned = (rest.x - at.x_px, rest.y - at.y_px), wrap_deg(rest.angle_deg - angle_deg)
-            if fallen_share(*way, turned, stone.area_px**0.5) <= 1.0:
+            _, x, y = area_and_centroid(planned)
+            if fallen_share(rest.x - x, rest.y - y, rest.angle_deg, rest.size) <= 1.0:
                 trial = Trial(False, rest.corners, pushed)
         return self._known.keep(key, trial, 600 + trial.corners.nbytes + 40 * len(near))
-
-    def errors(self, stone: Stone) -> list[_Errors]:
-        """Return the errors with which a stone is put down."""
-        if stone.id not in self._errors:
-            errors = BuilderErrors.of_precision(PRECISION, self.mean_size)
-            rng, outline = np.random.default_rng([7, stone.id]), self._book.outline(stone)
-            self._errors[stone.id] = [
-                _Errors(
-                    misjudged(outline, errors.outline, rng),
-                    errors.placement * rng.standard_normal(),
-                    errors.angle_deg * rng.standard_normal(),
-                )
-                for _ in range(self._settle.trials)
-            ]
-        return self._errors[stone.id]
 
 
 def _key(group: Group, k: int, built: Polygons, near: list[int]) -> tuple[object, ...]:
