@@ -220,7 +220,7 @@ def test_empty_and_missing_files(tmp_path):
 def test_unknown_formats_name_the_known_ones(tmp_path, content):
     path = tmp_path / "stones.any"
     path.write_bytes(content)
-    with pytest.raises(InputError, match=r"E107.*PNG, TIFF, BMP, GIF, NPY, NPZ, JSON"):
+    with pytest.raises(InputError, match=r"E107.*PNG, TIFF, BMP, GIF, NPY, NPZ; JSON"):
         read_stones(path)
 
 

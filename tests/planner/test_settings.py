@@ -60,7 +60,7 @@ def test_values_of_the_wrong_type_are_refused(changes: dict[str, Any]) -> None:
 @pytest.mark.parametrize(
     ("changes", "named", "cure"),
     [
-        ({"wonder": 1}, "'wonder'", "sampling"),
+        ({"xyz": 1}, "'xyz'", "sampling"),
         ({"placement": {"wonder": 1}}, "'placement.wonder'", "reach"),
         ({"sampling": "some"}, "sampling = 'some'", "twofold"),
         ({"stabilise": {"method": "glue"}}, "stabilise.method = 'glue'", "wedge"),

@@ -32,7 +32,7 @@ KNOWN_BYTES = 1 << 26
 """Trials that are remembered at most, about: fifty thousand."""
 
 
-class Trial(NamedTuple):
+class SeatTrial(NamedTuple):
     """What became of a stone that was put down with errors."""
 
     fell: bool
@@ -58,7 +58,7 @@ class Seats:
         self._settle, self._mu = settle, mu
         self._pinned = pinned
         self._errors = BuilderErrors.of_precision(PRECISION, mean_size)
-        self._known = RecentlyUsed[tuple[object, ...], Trial](KNOWN_BYTES)
+        self._known = RecentlyUsed[tuple[object, ...], SeatTrial](KNOWN_BYTES)
         self._last: tuple[tuple[Group, ...], list[Polygons]] = (), []
 
     def bearable(self, stone: Stone) -> float:
@@ -119,7 +119,7 @@ class Seats:
         near = (boxes[:, :2] <= high).all(axis=1) & (boxes[:, 2:] >= low).all(axis=1)
         return np.flatnonzero(near).tolist()
 
-    def _trial(self, group: Group, k: int, built: Polygons, near: list[int]) -> Trial:
+    def _trial(self, group: Group, k: int, built: Polygons, near: list[int]) -> SeatTrial:
         """Put a stone down with its errors of a trial, in the wall of that trial."""
         key = _key(group, k, built, near)
         known = self._known.get(key)
@@ -134,11 +134,11 @@ class Seats:
         rest, pushed = put_down(
             put, around.added(wedges) if wedges else around, self._mu, self._settle
         )
-        trial = Trial(True, planned, {})
+        trial = SeatTrial(True, planned, {})
         if rest is not None:
             _, x, y = area_and_centroid(planned)
             if fallen_share(rest.x - x, rest.y - y, rest.angle_deg, rest.size) <= 1.0:
-                trial = Trial(False, rest.corners, pushed)
+                trial = SeatTrial(False, rest.corners, pushed)
         return self._known.keep(key, trial, 600 + trial.corners.nbytes + 40 * len(near))
 
 
