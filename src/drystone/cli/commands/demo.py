@@ -18,6 +18,7 @@ from drystone.generate.layout import lay_out
 from drystone.generate.rubble import RubbleSettings, rubble_stones
 from drystone.io.read_stones import read_stones
 from drystone.io.wall_image import write_labels
+from drystone.kernels.backend import describe
 from drystone.planner.search_settings import UNLIMITED
 
 STONES, WALL = "stones.png", (1120, 320)
@@ -39,7 +40,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     """Plan a wall of coursed rubble and name the report."""
     asked = settings_from(arguments)  # wrong options are refused before anything is written
     if arguments.time is None and asked.search.budget == UNLIMITED:
-        arguments.budget = 4  # where nothing is compiled, more would take minutes
+        # Where nothing is compiled, each takes more than a minute.
+        arguments.budget = 4 if describe() == "compiled" else 1
     folder = Path(arguments.output)
     own = () if arguments.settings is None else (Path(arguments.settings),)
     names = (STONES, *WRITTEN)

@@ -28,7 +28,7 @@ _MOST_IN_PIECES = 16
 """Pieces of a group that are looked at one by one."""
 
 _AT_ONCE = 256
-_MOST_PAIRS = 200_000
+_MOST_PAIRS = 100_000
 _MOST_SHARED_PX = 300_000_000
 
 
@@ -173,9 +173,13 @@ def _ground(
     One stone drawn by hand may show in another; a program finds the ground like that.
     """
     held: dict[int, int] = dict.fromkeys(holes, 0)
+    wanted = {j: INSIDE * _area(mask) for j, mask in seen.masks.items()}
+    room = {i: _area(hole) for i, hole in holes.items()}
     for pair in meeting:
         for i, j in (pair, pair[::-1]):
-            if i in holes and holes[i].common_px(seen.masks[j]) >= INSIDE * _area(seen.masks[j]):
+            # Few holes have room for another.
+            fits = i in holes and room[i] >= wanted[j]
+            if fits and holes[i].common_px(seen.masks[j]) >= wanted[j]:
                 held[i] += 1
     least = 1 if seen.by_program else min(2, len(seen.masks) - 1)
     return {i for i, count in held.items() if count >= max(1, least)}
