@@ -64,7 +64,7 @@ def test_stdout_is_a_table_and_stderr_the_notices(rubble, tmp_path, run, monkeyp
     notice, read, wrote = ran.err.splitlines()
     assert notice == "drystone: W110 stone 1 may be two."
     assert read.startswith("drystone: Read 8 stones (largest ")
-    assert wrote.startswith(f"drystone: wrote {tmp_path / 'out' / 'plan.json'} report.html ")
+    assert wrote.startswith(f"drystone: wrote to {tmp_path / 'out'}: plan.json report.html ")
     lines = ran.out.splitlines()
     assert lines[0].startswith(("complete: ", "incomplete: "))
     names = [line.split()[0] for line in lines[1:]]

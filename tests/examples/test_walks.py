@@ -31,7 +31,7 @@ def run(script: str, tmp_path: Path) -> str:
 def test_robot(tmp_path: Path) -> None:
     said = run("robot.py", tmp_path)
     assert "drystone: Read 10 stones (largest 30.3 x 10.0 cm" in said
-    assert "wrote out/plan.json report.html wall.png" in said
+    assert "wrote to out: plan.json report.html wall.png" in said
     assert "build.gif" in said
     for written in ("assembly.compas.json", "scene.yaml", "wall.obj", "urdf/"):
         assert written in said
@@ -47,7 +47,7 @@ def test_researcher(tmp_path: Path) -> None:
     for extra in ("spyrrow", "pyarrow", "gymnasium"):
         pytest.importorskip(extra, reason="an extra that the script is about")
     said = run("researcher.py", tmp_path)
-    assert "mine: policy of public suites: a policy of another package that is installed" in said
+    assert "mine: --policy of public suites: a policy of another package that is installed" in said
     assert "spyrrow is a yardstick" in said
     for name in ("paper", "random", "filter", "spyrrow", "mine"):
         assert f"\n   bricks 2:1  {name}" in said

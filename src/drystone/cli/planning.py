@@ -202,8 +202,8 @@ def _written_and_told(result: PlanResult, request: PlanRequest, keeper: Keeper) 
     if failed is not None:
         raise failed
     if not request.quiet:
-        first, *others = (name for name in WRITTEN if (folder / name).exists())
-        note(f"wrote {' '.join([str(folder / first), *others])}")
+        written = (name for name in WRITTEN if (folder / name).exists())
+        note(f"wrote to {folder}: {' '.join(written)}")
     return _EXIT[result.status]
 
 

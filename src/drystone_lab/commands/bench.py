@@ -51,8 +51,11 @@ def _print_list() -> None:
         print(f"{name}: {text}")
     for name, text in PUBLIC_SUITES.items():
         print(f"{name}: public suite: {text}")
+    by_text: dict[str, list[str]] = {}
     for name, text in known_methods().items():
-        print(f"{name}: policy of public suites: {text}")
+        by_text.setdefault(text, []).append(name)
+    for text, names in by_text.items():
+        print(f"{', '.join(names)}: --policy of public suites: {text}")
 
 
 def _useless(what: str, where: str, cure: str) -> UsageError:

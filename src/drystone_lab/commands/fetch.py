@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from drystone.cli.output import print_json
-from drystone.errors import ExitCode, UsageError
+from drystone.errors import ExitCode, UsageError, counted
 from drystone.io.published import (
     LICENCE,
     PAPER,
@@ -21,7 +21,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     """Bring sets to this machine; say where they are, their licence, and what to cite."""
     if arguments.list:
         for name, published in SETS.items():
-            print(f"{name}: {published.text} ({len(published.files)} files)")
+            print(f"{name}: {published.text} ({counted(len(published.files), 'file')})")
         return ExitCode.DONE
     names = _names(arguments.sets)
     folder = destination(arguments.output)

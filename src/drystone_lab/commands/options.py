@@ -13,7 +13,7 @@ def add_bench(command: argparse.ArgumentParser) -> None:
     """Add the options of ``bench``."""
     command.add_argument("suite", metavar="SUITE", nargs="?", help="see --list")
     command.add_argument("--suite", dest="named", help=argparse.SUPPRESS)
-    command.add_argument("--list", action="store_true", help="name suites and policies, one a line")
+    command.add_argument("--list", action="store_true", help="list suites and policies")
     command.add_argument("--data", metavar="DIR", help="published data (default: $DRYSTONE_DATA)")
     command.add_argument("-o", "--output", metavar="DIR", help="draw pictures into a folder")
     command.add_argument(
@@ -25,19 +25,19 @@ def add_bench(command: argparse.ArgumentParser) -> None:
     command.add_argument("--quick", action="store_true", help="a smaller version")
     command.add_argument(
         "--seconds", type=positive, nargs="+", action="extend", default=[], metavar="S",
-        help="of each search (search, packing); several: what it has come to after each (search)",
+        help="time of each search (search, packing); several show its progress (search)",
     )  # fmt: skip
     command.add_argument(
         "--seeds", type=whole_from(1), metavar="N",
-        help="how many, from --seed on (search, public suites: 5 unless given)",
+        help="number of seeds, from --seed on (default 5; search, public suites)",
     )  # fmt: skip
     command.add_argument(
         "--only", action="append", default=[], metavar="NAME",
-        help="walls whose names begin so; may be repeated (search, packing, public suites)",
+        help="only walls whose names begin with this; repeatable (search, packing, public suites)",
     )  # fmt: skip
     command.add_argument(
         "--runs", metavar="FILE.csv",
-        help="add every search to a table; those that it holds are not done again (search)",
+        help="table of searches: new ones are added, those in it are not repeated (search)",
     )  # fmt: skip
     command.add_argument("--json", action="store_true", help="print as JSON")
     command.add_argument("--markdown", action="store_true", help="print as Markdown")
@@ -49,26 +49,26 @@ def _public(command: argparse.ArgumentParser) -> None:
     group = command.add_argument_group("public suites (docs/evidence/benchmark.md)")
     group.add_argument(
         "--policy", nargs="+", action="extend", default=[], metavar="NAME",
-        help="methods that build every wall (default: paper random); see --list; for search those "
-        "that are compared",
+        help="methods that build every wall, see --list (default: paper random); with search, "
+        "those to compare",
     )  # fmt: skip
     group.add_argument(
         "--settings", metavar="FILE.toml",
-        help="parameters that are replaced for all methods (search too)",
+        help="settings that replace those of all methods (search too)",
     )  # fmt: skip
     group.add_argument(
         "--jobs", type=whole_from(1), metavar="N",
-        help="processes; never the results (search too: the time of each is its own)",
+        help="number of processes, which does not change the results (search too)",
     )  # fmt: skip
     group.add_argument(
-        "--dask", metavar="ADDRESS", help="of the scheduler of a Dask cluster that does the runs"
+        "--dask", metavar="ADDRESS", help="address of a Dask scheduler that runs the walls"
     )
     group.add_argument(
-        "--store", metavar="DIR", help="keep runs there; those of this version are not done again"
+        "--store", metavar="DIR", help="folder of runs; those of this version are not repeated"
     )
-    group.add_argument("--again", action="store_true", help="do runs again that are in the store")
+    group.add_argument("--again", action="store_true", help="repeat the runs that are in the store")
     group.add_argument(
-        "--history", action="store_true", help="show the quality by version that a store holds"
+        "--history", action="store_true", help="show the quality by version from a store"
     )
     group.add_argument(
         "--shake", action="store_true",
@@ -79,7 +79,7 @@ def _public(command: argparse.ArgumentParser) -> None:
 def add_fetch(command: argparse.ArgumentParser) -> None:
     """Add the options of ``fetch``."""
     command.add_argument("sets", metavar="NAME", nargs="*", help="see --list")
-    command.add_argument("--list", action="store_true", help="name the sets, one a line")
+    command.add_argument("--list", action="store_true", help="list the sets")
     command.add_argument(
         "-o", "--output", metavar="DIR",
         help="folder to write to (default: $DRYSTONE_DATA, else a cache of your account)",
@@ -93,18 +93,18 @@ def add_reproduce(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "names", metavar="NAME", nargs="*", help="table or figure, see --list; or all"
     )
-    command.add_argument("--list", action="store_true", help="name them, one a line")
+    command.add_argument("--list", action="store_true", help="list them")
     command.add_argument(
-        "-o", "--output", metavar="DIR", help="folder to write to; what is in it is kept and added"
+        "-o", "--output", metavar="DIR", help="folder to write to; files in it are kept"
     )
     command.add_argument("--quick", action="store_true", help="a smaller version, in a minute each")
     command.add_argument("--data", metavar="DIR", help="published data (default: $DRYSTONE_DATA)")
-    command.add_argument("--seed", type=whole_from(0), default=1, help="the first one (default 1)")
+    command.add_argument("--seed", type=whole_from(0), default=1, help="first seed (default 1)")
     command.add_argument("--jobs", type=whole_from(1), metavar="N", help="number of processes")
     command.add_argument("--dask", metavar="ADDRESS", help="plan the walls on a Dask cluster")
     command.add_argument(
         "--again", action="store_true",
-        help="make again what is finished; finished walls are taken from DIR/runs",
+        help="make finished items again, from the walls in DIR/runs",
     )  # fmt: skip
     command.add_argument("--json", action="store_true", help="print as JSON")
     command.add_argument("--quiet", action="store_true", help="no progress")

@@ -63,11 +63,12 @@ def _names(arguments: argparse.Namespace) -> tuple[str, ...]:
     """Return what is to be made, in the order of the paper; E138 without a name or a folder."""
     if not arguments.names or arguments.output is None:
         absent = "no folder to write to" if arguments.names else "nothing to make"
+        names = " ".join(arguments.names) or "fig5"
         raise UsageError(
             "E138",
             f"{absent} is named.",
             where="reproduce",
-            cure="Write `drystone reproduce fig5 -o DIR`; `drystone reproduce --list` names all.",
+            cure=f"Write `drystone reproduce {names} -o DIR`; --list shows all names.",
         )
     asked = {name for each in arguments.names for name in item_names(each)}
     return tuple(name for name in ITEMS if name in asked)

@@ -11,7 +11,7 @@ from types import MappingProxyType
 from typing import Any
 
 from drystone.errors import UsageError
-from drystone.selection.policies.registry import BUILT_IN, GROUP, PAPER, RULES, rule_of
+from drystone.selection.policies.registry import BUILT_IN, GROUP, PAPER, RULES, no_policy, rule_of
 from drystone_lab.runs.spec import STRIPS, Changes, RunSpec, flat, generated
 from drystone_lab.walls import IR_FRAMED, NOISY, PR_560, PR_600, R_FRAMED, Target, chosen
 
@@ -135,7 +135,7 @@ STRIP_SECONDS = 3
 
 ABOUT = {
     PAPER: "the paper's method as it is (Algorithm 2)",
-    **dict.fromkeys(BUILT_IN, "the paper's method, with this policy choosing the stones"),
+    **dict.fromkeys(BUILT_IN, "the paper's method, but this policy chooses the stones"),
     BEST: "one pass of the default method, on outlines: no search",
     STRIPS: "no policy but a yardstick, F_SF alone: strips packed without gravity (extra `bench`)",
 }
@@ -175,12 +175,7 @@ def method_named(name: str, changes: Changes = ()) -> BenchMethod:
         found = BenchMethod(name, "best", _merged(own, changes))
     else:
         if name not in (known := known_methods()):
-            raise UsageError(
-                "E146",
-                f"there is no policy {name!r}.",
-                where="--policy",
-                cure=f"Choose one of {', '.join(known)}.",
-            )
+            raise no_policy(name, tuple(known))
         rule = rule_of(name)
         own = () if name == PAPER else (("selection_rule", rule),)
         found = BenchMethod(name, "paper", _merged(own, changes))

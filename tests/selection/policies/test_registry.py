@@ -71,7 +71,8 @@ def test_unknown_ones_are_refused_with_the_known_ones(name: str, installed: Inst
             find(name)
         assert repr(name) in caught.value.what
         known = f"paper, {', '.join(BUILT_IN)}, first."
-        assert caught.value.cure == f"Choose one of {known}"
+        asked = "Did you mean `first`? " if name in ("fist", "First") else ""
+        assert caught.value.cure == f"{asked}Choose one of {known}"
 
 
 def test_names_of_ours_cannot_be_taken(installed: Installed) -> None:

@@ -405,8 +405,8 @@ class ScatterCard:
         both = (("min alpha", found.alpha_quantiles), ("F_LR", found.value_quantiles))
         for name, quantiles in both:
             if quantiles is not None:
-                low, median, high = quantiles
-                rows.append((f"  {name}", f"{median:.3f} (5 % to 95 %: {low:.3f} to {high:.3f})"))
+                low, middle, high = (f"{value:.3f}" for value in quantiles)
+                rows.append((f"  {name}", f"median {middle} (5 % to 95 %: {low} to {high})"))
         share = found.falling_share
         if share is not None:
             said = f"{counts[LimitStatus.UNSTABLE]} walls, {100 * share:.0f} %"

@@ -87,7 +87,7 @@ def rows(result: PlanResult, folder: Path) -> list[tuple[str, str]]:
         "1 is a full wall" if bound == 1.0 else f"the maximum for these stones is {number(bound)}"
     )
     report = _craft(result)
-    broken = [f"{RULES[name].title} ({report.findings[name].amount})" for name in report.broken]
+    broken = [RULES[name].title for name in report.broken]
     craft = f"breaks {', '.join(broken)}; see drystone craft" if broken else "breaks no rule"
     return [
         ("stones", f"{placed} of {placed + left} placed{unused}"),
@@ -96,10 +96,10 @@ def rows(result: PlanResult, folder: Path) -> list[tuple[str, str]]:
         ("F_AH", f"{number(metrics.F_AH, 2)}  horizontal arrangement, lower is better"),
         ("F_LR", f"{number(metrics.F_LR)}  lateral resistance / mu, higher is better"),
         ("F_LR_coulomb", f"{number(metrics.F_LR_coulomb)}  the same without dilatancy"),
-        ("T_LEVEL", f"{number(metrics.T_LEVEL)}  unevenness of the top"),
-        ("E_FLUSH", f"{number(metrics.E_FLUSH)}  unevenness of the ends"),
+        ("T_LEVEL", f"{number(metrics.T_LEVEL)}  unevenness of the top, lower is better"),
+        ("E_FLUSH", f"{number(metrics.E_FLUSH)}  unevenness of the ends, lower is better"),
         ("alpha", f"left {number(metrics.alpha_left)}, right {number(metrics.alpha_right)}"),
-        ("wedges", f"{len(plan.wedge_steps)}, area {metrics.wedge_area:g} {plan.length_unit}²"),
+        ("wedges", f"{len(plan.wedge_steps)}, area {metrics.wedge_area:.3g} {plan.length_unit}²"),
         ("craft", craft),
         ("walls tried", f"{plan.walls}{again}"),
         ("working scale", f"{plan.working_scale:g}"),

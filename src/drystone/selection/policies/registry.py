@@ -1,9 +1,9 @@
 """Policies by their names: those built in, and those of other packages."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import entry_points
 
-from drystone.errors import UsageError
+from drystone.errors import UsageError, meant
 from drystone.selection.algorithm2 import SelectionSettings
 from drystone.selection.policies.choices import Filters, Lowest, Random, Scalarised, Towers
 from drystone.selection.policies.learned import Learned
@@ -76,9 +76,10 @@ def _of_another_package(name: str) -> Policy:
 
 def _unknown(name: str) -> UsageError:
     others = {entry.name for entry in entry_points(group=GROUP)} - {PAPER, *RULES, *BUILT_IN}
-    return UsageError(
-        "E146",
-        f"there is no policy {name!r}.",
-        where="--policy",
-        cure=f"Choose one of {', '.join((PAPER, *BUILT_IN, *sorted(others)))}.",
-    )
+    return no_policy(name, (PAPER, *BUILT_IN, *sorted(others)))
+
+
+def no_policy(name: str, known: Sequence[str]) -> UsageError:
+    """Return the error (E146) of a name that none of the known policies has."""
+    cure = f"{meant(name, known)}Choose one of {', '.join(known)}."
+    return UsageError("E146", f"there is no policy {name!r}.", where="--policy", cure=cure)
