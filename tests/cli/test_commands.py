@@ -211,7 +211,7 @@ def test_measure(finished, tmp_path, run):
     assert reduced["F_SF"] == pytest.approx(given["F_SF"])
     metres = run("measure", tower, "--json", "--wall", ".4mx.5m", "--px-per-m", "100").json()
     assert metres == given
-    assert "measured at 30 x 50 px" in run("measure", tower).out
+    assert "in a picture of 30 x 50 px" in run("measure", tower).out
     # A plan keeps its wall.
     whole = run("measure", finished, "--json").json()
     half = run("measure", finished, "--scale", ".5", "--json").json()

@@ -116,7 +116,7 @@ def test_two_sheets_have_other_markers(run, tmp_path):
 def test_the_options_that_are_said_find_the_markers(run, tmp_path, options, said):
     path = tmp_path / "sheet.pdf"
     ran = run("markers", "-o", path, *options)
-    assert ran.out.splitlines()[-1] == f"Print at 100 %. Stones are then looked for with {said}"
+    assert ran.out.splitlines()[-1] == f"Print at 100 %. Then: drystone segment PHOTO {said} -o DIR"
     told = run("markers", "-o", path, "--overwrite", "--json", *options).json()
     assert told["options"] == said.split()
     named = build_parser().parse_args(["segment", "photo.jpg", "-o", "out", *told["options"]])

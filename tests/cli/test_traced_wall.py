@@ -36,7 +36,7 @@ def test_every_command_of_the_page_gives_what_it_says(traced: Path, run: Run) ->
     ]  # fmt: skip
     told = [run(*words) for words in commands]
     assert [one.code for one in told] == [0] * len(told), [one.err for one in told]
-    assert (traced / "wall" / "outlines.html").exists()
+    assert (traced / "trace" / "outlines.html").exists()
     assert "13 stones" in told[1].out
     assert "own weight           stands" in told[2].out
     assert set(printed("text")) <= set(told[2].out.splitlines())
@@ -45,7 +45,7 @@ def test_every_command_of_the_page_gives_what_it_says(traced: Path, run: Run) ->
     assert values[0] is not None
     assert values[1] is not None
     assert values[0][1] == values[1][1]
-    assert (traced / "analysis" / "report.html").exists()
+    assert (traced / "traced-analysis" / "report.html").exists()
     photo = run("analyse", "wall.jpg")
     assert (photo.code, "for-engineers.md#from-a-photograph-of-a-wall" in photo.err) == (3, True)
 

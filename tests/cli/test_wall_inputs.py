@@ -30,9 +30,9 @@ def test_outlines_in_every_command(form, tmp_path: Path, run: Run) -> None:
 
 def test_the_scale_of_a_drawing_is_kept(tmp_path: Path, run: Run) -> None:
     for form in (svg, dxf):
-        assert "0.10 m wide, 0.05 m high" in run("analyse", form(tmp_path), "--mu", "1:2").out
+        assert "0.1 m wide, 0.05 m high" in run("analyse", form(tmp_path), "--mu", "1:2").out
         at = run("analyse", form(tmp_path), "--px-per-m", "3000")
-        assert "0.10 m wide, 0.05 m high" in at.out
+        assert "0.1 m wide, 0.05 m high" in at.out
         assert run("measure", form(tmp_path), "--px-per-m", "3000").code == 0
         wall = run("measure", form(tmp_path), "--wall", "110x60mm", "--json").json()
         assert wall["F_SF"] < 0.7

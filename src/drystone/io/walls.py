@@ -270,7 +270,8 @@ def unsupported(model: RigidBlockModel, wall: GivenWall, *, swept: bool = False)
     height = lowest(wall.blocks)
     if height is not None and not on_ground(model):
         cure = "Move the wall down until it stands there, or give what carries it as fixed."
-        said += f" are in the air: nothing touches y = 0, and the lowest block is at y = {height:g}"
+        said = f"Blocks in the air: {len(loose)} of {len(model.blocks)}; nothing touches y = 0, and"
+        said += f" the lowest block is at y = {height:g}"
         return Notice("W302", f"{said}.", cure)
     said += f" touch neither the ground nor a block that is connected with it: {listed(loose)}."
     cure = f"{BEAR}: --close-gaps auto of `drystone analyse` looks for the gaps to close."

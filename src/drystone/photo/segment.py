@@ -200,12 +200,15 @@ def _shaded(labels: NDArray[np.uint16], shadows: Shadows, count: int) -> tuple[i
 
 
 def _no_stones(cut: int, ground: GroundModel) -> InputError:
-    beside = f" ({cut} are cut by the edge of the photograph)" if cut else ""
+    beside = f" (but for {cut} cut by the edge of the photograph)" if cut else ""
     what = (
         f"no stones were found{beside}: {100 * ground.share:.0f} % of the photograph has the "
         "colour of its ground"
     )
-    cure = "Photograph whole stones on a ground of another colour; --min-area finds smaller ones."
+    cure = (
+        "Photograph whole stones on a ground of another colour; --min-area finds smaller ones. "
+        "The stones of a wall are traced: `drystone trace PHOTO -o DIR`."
+    )
     varies = float(ground.spread.max())
     if varies > ROUGH:
         what += f", which is not plain (it varies by {varies:.0f} in CIELAB)"

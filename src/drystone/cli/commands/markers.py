@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     print(
         f"{path}: markers {sheets.ids[0]} to {sheets.ids[-1]}, {counted(len(sheets.pages), 'page')}"
     )
-    print(f"Print at 100 %. Stones are then looked for with {' '.join(options)}")
+    print(f"Print at 100 %. Then: drystone segment PHOTO {' '.join(options)} -o DIR")
     return ExitCode.DONE
 
 

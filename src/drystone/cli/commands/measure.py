@@ -73,7 +73,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     height, width = labels.shape
     rows = [(name, f"{number(getattr(metrics, name), n)}  {said}") for name, n, said in _ROWS]
     rows.append(("wall", f"{metrics.width:g} x {metrics.height:g} px; joints are two px wide"))
-    size = f"measured at {width} x {height} px"
+    size = f"in a picture of {width} x {height} px"
     said = counted(metrics.stones, "stone")
     print_table(f"{arguments.wall_path}: {said}, {size}", rows)
     return ExitCode.DONE

@@ -23,6 +23,7 @@ from drystone.contacts.scarce import scarce_contacts
 from drystone.contacts.settled import SETBACK
 from drystone.drawing.words.analysis import ModelledWall, Shapes
 from drystone.errors import InputError, Notice, UsageError
+from drystone.io.file_errors import listed
 from drystone.io.walls import GivenWall
 from drystone.model.stone_size import median_sides, sides_px
 from drystone.model.wall import Labels
@@ -192,7 +193,7 @@ def _with_swept_gaps(
 
     _, usual_px = median_sides(_sides_px(labels))
     sweep = gap_sweep(at, usual_px)
-    remarks = dict(sweep_rows(sweep, usual_px))
+    remarks = dict(sweep_rows(sweep, usual_px, wall.px_per_m))
     return replace(made[sweep.chosen_px], remarks=remarks, joints="swept", sweep=sweep)
 
 
@@ -205,7 +206,9 @@ def _sides_px(labels: Labels) -> Iterator[tuple[float, float]]:
             yield sides_px(place[window] == index)
 
 
-def sweep_rows(sweep: GapSweep, usual_px: float) -> Iterator[tuple[str, str]]:
+def sweep_rows(
+    sweep: GapSweep, usual_px: float, px_per_m: float | None = None
+) -> Iterator[tuple[str, str]]:
     """Say from where a wall stands, and how the load multiplier depends on the width."""
     chosen, first = sweep.chosen_px, sweep.stands_from_px
     if first is None:
@@ -226,7 +229,8 @@ def sweep_rows(sweep: GapSweep, usual_px: float) -> Iterator[tuple[str, str]]:
         yield "  how sure", f"{hangs}; {upto}"
     if chosen:
         share = 100.0 * chosen / usual_px
-        yield "  width", f"{chosen} px is {share:.0f} % of the height of a usual stone"
+        length = "" if px_per_m is None else f" ({100.0 * chosen / px_per_m:.2g} cm)"
+        yield "  width", f"{chosen} px{length} is {share:.0f} % of the height of a usual stone"
 
 
 def sweep_report(sweep: GapSweep) -> dict[str, Any]:
@@ -287,9 +291,6 @@ def _reach(text: str) -> float | None:
     return reach
 
 
-LISTED = 8  # so many stones are named
-
-
 def size_words(shapes: Shapes, per_unit_m: float | None) -> str | None:
     """Say how wide and high a wall is, in metres; None without a scale or a block."""
     if per_unit_m is None or not len(shapes):
@@ -300,7 +301,7 @@ def size_words(shapes: Shapes, per_unit_m: float | None) -> str | None:
     else:
         rows, cols = np.nonzero(shapes)
         width, height = float(np.ptp(cols) + 1), float(np.ptp(rows) + 1)
-    return f"{width * per_unit_m:.2f} m wide, {height * per_unit_m:.2f} m high"
+    return f"{width * per_unit_m:.3g} m wide, {height * per_unit_m:.3g} m high"
 
 
 def scarcity(wall: ModelledWall, per_unit_m: float | None) -> Notice | None:
@@ -308,17 +309,16 @@ def scarcity(wall: ModelledWall, per_unit_m: float | None) -> Notice | None:
     few = scarce_contacts(wall.model, wall.shapes)
     if not few:
         return None
-    named = ", ".join(str(one.block) for one in few[:LISTED])
-    more = ", …" if len(few) > LISTED else ""
+    named = listed(one.block for one in few)
     gaps = [one.gap for one in few if np.isfinite(one.gap)]
     noun = wall.names.noun if len(few) == 1 else f"{wall.names.noun}s"
     have = "has" if len(few) == 1 else "have"
-    said = f"{len(few)} {noun} {have} fewer than two contact points: {named}{more}."
+    said = f"{len(few)} {noun} {have} fewer than two contact points: {named}."
     if not gaps:
         return Notice("W305", said)
     unit = "" if wall.joints == "known" else " px"
     metres = "" if per_unit_m is None else f" ({1000.0 * per_unit_m * min(gaps):.0f} mm)"
-    said += f" The narrowest gap beside them is {min(gaps):.3g}{unit}{metres}."
+    said += f" The narrowest gap there is {min(gaps):.3g}{unit}{metres}."
     cure = "--close-gaps auto looks for the width from which the wall stands."
     return Notice("W305", said, _CURES.get(wall.joints, cure))
 

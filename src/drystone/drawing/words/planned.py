@@ -70,7 +70,9 @@ def ending(result: PlanResult) -> str:
         return "interrupted: --resume goes on from here"
     placed, unused = len(result.plan.stone_steps), result.plan.unused
     why = result.message
-    if why.startswith("no stone that is left"):
+    if not unused:
+        why = ""
+    elif why.startswith("no stone that is left"):
         some = 0 < len(unused) <= MOST_NAMED
         why = f"{' and '.join(map(str, unused)) if some else 'the others'} did not fit"
     said = f"{placed} of {counted(placed + len(unused), 'stone')} placed"
