@@ -34,7 +34,7 @@ def pins(masonry: Masonry, limit: Limit) -> Evidence:
     """
     wedges = sorted(set(masonry.wedge_ids))
     if not wedges:
-        return Evidence(None, note="No wedges are known.")
+        return Evidence(None, note="There is no wedge, or none is marked.")
     resting = {wedge: resting_on(masonry, wedge) for wedge in wedges}
     outside = [case for wedge in wedges for case in _outside(masonry, wedge, resting[wedge])]
     unfit = [case for wedge in wedges for case in _unfit(masonry, wedge, resting[wedge])]

@@ -148,7 +148,7 @@ def wedge_sizes(masonry: Masonry, limit: Limit) -> Evidence:
     """Find wedges that are large beside the stone on them, and what they stand on."""
     wedges = sorted(set(masonry.wedge_ids))
     if not wedges:
-        return Evidence(None, note="No wedges are known.")
+        return Evidence(None, note="There is no wedge, or none is marked.")
     shares, cases = [0.0], []
     for wedge in wedges:
         carried = resting_on(masonry, wedge)

@@ -111,13 +111,13 @@ class Rehearsed:
         if self.again is not None:
             rows[5:] = [
                 ("stones that found no place", f"{told['fallen_share']:.1%}"),
-                ("fell on the way, a wall", f"{self.again:.1f}"),
+                ("fell on the way", f"{self.again:.1f} a wall"),
             ]
         for one in told["first_falls"][:NAMED]:
             words = f"stone {one['stone']} (step {one['step']}), {one['runs']} of {len(self.runs)}"
             rows.append(("falls begin with", words))
         for name, key, form in (
-            ("from the plan, of the size", "share", "{:.1%}"), ("turned", "turn_deg", "{:.1f}°"),
+            ("off its place, of its size", "share", "{:.1%}"), ("turned", "turn_deg", "{:.1f}°"),
             ("tilt over mu, whole walls", "tilt", "{:.2f}"),
         ):  # fmt: skip
             if (found := told[key]) is not None:
