@@ -397,11 +397,9 @@ def test_what_touches_too_little_is_named_with_a_cure(tmp_path, run):
     labels[31:, :30], labels[31:, 30:], labels[19:31, 15:45], labels[4:16, 15:45] = 1, 2, 3, 4
     write_labels(labels, wall)
     ran = run("analyse", wall, "--px-per-m", "200", "--load", "tilt", "--mu", "0.6")
-    assert (
-        "W305 1 stone has fewer than two contact points: 4. The narrowest gap there is" in ran.err
-    )
+    assert "W305 1 stone has fewer than two contact points: 4. The narrowest gap" in ran.err
     assert ("3 px (15 mm)" in ran.err, "--close-gaps auto" in ran.err) == (True, True)
-    assert ("does not stand" in ran.out, "0.3 m wide, 0.2 m high" in ran.out) == (True, True)
+    assert ("does not stand" in ran.out, "0.3 m wide, 0.195 m high" in ran.out) == (True, True)
     dead = ("--dead", "3@30,20:0,-2")
     asked = ("analyse", wall, "--close-gaps", "3px", "--px-per-m", "200", *dead, "-o", folder)
     closed = run(*asked)

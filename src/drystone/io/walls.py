@@ -269,9 +269,10 @@ def unsupported(model: RigidBlockModel, wall: GivenWall, *, swept: bool = False)
     said = f"{len(loose)} of {len(model.blocks)} blocks"
     height = lowest(wall.blocks)
     if height is not None and not on_ground(model):
-        cure = "Move the wall down until it stands there, or give what carries it as fixed."
-        said = f"Blocks in the air: {len(loose)} of {len(model.blocks)}; nothing touches y = 0, and"
-        said += f" the lowest block is at y = {height:g}"
+        cure = "Move the wall down to y = 0, the ground, or give what carries it as fixed."
+        said = (
+            f"blocks in the air: {len(loose)} of {len(model.blocks)}, the lowest at y = {height:g}"
+        )
         return Notice("W302", f"{said}.", cure)
     said += f" touch neither the ground nor a block that is connected with it: {listed(loose)}."
     cure = f"{BEAR}: --close-gaps auto of `drystone analyse` looks for the gaps to close."

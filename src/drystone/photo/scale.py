@@ -205,8 +205,8 @@ def _disagreement(what: str) -> InputError:
         "E172",
         f"the markers disagree with each other. {what}.",
         where="markers",
-        cure="Print all at 100 %, and give --aruco the size that was printed. Lay them flat in one plane, with all "
-        "of the white border in the picture, and do not cut a sheet up.",
+        cure="Print all at 100 %, and give --aruco the size that was printed. Lay them flat in one "
+        "plane, with all of the white border in the picture, and do not cut a sheet up.",
     )
 
 

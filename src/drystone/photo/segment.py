@@ -205,10 +205,7 @@ def _no_stones(cut: int, ground: GroundModel) -> InputError:
         f"no stones were found{beside}: {100 * ground.share:.0f} % of the photograph has the "
         "colour of its ground"
     )
-    cure = (
-        "Photograph whole stones on a ground of another colour; --min-area finds smaller ones. "
-        "The stones of a wall are traced: `drystone trace PHOTO -o DIR`."
-    )
+    cure = "Photograph whole stones on other ground, lower --min-area, or `drystone trace` a wall."
     varies = float(ground.spread.max())
     if varies > ROUGH:
         what += f", which is not plain (it varies by {varies:.0f} in CIELAB)"

@@ -206,9 +206,7 @@ def _sides_px(labels: Labels) -> Iterator[tuple[float, float]]:
             yield sides_px(place[window] == index)
 
 
-def sweep_rows(
-    sweep: GapSweep, usual_px: float, px_per_m: float | None = None
-) -> Iterator[tuple[str, str]]:
+def sweep_rows(sweep: GapSweep, usual_px: float, per_m: float | None) -> Iterator[tuple[str, str]]:
     """Say from where a wall stands, and how the load multiplier depends on the width."""
     chosen, first = sweep.chosen_px, sweep.stands_from_px
     if first is None:
@@ -229,7 +227,7 @@ def sweep_rows(
         yield "  how sure", f"{hangs}; {upto}"
     if chosen:
         share = 100.0 * chosen / usual_px
-        length = "" if px_per_m is None else f" ({100.0 * chosen / px_per_m:.2g} cm)"
+        length = "" if per_m is None else f" ({100.0 * chosen / per_m:.2g} cm)"
         yield "  width", f"{chosen} px{length} is {share:.0f} % of the height of a usual stone"
 
 

@@ -69,12 +69,10 @@ def ending(result: PlanResult) -> str:
     if result.status == "interrupted":
         return "interrupted: --resume goes on from here"
     placed, unused = len(result.plan.stone_steps), result.plan.unused
-    why = result.message
-    if not unused:
-        why = ""
-    elif why.startswith("no stone that is left"):
-        some = 0 < len(unused) <= MOST_NAMED
-        why = f"{' and '.join(map(str, unused)) if some else 'the others'} did not fit"
+    why = result.message if unused else ""
+    if why.startswith("no stone that is left"):
+        left = " and ".join(map(str, unused)) if len(unused) <= MOST_NAMED else "the others"
+        why = f"{left} did not fit"
     said = f"{placed} of {counted(placed + len(unused), 'stone')} placed"
     return f"{result.status}: {'; '.join(filter(None, (said, why, result.shortfall)))}"
 
@@ -88,8 +86,7 @@ def rows(result: PlanResult, folder: Path) -> list[tuple[str, str]]:
     most = (
         "1 is a full wall" if bound == 1.0 else f"the maximum for these stones is {number(bound)}"
     )
-    report = _craft(result)
-    broken = [RULES[name].title for name in report.broken]
+    broken = [RULES[name].title for name in _craft(result).broken]
     craft = f"breaks {', '.join(broken)}; see drystone craft" if broken else "breaks no rule"
     return [
         ("stones", f"{placed} of {placed + left} placed{unused}"),

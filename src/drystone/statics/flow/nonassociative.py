@@ -252,9 +252,8 @@ def _least_verified(
     found = replace(best, rounds=rounds, answers=alphas)
     count = f"{len(verified)} solutions"
     if least >= 0.0:
-        low, high = f"{least:.4f}", f"{alphas[-1]:.4f}"
-        message = f"Lowest of {count}" + (f"; range {low} to {high}." if low != high else ".")
-        return replace(found, message=message)
+        upto = f"; range {least:.4f} to {alphas[-1]:.4f}" if alphas[-1] - least > 5e-5 else ""
+        return replace(found, message=f"Lowest of {count}{upto}.")
     message = (
         "Without dilatancy the blocks can move this way under their dead load alone, even against"
         f" a load of {-least:.4f}. Other forces would hold them:"
