@@ -116,7 +116,7 @@ def test_a_wall_to_choose_is_as_it_was_found(planner: Planner) -> None:
     assert as_found(full, half)[1] == Stopped("filled", "filling above 0.1")
 
 
-@pytest.mark.parametrize("place", ["surest", "with_the_rest"])
+@pytest.mark.parametrize("place", ["surest", "repaired", "with_the_rest"])
 def test_an_interrupt_at_the_end_keeps_the_best_as_it_was_found(
     place: str, planner: Planner, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -130,6 +130,18 @@ def test_an_interrupt_at_the_end_keeps_the_best_as_it_was_found(
     assert (cut.stopped, cut.walls) == (INTERRUPTED, found.walls)
     best = max(found.kept, key=lambda wall: wall.merit)
     assert ids(cut.planner) == [group.stone_id for group in best.groups]
+
+
+def test_a_repair_that_time_cuts_off_is_said(
+    planner: Planner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert not run_to_end(planner).cut
+
+    def up(*_: object) -> None:
+        raise TimeIsUp
+
+    monkeypatch.setattr("drystone.search.whole_search.repaired", up)
+    assert run_to_end(planner).cut
 
 
 def test_time_that_is_up_at_the_end_loses_nothing(planner: Planner) -> None:

@@ -143,8 +143,10 @@ def _ended(planner: Planner, progress: Progress, grace: Deadline, *, lost: bool)
     kept = progress.kept
     surer, unsure = surest(planner, kept, grace)
     best = found = surer or progress.best
-    with suppress(TimeIsUp):
+    try:
         best = repaired(planner, found, grace)
+    except TimeIsUp:
+        unsure = True
     last, stopped, cut = with_the_rest(planner, best, grace)
     planner.solves += last.solves
     if best is not found or len(last.build.actions) > len(best.groups):
