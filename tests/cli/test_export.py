@@ -10,9 +10,9 @@ from xml.etree import ElementTree as ET
 import ezdxf
 import pytest
 
-from drystone.drawing.export.formats import FORMATS, ExportSettings
+from drystone.drawing.export.formats import FORMATS
 from tests.cli.conftest import WALL
-from tests.drawing.export.robot_plans import assembly, write_plan_folder
+from tests.drawing.export.robot_plans import write_plan_folder
 
 QUICK = ("poses", "compas", "moveit", "urdf", "obj", "glb", "stl", "csv", "geojson")
 """Formats that need no drawing."""
@@ -187,15 +187,3 @@ def test_nothing_is_written_when_one_format_cannot_be(run, plan, monkeypatch):
     rewrite(plan, orphan)
     before = tree(plan.parent)
     refused("E214", "gif")
-
-
-def test_formats_write_what_they_say(monkeypatch):
-    monkeypatch.setitem(sys.modules, "av", sys)
-    wall, named = assembly("exact"), []
-    for name, one in FORMATS.items():
-        files = one.files(wall, ExportSettings())
-        said = {first + cut for first, cut, _ in (file.partition("/") for file in files)}
-        assert said == set(one.writes), name
-        named += list(files)
-    assert len(set(named)) == len(named)
-    assert not {"plan.json", "blocks.json", "wall.png", "report.html"} & set(named)

@@ -3,6 +3,7 @@
 In the file y runs down from the top of the wall; a turn by a positive angle is a negative one.
 """
 
+from dataclasses import dataclass
 from xml.etree import ElementTree as ET
 
 import numpy as np
@@ -38,47 +39,47 @@ def svg_bytes(drawing: Drawing, size: Point, unit: str, title: str, description:
 
     It is in the unit of the file, mm or px, and on the file's layers; hatched areas are left out.
     """
-    return _Sheet(size, unit).of(drawing, title, description)
+    width, height = size
+    margin = round(MARGIN * width, 3)
+    wide, high = width + 2 * margin, height + 2 * margin
+    root = ET.Element(
+        "svg",
+        {
+            "xmlns": "http://www.w3.org/2000/svg",
+            "xmlns:inkscape": "http://www.inkscape.org/namespaces/inkscape",
+            "version": "1.1",
+            "width": f"{_text(wide)}{unit}",
+            "height": f"{_text(high)}{unit}",
+            "viewBox": f"{_text(-margin)} {_text(-margin)} {_text(wide)} {_text(high)}",
+        },
+    )
+    ET.SubElement(root, "title").text = one_line(title)
+    ET.SubElement(root, "desc").text = description
+    sheet = _Sheet(width, height, ET.SubElement(root, "defs"))
+    for layer in LAYERS:
+        group = {"id": layer, "inkscape:groupmode": "layer", "inkscape:label": layer}
+        if layer in drawing.hidden:
+            group["display"] = "none"
+        items = drawing.layers(layer)
+        if items:
+            element = ET.SubElement(root, "g", group)
+            if layer in drawing.notes:
+                ET.SubElement(element, "title").text = drawing.notes[layer]
+            for item in items:
+                sheet.add(element, item)
+    ET.indent(root, " ")
+    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root) + b"\n"
 
 
+@dataclass(frozen=True, eq=False)
 class _Sheet:
-    """A file while it grows."""
+    """The size of a wall, and where its stones are defined."""
 
-    def __init__(self, size: Point, unit: str) -> None:
-        self.width, self.height = size
-        margin = round(MARGIN * self.width, 3)
-        wide, high = self.width + 2 * margin, self.height + 2 * margin
-        self.root = ET.Element(
-            "svg",
-            {
-                "xmlns": "http://www.w3.org/2000/svg",
-                "xmlns:inkscape": "http://www.inkscape.org/namespaces/inkscape",
-                "version": "1.1",
-                "width": f"{_text(wide)}{unit}",
-                "height": f"{_text(high)}{unit}",
-                "viewBox": f"{_text(-margin)} {_text(-margin)} {_text(wide)} {_text(high)}",
-            },
-        )
+    width: float
+    height: float
+    defs: ET.Element
 
-    def of(self, drawing: Drawing, title: str, description: str) -> bytes:
-        ET.SubElement(self.root, "title").text = one_line(title)
-        ET.SubElement(self.root, "desc").text = description
-        self.defs = ET.SubElement(self.root, "defs")
-        for layer in LAYERS:
-            group = {"id": layer, "inkscape:groupmode": "layer", "inkscape:label": layer}
-            if layer in drawing.hidden:
-                group["display"] = "none"
-            items = drawing.layers(layer)
-            if items:
-                element = ET.SubElement(self.root, "g", group)
-                if layer in drawing.notes:
-                    ET.SubElement(element, "title").text = drawing.notes[layer]
-                for item in items:
-                    self._add(element, item)
-        ET.indent(self.root, " ")
-        return b'<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(self.root) + b"\n"
-
-    def _add(self, layer: ET.Element, item: Drawable) -> None:
+    def add(self, layer: ET.Element, item: Drawable) -> None:
         if isinstance(item, Surface) and not item.hatch:
             self._area(layer, item)
         elif isinstance(item, Lines):

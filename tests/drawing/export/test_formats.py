@@ -29,10 +29,16 @@ def test_equal_walls_give_equal_bytes_under_the_names_that_are_told(name, tmp_pa
     assert names == list(files)
     folders = [one if "/" not in one else f"{one.partition('/')[0]}/" for one in names]
     assert tuple(dict.fromkeys(folders)) == FORMATS[name].writes
-    for path, made in zip(paths, files.values(), strict=True):
-        again, written = made(), path.read_bytes()
+    for path, again in zip(paths, files.values(), strict=True):
+        written = path.read_bytes()
         assert written == (again.encode() if isinstance(again, str) else again)
         assert b"CreationDate" not in written
+
+
+def test_no_two_formats_write_one_file_and_none_one_of_the_plan() -> None:
+    names = [name for one in FORMATS.values() for name in one.writes]
+    assert len(set(names)) == len(names)
+    assert not {"plan.json", "blocks.json", "wall.png", "report.html"} & set(names)
 
 
 @pytest.mark.parametrize("name", [name for name, one in FORMATS.items() if one.metric])

@@ -217,11 +217,8 @@ def test_the_shortest_turn_is_the_same_turn() -> None:
 
 
 def test_neighbours_are_those_that_stand_already(small) -> None:
-    first = beside(small, part(small, 1))
-    assert first.ground
-    assert (first.on, first.left_of, first.right_of) == ((), (), ())
-    last = beside(small, part(small, 7))
-    assert (last.on, last.right_of, last.left_of, last.ground) == ((4,), (6,), (), False)
+    assert beside(small, part(small, 1)) == {"on": [GROUND]}
+    assert beside(small, part(small, 7)) == {"on": [4], "right of": [6]}
 
 
 def test_neighbours_in_words(small) -> None:
@@ -272,10 +269,9 @@ def test_stones_side_by_side_that_meet_at_a_corner_are_not_upon_each_other(small
         pair = (right.id, left.id) if first else (left.id, right.id)
         corner = Interface(*pair, np.array([[0.6, 0.15]]), normal[first])
         meeting = replace(small, model=RigidBlockModel(small.model.blocks, (corner,)))
-        found = beside(meeting, right)
-        assert (found.on, found.right_of) == ((), (left.step,))
+        assert beside(meeting, right) == {"right of": [left.step]}
     # A stone that a contact of the same slope carries over its width is on it.
     above = part(small, 6)
     slope = Interface(above.id, left.id, np.array([[0.4, 0.15]]), (0.8, 0.6))
     carried = replace(small, model=RigidBlockModel(small.model.blocks, (slope,)))
-    assert beside(carried, above).on == (left.step,)
+    assert beside(carried, above) == {"on": [left.step]}

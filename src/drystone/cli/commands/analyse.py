@@ -5,7 +5,6 @@ import hashlib
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import replace
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
@@ -25,7 +24,8 @@ from drystone.cli.output import note, prepare_files, print_json, print_table
 from drystone.cli.progress import counting_bar
 from drystone.cli.reading import add_wall, reading_from
 from drystone.drawing.words.analysis import (
-    Card,
+    SCATTER,
+    WRITTEN,
     ModelledWall,
     RangeCard,
     ScatterCard,
@@ -39,23 +39,16 @@ from drystone.drawing.words.modelling import (
     size_words,
     sweep_report,
 )
-from drystone.drawing.words.tables import NAMES as TABLES
-from drystone.drawing.words.tables import write_tables
 from drystone.errors import ExitCode, Notice, UsageError, counted
 from drystone.io.walls import GivenWall, read_wall, unsupported
 from drystone.model.builder import BuilderErrors
 from drystone.statics.limit import lateral_resistance, load_range
-from drystone.statics.loads import LoadCase, Loads, load_case
+from drystone.statics.loads import LoadCase, load_case
 from drystone.statics.lp.program import assemble
-from drystone.statics.model import RigidBlockModel
-from drystone.statics.result import LimitStatus
 from drystone.statics.scatter.scatter import scatter
 from drystone.statics.scatter.shaking import ScatterSettings
 
-FRICTION, REPORT, SCATTER = "friction.png", "report.html", "scatter.png"
 SAMPLES = 200
-OTHERS = (*TABLES, FRICTION, REPORT, SCATTER)
-"""What not every run writes."""
 
 
 def add(command: argparse.ArgumentParser) -> None:
@@ -135,19 +128,29 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     size = size_words(wall.shapes, per_unit_m)
     if size is not None:
         wall = replace(wall, remarks={**wall.remarks, "size": size})
-    pictures = _prepare(arguments)
+    folder = _prepare(arguments)
     model, loads = load_case(case, wall.model)
+    wall, solver, sha256 = replace(wall, model=model), arguments.solver, _sha256(path)
+    counts = counted(len(model.blocks), "block")
+    card: RangeCard
     if case.is_range:
-        return _print_range(replace(wall, model=model), loads, arguments, pictures)
-    resistance = lateral_resistance(model, loads, mechanism=True, solver=arguments.solver)
-    swept = wall.sweep is not None
-    note(None if resistance.stable else unsupported(model, given, swept=swept))
-    card = analysis_of(
-        wall, loads, resistance, _sha256(path),
-        associative_only=arguments.associative_only, solver=arguments.solver,
-    )  # fmt: skip
-    if pictures:
-        _write_all(pictures, wall, card, loads, per_unit_m)
+        found = load_range(model, loads, mechanism=True, solver=solver)
+        card = RangeCard(
+            wall, loads.name, {"least": found.least, "greatest": found.greatest}, sha256
+        )
+    else:
+        counts += f", {counted(model.contact_count, 'contact point')}"
+        resistance = lateral_resistance(model, loads, mechanism=True, solver=solver)
+        swept = wall.sweep is not None
+        note(None if resistance.stable else unsupported(model, given, swept=swept))
+        card = analysis_of(
+            wall, loads, resistance, sha256, associative_only=arguments.associative_only,
+            solver=solver,
+        )  # fmt: skip
+    if folder is not None:
+        from drystone.drawing.report.analysis import write_analysis  # noqa: PLC0415 - slow import
+
+        write_analysis(folder, card, loads, per_unit_m)
     report, rows = card.report(), card.rows()
     if wall.sweep is not None:
         report["gaps"] = sweep_report(wall.sweep)
@@ -157,77 +160,18 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if arguments.json:
         print_json(report)
     else:
-        print_table(
-            f"{path}: {counted(len(model.blocks), 'block')}, "
-            f"{counted(model.contact_count, 'contact point')}",
-            rows,
-        )
-    if resistance.failed:
-        return _keep_failure(model, loads, pictures)
-    return ExitCode.DONE if card.stands else ExitCode.CHECK_FAILED
-
-
-def _write_all(
-    pictures: list[Path], wall: ModelledWall, card: Card, loads: Loads, per_unit_m: float | None
-) -> None:
-    """Write pictures, tables and the report."""
-    from drystone.drawing.report.analysis import (  # noqa: PLC0415 - slow import
-        draw_analysis,
-        draw_friction,
-        write_analysis,
-    )
-
-    folder, ends = pictures[0].parent, (card.resistance.left, card.resistance.right)
-    _clear(folder)
-    draw_analysis(pictures, wall, loads, ends)
-    write_tables(folder, card.model, ends, per_unit_m)
-    curve = draw_friction(folder, card.model, loads)
-    write_analysis(folder / REPORT, wall, card, per_unit_m, curve)
+        print_table(f"{path}: {counts}", rows)
+    if card.failed:
+        program = (folder or Path()) / "drystone-failed.npz"
+        assemble(model, loads).save(program)
+        what = "no solver found an answer that can be certified."
+        note(Notice("E140", what, f"Please report it with {program}, the linear program."))
+    return ExitCode.DONE if card.stands and not card.failed else ExitCode.CHECK_FAILED
 
 
 def _sha256(path: Path) -> str:
     file = path / "plan.json" if path.is_dir() else path
     return hashlib.sha256(file.read_bytes()).hexdigest()
-
-
-def _print_range(
-    wall: ModelledWall, loads: Loads, arguments: argparse.Namespace, pictures: list[Path]
-) -> ExitCode:
-    model = wall.model
-    found = load_range(model, loads, mechanism=True, solver=arguments.solver)
-    ends = (found.least, found.greatest)
-    card = RangeCard(
-        found=found,
-        mu=model.mu,
-        load_case=loads.name,
-        failures=wall.failures(ends),
-        sha256=_sha256(Path(arguments.wall_path)),
-        version=version("drystone"),
-        remarks=wall.remarks,
-    )
-    if pictures:
-        from drystone.drawing.report.analysis import draw_analysis  # noqa: PLC0415 - slow import
-
-        _clear(pictures[0].parent)
-        draw_analysis(pictures, wall, loads, ends)
-    if arguments.json:
-        print_json(card.report())
-    else:
-        print_table(f"{arguments.wall_path}: {counted(len(model.blocks), 'block')}", card.rows())
-    failed = any(end.status is LimitStatus.FAILED for end in ends)
-    if failed:
-        return _keep_failure(model, loads, pictures)
-    falls = any(end.status is LimitStatus.UNSTABLE for end in ends)
-    return ExitCode.CHECK_FAILED if falls else ExitCode.DONE
-
-
-def _keep_failure(model: RigidBlockModel, loads: Loads, pictures: list[Path]) -> ExitCode:
-    """Save the program that no solver could solve (E140)."""
-    path = (pictures[0].parent if pictures else Path()) / "drystone-failed.npz"
-    assemble(model, loads).save(path)
-    what = "no solver found an answer that can be certified."
-    note(Notice("E140", what, f"Please report it with {path}, the linear program."))
-    return ExitCode.CHECK_FAILED
 
 
 def _metres_per_unit(wall: GivenWall, arguments: argparse.Namespace) -> float | None:
@@ -266,14 +210,15 @@ def _wants_scatter(arguments: argparse.Namespace) -> bool:
 def _scatter_of(wall: ModelledWall, arguments: argparse.Namespace, given: GivenWall) -> ScatterCard:
     """Shake the wall and analyse it each time; draw the distribution into the folder."""
     unit = noise_unit(given)
+    lengths = unit[1]
     areas = (b.area for b in wall.model.blocks if b.id not in given.wedge_ids)
     size = float(np.mean(np.sqrt(list(areas))))
     errors = BuilderErrors.of_precision(arguments.precision or 0.0, size)
     settings = ScatterSettings(
         samples=SAMPLES if arguments.scatter is None else arguments.scatter,
         mu=arguments.mu,
-        outline_noise=arguments.outline_noise * unit.lengths or errors.outline,
-        placement_noise=arguments.placement_noise * unit.lengths or errors.placement,
+        outline_noise=arguments.outline_noise * lengths or errors.outline,
+        placement_noise=arguments.placement_noise * lengths or errors.placement,
     )
     path = None if arguments.output is None else Path(arguments.output) / SCATTER
     if path is not None:
@@ -291,25 +236,13 @@ def _scatter_of(wall: ModelledWall, arguments: argparse.Namespace, given: GivenW
     return ScatterCard(found, unit)
 
 
-def _prepare(arguments: argparse.Namespace) -> list[Path]:
-    """Make room for all pictures, if any are asked for; refuse to write over files unasked."""
+def _prepare(arguments: argparse.Namespace) -> Path | None:
+    """Make room for what is asked for, if anything is; refuse to write over files unasked."""
     if arguments.output is None:
-        return []
-    folder, names = Path(arguments.output), ["contacts.png"]
-    for direction in ("left", "right"):
-        names += [f"{kind}_{direction}.png" for kind in ("mechanism", "forces")]
-        names.append(f"mechanism_{direction}.gif")
-    wall, written = Path(arguments.wall_path), [folder / name for name in (*names, *OTHERS)]
+        return None
+    wall, folder = Path(arguments.wall_path), Path(arguments.output)
+    written = [folder / name for name in WRITTEN]
     refuse_inputs(files_of_wall(wall), written)
     refuse_plans_own(wall, written)
     prepare_files(written, overwrite=arguments.overwrite)
-    return [folder / name for name in names]
-
-
-def _clear(folder: Path) -> None:
-    """Take out what an earlier run left and not every run writes: it belongs to another wall.
-
-    Not before there is an answer to put in its place.
-    """
-    for name in OTHERS:
-        (folder / name).unlink(missing_ok=True)
+    return folder

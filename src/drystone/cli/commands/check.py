@@ -4,7 +4,7 @@ import argparse
 from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from drystone.cli.inputs import files_of, files_of_wall, refuse_among_masks, refuse_inputs
 from drystone.cli.output import prepare_picture, print_json, print_table
@@ -22,9 +22,6 @@ from drystone.physics.table import load_engine
 from drystone.verify.check import check_plan
 from drystone.verify.lengths import plan_settings
 from drystone.verify.outlines import plan_polygons
-
-if TYPE_CHECKING:
-    from drystone.drawing.pictures.check import FailurePicture
 
 
 def add(command: argparse.ArgumentParser) -> None:
@@ -67,24 +64,19 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     checked = Checked(plan, stones, report, polygons, asked_physics=arguments.physics)
     if arguments.physics:
         checked = replace(checked, physics=_physics_of(checked, quiet=arguments.json))
-    picture = _picture(checked, asked_picture, folder)
+    picture = None
+    if asked_picture is not None or not checked.ok:
+        from drystone.drawing.pictures.check import draw_check  # noqa: PLC0415 - slow import
+
+        picture = draw_check(checked, asked_picture, folder)
     if arguments.json:
-        print_json({**checked.as_dict(), **({"picture": picture.path} if picture else {})})
+        print_json({**checked.as_dict(), **({"picture": picture[0]} if picture else {})})
     else:
-        drawn = [("picture", picture.words)] if picture else []
+        drawn = [("picture", picture[1])] if picture else []
         print_table(
             f"{'OK' if checked.ok else 'FAILED'}: {path} {checked.verdict}", checked.rows() + drawn
         )
     return ExitCode.DONE if checked.ok else ExitCode.CHECK_FAILED
-
-
-def _picture(checked: Checked, asked: Path | None, folder: Path) -> "FailurePicture | None":
-    """Draw what fails beside the plan, or whatever there is where it was asked for."""
-    if checked.ok and asked is None:
-        return None
-    from drystone.drawing.pictures.check import draw_asked, draw_failures  # noqa: PLC0415 - slow import
-
-    return draw_failures(checked, folder) if asked is None else draw_asked(checked, asked)
 
 
 def _physics_of(checked: Checked, *, quiet: bool) -> PhysicsCard | None:

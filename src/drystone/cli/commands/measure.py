@@ -20,22 +20,13 @@ from drystone.cli.progress import busy
 from drystone.cli.reading import add_wall, reading_from
 from drystone.contacts.blocks import model_from_labels, notice_of_pieces
 from drystone.contacts.given import model_from_json
-from drystone.drawing.words.content import number
+from drystone.drawing.words.content import figure_rows, number
 from drystone.errors import ExitCode, UsageError, counted
 from drystone.io.walls import GivenWall, read_wall, unsupported
 from drystone.metrics.measure import WallMetrics, measure_labels
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
-
-_ROWS = (  # name, digits, meaning
-    ("F_SF", 3, "filling, higher is better"),
-    ("F_AV", 2, "vertical arrangement, higher is better"),
-    ("F_AH", 2, "horizontal arrangement, lower is better"),
-    ("F_LR", 3, "lateral resistance / mu, higher is better"),
-    ("T_LEVEL", 3, "unevenness of the top, lower is better"),
-    ("E_FLUSH", 3, "unevenness of the ends, lower is better"),
-)
 
 
 def add(command: argparse.ArgumentParser) -> None:
@@ -71,7 +62,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         print_json(asdict(metrics))
         return ExitCode.DONE
     height, width = labels.shape
-    rows = [(name, f"{number(getattr(metrics, name), n)}  {said}") for name, n, said in _ROWS]
+    rows = [("F_SF", f"{number(metrics.F_SF)}  filling, higher is better"), *figure_rows(metrics)]
     rows.append(("wall", f"{metrics.width:g} x {metrics.height:g} px; joints are two px wide"))
     size = f"in a picture of {width} x {height} px"
     said = counted(metrics.stones, "stone")

@@ -39,14 +39,10 @@ def svg(assembly: Assembly, settings: ExportSettings) -> Files:
         f"{scale}. Wall frame: x from the left end, y from the ground; here y runs down from the "
         f"top, {height:g} units above the ground. drystone {plan.version}, seed {plan.seed}."
     )
-
-    def made() -> bytes:
-        drawing = with_statics(assembly)
-        there = replace(drawing, items=tuple(placed(drawing.items, factor)))
-        unit = "mm" if metric else "px"
-        return svg_end.svg_bytes(there, (width, height), unit, _name(assembly, settings), about)
-
-    return {"wall.svg": made}
+    drawing, unit = with_statics(assembly), "mm" if metric else "px"
+    there = replace(drawing, items=tuple(placed(drawing.items, factor)))
+    data = svg_end.svg_bytes(there, (width, height), unit, _name(assembly, settings), about)
+    return {"wall.svg": data}
 
 
 def dxf(assembly: Assembly, settings: ExportSettings) -> Files:
@@ -59,27 +55,22 @@ def dxf(assembly: Assembly, settings: ExportSettings) -> Files:
         f"{unit}. x from the left end, y from the ground.",
         f"drystone {plan.version}, seed {plan.seed}. Numbers are steps of construction.",
     )
+    drawing = with_statics(assembly)
     return {
-        "wall.dxf": lambda: dxf_end.dxf_bytes(
-            ezdxf, with_statics(assembly), assembly.size, metric=metric, about=about
-        )
+        "wall.dxf": dxf_end.dxf_bytes(ezdxf, drawing, assembly.size, metric=metric, about=about)
     }
 
 
 def png(assembly: Assembly, settings: ExportSettings) -> Files:
     """Return wall-numbered.png."""
-    drawing = drawing_of_assembly(assembly, settings.title)
-    return {"wall-numbered.png": lambda: figure_bytes(draw(drawing).figure, ".png")}
+    figure = draw(drawing_of_assembly(assembly, settings.title)).figure
+    return {"wall-numbered.png": figure_bytes(figure, ".png")}
 
 
 def pdf(assembly: Assembly, settings: ExportSettings) -> Files:
     """Return build-sheet.pdf; E189 when the photograph of the stones cannot be used."""
-    photo = read_photo(assembly)
-    return {
-        "build-sheet.pdf": lambda: pdf_bytes(
-            page.figure for page in sheet(assembly, settings, photo)
-        )
-    }
+    pages = sheet(assembly, settings, read_photo(assembly))
+    return {"build-sheet.pdf": pdf_bytes(page.figure for page in pages)}
 
 
 def with_statics(assembly: Assembly) -> Drawing:

@@ -1,6 +1,6 @@
 """The formats that there are; what makes them is imported when it is asked for."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -12,11 +12,10 @@ if TYPE_CHECKING:
 
     from drystone.drawing.assembly.parts import Assembly
 
-Files = Mapping[str, Callable[[], str | bytes]]
-"""What will be written by name, relative to a folder, ``/`` between folders.
+Files = Mapping[str, str | bytes]
+"""What is to be written by name, relative to a folder, ``/`` between folders.
 
-Whoever makes the mapping raises what would keep the files from being made, so that nothing is
-written when one of several formats cannot be.
+All is made before any of it is written: nothing is when one of several formats cannot be made.
 """
 
 
@@ -67,7 +66,7 @@ class Format:
     metric: bool = False
 
     def files(self, assembly: "Assembly", settings: ExportSettings) -> Files:
-        """Return what will be written; raise what would keep it from being."""
+        """Return what is to be written."""
         module, _, function = self.made_by.partition(":")
         if self.metric:
             assembly.require_scale(f"the format {function!r}")
@@ -86,9 +85,8 @@ def write_files(files: Files, folder: "Path") -> "tuple[Path, ...]":
     """Write files with the folders that they lie in; PlanError (E206) when one cannot be."""
     from drystone.whole_files import write_whole  # noqa: PLC0415 - the options need names alone
 
-    for name, made in files.items():
+    for name, data in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        data = made()
         write_whole(folder / name, data.encode() if isinstance(data, str) else data)
     return tuple(folder / name for name in files)
 

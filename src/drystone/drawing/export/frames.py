@@ -6,9 +6,8 @@ a bar of 100 mm and the number of the step; marks at the wall's corners are what
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from io import BytesIO
-from typing import Any
 
 import numpy as np
 from PIL import Image, ImageDraw
@@ -45,16 +44,12 @@ def gif(assembly: Assembly, settings: ExportSettings) -> Files:
             cure=f"Give {LONGEST_S:g} s at most (seconds_per_step in Python), or export an mp4.",
         )
     frames = Film(assembly, settings.film_px).frames()
-    return {"build.gif": lambda: gif_bytes(frames, palette(), durations_ms(assembly, settings))}
+    return {"build.gif": gif_bytes(frames, palette(), durations_ms(assembly, settings))}
 
 
 def mp4(assembly: Assembly, settings: ExportSettings) -> Files:
     """Return build.mp4; E186 when PyAV is not installed."""
     av = load_extra("av", "film", "E186", "build.mp4")
-    return {"build.mp4": lambda: _mp4_bytes(av, assembly, settings)}
-
-
-def _mp4_bytes(av: Any, assembly: Assembly, settings: ExportSettings) -> bytes:
     film = Film(assembly, settings.film_px)
     with BytesIO() as file:
         # Nothing in it tells when and by what it was made: equal walls give equal bytes.
@@ -68,7 +63,7 @@ def _mp4_bytes(av: Any, assembly: Assembly, settings: ExportSettings) -> bytes:
                 for _ in range(max(1, round(ms * FRAMES_PER_S / 1000))):
                     out.mux(stream.encode(av.VideoFrame.from_image(picture)))
             out.mux(stream.encode())
-        return file.getvalue()
+        return {"build.mp4": file.getvalue()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,8 +156,8 @@ def projector(assembly: Assembly, settings: ExportSettings) -> Files:
     view = _view(assembly, settings)
     parts: list[Part | None] = [None, *assembly.parts]
     return {
-        f"projector/step_{part.step if part else 0:03d}.png": partial(
-            _picture, assembly, settings, view, part
+        f"projector/step_{part.step if part else 0:03d}.png": _picture(
+            assembly, settings, view, part
         )
         for part in parts
     }

@@ -9,7 +9,6 @@ places.  Its meshes are binary STL in metres, named relative to it.
 
 import math
 from collections.abc import Iterable, Iterator
-from functools import partial
 from typing import Any
 from xml.etree import ElementTree as ET
 
@@ -21,7 +20,6 @@ from drystone.drawing.export.solids import (
     colour,
     inertia,
     material,
-    require_solids,
     solid_of_part,
     stl_bytes,
 )
@@ -68,22 +66,17 @@ AT_THE_ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 
 def poses(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
     """Return poses.json: where every part is picked and placed, how it is held, its mass."""
-    return {"poses.json": lambda: json_text(poses_json(assembly)) + "\n"}
-
-
-def poses_json(assembly: Assembly) -> dict[str, Any]:
-    """Return what poses.json holds, matrices as arrays; E131 without a scale."""
     plan = assembly.plan
     width_m, height_m = assembly.size
     photograph = plan.source.get("photograph") or {}
-    return {
+    made = {
         "schema": "drystone-poses/1",
         "version": plan.version,
         "source": {key: plan.source.get(key) for key in ("path", "sha256")},
         "method": plan.method,
         "seed": plan.seed,
         "units": {"length": "m", "mass": "kg", "angle": "degree in names with _deg"},
-        "px_per_m": assembly.require_scale("poses"),
+        "px_per_m": assembly.px_per_m,
         "frames": FRAMES,
         "markers": photograph.get("markers", []),
         "P_from_marker": photograph.get("P_from_marker"),
@@ -94,6 +87,7 @@ def poses_json(assembly: Assembly) -> dict[str, Any]:
         "parts": [_handled(assembly, part) for part in assembly.parts],
         "unused": list(plan.unused),
     }
+    return {"poses.json": json_text(made) + "\n"}
 
 
 def _handled(assembly: Assembly, part: Part) -> dict[str, Any]:
@@ -132,17 +126,11 @@ def _posed(pose: Pose3d) -> dict[str, Any]:
 
 
 def compas(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
-    """Return assembly.compas.json; E180 without a solid."""
-    require_solids(assembly)
-    return {"assembly.compas.json": lambda: json_text(compas_json(assembly)) + "\n"}
-
-
-def compas_json(assembly: Assembly) -> dict[str, Any]:
-    """Return a mapping whose frames and meshes COMPAS makes objects of; E131 without a scale.
+    """Return assembly.compas.json, of whose frames and meshes COMPAS makes objects.
 
     An element's `mesh` is in its own frame S, `place` and `pick` are where S is in W and in P.
     """
-    return {
+    made = {
         "schema": "drystone-compas/1",
         "version": assembly.plan.version,
         "units": "m",
@@ -160,6 +148,7 @@ def compas_json(assembly: Assembly) -> dict[str, Any]:
             for part in assembly.parts
         ],
     }
+    return {"assembly.compas.json": json_text(made) + "\n"}
 
 
 def compas_frame(pose: Pose3d) -> dict[str, Any]:
@@ -188,12 +177,9 @@ def compas_mesh(solid: Solid, name: str) -> dict[str, Any]:
 
 
 def moveit(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
-    """Return both files of a planning scene; E180 without a solid."""
-    require_solids(assembly)
-    return {
-        "scene.yaml": lambda: "\n".join(yaml_lines(assembly)) + "\n",
-        "wall.scene": lambda: "\n".join(scene_lines(assembly)) + "\n",
-    }
+    """Return both files of a planning scene."""
+    made = {"scene.yaml": yaml_lines(assembly), "wall.scene": scene_lines(assembly)}
+    return {name: "\n".join(lines) + "\n" for name, lines in made.items()}
 
 
 def yaml_lines(assembly: Assembly) -> Iterator[str]:
@@ -253,24 +239,12 @@ def _fields(names: str, values: Iterable[float]) -> str:
 
 
 def urdf(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
-    """Return the description and a mesh a part; E180 without a solid."""
-    require_solids(assembly)
-    head = '<?xml version="1.0"?>\n'
-    meshes = {
-        f"urdf/{_mesh_file(part)}": partial(
-            stl_bytes, solid_of_part(assembly, part), f"{part.name}, frame S"
-        )
-        for part in assembly.parts
-    }
-    text = ET.tostring(robot(assembly), encoding="unicode")
-    return {"urdf/wall.urdf": lambda: f"{head}{text}\n", **meshes}
-
-
-def robot(assembly: Assembly) -> ET.Element:
-    """Return the description as an XML element; E131 without a scale."""
-    root = ET.Element("robot", name="drystone_wall")
+    """Return the description and a mesh a part."""
+    root, meshes = ET.Element("robot", name="drystone_wall"), {}
     ET.SubElement(root, "link", name=BASE)
     for part in assembly.parts:
+        solid = solid_of_part(assembly, part)
+        meshes[f"urdf/{_mesh_file(part)}"] = stl_bytes(solid, f"{part.name}, frame S")
         _link(root, assembly, part)
         pose, joint = assembly.place_pose(part), ET.SubElement(
             root, "joint", name=f"place_{part.name}", type="fixed"
@@ -281,7 +255,8 @@ def robot(assembly: Assembly) -> ET.Element:
         turn = _row(0.0, -math.radians(part.angle_deg), 0.0)
         ET.SubElement(joint, "origin", xyz=_row(pose.x_m, pose.y_m, pose.z_m), rpy=turn)
     ET.indent(root, " ")
-    return root
+    text = ET.tostring(root, encoding="unicode")
+    return {"urdf/wall.urdf": f'<?xml version="1.0"?>\n{text}\n', **meshes}
 
 
 def _link(root: ET.Element, assembly: Assembly, part: Part) -> None:

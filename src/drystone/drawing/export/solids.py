@@ -6,7 +6,6 @@ and their meshes are in S; what a viewer shows is (x, z, -y) of W.
 
 import struct
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 import shapely
@@ -49,19 +48,13 @@ class Inertia:
 
 def solid_in_wall(assembly: Assembly, part: Part) -> Solid:
     """Return a part where it stands in the wall (frame W), between y = 0 and the thickness."""
-    return extruded(part.corners, 0.0, _thickness_m(assembly), part.name)
+    return extruded(part.corners, 0.0, assembly.thickness, part.name)
 
 
 def solid_of_part(assembly: Assembly, part: Part) -> Solid:
     """Return a part in its own frame (S), half of it before y = 0."""
-    half = _thickness_m(assembly) / 2.0
+    half = assembly.thickness / 2.0
     return extruded(part.own_corners, -half, half, part.name)
-
-
-def require_solids(assembly: Assembly) -> None:
-    """Raise E131 without a scale, E180 when an outline bounds no solid."""
-    for part in assembly.parts:
-        solid_in_wall(assembly, part)
 
 
 def extruded(outline: Points, front: float, back: float, name: str = "outline") -> Solid:
@@ -107,11 +100,10 @@ def inertia(assembly: Assembly, part: Part) -> Inertia:
     The centre is that of the outline; of a plan on pixels it is a fraction of a px from the
     origin of S, which is the plan's centroid.
     """
-    thickness = _thickness_m(assembly)
     area, x, z = area_and_centroid(part.own_corners)
     mass = assembly.mass_kg(part)
     xx, zz, xz = second_moments(part.own_corners - np.array([x, z])) * (mass / area)
-    yy = mass * thickness**2 / 12.0
+    yy = mass * assembly.thickness**2 / 12.0
     tensor = np.array([[zz + yy, 0.0, -xz], [0.0, xx + zz, 0.0], [-xz, 0.0, xx + yy]])
     return Inertia(mass, (x, 0.0, z), tensor + 0.0)
 
@@ -149,29 +141,12 @@ def materials(assembly: Assembly) -> dict[str, Rgb]:
     return {material(part): colour(part) for part in assembly.parts}
 
 
-def _thickness_m(assembly: Assembly) -> float:
-    assembly.require_scale("a solid")
-    return assembly.thickness
-
-
 _Y_UP = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 _FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
 def obj(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
     """Return wall.obj, an object a part in the order of building, and wall.mtl."""
-    require_solids(assembly)
-    return {
-        "wall.obj": lambda: obj_text(assembly),
-        "wall.mtl": lambda: "".join(
-            f"newmtl {name}\nKd {' '.join(map(number, colour))}\nillum 1\n"
-            for name, colour in materials(assembly).items()
-        ),
-    }
-
-
-def obj_text(assembly: Assembly) -> str:
-    """Return the wall as Wavefront OBJ, with all digits."""
     lines = [
         f"# drystone {assembly.plan.version}: metres, X along the wall, Y into it, Z up",
         "mtllib wall.mtl",
@@ -183,20 +158,16 @@ def obj_text(assembly: Assembly) -> str:
         lines += ["v " + " ".join(map(number, point)) for point in solid.vertices.tolist()]
         lines += [f"f {a} {b} {c}" for a, b, c in (solid.triangles + first).tolist()]
         first += len(solid.vertices)
-    return "\n".join(lines) + "\n"
+    paints = (
+        f"newmtl {name}\nKd {' '.join(map(number, colour))}\nillum 1\n"
+        for name, colour in materials(assembly).items()
+    )
+    return {"wall.obj": "\n".join(lines) + "\n", "wall.mtl": "".join(paints)}
 
 
 def glb(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
-    """Return wall.glb; E182 when trimesh is not installed."""
-    require_solids(assembly)
-    load_extra("trimesh", "mesh", "E182", "wall.glb")
-    return {"wall.glb": lambda: glb_bytes(assembly)}
-
-
-def glb_bytes(assembly: Assembly) -> bytes:
-    """Return the wall as binary glTF 2.0, every part a node with its pose."""
-    import trimesh  # noqa: PLC0415 - an extra
-
+    """Return wall.glb, every part a node with its pose; E182 when trimesh is not installed."""
+    trimesh = load_extra("trimesh", "mesh", "E182", "wall.glb")
     scene = trimesh.Scene()
     scene.graph.update("wall", scene.graph.base_frame, matrix=_Y_UP)
     paint = {
@@ -215,17 +186,13 @@ def glb_bytes(assembly: Assembly) -> bytes:
             transform=assembly.place_pose(part).matrix, metadata={"step": part.step},
         )  # fmt: skip
     # Without normals a viewer shades every triangle flat, as the standard says.
-    made: bytes = trimesh.exchange.gltf.export_glb(scene, include_normals=False)
-    return made
+    return {"wall.glb": trimesh.exchange.gltf.export_glb(scene, include_normals=False)}
 
 
 def stl(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
     """Return every part as a binary STL where it stands in the wall."""
-    require_solids(assembly)
     return {
-        f"stl/{part.name}.stl": partial(
-            stl_bytes, solid_in_wall(assembly, part), f"{part.name}, frame W"
-        )
+        f"stl/{part.name}.stl": stl_bytes(solid_in_wall(assembly, part), f"{part.name}, frame W")
         for part in assembly.parts
     }
 

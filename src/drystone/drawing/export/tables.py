@@ -64,51 +64,38 @@ def csv(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
             return " ".join(map(str, value))
         return value + 0.0 if isinstance(value, float) else value
 
-    def made() -> str:
-        table, text = columns(assembly), io.StringIO()
-        writer = csv_writer.writer(text, lineterminator="\n")
-        writer.writerow([column.name for column in table])
-        writer.writerows(zip(*(map(cell, column.values) for column in table), strict=True))
-        return text.getvalue()
-
-    return {"steps.csv": made}
+    table, text = columns(assembly), io.StringIO()
+    writer = csv_writer.writer(text, lineterminator="\n")
+    writer.writerow([column.name for column in table])
+    writer.writerows(zip(*(map(cell, column.values) for column in table), strict=True))
+    return {"steps.csv": text.getvalue()}
 
 
 def parquet(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
     """Return steps.parquet, units and scale in its metadata; E181 without pyarrow."""
     arrow = load_extra("pyarrow", "io", "E181", "steps.parquet")
     writer = load_extra("pyarrow.parquet", "io", "E181", "steps.parquet")
-
-    def made() -> bytes:
-        plan = assembly.plan
-        about = {
-            "drystone": plan.version,
-            "source": str(plan.source.get("path") or ""),
-            "sha256": str(plan.source.get("sha256") or ""),
-            "unit": assembly.unit,
-            "px_per_m": str(assembly.px_per_m or ""),
-            "thickness": repr(assembly.thickness),
-            "density_kg_m3": repr(assembly.density_kg_m3),
-        }
-        types = {int: arrow.int64(), float: arrow.float64(), str: arrow.string(),
-                 list: arrow.list_(arrow.int64())}  # fmt: skip
-        table = columns(assembly)
-        fields = [(column.name, types[column.type]) for column in table]
-        arrays = [arrow.array(column.values, types[column.type]) for column in table]
-        data = io.BytesIO()
-        schema = arrow.schema(fields, metadata=about)
-        writer.write_table(arrow.Table.from_arrays(arrays, schema=schema), data)
-        return data.getvalue()
-
-    return {"steps.parquet": made}
+    plan = assembly.plan
+    about = {
+        "drystone": plan.version,
+        "source": str(plan.source.get("path") or ""),
+        "sha256": str(plan.source.get("sha256") or ""),
+        "unit": assembly.unit,
+        "px_per_m": str(assembly.px_per_m or ""),
+        "thickness": repr(assembly.thickness),
+        "density_kg_m3": repr(assembly.density_kg_m3),
+    }
+    types = {int: arrow.int64(), float: arrow.float64(), str: arrow.string(),
+             list: arrow.list_(arrow.int64())}  # fmt: skip
+    table, data = columns(assembly), io.BytesIO()
+    fields = [(column.name, types[column.type]) for column in table]
+    arrays = [arrow.array(column.values, types[column.type]) for column in table]
+    schema = arrow.schema(fields, metadata=about)
+    writer.write_table(arrow.Table.from_arrays(arrays, schema=schema), data)
+    return {"steps.parquet": data.getvalue()}
 
 
 def geojson(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
-    """Return wall.geojson."""
-    return {"wall.geojson": lambda: json_text(feature_collection(assembly)) + "\n"}
-
-
-def feature_collection(assembly: Assembly) -> dict[str, Any]:
     """Return the outlines in the wall frame; properties are the columns of the build list.
 
     Rings are closed and counter-clockwise, as RFC 7946 wants them.  Its coordinates are those of
@@ -118,7 +105,7 @@ def feature_collection(assembly: Assembly) -> dict[str, Any]:
     rows = zip(*(column.values for column in table), strict=True)
     names = [column.name for column in table]
     width, height = assembly.size
-    return {
+    made = {
         "type": "FeatureCollection",
         "unit": assembly.unit,
         "frame": "wall: x to the right from its left end, y up from the ground; not longitude "
@@ -138,3 +125,4 @@ def feature_collection(assembly: Assembly) -> dict[str, Any]:
             for part, row in zip(assembly.parts, rows, strict=True)
         ],
     }
+    return {"wall.geojson": json_text(made) + "\n"}

@@ -67,37 +67,26 @@ class FailureView:
         return x0 - pad, min(y0, 0.0) - 2 * pad, x1 + pad, y1 + pad
 
 
-@dataclass(frozen=True)
-class FailurePicture:
-    """A picture: its path, None when it could not be written, and the same in words."""
+def draw_check(checked: Checked, asked: Path | None, folder: Path) -> tuple[str | None, str] | None:
+    """Draw what fails beside the plan, or whatever there is where it is asked for.
 
-    path: str | None
-    words: str
-
-
-def draw_asked(checked: Checked, path: Path) -> FailurePicture | None:
-    """Draw what fails or, when nothing does, the wall; None for a plan without stones."""
-    views = views_of(checked) or _whole_wall(checked)
+    Return the path, None when it could not be written, and the same in words; None when there is
+    nothing to be seen.
+    """
+    views, path = views_of(checked), asked or folder / PICTURE
+    if asked is not None:
+        views = views or _whole_wall(checked)
     if not views:
         return None
-    save(plot_failures(views), path)
-    return FailurePicture(str(path), str(path))
-
-
-def draw_failures(checked: Checked, folder: Path) -> FailurePicture | None:
-    """Draw what fails beside the plan; None when nothing of it can be seen."""
-    views, path = views_of(checked), folder / PICTURE
-    if not views:
-        return None
-    replaced = " (in place of that of an earlier check)" if path.exists() else ""
+    replaced = " (in place of that of an earlier check)" if path.exists() and not asked else ""
     try:
         save(plot_failures(views), path)
     except PlanError as error:
+        if asked is not None:
+            raise
         # The check is done, and plans may lie where nothing can be written.
-        return FailurePicture(
-            None, f"not written: {path}: {error.what} Give a place with --picture."
-        )
-    return FailurePicture(str(path), f"{path}{replaced}")
+        return None, f"not written: {path}: {error.what} Give a place with --picture."
+    return str(path), f"{path}{replaced}"
 
 
 def views_of(checked: Checked) -> list[FailureView]:

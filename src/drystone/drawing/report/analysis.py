@@ -1,6 +1,7 @@
 """A wall that was analysed: pictures, and the report with the wall to look around in."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
+from importlib.metadata import version
 from pathlib import Path
 from typing import Literal
 
@@ -13,14 +14,20 @@ from drystone.drawing.pictures.mechanism import plot_mechanism, save_mechanism_a
 from drystone.drawing.report.html import write_report
 from drystone.drawing.report.viewer_data import view_of_wall
 from drystone.drawing.words import content
-from drystone.drawing.words.analysis import Card, ModelledWall, Shapes
+from drystone.drawing.words.analysis import (
+    FRICTION,
+    REPORT,
+    WRITTEN,
+    Card,
+    RangeCard,
+    Shapes,
+)
+from drystone.drawing.words.tables import write_tables
 from drystone.kernels.polygons import area_and_centroid
 from drystone.statics.loads import Loads
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.result import LimitResult, LimitStatus
-from drystone.statics.sensitivity import AtFriction, friction_curve
-
-FRICTION = "friction.png"
+from drystone.statics.result import LimitStatus
+from drystone.statics.sensitivity import friction_curve
 
 CITATION = (
     "drystone {version} (MIT licence). Limit analysis of rigid blocks as in Wang, dos Santos and "
@@ -29,19 +36,42 @@ CITATION = (
 )
 
 
-def write_analysis(
-    path: Path,
-    wall: ModelledWall,
-    card: Card,
-    per_unit_m: float | None,
-    curve: Sequence[AtFriction],
-) -> Path:
-    """Write report.html of a wall that was analysed.
+def write_analysis(folder: Path, card: RangeCard, loads: Loads, per_unit_m: float | None) -> None:
+    """Write pictures into a folder that exists, of loads to both sides tables and report.html, too.
 
-    Pictures of mechanisms that lie beside it are put into it.  `per_unit_m` is metres in a unit of
-    the model, where that is known.
+    What an earlier run left there belongs to another wall, and is taken out.  `per_unit_m` is
+    metres in a unit of the model, where that is known.
     """
-    shapes, model, resistance = wall.shapes, card.model, card.resistance
+    for name in WRITTEN:
+        (folder / name).unlink(missing_ok=True)
+    shapes, model = card.wall.shapes, card.wall.model
+    save(plot_contacts(shapes, model).figure, folder / "contacts.png")
+    for side, end in zip(("left", "right"), card.ends.values(), strict=True):
+        if end.forces is not None:
+            save(plot_forces(shapes, model, end.forces).figure, folder / f"forces_{side}.png")
+        if end.mechanism is None:
+            continue
+        falls = end.status is LimitStatus.UNSTABLE
+        plain = falls or card.load_case.startswith(content.TILTING)
+        load = "" if plain else card.load_case.split(" (")[0]
+        moving = (shapes, end.mechanism, None if falls else end.direction, end.alpha)
+        # The card names blocks by their ids.
+        drawn = plot_mechanism(*moving, load=load, numbers=True)
+        save(drawn.figure, folder / f"mechanism_{side}.png")
+        gif = folder / f"mechanism_{side}.gif"
+        save_mechanism_animation(gif, *moving, load=load, numbers=True)
+    if isinstance(card, Card):
+        write_tables(folder, model, [*card.ends.values()], per_unit_m)
+        _write_report(folder, card, loads, per_unit_m)
+
+
+def _write_report(folder: Path, card: Card, loads: Loads, per_unit_m: float | None) -> None:
+    """Analyse the wall at usual coefficients of friction, draw that, and say all."""
+    wall, resistance = card.wall, card.resistance
+    shapes, model = wall.shapes, wall.model
+    curve = friction_curve(model, loads)
+    axes = plot_friction(curve, model.mu, slides_at_mu=card.load_case == content.TILTING)
+    save(axes.figure, folder / FRICTION)
     unit: Literal["px", "m", "units"] = "units" if wall.names.noun == "block" else "px"
     if per_unit_m is not None:
         unit = "m"
@@ -54,14 +84,14 @@ def write_analysis(
         if at.alpha_left is not None or at.alpha_right is not None
     ] or [(f"with mu = {curve[0].mu:g} to {curve[-1].mu:g}", "no load multiplier")]  # fmt: skip
     rows = [*_full_names(card.rows()), *friction]
-    cite = CITATION.format(version=card.version, sha256=card.sha256)
+    cite = CITATION.format(version=version("drystone"), sha256=card.sha256)
     view = view_of_wall(
         shapes, model, resistance, title="Limit analysis of a wall", unit=unit,
         noun=wall.names.noun, wedges=wall.names.wedges, steps=wall.names.steps,
         cards=_cards(card), inputs=[*rows, ("cite", cite)],
         notices=wall.notices, load_case=card.load_case, without_dilatancy=card.alphas_by_coulomb,
     )  # fmt: skip
-    return write_report(path, view, pictures=path.parent)
+    write_report(folder / REPORT, view, pictures=folder)
 
 
 def in_metres(
@@ -94,33 +124,3 @@ def _cards(card: Card) -> Iterator[content.ResultCard]:
         said = f"Joints slide without opening (Coulomb). {result.message}"
         name = f"Without dilatancy, to the {side}"
         yield content.ResultCard(f"{content.ALPHA} {side}", name, value, "higher", said)
-
-
-def draw_analysis(
-    paths: list[Path], wall: ModelledWall, loads: Loads, ends: Sequence[LimitResult]
-) -> None:
-    """Draw the contacts, and forces, mechanism and its motion for both ends, left first."""
-    save(plot_contacts(wall.shapes, wall.model).figure, paths[0])
-    for end, files in zip(ends, (paths[1:4], paths[4:]), strict=True):
-        for path in files:
-            # One that an earlier run left would belong to another wall.
-            path.unlink(missing_ok=True)
-        mechanism, forces, motion = files
-        if end.forces is not None:
-            save(plot_forces(wall.shapes, wall.model, end.forces).figure, forces)
-        if end.mechanism is None:
-            continue
-        falls = end.status is LimitStatus.UNSTABLE
-        load = "" if falls or loads.name.startswith("tilting table") else loads.name.split(" (")[0]
-        moving = (wall.shapes, end.mechanism, None if falls else end.direction, end.alpha)
-        # The card names blocks by their ids.
-        save(plot_mechanism(*moving, load=load, numbers=True).figure, mechanism)
-        save_mechanism_animation(motion, *moving, load=load, numbers=True)
-
-
-def draw_friction(folder: Path, model: RigidBlockModel, loads: Loads) -> tuple[AtFriction, ...]:
-    """Analyse the wall at usual coefficients of friction, and draw that."""
-    curve = friction_curve(model, loads)
-    axes = plot_friction(curve, model.mu, slides_at_mu=loads.name == content.TILTING)
-    save(axes.figure, folder / FRICTION)
-    return curve

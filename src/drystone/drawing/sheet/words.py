@@ -1,7 +1,5 @@
 """What a build sheet says of a stone: how to turn it, where it goes, what it rests on."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from drystone.drawing.assembly.parts import Assembly, Part
@@ -54,22 +52,12 @@ def lowest_corner(part: Part) -> Point:
     return x, y
 
 
-@dataclass(frozen=True)
-class Beside:
-    """The parts that a part touches, among those that stand already; by their steps, ascending.
+def beside(assembly: Assembly, part: Part) -> dict[str, list[int]]:
+    """Return what a stone or wedge touches of what stands already, on each side of it.
 
-    Wedges are among those that it is on; its own are not, they come after it.
+    Parts are named by their steps, ascending; the ground is 0.  Wedges are among those that it is
+    on; its own are not, they come after it.
     """
-
-    on: tuple[int, ...]
-    left_of: tuple[int, ...]
-    right_of: tuple[int, ...]
-    under: tuple[int, ...]
-    ground: bool
-
-
-def beside(assembly: Assembly, part: Part) -> Beside:
-    """Return what a stone or wedge touches when it is placed."""
     sums: dict[int, Points] = {}
     for interface in assembly.model.interfaces:
         if part.id not in (interface.block, interface.other):
@@ -80,9 +68,10 @@ def beside(assembly: Assembly, part: Part) -> Beside:
         share = interface.length + 1e-6 * assembly.size[0]
         push = towards * share * np.array(interface.normal)
         sums[other] = sums.get(other, np.zeros(2)) + push
-    found: dict[str, list[int]] = {"on": [], "left_of": [], "right_of": [], "under": []}
+    found: dict[str, list[int]] = {"on": [], "right of": [], "left of": [], "under": []}
     for other, push in sums.items():
         if other == GROUND:
+            found["on"].append(GROUND)
             continue
         neighbour = assembly.part(other)
         (a, b), (c, d) = ((p.corners[:, 0].min(), p.corners[:, 0].max()) for p in (part, neighbour))
@@ -92,24 +81,18 @@ def beside(assembly: Assembly, part: Part) -> Beside:
         # Nobody sets a stone by a wedge beside it.
         if neighbour.step < part.step and (side == "on" or neighbour.kind == "stone"):
             found[side].append(neighbour.step)
-    ordered = {side: tuple(sorted(steps)) for side, steps in found.items()}
-    return Beside(**ordered, ground=GROUND in sums)
+    return {side: sorted(steps) for side, steps in found.items() if steps}
 
 
 def beside_words(assembly: Assembly, part: Part) -> str:
     """Say by steps what a stone rests on and stands beside, such as "on 3 and 5, right of 7"."""
-    around = beside(assembly, part)
-    words = []
-    wedges = {wedge.step for wedge in assembly.wedges}
-    on = _list(tuple(f"wedge {step}" if step in wedges else str(step) for step in around.on))
-    if around.ground:
-        words.append("on the ground" + (f" and on {on}" if on else ""))
-    elif on:
-        words.append(f"on {on}")
-    for name, steps in (("right of", around.right_of), ("left of", around.left_of),
-                        ("under", around.under)):  # fmt: skip
-        if steps:
-            words.append(f"{name} {_list(tuple(map(str, steps)))}")
+    wedges, words = {wedge.step for wedge in assembly.wedges}, []
+    for side, steps in beside(assembly, part).items():
+        names = [f"wedge {step}" if step in wedges else str(step) for step in steps if step]
+        *first, last = names or [""]
+        listed = f"{', '.join(first)} and {last}" if first else last
+        grounded = ["on the ground"] if GROUND in steps else []
+        words.append(" and ".join([*grounded, *([f"{side} {listed}"] if names else [])]))
     return ", ".join(words)
 
 
@@ -153,9 +136,4 @@ def _side(push: Points, *, upright: bool) -> str:
         return "on"
     if upright and y < -STEEP:
         return "under"
-    return "right_of" if x > 0 else "left_of"
-
-
-def _list(names: tuple[str, ...]) -> str:
-    *first, last = names or ("",)
-    return f"{', '.join(first)} and {last}" if first else last
+    return "right of" if x > 0 else "left of"

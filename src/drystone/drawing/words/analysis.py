@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from importlib.metadata import version
 from math import atan, degrees, isfinite
 from typing import Any, Literal
@@ -24,13 +25,22 @@ from drystone.statics.joints import loose_blocks
 from drystone.statics.loads import Loads
 from drystone.statics.lp.extremes import Solver
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.result import LateralResistance, LimitResult, LimitStatus, LoadRange
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.statics.scatter.scatter import Scatter
 from drystone.statics.sensitivity import friction_sensitivity
 from drystone.statics.squeeze import held_by_upright_faces
 
 CLEARLY_LESS = 0.99
 """Share of the associative load multiplier; above it the mechanisms are mostly the same."""
+
+CONTACTS, BLOCKS = "contacts.csv", "blocks.csv"
+FRICTION, REPORT, SCATTER = "friction.png", "report.html", "scatter.png"
+WRITTEN = (
+    "contacts.png", "mechanism_left.png", "forces_left.png", "mechanism_left.gif",
+    "mechanism_right.png", "forces_right.png", "mechanism_right.gif", CONTACTS, BLOCKS, FRICTION,
+    REPORT, SCATTER,
+)  # fmt: skip
+"""What ``-o`` writes, by what there is; not every run writes all."""
 
 ASSUMPTIONS = (
     "2D, rigid blocks, no tension, no crushing, Coulomb friction at the ends of every contact"
@@ -76,54 +86,101 @@ class ModelledWall:
             if result.mechanism is not None
         }
 
-
-def why_it_falls(
-    model: RigidBlockModel, names: Names, failures: Mapping[str, Failure], lowest: float
-) -> str:
-    """Say in a sentence why a wall does not stand, whose lowest point is so high."""
-    if not on_ground(model):
-        return f"Nothing touches y = 0: the lowest {names.noun} is at y = {lowest:g}."
-    if loose := loose_blocks(model):
-        have = "has" if len(loose) == 1 else "have"
-        said = names.listed(loose)
-        return f"{said[0].upper()}{said[1:]} {have} nothing below that stands."
-    return next((failure.words for failure in failures.values()), "Its own weight is not carried.")
+    def why_it_falls(self, failures: Mapping[str, Failure]) -> str:
+        """Say in a sentence why a wall does not stand."""
+        if not on_ground(self.model):
+            lowest = f"the lowest {self.names.noun} is at y = {self.lowest:g}"
+            return f"Nothing touches y = 0: {lowest}."
+        if loose := loose_blocks(self.model):
+            have = "has" if len(loose) == 1 else "have"
+            said = self.names.listed(loose)
+            return f"{said[0].upper()}{said[1:]} {have} nothing below that stands."
+        words = (failure.words for failure in failures.values())
+        return next(words, "Its own weight is not carried.")
 
 
 @dataclass(frozen=True, eq=False)
-class Card:
-    """Everything that was found out about a wall.
+class RangeCard:
+    """A case whose answer is a range of alpha.
 
-    `failures` are how it fails by direction, `loose` what moves without dilatancy where that is at
-    a clearly smaller load, `sensitivity` d alpha / d mu.  `upright` are blocks that friction on
-    upright faces alone holds under the dead load; None where the wall does not stand, or nothing
-    is known.  `sha256` is that of the input file.
+    `wall` has the model that was analysed, `ends` are the answers by their names, and `sha256` is
+    that of the input file.
     """
 
-    model: RigidBlockModel
+    wall: ModelledWall
     load_case: str
+    ends: Mapping[str, LimitResult]
+    sha256: str
+
+    @cached_property
+    def failures(self) -> dict[str, Failure]:
+        """How the wall fails, by direction."""
+        return self.wall.failures(self.ends.values())
+
+    @property
+    def failed(self) -> bool:
+        """True when no answer could be certified."""
+        return LimitStatus.FAILED in [end.status for end in self.ends.values()]
+
+    @property
+    def stands(self) -> bool:
+        """True when the dead load is carried with some alpha."""
+        return LimitStatus.UNSTABLE not in [end.status for end in self.ends.values()]
+
+    def rows(self) -> list[tuple[str, str]]:
+        """Return names and values, one a line."""
+        rows = [("load case", self.load_case), ("friction", f"mu = {self.wall.model.mu:g}")]
+        for name, end in self.ends.items():
+            rows.append((f"{name} alpha", _alpha(end)))
+            if end.direction in self.failures:
+                rows.append(("  mechanism", self.failures[end.direction].words))
+        return rows + self._last_rows()
+
+    def report(self) -> dict[str, Any]:
+        """Return the same as what `--json` prints."""
+        words = {name: self.failures.get(end.direction) for name, end in self.ends.items()}
+        return {
+            "load_case": self.load_case,
+            **_alphas(self.ends),
+            "mu": self.wall.model.mu,
+            "certificate": _certificate(self.ends),
+            "words": {name: failure.words for name, failure in words.items() if failure},
+            **self._source(),
+        }
+
+    def _last_rows(self) -> list[tuple[str, str]]:
+        return [
+            *self.wall.remarks.items(),
+            ("certificate", _certified([*self.ends.values()])),
+            ("assumptions", ASSUMPTIONS),
+            ("input", f"sha256 {self.sha256[:16]}, drystone {version('drystone')}"),
+        ]
+
+    def _source(self) -> dict[str, Any]:
+        remarks = dict(self.wall.remarks)
+        return {"remarks": remarks, "sha256": self.sha256, "version": version("drystone")}
+
+
+@dataclass(frozen=True, eq=False)
+class Card(RangeCard):
+    """Everything that was found out about a wall under loads to the left and to the right.
+
+    `loose` is what moves without dilatancy where that is at a clearly smaller load, `sensitivity`
+    d alpha / d mu.  `upright` are blocks that friction on upright faces alone holds under the dead
+    load; None where the wall does not stand, or nothing is known.
+    """
+
     resistance: LateralResistance
     nonassociative: NonassociativeResistance | None
-    failures: Mapping[str, Failure]
     loose: Mapping[str, Failure]
     upright: tuple[int, ...] | None
-    names: Names
     sensitivity: Mapping[str, float]
-    sha256: str
-    version: str
-    remarks: Mapping[str, str]
-    lowest: float = 0.0  # height of the lowest point
 
     @property
     def why(self) -> str:
         """Why the wall does not stand, in a sentence; empty when it does, or nobody knows."""
-        if self.resistance.stable or self.resistance.failed:
-            return ""
-        return why_it_falls(self.model, self.names, self.failures, self.lowest)
-
-    @property
-    def _ends(self) -> dict[str, LimitResult]:
-        return {"left": self.resistance.left, "right": self.resistance.right}
+        known = self.resistance.stable or self.failed
+        return "" if known else self.wall.why_it_falls(self.failures)
 
     @property
     def _without(self) -> dict[str, NonassociativeResult]:
@@ -133,32 +190,32 @@ class Card:
     def rows(self) -> list[tuple[str, str]]:
         """Return names and values, one a line."""
         rows = [("load case", self.load_case), ("own weight", self._standing())]
-        for side, result in self._ends.items():
+        for side, result in self.ends.items():
             rows += self._of_side(side, result)
-        ratio = f"{number(self.resistance.value)}  min(alpha) / mu, mu = {self.model.mu:g}"
+        ratio = f"{number(self.resistance.value)}  min(alpha) / mu, mu = {self.wall.model.mu:g}"
         if self.nonassociative is not None and self.nonassociative.value is not None:
             ratio += f"; without dilatancy {self.nonassociative.value:.3f}"
         rows.append(("F_LR", ratio))
-        alphas = [end.alpha for end in self._ends.values() if end.alpha is not None]
+        alphas = [end.alpha for end in self.ends.values() if end.alpha is not None]
         if self.stands and alphas and self.load_case == "tilting table":
             angle = degrees(atan(min(alphas)))
             rows.append(("falls on a table", f"tilted by {angle:.1f} degrees, by associated flow"))
-        return rows + _last_rows(self, self._ends)
+        return rows + self._last_rows()
 
     def report(self) -> dict[str, Any]:
         """Return the same as what `--json` prints (DESIGN 2)."""
-        moving = {s: end.mechanism for s, end in self._ends.items() if end.mechanism is not None}
+        moving = {s: end.mechanism for s, end in self.ends.items() if end.mechanism is not None}
         return {
-            **_alphas(self._ends),
+            **_alphas(self.ends),
             "F_LR": self.resistance.value,
-            "stands": None if self.resistance.failed else self.stands,
+            "stands": None if self.failed else self.stands,
             "why": self.why,
             "held_by_upright_faces": None if self.upright is None else list(self.upright),
-            "mu": self.model.mu,
-            "blocks": len(self.model.blocks),
-            "contacts": self.model.contact_count,
+            "mu": self.wall.model.mu,
+            "blocks": len(self.wall.model.blocks),
+            "contacts": self.wall.model.contact_count,
             "nonassociative": self._without_dilatancy(),
-            "certificate": _certificate(self._ends),
+            "certificate": _certificate(self.ends),
             "sensitivity": dict(self.sensitivity),
             "load_case": self.load_case,
             "mechanism": {
@@ -167,11 +224,10 @@ class Card:
             },
             "words": {side: failure.words for side, failure in self.failures.items()},
             "joints": {
-                side: _moving_joints(self.model, failure) for side, failure in self.failures.items()
+                side: _moving_joints(self.wall.model, failure)
+                for side, failure in self.failures.items()
             },
-            "remarks": dict(self.remarks),
-            "sha256": self.sha256,
-            "version": self.version,
+            **self._source(),
         }
 
     @property
@@ -194,7 +250,7 @@ class Card:
 
     def _standing(self) -> str:
         """Say whether the dead load alone is carried, and by what."""
-        if self.resistance.failed:
+        if self.failed:
             return "not known: no answer could be certified"
         if not self.resistance.stable:
             return f"does not stand: {self.why[:1].lower()}{self.why[1:].rstrip('.')}"
@@ -202,7 +258,7 @@ class Card:
         if self.upright is None:
             said += "; not known whether without friction on upright faces"
         elif self.upright:
-            said += f" only by friction on upright faces: {self.names.listed(self.upright)}"
+            said += f" only by friction on upright faces: {self.wall.names.listed(self.upright)}"
         if self._can_fall:
             return f"{said}; let go, it can fall"
         if self.upright and self.nonassociative is not None:
@@ -257,67 +313,20 @@ def analysis_of(
         if result.alpha is None or bound.alpha is None or result.alpha < CLEARLY_LESS * bound.alpha
     ]  # fmt: skip
     return Card(
-        model=model,
+        wall=wall,
         load_case=loads.name,
+        ends={"left": resistance.left, "right": resistance.right},
+        sha256=sha256,
         resistance=resistance,
         nonassociative=without,
-        failures=wall.failures(both),
         loose=wall.failures(loose),
         upright=held_by_upright_faces(model, loads, solver=solver) if resistance.stable else None,
-        names=wall.names,
         sensitivity={
             result.direction: friction_sensitivity(model, result, loads).of_model(model)
             for result in both
             if result.success
         },
-        sha256=sha256,
-        version=version("drystone"),
-        remarks=wall.remarks,
-        lowest=wall.lowest,
     )
-
-
-@dataclass(frozen=True, eq=False)
-class RangeCard:
-    """A case whose answer is a range of alpha; fields as those of :class:`Card`."""
-
-    found: LoadRange
-    mu: float
-    load_case: str
-    failures: Mapping[str, Failure]
-    sha256: str
-    version: str
-    remarks: Mapping[str, str]
-
-    @property
-    def _ends(self) -> dict[str, LimitResult]:
-        return {"least": self.found.least, "greatest": self.found.greatest}
-
-    def rows(self) -> list[tuple[str, str]]:
-        """Return names and values, one a line."""
-        rows = [("load case", self.load_case), ("friction", f"mu = {self.mu:g}")]
-        for name, end in self._ends.items():
-            rows.append((f"{name} alpha", _alpha(end)))
-            if end.direction in self.failures:
-                rows.append(("  mechanism", self.failures[end.direction].words))
-        return rows + _last_rows(self, self._ends)
-
-    def report(self) -> dict[str, Any]:
-        """Return the same as what `--json` prints."""
-        return {
-            "load_case": self.load_case,
-            **_alphas(self._ends),
-            "mu": self.mu,
-            "certificate": _certificate(self._ends),
-            "words": {
-                name: self.failures[end.direction].words
-                for name, end in self._ends.items()
-                if end.direction in self.failures
-            },
-            "remarks": dict(self.remarks),
-            "sha256": self.sha256,
-            "version": self.version,
-        }
 
 
 def _moving_joints(model: RigidBlockModel, failure: Failure) -> dict[str, list[list[int]]]:
@@ -342,15 +351,6 @@ def _alpha(
         return f"{result.status}: {result.message}"
     # One that rounds to nothing has no sign.
     return f"alpha = {round(result.alpha, 4) + 0.0:.4f}  {words}"
-
-
-def _last_rows(card: Card | RangeCard, ends: Mapping[str, LimitResult]) -> list[tuple[str, str]]:
-    return [
-        *card.remarks.items(),
-        ("certificate", _certified([*ends.values()])),
-        ("assumptions", ASSUMPTIONS),
-        ("input", f"sha256 {card.sha256[:16]}, drystone {card.version}"),
-    ]
 
 
 def _certificate(ends: Mapping[str, LimitResult]) -> dict[str, float | None]:
@@ -379,24 +379,12 @@ def _certified(ends: Sequence[LimitResult]) -> str:
     return f"equilibrium to {residual:.0e}{gap}, by {solvers}"
 
 
-@dataclass(frozen=True)
-class NoiseUnit:
-    """What noise is given in: a name, and how many lengths of the model it is."""
-
-    name: str
-    lengths: float = 1.0
-
-    def words(self, noise: float) -> str:
-        """Say how large a noise is that is known in lengths of the model."""
-        return f"{noise / self.lengths:g} {self.name}"
-
-
 @dataclass(frozen=True, eq=False)
 class ScatterCard:
-    """What the shaken walls carry, with the unit in which the noise was given."""
+    """What the shaken walls carry, with the :func:`noise_unit` in which the noise was given."""
 
     scatter: Scatter
-    unit: NoiseUnit
+    unit: tuple[str, float]
 
     def rows(self) -> list[tuple[str, str]]:
         """Return names and values, one a line."""
@@ -433,26 +421,25 @@ class ScatterCard:
         }
 
     def _shaken(self) -> str:
-        made = self.scatter.settings
+        made, (unit, lengths) = self.scatter.settings, self.unit
         parts = [f"{made.samples} walls, seed {self.scatter.seed}"]
         if made.mu is not None:
             parts.append(f"mu {made.mu[0]:g} to {made.mu[1]:g}")
-        if made.outline_noise:
-            parts.append(f"outlines +- {self.unit.words(made.outline_noise)}")
-        if made.placement_noise:
-            parts.append(f"placement +- {self.unit.words(made.placement_noise)}")
+        for name, noise in (("outlines", made.outline_noise), ("placement", made.placement_noise)):
+            if noise:
+                parts.append(f"{name} +- {noise / lengths:g} {unit}")
         return ", ".join(parts)
 
 
-def noise_unit(wall: GivenWall) -> NoiseUnit:
+def noise_unit(wall: GivenWall) -> tuple[str, float]:
     """Return the unit of ``--outline-noise`` and ``--placement-noise``: px where there are any.
 
-    They are those of the source image: a plan on outlines in metres has a model in metres, one on
-    pixels has one in working px.
+    Its name, and how many lengths of the model it is.  Px are those of the source image: a plan
+    on outlines in metres has a model in metres, one on pixels has one in working px.
     """
     if wall.blocks is None:
-        return NoiseUnit("px", 1.0 if wall.plan is None else wall.plan.working_scale)
+        return "px", 1.0 if wall.plan is None else wall.plan.working_scale
     if wall.plan is None:
-        return NoiseUnit("lengths of the block model")
+        return "lengths of the block model", 1.0
     px_per_m = wall.plan.px_per_m if wall.plan.length_unit == "m" else None
-    return NoiseUnit("px", 1.0 / (px_per_m or 1.0))
+    return "px", 1.0 / (px_per_m or 1.0)

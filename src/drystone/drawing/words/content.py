@@ -66,6 +66,24 @@ def number(value: float | None, digits: int = 3) -> str:
     return f"{round(value, digits) + 0.0:.{digits}f}"
 
 
+MERITS = {
+    "F_AV": (2, "vertical arrangement, higher is better"),
+    "F_AH": (2, "horizontal arrangement, lower is better"),
+    "F_LR": (3, "lateral resistance / mu, higher is better"),
+    "F_LR_coulomb": (3, "the same without dilatancy"),
+    "T_LEVEL": (3, "unevenness of the top, lower is better"),
+    "E_FLUSH": (3, "unevenness of the ends, lower is better"),
+}
+"""Digits and meaning of the figures of merit beside F_SF."""
+
+
+def figure_rows(metrics: object) -> Iterator[tuple[str, str]]:
+    """Yield the figures of merit that metrics have, one a line."""
+    for name, (digits, said) in MERITS.items():
+        if hasattr(metrics, name):
+            yield name, f"{number(getattr(metrics, name), digits)}  {said}"
+
+
 def inputs(plan: Plan) -> tuple[tuple[str, str], ...]:
     """Return what the plan was made from, as pairs of name and value."""
     source, unit = plan.source, plan.length_unit

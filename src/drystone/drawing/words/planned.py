@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from drystone.craft import RULES, CraftReport, Masonry, look
-from drystone.drawing.words.content import number
+from drystone.drawing.words.content import figure_rows, number
 from drystone.errors import counted
 from drystone.kernels.backend import describe
 from drystone.model.plan import Plan
@@ -91,12 +91,7 @@ def rows(result: PlanResult, folder: Path) -> list[tuple[str, str]]:
     return [
         ("stones", f"{placed} of {placed + left} placed{unused}"),
         ("F_SF", f"{number(metrics.F_SF)}  ({most})"),
-        ("F_AV", f"{number(metrics.F_AV, 2)}  vertical arrangement, higher is better"),
-        ("F_AH", f"{number(metrics.F_AH, 2)}  horizontal arrangement, lower is better"),
-        ("F_LR", f"{number(metrics.F_LR)}  lateral resistance / mu, higher is better"),
-        ("F_LR_coulomb", f"{number(metrics.F_LR_coulomb)}  the same without dilatancy"),
-        ("T_LEVEL", f"{number(metrics.T_LEVEL)}  unevenness of the top, lower is better"),
-        ("E_FLUSH", f"{number(metrics.E_FLUSH)}  unevenness of the ends, lower is better"),
+        *figure_rows(metrics),
         ("alpha", f"left {number(metrics.alpha_left)}, right {number(metrics.alpha_right)}"),
         ("wedges", f"{len(plan.wedge_steps)}, area {metrics.wedge_area:.3g} {plan.length_unit}²"),
         ("craft", craft),

@@ -5,12 +5,10 @@ from collections.abc import Iterator, Sequence
 from io import StringIO
 from pathlib import Path
 
+from drystone.drawing.words.analysis import BLOCKS, CONTACTS
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult
 from drystone.whole_files import write_whole
-
-CONTACTS, BLOCKS = "contacts.csv", "blocks.csv"
-NAMES = (CONTACTS, BLOCKS)
 
 Cell = str | int | float
 

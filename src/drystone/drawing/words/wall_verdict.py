@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import atan, degrees
 from types import MappingProxyType
 
-from drystone.drawing.words.analysis import ModelledWall, why_it_falls
+from drystone.drawing.words.analysis import ModelledWall
 from drystone.drawing.words.content import FALLS, TILTING, dead_load, is_horizontal
 from drystone.statics.failing.mechanism import Failure
 from drystone.statics.model import GROUND
@@ -41,8 +41,7 @@ def judge_wall(
         return WallVerdict(None, words)
     failures = wall.failures((resistance.left, resistance.right))
     if not resistance.stable:
-        why = why_it_falls(wall.model, wall.names, failures, wall.lowest)
-        why = why.removeprefix("Falls by itself: ").rstrip(".")
+        why = wall.why_it_falls(failures).removeprefix("Falls by itself: ").rstrip(".")
         return WallVerdict(False, f"{subject}, {FALLS}: {why[:1].lower()}{why[1:]}")
     both = [(end.alpha, str(end.direction)) for end in (resistance.left, resistance.right)]
     both += [(alpha, direction) for direction, alpha in without_dilatancy.items()]
