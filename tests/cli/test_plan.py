@@ -194,21 +194,6 @@ def test_profile_says_where_the_time_went(rubble, tmp_path, run):
     assert "search" not in threads.out
 
 
-def test_metres(rubble, tmp_path, run):
-    half = ("--scale", ".5", "--method", "paper")
-    metric = ("--wall", "0.5mx18cm", "--px-per-m", 200)
-    run("plan", rubble, *metric, *half, "-o", tmp_path / "m")
-    run("plan", rubble, "--wall", "100x36", *half, "-o", tmp_path / "px")
-    metres, px = read_plan(tmp_path / "m"), read_plan(tmp_path / "px")
-    assert (metres.length_unit, metres.px_per_m, metres.working_scale) == ("m", 200.0, 0.5)
-    assert (metres.width, metres.height) == pytest.approx((0.5, 0.18))
-    assert metres.metrics.wedge_area == pytest.approx(px.metrics.wedge_area / 200**2)
-    for one, other in zip(metres.stone_steps, px.stone_steps, strict=True):
-        assert (one.stone, one.source_centroid) == (other.stone, other.source_centroid)
-        assert np.array(one.centroid) * 200 == pytest.approx(np.array(other.centroid), abs=1e-9)
-    assert run("check", tmp_path / "m", "--stones", rubble).code == 0
-
-
 def test_a_wall_is_complete_or_not(bricks, tmp_path, run):
     asked = ("plan", bricks, "--method", "paper", "--json", "-o", tmp_path, "--overwrite")
     filled = run(*asked, "--wall", "60x20")

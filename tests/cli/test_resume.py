@@ -73,18 +73,6 @@ def test_a_finished_plan_is_left_as_it_is(bricks, tmp_path, run):
         assert {path.name: path.read_bytes() for path in out.iterdir()} == before
 
 
-def test_the_lock_of_a_run_that_was_killed_at_its_end_goes(bricks, tmp_path, run):
-    asked = ("plan", bricks, "--wall", "60x20", "--scale", "1", "--method", "paper")
-    asked = (*asked, "-o", tmp_path / "out", "--resume")
-    assert run(*asked).code == 0
-    (tmp_path / "out" / LOCK).touch()
-    assert "finished" in run(*asked).err
-    assert not (tmp_path / "out" / LOCK).exists()
-    with locked(tmp_path / "out"):
-        assert "E149" in run(*asked).err
-    assert not (tmp_path / "out" / LOCK).exists()
-
-
 def limit(monkeypatch, looks):
     """Let `--time` strike by how often the clock was looked at; what follows has time."""
     limits = iter([after_looks(looks)])
@@ -335,16 +323,24 @@ def test_a_damaged_checkpoint_is_set_aside_and_the_partial_plan_gone_on_from(
 
 
 def test_two_runs_do_not_write_into_one_folder(rubble, finished, tmp_path, run):
-    plan = ("plan", rubble, *WALL, "--seed", 1, "-o", tmp_path / "out")
-    (tmp_path / "out").mkdir()
-    with locked(tmp_path / "out"):
+    out = tmp_path / "out"
+    plan = ("plan", rubble, *WALL, "--seed", 1, "-o", out)
+    out.mkdir()
+    with locked(out):
         for more in ((), ("--overwrite",), ("--resume",)):
             ran = run(*plan, *more)
             assert (ran.code, "E149" in ran.err) == (2, True)
-        assert "E149" in run("demo", "-o", tmp_path / "out").err
-        assert [path.name for path in (tmp_path / "out").iterdir()] == [LOCK]
+        assert "E149" in run("demo", "-o", out).err
+        assert [path.name for path in out.iterdir()] == [LOCK]
     assert run(*plan).code in (0, 4)
-    assert (tmp_path / "out" / "plan.json").read_bytes() == (finished / "plan.json").read_bytes()
+    assert (out / "plan.json").read_bytes() == (finished / "plan.json").read_bytes()
+    # The lock of a run that was killed at its end goes.
+    (out / LOCK).touch()
+    assert "finished" in run(*plan, "--resume").err
+    assert not (out / LOCK).exists()
+    with locked(out):
+        assert "E149" in run(*plan, "--resume").err
+    assert not (out / LOCK).exists()
 
 
 def test_resume_refuses_what_is_of_something_else(interrupted, rubble, bricks, run):

@@ -40,16 +40,11 @@ def test_a_ruler_keeps_its_points():
 
 @pytest.mark.parametrize("text", ["20,30,2000,30=1m", "0,-1,9,9=1m", "5,61,9,9=1m", "-1,0,9,9=1m"])
 def test_a_ruler_beyond_the_picture_is_refused(text):
-    with pytest.raises(UsageError, match="outside the picture, which is 213 x 60 px") as caught:
+    with pytest.raises(UsageError, match=r"E138.* outside the picture, which is 213 x 60 px"):
         refuse_outside(ruler(text), (213, 60))
-    assert caught.value.code == "E138"
-
-
-def test_others_are_not():
-    refuse_outside(ruler("0,0,213,60=1m"), (213, 60))  # from corner to corner
-    refuse_outside(ruler("20,30,2000,30=1m"), (0, 0))  # how large it is nobody knows
-    refuse_outside(2000.0, (213, 60))
-    refuse_outside(None, (213, 60))
+    for scale in (ruler("0,0,213,60=1m"), 2000.0, None):  # from corner to corner
+        refuse_outside(scale, (213, 60))
+    refuse_outside(ruler(text), (0, 0))  # how large it is nobody knows
 
 
 def test_where_the_size_of_a_picture_is_known():
@@ -64,22 +59,18 @@ def test_where_the_size_of_a_picture_is_known():
     assert planned_picture_px({"path": "masks.png", "files": ["1.png"], **size_px}) == (0, 0)
 
 
-def test_either_may_know_the_scale():
+def test_either_may_know_the_scale_and_who_says_another_is_named():
     assert scale_with(None, None) is None
     assert scale_with(200.0, None) == scale_with(None, 200.0) == 200.0
     assert scale_with(200.0, 200.3) == 200.0
-
-
-def test_who_says_another_scale_is_named():
     with pytest.raises(UsageError) as caught:
         scale_with(ruler("0,0,100,0=.1m"), 200.0, "plan")
     assert str(caught.value) == (
         "E131 --ruler: the plan says 200 px a metre, the option 1000. "
         "Leave the option out, or plan again with another scale."
     )
-    with pytest.raises(UsageError, match="E131") as caught:
+    with pytest.raises(UsageError, match=r"E131 .*, or correct the scale beside the stones\."):
         scale_with(200.0, 250.0)
-    assert caught.value.cure == "Leave the option out, or correct the scale beside the stones."
 
 
 @pytest.mark.parametrize(

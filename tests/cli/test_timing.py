@@ -19,17 +19,13 @@ def searched():
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
-def test_parts_of_a_search_add_up(searched, jobs):
+def test_the_search_is_a_row_and_its_workers_are_processes(searched, jobs):
     summary = profile_summary(searched, jobs)
     parts = summary["parts"]
     assert sum(parts.values()) == pytest.approx(summary["seconds"])
     assert parts["search"] > 0
     assert parts["other"] >= 0
-
-
-@pytest.mark.parametrize("jobs", [1, 2])
-def test_the_search_is_a_row_and_its_workers_are_processes(searched, jobs):
-    lines = dict(profile_rows(profile_summary(searched, jobs)))
+    lines = dict(profile_rows(summary))
     assert lines["search"].endswith("%")  # no microseconds a candidate
     assert lines["processes"] == f"{jobs}; the search is by the clock"
     assert "threads" not in lines

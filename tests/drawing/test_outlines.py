@@ -13,12 +13,11 @@ from drystone.drawing.outlines import (
     wall_outlines,
     wall_regions,
 )
-from drystone.model.placement import Placement
+from drystone.model.placement import Placement, Wedge
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.stone import Stone
 from drystone.model.wall import Wall
-from tests.drawing import examples
 from tests.naive import plotting as naive
 from tests.verify.exact_examples import GAP_PX, exact_example
 
@@ -55,28 +54,22 @@ def test_regions_are_the_labels(labels):
 
 
 @pytest.mark.parametrize("px_per_m", [None, 200.0])
-def test_wall_outlines_are_in_the_units_of_the_plan(px_per_m):
-    wall = examples.wall(px_per_m)
-    outlines = wall_outlines(wall)
-    units = wall.site.units_per_px
-    assert list(outlines) == [3, 5, 8, 12, 300, examples.WEDGE]
-    # Outlines stay within half a pixel of the pixels' own corners.
-    np.testing.assert_allclose(outlines[3].min(axis=0), (0, 0), atol=0.51 * units)
-    np.testing.assert_allclose(outlines[3].max(axis=0), (14 * units, 8 * units), atol=0.51 * units)
-    box = np.array([[20, 6], [23, 6], [23, 8], [20, 8]]) * units
-    np.testing.assert_allclose(outlines[examples.WEDGE], box)
-
-
-def test_wall_outlines_turn_counter_clockwise_and_scale():
+def test_wall_outlines_turn_counter_clockwise_and_scale(px_per_m):
     long = Stone(9, np.ones((2, 8), bool))
     lean = np.array([[1, 1, 1], [0, 0, 1]], bool)
     for stone, angle, size in ((long, 90.0, (2, 8)), (Stone(4, lean), 180.0, (3, 2))):
         height, width = size[1] // 2 + 1, size[0] // 2 + 1
-        mask = np.ones((height, width), bool)
-        posed = PosedStone(stone, angle, 0.5, mask, (width / 2, height / 2))
-        wall = Wall.empty(Site(10, 10, scale=0.5)).add(Placement(posed, 10 - height, 3))
-        outline = wall_outlines(wall)[stone.id]
-        assert np.ptp(outline, axis=0) == pytest.approx(size, abs=0.05)
+        posed = PosedStone(
+            stone, angle, 0.5, np.ones((height, width), bool), (width / 2, height / 2)
+        )
+        site = Site(10, 10, scale=0.5, px_per_m=px_per_m)
+        wedge = Wedge(7, stone.id, np.ones((1, 2), bool), 9, 0)
+        wall = Wall.empty(site).add(Placement(posed, 10 - height, 3), (wedge,))
+        outlines = {i: loop * (px_per_m or 1.0) for i, loop in wall_outlines(wall).items()}
+        assert np.ptp(outlines[stone.id], axis=0) == pytest.approx(size, abs=0.05)
+        np.testing.assert_allclose(outlines[7], [[0, 0], [4, 0], [4, 2], [0, 2]])
+        outline = outlines[stone.id]
+        assert outline.mean(axis=0) == pytest.approx([6 + size[0] / 2, size[1] / 2], abs=2.1)
     # The lone pixel of `lean` is at the lower right; half a turn takes it to the upper left.
     top = outline[outline[:, 1] > outline[:, 1].max() - 0.1]
     assert top[:, 0].max() < outline[:, 0].mean()

@@ -28,8 +28,14 @@ def test_folder_and_file_are_the_same_plan(tmp_path: Path) -> None:
     one, other = read_assembly(tmp_path), read_assembly(tmp_path / "plan.json")
     assert one.plan == other.plan
     assert [part.name for part in one.parts] == [part.name for part in other.parts]
-    assert one.unit == "px"
-    assert one.size == (110.0, 40.0)
+    assert (one.unit, one.size) == ("px", (110.0, 40.0))
+    # As thick as the side of the median stone.
+    sides = sorted(shapely.Polygon(part.corners).area ** 0.5 for part in one.stones)
+    middle = len(sides) // 2
+    assert len(sides) % 2 == 0
+    assert one.thickness == pytest.approx((sides[middle - 1] + sides[middle]) / 2)
+    (tmp_path / "blocks.json").unlink()
+    refused("E133", tmp_path)
 
 
 def test_areas_of_outlines_are_those_of_the_blocks() -> None:
@@ -54,22 +60,15 @@ def test_a_scale_changes_no_load_multiplier() -> None:
     assert wall.resistance.left.alpha == pytest.approx(wall.plan.metrics.alpha_left, abs=1e-6)
 
 
-def test_one_scale_only(tmp_path: Path) -> None:
-    write_plan_folder("exact-m", tmp_path)
-    assert read_assembly(tmp_path, px_per_m=PX_PER_M).px_per_m == PX_PER_M
-    assert "137 px a metre, not 200" in refused("E131", tmp_path, px_per_m=200.0).what
-
-
-def test_a_thickness_needs_a_scale(tmp_path: Path) -> None:
-    write_plan_folder("raster", tmp_path)
-    refused("E131", tmp_path, thickness_m=0.3)
-    assert read_assembly(tmp_path, thickness_m=0.3, px_per_m=100.0).thickness == 0.3
-
-
-def test_files_must_be_there(tmp_path: Path) -> None:
-    write_plan_folder("exact", tmp_path)
-    (tmp_path / "blocks.json").unlink()
-    refused("E133", tmp_path)
+def test_one_scale_only_and_a_thickness_needs_one(tmp_path: Path) -> None:
+    for name in ("exact-m", "raster"):
+        (tmp_path / name).mkdir()
+        write_plan_folder(name, tmp_path / name)
+    metric, px = tmp_path / "exact-m", tmp_path / "raster"
+    assert read_assembly(metric, px_per_m=PX_PER_M).px_per_m == PX_PER_M
+    assert "137 px a metre, not 200" in refused("E131", metric, px_per_m=200.0).what
+    refused("E131", px, thickness_m=0.3)
+    assert read_assembly(px, thickness_m=0.3, px_per_m=100.0).thickness == 0.3
 
 
 def renumbered(steps: list[dict[str, Any]]) -> None:
@@ -114,15 +113,6 @@ def test_steps_that_nobody_can_build_by_are_refused(
     error = refused(code, tmp_path)
     assert said in error.what
     assert "`drystone check`" in error.cure
-
-
-def test_the_usual_thickness_is_the_side_of_the_median_stone(tmp_path: Path) -> None:
-    write_plan_folder("exact", tmp_path)
-    wall = read_assembly(tmp_path)
-    sides = sorted(shapely.Polygon(part.corners).area ** 0.5 for part in wall.stones)
-    middle = len(sides) // 2
-    assert len(sides) % 2 == 0
-    assert wall.thickness == pytest.approx((sides[middle - 1] + sides[middle]) / 2)
 
 
 def test_a_pit_that_meets_the_outside_at_a_corner_is_filled() -> None:

@@ -78,27 +78,21 @@ def test_placed_stones_are_where_the_plan_has_them(tmp_path, px_per_m) -> None:
     assert np.abs(here / unit - next(wall.wedges).corners).max() < 1e-6
 
 
-def test_sizes_are_millimetres_and_the_view_box_has_the_same(tmp_path) -> None:
-    root = drawing(assembly(), tmp_path)
+def test_layers_are_there_and_statics_are_not_shown_at_first(tmp_path) -> None:
+    wall = assembly()
+    root = drawing(wall, tmp_path, title="Wall <A> & B")
     box = [float(number) for number in root.get("viewBox").split()]
-    assert root.get("width") == f"{box[2]:g}mm"
-    assert root.get("height") == f"{box[3]:g}mm"
+    assert (root.get("width"), root.get("height")) == (f"{box[2]:g}mm", f"{box[3]:g}mm")
     (frame,) = (path for path in layer(root, "SITE") if path.get("id") == "frame")
     assert np.ptp(corners(frame), axis=0) == pytest.approx((900.0, 300.0))
     assert box[0] < 0
     assert box[0] + box[2] > 900
-
-
-def test_layers_are_there_and_statics_are_not_shown_at_first(tmp_path) -> None:
-    wall = assembly()
-    root = drawing(wall, tmp_path, title="Wall <A> & B")
     groups = root.findall(f"{SVG}g")
     assert [group.get("id") for group in groups] == LAYERS
     hidden = {group.get("id") for group in groups if group.get("display") == "none"}
     assert hidden == {"CONTACTS", *LAYERS[4:8]}
     assert root.find(f"{SVG}title").text == "Wall <A> & B"
-    lines = layer(root, "CONTACTS")
-    assert len(lines) == len(wall.model.interfaces)
+    assert len(layer(root, "CONTACTS")) == len(wall.model.interfaces)
     assert f"{wall.resistance.left.alpha:.4f}" in layer(root, "FORCES-LEFT")[0].text
 
 
@@ -142,22 +136,19 @@ def polygon(outline):
     return shapely.Polygon([(x, y) for x, y, *_ in outline.get_points()])
 
 
-def test_the_audit_finds_nothing(doc) -> None:
+def test_the_audit_finds_nothing_and_the_unit_is_the_metre_or_none(doc, tmp_path) -> None:
     audit = doc.audit()
     assert not audit.errors
     assert not audit.fixes
     assert doc.dxfversion == "AC1024"  # R2010
-
-
-def test_the_unit_is_the_metre_or_none(doc, tmp_path) -> None:
-    assert doc.header["$INSUNITS"] == 6
-    assert doc.header["$MEASUREMENT"] == 1
+    assert (doc.header["$INSUNITS"], doc.header["$MEASUREMENT"]) == (6, 1)
+    ezdxf.options.write_fixed_meta_data_for_testing = False
     (path,) = FORMATS["dxf"].write(assembly(px_per_m=None), tmp_path, SETTINGS)
+    assert not ezdxf.options.write_fixed_meta_data_for_testing
     without = ezdxf.readfile(path)
     assert without.header["$INSUNITS"] == 0
     words = " ".join(text.dxf.text for text in on_layer(without, "SITE", "TEXT"))
-    assert "px" in words
-    assert "Not to scale" in words
+    assert "Not to scale: the unit is 1 px" in words
 
 
 def test_outlines_are_closed_and_those_of_the_plan(doc, wall) -> None:
@@ -218,41 +209,23 @@ def test_numbers_are_the_steps_at_the_centroids(doc, wall) -> None:
         assert (place.x, place.y) == pytest.approx(part.centroid)
 
 
-def test_ezdxf_stays_as_it_was(wall, tmp_path) -> None:
-    ezdxf.options.write_fixed_meta_data_for_testing = False
-    FORMATS["dxf"].write(wall, tmp_path, SETTINGS)
-    assert not ezdxf.options.write_fixed_meta_data_for_testing
-
-
-def test_the_picture_has_the_shape_of_the_wall(tmp_path) -> None:
-    wall = assembly(columns=6)
-    (path,) = FORMATS["png"].write(wall, tmp_path, ExportSettings())
-    with Image.open(path) as image:
-        pixels = np.asarray(image.convert("RGB")).astype(int)
-    stone = np.abs(pixels - np.array([0xCF, 0xC8, 0xBB])).max(axis=2) == 0
-    rows, columns = np.nonzero(stone)
-    assert abs(np.ptp(columns) / np.ptp(rows) - 6.0) < 0.1
-
-
-def test_every_step_is_written() -> None:
-    wall = assembly(columns=5, rows=3)
-    ax = draw(drawing_of_assembly(wall, "A wall"))
+def test_every_step_is_written_those_of_wedges_above_the_ground() -> None:
+    ax = draw(drawing_of_assembly(assembly(columns=5, rows=3), "A wall"))
     assert sorted(int(text.get_text()) for text in ax.texts) == list(range(1, 17))
+    wedge = next(text for text in ax.texts if text.get_text() == "2")
+    assert wedge.get_window_extent().transformed(ax.transData.inverted()).y0 > 0.0
     assert ax.get_xlabel() == "m"
     assert draw(drawing_of_assembly(assembly(px_per_m=None))).get_xlabel() == "px"
 
 
-def test_numbers_of_wedges_are_above_the_ground() -> None:
-    ax = draw(drawing_of_assembly(assembly(columns=5, rows=3)))
-    wedge = next(text for text in ax.texts if text.get_text() == "2")
-    box = wedge.get_window_extent().transformed(ax.transData.inverted())
-    assert box.y0 > 0.0
-
-
-def test_a_long_title_makes_no_wide_picture(tmp_path) -> None:
+def test_a_picture_has_the_shape_of_the_wall_whatever_its_title(tmp_path) -> None:
     wall, sizes = assembly(columns=6), []
     for title in ("A wall", 300 * "W", "$x_1"):
         (path,) = FORMATS["png"].write(wall, tmp_path, ExportSettings(title=title))
         with Image.open(path) as image:
             sizes.append(image.size)
+            pixels = np.asarray(image.convert("RGB")).astype(int)
+        stone = np.abs(pixels - np.array([0xCF, 0xC8, 0xBB])).max(axis=2) == 0
+        rows, columns = np.nonzero(stone)
+        assert abs(np.ptp(columns) / np.ptp(rows) - 6.0) < 0.1
     assert sizes[1] == pytest.approx(sizes[0], rel=0.02)

@@ -6,9 +6,7 @@ import shapely
 import trimesh
 
 from drystone.drawing.export import solids
-from drystone.drawing.palette import CLUSTER_COLOURS, WEDGE_COLOUR
 from drystone.errors import InputError
-from tests.drawing.export.robot_plans import assembly
 
 OUTLINES = {
     "triangle": [(0, 0), (1, 0), (0, 1)],
@@ -63,14 +61,3 @@ def test_second_moments_of_a_shifted_and_turned_box() -> None:
         @ np.array([[0.6, 0.8], [-0.8, 0.6]])
     )
     assert (xx, zz, xz) == pytest.approx((main[0, 0], main[1, 1], main[0, 1]))
-
-
-def test_materials_are_clusters_and_wedges() -> None:
-    wall = assembly("exact")
-    found = solids.materials(wall)
-    assert set(found) == {f"cluster_{part.cluster}" for part in wall.stones} | {"wedge"}
-    as_text = {name: "#" + "".join(f"{round(255 * part):02x}" for part in colour)
-               for name, colour in found.items()}  # fmt: skip
-    assert as_text.pop("wedge") == WEDGE_COLOUR
-    for name, colour in as_text.items():
-        assert colour == CLUSTER_COLOURS[int(name.removeprefix("cluster_")) - 1]

@@ -73,40 +73,31 @@ def test_instructions_say_what_to_do(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("px_per_m", [PX_PER_M, None])
-def test_it_holds_what_the_csv_holds(px_per_m: float | None, tmp_path: Path) -> None:
+def test_all_hold_what_the_csv_holds(px_per_m: float | None, tmp_path: Path) -> None:
     wall = assembly("exact", px_per_m)
     (path,) = FORMATS["parquet"].write(wall, tmp_path, SETTINGS)
     found = parquet.read_table(path).to_pylist()
-    (other,) = FORMATS["csv"].write(wall, tmp_path, SETTINGS)
-    with other.open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert len(found) == len(rows) == len(wall.parts)
-    for one, row in zip(found, rows, strict=True):
+    shapes = written("exact", tmp_path, px_per_m)["features"]
+    listed = rows("exact", tmp_path, px_per_m)
+    for one, shape, row in zip(found, shapes, listed, strict=True):
+        assert shape["properties"] == one
         assert list(one) == list(row)
         for name, value in one.items():
             if isinstance(value, list):
                 assert " ".join(map(str, value)) == row[name]
             else:
                 assert ("" if value is None else str(value)) == row[name]
-
-
-def test_types_and_metadata(tmp_path: Path) -> None:
-    (path,) = FORMATS["parquet"].write(assembly("exact"), tmp_path, SETTINGS)
+    # An empty column of masses keeps its type.
     schema = parquet.read_schema(path)
     types = {name: schema.field(name).type for name in schema.names}
+    unit = wall.unit
     assert types["step"] == types["under"] == types["cluster"] == pa.int64()
-    assert types["x_m"] == types["mass_kg"] == types["alpha_left"] == pa.float64()
+    assert types[f"x_{unit}"] == types["mass_kg"] == types["alpha_left"] == pa.float64()
     assert types["kind"] == types["side"] == types["instruction"] == pa.string()
     assert types["neighbours"] == pa.list_(pa.int64())
     said = {name.decode(): value.decode() for name, value in schema.metadata.items()}
-    assert (said["unit"], said["px_per_m"], said["density_kg_m3"]) == ("m", "137.0", "2450.0")
-
-
-def test_without_a_scale_the_empty_column_of_masses_keeps_its_type(tmp_path: Path) -> None:
-    (path,) = FORMATS["parquet"].write(assembly("raster", None), tmp_path, SETTINGS)
-    table = parquet.read_table(path)
-    assert table.schema.field("mass_kg").type == pa.float64()
-    assert table["mass_kg"].null_count == len(table)
+    told = (unit, str(px_per_m or ""), "2450.0")
+    assert (said["unit"], said["px_per_m"], said["density_kg_m3"]) == told
 
 
 def written(name: str, folder: Path, px_per_m: float | None = PX_PER_M) -> dict[str, Any]:
@@ -143,12 +134,3 @@ def test_unit_and_frame_are_said(tmp_path: Path) -> None:
     read = written("exact", tmp_path, None)
     assert (read["unit"], read["px_per_m"]) == ("px", None)
     assert read["wall"] == {"width": 110.0, "height": 40.0}
-
-
-def test_properties_are_the_row_of_the_build_list(tmp_path: Path) -> None:
-    read, wall = written("exact", tmp_path), assembly("exact")
-    for feature, part in zip(read["features"], wall.parts, strict=True):
-        row = feature["properties"]
-        assert (row["step"], row["kind"], row["under"]) == (part.step, part.kind, part.under)
-        assert row["mass_kg"] == pytest.approx(wall.mass_kg(part))
-        assert set(row["neighbours"]) <= set(wall.neighbours(part.id))

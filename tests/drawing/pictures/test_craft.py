@@ -51,6 +51,8 @@ def test_a_running_joint_is_a_line_between_hatched_stones():
     (mark,) = lines(ax, "mark-running_joints")
     assert mark[:, 0] == pytest.approx(2.0)
     assert (mark[:, 1].min(), mark[:, 1].max()) == pytest.approx((0.0, 3.0), abs=0.05)
+    said = "running joints: broken, 3 courses   (good ≤ 1, fair ≤ 2)"
+    assert said in ax.get_title("left")
 
 
 def test_numbers_are_steps_of_a_plan():
@@ -58,13 +60,6 @@ def test_numbers_are_steps_of_a_plan():
     ax = plot_finding(look(Masonry(stack_bond(2, 2), steps=steps)), "laps")
     assert sorted(text.get_text() for text in ax.texts) == ["41", "42", "43", "44"]
     assert "not judged" in ax.get_title("left")
-
-
-def test_the_title_has_number_verdict_and_limits():
-    ax = plot_finding(look(Masonry(stack_bond(2, 3))), "running_joints")
-    title = ax.get_title("left")
-    assert "running joints: broken, 3 courses" in title
-    assert "good ≤ 1, fair ≤ 2" in title
 
 
 def test_the_sheet_has_a_panel_for_every_rule(tmp_path):
@@ -113,6 +108,10 @@ def test_blocks_are_drawn_where_they_ended():
         np.testing.assert_allclose(vertices(drawn[f"block-{block}"]), corners)
     colours = {b: to_hex(drawn[f"block-{b}"].get_facecolor()) for b in FALLEN}
     assert colours == {3: PALE, 5: PALE, 8: CONCERNED}
+    # Those without an end are where they were planned.
+    drawn = patches(plot_failure(FailureView("", PLANNED_BLOCKS, (5,))))
+    np.testing.assert_allclose(vertices(drawn["block-8"]), PLANNED_BLOCKS[8])
+    assert not [gid for gid in drawn if gid.startswith("planned-")]
 
 
 def test_dashes_show_where_those_that_moved_were_planned():
@@ -125,12 +124,6 @@ def test_dashes_show_where_those_that_moved_were_planned():
     assert not drawn["planned-8"].get_fill() or drawn["planned-8"].get_facecolor()[3] == 0
 
 
-def test_blocks_without_an_end_are_where_they_were_planned():
-    drawn = patches(plot_failure(FailureView("", PLANNED_BLOCKS, (5,))))
-    np.testing.assert_allclose(vertices(drawn["block-8"]), PLANNED_BLOCKS[8])
-    assert not [gid for gid in drawn if gid.startswith("planned-")]
-
-
 def test_what_fails_lies_over_the_others_and_hides_their_numbers():
     ax = plot_failure(VIEW)
     drawn, written = patches(ax), numbers(ax)
@@ -140,13 +133,17 @@ def test_what_fails_lies_over_the_others_and_hides_their_numbers():
     assert written["3"].get_zorder() < over < written["8"].get_zorder()
 
 
-def test_areas_claimed_by_two_are_shown():
+def test_areas_claimed_by_two_are_shown_and_only_what_is_there_is_explained():
     area = np.array([[5, 5], [9, 5], [9, 9]], float)
     ax = plot_failure(FailureView("", PLANNED_BLOCKS, (3,), common=[area, area + 20]))
     drawn = patches(ax)
     assert to_hex(drawn["common-0"].get_facecolor()) == COMMON
     np.testing.assert_allclose(drawn["common-1"].get_path().vertices[:3], area + 20)
     assert drawn["common-0"].get_zorder() > drawn["block-3"].get_zorder()
+    assert meanings(ax) == ["fails", "claimed by two"]
+    asked = ["fails", "where it was planned", "wall that was to be built"]
+    assert meanings(plot_failure(VIEW)) == asked
+    assert meanings(plot_failure(FailureView("", PLANNED_BLOCKS))) == []
 
 
 def test_everything_is_in_view():
@@ -163,16 +160,6 @@ def test_everything_is_in_view():
         ax = plot_failure(view)
         assert ax.get_xlim() == (x0, x1)
         assert ax.get_ylim() == (y0, y1)
-
-
-def test_only_what_is_there_is_explained():
-    assert meanings(plot_failure(VIEW)) == [
-        "fails", "where it was planned", "wall that was to be built"
-    ]  # fmt: skip
-    plain = FailureView("", PLANNED_BLOCKS)
-    assert meanings(plot_failure(plain)) == []
-    overlapping = FailureView("", PLANNED_BLOCKS, (3,), common=[SQUARE])
-    assert meanings(plot_failure(overlapping)) == ["fails", "claimed by two"]
 
 
 @pytest.mark.parametrize("count", [1, 3])

@@ -70,14 +70,11 @@ def test_normals_of_short_interfaces_are_shorter():
     assert length.max() > length.min()
 
 
-def test_contacts_at_a_point_are_dots_of_their_own():
-    ax = plot_contacts(CORNERED, model_from_labels(CORNERED).model)
+def test_contacts_at_a_point_and_kinds_of_a_mechanism_are_dots_of_their_own():
+    model = model_from_labels(CORNERED).model
+    ax = plot_contacts(CORNERED, model)
     np.testing.assert_allclose(dots(ax, "contact at a point"), [[4, 4]])
     np.testing.assert_allclose(dots(ax, "end of an interface"), [[0, 0], [4, 0]])
-
-
-def test_the_kinds_of_a_mechanism_colour_the_points():
-    model = model_from_labels(CORNERED).model
     ax = plot_contacts(CORNERED, model, kinds=("closed", "sliding", "opening"))
     np.testing.assert_allclose(dots(ax, "sliding"), [[4, 0]])
     np.testing.assert_allclose(dots(ax, "opening"), [[4, 4]])
@@ -101,10 +98,14 @@ def test_a_model_of_another_wall_is_refused():
         plot_contacts(stacked((5, 5, 0)), model_from_labels(CORNERED).model)
 
 
-def test_nothing_to_draw():
+def test_what_carries_nothing_is_drawn_pale():
     empty = np.zeros((4, 4), np.uint32)
     ax = plot_contacts(empty, model_from_labels(empty).model)
     assert len(dots(ax, "end of an interface")) == 0
+    labels = stacked((10, 40, 0))
+    ax = plot_forces(labels, model_from_labels(labels).model, np.zeros((2, 2)))
+    assert [lines.get_gid() for lines in ax.collections] == ["ground-line"]
+    assert len(ax.patches) == 2
 
 
 def solved(labels, direction="right"):
@@ -147,36 +148,26 @@ def test_resultants_hold_every_block_in_equilibrium(seed, count, coursing):
     assert max(np.abs(left).max() for left in load.values()) < 1e-4 * total
 
 
-def test_a_force_along_its_interface_acts_in_the_middle():
-    ends = np.array([[0.0, 0.0], [4.0, 0.0]])
+@pytest.mark.parametrize(("ends", "normal", "forces", "point", "force"), [
+    # Along its interface it acts in the middle.
+    ([[0.0, 0.0], [4.0, 0.0]], (0.0, 1.0), [[1.0, 2.0], [-1.0, 3.0]], [2, 0], [5, 0]),
+    # The tangent of (.6, .8) is (.8, -.6).
+    ([[3.0, 0.0]], (0.6, 0.8), [[10.0, 5.0]], [3, 0], [6 + 4, 8 - 3]),
+])  # fmt: skip
+def test_a_force_acts_at_the_only_point_or_in_the_middle(ends, normal, forces, point, force):
     block = model_from_labels(stacked((4, 4, 0))).model.blocks
-    model = RigidBlockModel(block, (Interface(1, GROUND, ends, (0.0, 1.0)),))
-    (one,) = resultants(model, np.array([[1.0, 2.0], [-1.0, 3.0]]))
-    assert one.point == pytest.approx([2, 0])
-    assert one.force == pytest.approx([5, 0])
+    model = RigidBlockModel(block, (Interface(1, GROUND, np.array(ends), normal),))
+    (one,) = resultants(model, np.array(forces))
+    assert (one.point, one.force) == (pytest.approx(point), pytest.approx(force))
 
 
-def test_a_contact_at_a_point_carries_its_force_there():
-    ends = np.array([[3.0, 0.0]])
-    block = model_from_labels(stacked((4, 4, 0))).model.blocks
-    model = RigidBlockModel(block, (Interface(1, GROUND, ends, (0.6, 0.8)),))
-    (one,) = resultants(model, np.array([[10.0, 5.0]]))
-    assert one.point == pytest.approx([3, 0])
-    assert one.force == pytest.approx([6 + 4, 8 - 3])  # the tangent of (.6, .8) is (.8, -.6)
-
-
-def test_idle_interfaces_are_left_out():
-    rows = {"blocks_xywh": [[0, 0, 2, 1], [2, 0, 2, 1]]}
-    model = model_from_json(rows)
+def test_idle_interfaces_are_left_out_and_forces_of_another_model_refused():
+    model = model_from_json({"blocks_xywh": [[0, 0, 2, 1], [2, 0, 2, 1]]})
     forces = np.zeros((model.contact_count, 2))
+    assert resultants(model, forces) == ()
     forces[:2, 0] = 1.0
     assert [one.interface.block for one in resultants(model, forces)] == [1]
-    assert resultants(model, np.zeros_like(forces)) == ()
-
-
-def test_forces_of_another_model_are_refused():
-    model, forces = solved(stacked((20, 40, 0)))
-    with pytest.raises(ValueError, match="1 forces for 2 contact points"):
+    with pytest.raises(ValueError, match=f"1 forces for {len(forces)} contact points"):
         resultants(model, forces[:1])
 
 
@@ -227,11 +218,3 @@ def test_everything_drawn_is_in_view():
     assert y0 < points[:, 1].min() < 0
     assert x1 > points[:, 0].max()
     assert y1 > points[:, 1].max()
-
-
-def test_a_wall_without_forces_is_drawn_pale():
-    labels = stacked((10, 40, 0))
-    model = model_from_labels(labels).model
-    ax = plot_forces(labels, model, np.zeros((2, 2)))
-    assert [lines.get_gid() for lines in ax.collections] == ["ground-line"]
-    assert len(ax.patches) == 2

@@ -76,13 +76,6 @@ def test_friction_is_drawn_against_alpha_with_the_wall_itself_and_those_that_fal
     assert line.get_xdata().tolist() == line.get_ydata().tolist()
 
 
-def test_without_varied_friction_there_are_histograms_only():
-    model = model_from_labels(stacked((10, 20, 0))).model
-    assert len(plot_scatter(scatter(model, ScatterSettings(samples=9))).child_axes) == 2
-    smooth = scatter(model, ScatterSettings(samples=9, mu=(0.0, 0.0)))
-    assert len(plot_scatter(smooth).child_axes) == 1
-
-
 def test_words_tell_what_was_shaken_and_how_many_do_not_stand(shaken, falling):
     said = "40 walls, shaken: friction 0.4 to 0.8, outlines by 0.1, places by 0.2"
     assert f"{said} (lengths of the model)" in words(plot_scatter(shaken))
@@ -93,7 +86,11 @@ def test_words_tell_what_was_shaken_and_how_many_do_not_stand(shaken, falling):
     )
 
 
-def test_solves_that_failed_are_told(shaken):
+def test_panels_are_those_that_there_is_something_for(shaken):
+    model = model_from_labels(stacked((10, 20, 0))).model
+    assert len(plot_scatter(scatter(model, ScatterSettings(samples=9))).child_axes) == 2
+    smooth = scatter(model, ScatterSettings(samples=9, mu=(0.0, 0.0)))
+    assert len(plot_scatter(smooth).child_axes) == 1
     settings = ScatterSettings(samples=2, mu=(0.4, 0.8), mu_per_interface=True)
     status = (LimitStatus.FAILED, LimitStatus.OPTIMAL)
     one = type(shaken)(

@@ -36,17 +36,15 @@ def numbers(ax):
     return {text.get_text(): text for text in ax.texts}
 
 
-def test_stones_have_the_colour_of_their_cluster():
-    ax = plot_stones(examples.stone_set(), CLUSTERS)
+def test_stones_have_the_colour_of_their_cluster_and_their_id_in_a_readable_one():
+    stones, where = examples.stone_set(), Figure().subplots()
+    ax = plot_stones(stones, CLUSTERS, where)
+    assert ax is where
     colours = {gid: to_hex(patch.get_facecolor()) for gid, patch in patches(ax).items()}
     assert colours == {f"stone-{i}": cluster_colour(c) for i, c in CLUSTERS.items()}
     legend = [text.get_text() for text in ax.get_legend().get_texts()]
     assert legend == ["cluster 1", "cluster 2", "cluster 3"]
-
-
-def test_ids_are_written_at_the_centroids_in_a_readable_colour():
-    stones = examples.stone_set()
-    written = numbers(plot_stones(stones, CLUSTERS))
+    written = numbers(ax)
     assert set(written) == {str(stone.id) for stone in stones}
     for stone in stones:
         text = written[str(stone.id)]
@@ -84,12 +82,6 @@ def test_stones_of_a_folder_do_not_cover_each_other():
         assert ax.dataLim.x0 >= 0
     assert ax.get_xlim()[1] > max(box.x1 for box in boxes)
     assert ax.get_ylim()[1] > max(box.y1 for box in boxes)
-
-
-def test_given_axes_are_used():
-    ax = Figure().subplots()
-    assert plot_stones(examples.stone_set(), ax=ax) is ax
-    assert len(ax.patches) == len(examples.stone_set())
 
 
 def test_labels_are_drawn_with_their_ids():
@@ -140,11 +132,14 @@ def test_numbers_are_steps_of_the_plan_at_the_centroids(px_per_m):
     assert ax.get_xlabel() == ("px" if px_per_m is None else "m")
 
 
-def test_a_step_is_counted_for_each_wedge():
+def test_a_step_is_counted_for_each_wedge_and_given_outlines_replace_pixels():
     wall = examples.wall()
     groups = (wall.groups[-1], *wall.groups[:-1])
-    written = numbers(plot_wall(Wall(wall.site, wall.labels.copy(), groups)))
-    assert set(written) == {"1", "3", "4", "5", "6"}
+    outlines = wall_outlines(wall) | {3: np.array([[0, 0], [14, 0], [7, 8]], float)}
+    ax = plot_wall(Wall(wall.site, wall.labels.copy(), groups), outlines=outlines)
+    assert set(numbers(ax)) == {"1", "3", "4", "5", "6"}
+    vertices = patches(ax)["stone-3"].get_path().vertices
+    np.testing.assert_allclose(vertices, [[0, 0], [14, 0], [7, 8], [0, 0]])
 
 
 def test_stones_stand_at_their_place_inside_the_frame():
@@ -158,15 +153,6 @@ def test_stones_stand_at_their_place_inside_the_frame():
     assert (frame.x0, frame.y0) == (0, 0)
     assert (frame.x1, frame.y1) == pytest.approx((44 * units, 20 * units))
     assert drawn["frame"].get_linestyle() not in ("-", "solid")
-
-
-def test_outlines_replace_pixels():
-    wall = examples.wall()
-    outlines = wall_outlines(wall)
-    outlines[3] = np.array([[0, 0], [14, 0], [7, 8]], float)
-    drawn = patches(plot_wall(wall, outlines=outlines))
-    vertices = drawn["stone-3"].get_path().vertices
-    np.testing.assert_allclose(vertices, [[0, 0], [14, 0], [7, 8], [0, 0]])
 
 
 def test_an_empty_wall_is_a_frame_on_the_ground():
@@ -206,19 +192,14 @@ def wall() -> Wall:
 @pytest.mark.parametrize("count", [1, COLUMNS, COLUMNS + 1])
 def test_every_wall_has_its_picture_and_its_points(wall: Wall, count: int) -> None:
     values = [{**FIGURES, "F_SF": 0.8 + 0.01 * k} for k in range(count)]
-    figure = plot_choice([wall] * count, values)
+    figure = plot_choice([wall] * count, [*values[:-1], {**values[-1], "F_AV": None}])
     *walls, one, two = figure.axes
-    assert len(walls) == count
     blocks = len(wall.placements) + len(wall.wedges)
     assert [len(ax.patches) for ax in walls] == [blocks + 1] * count
-    assert walls[0].get_title(loc="left") == "01  F_SF 0.800  F_AV 20.0  F_AH 2.00  F_LR 0.50"
+    title = f"{count:02}  F_SF {0.79 + 0.01 * count:.3f}  F_AV -  F_AH 2.00  F_LR 0.50"
+    assert walls[-1].get_title(loc="left") == title
     assert (one.get_xlabel(), one.get_ylabel()) == ("F_SF", "F_LR")
     assert (two.get_xlabel(), two.get_ylabel()) == ("F_AV", "F_AH")
     assert [line.get_xdata()[0] for line in one.lines] == [v["F_SF"] for v in values]
     assert [text.get_text() for text in one.texts] == [f"{k:02}" for k in range(1, count + 1)]
-
-
-def test_what_is_not_defined_is_left_out(wall: Wall) -> None:
-    figure = plot_choice([wall, wall], [{**FIGURES, "F_AV": None}, FIGURES])
-    assert "F_AV -" in figure.axes[0].get_title(loc="left")
-    assert [len(ax.lines) for ax in figure.axes[-2:]] == [2, 1]
+    assert len(two.lines) == count - 1  # what is not defined is left out

@@ -103,22 +103,15 @@ def report(tmp_path, pictures):
     return path.read_text(encoding="utf-8")
 
 
-def test_every_stone_and_step_is_in_the_table(report):
+def test_the_report_says_every_step_result_input_and_notice(report):
     page = Page(report)
     steps = examples.plan().steps
     assert [a["id"] for a in page.all("tr") if "id" in a] == [f"step-{s.step}" for s in steps]
     for stone in (*examples.CLUSTERS, examples.UNUSED):
         assert re.search(rf"\b{stone}\b", page.text)
-    said = (
-        f"Push wedge {examples.WEDGE} in under the left end of stone 300 (step 5): 3 {TIMES} 2 px"
-    )
-    assert said in page.text
-    assert "Stones left over: 40" in page.text
-
-
-def test_results_inputs_and_notices_are_said(report):
-    text = Page(report).text
     for said in (
+        f"Push wedge {examples.WEDGE} in under the left end of stone 300 (step 5): 3 {TIMES} 2 px",
+        "Stones left over: 40",
         "5 of 6 stones, ", "no acceptable place was found five times in a row",
         "0.672", "4.25 %", "Load multiplier (adequacy factor) to the left",
         "in three walls of masons, of other stones", f"44.0 {TIMES} 20.0 px", "0" * 64, "W112",
@@ -126,8 +119,8 @@ def test_results_inputs_and_notices_are_said(report):
         "Geometry raster",
         "Stones touch where their pixels have edges or corners in common",
     ):  # fmt: skip
-        assert said in text
-    assert "contact tolerance" not in text
+        assert said in page.text
+    assert "contact tolerance" not in page.text
 
 
 def test_a_plan_on_outlines_says_so(tmp_path):
@@ -190,6 +183,7 @@ def test_missing_metrics_are_not_defined_and_never_zero(tmp_path):
     for name in ("F_AV", "F_AH", "F_LR", f"{ALPHA} left"):
         assert values[name] == "not defined"
     assert values[f"{ALPHA} right"] == "0.300"
+    assert [number(value) for value in (float("nan"), -1e-9)] == ["not defined", "0.000"]
     path = write_report(tmp_path / "report.html", example_view(plan), pictures=tmp_path)
     page = Page(path.read_text(encoding="utf-8"))
     assert page.texts.count("not defined") == 4
@@ -205,19 +199,15 @@ def test_half_a_pair_of_characters_ends_no_report(tmp_path):
     assert "?bersicht" in Shown(view).write(tmp_path / "view.html").read_text("utf-8")
 
 
-def test_lengths_in_metres_are_told_in_centimetres(tmp_path):
-    path = write_report(tmp_path / "m.html", example_view(wall=examples.wall(px_per_m=50.0)))
-    assert "<td>14.0</td><td>8.0</td>" in path.read_text(encoding="utf-8")
-
-
-def test_a_missing_index_is_a_dash(tmp_path):
-    plan = examples.plan()
+def test_a_missing_index_is_a_dash_and_metres_are_told_in_centimetres(tmp_path):
+    wall = examples.wall(px_per_m=50.0)
+    plan = examples.plan(wall)
     step = replace(plan.stone_steps[0], indices={**plan.stone_steps[0].indices, "LLC": None})
-    text = write_report(
-        tmp_path / "one.html", example_view(replace(plan, steps=(step, *plan.steps[1:])))
-    ).read_text(encoding="utf-8")
+    view = example_view(replace(plan, steps=(step, *plan.steps[1:])), wall)
+    text = write_report(tmp_path / "one.html", view).read_text(encoding="utf-8")
     cells = re.findall(r"<td>(.*?)</td>", text.split('id="step-1"')[1].split("</tr>")[0])
     assert cells[-9:-2] == [*(number(step.indices[i]) for i in [*INDICES][:-1]), "\N{EN DASH}"]
+    assert "<td>14.0</td><td>8.0</td>" in text
 
 
 def test_a_wall_that_was_not_planned_has_a_table_of_blocks(tmp_path):
@@ -236,14 +226,6 @@ def test_the_viewer_alone_is_a_page_or_a_frame():
     assert page.data == json.loads(json.dumps(shown))
     (frame,) = Page(viewer_frame(shown)).all("iframe")
     assert frame["srcdoc"] == viewer_page(shown)
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [(None, "not defined"), (float("nan"), "not defined"), (0.0, "0.000"), (-1e-9, "0.000")],
-)
-def test_numbers(value, text):
-    assert number(value) == text
 
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "viewer.md"
