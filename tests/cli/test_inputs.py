@@ -47,17 +47,19 @@ def test_segment_keeps_its_photograph(photo, run):
 
 def test_stones_keeps_what_it_reads(rubble, tmp_path, run):
     mine, masks, found = tmp_path / "mine.png", tmp_path / "masks", tmp_path / "found"
-    for folder in (masks, found):
-        folder.mkdir()
-    shutil.copy(rubble, mine)
-    shutil.copy(rubble, masks / "1.png")
-    shutil.copy(rubble, found / LABELS)
-    write_sidecar(PhotoSidecar(1, 1), found)
+    for path in (mine, masks / "1.png", found / LABELS):
+        path.parent.mkdir(exist_ok=True)
+        shutil.copy(rubble, path)
+    with Image.open(rubble) as picture:
+        write_sidecar(PhotoSidecar(*picture.size), found)
     for source, picture in ((mine, mine), (masks, masks / "1.png"), (found, found / LABELS)):
         ran = run("stones", source, "-o", picture, "--overwrite")
         assert (ran.code, ran.out) == (2, "")
         assert f"E129 {picture}: is read here" in ran.err
         assert picture.read_bytes() == rubble.read_bytes()
+    # Pictures may lie beside the stones of a photograph.
+    assert run("stones", found, "-o", found / "drawn.png").code == 0
+    assert run("stones", found).code == 0
 
 
 def test_a_plan_keeps_photographs_that_are_not_its_own(rubble, tmp_path, run, monkeypatch):
@@ -73,12 +75,21 @@ def test_a_plan_keeps_photographs_that_are_not_its_own(rubble, tmp_path, run, mo
         assert [Path(name).read_bytes() for name in names] == [b"mine", b"mine"]
 
 
-def test_plan_keeps_the_stones_that_it_reads(rubble, tmp_path, run):
+def test_plan_keeps_the_stones_and_settings_that_it_reads(rubble, tmp_path, run):
     for name in ("wall.png", "picture.png"):
         given = shutil.copy(rubble, tmp_path / name)
         ran = run("plan", given, *WALL, "-o", tmp_path, "--overwrite")
         assert (ran.code, f"E129 {given}: is read here" in ran.err) == (2, True)
         assert given.read_bytes() == rubble.read_bytes()
+    mine = tmp_path / "settings.toml"
+    mine.write_text("mu = 0.5 # my own comment\n", encoding="utf-8")
+    asked = ("plan", rubble, *WALL, "--settings", mine)
+    for command in (asked, ("demo", "--settings", mine)):
+        ran = run(*command, "-o", tmp_path, "--overwrite")
+        assert f"E129 {mine}: is read here" in ran.err
+    assert len(list(tmp_path.iterdir())) == 3
+    assert run(*asked, "-o", tmp_path / "out").code in (0, 4)
+    assert mine.read_text("utf-8") == "mu = 0.5 # my own comment\n"
 
 
 def test_plan_keeps_the_choice_that_it_begins_with(rubble, tmp_path, run):
@@ -113,17 +124,6 @@ def test_a_choice_that_is_read_is_kept(command, rubble, plan_copy, run):
     assert Path(stones).read_bytes() == rubble.read_bytes()
 
 
-def test_plan_keeps_the_settings_that_it_reads(rubble, tmp_path, run):
-    mine = tmp_path / "settings.toml"
-    mine.write_text("mu = 0.5 # my own comment\n", encoding="utf-8")
-    asked = ("plan", rubble, *WALL, "--settings", mine)
-    ran = run(*asked, "-o", tmp_path, "--overwrite")
-    assert f"E129 {mine}: is read here" in ran.err
-    assert list(tmp_path.iterdir()) == [mine]
-    assert run(*asked, "-o", tmp_path / "out").code in (0, 4)
-    assert mine.read_text("utf-8") == "mu = 0.5 # my own comment\n"
-
-
 def test_check_keeps_stones_and_plan(rubble, plan_copy, tmp_path, run):
     stones = tmp_path / "mine.png"
     shutil.copy(rubble, stones)
@@ -147,18 +147,13 @@ def test_a_wall_is_not_drawn_over(command, name, plan_copy, tmp_path, run):
     assert wall.read_bytes() == before
 
 
-def test_export_and_demo_keep_what_they_read(plan_copy, tmp_path, run):
+def test_export_keeps_what_it_reads(plan_copy, run):
     plan = (plan_copy / "plan.json").rename(plan_copy / "poses.json")
     before = plan.read_bytes()
     ran = run("export", plan, "--to", "csv", "poses", "--px-per-m", 100, "--overwrite")
     assert f"E129 {plan}: is read here" in ran.err
     assert plan.read_bytes() == before
     assert not (plan_copy / "steps.csv").exists()
-    mine = tmp_path / "settings.toml"
-    mine.write_text("mu = 0.5 # mine\n", encoding="utf-8")
-    ran = run("demo", "--settings", mine, "-o", tmp_path, "--overwrite")
-    assert f"E129 {mine}: is read here" in ran.err
-    assert not (tmp_path / "stones.png").exists()
 
 
 def contents(folder):
@@ -202,14 +197,6 @@ def test_nothing_is_drawn_among_masks(masks, tmp_path, run):
     assert run("stones", masks, "-o", masks / "drawn" / "preview.png").code == 0
     assert run("stones", masks).code == 0
     assert contents(masks) == before
-
-
-def test_pictures_may_lie_beside_the_stones_of_a_photograph(rubble, tmp_path, run):
-    shutil.copy(rubble, tmp_path / LABELS)
-    with Image.open(rubble) as picture:
-        write_sidecar(PhotoSidecar(*picture.size), tmp_path)
-    assert run("stones", tmp_path, "-o", tmp_path / "drawn.png").code == 0
-    assert run("stones", tmp_path).code == 0
 
 
 @pytest.mark.parametrize(

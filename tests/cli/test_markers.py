@@ -60,27 +60,22 @@ def test_a_printed_sheet_measures_what_it_says(run, tmp_path, options, layout, p
     assert "100 %" in text
 
 
-def test_the_check_line_is_100_mm(run, tmp_path):
+def test_markers_are_vectors_without_hairlines_beside_a_line_of_100_mm(run, tmp_path):
     path = tmp_path / "sheet.pdf"
-    run("markers", "-o", path)
+    assert run("markers", "-o", path, "--count", 8, "--ids", 4).code == 0
+    assert [one.id for one in find_markers(rendered(path, 1)[0])] == [8, 9, 10, 11]
+    data = path.read_bytes()
+    assert b"/Subtype /Image" not in data
+    assert b"CreationDate" not in data
     picture, _, text = rendered(path)
+    # The black border of the first marker, five sixths of a square of 50/6 mm wide.
+    low, deep = round(15.5 * PX_PER_MM), round(22 * PX_PER_MM)
+    assert picture[low:deep, low : round(64 * PX_PER_MM)].max() == 0
     assert "measure me: 100 mm" in text
     dark = picture[..., 0] < 188  # half the light
     rows = np.flatnonzero(dark[:, dark.shape[1] // 2 - 100 : dark.shape[1] // 2 + 100].all(axis=1))
     columns = np.flatnonzero(dark[rows[0]])
     assert (columns[-1] + 1 - columns[0]) / PX_PER_MM == pytest.approx(100.0, abs=0.4)
-
-
-def test_markers_are_vectors_without_hairlines(run, tmp_path):
-    path = tmp_path / "sheet.pdf"
-    run("markers", "-o", path)
-    data = path.read_bytes()
-    assert b"/Subtype /Image" not in data
-    assert b"CreationDate" not in data
-    picture, _, _ = rendered(path)
-    # The black border of the first marker, five sixths of a square of 50/6 mm wide.
-    low, deep = round(15.5 * PX_PER_MM), round(22 * PX_PER_MM)
-    assert picture[low:deep, low : round(64 * PX_PER_MM)].max() == 0
 
 
 def test_single_markers_have_a_page_each(run, tmp_path):
@@ -96,12 +91,6 @@ def test_single_markers_have_a_page_each(run, tmp_path):
         sides = np.hypot(*(one.corners_px - np.roll(one.corners_px, 1, axis=0)).T)
         assert sides / PX_PER_MM == pytest.approx(np.full(4, 120.0), abs=0.08)
         assert f"marker {marker_id}" in text
-
-
-def test_two_sheets_have_other_markers(run, tmp_path):
-    path = tmp_path / "sheets.pdf"
-    assert run("markers", "-o", path, "--count", 8, "--ids", 4).code == 0
-    assert [one.id for one in find_markers(rendered(path, 1)[0])] == [8, 9, 10, 11]
 
 
 @pytest.mark.parametrize(

@@ -81,6 +81,8 @@ CASES = [
     ("export {in}/nowhere --to csv", 3, "E132", "or its folder"),
     # Options that nobody can mean.
     ("paln {stack}", 2, "E138", "Did you mean `drystone plan`?"),
+    ("Analyze {stack}", 2, "E138", "Did you mean `drystone analyse`?"),
+    ("xyzzy {stack}", 2, "E138", "'xyzzy'. `drystone --help` lists the commands."),
     ("plan stones.png -o x", 2, "E138", "--wall"),
     (f"{PLAN} --scale 0", 2, "E138", "--scale: '0'"),
     (f"{PLAN} --scale 1.5", 2, "E138", "--scale: '1.5'"),

@@ -7,7 +7,6 @@ import pytest
 
 from drystone.cli.numbers import (
     picture_size_px,
-    planned_picture_px,
     refuse_outside,
     ruler,
     scale_notice,
@@ -53,10 +52,10 @@ def test_where_the_size_of_a_picture_is_known():
     assert picture_size_px(Source("stones.json", width_px=213, height_px=60)) == (0, 0)
     assert picture_size_px(Source("masks", width_px=56, height_px=46, files=("1.png",))) == (0, 0)
     size_px = {"width_px": 213, "height_px": 60}
-    assert planned_picture_px({"path": "stones.png", "files": [], **size_px}) == (213, 60)
-    assert planned_picture_px({"path": "stones.json", **size_px}) == (0, 0)
+    assert picture_size_px({"path": "stones.png", "files": [], **size_px}) == (213, 60)
+    assert picture_size_px({"path": "stones.json", **size_px}) == (0, 0)
     # A folder, whatever it is called.
-    assert planned_picture_px({"path": "masks.png", "files": ["1.png"], **size_px}) == (0, 0)
+    assert picture_size_px({"path": "masks.png", "files": ["1.png"], **size_px}) == (0, 0)
 
 
 def test_either_may_know_the_scale_and_who_says_another_is_named():

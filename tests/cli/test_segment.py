@@ -112,36 +112,29 @@ def test_a_plan_knows_its_copy_and_refuses_before_it_replaces_another(run, tmp_p
 
 def test_a_damaged_photograph_is_refused_before_the_search(run, tmp_path, bare):
     out, wall = tmp_path / "out", tmp_path / "wall"
-    assert run("segment", saved(bare, tmp_path), "--px-per-m", 800, "-o", out).code == 0
+    ran = run("segment", saved(bare, tmp_path), "-o", out)
+    assert "not known" in ran.out
+    assert "No scale given" in ran.err
+    assert json.loads((out / "stones.json").read_text())["px_per_m"] is None
     (out / "photo.jpg").write_bytes(b"no picture")
-    ran = quickly_planned(run, out, wall)
+    ran = run("plan", out, "--wall", "640x320", "-o", wall, "--method", "paper", "--scale", ".15")
     assert (ran.code, "E189" in ran.err) == (3, True)
     assert not wall.exists()
 
 
-def test_a_turned_photograph_gives_the_same_stones(run, tmp_path, bare):
+def test_a_turned_photograph_gives_the_same_stones_by_any_scale(run, tmp_path, bare):
     picture = Image.open(io.BytesIO(bare.jpeg))
     upright, turned = tmp_path / "upright.png", tmp_path / "turned.png"
     picture.save(upright)
     exif = Image.Exif()
     exif[0x0112] = 6
     picture.transpose(Image.Transpose.ROTATE_90).save(turned, exif=exif)
-    for path in (upright, turned):
-        out = tmp_path / path.stem
-        assert run("segment", path, "--px-per-m", "800", "-o", out).code == 0
+    scales = (("--px-per-m", 800), ("--ruler", "0,0,400,0=50cm"))
+    for path, scale in zip((upright, turned), scales, strict=True):
+        ran = run("segment", path, *scale, "-o", tmp_path / path.stem)
+        assert (ran.code, "800.0 px a metre" in ran.out, " cm" in ran.out) == (0, True, True)
     one, other = (opened(tmp_path / k / "stones.png") for k in ("upright", "turned"))
     assert np.array_equal(one, other)
-
-
-def test_the_scale_may_be_a_ruler_or_not_known(run, tmp_path, bare):
-    path = saved(bare, tmp_path)
-    ruled = run("segment", path, "--ruler", "0,0,400,0=50cm", "-o", tmp_path / "ruled")
-    assert (ruled.code, "800.0 px a metre" in ruled.out, " cm" in ruled.out) == (0, True, True)
-    assert json.loads((tmp_path / "ruled" / "stones.json").read_text())["px_per_m"] == 800.0
-    without = run("segment", path, "-o", tmp_path / "without")
-    assert "not known" in without.out
-    assert "No scale given" in without.err
-    assert json.loads((tmp_path / "without" / "stones.json").read_text())["px_per_m"] is None
 
 
 def test_one_file_has_one_median_stone_and_its_photograph(run, tmp_path, bare):

@@ -3,7 +3,7 @@
 import argparse
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -184,34 +184,26 @@ def option_of(px_per_m: float) -> str:
     return "--ruler" if isinstance(px_per_m, Ruled) else "--px-per-m"
 
 
-def picture_size_px(source: "Source") -> tuple[int, int]:
+def picture_size_px(source: "Source | Mapping[str, Any]") -> tuple[int, int]:
     """Return width and height of the picture that stones came from; 0 where it is not known.
 
     Files of outlines and folders of masks say how far the stones reach, and a ruler lies beside
-    them.
+    them.  What a plan says of its stones is a mapping.
     """
-    return _size_px(source.path, source.files, (source.width_px, source.height_px))
-
-
-def planned_picture_px(source: Mapping[str, Any]) -> tuple[int, int]:
-    """Return the same of what a plan says of its stones."""
-    size_px = source["width_px"], source["height_px"]
-    return _size_px(source["path"], source.get("files", ()), size_px)
+    said = source if isinstance(source, Mapping) else vars(source)
+    drawn = said.get("files") or Path(said["path"]).suffix.lower() not in _PICTURES
+    return (0, 0) if drawn else (said["width_px"], said["height_px"])
 
 
 def wall_picture_px(wall: "GivenWall") -> tuple[int, int]:
     """Return the size of the picture in which a wall is measured: of a plan that of its stones."""
     if wall.plan is not None:
-        return planned_picture_px(wall.plan.source)
+        return picture_size_px(wall.plan.source)
     # Outlines say how far the stones reach, and a ruler may lie beside them.
     if wall.labels is None or wall.outlines is not None:
         return 0, 0
     height, width = wall.labels.shape
     return width, height
-
-
-def _size_px(path: str, files: Sequence[str], size_px: tuple[int, int]) -> tuple[int, int]:
-    return (0, 0) if files or Path(path).suffix.lower() not in _PICTURES else size_px
 
 
 def refuse_outside(px_per_m: float | None, size_px: tuple[int, int]) -> None:

@@ -35,12 +35,15 @@ def label_regions(labels: Labels) -> tuple[Region, ...]:
     ids, ranks = np.unique(labels, return_inverse=True)
     # Ranks instead of ids: find_objects makes a list as long as the largest id.
     ranks = ranks.reshape(labels.shape) + (0 if ids.size and ids[0] == 0 else 1)
-    windows = ndimage.find_objects(ranks)
-    present = [int(label) for label in ids if label]
-    return tuple(
-        _region(label, ranks[window] == rank, window, labels.shape[0])
-        for rank, (label, window) in enumerate(zip(present, windows, strict=True), 1)
-    )
+    present, regions = [int(label) for label in ids if label], []
+    for rank, window in enumerate(ndimage.find_objects(ranks), 1):
+        mask = ranks[window] == rank
+        left, bottom = window[1].start, len(labels) - window[0].stop
+        rows, cols = np.nonzero(mask)
+        x, y = left + float(cols.mean()) + 0.5, bottom + len(mask) - float(rows.mean()) - 0.5
+        loops = tuple(loop + np.array([left, bottom], float) for loop in pixel_loops(mask))
+        regions.append(Region(present[rank - 1], loops, (x, y)))
+    return tuple(regions)
 
 
 def polygon_regions(polygons: Mapping[int, Loop]) -> tuple[Region, ...]:
@@ -85,14 +88,6 @@ def stands_on_ground(regions: Iterable[Region]) -> bool:
     """Whether the lowest corner of a wall is at y = 0, where the ground is."""
     _, y0, x1, y1 = box = regions_box(region.loops for region in regions)
     return abs(y0) <= UNSEEN * max(x1 - box[0], y1 - y0)
-
-
-def _region(label: int, mask: Mask, window: tuple[slice, slice], height: int) -> Region:
-    left, bottom = window[1].start, height - window[0].stop
-    rows, cols = np.nonzero(mask)
-    centroid = (left + float(cols.mean()) + 0.5, bottom + mask.shape[0] - float(rows.mean()) - 0.5)
-    loops = tuple(loop + np.array([left, bottom], float) for loop in pixel_loops(mask))
-    return Region(label, loops, centroid)
 
 
 def pixel_loops(mask: Mask) -> tuple[Loop, ...]:

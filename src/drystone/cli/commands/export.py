@@ -9,7 +9,7 @@ from statistics import median
 from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.numbers import (
     add_scale,
-    planned_picture_px,
+    picture_size_px,
     positive,
     refuse_outside,
     scale_notice,
@@ -68,7 +68,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         thickness_m=arguments.thickness_m,
         density_kg_m3=arguments.density_kg_m3,
     )
-    refuse_outside(arguments.px_per_m, planned_picture_px(assembly.plan.source))
+    refuse_outside(arguments.px_per_m, picture_size_px(assembly.plan.source))
     asked = list(dict.fromkeys(arguments.to))
     made = {}
     with busy(quiet=arguments.json) as told:

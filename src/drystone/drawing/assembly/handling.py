@@ -63,16 +63,10 @@ def pick_to_place(assembly: Assembly, part: Part) -> Matrix | None:
     pick = assembly.pick_pose(part)
     if pick is None:
         return None
-    matrix = assembly.place_pose(part).matrix @ inverse(pick.matrix)
-    return np.asarray(matrix) + 0.0
-
-
-def inverse(matrix: Matrix) -> Matrix:
-    """Return the inverse of a rigid (4, 4) transform."""
     back = np.eye(4)
-    back[:3, :3] = matrix[:3, :3].T
-    back[:3, 3] = -matrix[:3, :3].T @ matrix[:3, 3]
-    return back
+    back[:3, :3] = pick.rotation.T
+    back[:3, 3] = -pick.rotation.T @ pick.matrix[:3, 3]
+    return np.asarray(assembly.place_pose(part).matrix @ back) + 0.0
 
 
 def before(assembly: Assembly, part: Part) -> tuple[Part, ...]:
