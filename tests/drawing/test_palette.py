@@ -56,9 +56,6 @@ def test_second_tone_follows_after_sixteen_clusters():
     for light, dark in zip(colours[:16], colours[16:], strict=True):
         assert relative_luminance(dark) < relative_luminance(light)
     assert cluster_colour(33) == cluster_colour(1)
-
-
-def test_clusters_are_numbered_from_one():
     with pytest.raises(ValueError, match="from 1, not 0"):
         cluster_colour(0)
 

@@ -79,10 +79,9 @@ def write_pictures(
     picture = folder / PICTURE
     save(plot_wall(wall, clusters).figure, picture, dpi)
     written = [picture]
-    results = () if resistance is None else (resistance.left, resistance.right)
-    with_mechanism = {r.direction: r for r in results if r.mechanism is not None}
     for direction, name in MECHANISMS.items():
-        path, result = folder / name, with_mechanism.get(direction)
+        path = folder / name
+        result = None if resistance is None else getattr(resistance, direction)
         if result is None or result.mechanism is None:
             path.unlink(missing_ok=True)
             continue

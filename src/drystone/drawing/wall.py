@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from drystone.drawing.assembly.parts import Assembly
-from drystone.drawing.drawing import Drawable, Drawing, Surface, Words, ground
+from drystone.drawing.drawing import Drawable, Drawing, Legend, Surface, Words, ground
 from drystone.drawing.outlines import (
     Loop,
     Region,
@@ -23,7 +23,7 @@ from drystone.drawing.palette import (
     WEDGE_COLOUR,
     cluster_colour,
 )
-from drystone.model.plan import StoneStep
+from drystone.model.plan import Point, StoneStep
 from drystone.model.wall import Wall
 from drystone.statics.model import RigidBlockModel
 
@@ -34,7 +34,7 @@ its width."""
 
 
 def wall_drawing(
-    items: Iterable[Drawable], size: tuple[float, float], unit: str, title: str = ""
+    items: Iterable[Drawable], size: Point, unit: str, title: str, legend: Legend
 ) -> Drawing:
     """Return stones, wedges and numbers on the ground, in the frame of what was ordered."""
     width, height = size
@@ -44,7 +44,7 @@ def wall_drawing(
         dashes=FRAME_DASHES, z=3.0, layer="SITE",
     )  # fmt: skip
     box = (-margin, -depth, width + margin, height + margin)
-    return Drawing((*ground(box), frame, *items), box, unit, title)
+    return Drawing((*ground(box), frame, *items), box, unit, title, legend)
 
 
 def drawing_of_wall(
@@ -57,15 +57,22 @@ def drawing_of_wall(
 
     Parameters as for :func:`drystone.drawing.plot_wall`.
     """
-    site = wall.site
-    loops = loops_of_wall(wall, outlines)
+    site, units = wall.site, wall.site.units_per_px
+    if outlines is None and wall.outlines is not None:
+        outlines = wall_outlines(wall)
+    loops: dict[int, tuple[Loop, ...]]
+    if outlines is None:
+        regions = label_regions(wall.labels)
+        loops = {one.id: tuple(loop * units for loop in one.loops) for one in regions}
+    else:
+        loops = {block: (np.asarray(points, float),) for block, points in outlines.items()}
     items: list[Drawable] = []
     steps = step_by_id(wall)
     for group in wall.groups:
         stone, (x, y) = group.placement.stone_id, group.placement.centroid(site.height_px)
         fill = PLAIN_COLOUR if clusters is None else cluster_colour(clusters[stone])
         area = Surface(f"stone-{stone}", loops[stone], fill, layer="STONES", step=steps[stone])
-        at = x * site.units_per_px, y * site.units_per_px
+        at = x * units, y * units
         items += [area, Words(f"number-{stone}", str(steps[stone]), at, area.room, fill)]
         for wedge in group.wedges:
             items.append(
@@ -73,9 +80,8 @@ def drawing_of_wall(
                      step=steps[wedge.id])
             )  # fmt: skip
     legend = {"wedge": Surface("", (), WEDGE_COLOUR)} if wall.wedges else {}
-    size = site.width_px * site.units_per_px, site.height_px * site.units_per_px
-    made = wall_drawing(items, size, "m" if site.px_per_m else "px", title)
-    return Drawing(made.items, made.box, made.unit, title, legend)
+    size = site.width_px * units, site.height_px * units
+    return wall_drawing(items, size, "m" if site.px_per_m else "px", title, legend)
 
 
 def step_by_id(wall: Wall) -> dict[int, int]:
@@ -86,21 +92,6 @@ def step_by_id(wall: Wall) -> dict[int, int]:
         for piece in (group.placement.stone_id, *(wedge.id for wedge in group.wedges))
     )
     return {piece: step for step, piece in enumerate(pieces, 1)}
-
-
-def loops_of_wall(
-    wall: Wall, outlines: Mapping[int, Loop] | None = None
-) -> dict[int, tuple[Loop, ...]]:
-    """Return the boundary of every stone and wedge in the plan's units."""
-    if outlines is None and wall.outlines is not None:
-        outlines = wall_outlines(wall)
-    if outlines is not None:
-        return {label: (np.asarray(points, float),) for label, points in outlines.items()}
-    units = wall.site.units_per_px
-    return {
-        region.id: tuple(loop * units for loop in region.loops)
-        for region in label_regions(wall.labels)
-    }
 
 
 def drawing_of_assembly(assembly: Assembly, title: str = "") -> Drawing:
@@ -125,7 +116,7 @@ def drawing_of_assembly(assembly: Assembly, title: str = "") -> Drawing:
                 size_pt=6.5, beside=True, z=6.0,
             )  # fmt: skip
         items += [area, number]
-    return wall_drawing(items, assembly.size, assembly.unit, title)
+    return wall_drawing(items, assembly.size, assembly.unit, title, {})
 
 
 def size_of(regions: Iterable[Region]) -> float:

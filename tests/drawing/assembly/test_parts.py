@@ -9,7 +9,6 @@ from shapely import affinity
 
 from drystone.drawing.assembly import handling
 from drystone.errors import UsageError
-from drystone.model.plan import StoneStep
 from tests.drawing.export.robot_plans import METRIC, PX_PER_M, THICKNESS_M, assembly, source_stones
 
 
@@ -33,22 +32,6 @@ def test_pixels_of_a_stone_land_inside_its_outline(name: str) -> None:
         assert outline.area * PX_PER_M**2 == pytest.approx(len(x), rel=0.06)
 
 
-@pytest.mark.parametrize("name", METRIC)
-def test_outlines_turned_back_lie_in_the_source_image(name: str) -> None:
-    wall = assembly(name)
-    for part in wall.stones:
-        step = part.plan_step
-        assert isinstance(step, StoneStep)
-        pick = wall.pick_pose(part)
-        assert pick is not None
-        own = np.column_stack([part.own_corners[:, 0], 0 * part.own_corners[:, 0],
-                               part.own_corners[:, 1], 1 + 0 * part.own_corners[:, 0]])  # fmt: skip
-        photo = (pick.matrix @ own.T)[:2].T * PX_PER_M
-        assert photo == pytest.approx(wall.source_corners(part), abs=1e-9)
-        again = wall.place_pose(part).matrix @ own.T
-        assert again[[0, 2]].T == pytest.approx(part.corners, abs=1e-12)
-
-
 def test_a_plan_in_px_and_one_in_metres_give_the_same_parts() -> None:
     for name in ("exact", "raster"):
         px, metres = assembly(name), assembly(f"{name}-m")
@@ -70,19 +53,6 @@ def test_the_grip_is_the_least_width_of_any_direction() -> None:
         assert widths[-1] == pytest.approx(width)
         assert widths.min() >= width - 1e-12
         assert 0.0 <= angle_deg < 180.0
-
-
-def test_neighbours_are_mutual_and_near() -> None:
-    wall = assembly("exact")
-    for part in wall.parts:
-        for other_id in wall.neighbours(part.id):
-            if other_id:
-                assert part.id in wall.neighbours(other_id)
-                gap = shapely.distance(*(shapely.Polygon(p.corners)
-                                         for p in (part, wall.part(other_id))))  # fmt: skip
-                assert gap * PX_PER_M < 0.11
-            else:
-                assert part.corners[:, 1].min() * PX_PER_M < 0.11
 
 
 def test_wedges_are_in_no_photo() -> None:

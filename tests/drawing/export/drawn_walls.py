@@ -8,6 +8,7 @@ import math
 from pathlib import Path
 
 import numpy as np
+import shapely
 from PIL import Image, ImageDraw
 
 from drystone.contacts.given import model_from_json
@@ -72,14 +73,9 @@ def outline_px(place: int) -> np.ndarray:
 
 
 def centroid_of(corners: np.ndarray) -> tuple[float, float]:
-    """By triangles from the first corner: not how the package does it."""
-    first, second, third = corners[0], corners[1:-1], corners[2:]
-    areas = (
-        (second[:, 0] - first[0]) * (third[:, 1] - first[1])
-        - (second[:, 1] - first[1]) * (third[:, 0] - first[0])
-    )  # fmt: skip
-    x, y = (areas[:, None] * (first + second + third) / 3).sum(axis=0) / areas.sum()
-    return float(x), float(y)
+    """By shapely: not how the package does it."""
+    x, y = shapely.Polygon(corners).centroid.coords[0]
+    return x, y
 
 
 def stone_step(

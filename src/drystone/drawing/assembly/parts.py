@@ -160,18 +160,10 @@ class Assembly:
     @property
     def size(self) -> tuple[float, float]:
         """Width and height of the wall as ordered, in the unit."""
-        factor = self.per_plan_unit
+        # A plan in px whose scale is told afterwards becomes an assembly in metres.
+        metric = self.unit == "m" and self.plan.length_unit == "px"
+        factor = 1.0 / (self.px_per_m or 1.0) if metric else 1.0
         return self.plan.width * factor, self.plan.height * factor
-
-    @property
-    def per_plan_unit(self) -> float:
-        """Units of the assembly in a unit of the plan: not 1 where only the assembly has a scale.
-
-        A plan in px whose scale is told afterwards becomes an assembly in metres.
-        """
-        if self.unit == "m" and self.plan.length_unit == "px":
-            return 1.0 / (self.px_per_m or 1.0)
-        return 1.0
 
     @property
     def px_per_unit(self) -> float:

@@ -140,7 +140,7 @@ def compas(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG0
             {
                 **_names(part),
                 "place": compas_frame(assembly.place_pose(part)),
-                "pick": (pick := assembly.pick_pose(part)) and compas_frame(pick),
+                "pick": compas_frame(assembly.pick_pose(part)),
                 "mesh": compas_mesh(solid_of_part(assembly, part), part.name),
                 "mass_kg": assembly.mass_kg(part),
                 "neighbours": handling.touched_when_placed(assembly, part),
@@ -151,8 +151,10 @@ def compas(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG0
     return {"assembly.compas.json": json_text(made) + "\n"}
 
 
-def compas_frame(pose: Pose3d) -> dict[str, Any]:
+def compas_frame(pose: Pose3d | None) -> dict[str, Any] | None:
     """Return a pose as the data of a ``compas.geometry.Frame``."""
+    if pose is None:
+        return None
     point = [pose.x_m, pose.y_m, pose.z_m]
     axes = {"xaxis": list(pose.xaxis), "yaxis": list(pose.yaxis)}
     return {"dtype": "compas.geometry/Frame", "data": {"point": point, **axes}}
@@ -163,7 +165,7 @@ def compas_mesh(solid: Solid, name: str) -> dict[str, Any]:
     points, faces = solid.vertices.tolist(), solid.triangles.tolist()
     data = {
         "attributes": {},
-        "default_vertex_attributes": {"x": 0.0, "y": 0.0, "z": 0.0},
+        "default_vertex_attributes": dict.fromkeys("xyz", 0.0),
         "default_edge_attributes": {},
         "default_face_attributes": {},
         "vertex": {str(i): dict(zip("xyz", p, strict=True)) for i, p in enumerate(points)},

@@ -18,7 +18,9 @@ def json_text(value: Any, depth: int = 0) -> str:
     line = json.dumps(value, ensure_ascii=False, allow_nan=False)
     if not value or not isinstance(value, dict | list):
         return line
-    if _height(value) <= _on_one_line(value) and len(line) <= LINE:
+    # A list of rows of numbers is a matrix, and stays on one line.
+    rows = isinstance(value, list) and all(isinstance(item, list) for item in value)
+    if _height(value) <= 1 + rows and len(line) <= LINE:
         return line
     margin = " " * (depth + 1)
     if isinstance(value, dict):
@@ -43,13 +45,5 @@ def number(value: float) -> str:
 
 
 def _height(value: Any) -> int:
-    if isinstance(value, dict):
-        return 1 + max(map(_height, value.values()), default=0)
-    if isinstance(value, list):
-        return 1 + max(map(_height, value), default=0)
-    return 0
-
-
-def _on_one_line(value: Any) -> int:
-    # A list of rows of numbers is a matrix, and stays on one line.
-    return 2 if isinstance(value, list) and all(isinstance(item, list) for item in value) else 1
+    inside = value.values() if isinstance(value, dict) else value
+    return 1 + max(map(_height, inside), default=0) if isinstance(value, dict | list) else 0

@@ -5,7 +5,7 @@ import html
 import json
 import re
 from collections.abc import Iterable, Mapping
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -63,16 +63,14 @@ def write_report(path: str | Path, view: ViewerData, *, pictures: str | Path | N
         unused=", ".join(map(str, view["unused"])) or "none",
         number=content.number,
         unit="cm" if view["unit"] == "m" else view["unit"],
-        length=partial(_length, view["unit"]),
+        # Of metres the centimetres.
+        length=lambda value: content.number(
+            100.0 * value if view["unit"] == "m" else value, 3 if view["unit"] == "units" else 1
+        ),
         falls=all(end["status"] == "unstable" for end in view["mechanisms"].values()),
     )
     write_whole(path, text.encode("utf-8", "replace"))
     return path
-
-
-def _length(unit: str, value: float) -> str:
-    """Write a length: of metres the centimetres."""
-    return content.number(100.0 * value if unit == "m" else value, 3 if unit == "units" else 1)
 
 
 def viewer_page(view: ViewerData, options: Mapping[str, Any] | None = None) -> str:

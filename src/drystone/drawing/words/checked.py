@@ -114,15 +114,14 @@ class PhysicsCard:
         return None if self.tilts is None else self.tilts[name == "right"].alpha
 
     def _words(self, move: BlockMove) -> str:
-        size = "its stone's size" if move.id in self._wedges() else "its size"
+        name = self._name(move.id)
+        size = "its stone's size" if name.startswith("wedge") else "its size"
         moved = f"moved {move.move_px:.1f} source px, {move.share:.0%} of {size}"
-        return f"{self._name(move.id)}: {moved}, turned {move.turn_deg:.1f} degrees"
+        return f"{name}: {moved}, turned {move.turn_deg:.1f} degrees"
 
     def _name(self, block: int) -> str:
-        return f"{'wedge' if block in self._wedges() else 'stone'} {block}"
-
-    def _wedges(self) -> set[int]:
-        return {step.id for step in self.plan.wedge_steps}
+        wedge = block in {step.id for step in self.plan.wedge_steps}
+        return f"{'wedge' if wedge else 'stone'} {block}"
 
     def _step(self, group: int) -> int:
         return self.plan.stone_steps[group - 1].step
