@@ -48,6 +48,13 @@ def run(capsys: pytest.CaptureFixture[str]) -> Run:
     return call
 
 
+def rewrite(path: Path, tamper: Callable[[Any], Any]) -> None:
+    """Change what a JSON file holds."""
+    content = json.loads(path.read_text(encoding="utf-8"))
+    tamper(content)
+    path.write_text(json.dumps(content), encoding="utf-8")
+
+
 @pytest.fixture(scope="session")
 def rubble(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Eight stones of two courses for a wall of 100 x 36 px."""

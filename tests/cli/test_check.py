@@ -23,20 +23,12 @@ from drystone.physics.scatter import TiltResult
 from drystone.physics.tilt import TiltTrial
 from drystone.verify.check import check_plan
 from drystone.verify.outlines import plan_polygons
-from tests.cli.conftest import WALL
+from tests.cli.conftest import WALL, rewrite
 from tests.verify.exact_examples import hanging_example
 
 NO_ENGINE = "pymunk is not installed (extra `physics`)"
 
 Tamper = Callable[[dict[str, Any]], Any]
-
-
-def change(folder, tamper):
-    """Rewrite the plan in a folder."""
-    path = folder / "plan.json"
-    plan = json.loads(path.read_text(encoding="utf-8"))
-    tamper(plan)
-    path.write_text(json.dumps(plan), encoding="utf-8")
 
 
 def lift(plan):
@@ -135,7 +127,7 @@ def test_a_claim_that_the_engine_contradicts_fails(standing, run, monkeypatch):
 
 def test_a_wall_with_a_stone_missing_is_not_built(plan_copy, run):
     pytest.importorskip("pymunk", reason=NO_ENGINE)
-    change(plan_copy, lambda plan: plan["steps"][0].update(stone=99))
+    rewrite(plan_copy / "plan.json", lambda plan: plan["steps"][0].update(stone=99))
     ran = run("check", plan_copy, "--physics")
     assert ran.code == 5
     assert "not built there, as a step of the plan places nothing" in ran.out
@@ -152,7 +144,7 @@ def test_without_the_engine(plan_copy, run, monkeypatch):
 
 @pytest.mark.parametrize(("tamper", "code"), [(push, "E221"), (lift, "E230")])
 def test_what_fails_is_drawn(tamper, code, plan_copy, run):
-    change(plan_copy, tamper)
+    rewrite(plan_copy / "plan.json", tamper)
     ran = run("check", plan_copy)
     path = plan_copy / "check.png"
     assert (ran.code, code in ran.out, f"picture  {path}\n" in ran.out) == (5, True, True)
@@ -195,13 +187,13 @@ def _views(folder, tamper, run, monkeypatch):
         return draw(views)
 
     monkeypatch.setattr(check_picture, "plot_failures", keep)
-    change(folder, tamper)
+    rewrite(folder / "plan.json", tamper)
     assert run("check", folder).code == 5
     return seen
 
 
 def test_claims_that_cannot_be_seen_are_not_drawn(plan_copy, run):
-    change(plan_copy, lambda plan: plan["metrics"].update(F_LR=0.99))
+    rewrite(plan_copy / "plan.json", lambda plan: plan["metrics"].update(F_LR=0.99))
     ran = run("check", plan_copy)
     assert (ran.code, "picture" in ran.out) == (5, False)
     assert not (plan_copy / "check.png").exists()
@@ -213,7 +205,7 @@ def test_a_picture_where_it_is_asked_for(plan_copy, tmp_path, run):
     ran = run("check", plan_copy, "--picture", path)
     assert (ran.code, f"picture  {path}\n" in ran.out) == (0, True)
     assert is_picture(path)
-    change(plan_copy, push)
+    rewrite(plan_copy / "plan.json", push)
     before = path.read_bytes()
     assert run("check", plan_copy, "--picture", path, "--overwrite").code == 5
     assert path.read_bytes() != before
@@ -224,7 +216,7 @@ def test_a_folder_that_takes_no_picture(plan_copy, run, monkeypatch):
     def refuse(*_):
         raise PermissionError(13, "Permission denied")
 
-    change(plan_copy, push)
+    rewrite(plan_copy / "plan.json", push)
     monkeypatch.setattr(os, "replace", refuse)
     ran = run("check", plan_copy)
     assert (ran.code, "E221" in ran.out, "picture  not written: " in ran.out) == (5, True, True)
@@ -237,7 +229,7 @@ def test_the_engine_is_told_how_deep_outlines_overlap(plan_copy, run, monkeypatc
     """The plan is one of pixels, whose outlines do overlap."""
     pytest.importorskip("pymunk", reason=NO_ENGINE)
     monkeypatch.setattr(check_command, "tilt_of", lambda _: None)
-    change(plan_copy, push)
+    rewrite(plan_copy / "plan.json", push)
     depth = run("check", plan_copy, "--json").json()["overlap_depth"]
     assert depth > NOTEWORTHY_PX
     assert "what overlaps cannot stay where it is" in run("check", plan_copy, "--physics").out
@@ -279,7 +271,7 @@ def test_stones_with_other_bytes_are_named_as_such(plan_copy, run):
     assert f"E202 {plan_copy}: {path} is another file than the 'rubble.png'" in ran.err
     ran = run("check", plan_copy, "--stones", path)
     assert (ran.code, "E210" in ran.out) == (5, True)
-    change(plan_copy, lambda plan: plan["source"].update(sha256=""))
+    rewrite(plan_copy / "plan.json", lambda plan: plan["source"].update(sha256=""))
     ran = run("check", plan_copy)
     assert (ran.code, "The bytes of the source were not compared" in ran.out) == (0, True)
 
@@ -312,6 +304,6 @@ def test_a_stone_that_hangs_by_friction_is_drawn_where_it_hangs():
 
 
 def test_a_plan_without_stones_has_no_picture(plan_copy, tmp_path, run):
-    change(plan_copy, lambda plan: plan.update(steps=[]))
+    rewrite(plan_copy / "plan.json", lambda plan: plan.update(steps=[]))
     assert run("check", plan_copy, "--picture", tmp_path / "none.png").code == 5
     assert not (tmp_path / "none.png").exists()

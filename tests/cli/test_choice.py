@@ -35,6 +35,11 @@ def test_walls_to_choose_from(rubble, tmp_path, run):
     assert few.out.splitlines()[-1].startswith("pareto/01 ")
     assert sorted(p.name for p in (out / "pareto").iterdir()) == ["01", "02"]
     assert [p.name for p in (out / "pareto" / "02").iterdir()] == ["mine.txt"]
+    # Walls to choose from do not outlive their search.
+    (out / "pareto" / "02" / "mine.txt").unlink()
+    assert run("plan", rubble, *EXACT, "--overwrite", "-o", out).code in (0, 4)
+    assert not (out / "pareto.png").exists()
+    assert not (out / "pareto" / "01").exists()
 
 
 def test_the_table_has_the_figures_when_it_is_asked_for(settled, rubble, tmp_path, run):

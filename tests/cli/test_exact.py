@@ -14,7 +14,7 @@ from PIL import Image
 
 from drystone.io.plan_folder import BLOCKS
 from drystone.io.plan_json import read_plan
-from tests.cli.conftest import EXACT
+from tests.cli.conftest import EXACT, rewrite
 from tests.cli.test_plan import FILES, SUMMARY
 
 Tamper = Callable[[dict[str, Any]], Any]
@@ -24,12 +24,6 @@ def polygons(folder):
     """Return the outlines beside a plan by id, in the units of the plan."""
     blocks = json.loads((folder / BLOCKS).read_text(encoding="utf-8"))["blocks"]
     return {block["id"]: np.array(block["polygon"]) for block in blocks}
-
-
-def change(path, tamper):
-    content = json.loads(path.read_text(encoding="utf-8"))
-    tamper(content)
-    path.write_text(json.dumps(content), encoding="utf-8")
 
 
 def shift(blocks, by):
@@ -117,7 +111,7 @@ def test_metres(rubble, settled, tmp_path, run):
         report = run("analyse", folder, "--json").json()
         assert report["F_LR"] == pytest.approx(px.metrics.F_LR)
     for by_px, accepted in ((0.005, True), (0.02, False)):
-        change(out / BLOCKS, partial(shift, by=by_px / 200))
+        rewrite(out / BLOCKS, partial(shift, by=by_px / 200))
         assert (run("analyse", out).code == 0) == accepted
     # The same stones in the same order, but in another unit.
     shutil.copy(settled / BLOCKS, out / BLOCKS)
@@ -125,7 +119,7 @@ def test_metres(rubble, settled, tmp_path, run):
 
 
 def foreign(path):
-    change(path, lambda blocks: blocks["blocks"][0].update(id=99))
+    rewrite(path, lambda blocks: blocks["blocks"][0].update(id=99))
 
 
 @pytest.mark.parametrize(
@@ -158,10 +152,10 @@ def test_a_wedge_in_another_place_is_not_that_of_the_plan(settled_copy, run):
     corners = polygons(settled_copy)[block].tolist()
     wedge = {"step": last["step"], "kind": "wedge", "id": block, "under": plan["steps"][0]["stone"],
              "polygon": corners, "alpha_left": 0.1, "alpha_right": 0.1}  # fmt: skip
-    change(settled_copy / "plan.json", lambda plan: plan["steps"].__setitem__(-1, wedge))
+    rewrite(settled_copy / "plan.json", lambda plan: plan["steps"].__setitem__(-1, wedge))
     assert run("analyse", settled_copy).code == 0
     wedge["polygon"] = [[x, y + 0.02] for x, y in corners]
-    change(settled_copy / "plan.json", lambda plan: plan["steps"].__setitem__(-1, wedge))
+    rewrite(settled_copy / "plan.json", lambda plan: plan["steps"].__setitem__(-1, wedge))
     assert "has its stones in other places" in run("analyse", settled_copy).err
 
 

@@ -10,7 +10,7 @@ import ezdxf
 import pytest
 
 from drystone.drawing.export.formats import FORMATS
-from tests.cli.conftest import WALL
+from tests.cli.conftest import WALL, rewrite
 from tests.drawing.export.robot_plans import write_plan_folder
 
 QUICK = ("poses", "compas", "moveit", "urdf", "obj", "glb", "stl", "csv", "geojson")
@@ -34,12 +34,6 @@ def tree(folder):
         str(path.relative_to(folder)): path.read_bytes() if path.is_file() else b""
         for path in sorted(folder.rglob("*"))
     }
-
-
-def rewrite(path, tamper):
-    read = json.loads(path.read_text("utf-8"))
-    tamper(read)
-    path.write_text(json.dumps(read), "utf-8")
 
 
 def test_formats_are_listed(run):

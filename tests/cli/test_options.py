@@ -1,20 +1,23 @@
-"""Every method option gives a plan that holds."""
+"""Options of a plan are settings: of its method, how long is searched, and for what."""
+
+import json
 
 import pytest
 import tomli_w
 
 from drystone.cli.parser import build_parser
-from drystone.cli.settings import recorded_method, settings_from
+from drystone.cli.settings import limited, recorded_method, settings_from
 from drystone.errors import UsageError
 from drystone.io.plan_json import read_plan
-from drystone.planner.settings import METHODS
+from drystone.planner.search_settings import UNLIMITED
+from drystone.planner.settings import METHODS, method_settings
 from tests.cli.conftest import WALL
 
 
 @pytest.mark.parametrize(("options", "path", "value"), [
     (["--sampling", "uniform"], "sampling", "uniform"),
     (["--sampling", "shrinking"], "sampling", "shrinking"),
-    (["--method", "paper", "--placement", "eq12"], "placement.rule", "eq12"),
+    (["--method", "paper", "--placement", "lowest"], "placement.rule", "lowest"),
     (["--method", "paper", "--placement", "snug"], "placement.rule", "snug"),
     (["--method", "paper", "--reach", "above"], "placement.reach", "above"),
     (["--stabilise", "rotation"], "stabilise.method", "rotation"),
@@ -56,10 +59,21 @@ def parsed(*options):
     return build_parser().parse_args(words)
 
 
+def settings_of(*options):
+    return settings_from(parsed(*options))
+
+
+def limits(*options, stones=30):
+    """Time limit and budget of a plan."""
+    arguments = parsed(*options)
+    settings, seconds = limited(settings_from(arguments), stones, arguments)
+    return seconds, settings.search.budget
+
+
 def test_what_is_said_of_single_stones_wins_over_the_file(tmp_path):
     toml = tmp_path / "mine.toml"
     toml.write_text("ban = [3]\npin = [4]\n", encoding="utf-8")
-    settings = settings_from(parsed("--settings", toml, "--ban", 4, "--pin", 3))
+    settings = settings_of("--settings", toml, "--ban", 4, "--pin", 3)
     assert (settings.ban, settings.pin) == ((4,), (3,))
 
 
@@ -67,16 +81,16 @@ def test_any_setting_can_be_set_by_its_name(tmp_path):
     toml = tmp_path / "mine.toml"
     toml.write_text("mu = 0.4\n[settle]\nmethod = 'energy'\n", encoding="utf-8")
     given = ("--set", "mu=.7", "--set", "settle.method=pivot", "--set", "ban=[3, 4]")
-    settings = settings_from(parsed("--settings", toml, *given, "--set", "search.budget=3"))
+    settings = settings_of("--settings", toml, *given, "--set", "search.budget=3")
     assert (settings.mu, settings.settle.method, settings.ban) == (0.7, "pivot", (3, 4))
     assert settings.search.budget == 3  # the clock does not end this search
-    assert settings_from(parsed("--set", "mu=.7", "--mu", ".6")).mu == 0.6
+    assert settings_of("--set", "mu=.7", "--mu", ".6").mu == 0.6
     # Two that only make sense together.
-    raster = settings_from(parsed("--set", "search.budget=1", "--set", "geometry=raster"))
+    raster = settings_of("--set", "search.budget=1", "--set", "geometry=raster")
     assert (raster.geometry, raster.search.budget) == ("raster", 1)
     for wrong, code in (("settle.metod=pivot", "E123"), ("mu=high", "E123"), ("mu=[1", "E123")):
         with pytest.raises(UsageError, match=f"{code} --set: .*drystone settings"):
-            settings_from(parsed("--set", wrong))
+            settings_of("--set", wrong)
 
 
 @pytest.mark.parametrize("method", ["paper", "best"])
@@ -108,3 +122,64 @@ def test_a_plan_by_a_whole_file_of_another_method_says_so(finished, rubble, tmp_
     assert read_plan(tmp_path / "out").method == "custom"
     again = run("plan", rubble, *asked, "--method", "best", "-o", tmp_path / "out", "--resume")
     assert "E136" not in again.err
+
+
+def test_a_budget_ends_a_search_unless_the_clock_shall(tmp_path):
+    assert limits() == (600.0, 32)
+    assert limits(stones=64) == (640.0, 20)
+    assert limits(stones=5000) == (50_000.0, 8)
+    assert limits("--time", 2.5) == (2.5, UNLIMITED)
+    assert limits("--budget", 7) == (None, 7)
+    assert limits("--budget", 7, "--time", 2.5) == (2.5, 7)
+    assert limits("--method", "paper") == limits("--geometry", "raster") == (None, 1)
+    assert limits("--method", "paper", "--time", 2) == (2.0, 1)
+    assert limits("--policy", "random") == (None, 1)
+    toml = tmp_path / "settings.toml"
+    toml.write_text("mu = 0.6\n", encoding="utf-8")
+    assert limits("--settings", toml) == (600.0, 32)
+    toml.write_text("mu = 0.6\n[search]\npasses = 3\n", encoding="utf-8")
+    assert limits("--settings", toml) == (600.0, 32)
+    toml.write_text("[search]\nbudget = 5\n", encoding="utf-8")
+    assert limits("--settings", toml) == (None, 5)
+    assert limits("--settings", toml, "--time", 3) == (3.0, UNLIMITED)
+
+
+def test_aims_are_settings():
+    goal = settings_of("--budget", 2, "--aim", "F_LR=.5", "F_AH=2").goal
+    assert (goal.F_LR, goal.F_AH, goal.F_SF) == (0.5, 2.0, 0.0)
+
+
+@pytest.mark.parametrize("method", ["best", "paper"])
+@pytest.mark.parametrize(
+    ("name", "rule"), [("paper", "algorithm2"), ("random", "random"), ("towers", "towers")]
+)
+def test_a_policy_is_a_single_pass(name, rule, method):
+    for more in ((), ("--budget", 1)):
+        settings = settings_of("--policy", name, "--method", method, *more)
+        assert (settings.selection_rule, settings.search.budget) == (rule, 1)
+        assert settings.geometry == method_settings(method).geometry
+
+
+def test_those_of_a_settings_file_too(tmp_path):
+    toml = tmp_path / "settings.toml"
+    toml.write_text("selection_rule = 'lowest'\n[search]\nbudget = 1\n", encoding="utf-8")
+    assert settings_of("--settings", toml).selection_rule == "lowest"
+    assert settings_of("--settings", toml, "--policy", "filter").selection_rule == "filter"
+
+
+RASTER = ("--wall", "100x36", "--scale", "1", "--geometry", "raster", "--quiet")
+
+
+def test_a_plan_repeats_from_its_settings(run, rubble, tmp_path):
+    one, two = tmp_path / "one", tmp_path / "two"
+    toml = tmp_path / "given.toml"
+    toml.write_text("[policy]\nmin_filling = 0.6\n", encoding="utf-8")
+    given = ("--policy", "filter", "--settings", toml, "--seed", "4")
+    assert run("plan", rubble, *RASTER, *given, "-o", one).code in (0, 4)
+    assert run("check", one, "--stones", rubble).code == 0
+    again = ("--settings", one / "settings.toml", "--seed", "4", "--jobs", "2")
+    assert run("plan", rubble, *RASTER, *again, "-o", two).code in (0, 4)
+    plans = [(folder / "plan.json").read_bytes() for folder in (one, two)]
+    assert plans[0] == plans[1]
+    settings = json.loads(plans[0])["settings"]
+    assert (settings["selection_rule"], settings["policy"]["min_filling"]) == ("filter", 0.6)

@@ -154,26 +154,16 @@ def plan_to_begin_with(request: PlanRequest) -> Plan | None:
     size, of_plan = _wall_px(plan, plan.px_per_m), plan.settings
     geometry = str(of_plan.get("geometry", "raster"))
     orientations = of_plan.get("orientations", settings.orientations)
+    alike = plan.source.get("reading", {}) == dict(source.reading)
+    turned, scale = orientations == settings.orientations, f"--scale {plan.working_scale:g}"
     sized = f"another wall ({size[0]:g}x{size[1]:g} px, not {wall[0]:g}x{wall[1]:g})"
     checks = [  # whether it is the same, what it is else, and the option that makes it the same
         (plan.source["sha256"] == source.sha256, "other stones", ""),
-        (
-            plan.source.get("reading", {}) == dict(source.reading),
-            "stones that were read otherwise",
-            "",
-        ),
+        (alike, "stones that were read otherwise", ""),
         (_same_wall(size, wall), sized, ""),
-        (
-            plan.working_scale == request.scale,
-            "another resolution",
-            f"--scale {plan.working_scale:g}",
-        ),
+        (plan.working_scale == request.scale, "another resolution", scale),
         (geometry == settings.geometry, "another geometry", f"--geometry {geometry}"),
-        (
-            orientations == settings.orientations,
-            "other orientations",
-            f"--orientations {orientations}",
-        ),
+        (turned, "other orientations", f"--orientations {orientations}"),
         (settings.two_sided or not of_plan.get("two_sided", False), "both sides", "--two-sided"),
     ]
     different = {name: option for same, name, option in checks if not same}

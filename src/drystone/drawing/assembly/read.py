@@ -64,23 +64,11 @@ def read_assembly(
     factor = 1.0 / scale if scale is not None and plan.length_unit == "px" else 1.0
     model, parts = scaled(model, factor), _parts(plan, polygons, factor)
     if thickness_m is not None and unit == "px":
-        raise UsageError(
-            "E131",
-            "a thickness is in metres, and this plan has no scale.",
-            where="--thickness",
-            cure="Add --px-per-m or --ruler.",
-        )
-    return Assembly(
-        plan,
-        parts,
-        model,
-        lateral_resistance(model, mechanism=True),
-        unit,
-        scale,
-        _usual_thickness(parts) if thickness_m is None else thickness_m,
-        density_kg_m3,
-        photo_beside(folder),
-    )
+        what = "a thickness is in metres, and this plan has no scale."
+        raise UsageError("E131", what, where="--thickness", cure="Add --px-per-m or --ruler.")
+    thickness = _usual_thickness(parts) if thickness_m is None else thickness_m
+    resistance, photo = lateral_resistance(model, mechanism=True), photo_beside(folder)
+    return Assembly(plan, parts, model, resistance, unit, scale, thickness, density_kg_m3, photo)
 
 
 def assembly_of_result(result: "PlanResult", photo: Path | None = None) -> Assembly:
@@ -89,33 +77,21 @@ def assembly_of_result(result: "PlanResult", photo: Path | None = None) -> Assem
     # Models of outlines are in source px, those of pixels in working px.
     exact = wall.outlines is not None
     factor = 1.0 / (wall.site.px_per_m or 1.0) if exact else wall.site.units_per_px
-    parts = _parts(plan, wall_outlines(wall), 1.0)
-    return Assembly(
-        plan,
-        parts,
-        scaled(result.model, factor),
-        scaled_resistance(result.resistance, factor),
-        plan.length_unit,
-        plan.px_per_m,
-        _usual_thickness(parts),
-        photo=photo,
-    )
+    parts, unit = _parts(plan, wall_outlines(wall), 1.0), plan.length_unit
+    model, resistance = scaled(result.model, factor), scaled_resistance(result.resistance, factor)
+    thickness = _usual_thickness(parts)
+    return Assembly(plan, parts, model, resistance, unit, plan.px_per_m, thickness, photo=photo)
 
 
 def scaled(model: RigidBlockModel, factor: float) -> RigidBlockModel:
     """Return a model in another unit of length; friction and what carries what stay."""
-    return RigidBlockModel(
-        tuple(
-            replace(
-                b,
-                area=b.area * factor**2,
-                centroid=(b.centroid[0] * factor, b.centroid[1] * factor),
-            )
-            for b in model.blocks
-        ),
-        tuple(replace(face, points=face.points * factor) for face in model.interfaces),
-        model.mu,
-    )
+    blocks = []
+    for block in model.blocks:
+        x, y = block.centroid
+        moved = (x * factor, y * factor)
+        blocks.append(replace(block, area=block.area * factor**2, centroid=moved))
+    faces = tuple(replace(face, points=face.points * factor) for face in model.interfaces)
+    return RigidBlockModel(tuple(blocks), faces, model.mu)
 
 
 def scaled_resistance(resistance: LateralResistance, factor: float) -> LateralResistance:
@@ -162,12 +138,8 @@ def _read(path: Path) -> tuple[Plan, Mapping[int, Points], RigidBlockModel]:
     # What is made of steps goes by their numbers.
     fault = first_fault(wall.plan)
     if fault is not None:
-        raise PlanError(
-            fault.code,
-            fault.message,
-            where=f"{path}, step {fault.step}",
-            cure="Give the plan as it was written; `drystone check` lists everything.",
-        )
+        cure = "Give the plan as it was written; `drystone check` lists everything."
+        raise PlanError(fault.code, fault.message, where=f"{path}, step {fault.step}", cure=cure)
     return wall.plan, *_shapes(wall, wall.plan)
 
 
@@ -175,12 +147,9 @@ def _scale(plan: Plan, px_per_m: float | None, path: Path) -> float | None:
     if px_per_m is None or plan.px_per_m is None:
         return px_per_m or plan.px_per_m
     if abs(px_per_m / plan.px_per_m - 1.0) > 1e-9:
-        raise UsageError(
-            "E131",
-            f"the plan is one of {plan.px_per_m:g} px a metre, not {px_per_m:g}.",
-            where=str(path),
-            cure="Leave the scale out, or plan again with another one.",
-        )
+        what = f"the plan is one of {plan.px_per_m:g} px a metre, not {px_per_m:g}."
+        cure = "Leave the scale out, or plan again with another one."
+        raise UsageError("E131", what, where=str(path), cure=cure)
     return plan.px_per_m
 
 

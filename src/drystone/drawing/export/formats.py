@@ -96,12 +96,9 @@ def load_extra(module: str, extra: str, code: str, where: str) -> Any:
     try:
         return import_module(module)
     except ImportError as error:
-        raise UsageError(
-            code,
-            f"{module.partition('.')[0]} is not installed, and it writes this.",
-            where=where,
-            cure=f'Install it with `pip install "drystone[{extra}]"`, or choose another format.',
-        ) from error
+        what = f"{module.partition('.')[0]} is not installed, and it writes this."
+        cure = f'Install it with `pip install "drystone[{extra}]"`, or choose another format.'
+        raise UsageError(code, what, where=where, cure=cure) from error
 
 
 FORMATS: Mapping[str, Format] = {

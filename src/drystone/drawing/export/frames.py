@@ -37,12 +37,9 @@ FRAMES_PER_S = 10
 def gif(assembly: Assembly, settings: ExportSettings) -> Files:
     """Return build.gif, which loops; E138 for steps that are longer than a GIF has."""
     if settings.seconds_per_step > LONGEST_S:
-        raise UsageError(
-            "E138",
-            f"a step of {settings.seconds_per_step:g} s is too long for build.gif.",
-            where="--seconds-per-step",
-            cure=f"Give {LONGEST_S:g} s at most (seconds_per_step in Python), or export an mp4.",
-        )
+        what = f"a step of {settings.seconds_per_step:g} s is too long for build.gif."
+        cure = f"Give {LONGEST_S:g} s at most (seconds_per_step in Python), or export an mp4."
+        raise UsageError("E138", what, where="--seconds-per-step", cure=cure)
     frames = Film(assembly, settings.film_px).frames()
     return {"build.gif": gif_bytes(frames, palette(), durations_ms(assembly, settings))}
 
@@ -155,11 +152,10 @@ def projector(assembly: Assembly, settings: ExportSettings) -> Files:
     """
     view = _view(assembly, settings)
     parts: list[Part | None] = [None, *assembly.parts]
+    numbered = ((part.step if part else 0, part) for part in parts)
     return {
-        f"projector/step_{part.step if part else 0:03d}.png": _picture(
-            assembly, settings, view, part
-        )
-        for part in parts
+        f"projector/step_{step:03d}.png": _picture(assembly, settings, view, part)
+        for step, part in numbered
     }
 
 

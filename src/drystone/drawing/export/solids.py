@@ -83,12 +83,9 @@ def triangulated(outline: Points, name: str = "outline") -> Triangles:
     whole = polygon.is_valid and polygon.area > 0.0 and len(place) == len(outline)
     pieces = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon)) if whole else ()
     if len(pieces) != len(outline) - 2:
-        raise InputError(
-            "E180",
-            f"the outline of {name} crosses or touches itself, so it bounds no solid.",
-            where=name,
-            cure="Plan with exact geometry, whose outlines are simple, or clean the wall image.",
-        )
+        what = f"the outline of {name} crosses or touches itself, so it bounds no solid."
+        cure = "Plan with exact geometry, whose outlines are simple, or clean the wall image."
+        raise InputError("E180", what, where=name, cure=cure)
     corners = shapely.get_coordinates(shapely.orient_polygons(pieces)).reshape(-1, 4, 2)[:, :3]
     flat = [place[(x, z)] for x, z in corners.reshape(-1, 2).tolist()]
     return np.array(flat, dtype=np.int64).reshape(-1, 3)

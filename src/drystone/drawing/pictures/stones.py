@@ -127,14 +127,10 @@ def plot_joint_paths(
         Surface(f"block-{region.id}", region.loops, PALE, line=GREY, width_pt=0.4)
         for region in label_regions(labels)
     )
+    middles = (np.asarray(path)[:, ::-1] + 0.5 for path in paths)
     ways = (
-        Lines(
-            f"path-{number}",
-            [np.asarray((path[:, ::-1] + 0.5) * (1, -1) + (0, height))],
-            WEDGE_COLOUR,
-            1.6,
-        )
-        for number, path in enumerate(map(np.asarray, paths), 1)
+        Lines(f"path-{number}", [np.asarray(line * (1, -1) + (0, height))], WEDGE_COLOUR, 1.6)
+        for number, line in enumerate(middles, 1)
     )
     return draw(Drawing((*blocks, *ways), (-2, -3, width + 2, height + 2), "px"), ax)
 

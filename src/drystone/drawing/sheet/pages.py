@@ -89,11 +89,8 @@ def sheet(
     """Draw the pages: the wall, a line a stone, the fetch list, wedges to cut."""
     source, sha256 = source_name(assembly.plan), plan_digest(assembly.plan)
     title = settings.title or (f"Build sheet for {source}" if source else "Build sheet")
-    pages = [
-        _first_page(assembly, settings, title, sha256),
-        *Rows(assembly, photo).pages(),
-        *list_pages(assembly),
-    ]
+    first = _first_page(assembly, settings, title, sha256)
+    pages = [first, *Rows(assembly, photo).pages(), *list_pages(assembly)]
     for number, page in enumerate(pages, 1):
         # What tells plans apart is first: a long title is cut.
         page.foot(f"plan {sha256}   {title}", number, len(pages))
@@ -286,14 +283,8 @@ class Rows:
             radius = min(4.5, 0.55 * reach)
             page.turn_arrow(lying, radius, angle, TURN_COLOUR)
         page.arrow((TURN + 24.0, middle), (TURN + 28.0, middle))
-        page.write(
-            TURN + 26.0,
-            middle_mm - 11.9,
-            turn_words(angle),
-            PLAIN_PT + 1,
-            ha="center",
-            weight="bold",
-        )
+        said, low = turn_words(angle), middle_mm - 11.9
+        page.write(TURN + 26.0, low, said, PLAIN_PT + 1, ha="center", weight="bold")
 
     def _words(self, page: SheetPage, part: Part, top: float, high: float) -> None:
         corner = lowest_corner(part)

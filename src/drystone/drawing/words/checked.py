@@ -187,11 +187,9 @@ class Checked:
     def rows(self) -> list[tuple[str, str]]:
         """Return names and values, one a line."""
         plan, report = self.plan, self.report
+        placed = f"{len(plan.stone_steps)} placed, " + counted(len(plan.wedge_steps), "wedge")
         rows = [
-            (
-                "stones",
-                f"{len(plan.stone_steps)} placed, " + counted(len(plan.wedge_steps), "wedge"),
-            ),
+            ("stones", placed),
             ("overlap", f"{report.overlap_depth:.2f} source px deep by the outlines"),
             ("area", f"pixel areas agree to {100 * report.area_error:.1f} %"),
             ("buried", ", ".join(map(str, report.buried)) or "none"),

@@ -66,12 +66,8 @@ def modelled(wall: GivenWall, asked: ModelRequest, where: str) -> ModelledWall:
         said = f"friction {asked.mu_head:g}"
         found = replace(found, remarks={**found.remarks, "head joints": said})
     if all(block.fixed for block in found.model.blocks):
-        raise InputError(
-            "E303",
-            "there is no free block in it, so there is nothing to analyse.",
-            where=where,
-            cure="Give a block that is not fixed.",
-        )
+        what = "there is no free block in it, so there is nothing to analyse."
+        raise InputError("E303", what, where=where, cure="Give a block that is not fixed.")
     return found
 
 
