@@ -19,6 +19,7 @@ from drystone.cli.progress import busy
 from drystone.drawing.assembly.read import read_assembly
 from drystone.drawing.export.formats import FORMATS, ExportSettings, write_files
 from drystone.errors import ExitCode, Notice, UsageError
+from drystone.whole_files import refuse_existing
 
 _PROJECTOR = re.compile(r"(\d+)x(\d+)@(\d+(?:\.\d*)?)")
 
@@ -69,14 +70,17 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         density_kg_m3=arguments.density_kg_m3,
     )
     refuse_outside(arguments.px_per_m, picture_size_px(assembly.plan.source))
-    asked = list(dict.fromkeys(arguments.to))
-    made = {}
+    asked, made = list(dict.fromkeys(arguments.to)), {}
+    folder = path if path.is_dir() else path.parent
+    folder = Path(arguments.output) if arguments.output else folder
+    # What lies there is told before the work, as far as names are known.
+    for place in (folder / name for one in asked for name in FORMATS[one].writes):
+        if place.is_file():
+            refuse_existing(place, overwrite=arguments.overwrite)
     with busy(quiet=arguments.json) as told:
         for name in asked:
             told(f"making {name}")
             made[name] = FORMATS[name].files(assembly, settings)
-    folder = path if path.is_dir() else path.parent
-    folder = Path(arguments.output) if arguments.output else folder
     names = [name for files in made.values() for name in files]
     paths = [folder / name for name in names]
     refuse_inputs(files_of_wall(path), paths)

@@ -110,13 +110,10 @@ def second_moments(outline: Points) -> NDArray[np.float64]:
     x, z = outline.T
     u, v = np.roll(outline, -1, axis=0).T
     cross = x * v - u * z
-    return np.array(
-        [
-            np.sum(cross * (x * x + x * u + u * u)) / 12.0,
-            np.sum(cross * (z * z + z * v + v * v)) / 12.0,
-            np.sum(cross * (x * v + 2.0 * x * z + 2.0 * u * v + u * z)) / 24.0,
-        ]
-    )
+    xx = np.sum(cross * (x * x + x * u + u * u)) / 12.0
+    zz = np.sum(cross * (z * z + z * v + v * v)) / 12.0
+    xz = np.sum(cross * (x * v + 2.0 * x * z + 2.0 * u * v + u * z)) / 24.0
+    return np.array([xx, zz, xz])
 
 
 def material(part: Part) -> str:

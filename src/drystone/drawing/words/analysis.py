@@ -75,16 +75,13 @@ class ModelledWall:
 
     def failures(self, results: Iterable[LimitResult | NonassociativeResult]) -> dict[str, Failure]:
         """Describe the mechanisms that are known, by direction."""
-        return {
-            result.direction: describe_mechanism(
-                self.model,
-                result.mechanism,
-                falls=result.status is LimitStatus.UNSTABLE,
-                names=self.names,
-            )
-            for result in results
-            if result.mechanism is not None
-        }
+        found: dict[str, Failure] = {}
+        for one in results:
+            if one.mechanism is not None:
+                falls, names = one.status is LimitStatus.UNSTABLE, self.names
+                told = describe_mechanism(self.model, one.mechanism, falls=falls, names=names)
+                found[one.direction] = told
+        return found
 
     def why_it_falls(self, failures: Mapping[str, Failure]) -> str:
         """Say in a sentence why a wall does not stand."""
@@ -305,25 +302,25 @@ def analysis_of(
     `resistance` is under the loads, with mechanisms; `solver` as in
     :func:`drystone.statics.limit.lateral_resistance`.
     """
-    model, both = wall.model, (resistance.left, resistance.right)
+    model, both = wall.model, {"left": resistance.left, "right": resistance.right}
     without = None if associative_only else nonassociative_resistance(model, loads=loads)
     # What moves without dilatancy is of interest where it needs clearly less load.
     loose = [] if without is None else [
-        result for result, bound in zip((without.left, without.right), both, strict=True)
+        result for result, bound in zip((without.left, without.right), both.values(), strict=True)
         if result.alpha is None or bound.alpha is None or result.alpha < CLEARLY_LESS * bound.alpha
     ]  # fmt: skip
     return Card(
         wall=wall,
         load_case=loads.name,
-        ends={"left": resistance.left, "right": resistance.right},
+        ends=both,
         sha256=sha256,
         resistance=resistance,
         nonassociative=without,
         loose=wall.failures(loose),
         upright=held_by_upright_faces(model, loads, solver=solver) if resistance.stable else None,
         sensitivity={
-            result.direction: friction_sensitivity(model, result, loads).of_model(model)
-            for result in both
+            side: friction_sensitivity(model, result, loads).of_model(model)
+            for side, result in both.items()
             if result.success
         },
     )
