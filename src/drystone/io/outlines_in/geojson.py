@@ -67,7 +67,7 @@ def read_geojson(content: Any, settings: ReadSettings) -> OutlineFile:
         upwards = True
         text = "most y are negative: y runs up, as GIS programs have it over a picture."
         notices.append(Notice("W119", text))
-    return OutlineFile(gathered.stones, unit_m, upwards, notices=notices)
+    return gathered.file(unit_m=unit_m, y_up=upwards, notices=notices, names_images=False)
 
 
 def _no_unit(what: str, cure: str) -> InputError:

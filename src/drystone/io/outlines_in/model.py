@@ -150,6 +150,12 @@ def ellipse(centre: tuple[float, float], radii: tuple[float, float], turned: flo
     return np.asarray(np.column_stack([turn.real, turn.imag]) + np.array(centre))
 
 
+def box(low: Sequence[float], high: Sequence[float]) -> Points:
+    """Return the corners, (4, 2), of a rectangle."""
+    (x0, y0), (x1, y1) = low, high
+    return np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], float)
+
+
 def overruled(own: str, settings: ReadSettings) -> Notice:
     """Say that the unit of the settings took the place of that of the file."""
     text = f"the file gives another unit ({own}), but --unit {settings.unit} was said."
@@ -163,6 +169,11 @@ def side_px(value: Any) -> int:
         shown = number if number <= 0 else "more than 1e9"
         raise ValueError(f"a side of it is {shown} px")
     return number
+
+
+def size_px(width: Any, height: Any) -> tuple[int, int] | None:
+    """Return the size of an image, if both sides are given; ValueError when one is none."""
+    return None if None in (width, height) else (side_px(width), side_px(height))
 
 
 def place_px(value: Any) -> int:
