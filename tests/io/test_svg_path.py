@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.io.outlines_in.svg_shapes import subpaths
-from drystone.io.outlines_in.svg_view import length, transform
+from drystone.io.outlines_in.svg_shapes import length, transform
 
 
 def area(data):
