@@ -46,12 +46,10 @@ def rastered(
         cure = "; ".join(notice.message for notice in file.notices) or "Draw outlines."
         raise LabelImageError("E104", "there are no stones in it.", cure=cure)
     notices: list[Notice] = []
-    px_per_m = None
-    if file.unit_m is not None:
-        px_per_m = settings.px_per_m
-        if px_per_m is None:
-            px_per_m, notice = _usual_scale(file)
-            notices.append(notice)
+    px_per_m = None if file.unit_m is None else settings.px_per_m
+    if file.unit_m is not None and px_per_m is None:
+        px_per_m, notice = _usual_scale(file, file.unit_m)
+        notices.append(notice)
     stones, (width, height) = _in_picture(file, px_per_m)
     max_px = int(settings.max_image_mpx * 1e6)
     check_size(width, height, max_px, _TOO_FAR)
@@ -65,13 +63,15 @@ def rastered(
         patches, size_px, px_per_m, others = rastered(rest, settings)
         return patches, size_px, px_per_m, [said, *others]
     patches, lost, empty = [], [], []
+    picture = PlacedMask(np.broadcast_to(np.True_, (height, width)), 0, 0)
     for stone, placed in zip(stones, places, strict=True):
-        inside = None if placed is None else _within(placed, width, height)
         name = f"stone {stone.id} ({short(stone.name)})" if stone.name else f"stone {stone.id}"
-        outside = 0 if placed is None else int(placed.mask.sum())
-        outside -= 0 if inside is None else int(inside.mask.sum())
-        if outside:
-            lost.append(f"{name}: {outside} px")
+        inside = placed
+        within = None if placed is None else placed.shared(picture)[0]
+        if placed is not None and within is not None and within.shape != placed.mask.shape:
+            inside = trimmed(PlacedMask(within, max(0, placed.row), max(0, placed.col)))
+            if outside := int(placed.mask.sum()) - int(within.sum()):
+                lost.append(f"{name}: {outside} px")
         if inside is None:
             empty.append(name)
             continue
@@ -104,12 +104,11 @@ def _not_stones(
     return not_stones(Seen(masks, size_px, frozenset(settings.keep), by_program))
 
 
-def _usual_scale(file: OutlineFile) -> tuple[float, Notice]:
+def _usual_scale(file: OutlineFile, unit: float) -> tuple[float, Notice]:
     """Choose a scale of two digits for which the median stone has a usual size.
 
     It is less where they lie so far apart that almost all of their picture would be empty.
     """
-    unit = file.unit_m or 1.0
     corners = [_corners(stone) for stone in file.stones]
     side = float(np.median([np.ptp(one, axis=0).max() * unit for one in corners]))
     if not side > 0.0:
@@ -179,17 +178,9 @@ def _reach(stones: Sequence[OutlinedStone]) -> tuple[int, int]:
     ends = [(1.0, 1.0)]
     for stone in stones:
         ends += [tuple(ring.max(axis=0)) for ring in stone.rings]
-        ends += [(m.col + m.mask.shape[1], m.row + m.mask.shape[0]) for m in stone.masks]
+        ends += [mask.sides[:1:-1] for mask in stone.masks]
     width, height = np.array(ends).max(axis=0).tolist()
     return math.ceil(width), math.ceil(height)
-
-
-def _within(placed: PlacedMask, width: int, height: int) -> PlacedMask | None:
-    top, left = max(0, -placed.row), max(0, -placed.col)
-    inside = placed.mask[top : max(0, height - placed.row), left : max(0, width - placed.col)]
-    if inside.shape == placed.mask.shape:
-        return placed
-    return trimmed(PlacedMask(inside, placed.row + top, placed.col + left))
 
 
 def _beside_others(patches: list[StonePatch]) -> tuple[list[StonePatch], list[Notice]]:
