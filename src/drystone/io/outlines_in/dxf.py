@@ -22,6 +22,7 @@ from drystone.io.outlines_in.model import (
     number_in,
     overruled,
     ring,
+    within_reach,
 )
 from drystone.io.outlines_in.silhouettes import with_holes
 from drystone.io.outlines_in.views import Vector, asked, plane_of, usual_side, view
@@ -55,7 +56,6 @@ _FLATNESS = 2e-4
 """How far chords may stay away from a curve, as a share of the size of the outline."""
 _MOST_CORNERS = 10_000_000
 _DEEPEST = 64
-_FURTHEST = 1e9
 _MOST_ENTITIES = 100_000
 """Entities and block references, those in rows and columns, and in blocks, one by one."""
 _MOST_DEGREE = 32
@@ -148,7 +148,7 @@ def _in_plane(
     if not outlines:
         return [], [], []
     for outline in outlines:
-        _check_reach(outline.corners)
+        within_reach(outline.corners)
     normal, leaning = plane_of([outline.corners for outline in outlines])
     aside["outlines that are seen edgewise"] = int((leaning < _EDGEWISE).sum())
     kept = [one for one, lean in zip(outlines, leaning, strict=True) if lean >= _EDGEWISE]
@@ -176,13 +176,6 @@ def _in_plane(
     return kept, rings, notices
 
 
-def _check_reach(corners: Vector) -> None:
-    if not np.isfinite(corners).all():
-        raise ValueError("a coordinate is not finite")
-    if np.abs(corners).max() > _FURTHEST:
-        raise ValueError("a coordinate is beyond 1e9")
-
-
 def _document(ezdxf: Any, data: bytes) -> Any:
     with foreign(lambda why: damaged(why, what="drawing")):
         if data.startswith(BINARY):
@@ -208,9 +201,8 @@ def _unit(document: Any, settings: ReadSettings) -> tuple[float | None, list[Not
         number = int(document.header.get("$INSUNITS", 0))
     own = _INSUNITS_M.get(number)
     if settings.unit:
-        told = METRES.get(settings.unit)
-        same = own is None or (told is not None and abs(told / own - 1.0) < 1e-9)
-        return told, [] if same else [overruled(f"$INSUNITS {number}, {own:g} m", settings)]
+        said = overruled(own, f"$INSUNITS {number}, {own or 0.0:g} m", settings)
+        return METRES.get(settings.unit), said
     if own is not None:
         return own, []
     raise InputError(
@@ -257,8 +249,7 @@ def _path_corners(drawn: Drawn) -> tuple[Vector | None, bool]:
     # Curves stay curves also where a block is stretched, or mirrored.
     path = path.transform(drawn.matrix)
     # Few corners are enough to see how large it is.
-    rough = _xyz(path.control_vertices())
-    _check_reach(rough)
+    rough = within_reach(_xyz(path.control_vertices()))
     size = float(np.ptp(rough, axis=0).max())
     return _xyz(path.flattening(max(size * _FLATNESS, 1e-12), segments=8)), False
 

@@ -8,8 +8,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from drystone.io.file_errors import damaged, entry, short, too_large
-from drystone.io.foreign import foreign
+from drystone.io.file_errors import entry, short
 from drystone.io.outlines_in.classes import class_of
 from drystone.io.outlines_in.fill import Room, trimmed
 from drystone.io.outlines_in.gathered import Gathered, Pictured, chosen
@@ -21,13 +20,13 @@ from drystone.io.outlines_in.model import (
     place_px,
     side_px,
     size_px,
+    xml_root,
 )
 from drystone.io.patches import PlacedMask
 from drystone.io.pictures import check_size
 from drystone.io.read_settings import ReadSettings
 
 _CLASSES = ("class", "label", "type", "category", "name")
-_MOST_ELEMENTS = 1_000_000
 _YOLO = re.compile(rb"\s*[0-9]+(?:[ \t]+-?[0-9.]+(?:[eE][-+]?[0-9]+)?){4,}[ \t]*\r?(?:\n|\Z)")
 
 
@@ -187,11 +186,7 @@ def is_cvat(data: bytes) -> bool:
 
 def read_cvat(data: bytes, settings: ReadSettings) -> OutlineFile:
     """Read polygons, boxes, ellipses and masks of CVAT for images."""
-    if data.count(b"<") > 2 * _MOST_ELEMENTS:
-        cure = "Export the annotations of one image."
-        raise too_large(f"it has more than {_MOST_ELEMENTS} elements.", cure)
-    with foreign(lambda why: damaged(why, what="XML")):
-        root = ET.fromstring(data)  # noqa: S314 - expat bounds what entities expand to
+    root = xml_root(data, "XML", "Export the annotations of one image.")
     pictures = []
     with entry("the list of images"):
         for image in root.iter("image"):

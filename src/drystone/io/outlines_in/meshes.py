@@ -16,7 +16,14 @@ from scipy.spatial import KDTree
 from drystone.errors import InputError, Notice
 from drystone.io.file_errors import damaged, listed, short, unusable
 from drystone.io.foreign import extra, foreign
-from drystone.io.outlines_in.model import METRES, OutlinedStone, OutlineFile, left_aside, number_in
+from drystone.io.outlines_in.model import (
+    METRES,
+    OutlinedStone,
+    OutlineFile,
+    left_aside,
+    number_in,
+    within_reach,
+)
 from drystone.io.outlines_in.silhouettes import shadow
 from drystone.io.outlines_in.views import asked
 from drystone.io.read_settings import ReadSettings
@@ -76,9 +83,8 @@ def read_mesh(kind: str, data: bytes, settings: ReadSettings) -> OutlineFile:
     """
     bodies = _BODIES[kind](data)
     used = np.unique(np.concatenate([np.concatenate(list(b.faces)) for b in bodies]))
-    vertices = bodies[0].vertices[used]
-    if not np.isfinite(vertices).all() or np.abs(vertices).max() > _FURTHEST:
-        raise unusable("a vertex is not finite or beyond 1e9")
+    with foreign(lambda why: unusable(f"a vertex cannot be used ({why})")):
+        vertices = within_reach(bodies[0].vertices[used])
     ours = data.startswith(_OURS)
     axis = 1 if ours else int(np.argmin(np.ptp(vertices, axis=0)))
     if axis == 1 and not (ours or settings.up):

@@ -7,11 +7,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Literal
+from xml.etree import ElementTree as ET
 
 import numpy as np
+from numpy.typing import NDArray
 
 from drystone.errors import Notice
-from drystone.io.file_errors import listed, short
+from drystone.io.file_errors import damaged, listed, short, too_large
+from drystone.io.foreign import foreign
 from drystone.io.labels import MAX_ID
 from drystone.io.patches import PlacedMask
 from drystone.io.read_settings import ReadSettings
@@ -23,6 +26,7 @@ METRES = MappingProxyType({"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft"
 MOST_PX = 10**9
 """No coordinate is further away."""
 _CORNERS_OF_ELLIPSE = 256
+_MOST_ELEMENTS = 1_000_000
 _STONE_NAME = re.compile(r"(?:stones?[ _-]*)?0*([1-9][0-9]*)", re.IGNORECASE)
 _WEDGE_NAME = re.compile(r"wedge[ _-]*[0-9]+", re.IGNORECASE)
 
@@ -156,10 +160,22 @@ def box(low: Sequence[float], high: Sequence[float]) -> Points:
     return np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], float)
 
 
-def overruled(own: str, settings: ReadSettings) -> Notice:
-    """Say that the unit of the settings took the place of that of the file."""
+def overruled(own_m: float | None, own: str, settings: ReadSettings) -> list[Notice]:
+    """Say whether the unit of the settings takes the place of another one of the file."""
+    unit_m = METRES.get(settings.unit)
+    same = unit_m is not None and own_m is not None and abs(unit_m / own_m - 1.0) < 1e-9
+    if not settings.unit or own_m is None or same:
+        return []
     text = f"the file gives another unit ({own}), but --unit {settings.unit} was said."
-    return Notice("W119", text, "Leave --unit out to take that of the file.")
+    return [Notice("W119", text, "Leave --unit out to take that of the file.")]
+
+
+def xml_root(data: bytes, what: str, cure: str) -> ET.Element:
+    """Parse XML; E106 when it is damaged, E110 when it has too many elements."""
+    if data.count(b"<") > 2 * _MOST_ELEMENTS:
+        raise too_large(f"the {what} has more than {_MOST_ELEMENTS} elements.", cure)
+    with foreign(lambda why: damaged(why, what=what)):
+        return ET.fromstring(data)  # noqa: S314 - expat bounds what entities expand to
 
 
 def side_px(value: Any) -> int:
@@ -184,16 +200,21 @@ def place_px(value: Any) -> int:
     return round(number)
 
 
+def within_reach(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return points; ValueError when some are not finite or further away than anything is."""
+    if not np.isfinite(points).all():
+        raise ValueError("a coordinate is not finite")
+    if points.size and np.abs(points).max() > MOST_PX:
+        raise ValueError("a coordinate is beyond 1e9")
+    return points
+
+
 def ring(points: Any) -> Points:
     """Return a ring from numbers; ValueError when it is none."""
     corners = np.asarray(points, dtype=float)
     if corners.ndim != 2 or corners.shape[1] < 2:
         raise ValueError("points are pairs of numbers")
-    corners = corners[:, :2]
-    if not np.isfinite(corners).all():
-        raise ValueError("a coordinate is not finite")
-    if corners.size and np.abs(corners).max() > MOST_PX:
-        raise ValueError("a coordinate is beyond 1e9")
+    corners = within_reach(corners[:, :2])
     if len(corners) > 1 and (corners[0] == corners[-1]).all():
         corners = corners[:-1]
     if len(corners) < 3:

@@ -11,6 +11,7 @@ from scipy import ndimage
 
 from drystone.errors import Notice
 from drystone.io.file_errors import MANY, listed, short, too_large
+from drystone.io.outlines_in.fill import covered
 from drystone.io.patches import PlacedMask, enclosed
 
 INSIDE = 0.8
@@ -248,11 +249,8 @@ class _Shares:
                     parts.append(j)
             if len(parts) < 2:
                 continue
-            covered = PlacedMask(np.zeros_like(mask.mask), mask.row, mask.col)
-            for other in (*ground, *(self._masks[j] for j in parts)):
-                here, there = covered.shared(other)
-                here |= there
-            if mask.common_px(covered) >= INSIDE * self._areas[i] or self._in_each_piece(i, parts):
+            others = covered(mask, [*ground, *(self._masks[j] for j in parts)])
+            if mask.common_px(others) >= INSIDE * self._areas[i] or self._in_each_piece(i, parts):
                 found[i] = sorted(parts)
         return found
 

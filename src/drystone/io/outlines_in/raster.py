@@ -10,7 +10,7 @@ import shapely
 
 from drystone.errors import LabelImageError, Notice
 from drystone.io.file_errors import listed, short
-from drystone.io.outlines_in.fill import check_reach, pixels_of, trimmed
+from drystone.io.outlines_in.fill import check_reach, covered, pixels_of, trimmed
 from drystone.io.outlines_in.model import OutlinedStone, OutlineFile
 from drystone.io.outlines_in.nested import Seen, meeting_boxes, not_stones, of_one_picture, said_of
 from drystone.io.outlines_in.silhouettes import outer_edge
@@ -185,20 +185,16 @@ def _reach(stones: Sequence[OutlinedStone]) -> tuple[int, int]:
 
 def _beside_others(patches: list[StonePatch]) -> tuple[list[StonePatch], list[Notice]]:
     """Tell every patch which pixels of its box are others', and say which overlap."""
-    others: dict[int, PlacedMask] = {}
+    beside: list[list[StonePatch]] = [[] for _ in patches]
     overlaps = []
     for i, j in meeting_boxes(patches):
-        for one, other in ((i, j), (j, i)):
-            patch = patches[one]
-            if one not in others:
-                others[one] = PlacedMask(np.zeros_like(patch.mask), patch.row, patch.col)
-            here, there = others[one].shared(patches[other])
-            here |= there
+        beside[i].append(patches[j])
+        beside[j].append(patches[i])
         if px := patches[i].common_px(patches[j]):
             overlaps.append(f"{patches[i].id} and {patches[j].id} ({px} px)")
     result = [
-        replace(patch, others=others[i].mask & ~patch.mask if i in others else None)
-        for i, patch in enumerate(patches)
+        replace(patch, others=covered(patch, others).mask & ~patch.mask if others else None)
+        for patch, others in zip(patches, beside, strict=True)
     ]
     if not overlaps:
         return result, []

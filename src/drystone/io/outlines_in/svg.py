@@ -11,7 +11,7 @@ import numpy as np
 import shapely
 
 from drystone.errors import InputError, Notice
-from drystone.io.file_errors import damaged, entry, listed, too_large, unusable
+from drystone.io.file_errors import entry, listed, too_large, unusable
 from drystone.io.foreign import foreign
 from drystone.io.outlines_in.classes import layer
 from drystone.io.outlines_in.model import (
@@ -20,7 +20,8 @@ from drystone.io.outlines_in.model import (
     OutlineFile,
     left_aside,
     number_in,
-    overruled,
+    within_reach,
+    xml_root,
 )
 from drystone.io.outlines_in.silhouettes import areas_of, region
 from drystone.io.outlines_in.svg_shapes import (
@@ -47,10 +48,10 @@ _LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
 _XLINK = "{http://www.w3.org/1999/xlink}href"
 _SHEET = b"<?xml-stylesheet"
 _LAYER = "stones"
+_FEWER = "Export the outlines of stones only, with fewer corners."
 _UNSEEN = "elements that are hidden"
 _DEEPEST = 64
 _MOST = 100_000
-_MOST_ELEMENTS = 1_000_000
 _MOST_CORNERS = 10_000_000
 _MOST_TEXT = 2_000_000
 """Of attributes of what is drawn, beside two times what the file has: a use draws things again."""
@@ -107,10 +108,7 @@ def read_svg(data: bytes, settings: ReadSettings) -> OutlineFile:
     are left aside; drawings in the drawing are refused.  A width in mm (cm, in, pt …) makes it a
     drawing to scale; otherwise its unit is px, or what the settings say.
     """
-    if data.count(b"<") > 2 * _MOST_ELEMENTS:
-        raise _too_large(f"more than {_MOST_ELEMENTS} elements")
-    with foreign(lambda why: damaged(why, what="drawing")):
-        root = ET.fromstring(data)  # noqa: S314 - expat bounds what entities expand to
+    root = xml_root(data, "drawing", _FEWER)
     if tag(root) != "svg":
         raise unusable(f"its root element is {tag(root)[:40]}, not svg")
     with entry("the element svg"):
@@ -132,8 +130,7 @@ def read_svg(data: bytes, settings: ReadSettings) -> OutlineFile:
     px = page.size if page.unit_m is None else None
     size = None if px is None else (round(px[0]), round(px[1]))
     notices = left_aside(+walk.aside, "Only closed shapes are read.") + walk.clip_notices()
-    if page.overruled:
-        notices.append(overruled(page.overruled, settings))
+    notices += page.notices
     if _SHEET in data:
         text = "a style sheet in another file was not read, whatever it hides or moves."
         notices.append(Notice("W119", text, "Put it into the drawing, in an element style."))
@@ -175,7 +172,7 @@ class _Walk:
             raise unusable("elements use each other too often or too deeply")
         self.left_text -= sum(map(len, element.attrib.values()))
         if self.left_text < 0:
-            raise _too_large("long paths that are used too often")
+            raise too_large("the drawing has long paths that are used too often.", _FEWER)
         what = f"the {kind} {name!r}" if name else f"a {kind}"
         with entry(what):
             style = self.styles.of(element)
@@ -332,10 +329,9 @@ class _Walk:
             self.aside[f"open lines in {kind}"] += len(lines) - len(closed)
         self.left_corners -= sum(map(len, closed))
         if self.left_corners < 0:
-            raise _too_large(f"more than {_MOST_CORNERS} corners, those on curves")
-        rings = tuple(moved(place.matrix, points) for points in closed)
-        if not all(np.isfinite(ring).all() and np.abs(ring).max() < 1e9 for ring in rings):
-            raise ValueError("a coordinate is not finite or beyond 1e9")
+            what = f"the drawing has more than {_MOST_CORNERS} corners, those on curves."
+            raise too_large(what, _FEWER)
+        rings = tuple(within_reach(moved(place.matrix, points)) for points in closed)
         if not rings:
             return
         area: Area | None = Area(rings, "evenodd" if place.rule == "evenodd" else "nonzero")
@@ -350,11 +346,6 @@ class _Walk:
 
 def _no_clip(why: str) -> InputError:
     return unusable(f"clip paths cannot be used ({why})")
-
-
-def _too_large(what: str) -> InputError:
-    cure = "Export the outlines of stones only, with fewer corners."
-    return too_large(f"the drawing has {what}.", cure)
 
 
 def _covers(shape: _Shape, page: tuple[float, float]) -> bool:

@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.io.outlines_in.model import METRES, box
+from drystone.errors import Notice
+from drystone.io.outlines_in.model import METRES, box, overruled
 from drystone.io.read_settings import ReadSettings
 from drystone.kernels.polygons import Points
 
@@ -330,7 +331,7 @@ class Page:
     unit_m: float | None  # metres in a unit of the page; None for px
     size: tuple[float, float] | None  # of the page, in its unit, if it is known
     view: View | None  # what per cents are of
-    overruled: str = ""  # its own unit, when the settings name another
+    notices: Sequence[Notice] = ()
 
 
 def page_of(root: Mapping[str, str], settings: ReadSettings) -> Page:
@@ -341,16 +342,14 @@ def page_of(root: Mapping[str, str], settings: ReadSettings) -> Page:
         raise ValueError("its width and height are in units that cannot be used together")
     box = view_box(root)
     given = not any(unit == "%" for _, unit in sides)
-    unit_m, overruled = METRES.get(settings.unit or "px"), ""
-    if physical and settings.unit:
-        own = _UNITS_M[sides[0][1]]
-        physical = unit_m is not None and abs(unit_m / own - 1.0) < 1e-9
-        overruled = "" if physical else f"its width is {root['width'][:30]}"
+    unit_m, own = METRES.get(settings.unit), _UNITS_M[sides[0][1]] if physical else None
+    notices = overruled(own, f"its width is {root.get('width', '')[:30]}", settings)
+    physical = physical and not notices
     size = [value for value, _ in sides] if given else box[2:]
     if physical:
         unit_m = _UNITS_M[sides[0][1]]
         size = [value * _UNITS_M[unit] / unit_m for value, unit in sides]
-    elif unit_m is not None or overruled:
+    elif unit_m is not None or notices:
         # What the settings name is the user's unit, whatever px it is shown in.
         size = box[2:] or size
     if given and min(size, default=1.0) <= 0.0:
@@ -362,9 +361,9 @@ def page_of(root: Mapping[str, str], settings: ReadSettings) -> Page:
         # User units are the px of CSS then.
         matrix[0, 0] = matrix[1, 1] = _PX_M / _UNITS_M[sides[0][1]]
     if not size:
-        return Page(matrix, unit_m, None, None, overruled)
+        return Page(matrix, unit_m, None, None, notices)
     view = (box[2], box[3]) if box else (size[0] / matrix[0, 0], size[1] / matrix[1, 1])
-    return Page(matrix, unit_m, (size[0], size[1]), view, overruled)
+    return Page(matrix, unit_m, (size[0], size[1]), view, notices)
 
 
 def view_box(attributes: Mapping[str, str]) -> list[float]:
