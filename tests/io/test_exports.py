@@ -8,10 +8,8 @@ from PIL import Image
 
 from drystone.errors import InputError
 from drystone.io.read_stones import ReadSettings, read_stones
-from tests.io import labelled
-from tests.io.labelled import HEIGHT, WIDTH, box, stones
+from tests.io.labelled import HEIGHT, SIZE, WIDTH, box, stones, written
 
-SIZE = {"original_width": WIDTH, "original_height": HEIGHT}
 PER_CENT = {"x": 25.0, "y": 25.0}  # 90, 65
 
 
@@ -128,7 +126,7 @@ def test_shapes_of_cvat(tmp_path):
 
 @pytest.mark.parametrize("turned", [False, True])
 def test_segments_of_yolo_have_the_proportions_of_their_picture(tmp_path, turned):
-    path = labelled.yolo(tmp_path, [("stone", ring) for ring in stones()])
+    path = written(tmp_path, "yolo", [("stone", ring) for ring in stones()])
     photo = tmp_path / "photo.jpg"
     size = (HEIGHT, WIDTH) if turned else (WIDTH, HEIGHT)
     exif = Image.Exif()

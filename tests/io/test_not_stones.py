@@ -7,13 +7,13 @@ from PIL import Image, ImageDraw
 from drystone.errors import InputError, UsageError
 from drystone.io.outlines_in.classes import is_other
 from drystone.io.read_stones import ReadSettings, read_stones
-from tests.io.labelled import CLASSES, FORMS, HEIGHT, WIDTH, box, stones
+from tests.io.labelled import CLASSES, FORMS, HEIGHT, WIDTH, box, stones, written
 
 IN_PX = set(FORMS) - {"dxf"}
 
 
 def read(folder, form, shapes, **settings):
-    path = FORMS[form](folder, shapes)
+    path = written(folder, form, shapes)
     if form == "yolo":
         settings |= {"image": str(folder / "a.png")}
     return read_stones(path, settings=ReadSettings(px_per_m=1000.0, **settings))
@@ -181,7 +181,7 @@ def test_shares_of_a_picture_without_a_size(tmp_path, form):
     rings = stones()
     if form != "yolo":
         rings = [(np.asarray(ring) / [WIDTH, HEIGHT]).tolist() for ring in rings]
-    path = FORMS[form](tmp_path, of_stones(rings))
+    path = written(tmp_path, form, of_stones(rings))
     with pytest.raises(InputError, match=r"E116.*shares of a picture.*--image PHOTO"):
         read_stones(path)
 

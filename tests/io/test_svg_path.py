@@ -8,8 +8,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.io.outlines_in.svg_shapes import subpaths
-from drystone.io.outlines_in.svg_shapes import length, transform
+from drystone.io.outlines_in.svg_shapes import length, subpaths, transform
 
 
 def area(data):
