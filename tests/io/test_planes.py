@@ -10,10 +10,8 @@ import trimesh
 
 from drystone.errors import InputError, UsageError
 from drystone.io.read_stones import ReadSettings, read_stones
-from tests.io.known_stones import HEIGHT, STONES, compare
+from tests.io.known_stones import HEIGHT, METRIC, PX_PER_M, STONES, close
 
-PX_PER_M = 500.0
-METRIC = ReadSettings(pieces="keep-largest", holes="keep", px_per_m=PX_PER_M)
 S = np.sqrt(0.5)
 PLACES = {
     "top": ((1, 0, 0), (0, 1, 0), "z"),
@@ -41,13 +39,6 @@ UNITS_M = dict(
         start=1,
     )
 )  # fmt: skip
-
-
-def close(stones, ids=None):
-    iou, area, centroid = compare(stones, ids=ids)
-    assert iou > 0.998
-    assert area < 2e-3
-    assert centroid < 0.02
 
 
 def turn(place):
