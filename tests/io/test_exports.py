@@ -1,6 +1,5 @@
 """Further forms of labelling tools, and instances of nesting programs."""
 
-import json
 
 import numpy as np
 import pytest
@@ -9,14 +8,13 @@ from PIL import Image
 from drystone.errors import InputError
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.labelled import HEIGHT, SIZE, WIDTH, box, stones, written
+from tests.io.test_outline_errors import read as read_file
 
 PER_CENT = {"x": 25.0, "y": 25.0}  # 90, 65
 
 
 def read(folder, content, name="a.json", **settings):
-    text = content if isinstance(content, str) else json.dumps(content)
-    (folder / name).write_text(text)
-    return read_stones(folder / name, settings=ReadSettings(**settings))
+    return read_file(folder, content, name, **settings)
 
 
 def task(*results, image="/data/a%20b.jpg", **more):
@@ -50,18 +48,14 @@ def test_boxes_and_ellipses_of_label_studio(tmp_path, value, area, centre):
 
 def test_results_of_label_studio_that_are_no_outlines(tmp_path):
     plain = {"width": 20.0, "height": 10.0} | PER_CENT
-    found = read(
-        tmp_path,
-        [
-            task(
-                {"type": "rectangle", "id": "r", "value": plain} | SIZE,
-                result(plain, "rectanglelabels", id="r"),
-                {"type": "choices", "value": {"choices": ["wet"]}},
-                {"type": "relation", "from_id": "r", "to_id": "q"},
-                result({"format": "rle", "rle": [1, 2]}, "brushlabels"),
-            )
-        ],
-    )
+    results = [
+        {"type": "rectangle", "id": "r", "value": plain} | SIZE,
+        result(plain, "rectanglelabels", id="r"),
+        {"type": "choices", "value": {"choices": ["wet"]}},
+        {"type": "relation", "from_id": "r", "to_id": "q"},
+        result({"format": "rle", "rle": [1, 2]}, "brushlabels"),
+    ]
+    found = read(tmp_path, [task(*results)])
     assert len(found) == 1
     message = found.notices[0].message
     assert "type brushlabels" in message
@@ -90,9 +84,8 @@ def test_shapes_of_via(tmp_path):
         {"name": "ellipse", "cx": 200, "cy": 40, "rx": 30, "ry": 10, "theta": 0.5},
         {"name": "point", "cx": 1, "cy": 2},
     ]
-    regions = {
-        str(i): {"shape_attributes": s, "region_attributes": {}} for i, s in enumerate(shapes)
-    }
+    drawn = [{"shape_attributes": s, "region_attributes": {}} for s in shapes]
+    regions = {str(i): region for i, region in enumerate(drawn)}
     images = {
         "a9": {"filename": "a.jpg", "regions": regions},
         "b9": {"filename": "b", "regions": []},

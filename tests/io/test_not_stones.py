@@ -137,8 +137,8 @@ def test_repeats(tmp_path, form, shift, truth):
 @pytest.mark.parametrize("form", sorted(IN_PX))
 def test_parts(tmp_path, form):
     rings = stones()
-    spots = [(np.asarray(ring).mean(axis=0) + 0.3 * box_of).tolist() for ring, box_of in zip(
-        rings[:5], [np.array(box(-8, -8, 8, 8), float)] * 5, strict=True)]  # fmt: skip
+    spots = [np.mean(ring, axis=0) + 0.3 * np.array(box(-8, -8, 8, 8)) for ring in rings[:5]]
+    spots = [spot.tolist() for spot in spots]
     found = read(tmp_path, form, of_stones([*rings, *spots]))
     assert len(found) == 12
     assert said(found).count("a part of") == 5
