@@ -109,20 +109,17 @@ def numbered(stones: Sequence[OutlinedStone]) -> tuple[Sequence[OutlinedStone], 
     result = [replace(stone, id=i) for i, stone in enumerate(stones, start=1)]
     if not own:
         return result, []
+    why = []
     if several:
-        why = f"the numbers of the file are not different ({listed(several)}): stones"
-        text = f"{why} are numbered in order."
-    else:
-        missing = len(stones) - len(own)
-        why = f"{listed(beyond)} cannot be the number of a stone" if beyond else ""
-        why += ", " if beyond and missing else ""
-        why += f"{missing} of {len(stones)} stones without a number" if missing else ""
-        moved = [
-            f"{stone.id} is now {i}"
-            for i, stone in enumerate(stones, start=1)
-            if stone.id not in (None, i)
-        ]
-        text = f"{why}: all are numbered in order{f' ({listed(moved)})' if moved else ''}."
+        why.append(f"the numbers of the file are not different ({listed(several)})")
+    if beyond:
+        why.append(f"{listed(beyond)} cannot be the number of a stone")
+    if missing := len(stones) - len(own):
+        why.append(f"{missing} of {len(stones)} stones without a number")
+    pairs = ((stone.id, i) for i, stone in enumerate(stones, start=1))
+    moved = listed(f"{own} is now {i}" for own, i in pairs if own not in (None, i))
+    shown = f" ({moved})" if moved and not several else ""
+    text = f"{', '.join(why)}: all are numbered in order{shown}."
     cure = "Give every stone a number of its own, from 1, to keep them."
     return result, [Notice("W119", text, cure)]
 
@@ -154,7 +151,7 @@ def ellipse(centre: tuple[float, float], radii: tuple[float, float], turned: flo
     return np.asarray(np.column_stack([turn.real, turn.imag]) + np.array(centre))
 
 
-def box(low: Sequence[float], high: Sequence[float]) -> Points:
+def box(low: Any, high: Any) -> Points:
     """Return the corners, (4, 2), of a rectangle."""
     (x0, y0), (x1, y1) = low, high
     return np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], float)

@@ -48,7 +48,6 @@ _LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
 _XLINK = "{http://www.w3.org/1999/xlink}href"
 _SHEET = b"<?xml-stylesheet"
 _LAYER = "stones"
-_FEWER = "Export the outlines of stones only, with fewer corners."
 _UNSEEN = "elements that are hidden"
 _DEEPEST = 64
 _MOST = 100_000
@@ -57,8 +56,15 @@ _MOST_TEXT = 2_000_000
 """Of attributes of what is drawn, beside two times what the file has: a use draws things again."""
 _MOST_CLIPPED = 300_000
 """Corners of the shapes that are cut, and of their clip paths each time."""
+_TEXT = "the drawing has long paths that are used too often."
+_CORNERS = f"the drawing has more than {_MOST_CORNERS} corners, those on curves."
+_CLIPPED = f"its clip paths cut more than {_MOST_CLIPPED} corners."
+_FEWER = "Export the outlines of stones only, with fewer corners."
 _LINK = re.compile(r"""url\(\s*+(["']?)#([^"')\s]++)\1\s*+\)""")
 _RELEASE = "Apply or release it where it was drawn"
+_OUTSIDE = "outside of their clip paths, left out"
+_CUT = "cut by their clip paths"
+_MISSING = "clip paths that are not there, so nothing was cut"
 _ALL = 1.0 - 1e-9
 """Share of a shape that is all of it."""
 _VISIBLE = {"visible": True, "hidden": False, "collapse": False}
@@ -129,7 +135,10 @@ def read_svg(data: bytes, settings: ReadSettings) -> OutlineFile:
         stones.append(OutlinedStone(number_in(name), name, (shape.area,), label=label))
     px = page.size if page.unit_m is None else None
     size = None if px is None else (round(px[0]), round(px[1]))
-    notices = left_aside(+walk.aside, "Only closed shapes are read.") + walk.clip_notices()
+    notices = left_aside(+walk.aside, "Only closed shapes are read.")
+    cure = "Release the clips where it was drawn to read all that they hide."
+    said = walk.clipped.items()
+    notices += [Notice("W119", f"{what}: {listed(of)}.", cure) for what, of in said if of]
     notices += page.notices
     if _SHEET in data:
         text = "a style sheet in another file was not read, whatever it hides or moves."
@@ -146,12 +155,9 @@ class _Walk:
         self.aside: Counter[str] = Counter()
         self.known = {e.get("id"): e for e in root.iter() if e.get("id")}
         self.count = 0
-        self.left_text, self.left_corners = most_text, _MOST_CORNERS
-        self.left_clipped = _MOST_CLIPPED
+        self.left = {_TEXT: most_text, _CORNERS: _MOST_CORNERS, _CLIPPED: _MOST_CLIPPED}
         self.regions: dict[tuple[str, bytes], Any] = {}
-        self.outside: list[str] = []
-        self.cut: list[str] = []
-        self.missing: dict[str, None] = {}
+        self.clipped: dict[str, dict[str, None]] = {_OUTSIDE: {}, _CUT: {}, _MISSING: {}}
 
     def shapes(self, page: Page) -> Iterator[_Shape]:
         """Yield the shapes in the order in which they are drawn."""
@@ -170,9 +176,7 @@ class _Walk:
         self.count += 1
         if self.count > _MOST or place.depth > _DEEPEST:
             raise unusable("elements use each other too often or too deeply")
-        self.left_text -= sum(map(len, element.attrib.values()))
-        if self.left_text < 0:
-            raise too_large("the drawing has long paths that are used too often.", _FEWER)
+        self._spend(_TEXT, sum(map(len, element.attrib.values())))
         what = f"the {kind} {name!r}" if name else f"a {kind}"
         with entry(what):
             style = self.styles.of(element)
@@ -185,7 +189,11 @@ class _Walk:
                 for child in element:
                     yield from self._draw(child, here)
             elif kind == "use":
-                here, target = self._within(element, place, style), self._shown(element, what)
+                here = self._within(element, place, style)
+                link = element.get("href") or element.get(_XLINK) or ""
+                target = self.known.get(link.removeprefix("#")) if link.startswith("#") else None
+                if target is None:
+                    raise unusable(f"{what} is of {link!r}, which is not there")
                 own = target.get("id", "")
                 if number_in(own) is not None:
                     here = replace(here, name=own)
@@ -196,14 +204,6 @@ class _Walk:
                 raise ValueError(f"a {kind} in a clip path is not read. {PLAIN}")
             else:
                 self.aside[kind] += 1
-
-    def _shown(self, element: ET.Element, what: str) -> ET.Element:
-        """Return what a use shows."""
-        link = element.get("href") or element.get(_XLINK) or ""
-        target = self.known.get(link.removeprefix("#")) if link.startswith("#") else None
-        if target is None:
-            raise unusable(f"{what} is of {link!r}, which is not there")
-        return target
 
     def _clip(self, style: Style, matrix: Matrix, place: _Place) -> Any:
         """Return where an element is there: a planar shape, or None for everywhere.
@@ -220,7 +220,7 @@ class _Walk:
             raise ValueError(f"its clip path {said[:30]!r} is not read. {_RELEASE}")
         clip = self.known.get(found[2])
         if clip is None or tag(clip) != "clipPath":
-            self.missing[found[2]] = None
+            self.clipped[_MISSING][found[2]] = None
             return place.clip
         if clip.get("clipPathUnits") == "objectBoundingBox":
             what = "its clip path is in shares of its box, which is not read."
@@ -231,7 +231,7 @@ class _Walk:
         whole = self.regions[key]
         with foreign(_no_clip):
             if place.clip is not None:
-                self._spend(int(shapely.get_num_coordinates([place.clip, whole]).sum()))
+                self._spend(_CLIPPED, int(shapely.get_num_coordinates([place.clip, whole]).sum()))
                 whole = shapely.intersection(place.clip, whole)
             shapely.prepare(whole)
         return whole
@@ -245,7 +245,7 @@ class _Walk:
         here = self._within(clip, here, self.styles.of(clip))
         areas = [shape.area for child in clip for shape in self._draw(child, here)]
         self.aside = aside
-        self._spend(len(clip) + sum(len(ring) for area in areas for ring in area.rings))
+        self._spend(_CLIPPED, len(clip) + sum(len(ring) for area in areas for ring in area.rings))
         with foreign(_no_clip):
             return shapely.union_all([region(area.rings, area.rule) for area in areas])
 
@@ -257,7 +257,7 @@ class _Walk:
             return area
         share, inside = 0.0, tuple[Area, ...]()
         if not shapely.disjoint(clip, box):
-            self._spend(len(corners) + int(shapely.get_num_coordinates(clip)))
+            self._spend(_CLIPPED, len(corners) + int(shapely.get_num_coordinates(clip)))
             with foreign(_no_clip):
                 whole = region(area.rings, area.rule)
                 left = shapely.intersection(whole, clip)
@@ -265,29 +265,16 @@ class _Walk:
         if share > _ALL:
             return area
         if share < 1.0 - _ALL:
-            self.outside += [name] if name else []
+            self.clipped[_OUTSIDE] |= {name: None} if name else {}
             return None
-        self.cut += [f"{name} ({100 * share:.2g} % is left)"] if name else []
+        self.clipped[_CUT] |= {f"{name} ({100 * share:.2g} % is left)": None} if name else {}
         return Area(tuple(ring for part in inside for ring in part.rings))
 
-    def _spend(self, corners: int) -> None:
-        self.left_clipped -= corners
-        if self.left_clipped < 0:
-            what = f"its clip paths cut more than {_MOST_CLIPPED} corners."
-            raise too_large(what, f"{_RELEASE}, or export the outlines of stones only.")
-
-    def clip_notices(self) -> list[Notice]:
-        """Say what clip paths left out and cut."""
-        cure = "Release the clips where it was drawn to read all that they hide."
-        return [
-            Notice("W119", f"{what}: {listed(which)}.", cure)
-            for which, what in (
-                (self.outside, "outside of their clip paths, left out"),
-                (self.cut, "cut by their clip paths"),
-                (self.missing, "clip paths that are not there, so nothing was cut"),
-            )
-            if which
-        ]
+    def _spend(self, what: str, number: int) -> None:
+        self.left[what] -= number
+        if self.left[what] < 0:
+            release = f"{_RELEASE}, or export the outlines of stones only."
+            raise too_large(what, release if what == _CLIPPED else _FEWER)
 
     def _within(self, element: ET.Element, place: _Place, style: Style) -> _Place:
         turn = transform(element.get("transform", ""))
@@ -327,10 +314,7 @@ class _Walk:
         closed = [one.points for one in lines if (one.closed or filled) and len(one.points) > 2]
         if len(closed) < len(lines):
             self.aside[f"open lines in {kind}"] += len(lines) - len(closed)
-        self.left_corners -= sum(map(len, closed))
-        if self.left_corners < 0:
-            what = f"the drawing has more than {_MOST_CORNERS} corners, those on curves."
-            raise too_large(what, _FEWER)
+        self._spend(_CORNERS, sum(map(len, closed)))
         rings = tuple(within_reach(moved(place.matrix, points)) for points in closed)
         if not rings:
             return

@@ -214,33 +214,28 @@ def lines_of(kind: str, attributes: Mapping[str, str], view: View | None = None)
         closed = kind == "polygon" or bool((points[0] == points[-1]).all())
         return [Subpath(points, closed)]
     if kind == "rect":
-        return [Subpath(_rectangle(attributes, view), closed=True)]
-    if kind == "circle":
-        rx = ry = user_units(attributes, "r", view)
+        names = ("x", "y", "width", "height")
+        x, y, width, height = (user_units(attributes, name, view) for name in names)
+        low, high = np.array([x, y]), np.array([x + width, y + height])
+        radii = np.clip(_radii(attributes, view), 0.0, (high - low) / 2.0)
     else:
-        rx, ry = _radii(attributes, view)
-    angles = np.arange(CORNERS_OF_CIRCLE) * (2.0 * math.pi / CORNERS_OF_CIRCLE)
-    circle = np.column_stack([rx * np.cos(angles), ry * np.sin(angles)])
-    middle = np.array([user_units(attributes, "cx", view), user_units(attributes, "cy", view)])
-    return [Subpath(circle + middle, closed=True)]
+        r = user_units(attributes, "r", view) if kind == "circle" else 0.0
+        radii = np.array((r, r) if kind == "circle" else _radii(attributes, view))
+        middle = np.array([user_units(attributes, name, view) for name in ("cx", "cy")])
+        low, high = middle - radii, middle + radii
+    return [Subpath(_rounded(low, high, radii), closed=True)]
 
 
-def _rectangle(attributes: Mapping[str, str], view: View | None) -> Points:
-    names = ("x", "y", "width", "height")
-    x, y, width, height = (user_units(attributes, name, view) for name in names)
-    rx, ry = np.minimum(_radii(attributes, view), (width / 2, height / 2)).tolist()
-    if rx <= 0.0 or ry <= 0.0:
-        return box((x, y), (x + width, y + height))
-    corners = []
-    for (x0, y0), (x1, y1) in (
-        ((x + width - rx, y), (x + width, y + ry)),
-        ((x + width, y + height - ry), (x + width - rx, y + height)),
-        ((x + rx, y + height), (x, y + height - ry)),
-        ((x, y + ry), (x + rx, y)),
-    ):
-        start = np.array([x0, y0])
-        corners += [start[None], arc(start, [rx, ry, 0.0, 0.0, 1.0], np.array([x1, y1]))]
-    return np.concatenate(corners)
+def _rounded(low: Corner, high: Corner, radii: Corner) -> Points:
+    """Return a rectangle whose corners are quarters of an ellipse."""
+    if not radii.all():
+        return box(low, high)
+    (x0, y0), (x1, y1) = low + radii, high - radii
+    quarter = np.linspace(0.0, math.pi / 2.0, CORNERS_OF_CIRCLE // 4 + 1)
+    angles = quarter + np.arange(4)[:, None] * (math.pi / 2.0)
+    centres = np.array([(x1, y1), (x0, y1), (x0, y0), (x1, y0)])[:, None]
+    points = centres + np.stack([np.cos(angles), np.sin(angles)], axis=-1) * radii
+    return np.asarray(points.reshape(-1, 2))
 
 
 def _radii(attributes: Mapping[str, str], view: View | None) -> tuple[float, float]:
