@@ -4,19 +4,22 @@ import math
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import shapely
 
-from drystone.errors import LabelImageError, Notice
-from drystone.io.file_errors import listed, short
+from drystone.errors import InputError, LabelImageError, Notice
+from drystone.io.file_bytes import file_bytes
+from drystone.io.file_errors import listed, naming, short
 from drystone.io.outlines_in.fill import check_reach, covered, pixels_of, trimmed
 from drystone.io.outlines_in.model import OutlinedStone, OutlineFile
 from drystone.io.outlines_in.nested import Seen, meeting_boxes, not_stones, of_one_picture, said_of
 from drystone.io.outlines_in.silhouettes import outer_edge
 from drystone.io.patches import PlacedMask, StonePatch
-from drystone.io.pictures import check_size
+from drystone.io.pictures import check_size, format_of, opened
 from drystone.io.read_settings import ReadSettings
+from drystone.io.tiff import ORIENTATION
 from drystone.kernels.polygons import Points
 
 _TOO_FAR = (
@@ -24,10 +27,55 @@ _TOO_FAR = (
     "--px-per-m (px_per_m in Python), or raise max_image_mpx in Python."
 )
 
+_BEYOND = 0.5
+"""How far an outline of shares may reach over the picture, as a share of it."""
 USUAL_SIDE_PX = 160.0
 _MOST_EMPTY, _FAR_PX = 32.0, 2e8
 """Squares of that side in the picture for each stone; a picture beyond so many pixels is refused,
 for something was drawn far away."""
+
+
+def in_px(file: OutlineFile, settings: ReadSettings) -> OutlineFile:
+    """Return a file whose shares of the picture (as of YOLO) are px; all others as they are.
+
+    They are told by the whole file: in px, no stone of it would have a pixel.  Its proportions are
+    those of the picture; where the file does not say its size (E116), `image` names the picture.
+    """
+    if not _are_shares(file):
+        return file
+    size = file.size_px or _size_of(settings.image)
+    if size is None:
+        raise InputError(
+            "E116",
+            "its coordinates are shares of a picture (0 ... 1), and it does not say its size.",
+            cure="Name the picture with --image PHOTO.jpg (ReadSettings.image), or export in px.",
+        )
+    stones = [stone.moved(lambda ring: np.asarray(ring * size)) for stone in file.stones]
+    text = f"its coordinates are shares of the picture: taken times {size[0]} x {size[1]} px."
+    return replace(file, stones=stones, size_px=size, notices=[*file.notices, Notice("W119", text)])
+
+
+def _are_shares(file: OutlineFile) -> bool:
+    rings = [ring for stone in file.stones for ring in stone.rings]
+    is_of_px = file.unit_m is None and file.seen_by != "none" and max(file.size_px or (3,)) >= 3
+    if not (rings and is_of_px) or any(stone.masks for stone in file.stones):
+        return False
+    points = np.concatenate(rings)
+    return bool(points.min() >= -_BEYOND and points.max() <= 1.0 + _BEYOND)
+
+
+def _size_of(image: str) -> tuple[int, int] | None:
+    """Return width and height of a picture as it is seen; None when no file is named."""
+    path = Path(image)
+    if not image or not path.is_file():
+        return None
+    data = file_bytes(path)
+    if not format_of(data):
+        return None
+    with naming(path.name), opened(data, lambda *_: None) as picture:
+        width, height = picture.size
+        turned = picture.getexif().get(ORIENTATION, 1) in {5, 6, 7, 8}
+    return (height, width) if turned else (width, height)
 
 
 def rastered(
