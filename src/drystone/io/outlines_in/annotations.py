@@ -16,10 +16,10 @@ from drystone.io.outlines_in.gathered import Gathered, Pictured, chosen
 from drystone.io.outlines_in.model import (
     MOST_PX,
     OutlineFile,
-    box,
     ellipse,
     number_in,
     place_px,
+    rectangle,
     size_px,
 )
 from drystone.io.patches import PlacedMask
@@ -80,7 +80,7 @@ def _corners(kind: str, points: Any) -> Any:
     """Return the corners of a shape; None when it encloses nothing."""
     # X-AnyLabeling writes all four corners of a rectangle, also of one that is turned.
     if kind == "rectangle" and len(points) != 4:
-        return box(*points)
+        return rectangle(*points)
     if kind == "circle":
         (x, y), (on_x, on_y) = points
         return ellipse((x, y), (math.hypot(on_x - x, on_y - y),) * 2)
@@ -145,14 +145,8 @@ def read_sam(content: list[Mapping[str, Any]], settings: ReadSettings) -> Outlin
     Masks may lie in each other: what is ground, a group or a part of a stone is left out as
     :func:`~drystone.io.outlines_in.nested.not_stones` says.
     """
-    images: dict[str, list[Any]] = {}
-    for found in content:
-        images.setdefault(str(found.get("image_id", "")), []).append(found)
-    named = bool(images.keys() - {""})
-    picture = Pictured("", None, content)
-    if named:
-        pictures = [Pictured(name, None, found) for name, found in images.items()]
-        picture = chosen(pictures, settings.image)
+    named = any(found.get("image_id", "") != "" for found in content)
+    picture = _picture_of({"annotations": content}, settings.image if named else "")
     shapes = [{**found, "id": number} for number, found in enumerate(picture.shapes, start=1)]
     picture = replace(picture, shapes=shapes)
     file = _annotated(picture, settings, "mask", {}, by_model=True)

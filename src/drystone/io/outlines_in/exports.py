@@ -14,10 +14,10 @@ from drystone.io.outlines_in.fill import Room, trimmed
 from drystone.io.outlines_in.gathered import Gathered, Pictured, chosen
 from drystone.io.outlines_in.model import (
     OutlineFile,
-    box,
     ellipse,
     number_in,
     place_px,
+    rectangle,
     side_px,
     size_px,
     xml_root,
@@ -123,7 +123,7 @@ def _of_label_studio(value: Mapping[str, Any], across: float, down: float) -> An
         radii = float(value["radiusX"]) * across, float(value["radiusY"]) * down
         return ellipse((x, y), radii, math.radians(turn))
     width, height = float(value["width"]) * across, float(value["height"]) * down
-    return _turned(box((x, y), (x + width, y + height)), turn, (x, y))
+    return _turned(rectangle((x, y), (x + width, y + height)), turn, (x, y))
 
 
 # VGG Image Annotator
@@ -168,7 +168,7 @@ def _of_via(shape: Mapping[str, Any]) -> Any:
         return list(zip(shape["all_points_x"], shape["all_points_y"], strict=True))
     if kind == "rect":
         x, y, width, height = (float(shape[name]) for name in ("x", "y", "width", "height"))
-        return box((x, y), (x + width, y + height))
+        return rectangle((x, y), (x + width, y + height))
     if kind in {"circle", "ellipse"}:
         across, along = ("r", "r") if kind == "circle" else ("rx", "ry")
         radii = float(shape[across]), float(shape[along])
@@ -215,7 +215,7 @@ def _of_cvat(shape: ET.Element) -> Any:
     if shape.tag == "ellipse":
         return ellipse((one, two), (three, four), math.radians(turn))
     middle = (one + three) / 2.0, (two + four) / 2.0
-    return _turned(box((one, two), (three, four)), turn, middle)
+    return _turned(rectangle((one, two), (three, four)), turn, middle)
 
 
 def _mask_of_cvat(shape: ET.Element, room: Room) -> PlacedMask | None:

@@ -151,7 +151,7 @@ def ellipse(centre: tuple[float, float], radii: tuple[float, float], turned: flo
     return np.asarray(np.column_stack([turn.real, turn.imag]) + np.array(centre))
 
 
-def box(low: Any, high: Any) -> Points:
+def rectangle(low: Any, high: Any) -> Points:
     """Return the corners, (4, 2), of a rectangle."""
     (x0, y0), (x1, y1) = low, high
     return np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], float)

@@ -9,7 +9,7 @@ import numpy as np
 from drystone.errors import Notice
 from drystone.io.file_errors import entry, short, too_large
 from drystone.io.outlines_in.gathered import Gathered
-from drystone.io.outlines_in.model import METRES, OutlinedStone, OutlineFile, box, number_in
+from drystone.io.outlines_in.model import METRES, OutlinedStone, OutlineFile, number_in, rectangle
 from drystone.io.read_settings import ReadSettings
 
 _MOST_COPIES = 10_000
@@ -70,7 +70,7 @@ def _of_nesting(shape: Mapping[str, Any]) -> Iterator[list[Any]]:
     elif kind == "rectangle":
         data = _lower(data)
         x, y = float(data.get("x_min", 0.0)), float(data.get("y_min", 0.0))
-        yield [box((x, y), (x + float(data["width"]), y + float(data["height"])))]
+        yield [rectangle((x, y), (x + float(data["width"]), y + float(data["height"])))]
     else:
         raise ValueError(f"a shape of the type {short(repr(shape.get('type')))}")
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.errors import Notice
-from drystone.io.outlines_in.model import METRES, box, overruled
+from drystone.io.outlines_in.model import METRES, overruled, rectangle
 from drystone.io.read_settings import ReadSettings
 from drystone.kernels.polygons import Points
 
@@ -229,7 +229,7 @@ def lines_of(kind: str, attributes: Mapping[str, str], view: View | None = None)
 def _rounded(low: Corner, high: Corner, radii: Corner) -> Points:
     """Return a rectangle whose corners are quarters of an ellipse."""
     if not radii.all():
-        return box(low, high)
+        return rectangle(low, high)
     (x0, y0), (x1, y1) = low + radii, high - radii
     quarter = np.linspace(0.0, math.pi / 2.0, CORNERS_OF_CIRCLE // 4 + 1)
     angles = quarter + np.arange(4)[:, None] * (math.pi / 2.0)
@@ -335,7 +335,9 @@ def page_of(root: Mapping[str, str], settings: ReadSettings) -> Page:
     physical = all(unit in _UNITS_M for _, unit in sides)
     if not physical and any(unit not in {"", "px", "%"} for _, unit in sides):
         raise ValueError("its width and height are in units that cannot be used together")
-    box = view_box(root)
+    box = numbers_in(root.get("viewBox", ""))
+    if box and (len(box) != 4 or not min(box[2:]) > 0.0):
+        raise ValueError(f"its viewBox is {root['viewBox']!r}")
     given = not any(unit == "%" for _, unit in sides)
     unit_m, own = METRES.get(settings.unit), _UNITS_M[sides[0][1]] if physical else None
     notices = overruled(own, f"its width is {root.get('width', '')[:30]}", settings)
@@ -351,7 +353,7 @@ def page_of(root: Mapping[str, str], settings: ReadSettings) -> Page:
         raise ValueError("its width or height is not above 0")
     matrix = np.eye(3)
     if box and size:
-        matrix = fitted(box, size, root.get("preserveAspectRatio", ""))
+        matrix = _fitted(box, size, root.get("preserveAspectRatio", ""))
     elif physical:
         # User units are the px of CSS then.
         matrix[0, 0] = matrix[1, 1] = _PX_M / _UNITS_M[sides[0][1]]
@@ -361,16 +363,7 @@ def page_of(root: Mapping[str, str], settings: ReadSettings) -> Page:
     return Page(matrix, unit_m, (size[0], size[1]), view, notices)
 
 
-def view_box(attributes: Mapping[str, str]) -> list[float]:
-    """Return the four numbers of a viewBox; none when there is none, ValueError for others."""
-    text = attributes.get("viewBox", "").strip()
-    box = numbers_in(text)
-    if box and (len(box) != 4 or not min(box[2:]) > 0.0):
-        raise ValueError(f"its viewBox is {text!r}")
-    return box
-
-
-def fitted(box: Sequence[float], size: Sequence[float], ratio: str = "") -> Matrix:
+def _fitted(box: Sequence[float], size: Sequence[float], ratio: str = "") -> Matrix:
     """Return the way from the units of a viewBox to a page with its origin at (0, 0).
 
     The drawing lies in the middle of the page, as it does unless a ratio says another thing.
