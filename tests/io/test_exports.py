@@ -1,6 +1,5 @@
 """Further forms of labelling tools, and instances of nesting programs."""
 
-
 import numpy as np
 import pytest
 from PIL import Image
@@ -8,13 +7,9 @@ from PIL import Image
 from drystone.errors import InputError
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.labelled import HEIGHT, SIZE, WIDTH, box, stones, written
-from tests.io.test_outline_errors import read as read_file
+from tests.io.test_outline_errors import read
 
 PER_CENT = {"x": 25.0, "y": 25.0}  # 90, 65
-
-
-def read(folder, content, name="a.json", **settings):
-    return read_file(folder, content, name, **settings)
 
 
 def task(*results, image="/data/a%20b.jpg", **more):
@@ -161,32 +156,25 @@ def test_items_of_a_nesting_instance(tmp_path):
     assert "taken as px" not in str(found.notices)
 
 
-@pytest.mark.parametrize(
-    ("content", "text"),
-    [
-        ({"items": [item(0, {"type": "spline", "data": []})]}, "item 0.*'spline'"),
-        ({"items": [item(0, polygon(box(0, 0, 9, 9)), "x")]}, "item 0"),
-        ({"a": {"regions": [{"shape_attributes": {"name": "rect", "x": 1}}]}}, "region 0.*'y'"),
-        ({"a": {"regions": 3}}, "list of images"),
-        ([task(result(PER_CENT | {"width": "a", "height": 1}))], "result 0"),
-        ([task({"value": {"points": [[1, 2]]}})], "result 0.*original_width"),
-    ],
-)
-def test_damaged_entries_are_named(tmp_path, content, text):
-    with pytest.raises(InputError, match=rf"E114 a.json: .*{text}"):
-        read(tmp_path, content)
+MASK = '<mask left="0" top="0" width="3" height="3" rle="1,2"/>'
+SIDELESS = {"name": "rect", "x": 1}
 
 
 @pytest.mark.parametrize(
     ("name", "content", "text"),
     [
+        ("a.json", {"items": [item(0, {"type": "spline", "data": []})]}, "item 0.*'spline'"),
+        ("a.json", {"items": [item(0, polygon(box(0, 0, 9, 9)), "x")]}, "item 0"),
+        ("a.json", {"a": {"regions": [{"shape_attributes": SIDELESS}]}}, "region 0.*'y'"),
+        ("a.json", {"a": {"regions": 3}}, "list of images"),
+        ("a.json", [task(result(PER_CENT | {"width": "a", "height": 1}))], "result 0"),
+        ("a.json", [task({"value": {"points": [[1, 2]]}})], "result 0.*original_width"),
         ("a.txt", "0 .1 .1 .2 .2 .3\n0 .1 .1 .2 .1 .2 .2 .4\n", "line 2.*odd number"),
         ("a.xml", "<annotations><image><box/></image></annotations>", "shape 0.*'xtl'"),
-        ("a.xml", '<annotations><image><mask left="0" top="0" width="3" height="3" rle="1,2"/>'
-         "</image></annotations>", "shape 0.*do not fill"),
+        ("a.xml", f"<annotations><image>{MASK}</image></annotations>", "shape 0.*do not fill"),
     ],
-)  # fmt: skip
-def test_damaged_lines_and_elements_are_named(tmp_path, name, content, text):
+)
+def test_damaged_entries_are_named(tmp_path, name, content, text):
     with pytest.raises(InputError, match=rf"E114 {name}: .*{text}"):
         read(tmp_path, content, name)
     with pytest.raises(InputError, match="E106"):
