@@ -13,23 +13,9 @@ from ezdxf import units
 from drystone.errors import InputError, UsageError
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.known_stones import HEIGHT, METRIC, PIECES, PX_PER_M, STONES, WIDTH, close, compare
+from tests.io.test_planes import drawn
 
 MM = 1000.0 / PX_PER_M
-
-
-def dxf(unit=units.MM, per_unit=MM, version="R2010"):
-    """Closed polylines with y up; both pieces of stone 34 cannot be one in DXF: only the first."""
-    document = ezdxf.new(version, units=unit)
-    space = document.modelspace()
-    for stone, polygons in STONES.items():
-        for number, points in enumerate(polygons[0]):
-            corners = [(x * per_unit, (HEIGHT - y) * per_unit) for x, y in points]
-            style = {"layer": f"stone {stone}" if number == 0 else "0"}
-            if stone % 2:
-                space.add_lwpolyline(corners, close=True, dxfattribs=style)
-            else:  # closed by its last point, and of the old kind
-                space.add_polyline2d([*corners, corners[0]], dxfattribs=style)
-    return document
 
 
 def saved(document, tmp_path, name="stones.dxf", **options):
@@ -40,7 +26,7 @@ def saved(document, tmp_path, name="stones.dxf", **options):
 @pytest.mark.parametrize("version", ["R2000", "R2018"])
 @pytest.mark.parametrize("kind", ["asc", "bin"])
 def test_dxf_versions_and_binary(tmp_path, version, kind):
-    path = saved(dxf(version=version), tmp_path, "drawing", fmt=kind)
+    path = saved(drawn(version=version), tmp_path, "drawing", fmt=kind)
     stones = read_stones(path, settings=METRIC)
     close(stones)
     assert stones.source.px_per_m == PX_PER_M
@@ -58,7 +44,9 @@ def test_dxf_names_are_in_the_code_page_of_the_drawing(tmp_path):
 
 
 def test_dxf_without_a_unit_may_be_told_to_be_in_px(tmp_path):
-    stones = read_stones(saved(dxf(0, 1.0), tmp_path), settings=replace(PIECES, unit="px"))
+    stones = read_stones(
+        saved(drawn(code=0, unit=1 / PX_PER_M), tmp_path), settings=replace(PIECES, unit="px")
+    )
     close(stones)
     assert stones.source.px_per_m is None
     assert dict(stones.source.reading)["unit"] == "px"
@@ -185,7 +173,7 @@ def test_dxf_points_that_shape_a_polyline_are_not_drawn(tmp_path, version, in_sp
 
 
 def test_resolution_of_a_drawing_makes_the_median_stone_160_px_long(tmp_path):
-    stones = read_stones(saved(dxf(), tmp_path), settings=ReadSettings(holes="keep"))
+    stones = read_stones(saved(drawn(), tmp_path), settings=ReadSettings(holes="keep"))
     sides = [max(stone.mask.shape) for stone in stones]
     assert 150 <= np.median(sides) <= 170
     scale = stones.source.px_per_m
@@ -348,7 +336,7 @@ def test_damaged_svg(tmp_path, body, text):
 
 def test_damaged_dxf(tmp_path):
     text = io.StringIO()
-    dxf().write(text)
+    drawn().write(text)
     path = tmp_path / "stones.dxf"
     for share in (0.3, 0.9):
         path.write_text(text.getvalue()[: int(share * len(text.getvalue()))])
@@ -361,7 +349,7 @@ def test_damaged_dxf(tmp_path):
 
 
 def test_a_stray_outline_far_away_is_too_large_a_picture(tmp_path):
-    document = dxf()
-    document.modelspace().add_circle((1e6, 1e6), 5)
+    document = drawn()
+    document.modelspace().add_circle((1e3, 1e3), 0.005)
     with pytest.raises(InputError, match=r"E110.*far away"):
         read_stones(saved(document, tmp_path), settings=METRIC)
