@@ -145,6 +145,10 @@ def test_coco_says_what_has_no_outline(tmp_path):
     assert stones.notices[0].message.count("1 ") == 2
     assert "crowd" in stones.notices[0].message
     assert "annotations without an outline" in stones.notices[0].message
+    masks_of_sam = [{"segmentation": runs(masks()[3])}, {"segmentation": []}]
+    (stone,) = (found := read_stones(written(tmp_path, masks_of_sam)))
+    assert stone.id == 1
+    assert "1 annotations without an outline" in found.notices[0].message
 
 
 @pytest.mark.parametrize("mixed", [False, True])
