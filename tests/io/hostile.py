@@ -180,8 +180,8 @@ SLATES = [[[i, 0, 0], [i + 1, 0, 0], [i, 0, 1]] for i in range(0, 99, 2)]
 
 PLY = (
     b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-    b"property float z\nelement face %s\nproperty list uchar int vertex_indices\nend_header\n"
-    b"0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
+    b"property float z\nelement face %b\nproperty list uchar int vertex_indices\nend_header\n"
+    b"0 0 0\n1 0 0\n0 1 0\n"
 )
 
 
@@ -294,7 +294,7 @@ FILES: dict[str, tuple[Callable[[], bytes], str]] = {
     "other.npz": (lambda: npz({"a.npy": saved(two_stones()), "b.txt": b"stones"}), "E106"),
     "infinite.dxf": (lambda: dxf(polygon((0, 0), (9, 0), (9, 9))).replace(b"9.0", b"1e999"), "E1"),
     "infinite.obj": (lambda: b"v 0 0 0\nv 1e999 0 0\nv 0 0 1\nf 1 2 3\n", "E114"),
-    "faces.ply": (lambda: PLY % (b"9" * 5000), "E1"),
+    "faces.ply": (lambda: PLY % (b"9" * 5000) + b"3 0 1 2\n", "E1"),
     "side.json": (
         lambda: json.dumps({"shapes": [], "imageWidth": 10**400, "imageHeight": 36}).encode(),
         "E114 .*more than 1e9 px",

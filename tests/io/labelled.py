@@ -7,6 +7,7 @@ import numpy as np
 from PIL import Image
 
 WIDTH, HEIGHT = 360, 260
+SIZE = {"original_width": WIDTH, "original_height": HEIGHT}
 
 
 def stones(seed=7, across=4, down=3):
@@ -26,173 +27,128 @@ def box(x0, y0, x1, y1):
     return [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
 
 
-def _json(path, content):
-    path.write_text(json.dumps(content))
-    return path
+def _names(shapes):
+    return list(dict.fromkeys(label for label, _ in shapes))
 
 
-def coco(folder, shapes):
-    names = list(dict.fromkeys(label for label, _ in shapes))
-    return _json(
-        folder / "coco.json",
-        {
-            "images": [{"id": 1, "file_name": "a.jpg", "width": WIDTH, "height": HEIGHT}],
-            "categories": [{"id": i, "name": name} for i, name in enumerate(names)],
-            "annotations": [
-                {
-                    "id": i,
-                    "image_id": 1,
-                    "category_id": names.index(label),
-                    "segmentation": [np.ravel(ring).tolist()],
-                }
-                for i, (label, ring) in enumerate(shapes, start=1)
-            ],
-        },
-    )
+def _share(ring, whole=1.0):
+    return np.asarray(ring) * whole / [WIDTH, HEIGHT]
 
 
-def labelme(folder, shapes):
-    return _json(
-        folder / "labelme.json",
-        {
-            "shapes": [
-                {"label": label, "points": ring, "shape_type": "polygon"} for label, ring in shapes
-            ],
-            "imageWidth": WIDTH,
-            "imageHeight": HEIGHT,
-        },
-    )
-
-
-def _feature(label, ring, named=True):
-    kind = {"name": label, "color": [1, 2, 3]} if named else label
+def coco(shapes):
+    names = _names(shapes)
+    found = [
+        {"id": i, "image_id": 1, "category_id": names.index(label),
+         "segmentation": [np.ravel(ring).tolist()]}
+        for i, (label, ring) in enumerate(shapes, start=1)
+    ]  # fmt: skip
     return {
-        "type": "Feature",
-        "geometry": {"type": "Polygon", "coordinates": [[*ring, ring[0]]]},
-        "properties": {"objectType": "annotation", "classification": kind},
+        "images": [{"id": 1, "file_name": "a.jpg", "width": WIDTH, "height": HEIGHT}],
+        "categories": [{"id": i, "name": name} for i, name in enumerate(names)],
+        "annotations": found,
     }
 
 
-def qupath(folder, shapes):
-    found = [_feature(label, ring) for label, ring in shapes]
-    return _json(folder / "q.geojson", {"type": "FeatureCollection", "features": found})
+def labelme(shapes):
+    drawn = [{"label": label, "points": ring, "shape_type": "polygon"} for label, ring in shapes]
+    return {"shapes": drawn, "imageWidth": WIDTH, "imageHeight": HEIGHT}
 
 
-def qupath_list(folder, shapes):
-    found = [_feature(label, ring, named=False) for label, ring in shapes]
-    return _json(folder / "list.geojson", found)
-
-
-def _per_cent(ring):
-    return (np.asarray(ring) * 100.0 / [WIDTH, HEIGHT]).tolist()
-
-
-def label_studio(folder, shapes):
-    result = [
+def qupath_list(shapes, kind=str):
+    return [
         {
-            "id": f"r{i}",
-            "type": "polygonlabels",
-            "original_width": WIDTH,
-            "original_height": HEIGHT,
-            "value": {"points": _per_cent(ring), "polygonlabels": [label]},
+            "type": "Feature",
+            "geometry": {"type": "Polygon", "coordinates": [[*ring, ring[0]]]},
+            "properties": {"objectType": "annotation", "classification": kind(label)},
         }
-        for i, (label, ring) in enumerate(shapes)
+        for label, ring in shapes
     ]
-    task = {"id": 1, "data": {"image": "/d/a.jpg"}, "annotations": [{"id": 1, "result": result}]}
-    return _json(folder / "studio.json", [task])
 
 
-def label_studio_short(folder, shapes):
+def qupath(shapes):
+    found = qupath_list(shapes, lambda label: {"name": label, "color": [1, 2, 3]})
+    return {"type": "FeatureCollection", "features": found}
+
+
+def label_studio(shapes):
     drawn = [
-        {
-            "points": _per_cent(ring),
-            "polygonlabels": [label],
-            "original_width": WIDTH,
-            "original_height": HEIGHT,
-        }
-        for label, ring in shapes
+        {"points": _share(ring, 100).tolist(), "polygonlabels": [label]} for label, ring in shapes
     ]
-    return _json(folder / "min.json", [{"id": 1, "image": "/d/a.jpg", "label": drawn}])
-
-
-def via(folder, shapes):
-    regions = [
-        {
-            "shape_attributes": {
-                "name": "polygon",
-                "all_points_x": [x for x, _ in ring],
-                "all_points_y": [y for _, y in ring],
-            },
-            "region_attributes": {"type": label},
-        }
-        for label, ring in shapes
+    result = [
+        {"id": f"r{i}", "type": "polygonlabels", "value": value} | SIZE
+        for i, value in enumerate(drawn)
     ]
-    images = {"a.jpg9": {"filename": "a.jpg", "size": 9, "regions": regions}}
-    return _json(folder / "via.json", {"_via_settings": {}, "_via_img_metadata": images})
+    return [{"id": 1, "data": {"image": "/d/a.jpg"}, "annotations": [{"id": 1, "result": result}]}]
 
 
-def via_alone(folder, shapes):
-    content = json.loads(via(folder, shapes).read_text())["_via_img_metadata"]
-    for region in content["a.jpg9"]["regions"]:
-        region["region_attributes"] = {"kind": {region["region_attributes"]["type"]: True}}
-    return _json(folder / "via-json.json", content)
+def label_studio_short(shapes):
+    (task,) = label_studio(shapes)
+    drawn = [one["value"] | SIZE for one in task["annotations"][0]["result"]]
+    return [{"id": 1, "image": "/d/a.jpg", "label": drawn}]
 
 
-def cvat(folder, shapes):
+def via_alone(shapes, said=lambda label: {"kind": {label: True}}):
+    regions = []
+    for label, ring in shapes:
+        across, down = zip(*ring, strict=True)
+        shape = {"name": "polygon", "all_points_x": across, "all_points_y": down}
+        regions.append({"shape_attributes": shape, "region_attributes": said(label)})
+    return {"a.jpg9": {"filename": "a.jpg", "size": 9, "regions": regions}}
+
+
+def via(shapes):
+    images = via_alone(shapes, lambda label: {"type": label})
+    return {"_via_settings": {}, "_via_img_metadata": images}
+
+
+def cvat(shapes):
     drawn = "".join(
         f'<polygon label="{label}" points="{";".join(f"{x},{y}" for x, y in ring)}"/>'
         for label, ring in shapes
     )
     image = f'<image id="0" name="a.jpg" width="{WIDTH}" height="{HEIGHT}">{drawn}</image>'
-    path = folder / "annotations.xml"
-    path.write_text(
-        f'<?xml version="1.0"?>\n<annotations><version>1.1</version>{image}</annotations>'
-    )
-    return path
+    return f'<?xml version="1.0"?>\n<annotations><version>1.1</version>{image}</annotations>'
 
 
-def yolo(folder, shapes):
-    names = list(dict.fromkeys(label for label, _ in shapes))
-    lines = [
-        " ".join(
-            map(str, [names.index(label), *np.ravel(np.asarray(ring) / [WIDTH, HEIGHT]).round(6)])
-        )
-        for label, ring in shapes
-    ]
-    Image.new("L", (WIDTH, HEIGHT)).save(folder / "a.png")
-    path = folder / "a.txt"
-    path.write_text("\n".join(lines) + "\n")
-    return path
-
-
-def svg(folder, shapes):
+def svg(shapes):
     drawn = "".join(
         f'<g id="{label} {i}"><path d="M{" L".join(f"{x},{y}" for x, y in ring)} Z"/></g>'
         for i, (label, ring) in enumerate(shapes)
     )
-    path = folder / "a.svg"
-    path.write_text(
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT}">{drawn}</svg>'
-    )
-    return path
+    size = f'width="{WIDTH}" height="{HEIGHT}"'
+    return f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{drawn}</svg>'
 
 
-def dxf(folder, shapes):
+def dxf(shapes):
     document = ezdxf.new(units=ezdxf.units.MM)
     for label, ring in shapes:
         points = [(x, HEIGHT - y) for x, y in ring]
         document.modelspace().add_lwpolyline(points, close=True, dxfattribs={"layer": label})
-    document.saveas(folder / "a.dxf")
-    return folder / "a.dxf"
+    return document
 
 
-CLASSES = {
-    one.__name__: one
-    for one in (
-        coco, labelme, qupath, qupath_list, label_studio, label_studio_short, via, via_alone, cvat,
-        svg, dxf,
-    )
+def yolo(shapes):
+    names = _names(shapes)
+    rows = ([names.index(label), *np.ravel(_share(ring)).round(6)] for label, ring in shapes)
+    return "".join(f"{' '.join(map(str, row))}\n" for row in rows)
+
+
+_FILES = {
+    coco: "coco.json", labelme: "labelme.json", qupath: "q.geojson", qupath_list: "list.geojson",
+    label_studio: "studio.json", label_studio_short: "min.json", via: "via.json",
+    via_alone: "via-json.json", cvat: "annotations.xml", svg: "a.svg", dxf: "a.dxf", yolo: "a.txt",
 }  # fmt: skip
+FORMS = {write.__name__: write for write in _FILES}
+CLASSES = [form for form in FORMS if form != "yolo"]
 """Forms with the names of classes."""
 
-FORMS = CLASSES | {"yolo": yolo}
+
+def written(folder, form, shapes):
+    """Write labels and rings; beside them lies the picture, as YOLO says no size of it."""
+    Image.new("L", (WIDTH, HEIGHT)).save(folder / "a.png")
+    path, content = folder / _FILES[FORMS[form]], FORMS[form](shapes)
+    if form == "dxf":
+        content.saveas(path)
+    else:
+        path.write_text(content if isinstance(content, str) else json.dumps(content))
+    return path

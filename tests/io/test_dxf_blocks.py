@@ -57,13 +57,15 @@ def test_dxf_inserts_on_hidden_layers_do_not_count():
         space.add_blockref("BOX", (0, 10 * i), dxfattribs={"layer": layer})
         space.add_blockref("OWN", (10, 10 * i), dxfattribs={"layer": layer})
     space.add_blockref("BOX", (20, 0), dxfattribs={"layer": "seen", "invisible": 1})
+    for style in ({"layer": "off"}, {"layer": "frozen"}, {"layer": "seen", "invisible": 1}):
+        space.add_circle((60, 0), 3, dxfattribs=style)
     document.blocks.new("GROUP").add_blockref("BOX", (30, 0))
     space.add_blockref("GROUP", (0, 0), dxfattribs={"layer": "off"})
     space.add_blockref("BOX", (40, 0), dxfattribs={"layer": "seen"})
     space.add_blockref("NONE", (50, 0))
     shapes, said = outlines(document)
     assert {name: shape.bounds[0] for name, shape in shapes.items()} == {"own": 10, "seen": 40}
-    assert "5 entities that are hidden" in said
+    assert "8 entities that are hidden" in said
     assert "1 INSERT of a block that is not there" in said
 
 

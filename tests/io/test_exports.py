@@ -1,24 +1,15 @@
 """Further forms of labelling tools, and instances of nesting programs."""
 
-import json
-
 import numpy as np
 import pytest
 from PIL import Image
 
 from drystone.errors import InputError
 from drystone.io.read_stones import ReadSettings, read_stones
-from tests.io import labelled
-from tests.io.labelled import HEIGHT, WIDTH, box, stones
+from tests.io.labelled import HEIGHT, SIZE, WIDTH, box, stones, written
+from tests.io.test_outline_errors import read
 
-SIZE = {"original_width": WIDTH, "original_height": HEIGHT}
 PER_CENT = {"x": 25.0, "y": 25.0}  # 90, 65
-
-
-def read(folder, content, name="a.json", **settings):
-    text = content if isinstance(content, str) else json.dumps(content)
-    (folder / name).write_text(text)
-    return read_stones(folder / name, settings=ReadSettings(**settings))
 
 
 def task(*results, image="/data/a%20b.jpg", **more):
@@ -52,18 +43,14 @@ def test_boxes_and_ellipses_of_label_studio(tmp_path, value, area, centre):
 
 def test_results_of_label_studio_that_are_no_outlines(tmp_path):
     plain = {"width": 20.0, "height": 10.0} | PER_CENT
-    found = read(
-        tmp_path,
-        [
-            task(
-                {"type": "rectangle", "id": "r", "value": plain} | SIZE,
-                result(plain, "rectanglelabels", id="r"),
-                {"type": "choices", "value": {"choices": ["wet"]}},
-                {"type": "relation", "from_id": "r", "to_id": "q"},
-                result({"format": "rle", "rle": [1, 2]}, "brushlabels"),
-            )
-        ],
-    )
+    results = [
+        {"type": "rectangle", "id": "r", "value": plain} | SIZE,
+        result(plain, "rectanglelabels", id="r"),
+        {"type": "choices", "value": {"choices": ["wet"]}},
+        {"type": "relation", "from_id": "r", "to_id": "q"},
+        result({"format": "rle", "rle": [1, 2]}, "brushlabels"),
+    ]
+    found = read(tmp_path, [task(*results)])
     assert len(found) == 1
     message = found.notices[0].message
     assert "type brushlabels" in message
@@ -92,9 +79,8 @@ def test_shapes_of_via(tmp_path):
         {"name": "ellipse", "cx": 200, "cy": 40, "rx": 30, "ry": 10, "theta": 0.5},
         {"name": "point", "cx": 1, "cy": 2},
     ]
-    regions = {
-        str(i): {"shape_attributes": s, "region_attributes": {}} for i, s in enumerate(shapes)
-    }
+    drawn = [{"shape_attributes": s, "region_attributes": {}} for s in shapes]
+    regions = {str(i): region for i, region in enumerate(drawn)}
     images = {
         "a9": {"filename": "a.jpg", "regions": regions},
         "b9": {"filename": "b", "regions": []},
@@ -128,7 +114,7 @@ def test_shapes_of_cvat(tmp_path):
 
 @pytest.mark.parametrize("turned", [False, True])
 def test_segments_of_yolo_have_the_proportions_of_their_picture(tmp_path, turned):
-    path = labelled.yolo(tmp_path, [("stone", ring) for ring in stones()])
+    path = written(tmp_path, "yolo", [("stone", ring) for ring in stones()])
     photo = tmp_path / "photo.jpg"
     size = (HEIGHT, WIDTH) if turned else (WIDTH, HEIGHT)
     exif = Image.Exif()
@@ -170,32 +156,25 @@ def test_items_of_a_nesting_instance(tmp_path):
     assert "taken as px" not in str(found.notices)
 
 
-@pytest.mark.parametrize(
-    ("content", "text"),
-    [
-        ({"items": [item(0, {"type": "spline", "data": []})]}, "item 0.*'spline'"),
-        ({"items": [item(0, polygon(box(0, 0, 9, 9)), "x")]}, "item 0"),
-        ({"a": {"regions": [{"shape_attributes": {"name": "rect", "x": 1}}]}}, "region 0.*'y'"),
-        ({"a": {"regions": 3}}, "list of images"),
-        ([task(result(PER_CENT | {"width": "a", "height": 1}))], "result 0"),
-        ([task({"value": {"points": [[1, 2]]}})], "result 0.*original_width"),
-    ],
-)
-def test_damaged_entries_are_named(tmp_path, content, text):
-    with pytest.raises(InputError, match=rf"E114 a.json: .*{text}"):
-        read(tmp_path, content)
+MASK = '<mask left="0" top="0" width="3" height="3" rle="1,2"/>'
+SIDELESS = {"name": "rect", "x": 1}
 
 
 @pytest.mark.parametrize(
     ("name", "content", "text"),
     [
+        ("a.json", {"items": [item(0, {"type": "spline", "data": []})]}, "item 0.*'spline'"),
+        ("a.json", {"items": [item(0, polygon(box(0, 0, 9, 9)), "x")]}, "item 0"),
+        ("a.json", {"a": {"regions": [{"shape_attributes": SIDELESS}]}}, "region 0.*'y'"),
+        ("a.json", {"a": {"regions": 3}}, "list of images"),
+        ("a.json", [task(result(PER_CENT | {"width": "a", "height": 1}))], "result 0"),
+        ("a.json", [task({"value": {"points": [[1, 2]]}})], "result 0.*original_width"),
         ("a.txt", "0 .1 .1 .2 .2 .3\n0 .1 .1 .2 .1 .2 .2 .4\n", "line 2.*odd number"),
         ("a.xml", "<annotations><image><box/></image></annotations>", "shape 0.*'xtl'"),
-        ("a.xml", '<annotations><image><mask left="0" top="0" width="3" height="3" rle="1,2"/>'
-         "</image></annotations>", "shape 0.*do not fill"),
+        ("a.xml", f"<annotations><image>{MASK}</image></annotations>", "shape 0.*do not fill"),
     ],
-)  # fmt: skip
-def test_damaged_lines_and_elements_are_named(tmp_path, name, content, text):
+)
+def test_damaged_entries_are_named(tmp_path, name, content, text):
     with pytest.raises(InputError, match=rf"E114 {name}: .*{text}"):
         read(tmp_path, content, name)
     with pytest.raises(InputError, match="E106"):

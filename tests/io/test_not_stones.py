@@ -7,13 +7,13 @@ from PIL import Image, ImageDraw
 from drystone.errors import InputError, UsageError
 from drystone.io.outlines_in.classes import is_other
 from drystone.io.read_stones import ReadSettings, read_stones
-from tests.io.labelled import CLASSES, FORMS, HEIGHT, WIDTH, box, stones
+from tests.io.labelled import CLASSES, FORMS, HEIGHT, WIDTH, box, stones, written
 
 IN_PX = set(FORMS) - {"dxf"}
 
 
 def read(folder, form, shapes, **settings):
-    path = FORMS[form](folder, shapes)
+    path = written(folder, form, shapes)
     if form == "yolo":
         settings |= {"image": str(folder / "a.png")}
     return read_stones(path, settings=ReadSettings(px_per_m=1000.0, **settings))
@@ -137,8 +137,8 @@ def test_repeats(tmp_path, form, shift, truth):
 @pytest.mark.parametrize("form", sorted(IN_PX))
 def test_parts(tmp_path, form):
     rings = stones()
-    spots = [(np.asarray(ring).mean(axis=0) + 0.3 * box_of).tolist() for ring, box_of in zip(
-        rings[:5], [np.array(box(-8, -8, 8, 8), float)] * 5, strict=True)]  # fmt: skip
+    spots = [np.mean(ring, axis=0) + 0.3 * np.array(box(-8, -8, 8, 8)) for ring in rings[:5]]
+    spots = [spot.tolist() for spot in spots]
     found = read(tmp_path, form, of_stones([*rings, *spots]))
     assert len(found) == 12
     assert said(found).count("a part of") == 5
@@ -181,7 +181,7 @@ def test_shares_of_a_picture_without_a_size(tmp_path, form):
     rings = stones()
     if form != "yolo":
         rings = [(np.asarray(ring) / [WIDTH, HEIGHT]).tolist() for ring in rings]
-    path = FORMS[form](tmp_path, of_stones(rings))
+    path = written(tmp_path, form, of_stones(rings))
     with pytest.raises(InputError, match=r"E116.*shares of a picture.*--image PHOTO"):
         read_stones(path)
 

@@ -49,8 +49,8 @@ def read(tmp_path, content):
          "order (5 is now 1, 7 is now 2)."),
         (of_labelme(["1", "stone 2", "Stone A"]), "1 of 3 stones without a number: all are "
          "numbered in order."),
-        (of_labelme(["5", "5", "Stone A"]), "the numbers of the file are not different (5): "
-         "stones are numbered in order."),
+        (of_labelme(["5", "5", "Stone A"]), "the numbers of the file are not different (5), "
+         "1 of 3 stones without a number: all are numbered in order."),
     ],
 )  # fmt: skip
 def test_numbers_that_are_not_kept_are_said(tmp_path, content, said):

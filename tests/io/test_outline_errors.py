@@ -1,26 +1,26 @@
 """Every damaged file of outlines gets a coded error that names the entry; extras are named too."""
 
 import base64
-import io
 import json
 import math
 import sys
 
+import numpy as np
 import pytest
-from PIL import Image
 
 from drystone.errors import InputError, UsageError
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.known_stones import masks
 from tests.io.test_annotations import coco, geojson, labelme, runs
+from tests.io.test_formats import pillow
 
 SQUARE = [[1, 1], [30, 1], [30, 30], [1, 30]]
 
 
-def read(tmp_path, content, name="stones.json"):
+def read(tmp_path, content, name="stones.json", **settings):
     text = content if isinstance(content, str) else json.dumps(content)
     (tmp_path / name).write_text(text)
-    return read_stones(tmp_path / name)
+    return read_stones(tmp_path / name, settings=ReadSettings(**settings))
 
 
 @pytest.mark.parametrize(
@@ -44,13 +44,7 @@ def shape(**changes):
     return labelme(shapes=[{"label": "1", "points": SQUARE} | changes])
 
 
-def _dot():
-    made = io.BytesIO()
-    Image.new("L", (1, 1), 255).save(made, "PNG")
-    return base64.b64encode(made.getvalue()).decode()
-
-
-DOT = _dot()
+DOT = base64.b64encode(pillow(np.full((1, 1), 255, np.uint8), "PNG")).decode()
 """A mask of one pixel."""
 
 
@@ -59,8 +53,7 @@ def annotation(segmentation):
 
 
 def feature(geometry):
-    good = {"type": "Feature", "properties": {}, "geometry": geometry}
-    return geojson(features=[good])
+    return geojson(features=[{"type": "Feature", "properties": {}, "geometry": geometry}])
 
 
 @pytest.mark.parametrize(
@@ -103,18 +96,15 @@ def test_sam_of_several_images(tmp_path):
     content = [{"image_id": i, "segmentation": [[1, 1, 30, 1, 30, 30]]} for i in (1, 2)]
     with pytest.raises(InputError, match=r"E115 .*2 images.*there are 1, 2"):
         read(tmp_path, content)
-    stones = read_stones(tmp_path / "stones.json", settings=ReadSettings(image="2"))
-    assert len(stones) == 1
-    (tmp_path / "stones.json").write_text(json.dumps(content[:1]))
+    assert len(read(tmp_path, content, image="2")) == 1
     with pytest.raises(InputError, match=r"E115 .*no image or several are called '2'.*there are 1"):
-        read_stones(tmp_path / "stones.json", settings=ReadSettings(image="2"))
+        read(tmp_path, content[:1], image="2")
 
 
 def test_files_that_name_no_images_have_none_to_choose_from(tmp_path):
     for content in (labelme(), [{"segmentation": [[1, 1, 30, 1, 30, 30]]}], geojson()):
-        (tmp_path / "stones.json").write_text(json.dumps(content))
         with pytest.raises(UsageError, match=r"E118 stones.json: .*'tray'.*Leave --image"):
-            read_stones(tmp_path / "stones.json", settings=ReadSettings(image="tray"))
+            read(tmp_path, content, image="tray")
 
 
 @pytest.mark.parametrize(

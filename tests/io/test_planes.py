@@ -10,10 +10,8 @@ import trimesh
 
 from drystone.errors import InputError, UsageError
 from drystone.io.read_stones import ReadSettings, read_stones
-from tests.io.known_stones import HEIGHT, STONES, compare
+from tests.io.known_stones import HEIGHT, METRIC, PX_PER_M, STONES, close
 
-PX_PER_M = 500.0
-METRIC = ReadSettings(pieces="keep-largest", holes="keep", px_per_m=PX_PER_M)
 S = np.sqrt(0.5)
 PLACES = {
     "top": ((1, 0, 0), (0, 1, 0), "z"),
@@ -43,13 +41,6 @@ UNITS_M = dict(
 )  # fmt: skip
 
 
-def close(stones, ids=None):
-    iou, area, centroid = compare(stones, ids=ids)
-    assert iou > 0.998
-    assert area < 2e-3
-    assert centroid < 0.02
-
-
 def turn(place):
     right, up, _ = PLACES[place]
     return np.column_stack([right, up, np.cross(right, up)])
@@ -60,23 +51,33 @@ def corners(points, place="top", unit=1.0):
     return np.array(flat) @ turn(place).T / PX_PER_M / unit
 
 
-def dxf(tmp_path, place, kind="LWPOLYLINE", code=6, unit=1.0):
-    """Outlines as CAD draws them in a plane of its own, or as lines in space."""
-    document = ezdxf.new("R2010")
+def drawn(place="top", kind="LWPOLYLINE", code=6, unit=1.0, version="R2010"):
+    """Outlines as CAD draws them in a plane of its own, or as lines in space.
+
+    Both pieces of stone 34 cannot be one in DXF: only the first.
+    """
+    document = ezdxf.new(version)
     document.header["$INSUNITS"] = code
-    matrix = np.eye(4)
+    space, matrix = document.modelspace(), np.eye(4)
     matrix[:3, :3] = turn(place).T
     for stone, polygons in STONES.items():
         for number, points in enumerate(polygons[0]):
             style = {"layer": f"stone {stone}" if number == 0 else "0"}
             if kind == "POLYLINE":
                 ring = corners(points, place, unit)
-                document.modelspace().add_polyline3d(ring, close=True, dxfattribs=style)
+                space.add_polyline3d(ring, close=True, dxfattribs=style)
                 continue
             flat = corners(points, unit=unit)[:, :2]
-            line = document.modelspace().add_lwpolyline(flat, close=True, dxfattribs=style)
+            if stone % 2:
+                line = space.add_lwpolyline(flat, close=True, dxfattribs=style)
+            else:  # closed by its last point, and of the old kind
+                line = space.add_polyline2d([*flat, flat[0]], dxfattribs=style)
             line.transform(ezdxf.math.Matrix44(matrix.ravel().tolist()))
-    document.saveas(tmp_path / "s.dxf")
+    return document
+
+
+def dxf(tmp_path, *place, **options):
+    drawn(*place, **options).saveas(tmp_path / "s.dxf")
     return tmp_path / "s.dxf"
 
 
@@ -133,9 +134,13 @@ def test_dxf_of_all_kinds_in_a_plane(tmp_path, place, in_block):
 def test_dxf_plans_are_seen_from_the_top_though_mirrored_copies_face_down(tmp_path):
     document = ezdxf.readfile(dxf(tmp_path, "top"))
     for line in document.modelspace():
-        flat = [(-x, y) for x, y, *_ in line]
         line.dxf.extrusion = (0, 0, -1)
-        line.set_points(flat, format="xy")
+        if line.dxftype() == "LWPOLYLINE":
+            line.set_points([(-x, y) for x, y, *_ in line], format="xy")
+            continue
+        for vertex in line.vertices:
+            x, y, _ = vertex.dxf.location
+            vertex.dxf.location = (-x, y, 0)
     document.saveas(tmp_path / "s.dxf")
     close(read_stones(tmp_path / "s.dxf", settings=METRIC))
 

@@ -8,8 +8,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.io.outlines_in.svg_shapes import subpaths
-from drystone.io.outlines_in.svg_view import length, transform
+from drystone.io.outlines_in.svg_shapes import subpaths, transform
 
 
 def area(data):
@@ -120,9 +119,3 @@ def test_transforms(text, point):
 def test_damaged_transforms(text):
     with pytest.raises(ValueError, match=r"transform|convert"):
         transform(text)
-
-
-def test_lengths():
-    assert length("1.5E2 mm") == (150.0, "mm")
-    with pytest.raises(ValueError, match="not a length"):
-        length("wide")

@@ -32,8 +32,7 @@ from drystone.io.outlines_in.geojson import is_geojson, read_geojson
 from drystone.io.outlines_in.meshes import mesh_kind, read_mesh
 from drystone.io.outlines_in.model import METRES, OutlineFile, numbered, without_wedges
 from drystone.io.outlines_in.nesting import is_nesting, read_nesting
-from drystone.io.outlines_in.raster import rastered
-from drystone.io.outlines_in.shares import in_px
+from drystone.io.outlines_in.raster import in_px, rastered
 from drystone.io.outlines_in.svg import is_svg, read_svg
 from drystone.io.patches import stone_set
 from drystone.io.photo_beside import LABELS, SCHEMA

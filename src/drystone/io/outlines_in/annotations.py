@@ -11,18 +11,16 @@ from numpy.typing import NDArray
 
 from drystone.errors import InputError, Notice
 from drystone.io.file_errors import MANY, entry, listed
-from drystone.io.outlines_in.classes import class_of
 from drystone.io.outlines_in.fill import Room, trimmed
 from drystone.io.outlines_in.gathered import Gathered, Pictured, chosen
 from drystone.io.outlines_in.model import (
     MOST_PX,
-    Area,
-    OutlinedStone,
     OutlineFile,
     ellipse,
     number_in,
     place_px,
-    side_px,
+    rectangle,
+    size_px,
 )
 from drystone.io.patches import PlacedMask
 from drystone.io.photo_beside import photograph_in
@@ -42,39 +40,27 @@ def read_labelme(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
     Shapes of one label and ``group_id`` are one stone.  A label that is a number, also after
     the word stone, is its id.  The table ``drystone`` is that of our own page of outlines.
     """
-    parts: dict[object, tuple[str, list[Area], list[PlacedMask]]] = {}
     gathered = Gathered(settings)
     for number, shape in enumerate(content["shapes"]):
         with entry(f"shape {number} (from 0)"):
             kind, label = shape.get("shape_type") or "polygon", str(shape.get("label") or "")
-            mask = _mask(shape, gathered.room) if kind == "mask" else None
-            corners = None if mask else _corners(kind, shape["points"])
-            if mask is None and corners is None:
+            group = None if shape.get("group_id") is None else (label, str(shape["group_id"]))
+            if kind == "mask":
+                gathered.labelled("", label, _mask(shape, gathered.room), group)
+            elif (corners := _corners(kind, shape["points"])) is not None:
+                gathered.labelled(f"shape {number}", label, [[corners]], group)
+            else:
                 gathered.aside[f"{kind}s"] += 1
-                continue
-            found = () if corners is None else gathered.areas(f"shape {number}", [[corners]])
-            if mask is None and not found:
-                continue
-            group = shape.get("group_id")
-            key = ("alone", number) if group is None else (label, str(group))
-            _, areas, masks = parts.setdefault(key, (label, [], []))
-            areas += found
-            masks += [] if mask is None else [mask]
-    stones = [
-        OutlinedStone(number_in(name), name, tuple(areas), tuple(masks), class_of(name))
-        for name, areas, masks in parts.values()
-    ]
     with entry("the size of the image"):
-        sides = content.get("imageWidth"), content.get("imageHeight")
-        size = None if None in sides else (side_px(sides[0]), side_px(sides[1]))
+        size = size_px(content.get("imageWidth"), content.get("imageHeight"))
     with entry("the table drystone"):
-        file = OutlineFile(stones, size_px=size)
-        return _of_page(file, gathered.notices(), content.get("drystone") or {})
+        file = gathered.file(size_px=size, names_images=False)
+        return _of_page(file, content.get("drystone") or {})
 
 
-def _of_page(file: OutlineFile, notices: list[Notice], own: Mapping[str, Any]) -> OutlineFile:
+def _of_page(file: OutlineFile, own: Mapping[str, Any]) -> OutlineFile:
     """Take scale and ground from what our page of outlines adds, and leave out what it marks."""
-    kept = file.stones
+    kept, notices = file.stones, list(file.notices)
     for key, why in _MARKED.items():
         marked = frozenset(own.get(key) or ())
         if left := [stone.id for stone in kept if stone.id in marked]:
@@ -87,21 +73,19 @@ def _of_page(file: OutlineFile, notices: list[Notice], own: Mapping[str, Any]) -
     if ground is not None and not (np.ptp(ground[:, 0]) > 0.0 and np.abs(ground).max() <= MOST_PX):
         raise ValueError("the ground is not a line from left to right")
     file = replace(file, stones=kept, notices=notices, photograph=photograph_in(own))
-    return replace(file, px_per_m=None if scale is None else float(scale), ground=ground)
+    return replace(file, px_per_m=scale and float(scale), ground=ground)
 
 
 def _corners(kind: str, points: Any) -> Any:
     """Return the corners of a shape; None when it encloses nothing."""
     # X-AnyLabeling writes all four corners of a rectangle, also of one that is turned.
     if kind == "rectangle" and len(points) != 4:
-        (x0, y0), (x1, y1) = points
-        points = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
-    elif kind == "circle":
+        return rectangle(*points)
+    if kind == "circle":
         (x, y), (on_x, on_y) = points
-        points = ellipse((x, y), (math.hypot(on_x - x, on_y - y),) * 2)
-    elif kind not in {"polygon", "rectangle", "oriented_rectangle", "rotation"}:
-        return None
-    return points
+        return ellipse((x, y), (math.hypot(on_x - x, on_y - y),) * 2)
+    kinds = {"polygon", "rectangle", "oriented_rectangle", "rotation"}
+    return points if kind in kinds else None
 
 
 def _mask(shape: Mapping[str, Any], room: Room) -> PlacedMask:
@@ -141,16 +125,6 @@ def _outline(segmentation: Any, room: Room) -> tuple[Any, tuple[int, int] | None
     return [[list(zip(flat[0::2], flat[1::2], strict=True))] for flat in segmentation], None
 
 
-def _agreed(sizes: set[tuple[int, int] | None]) -> tuple[int, int] | None:
-    """Return the size that an image and all masks agree on; E114 when they do not."""
-    known = sorted(size for size in sizes if size)
-    with entry("the image"):
-        if len(known) > 1:
-            found = listed(f"{width} x {height}" for width, height in known)
-            raise ValueError(f"its sizes differ: {found} px")
-    return known[0] if known else None
-
-
 def read_coco(content: Mapping[str, Any], settings: ReadSettings) -> OutlineFile:
     """Read the annotations of one image.
 
@@ -161,10 +135,36 @@ def read_coco(content: Mapping[str, Any], settings: ReadSettings) -> OutlineFile
     picture = _picture_of(content, settings.image)
     with entry("the list of categories"):
         classes = {c.get("id"): str(c.get("name", "")) for c in content.get("categories") or ()}
+    by_model = any(name in found for found in picture.shapes for name in _OF_MODEL)
+    return _annotated(picture, settings, "annotation", classes, by_model=by_model)
+
+
+def read_sam(content: list[Mapping[str, Any]], settings: ReadSettings) -> OutlineFile:
+    """Read a list of masks, numbered from 1 in the order of the file.
+
+    Masks may lie in each other: what is ground, a group or a part of a stone is left out as
+    :func:`~drystone.io.outlines_in.nested.not_stones` says.
+    """
+    named = any(found.get("image_id", "") != "" for found in content)
+    picture = _picture_of({"annotations": content}, settings.image if named else "")
+    shapes = [{**found, "id": number} for number, found in enumerate(picture.shapes, start=1)]
+    picture = replace(picture, shapes=shapes)
+    file = _annotated(picture, settings, "mask", {}, by_model=True)
+    return replace(file, names_images=named)
+
+
+def _annotated(
+    picture: Pictured,
+    settings: ReadSettings,
+    what: str,
+    classes: Mapping[Any, str],
+    *,
+    by_model: bool,
+) -> OutlineFile:
     gathered, masks_of_crowds, sizes = Gathered(settings), 0, {picture.size_px}
     only_crowds = all(map(_is_crowd, picture.shapes))
     for number, found in enumerate(picture.shapes):
-        where = f"annotation {found.get('id', number)}"
+        where = f"{what} {found.get('id', number)}"
         with entry(where):
             segmentation = found.get("segmentation")
             if _is_crowd(found):
@@ -186,31 +186,13 @@ def read_coco(content: Mapping[str, Any], settings: ReadSettings) -> OutlineFile
     if masks_of_crowds:
         text = f"{masks_of_crowds} masks are marked as crowds, as CVAT marks all: a stone each."
         notices.append(Notice("W119", text, "Skip the ids of those that are several stones."))
-    by_model = any(name in found for found in picture.shapes for name in _OF_MODEL)
+    known = sorted(size for size in sizes if size)
+    with entry("the image"):
+        if len(known) > 1:
+            shown = listed(f"{width} x {height}" for width, height in known)
+            raise ValueError(f"its sizes differ: {shown} px")
     seen_by = "program" if by_model else "people"
-    return gathered.file(size_px=_agreed(sizes), notices=notices, seen_by=seen_by)
-
-
-def read_sam(content: list[Mapping[str, Any]], settings: ReadSettings) -> OutlineFile:
-    """Read a list of masks, numbered from 1 in the order of the file.
-
-    Masks may lie in each other: what is ground, a group or a part of a stone is left out as
-    :func:`~drystone.io.outlines_in.nested.not_stones` says.
-    """
-    images: dict[str, list[Any]] = {}
-    for found in content:
-        images.setdefault(str(found.get("image_id", "")), []).append(found)
-    named = bool(images.keys() - {""})
-    if named:
-        pictures = [Pictured(name, None, found) for name, found in images.items()]
-        content = list(chosen(pictures, settings.image).shapes)
-    gathered, sizes = Gathered(settings), set[tuple[int, int] | None]()
-    for number, found in enumerate(content, start=1):
-        with entry(f"mask {number}"):
-            outline, size = _outline(found["segmentation"], gathered.room)
-            sizes.add(size)
-            gathered.add(f"mask {number}", outline, number)
-    return gathered.file(size_px=_agreed(sizes), names_images=named, seen_by="program")
+    return gathered.file(size_px=known[0] if known else None, notices=notices, seen_by=seen_by)
 
 
 def _is_crowd(found: Mapping[str, Any]) -> bool:
@@ -233,8 +215,7 @@ def _picture_of(content: Mapping[str, Any], asked: str) -> Pictured:
         pictures = []
         for i in dict.fromkeys((*known, *shapes)):
             image = known.get(i, only)
-            sides = image.get("width"), image.get("height")
-            size = (side_px(sides[0]), side_px(sides[1])) if all(sides) else None
+            size = size_px(image.get("width") or None, image.get("height") or None)
             name = str(known.get(i, {}).get("file_name", i))
             pictures.append(Pictured(name, size, shapes.get(i, []), str(i)))
     return chosen(pictures, asked)

@@ -3,7 +3,6 @@
 import io
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from importlib import import_module
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -23,6 +22,7 @@ from drystone.io.outlines_in.model import (
     number_in,
     overruled,
     ring,
+    within_reach,
 )
 from drystone.io.outlines_in.silhouettes import with_holes
 from drystone.io.outlines_in.views import Vector, asked, plane_of, usual_side, view
@@ -56,28 +56,17 @@ _FLATNESS = 2e-4
 """How far chords may stay away from a curve, as a share of the size of the outline."""
 _MOST_CORNERS = 10_000_000
 _DEEPEST = 64
-_FURTHEST = 1e9
 _MOST_ENTITIES = 100_000
 """Entities and block references, those in rows and columns, and in blocks, one by one."""
 _MOST_DEGREE = 32
 
 
-@dataclass(frozen=True, eq=False)
-class Drawn:
+class Drawn(NamedTuple):
     """An entity where it is drawn."""
 
     entity: Any  # as its block defines it
     layer: str  # its own; that of the block reference for what is on layer 0 in a block
     matrix: Any  # from its block to the model space
-
-
-@dataclass(frozen=True, eq=False)
-class _Insert:
-    """Where a block is drawn."""
-
-    matrix: Any
-    layer: str = "0"
-    depth: int = 0
 
 
 def is_dxf(data: bytes, suffix: str) -> bool:
@@ -98,7 +87,9 @@ def read_dxf(data: bytes, settings: ReadSettings) -> OutlineFile:
     document = _document(ezdxf, data)
     unit_m, notices = _unit(document, settings)
     aside: Counter[str] = Counter()
-    shown = drawn_entities(document, aside)
+    with foreign(lambda why: unusable(f"a block or a dimension cannot be used ({why})")):
+        start = import_module("ezdxf.math").Matrix44()
+        shown = list(_Blocks(document, aside).drawn(document.modelspace(), start))
     named = [drawn for drawn in shown if drawn.layer.upper() == _LAYER]
     if named:
         aside["entities outside the layer STONES"] = len(shown) - len(named)
@@ -157,7 +148,7 @@ def _in_plane(
     if not outlines:
         return [], [], []
     for outline in outlines:
-        _check_reach(outline.corners)
+        within_reach(outline.corners)
     normal, leaning = plane_of([outline.corners for outline in outlines])
     aside["outlines that are seen edgewise"] = int((leaning < _EDGEWISE).sum())
     kept = [one for one, lean in zip(outlines, leaning, strict=True) if lean >= _EDGEWISE]
@@ -185,13 +176,6 @@ def _in_plane(
     return kept, rings, notices
 
 
-def _check_reach(corners: Vector) -> None:
-    if not np.isfinite(corners).all():
-        raise ValueError("a coordinate is not finite")
-    if np.abs(corners).max() > _FURTHEST:
-        raise ValueError("a coordinate is beyond 1e9")
-
-
 def _document(ezdxf: Any, data: bytes) -> Any:
     with foreign(lambda why: damaged(why, what="drawing")):
         if data.startswith(BINARY):
@@ -217,9 +201,8 @@ def _unit(document: Any, settings: ReadSettings) -> tuple[float | None, list[Not
         number = int(document.header.get("$INSUNITS", 0))
     own = _INSUNITS_M.get(number)
     if settings.unit:
-        told = METRES.get(settings.unit)
-        same = own is None or (told is not None and abs(told / own - 1.0) < 1e-9)
-        return told, [] if same else [overruled(f"$INSUNITS {number}, {own:g} m", settings)]
+        said = overruled(own, f"$INSUNITS {number}, {own or 0.0:g} m", settings)
+        return METRES.get(settings.unit), said
     if own is not None:
         return own, []
     raise InputError(
@@ -266,18 +249,20 @@ def _path_corners(drawn: Drawn) -> tuple[Vector | None, bool]:
     # Curves stay curves also where a block is stretched, or mirrored.
     path = path.transform(drawn.matrix)
     # Few corners are enough to see how large it is.
-    rough = np.array([v.xyz for v in path.control_vertices()])
-    _check_reach(rough)
+    rough = within_reach(_xyz(path.control_vertices()))
     size = float(np.ptp(rough, axis=0).max())
-    chords = path.flattening(max(size * _FLATNESS, 1e-12), segments=8)
-    return np.array([v.xyz for v in chords]), False
+    return _xyz(path.flattening(max(size * _FLATNESS, 1e-12), segments=8)), False
+
+
+def _xyz(points: Iterable[Any]) -> Vector:
+    return np.array([point.xyz for point in points]).reshape(-1, 3)
 
 
 def _spline_corners(drawn: Drawn) -> tuple[Vector | None, bool]:
     """Return the corners of a spline that is or says it is closed, and if its ends are apart."""
     entity = drawn.entity
     given = entity.control_points if len(entity.control_points) else entity.fit_points
-    points = np.array([v.xyz for v in drawn.matrix.transform_vertices(given)]).reshape(-1, 3)
+    points = _xyz(drawn.matrix.transform_vertices(given))
     if not len(entity.control_points):
         return closed_through(points), False
     degree, knots, weights = entity.dxf.degree, entity.knots, entity.weights
@@ -307,9 +292,12 @@ def closed_through(points: Vector) -> Vector | None:
     around = np.concatenate([points, points[:1]])
     # Where it is at each point: as far as the chords are long.
     at = np.concatenate([[0.0], np.linalg.norm(np.diff(around, axis=0), axis=1).cumsum()])
-    inner = np.arange(_CHORDS) / _CHORDS
-    on = (at[:-1, None] + inner * np.diff(at)[:, None]).ravel()
-    return np.asarray(CubicSpline(at, around, bc_type="periodic")(on))
+    return np.asarray(CubicSpline(at, around, bc_type="periodic")(_between(at)))
+
+
+def _between(at: Vector) -> Vector:
+    """Return the places of chords from each to the next, without the last."""
+    return (at[:-1, None] + np.arange(_CHORDS) / _CHORDS * np.diff(at)[:, None]).ravel()
 
 
 def spline(control: Any, knots: Any, weights: Any, degree: int) -> Vector:
@@ -326,9 +314,7 @@ def spline(control: Any, knots: Any, weights: Any, degree: int) -> Vector:
     t = np.asarray(knots, dtype=float)
     curve = BSpline(t, np.column_stack([points * heavy[:, None], heavy]), degree)
     spans = np.unique(t[degree : len(points) + 1])
-    inner = np.arange(_CHORDS) / _CHORDS
-    at = (spans[:-1, None] + inner * np.diff(spans)[:, None]).ravel()
-    found = curve(np.append(at, spans[-1]))
+    found = curve(np.append(_between(spans), spans[-1]))
     return np.asarray(found[:, :-1] / found[:, -1:])
 
 
@@ -341,45 +327,38 @@ def _name(drawn: Drawn) -> str:
     return "" if drawn.layer.upper() in {"0", _LAYER} else drawn.layer
 
 
-def drawn_entities(document: Any, aside: Counter[str]) -> list[Drawn]:
-    """Return all that the model space shows; what is hidden or missing is counted.
+class _Blocks:
+    """All that the model space shows; what is hidden or missing is counted.
 
     A block on a frozen layer is hidden with all that is in it.  On a layer that is off, only what
     has its layer from the block reference is, as CAD programs show it.
     """
-    start = _Insert(import_module("ezdxf.math").Matrix44())
-    walk = _Blocks(document, aside)
-    with foreign(lambda why: unusable(f"a block or a dimension cannot be used ({why})")):
-        return list(walk.drawn(document.modelspace(), start))
-
-
-class _Blocks:
-    """Through all that is drawn."""
 
     def __init__(self, document: Any, aside: Counter[str]) -> None:
-        self.document, self.aside = document, aside
+        self.document, self.aside, self.count = document, aside, 0
         self.composite = import_module("ezdxf.protocols").SupportsVirtualEntities
-        self.count = 0
 
-    def drawn(self, entities: Iterable[Any], place: _Insert) -> Iterator[Drawn]:
+    def drawn(
+        self, entities: Iterable[Any], matrix: Any, around: str = "0", depth: int = 0
+    ) -> Iterator[Drawn]:
         """Yield entities, and the parts of those that have parts, in the order of the file."""
         for entity in entities:
-            self._count(place)
+            self._count(1, depth)
             own = str(_attribute(entity, "layer", "0"))
-            layer = place.layer if own == "0" else own
+            layer = around if own == "0" else own
             if self._is_hidden(entity, layer):
                 self.aside["entities that are hidden, or on hidden layers"] += 1
             elif entity.dxftype() == "INSERT":
-                yield from self._inserted(entity, _Insert(place.matrix, layer, place.depth + 1))
-                yield from self.drawn(entity.attribs, place)
+                yield from self._inserted(entity, matrix, layer, depth + 1)
+                yield from self.drawn(entity.attribs, matrix, around, depth)
             elif isinstance(entity, self.composite):
                 # Dimensions are blocks too, but their parts are where they are drawn.
                 parts = entity.__virtual_entities__()
-                yield from self.drawn(parts, _Insert(place.matrix, layer, place.depth + 1))
+                yield from self.drawn(parts, matrix, layer, depth + 1)
             else:
-                yield Drawn(entity, layer, place.matrix)
+                yield Drawn(entity, layer, matrix)
 
-    def _inserted(self, insert: Any, place: _Insert) -> Iterator[Drawn]:
+    def _inserted(self, insert: Any, matrix: Any, layer: str, depth: int) -> Iterator[Drawn]:
         block = self.document.blocks.get(insert.dxf.get("name", ""))
         if block is None:
             self.aside["INSERT of a block that is not there"] += 1
@@ -390,23 +369,21 @@ class _Blocks:
             return
         # Definitions of attributes are not drawn, only the attributes of the block reference.
         entities = [entity for entity in block if entity.dxftype() != "ATTDEF"]
-        self._count(place, insert.mcount)
+        self._count(insert.mcount, depth)
         for one in insert.multi_insert() if insert.mcount > 1 else [insert]:
-            matrix = one.matrix44() @ place.matrix
-            yield from self.drawn(entities, _Insert(matrix, place.layer, place.depth))
+            yield from self.drawn(entities, one.matrix44() @ matrix, layer, depth)
 
-    def _count(self, place: _Insert, number: int = 1) -> None:
+    def _count(self, number: int, depth: int) -> None:
         self.count += number
-        if self.count > _MOST_ENTITIES or place.depth > _DEEPEST:
+        if self.count > _MOST_ENTITIES or depth > _DEEPEST:
             raise unusable("blocks are in each other too often or too deeply")
 
     def _is_hidden(self, entity: Any, layer: str) -> bool:
         if _attribute(entity, "invisible", 0):
             return True
-        if layer not in self.document.layers:
-            return False
-        found = self.document.layers.get(layer)
-        return bool(found.is_frozen() or (found.is_off() and entity.dxftype() != "INSERT"))
+        found = self.document.layers.get(layer) if layer in self.document.layers else None
+        is_off = found is not None and found.is_off() and entity.dxftype() != "INSERT"
+        return bool(is_off or (found is not None and found.is_frozen()))
 
 
 def _attribute(entity: Any, name: str, default: Any) -> Any:

@@ -7,20 +7,26 @@ from typing import Any
 from xml.etree import ElementTree as ET
 
 import numpy as np
-from numpy.typing import NDArray
 
-from drystone.io.file_errors import damaged, entry, short, too_large
-from drystone.io.foreign import foreign
+from drystone.io.file_errors import entry, short
 from drystone.io.outlines_in.classes import class_of
 from drystone.io.outlines_in.fill import Room, trimmed
 from drystone.io.outlines_in.gathered import Gathered, Pictured, chosen
-from drystone.io.outlines_in.model import OutlineFile, ellipse, number_in, place_px, side_px
+from drystone.io.outlines_in.model import (
+    OutlineFile,
+    ellipse,
+    number_in,
+    place_px,
+    rectangle,
+    side_px,
+    size_px,
+    xml_root,
+)
 from drystone.io.patches import PlacedMask
 from drystone.io.pictures import check_size
 from drystone.io.read_settings import ReadSettings
 
 _CLASSES = ("class", "label", "type", "category", "name")
-_MOST_ELEMENTS = 1_000_000
 _YOLO = re.compile(rb"\s*[0-9]+(?:[ \t]+-?[0-9.]+(?:[eE][-+]?[0-9]+)?){4,}[ \t]*\r?(?:\n|\Z)")
 
 
@@ -31,6 +37,12 @@ def _text(value: Any) -> str:
     if isinstance(value, list):
         value = value[0] if value else ""
     return "" if value is None else str(value)
+
+
+def _turned(corners: Any, degrees: float, about: tuple[float, float]) -> Any:
+    """Turn corners clockwise, as y runs down."""
+    sine, cosine = math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
+    return (corners - about) @ np.array([[cosine, sine], [-sine, cosine]]) + about
 
 
 # Label Studio
@@ -49,8 +61,13 @@ def _results(task: Mapping[str, Any]) -> list[list[Any]] | None:
     for key in ("annotations", "completions"):
         if isinstance(task.get(key), list) and "data" in task:
             made = [a for a in task[key] if isinstance(a, Mapping) and not a.get("was_cancelled")]
-            drawn = [one.get("result") for one in made]
-            return [_tables(one) for one in drawn]
+            drawn = (one.get("result") for one in made)
+            return [
+                [one for one in found if isinstance(one, Mapping)]
+                if isinstance(found, list)
+                else []
+                for found in drawn
+            ]
     alone = [
         {"value": one, **one}
         for value in task.values()
@@ -59,10 +76,6 @@ def _results(task: Mapping[str, Any]) -> list[list[Any]] | None:
         if isinstance(one, Mapping) and "original_width" in one
     ]
     return [alone] if alone else None
-
-
-def _tables(found: Any) -> list[Any]:
-    return [one for one in found if isinstance(one, Mapping)] if isinstance(found, list) else []
 
 
 def read_label_studio(content: Any, settings: ReadSettings) -> OutlineFile:
@@ -84,47 +97,33 @@ def read_label_studio(content: Any, settings: ReadSettings) -> OutlineFile:
         where = f"result {number}"
         with entry(where):
             value = shape.get("value") or {}
-            if not _is_outline(value):
+            # Not points, words and masks of pixels.
+            sides = ({"points"}, {"radiusX", "radiusY"}, {"x", "y", "width", "height"})
+            if "format" in value or not any(names <= set(value) for names in sides):
                 found.aside[f"results of the type {short(shape.get('type', 'unknown'))}"] += 1
                 continue
             size = side_px(shape["original_width"]), side_px(shape["original_height"])
             sizes.add(size)
-            key = next((k for k in value if k.endswith("labels")), "")
-            label = _text(value.get(key))
-            corners = _of_label_studio(value, np.array(size) / 100.0)
+            label = _text(value.get(next((k for k in value if k.endswith("labels")), "")))
+            corners = _of_label_studio(value, size[0] / 100.0, size[1] / 100.0)
             found.add(where, [[corners]], number_in(label), "", class_of(label))
     brushes = "brush" in str(found.aside)
     cure = "Brush masks are read from its export as COCO or PNG." if brushes else ""
     return found.file(cure, size_px=next(iter(sizes)) if len(sizes) == 1 else None)
 
 
-def _is_outline(value: Mapping[str, Any]) -> bool:
-    """Tell polygons, rectangles and ellipses from points, words and masks of pixels."""
-    sides = ({"points"}, {"radiusX", "radiusY"}, {"x", "y", "width", "height"})
-    return "format" not in value and any(names <= set(value) for names in sides)
-
-
-def _of_label_studio(value: Mapping[str, Any], px: NDArray[np.float64]) -> Any:
-    """Return corners in px, of which there are (2,) in a per cent."""
+def _of_label_studio(value: Mapping[str, Any], across: float, down: float) -> Any:
+    """Return corners in px, of which a per cent has so many."""
     if "points" in value:
-        return np.array([list(map(float, point)) for point in value["points"]]) * px
-    x, y = float(value["x"]) * px[0], float(value["y"]) * px[1]
+        points = np.array([list(map(float, point)) for point in value["points"]])
+        return points * (across, down)
+    x, y = float(value["x"]) * across, float(value["y"]) * down
     turn = float(value.get("rotation") or 0.0)
     if "radiusX" in value:
-        radii = float(value["radiusX"]) * px[0], float(value["radiusY"]) * px[1]
+        radii = float(value["radiusX"]) * across, float(value["radiusY"]) * down
         return ellipse((x, y), radii, math.radians(turn))
-    width, height = float(value["width"]) * px[0], float(value["height"]) * px[1]
-    return _box((x, y, x + width, y + height), turn, (x, y))
-
-
-def _box(
-    sides: tuple[float, float, float, float], degrees: float, about: tuple[float, float]
-) -> Any:
-    """Return the corners of a box from its sides, turned clockwise as y runs down."""
-    x0, y0, x1, y1 = sides
-    corners = np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)]) - about
-    sine, cosine = math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
-    return corners @ np.array([[cosine, sine], [-sine, cosine]]) + about
+    width, height = float(value["width"]) * across, float(value["height"]) * down
+    return _turned(rectangle((x, y), (x + width, y + height)), turn, (x, y))
 
 
 # VGG Image Annotator
@@ -169,7 +168,7 @@ def _of_via(shape: Mapping[str, Any]) -> Any:
         return list(zip(shape["all_points_x"], shape["all_points_y"], strict=True))
     if kind == "rect":
         x, y, width, height = (float(shape[name]) for name in ("x", "y", "width", "height"))
-        return _box((x, y, x + width, y + height), 0.0, (x, y))
+        return rectangle((x, y), (x + width, y + height))
     if kind in {"circle", "ellipse"}:
         across, along = ("r", "r") if kind == "circle" else ("rx", "ry")
         radii = float(shape[across]), float(shape[along])
@@ -187,26 +186,21 @@ def is_cvat(data: bytes) -> bool:
 
 def read_cvat(data: bytes, settings: ReadSettings) -> OutlineFile:
     """Read polygons, boxes, ellipses and masks of CVAT for images."""
-    if data.count(b"<") > 2 * _MOST_ELEMENTS:
-        cure = "Export the annotations of one image."
-        raise too_large(f"it has more than {_MOST_ELEMENTS} elements.", cure)
-    with foreign(lambda why: damaged(why, what="XML")):
-        root = ET.fromstring(data)  # noqa: S314 - expat bounds what entities expand to
+    root = xml_root(data, "XML", "Export the annotations of one image.")
     pictures = []
     with entry("the list of images"):
         for image in root.iter("image"):
-            sides = image.get("width"), image.get("height")
-            size = None if None in sides else (side_px(sides[0]), side_px(sides[1]))
-            shapes = list(image)
-            pictures.append(Pictured(image.get("name", ""), size, shapes, image.get("id", "")))
+            size = size_px(image.get("width"), image.get("height"))
+            own = image.get("id", "")
+            pictures.append(Pictured(image.get("name", ""), size, list(image), own))
     picture, found = chosen(pictures, settings.image), Gathered(settings)
     for number, shape in enumerate(picture.shapes):
-        where, label = f"shape {number} (from 0)", shape.get("label", "")
+        where = f"shape {number} (from 0)"
         with entry(where):
-            if shape.tag == "mask":
-                found.labelled(where, label, _mask_of_cvat(shape, found.room))
-            elif (corners := _of_cvat(shape)) is not None:
-                found.labelled(where, label, [[corners]])
+            if shape.tag in {"polygon", "box", "ellipse", "mask"}:
+                is_mask = shape.tag == "mask"
+                drawn = _mask_of_cvat(shape, found.room) if is_mask else [[_of_cvat(shape)]]
+                found.labelled(where, shape.get("label", ""), drawn)
             else:
                 found.aside[f"{short(shape.tag)}s"] += 1
     return found.file(size_px=picture.size_px)
@@ -216,13 +210,12 @@ def _of_cvat(shape: ET.Element) -> Any:
     turn = float(shape.get("rotation", 0.0))
     if shape.tag == "polygon":
         return [tuple(map(float, p.split(","))) for p in shape.attrib["points"].split(";")]
-    if shape.tag == "box":
-        x0, y0, x1, y1 = (float(shape.attrib[name]) for name in ("xtl", "ytl", "xbr", "ybr"))
-        return _box((x0, y0, x1, y1), turn, ((x0 + x1) / 2.0, (y0 + y1) / 2.0))
+    names = ("xtl", "ytl", "xbr", "ybr") if shape.tag == "box" else ("cx", "cy", "rx", "ry")
+    one, two, three, four = (float(shape.attrib[name]) for name in names)
     if shape.tag == "ellipse":
-        x, y, rx, ry = (float(shape.attrib[name]) for name in ("cx", "cy", "rx", "ry"))
-        return ellipse((x, y), (rx, ry), math.radians(turn))
-    return None
+        return ellipse((one, two), (three, four), math.radians(turn))
+    middle = (one + three) / 2.0, (two + four) / 2.0
+    return _turned(rectangle((one, two), (three, four)), turn, middle)
 
 
 def _mask_of_cvat(shape: ET.Element, room: Room) -> PlacedMask | None:

@@ -120,7 +120,13 @@ def united(masks: list[PlacedMask]) -> PlacedMask | None:
     sides = [mask.sides for mask in masks]
     top, left = np.min(sides, axis=0)[:2].tolist()
     bottom, right = np.max(sides, axis=0)[2:].tolist()
-    whole = PlacedMask(np.zeros((bottom - top, right - left), bool), top, left)
+    room = np.broadcast_to(np.False_, (bottom - top, right - left))
+    return covered(PlacedMask(room, top, left), masks)
+
+
+def covered(place: PlacedMask, masks: Iterable[PlacedMask]) -> PlacedMask:
+    """Return which pixels within the box of one mask others have."""
+    whole = PlacedMask(np.zeros(place.mask.shape, bool), place.row, place.col)
     for one in masks:
         within, mask = whole.shared(one)
         within |= mask

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import PurePath
 from typing import Any
 
@@ -21,6 +21,9 @@ from drystone.io.outlines_in.model import (
 )
 from drystone.io.patches import PlacedMask
 from drystone.io.read_settings import ReadSettings
+
+Drawn = Iterable[Sequence[Any]] | PlacedMask | None
+"""Polygons, an outer ring and its holes each, or a mask, which is None without any pixel."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,14 +55,42 @@ class Gathered:
     """Stones so far, what is none, and what has too few points to be an outline."""
 
     def __init__(self, settings: ReadSettings | None = None) -> None:
-        mpx = (settings or ReadSettings()).max_image_mpx
-        self.room = Room(int(mpx * 1e6))
+        self.room = Room(int((settings or ReadSettings()).max_image_mpx * 1e6))
         self.stones: list[OutlinedStone] = []
         self.aside = Counter[str]()
         self._slivers: list[str] = []
+        self._groups: dict[object, int] = {}
 
-    def areas(self, where: str, polygons: Iterable[Sequence[Any]]) -> tuple[Area, ...]:
-        """Return polygons, an outer ring and its holes each, without those of too few points."""
+    def add(
+        self,
+        where: str,
+        drawn: Drawn,
+        number: int | None = None,
+        name: str = "",
+        label: str = "",
+        group: object = None,
+    ) -> None:
+        """Add a stone, without polygons of too few points; all of one group are one stone."""
+        areas: tuple[Area, ...] = ()
+        masks = (drawn,) if isinstance(drawn, PlacedMask) else ()
+        if drawn is not None and not isinstance(drawn, PlacedMask):
+            areas = self._areas(where, drawn)
+            if not areas:
+                return
+        if group in self._groups:
+            known = self.stones[self._groups[group]]
+            both = replace(known, areas=known.areas + areas, masks=known.masks + masks)
+            self.stones[self._groups[group]] = both
+            return
+        if group is not None:
+            self._groups[group] = len(self.stones)
+        self.stones.append(OutlinedStone(number, name, areas, masks, label))
+
+    def labelled(self, where: str, text: str, drawn: Drawn, group: object = None) -> None:
+        """Add a stone whose label says its number or its class."""
+        self.add(where, drawn, number_in(text), text, class_of(text), group)
+
+    def _areas(self, where: str, polygons: Iterable[Sequence[Any]]) -> tuple[Area, ...]:
         areas = []
         for outer, *holes in polygons:
             rings = []
@@ -73,27 +104,6 @@ class Gathered:
             if rings:
                 areas.append(Area(tuple(rings)))
         return tuple(areas)
-
-    def add(
-        self,
-        where: str,
-        drawn: Iterable[Sequence[Any]] | PlacedMask | None,
-        number: int | None = None,
-        name: str = "",
-        label: str = "",
-    ) -> None:
-        """Add a stone of polygons, without those of too few points, or of a mask with any pixel."""
-        if drawn is None or isinstance(drawn, PlacedMask):
-            masks = () if drawn is None else (drawn,)
-            self.stones.append(OutlinedStone(number, name, (), masks, label))
-        elif areas := self.areas(where, drawn):
-            self.stones.append(OutlinedStone(number, name, areas, (), label))
-
-    def labelled(
-        self, where: str, text: str, drawn: Iterable[Sequence[Any]] | PlacedMask | None
-    ) -> None:
-        """Add a stone whose label says its number or its class."""
-        self.add(where, drawn, number_in(text), text, class_of(text))
 
     def notices(self, cure: str = "") -> list[Notice]:
         """Name all that was left out; `cure` is that of what is no outline."""

@@ -1,6 +1,6 @@
 """GeoJSON: polygons of image tools in px, of GIS programs, and of drawings in metres."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -54,7 +54,11 @@ def read_geojson(content: Any, settings: ReadSettings) -> OutlineFile:
         what = f"its unit {short(repr(unit))} is not known."
         raise _no_unit(what, f"Use one of px, {', '.join(METRES)}.")
     gathered = Gathered()
-    for number, feature in enumerate(_features(content)):
+    with entry("the list of features"):
+        kind = content["type"]
+        alone = content if kind == "Feature" else {"geometry": content}
+        features = list(content["features"]) if kind == "FeatureCollection" else [alone]
+    for number, feature in enumerate(features):
         with entry(f"feature {number} (from 0)"):
             _add_feature(feature, f"feature {number}", gathered)
     unit_m = METRES.get(unit if "unit" in content else settings.unit or "px")
@@ -67,21 +71,11 @@ def read_geojson(content: Any, settings: ReadSettings) -> OutlineFile:
         upwards = True
         text = "most y are negative: y runs up, as GIS programs have it over a picture."
         notices.append(Notice("W119", text))
-    return OutlineFile(gathered.stones, unit_m, upwards, notices=notices)
+    return gathered.file(unit_m=unit_m, y_up=upwards, notices=notices, names_images=False)
 
 
 def _no_unit(what: str, cure: str) -> InputError:
     return InputError("E116", what, cure=cure)
-
-
-def _features(content: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
-    with entry("the list of features"):
-        if content["type"] == "FeatureCollection":
-            yield from content["features"]
-        elif content["type"] == "Feature":
-            yield content
-        else:
-            yield {"geometry": content}
 
 
 def _add_feature(feature: Mapping[str, Any], where: str, gathered: Gathered) -> None:

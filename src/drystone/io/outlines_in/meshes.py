@@ -3,10 +3,9 @@
 import io
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from itertools import islice
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +16,14 @@ from scipy.spatial import KDTree
 from drystone.errors import InputError, Notice
 from drystone.io.file_errors import damaged, listed, short, unusable
 from drystone.io.foreign import extra, foreign
-from drystone.io.outlines_in.model import METRES, OutlinedStone, OutlineFile, left_aside, number_in
+from drystone.io.outlines_in.model import (
+    METRES,
+    OutlinedStone,
+    OutlineFile,
+    left_aside,
+    number_in,
+    within_reach,
+)
 from drystone.io.outlines_in.silhouettes import shadow
 from drystone.io.outlines_in.views import asked
 from drystone.io.read_settings import ReadSettings
@@ -49,7 +55,7 @@ class MeshBody:
     name: str  # empty when it has none
     vertices: NDArray[np.float64]  # (n, 3), of the whole file
     faces: Sequence[NDArray[np.int64]]  # positions in `vertices`, three or more a face
-    said: tuple[str, ...] = ()
+    said: Collection[str] = ()
     """All that the file says of it after o or g, each once; only of an OBJ."""
 
 
@@ -77,9 +83,8 @@ def read_mesh(kind: str, data: bytes, settings: ReadSettings) -> OutlineFile:
     """
     bodies = _BODIES[kind](data)
     used = np.unique(np.concatenate([np.concatenate(list(b.faces)) for b in bodies]))
-    vertices = bodies[0].vertices[used]
-    if not np.isfinite(vertices).all() or np.abs(vertices).max() > _FURTHEST:
-        raise unusable("a vertex is not finite or beyond 1e9")
+    with foreign(lambda why: unusable(f"a vertex cannot be used ({why})")):
+        vertices = within_reach(bodies[0].vertices[used])
     ours = data.startswith(_OURS)
     axis = 1 if ours else int(np.argmin(np.ptp(vertices, axis=0)))
     if axis == 1 and not (ours or settings.up):
@@ -103,7 +108,11 @@ def read_mesh(kind: str, data: bytes, settings: ReadSettings) -> OutlineFile:
         text = "its faces look inwards: with axes of a left hand its stones are mirrored."
         notices.append(Notice("W119", text, "Say --up y-back or z-back if they are."))
     notices += left_aside(+edgewise, "Give every stone a closed surface.")
-    notices += [_united(body) for body in bodies if len(body.said) > 1]
+    for body in (body for body in bodies if len(body.said) > 1):
+        why = "of the groups of a face the first counts, and what follows # is a comment"
+        text = f"{why}, so {short(body.name)} is one stone of: {listed(map(short, body.said))}."
+        cure = "Give every stone an object (o) of its own if they are several."
+        notices.append(Notice("W119", text, cure))
     if not settings.unit and not ours:
         text = f"{kind.upper()} has no unit: lengths were taken as metres."
         notices.append(Notice("W119", text, "Say --unit mm (or cm, in, ft) if they are not."))
@@ -124,38 +133,26 @@ def _is_inside_out(bodies: Sequence[MeshBody]) -> bool:
     return bool(sixths.sum() < -0.01 * np.abs(sixths).sum())
 
 
-def _united(body: MeshBody) -> Notice:
-    shown = listed(map(short, body.said))
-    why = "of the groups of a face the first counts, and what follows # is a comment"
-    text = f"{why}, so {short(body.name)} is one stone of: {shown}."
-    return Notice("W119", text, "Give every stone an object (o) of its own if they are several.")
-
-
 def _stl_bodies(data: bytes) -> list[MeshBody]:
-    """Read triangles."""
-    is_text = data.lstrip().startswith(b"solid") and b"facet" in data[:_HEAD]
-    corners = _stl_text(data) if is_text else _stl_binary(data)
+    """Read triangles, of a text or of binary data."""
+    if data.lstrip().startswith(b"solid") and b"facet" in data[:_HEAD]:
+        found = _STL_VERTEX.findall(data)
+        is_whole = len(found) == 3 * data.count(b"endfacet") and b"endsolid" in data[-_HEAD:]
+        if not found or not is_whole:
+            raise _cut("its facets have no three corners, or endsolid is missing")
+        try:
+            corners = np.array([[float(word) for word in corner] for corner in found])
+        except ValueError as error:
+            raise _cut(str(error)) from error
+    else:
+        number = int.from_bytes(data[80:84], "little")
+        if number == 0 or len(data) < 84 + _STL_FACET.itemsize * number:
+            raise _cut(f"it has {len(data)} bytes, and says {number} triangles")
+        facets = np.frombuffer(data, _STL_FACET, number, offset=84)
+        corners = facets["corners"].reshape(-1, 3).astype(float)
+        if not np.isfinite(corners).all():
+            raise unusable("a vertex is not finite")
     return _bodies(corners, list(np.arange(len(corners)).reshape(-1, 3)))
-
-
-def _stl_text(data: bytes) -> NDArray[np.float64]:
-    found = _STL_VERTEX.findall(data)
-    if not found or len(found) != 3 * data.count(b"endfacet") or b"endsolid" not in data[-_HEAD:]:
-        raise _cut("its facets have no three corners, or endsolid is missing")
-    try:
-        return np.array([[float(word) for word in corner] for corner in found])
-    except ValueError as error:
-        raise _cut(str(error)) from error
-
-
-def _stl_binary(data: bytes) -> NDArray[np.float64]:
-    number = int.from_bytes(data[80:84], "little")
-    if number == 0 or len(data) < 84 + _STL_FACET.itemsize * number:
-        raise _cut(f"it has {len(data)} bytes, and says {number} triangles")
-    corners = np.frombuffer(data, _STL_FACET, number, offset=84)["corners"].reshape(-1, 3)
-    if not np.isfinite(corners).all():
-        raise unusable("a vertex is not finite")
-    return corners.astype(float)
 
 
 def _ply_bodies(data: bytes) -> list[MeshBody]:
@@ -181,57 +178,50 @@ def _obj_bodies(data: bytes) -> list[MeshBody]:
     Where there are objects (o), groups (g) are their parts; otherwise they are the stones.
     """
     points: list[list[float]] = []
-    parts: dict[_Part, list[NDArray[np.int64]]] = {}
-    said: dict[_Part, dict[str, None]] = {}
-    nameless = _Part("", "")
-    part, title = nameless, ""
+    # By kind and name of what begins them, none before the first: faces, and all that is said.
+    parts: dict[tuple[str, str], tuple[list[NDArray[np.int64]], dict[str, None]]] = {}
+    part, title = ("", ""), ""
     for number, line in enumerate(data.decode("utf-8", "replace").splitlines(), start=1):
         words = line.split()
         try:
             if words[:1] == ["v"]:
                 points.append([float(word) for word in words[1:4]])
             elif words[:1] == ["f"]:
-                parts.setdefault(part, []).append(_face(words[1:], len(points)))
-                said.setdefault(part, {})[title] = None
-            elif words[:1] == ["o"] or (words[:1] == ["g"] and part.kind != "o"):
-                part, title = _part(line)
+                faces, said = parts.setdefault(part, ([], {}))
+                faces.append(_face(words[1:], len(points)))
+                said[title] = None
+            elif words[:1] == ["o"] or (words[:1] == ["g"] and part[0] != "o"):
+                title = " ".join(words[1:])
+                part = words[0], _name(*words)
         except ValueError as error:
             raise unusable(f"line {number} cannot be used ({error})") from error
     if any(len(point) < 3 for point in points):
         raise unusable("a vertex has less than three coordinates")
     vertices = np.array(points, float).reshape(-1, 3)
-    if not any(part.kind for part in parts):
-        return _bodies(vertices, parts.get(nameless, []))
-    faces = [face for part in parts.values() for face in part]
-    vertices, faces = _welded(vertices, faces)
-    rest = iter(faces)
+    all_faces = [face for faces, _ in parts.values() for face in faces]
+    if not any(kind for kind, _ in parts):
+        return _bodies(vertices, all_faces)
+    vertices, all_faces = _welded(vertices, all_faces)
+    rest = iter(all_faces)
     return [
-        MeshBody(part.name, vertices, list(islice(rest, len(old))), tuple(said[part]))
-        for part, old in parts.items()
+        MeshBody(name, vertices, list(islice(rest, len(faces))), said)
+        for (_, name), (faces, said) in parts.items()
     ]
 
 
-class _Part(NamedTuple):
-    """An object (o) or a group (g) of an OBJ; of no kind before the first of them."""
-
-    kind: str
-    name: str
-
-
-def _part(line: str) -> tuple[_Part, str]:
-    """Return what a line o or g begins, and all that it says.
+def _name(kind: str, *words: str) -> str:
+    """Return the name of what a line o or g begins.
 
     An object has one name, be there spaces in it.  A group line lists groups that its faces all
     belong to, the one of the thing itself first (then of its parents, or its colour), unless the
     words together are the number of a stone.  Such a number may have a comment after it; any
     other # is of the name, as programs that write OBJ put no comments there.
     """
-    kind, *words = line.split()
     title = " ".join(words)
     numbered = title.partition(" # ")[0]
     if number_in(numbered) is not None:
-        return _Part(kind, numbered), title
-    return _Part(kind, title if kind == "o" or not words else words[0]), title
+        return numbered
+    return title if kind == "o" or not words else words[0]
 
 
 def _face(words: list[str], count: int) -> NDArray[np.int64]:

@@ -7,11 +7,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Literal
+from xml.etree import ElementTree as ET
 
 import numpy as np
+from numpy.typing import NDArray
 
 from drystone.errors import Notice
-from drystone.io.file_errors import listed, short
+from drystone.io.file_errors import damaged, listed, short, too_large
+from drystone.io.foreign import foreign
 from drystone.io.labels import MAX_ID
 from drystone.io.patches import PlacedMask
 from drystone.io.read_settings import ReadSettings
@@ -23,6 +26,7 @@ METRES = MappingProxyType({"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft"
 MOST_PX = 10**9
 """No coordinate is further away."""
 _CORNERS_OF_ELLIPSE = 256
+_MOST_ELEMENTS = 1_000_000
 _STONE_NAME = re.compile(r"(?:stones?[ _-]*)?0*([1-9][0-9]*)", re.IGNORECASE)
 _WEDGE_NAME = re.compile(r"wedge[ _-]*[0-9]+", re.IGNORECASE)
 
@@ -105,20 +109,17 @@ def numbered(stones: Sequence[OutlinedStone]) -> tuple[Sequence[OutlinedStone], 
     result = [replace(stone, id=i) for i, stone in enumerate(stones, start=1)]
     if not own:
         return result, []
+    why = []
     if several:
-        why = f"the numbers of the file are not different ({listed(several)}): stones"
-        text = f"{why} are numbered in order."
-    else:
-        missing = len(stones) - len(own)
-        why = f"{listed(beyond)} cannot be the number of a stone" if beyond else ""
-        why += ", " if beyond and missing else ""
-        why += f"{missing} of {len(stones)} stones without a number" if missing else ""
-        moved = [
-            f"{stone.id} is now {i}"
-            for i, stone in enumerate(stones, start=1)
-            if stone.id not in (None, i)
-        ]
-        text = f"{why}: all are numbered in order{f' ({listed(moved)})' if moved else ''}."
+        why.append(f"the numbers of the file are not different ({listed(several)})")
+    if beyond:
+        why.append(f"{listed(beyond)} cannot be the number of a stone")
+    if missing := len(stones) - len(own):
+        why.append(f"{missing} of {len(stones)} stones without a number")
+    pairs = ((stone.id, i) for i, stone in enumerate(stones, start=1))
+    moved = listed(f"{own} is now {i}" for own, i in pairs if own not in (None, i))
+    shown = f" ({moved})" if moved and not several else ""
+    text = f"{', '.join(why)}: all are numbered in order{shown}."
     cure = "Give every stone a number of its own, from 1, to keep them."
     return result, [Notice("W119", text, cure)]
 
@@ -150,10 +151,28 @@ def ellipse(centre: tuple[float, float], radii: tuple[float, float], turned: flo
     return np.asarray(np.column_stack([turn.real, turn.imag]) + np.array(centre))
 
 
-def overruled(own: str, settings: ReadSettings) -> Notice:
-    """Say that the unit of the settings took the place of that of the file."""
+def rectangle(low: Any, high: Any) -> Points:
+    """Return the corners, (4, 2), of a rectangle."""
+    (x0, y0), (x1, y1) = low, high
+    return np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], float)
+
+
+def overruled(own_m: float | None, own: str, settings: ReadSettings) -> list[Notice]:
+    """Say whether the unit of the settings takes the place of another one of the file."""
+    unit_m = METRES.get(settings.unit)
+    same = unit_m is not None and own_m is not None and abs(unit_m / own_m - 1.0) < 1e-9
+    if not settings.unit or own_m is None or same:
+        return []
     text = f"the file gives another unit ({own}), but --unit {settings.unit} was said."
-    return Notice("W119", text, "Leave --unit out to take that of the file.")
+    return [Notice("W119", text, "Leave --unit out to take that of the file.")]
+
+
+def xml_root(data: bytes, what: str, cure: str) -> ET.Element:
+    """Parse XML; E106 when it is damaged, E110 when it has too many elements."""
+    if data.count(b"<") > 2 * _MOST_ELEMENTS:
+        raise too_large(f"the {what} has more than {_MOST_ELEMENTS} elements.", cure)
+    with foreign(lambda why: damaged(why, what=what)):
+        return ET.fromstring(data)  # noqa: S314 - expat bounds what entities expand to
 
 
 def side_px(value: Any) -> int:
@@ -165,6 +184,11 @@ def side_px(value: Any) -> int:
     return number
 
 
+def size_px(width: Any, height: Any) -> tuple[int, int] | None:
+    """Return the size of an image, if both sides are given; ValueError when one is none."""
+    return None if None in (width, height) else (side_px(width), side_px(height))
+
+
 def place_px(value: Any) -> int:
     """Return a row or column of a mask; ValueError when no picture reaches there."""
     number = float(value)
@@ -173,16 +197,21 @@ def place_px(value: Any) -> int:
     return round(number)
 
 
+def within_reach(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return points; ValueError when some are not finite or further away than anything is."""
+    if not np.isfinite(points).all():
+        raise ValueError("a coordinate is not finite")
+    if points.size and np.abs(points).max() > MOST_PX:
+        raise ValueError("a coordinate is beyond 1e9")
+    return points
+
+
 def ring(points: Any) -> Points:
     """Return a ring from numbers; ValueError when it is none."""
     corners = np.asarray(points, dtype=float)
     if corners.ndim != 2 or corners.shape[1] < 2:
         raise ValueError("points are pairs of numbers")
-    corners = corners[:, :2]
-    if not np.isfinite(corners).all():
-        raise ValueError("a coordinate is not finite")
-    if corners.size and np.abs(corners).max() > MOST_PX:
-        raise ValueError("a coordinate is beyond 1e9")
+    corners = within_reach(corners[:, :2])
     if len(corners) > 1 and (corners[0] == corners[-1]).all():
         corners = corners[:-1]
     if len(corners) < 3:

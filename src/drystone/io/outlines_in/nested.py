@@ -1,6 +1,7 @@
 """The one rule for what is not a stone: frames, the ground, repeats, groups and parts."""
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 
@@ -10,6 +11,7 @@ from scipy import ndimage
 
 from drystone.errors import Notice
 from drystone.io.file_errors import MANY, listed, short, too_large
+from drystone.io.outlines_in.fill import covered
 from drystone.io.patches import PlacedMask, enclosed
 
 INSIDE = 0.8
@@ -79,28 +81,17 @@ def not_stones(seen: Seen) -> dict[int, str]:
        some of them in each of its pieces, is a group of those;
     5. a mask of which `INSIDE` lies in a larger one that is kept is a part of it.
     """
-    masks, left = dict(seen.masks), {}
-    keys = list(masks)
-    meeting = [(keys[i], keys[j]) for i, j in meeting_boxes(list(masks.values()))]
-    holes = {
-        i: PlacedMask(inside, mask.row, mask.col)
-        for i, mask in masks.items()
-        if i not in seen.keep and (inside := enclosed(mask.mask)).any()
-    }
-    around = _ground(seen, holes, meeting)
-    for i in around:
-        left[i] = "the ground: others lie in its holes"
-    shares = _Shares({i: m for i, m in masks.items() if i not in left}, meeting, seen.keep)
-    again = shares.same()
-    left |= {i: f"{whole} again" for i, whole in again.items()}
-    shares.leave(again)
-    found = shares.frames(seen, holes)
-    left |= {i: f"a frame around {listed(held, most=3)}" for i, held in found.items()}
-    shares.leave(found)
-    groups = shares.groups(seen.masks[i] for i in around)
-    left |= {i: f"a group of {listed(parts)}" for i, parts in groups.items()}
-    shares.leave(groups)
-    return left | {i: f"a part of {whole}" for i, whole in shares.wholes().items()}
+    shares, areas = _Shares(seen), {i: int(m.mask.sum()) for i, m in seen.masks.items()}
+    ground = shares.ground()
+    shares.leave(dict.fromkeys(ground, "the ground: others lie in its holes"))
+    again = shares.within(lambda i, j, common: areas[i] + areas[j] - common)
+    shares.leave({i: f"{whole} again" for i, whole in again.items()})
+    framed = shares.frames()
+    shares.leave({i: f"a frame around {listed(held, most=3)}" for i, held in framed.items()})
+    groups = shares.groups([seen.masks[i] for i in ground])
+    shares.leave({i: f"a group of {listed(parts)}" for i, parts in groups.items()})
+    wholes = shares.within(lambda i, _j, _common: areas[i])
+    return shares.left | {i: f"a part of {whole}" for i, whole in wholes.items()}
 
 
 def said_of(left: Mapping[int, str], count: int, names: Mapping[int, str] | None = None) -> Notice:
@@ -118,16 +109,15 @@ def of_one_picture(masks: Sequence[PlacedMask]) -> bool:
     """
     sides = np.array([mask.sides for mask in masks]).reshape(-1, 4)
     (above, before), (below, behind) = sides[:, :2].min(axis=0), sides[:, 2:].max(axis=0)
-    depth = np.zeros((below - above, behind - before), np.uint16)
+    depth = PlacedMask(np.zeros((below - above, behind - before), np.uint16), above, before)
     for mask in masks:
-        top, left = mask.row - above, mask.col - before
-        height, width = mask.mask.shape
-        depth[top : top + height, left : left + width] += mask.mask
-    if 2 * int(depth.max(initial=0)) > len(masks):
+        here, there = depth.shared(mask)
+        here += there
+    if 2 * int(depth.mask.max(initial=0)) > len(masks):
         return False
     nested = partial = 0
     for i, j in meeting_boxes(masks):
-        smaller = min(_area(masks[i]), _area(masks[j]))
+        smaller = min(int(masks[i].mask.sum()), int(masks[j].mask.sum()))
         share = masks[i].common_px(masks[j]) / max(1, smaller)
         nested += share >= INSIDE
         partial += _TOUCHING <= share < INSIDE
@@ -165,49 +155,28 @@ def frames(
     return found
 
 
-def _ground(
-    seen: Seen, holes: Mapping[int, PlacedMask], meeting: Iterable[tuple[int, int]]
-) -> set[int]:
-    """Return the masks in whose holes others lie.
-
-    One stone drawn by hand may show in another; a program finds the ground like that.
-    """
-    held: dict[int, int] = dict.fromkeys(holes, 0)
-    wanted = {j: INSIDE * _area(mask) for j, mask in seen.masks.items()}
-    room = {i: _area(hole) for i, hole in holes.items()}
-    for pair in meeting:
-        for i, j in (pair, pair[::-1]):
-            # Few holes have room for another.
-            fits = i in holes and room[i] >= wanted[j]
-            if fits and holes[i].common_px(seen.masks[j]) >= wanted[j]:
-                held[i] += 1
-    least = 1 if seen.by_program else min(2, len(seen.masks) - 1)
-    return {i for i, count in held.items() if count >= max(1, least)}
-
-
-def _area(mask: PlacedMask) -> int:
-    return int(mask.mask.sum())
-
-
 class _Shares:
-    """How much of which mask lies in which."""
+    """Masks that may be stones, how much of which lies in which, and what is none."""
 
-    def __init__(
-        self,
-        masks: dict[int, PlacedMask],
-        meeting: Iterable[tuple[int, int]],
-        keep: Collection[int] = (),
-    ) -> None:
-        self._masks, self._keep = masks, keep
-        self._areas = {i: int(mask.mask.sum()) for i, mask in masks.items()}
-        self._common: dict[int, dict[int, int]] = {i: {} for i in masks}
-        for i, j in meeting:
-            common = masks[i].common_px(masks[j]) if i in masks and j in masks else 0
-            if common:
-                self._common[i][j] = self._common[j][i] = common
+    def __init__(self, seen: Seen) -> None:
+        self._seen, self._masks = seen, dict(seen.masks)
+        self._areas = {i: int(mask.mask.sum()) for i, mask in seen.masks.items()}
+        self._holes = {
+            i: PlacedMask(inside, mask.row, mask.col)
+            for i, mask in seen.masks.items()
+            if i not in seen.keep and (inside := enclosed(mask.mask)).any()
+        }
+        # Also 0, of those that may lie in holes.
+        self._common: dict[int, dict[int, int]] = {i: {} for i in self._masks}
+        keys = list(self._masks)
+        for one, other in meeting_boxes(list(self._masks.values())):
+            i, j = keys[one], keys[other]
+            self._common[i][j] = self._common[j][i] = seen.masks[i].common_px(seen.masks[j])
+        self.left: dict[int, str] = {}
 
-    def leave(self, out: Iterable[int]) -> None:
+    def leave(self, out: Mapping[int, str]) -> None:
         """Forget masks that are no stones."""
+        self.left |= out
         for i in out:
             del self._masks[i]
             for j in self._common.pop(i):
@@ -217,46 +186,75 @@ class _Shares:
         """Larger first; of equal ones the earlier."""
         return -self._areas[i], i
 
-    def same(self) -> dict[int, int]:
-        """Return for each mask that repeats a larger one which that is."""
-        return self._within(lambda i, j, common: self._areas[i] + self._areas[j] - common)
+    def ground(self) -> list[int]:
+        """Return the masks in whose holes others lie.
 
-    def wholes(self) -> dict[int, int]:
-        """Return for each mask that lies in a larger one which that is."""
-        return self._within(lambda i, _j, _common: self._areas[i])
+        One stone drawn by hand may show in another; a program finds the ground like that.
+        """
+        least = 1 if self._seen.by_program else max(1, min(2, len(self._masks) - 1))
+        found = []
+        for i, hole in self._holes.items():
+            room, held = int(hole.mask.sum()), 0
+            for j in self._common[i]:
+                wanted = INSIDE * self._areas[j]
+                # Few holes have room for another.
+                held += room >= wanted and hole.common_px(self._masks[j]) >= wanted
+            if held >= least:
+                found.append(i)
+        return found
 
-    def frames(self, seen: Seen, holes: Mapping[int, PlacedMask]) -> dict[int, list[int]]:
-        """Return for each mask that is drawn around the others which those are."""
-        inside: dict[int, set[int]] = {i: set() for i in self._masks}
-        for i, shares in self._common.items():
-            for j, common in shares.items():
-                if i in self._keep or self._order(i) > self._order(j):
-                    continue
-                in_holes = holes[i].common_px(self._masks[j]) if i in holes else 0
+    def within(self, of: Callable[[int, int, int], int]) -> dict[int, int]:
+        """Return which masks share `INSIDE` of something with a larger one that is kept."""
+        kept: set[int] = set()
+        found: dict[int, int] = {}
+        for i in sorted(self._masks, key=self._order):
+            common = self._common[i]
+            around = [j for j in common if j in kept and common[j] >= INSIDE * of(i, j, common[j])]
+            if around and i not in self._seen.keep:
+                found[i] = min(around, key=self._order)
+            else:
+                kept.add(i)
+        return found
+
+    def _inside(self, i: int, holes: PlacedMask | None = None) -> list[int]:
+        """Return the smaller masks that lie in one, or in it and its holes."""
+        found = []
+        for j, common in self._common[i].items():
+            if common and self._order(i) < self._order(j):
+                in_holes = holes.common_px(self._masks[j]) if holes else 0
                 if common + in_holes >= INSIDE * self._areas[j]:
-                    inside[i].add(j)
-        if seen.by_program:
-            whole = _WHOLE_PICTURE * seen.size_px[0] * seen.size_px[1]
-            inside = {i: held if self._areas[i] >= whole else set() for i, held in inside.items()}
+                    found.append(j)
+        return found
+
+    def frames(self) -> dict[int, list[int]]:
+        """Return for each mask that is drawn around the others which those are."""
+        least = _WHOLE_PICTURE * math.prod(self._seen.size_px) if self._seen.by_program else 0.0
+        inside: dict[int, set[int]] = {
+            i: set(self._inside(i, self._holes.get(i)))
+            if i not in self._seen.keep and self._areas[i] >= least
+            else set()
+            for i in self._masks
+        }
         plain = {i for i, mask in self._masks.items() if mask.mask.all()}
         return frames({i: self._areas[i] for i in self._masks}, inside, plain)
 
-    def groups(self, ground: Iterable[PlacedMask]) -> dict[int, list[int]]:
+    def groups(self, ground: Sequence[PlacedMask]) -> dict[int, list[int]]:
         """Return for each mask that smaller ones cover, but for the ground, which those are."""
-        found, beside = {}, list(ground)
-        for i, mask in self._masks.items():
-            parts = [] if i in self._keep else self._parts(i)
-            if not parts:
+        found = {}
+        for i in self._masks.keys() - self._seen.keep:
+            mask, parts = self._masks[i], list[int]()
+            for j in sorted(self._inside(i), key=self._order):
+                # In no other that lies in it.
+                if all(self._common[j].get(k, 0) < INSIDE * self._areas[j] for k in parts):
+                    parts.append(j)
+            if len(parts) < 2:
                 continue
-            covered = PlacedMask(np.zeros_like(mask.mask), mask.row, mask.col)
-            for other in (*beside, *(self._masks[j] for j in parts)):
-                here, there = covered.shared(other)
-                here |= there
-            if mask.common_px(covered) >= INSIDE * self._areas[i] or self._in_each_piece(i, parts):
-                found[i] = parts
+            others = covered(mask, [*ground, *(self._masks[j] for j in parts)])
+            if mask.common_px(others) >= INSIDE * self._areas[i] or self._in_each_piece(i, parts):
+                found[i] = sorted(parts)
         return found
 
-    def _in_each_piece(self, i: int, parts: Iterable[int]) -> bool:
+    def _in_each_piece(self, i: int, parts: Sequence[int]) -> bool:
         """Tell a mask in several pieces, which no stone is, with smaller masks in each of them."""
         mask = self._masks[i]
         labels, count = ndimage.label(mask.mask, np.ones((3, 3), bool))
@@ -264,28 +262,3 @@ class _Shares:
             return False
         pieces = [PlacedMask(labels == n, mask.row, mask.col) for n in range(1, count + 1)]
         return all(any(one.common_px(self._masks[j]) for j in parts) for one in pieces)
-
-    def _parts(self, i: int) -> list[int]:
-        """Return the smaller masks that lie in one, and in no other that lies in it."""
-        inside = [
-            j for j, common in self._common[i].items()
-            if self._order(i) < self._order(j) and common >= INSIDE * self._areas[j]
-        ]  # fmt: skip
-        parts: list[int] = []
-        for j in sorted(inside, key=self._order):
-            if all(self._common[j].get(k, 0) < INSIDE * self._areas[j] for k in parts):
-                parts.append(j)
-        return sorted(parts) if len(parts) > 1 else []
-
-    def _within(self, of: Callable[[int, int, int], int]) -> dict[int, int]:
-        """Return which masks share `INSIDE` of something with a larger one that is kept."""
-        kept: set[int] = set()
-        found: dict[int, int] = {}
-        for i in sorted(self._masks, key=self._order):
-            common = self._common[i]
-            around = [j for j in common if j in kept and common[j] >= INSIDE * of(i, j, common[j])]
-            if around and i not in self._keep:
-                found[i] = min(around, key=self._order)
-            else:
-                kept.add(i)
-        return found

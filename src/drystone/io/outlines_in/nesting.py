@@ -9,7 +9,7 @@ import numpy as np
 from drystone.errors import Notice
 from drystone.io.file_errors import entry, short, too_large
 from drystone.io.outlines_in.gathered import Gathered
-from drystone.io.outlines_in.model import METRES, OutlinedStone, OutlineFile, number_in
+from drystone.io.outlines_in.model import METRES, OutlinedStone, OutlineFile, number_in, rectangle
 from drystone.io.read_settings import ReadSettings
 
 _MOST_COPIES = 10_000
@@ -34,21 +34,21 @@ def read_nesting(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
 
     Where items lie over each other, as each has an origin of its own, they are laid in a row.
     """
-    stones: list[OutlinedStone] = []
     gathered, copies = Gathered(), 0
+    stones = gathered.stones
     for number, item in enumerate(map(_lower, _lower(content)["items"])):
-        where = f"item {number} (from 0)"
+        where, before = f"item {number} (from 0)", len(stones)
         with entry(where):
-            areas = gathered.areas(where, _of_nesting(_lower(item["shape"])))
             demand = int(item.get("demand", 1))
             if demand < 0:
                 raise ValueError(f"{demand} of it are demanded")
             own = number_in(item.get("id")) if demand == 1 else None
+            gathered.add(where, _of_nesting(_lower(item["shape"])), own)
         copies += demand
         if copies > _MOST_COPIES:
             cure = "Ask for fewer of each."
             raise too_large(f"more than {_MOST_COPIES} items are demanded.", cure)
-        stones += [OutlinedStone(own, "", areas)] * demand if areas else []
+        stones[before:] = stones[before:] * demand
     unit_m = METRES.get(settings.unit)
     notices = gathered.notices()
     if not settings.unit:
@@ -64,17 +64,13 @@ def _of_nesting(shape: Mapping[str, Any]) -> Iterator[list[Any]]:
     kind, data = str(shape.get("type", "")).lower().replace("_", ""), shape.get("data", shape)
     if kind == "simplepolygon":
         yield [data]
-    elif kind == "polygon":
-        data = _lower(data)
-        yield [data["outer"], *(data.get("inner") or ())]
-    elif kind == "multipolygon":
-        for part in map(_lower, data):
+    elif kind in {"polygon", "multipolygon"}:
+        for part in map(_lower, data if kind == "multipolygon" else [data]):
             yield [part["outer"], *(part.get("inner") or ())]
     elif kind == "rectangle":
         data = _lower(data)
         x, y = float(data.get("x_min", 0.0)), float(data.get("y_min", 0.0))
-        width, height = float(data["width"]), float(data["height"])
-        yield [[(x, y), (x + width, y), (x + width, y + height), (x, y + height)]]
+        yield [rectangle((x, y), (x + float(data["width"]), y + float(data["height"])))]
     else:
         raise ValueError(f"a shape of the type {short(repr(shape.get('type')))}")
 

@@ -12,12 +12,11 @@ from drystone.errors import InputError
 from drystone.io.file_errors import damaged, too_large, unusable
 from drystone.io.foreign import foreign
 from drystone.io.npy import array_of
-from drystone.io.outlines_in.classes import class_of
 from drystone.io.outlines_in.fill import trimmed
-from drystone.io.outlines_in.model import OutlinedStone, OutlineFile, number_in
+from drystone.io.outlines_in.gathered import Gathered
+from drystone.io.outlines_in.model import OutlineFile
 from drystone.io.patches import PlacedMask
 
-_LABELS = "labels"
 _BYTES_PER_PX = 8
 
 
@@ -35,11 +34,8 @@ def read_npz(data: bytes, max_px: int) -> NDArray[Any] | OutlineFile:
         name.removesuffix(".npy"): array_of(member, max_px)
         for name, member in _members(data, max_px).items()
     }
-    if _LABELS in found:
-        return np.asarray(found[_LABELS])
-    if len(found) == 1:
-        return np.asarray(next(iter(found.values())))
-    return _masks(found)
+    alone = found.get("labels", next(iter(found.values())) if len(found) == 1 else None)
+    return _masks(found) if alone is None else np.asarray(alone)
 
 
 def _members(data: bytes, max_px: int) -> dict[str, bytes]:
@@ -69,7 +65,7 @@ def _broken(why: str) -> InputError:
 
 
 def _masks(found: Mapping[str, NDArray[Any]]) -> OutlineFile:
-    stones = []
+    gathered = Gathered()
     shapes = {array.shape for array in found.values()}
     if len(shapes) != 1 or len(next(iter(shapes))) != 2:
         raise unusable(f"its arrays are not masks of one picture: shapes {sorted(shapes)}")
@@ -77,8 +73,6 @@ def _masks(found: Mapping[str, NDArray[Any]]) -> OutlineFile:
         values = np.unique(array)
         if len(values) > 2 or array.dtype.kind not in "biuf" or (len(values) == 2 and values[0]):
             raise unusable(f"the array {name!r} is not a mask (0 and one other value)")
-        mask = trimmed(PlacedMask(array.astype(bool), 0, 0))
-        masks = () if mask is None else (mask,)
-        stones.append(OutlinedStone(number_in(name), name, (), masks, class_of(name)))
+        gathered.labelled(name, name, trimmed(PlacedMask(array.astype(bool), 0, 0)))
     height, width = next(iter(shapes))
-    return OutlineFile(stones, size_px=(width, height), seen_by="either")
+    return gathered.file(size_px=(width, height), seen_by="either", names_images=False)

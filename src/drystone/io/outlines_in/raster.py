@@ -4,19 +4,22 @@ import math
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import shapely
 
-from drystone.errors import LabelImageError, Notice
-from drystone.io.file_errors import listed, short
-from drystone.io.outlines_in.fill import check_reach, pixels_of, trimmed
+from drystone.errors import InputError, LabelImageError, Notice
+from drystone.io.file_bytes import file_bytes
+from drystone.io.file_errors import listed, naming, short
+from drystone.io.outlines_in.fill import check_reach, covered, pixels_of, trimmed
 from drystone.io.outlines_in.model import OutlinedStone, OutlineFile
 from drystone.io.outlines_in.nested import Seen, meeting_boxes, not_stones, of_one_picture, said_of
 from drystone.io.outlines_in.silhouettes import outer_edge
 from drystone.io.patches import PlacedMask, StonePatch
-from drystone.io.pictures import check_size
+from drystone.io.pictures import check_size, format_of, opened
 from drystone.io.read_settings import ReadSettings
+from drystone.io.tiff import ORIENTATION
 from drystone.kernels.polygons import Points
 
 _TOO_FAR = (
@@ -24,10 +27,55 @@ _TOO_FAR = (
     "--px-per-m (px_per_m in Python), or raise max_image_mpx in Python."
 )
 
+_BEYOND = 0.5
+"""How far an outline of shares may reach over the picture, as a share of it."""
 USUAL_SIDE_PX = 160.0
 _MOST_EMPTY, _FAR_PX = 32.0, 2e8
 """Squares of that side in the picture for each stone; a picture beyond so many pixels is refused,
 for something was drawn far away."""
+
+
+def in_px(file: OutlineFile, settings: ReadSettings) -> OutlineFile:
+    """Return a file whose shares of the picture (as of YOLO) are px; all others as they are.
+
+    They are told by the whole file: in px, no stone of it would have a pixel.  Its proportions are
+    those of the picture; where the file does not say its size (E116), `image` names the picture.
+    """
+    if not _are_shares(file):
+        return file
+    size = file.size_px or _size_of(settings.image)
+    if size is None:
+        raise InputError(
+            "E116",
+            "its coordinates are shares of a picture (0 ... 1), and it does not say its size.",
+            cure="Name the picture with --image PHOTO.jpg (ReadSettings.image), or export in px.",
+        )
+    stones = [stone.moved(lambda ring: np.asarray(ring * size)) for stone in file.stones]
+    text = f"its coordinates are shares of the picture: taken times {size[0]} x {size[1]} px."
+    return replace(file, stones=stones, size_px=size, notices=[*file.notices, Notice("W119", text)])
+
+
+def _are_shares(file: OutlineFile) -> bool:
+    rings = [ring for stone in file.stones for ring in stone.rings]
+    is_of_px = file.unit_m is None and file.seen_by != "none" and max(file.size_px or (3,)) >= 3
+    if not (rings and is_of_px) or any(stone.masks for stone in file.stones):
+        return False
+    points = np.concatenate(rings)
+    return bool(points.min() >= -_BEYOND and points.max() <= 1.0 + _BEYOND)
+
+
+def _size_of(image: str) -> tuple[int, int] | None:
+    """Return width and height of a picture as it is seen; None when no file is named."""
+    path = Path(image)
+    if not image or not path.is_file():
+        return None
+    data = file_bytes(path)
+    if not format_of(data):
+        return None
+    with naming(path.name), opened(data, lambda *_: None) as picture:
+        width, height = picture.size
+        turned = picture.getexif().get(ORIENTATION, 1) in {5, 6, 7, 8}
+    return (height, width) if turned else (width, height)
 
 
 def rastered(
@@ -46,12 +94,10 @@ def rastered(
         cure = "; ".join(notice.message for notice in file.notices) or "Draw outlines."
         raise LabelImageError("E104", "there are no stones in it.", cure=cure)
     notices: list[Notice] = []
-    px_per_m = None
-    if file.unit_m is not None:
-        px_per_m = settings.px_per_m
-        if px_per_m is None:
-            px_per_m, notice = _usual_scale(file)
-            notices.append(notice)
+    px_per_m = None if file.unit_m is None else settings.px_per_m
+    if file.unit_m is not None and px_per_m is None:
+        px_per_m, notice = _usual_scale(file, file.unit_m)
+        notices.append(notice)
     stones, (width, height) = _in_picture(file, px_per_m)
     max_px = int(settings.max_image_mpx * 1e6)
     check_size(width, height, max_px, _TOO_FAR)
@@ -65,13 +111,15 @@ def rastered(
         patches, size_px, px_per_m, others = rastered(rest, settings)
         return patches, size_px, px_per_m, [said, *others]
     patches, lost, empty = [], [], []
+    picture = PlacedMask(np.broadcast_to(np.True_, (height, width)), 0, 0)
     for stone, placed in zip(stones, places, strict=True):
-        inside = None if placed is None else _within(placed, width, height)
         name = f"stone {stone.id} ({short(stone.name)})" if stone.name else f"stone {stone.id}"
-        outside = 0 if placed is None else int(placed.mask.sum())
-        outside -= 0 if inside is None else int(inside.mask.sum())
-        if outside:
-            lost.append(f"{name}: {outside} px")
+        inside = placed
+        within = None if placed is None else placed.shared(picture)[0]
+        if placed is not None and within is not None and within.shape != placed.mask.shape:
+            inside = trimmed(PlacedMask(within, max(0, placed.row), max(0, placed.col)))
+            if outside := int(placed.mask.sum()) - int(within.sum()):
+                lost.append(f"{name}: {outside} px")
         if inside is None:
             empty.append(name)
             continue
@@ -104,12 +152,11 @@ def _not_stones(
     return not_stones(Seen(masks, size_px, frozenset(settings.keep), by_program))
 
 
-def _usual_scale(file: OutlineFile) -> tuple[float, Notice]:
+def _usual_scale(file: OutlineFile, unit: float) -> tuple[float, Notice]:
     """Choose a scale of two digits for which the median stone has a usual size.
 
     It is less where they lie so far apart that almost all of their picture would be empty.
     """
-    unit = file.unit_m or 1.0
     corners = [_corners(stone) for stone in file.stones]
     side = float(np.median([np.ptp(one, axis=0).max() * unit for one in corners]))
     if not side > 0.0:
@@ -179,35 +226,23 @@ def _reach(stones: Sequence[OutlinedStone]) -> tuple[int, int]:
     ends = [(1.0, 1.0)]
     for stone in stones:
         ends += [tuple(ring.max(axis=0)) for ring in stone.rings]
-        ends += [(m.col + m.mask.shape[1], m.row + m.mask.shape[0]) for m in stone.masks]
+        ends += [mask.sides[:1:-1] for mask in stone.masks]
     width, height = np.array(ends).max(axis=0).tolist()
     return math.ceil(width), math.ceil(height)
 
 
-def _within(placed: PlacedMask, width: int, height: int) -> PlacedMask | None:
-    top, left = max(0, -placed.row), max(0, -placed.col)
-    inside = placed.mask[top : max(0, height - placed.row), left : max(0, width - placed.col)]
-    if inside.shape == placed.mask.shape:
-        return placed
-    return trimmed(PlacedMask(inside, placed.row + top, placed.col + left))
-
-
 def _beside_others(patches: list[StonePatch]) -> tuple[list[StonePatch], list[Notice]]:
     """Tell every patch which pixels of its box are others', and say which overlap."""
-    others: dict[int, PlacedMask] = {}
+    beside: list[list[StonePatch]] = [[] for _ in patches]
     overlaps = []
     for i, j in meeting_boxes(patches):
-        for one, other in ((i, j), (j, i)):
-            patch = patches[one]
-            if one not in others:
-                others[one] = PlacedMask(np.zeros_like(patch.mask), patch.row, patch.col)
-            here, there = others[one].shared(patches[other])
-            here |= there
+        beside[i].append(patches[j])
+        beside[j].append(patches[i])
         if px := patches[i].common_px(patches[j]):
             overlaps.append(f"{patches[i].id} and {patches[j].id} ({px} px)")
     result = [
-        replace(patch, others=others[i].mask & ~patch.mask if i in others else None)
-        for i, patch in enumerate(patches)
+        replace(patch, others=covered(patch, others).mask & ~patch.mask if others else None)
+        for patch, others in zip(patches, beside, strict=True)
     ]
     if not overlaps:
         return result, []

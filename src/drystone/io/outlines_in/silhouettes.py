@@ -36,7 +36,7 @@ def with_holes(rings: Sequence[Points]) -> list[tuple[int, Area]]:
     shapes = _valid(np.array([shapely.Polygon(ring) for ring in rings], dtype=object))
     tree = shapely.STRtree(shapes)
     size = shapely.area(shapes)
-    around: dict[int, list[int]] = {i: [] for i in range(len(rings))}
+    inside: dict[int, set[int]] = {i: set() for i in range(len(rings))}
     count = 0
     for begin in range(0, len(shapes), _AT_ONCE):
         pairs = tree.query(shapes[begin : begin + _AT_ONCE], predicate="covered_by")
@@ -45,17 +45,16 @@ def with_holes(rings: Sequence[Points]) -> list[tuple[int, Area]]:
             raise ValueError("outlines lie in each other too often")
         for i, j in zip((pairs[0] + begin).tolist(), pairs[1].tolist(), strict=True):
             if i != j and size[i] < size[j]:
-                around[i].append(j)
-    inside: dict[int, set[int]] = {i: set() for i in around}
-    for i, found in around.items():
-        for j in found:
-            inside[j].add(i)
+                inside[j].add(i)
     framed = frames(dict(enumerate(size.tolist())), inside)
-    around = {i: [j for j in found if j not in framed] for i, found in around.items()}
+    around: dict[int, list[int]] = {i: [] for i in inside}
+    for j, found in inside.items():
+        for i in found if j not in framed else ():
+            around[i].append(j)
     holes: dict[int, list[int]] = {i: [] for i, found in around.items() if len(found) % 2 == 0}
-    for i, found in around.items():
+    for i, outer in around.items():
         if i not in holes:
-            holes[min(found, key=lambda j: (size[j], j))].append(i)
+            holes[min(outer, key=lambda j: (size[j], j))].append(i)
     return [(i, Area((rings[i], *(rings[j] for j in of)))) for i, of in holes.items()]
 
 
@@ -89,14 +88,10 @@ def shadow(polygons: Sequence[Points]) -> tuple[Area, ...]:
 
     Faces that are seen from the side have no area.
     """
+    ends = np.repeat(np.arange(len(polygons)), [len(polygon) for polygon in polygons])
+    shapes = shapely.polygons(shapely.linearrings(np.concatenate(polygons), indices=ends))
     # Edges of neighbours are the same numbers, so the union leaves no slits.
-    if len({len(polygon) for polygon in polygons}) == 1:
-        seen = shapely.polygons([np.asarray(polygon) for polygon in polygons])
-    else:
-        seen = [shapely.Polygon(polygon) for polygon in polygons]
-    shapes = np.asarray(seen, dtype=object)
-    shapes = shapes[shapely.area(shapes) > 0.0]
-    return areas_of(shapely.union_all(_valid(shapes)))
+    return areas_of(shapely.union_all(_valid(shapes[shapely.area(shapes) > 0.0])))
 
 
 def outer_edge(rings: Sequence[Points], within: Any = None) -> Points | None:

@@ -1,5 +1,6 @@
 """SVG: closed shapes, under all their transforms, in mm or in px."""
 
+import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -7,9 +8,10 @@ from typing import Any
 from xml.etree import ElementTree as ET
 
 import numpy as np
+import shapely
 
 from drystone.errors import InputError, Notice
-from drystone.io.file_errors import damaged, entry, too_large, unusable
+from drystone.io.file_errors import entry, listed, too_large, unusable
 from drystone.io.foreign import foreign
 from drystone.io.outlines_in.classes import layer
 from drystone.io.outlines_in.model import (
@@ -18,23 +20,24 @@ from drystone.io.outlines_in.model import (
     OutlineFile,
     left_aside,
     number_in,
-    overruled,
+    within_reach,
+    xml_root,
 )
-from drystone.io.outlines_in.svg_clip import Clips, Rings
-from drystone.io.outlines_in.svg_shapes import SHAPES, lines_of
-from drystone.io.outlines_in.svg_style import Styles, tag
-from drystone.io.outlines_in.svg_view import (
+from drystone.io.outlines_in.silhouettes import areas_of, region
+from drystone.io.outlines_in.svg_shapes import (
     PLAIN,
+    SHAPES,
     Matrix,
     Page,
     View,
+    lines_of,
     moved,
     page_of,
     transform,
     user_units,
 )
+from drystone.io.outlines_in.svg_style import NOTHING, Styles, tag
 from drystone.io.read_settings import ReadSettings
-from drystone.kernels.polygons import Points
 
 _HIDDEN = frozenset(
     {"defs", "symbol", "clipPath", "mask", "marker", "pattern", "title", "desc", "metadata",
@@ -48,10 +51,22 @@ _LAYER = "stones"
 _UNSEEN = "elements that are hidden"
 _DEEPEST = 64
 _MOST = 100_000
-_MOST_ELEMENTS = 1_000_000
 _MOST_CORNERS = 10_000_000
 _MOST_TEXT = 2_000_000
 """Of attributes of what is drawn, beside two times what the file has: a use draws things again."""
+_MOST_CLIPPED = 300_000
+"""Corners of the shapes that are cut, and of their clip paths each time."""
+_TEXT = "the drawing has long paths that are used too often."
+_CORNERS = f"the drawing has more than {_MOST_CORNERS} corners, those on curves."
+_CLIPPED = f"its clip paths cut more than {_MOST_CLIPPED} corners."
+_FEWER = "Export the outlines of stones only, with fewer corners."
+_LINK = re.compile(r"""url\(\s*+(["']?)#([^"')\s]++)\1\s*+\)""")
+_RELEASE = "Apply or release it where it was drawn"
+_OUTSIDE = "outside of their clip paths, left out"
+_CUT = "cut by their clip paths"
+_MISSING = "clip paths that are not there, so nothing was cut"
+_ALL = 1.0 - 1e-9
+"""Share of a shape that is all of it."""
 _VISIBLE = {"visible": True, "hidden": False, "collapse": False}
 
 _UNPAINTED = {"none", "transparent"}
@@ -81,7 +96,7 @@ class _Place:
 class _Shape:
     """A shape that is drawn."""
 
-    rings: tuple[Points, ...]
+    area: Area
     place: _Place
     kind: str
 
@@ -99,10 +114,7 @@ def read_svg(data: bytes, settings: ReadSettings) -> OutlineFile:
     are left aside; drawings in the drawing are refused.  A width in mm (cm, in, pt …) makes it a
     drawing to scale; otherwise its unit is px, or what the settings say.
     """
-    if data.count(b"<") > 2 * _MOST_ELEMENTS:
-        raise _too_large(f"more than {_MOST_ELEMENTS} elements")
-    with foreign(lambda why: damaged(why, what="drawing")):
-        root = ET.fromstring(data)  # noqa: S314 - expat bounds what entities expand to
+    root = xml_root(data, "drawing", _FEWER)
     if tag(root) != "svg":
         raise unusable(f"its root element is {tag(root)[:40]}, not svg")
     with entry("the element svg"):
@@ -119,13 +131,15 @@ def read_svg(data: bytes, settings: ReadSettings) -> OutlineFile:
             walk.aside["rectangles over the whole page"] += 1
             continue
         name = shape.place.name
-        area = Area(shape.rings, "evenodd" if shape.place.rule == "evenodd" else "nonzero")
-        stones.append(OutlinedStone(number_in(name), name, (area,), label=layer(shape.place.group)))
+        label = layer(shape.place.group)
+        stones.append(OutlinedStone(number_in(name), name, (shape.area,), label=label))
     px = page.size if page.unit_m is None else None
     size = None if px is None else (round(px[0]), round(px[1]))
-    notices = left_aside(+walk.aside, "Only closed shapes are read.") + walk.clips.notices()
-    if page.overruled:
-        notices.append(overruled(page.overruled, settings))
+    notices = left_aside(+walk.aside, "Only closed shapes are read.")
+    cure = "Release the clips where it was drawn to read all that they hide."
+    said = walk.clipped.items()
+    notices += [Notice("W119", f"{what}: {listed(of)}.", cure) for what, of in said if of]
+    notices += page.notices
     if _SHEET in data:
         text = "a style sheet in another file was not read, whatever it hides or moves."
         notices.append(Notice("W119", text, "Put it into the drawing, in an element style."))
@@ -140,9 +154,10 @@ class _Walk:
         self.styles = Styles(root)
         self.aside: Counter[str] = Counter()
         self.known = {e.get("id"): e for e in root.iter() if e.get("id")}
-        self.clips = Clips(self.known)
         self.count = 0
-        self.left_text, self.left_corners = most_text, _MOST_CORNERS
+        self.left = {_TEXT: most_text, _CORNERS: _MOST_CORNERS, _CLIPPED: _MOST_CLIPPED}
+        self.regions: dict[tuple[str, bytes], Any] = {}
+        self.clipped: dict[str, dict[str, None]] = {_OUTSIDE: {}, _CUT: {}, _MISSING: {}}
 
     def shapes(self, page: Page) -> Iterator[_Shape]:
         """Yield the shapes in the order in which they are drawn."""
@@ -161,9 +176,7 @@ class _Walk:
         self.count += 1
         if self.count > _MOST or place.depth > _DEEPEST:
             raise unusable("elements use each other too often or too deeply")
-        self.left_text -= sum(map(len, element.attrib.values()))
-        if self.left_text < 0:
-            raise _too_large("long paths that are used too often")
+        self._spend(_TEXT, sum(map(len, element.attrib.values())))
         what = f"the {kind} {name!r}" if name else f"a {kind}"
         with entry(what):
             style = self.styles.of(element)
@@ -176,7 +189,11 @@ class _Walk:
                 for child in element:
                     yield from self._draw(child, here)
             elif kind == "use":
-                here, target = self._within(element, place, style), self._shown(element, what)
+                here = self._within(element, place, style)
+                link = element.get("href") or element.get(_XLINK) or ""
+                target = self.known.get(link.removeprefix("#")) if link.startswith("#") else None
+                if target is None:
+                    raise unusable(f"{what} is of {link!r}, which is not there")
                 own = target.get("id", "")
                 if number_in(own) is not None:
                     here = replace(here, name=own)
@@ -188,24 +205,76 @@ class _Walk:
             else:
                 self.aside[kind] += 1
 
-    def _shown(self, element: ET.Element, what: str) -> ET.Element:
-        """Return what a use shows."""
-        link = element.get("href") or element.get(_XLINK) or ""
-        target = self.known.get(link.removeprefix("#")) if link.startswith("#") else None
-        if target is None:
-            raise unusable(f"{what} is of {link!r}, which is not there")
-        return target
+    def _clip(self, style: Style, matrix: Matrix, place: _Place) -> Any:
+        """Return where an element is there: a planar shape, or None for everywhere.
 
-    def _clip(self, clip: ET.Element, matrix: Matrix, depth: int) -> list[Rings]:
-        """Return the shapes of a clip path; what else it holds is not spoken of."""
+        ValueError for masks, and for clips of other kinds than shapes.
+        """
+        if style.get("mask", "none") not in NOTHING:
+            raise ValueError(f"its mask is not read. {_RELEASE}")
+        said = style.get("clip-path", "none")
+        if said in NOTHING:
+            return place.clip
+        found = _LINK.fullmatch(said)
+        if found is None:
+            raise ValueError(f"its clip path {said[:30]!r} is not read. {_RELEASE}")
+        clip = self.known.get(found[2])
+        if clip is None or tag(clip) != "clipPath":
+            self.clipped[_MISSING][found[2]] = None
+            return place.clip
+        if clip.get("clipPathUnits") == "objectBoundingBox":
+            what = "its clip path is in shares of its box, which is not read."
+            raise ValueError(f"{what} {_RELEASE}")
+        key = (found[2], matrix.tobytes())
+        if key not in self.regions:
+            self.regions[key] = self._region(clip, matrix, place.depth + 1)
+        whole = self.regions[key]
+        with foreign(_no_clip):
+            if place.clip is not None:
+                self._spend(_CLIPPED, int(shapely.get_num_coordinates([place.clip, whole]).sum()))
+                whole = shapely.intersection(place.clip, whole)
+            shapely.prepare(whole)
+        return whole
+
+    def _region(self, clip: ET.Element, matrix: Matrix, depth: int) -> Any:
+        """Return what a clip path leaves; of what else it holds nothing is said."""
         if depth > _DEEPEST:
             raise unusable("clip paths use each other too often or too deeply")
         aside = self.aside.copy()
         here = _Place(matrix, depth=depth, clipping=True)
         here = self._within(clip, here, self.styles.of(clip))
-        shapes = [shape for child in clip for shape in self._draw(child, here)]
+        areas = [shape.area for child in clip for shape in self._draw(child, here)]
         self.aside = aside
-        return [(shape.rings, shape.place.rule) for shape in shapes]
+        self._spend(_CLIPPED, len(clip) + sum(len(ring) for area in areas for ring in area.rings))
+        with foreign(_no_clip):
+            return shapely.union_all([region(area.rings, area.rule) for area in areas])
+
+    def _inside(self, name: str, area: Area, clip: Any) -> Area | None:
+        """Return what of a shape is there; of one without a name nothing is said."""
+        corners = np.concatenate(area.rings)
+        box = shapely.box(*corners.min(axis=0), *corners.max(axis=0))
+        if shapely.covers(clip, box):
+            return area
+        share, inside = 0.0, tuple[Area, ...]()
+        if not shapely.disjoint(clip, box):
+            self._spend(_CLIPPED, len(corners) + int(shapely.get_num_coordinates(clip)))
+            with foreign(_no_clip):
+                whole = region(area.rings, area.rule)
+                left = shapely.intersection(whole, clip)
+                inside, share = areas_of(left), float(left.area) / max(whole.area, 1e-300)
+        if share > _ALL:
+            return area
+        if share < 1.0 - _ALL:
+            self.clipped[_OUTSIDE] |= {name: None} if name else {}
+            return None
+        self.clipped[_CUT] |= {f"{name} ({100 * share:.2g} % is left)": None} if name else {}
+        return Area(tuple(ring for part in inside for ring in part.rings))
+
+    def _spend(self, what: str, number: int) -> None:
+        self.left[what] -= number
+        if self.left[what] < 0:
+            release = f"{_RELEASE}, or export the outlines of stones only."
+            raise too_large(what, release if what == _CLIPPED else _FEWER)
 
     def _within(self, element: ET.Element, place: _Place, style: Style) -> _Place:
         turn = transform(element.get("transform", ""))
@@ -232,9 +301,7 @@ class _Walk:
             visible=_VISIBLE.get(style.get("visibility", ""), place.visible),
             fill=style.get("fill", place.fill),
             stroke=style.get("stroke", place.stroke),
-            clip=self.clips.within(
-                style, matrix, place.clip, lambda clip: self._clip(clip, matrix, place.depth + 1)
-            ),
+            clip=self._clip(style, matrix, place),
         )
 
     def _shape(self, element: ET.Element, place: _Place) -> Iterator[_Shape]:
@@ -247,31 +314,26 @@ class _Walk:
         closed = [one.points for one in lines if (one.closed or filled) and len(one.points) > 2]
         if len(closed) < len(lines):
             self.aside[f"open lines in {kind}"] += len(lines) - len(closed)
-        self.left_corners -= sum(map(len, closed))
-        if self.left_corners < 0:
-            raise _too_large(f"more than {_MOST_CORNERS} corners, those on curves")
-        rings = tuple(moved(place.matrix, points) for points in closed)
-        if not all(np.isfinite(ring).all() and np.abs(ring).max() < 1e9 for ring in rings):
-            raise ValueError("a coordinate is not finite or beyond 1e9")
-        if rings and place.clip is not None:
+        self._spend(_CORNERS, sum(map(len, closed)))
+        rings = tuple(within_reach(moved(place.matrix, points)) for points in closed)
+        if not rings:
+            return
+        area: Area | None = Area(rings, "evenodd" if place.rule == "evenodd" else "nonzero")
+        if area and place.clip is not None:
             name = "" if place.clipping else place.name or f"a {kind}"
-            found, rule = self.clips.inside(name, rings, place.rule, place.clip)
-            rings, place = tuple(found), replace(place, rule=rule)
-            if not rings:
-                return
-        if rings and any(np.ptp(ring, axis=0).min() > 0.0 for ring in rings):
-            yield _Shape(rings, place, kind)
-        elif rings:
+            area = self._inside(name, area, place.clip)
+        if area and any(np.ptp(ring, axis=0).min() > 0.0 for ring in area.rings):
+            yield _Shape(area, place, kind)
+        elif area:
             self.aside[f"{kind} without an area"] += 1
 
 
-def _too_large(what: str) -> InputError:
-    cure = "Export the outlines of stones only, with fewer corners."
-    return too_large(f"the drawing has {what}.", cure)
+def _no_clip(why: str) -> InputError:
+    return unusable(f"clip paths cannot be used ({why})")
 
 
 def _covers(shape: _Shape, page: tuple[float, float]) -> bool:
-    ring = shape.rings[0]
+    ring = shape.area.rings[0]
     slack = 1e-3 * np.array(page)
     return bool((ring.min(axis=0) <= slack).all() and (ring.max(axis=0) >= page - slack).all())
 

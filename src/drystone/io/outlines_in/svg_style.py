@@ -16,7 +16,8 @@ _MOVING = {
     "x", "y", "cx", "cy", "r", "rx", "ry", "d",
 }  # fmt: skip
 _SIZES = {"width", "height"}
-_NOTHING = {"", "none", "initial", "unset", "revert", "auto"}
+NOTHING = {"", "none", "initial", "unset", "revert", "auto"}
+"""Values that say nothing."""
 _COMMENT = re.compile(r"/\*.*?(?:\*/|$)", re.DOTALL)
 _RULE = re.compile(r"([^{}]*+)\{([^{}]*+)\}")
 _SIMPLE = re.compile(r"(\*|[\w-]*+)([.#][\w-]++)?+")
@@ -64,7 +65,7 @@ class Styles:
         # The size of the page by its style is how a window shows it.
         shaping = _MOVING if kind in {"svg", "g"} else _MOVING | _SIZES
         for name in sorted(shaping & properties.keys()):
-            if properties[name] not in _NOTHING or element.get(name):
+            if properties[name] not in NOTHING or element.get(name):
                 raise ValueError(f"its style says {name}, which is read as an attribute only")
         return {k: v for k, v in properties.items() if v not in {"inherit", "unset"}}
 

@@ -35,10 +35,6 @@ class Sight:
         """Return points, (n, 3), as they are seen, (n, 2)."""
         return np.asarray(points @ np.column_stack([self.right, self.up]))
 
-    def mirrored(self) -> "Sight":
-        """Return the view from the other side."""
-        return Sight(0.0 - self.right, self.up)
-
 
 def view(normal: Vector, up: Up) -> Sight:
     """Return the view of what faces a normal, where an axis is up.
@@ -63,7 +59,7 @@ def usual_side(normal: Vector, up: Up) -> Vector:
 def asked(normal: Vector, up: Up) -> Sight:
     """Return the view of a plane that a user asks for."""
     seen = view(usual_side(normal, up), up)
-    return seen.mirrored() if up.endswith("-back") else seen
+    return Sight(0.0 - seen.right, seen.up) if up.endswith("-back") else seen
 
 
 def plane_of(rings: Sequence[Vector]) -> tuple[Vector, NDArray[np.float64]]:

@@ -1,0 +1,295 @@
+"""SVG by hand: its page, what style hides and fills, and what clip paths leave."""
+
+import numpy as np
+import pytest
+
+from drystone.errors import InputError
+from drystone.io.outlines_in.silhouettes import region
+from drystone.io.outlines_in.svg import read_svg
+from drystone.io.read_stones import ReadSettings, read_stones
+
+RECT = '<rect x="1" y="1" width="8" height="4"/>'
+
+
+def bounds(body, page='width="200mm" height="100mm" viewBox="0 0 200 100"'):
+    """Boxes around all that is read of a drawing: left, top, width, height; and what is said."""
+    text = f'<svg xmlns="http://www.w3.org/2000/svg" {page}>{body}</svg>'
+    found = read_svg(text.encode(), ReadSettings())
+    rings = [np.concatenate(stone.areas[0].rings) for stone in found.stones]
+    boxes = [[*ring.min(axis=0), *np.ptp(ring, axis=0)] for ring in rings]
+    return np.array(boxes).round(9).tolist(), " ".join(n.message for n in found.notices)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "box"),
+    [("", [12, 2, 16, 8]), ("xMidYMid meet", [12, 2, 16, 8]), (" none ", [4, 2, 32, 8])],
+)
+def test_a_box_lies_in_the_middle_of_the_page_unless_it_is_stretched(ratio, box):
+    page = f'width="40mm" height="20mm" viewBox="0 0 10 10" preserveAspectRatio="{ratio}"'
+    assert bounds(RECT, page)[0] == [box]
+    shifted = page.replace("0 0 10 10", "-5 3 10 10")
+    moved = [box[0] + 5 * box[2] / 8, box[1] - 3 * box[3] / 4, *box[2:]]
+    np.testing.assert_allclose(bounds(RECT, shifted)[0], [moved])
+
+
+def test_per_cents_are_of_the_page_and_of_nothing_else():
+    assert bounds('<rect x="10%" y="1%" width="25%" height="50%"/>')[0] == [[20, 1, 50, 50]]
+    boxes, said = bounds(f'<rect width="100%" height="100%"/>{RECT}')
+    assert boxes == [[1, 1, 8, 4]]
+    assert "1 rectangles over the whole page" in said
+    with pytest.raises(InputError, match=r"E114 .*x in % is not read"):
+        bounds('<rect x="3%" width="8" height="4"/>', "")
+
+
+@pytest.mark.parametrize(
+    ("body", "page"),
+    [
+        (f"<svg>{RECT}</svg>", ""),
+        (f'<symbol id="s">{RECT}</symbol><use href="#s"/>', ""),
+        (RECT, 'width="40mm" height="20mm" viewBox="0 0 1 1" preserveAspectRatio="xMinYMax"'),
+    ],
+)
+def test_what_few_drawings_have_is_refused(body, page):
+    with pytest.raises(InputError, match=r"E114 .*Save it as plain SVG"):
+        bounds(body, page)
+    assert bounds(f'<symbol id="s">{RECT}</symbol>{RECT}')[0] == [[1, 1, 8, 4]]
+
+
+STONE = '<rect x="1" y="2" width="8" height="4"{}/>'
+SEEN = [1, 2, 8, 4]
+
+
+@pytest.mark.parametrize(
+    "hidden",
+    [
+        ' display="none"', ' visibility="hidden"', ' opacity="0"', ' style="opacity:0%"',
+        ' style="display : none"', ' style="visibility:collapse;fill:red"',
+        ' fill="none"', ' style="fill:none;stroke:none"', ' fill="transparent"',
+        ' class="a b"', ' id="c"', ' class="sheet"',
+    ],
+)  # fmt: skip
+def test_what_nobody_sees_is_left_aside(hidden):
+    sheet = """<style>/* rect{display:none} */ @font-face { font-family: f; src: url(f) }
+        .b, #c { display: none } rect.sheet {visibility:hidden !important} text{fill:none}
+        g > rect:hover { cursor: pointer }</style>"""
+    boxes, said = bounds(sheet + STONE.format(hidden) + STONE.format(""))
+    assert boxes == [SEEN]
+    assert "1 elements that are hidden" in said
+
+
+@pytest.mark.parametrize(
+    ("sheet", "stone"),
+    [
+        # Later rules win among equals; ids win over classes, these over tags, these over all.
+        ("*{display:none} rect{display:inline}", ""),
+        ("#c{display:inline} rect.a{display:none}", ' id="c" class="a"'),
+        (".a{opacity:0} .a{opacity:1}", ' class="a"'),
+        ("rect{visibility:hidden}", ' style="visibility:visible"'),
+        (".a{fill:none;stroke:#000}", ' class="a"'),
+        ("rect{display:inline}", ' display="none"'),
+        ("g{width:3px}", ""),
+    ],
+)
+def test_the_rule_that_says_most_counts(sheet, stone):
+    assert bounds(f"<style>{sheet}</style>{STONE.format(stone)}")[0] == [SEEN]
+
+
+def test_paint_and_visibility_are_inherited_and_opacity_hides_a_group():
+    group = '<g fill="none" visibility="hidden">{}</g>'
+    seen = STONE.format(' fill="red" visibility="visible"')
+    assert bounds(group.format(STONE.format("") + seen))[0] == [SEEN]
+    assert bounds(f'<g opacity="0">{seen}</g>{seen}')[0] == [SEEN]
+
+
+def test_a_fill_closes_lines_that_are_open():
+    line = '<path d="M1 2h8v4h-8"{}/><polyline points="1 2 9 2 9 6 1 6"{}/>'
+    assert bounds(line.format("", ""))[0] == [SEEN, SEEN]
+    stroke = ' fill="none" stroke="red"'
+    boxes, said = bounds(STONE.format("") + line.format(stroke, stroke))
+    assert boxes == [SEEN]
+    assert "1 open lines in path, 1 open lines in polyline" in said
+
+
+def test_holes_are_those_of_the_fill_rule():
+    path = '<path class="st0" d="M0 0h9v9h-9zM2 2h3v3h-3z"/>'
+    assert bounds(f"<style>.st0{{fill-rule:evenodd;clip-rule:evenodd}}</style>{path}")[0]
+
+
+@pytest.mark.parametrize(
+    ("stone", "said"),
+    [
+        (' style="transform:scale(2)"', "says transform"),
+        (' style="transform:none" transform="scale(2)"', "says transform"),
+        (' style="-webkit-transform:scale(2)"', "says transform"),
+        (' style="x:3px"', "says x"),
+        (' style="width:30%"', "says width"),
+        (' class="moved"', "says translate"),
+        (' transform="scale(2)" style="transform-origin:5px 5px"', "transform-origin"),
+    ],
+)
+def test_style_that_moves_or_shapes_is_refused(stone, said):
+    sheet = "<style>.moved{translate:3px}</style>"
+    with pytest.raises(InputError, match=rf"E114 .*a rect cannot be used .*{said}"):
+        bounds(sheet + STONE.format(stone))
+
+
+def test_the_style_of_the_page_says_how_a_window_shows_it():
+    page = 'width="200mm" height="100mm" viewBox="0 0 200 100" style="width:100%;height:auto"'
+    assert bounds(STONE.format(""), page)[0] == [SEEN]
+
+
+@pytest.mark.parametrize(
+    ("sheet", "said"),
+    [
+        ("<style>g rect{display:none}</style>", "'g rect'"),
+        ("<style>rect:not(.b){visibility:hidden}</style>", "'rect:not"),
+        ("<style>[id=a]{transform:scale(2)}</style>", "'.id=a.'"),
+        ("<style>@media print {.h{opacity:0}}</style>", "'@media'"),
+        ('<style media="print">.h{display:none}</style>', "'media print'"),
+    ],
+)
+def test_rules_that_may_hide_something_are_read_or_refused(sheet, said):
+    with pytest.raises(InputError, match=rf"E114 .*style sheet says .* for {said}.*plain SVG"):
+        bounds(sheet + STONE.format(""))
+
+
+LEFT, MIDDLE, RIGHT = (
+    f'<rect id="stone_{i}" x="{x}" y="10" width="40" height="40" {{0}}/>'
+    for i, x in enumerate((0, 60, 120), start=1)
+)
+ALL = (LEFT + MIDDLE + RIGHT).format("")
+CUT = [[0, 10, 40, 40], [60, 10, 20, 40]]
+"""What is there when all from x = 80 on is not."""
+
+
+def clip(content, **attributes):
+    more = " ".join(f'{name.replace("_", "-")}="{value}"' for name, value in attributes.items())
+    return f'<defs><clipPath id="c" {more}>{content}</clipPath></defs>'
+
+
+ON = f'<g clip-path="url(#c)">{ALL}</g>'
+HALF = '<rect width="80" height="100"/>'
+WAYS = {
+    "group": clip(HALF) + ON,
+    "each": clip(HALF) + (LEFT + MIDDLE + RIGHT).format('clip-path="url(#c)"'),
+    "style": clip(HALF) + f"""<g style="clip-path: url('#c')">{ALL}</g>""",
+    "sheet": clip(HALF) + f"<style>.k{{clip-path:url(#c)}}</style><g class='k'>{ALL}</g>",
+    "after": f'<g clip-path="url( #c )">{ALL}</g>' + clip(HALF),
+    "path": clip('<path d="M0 0H80V100H0"/>') + ON,
+    "polygon": clip('<polygon points="0,0 80,0 80,99 0,99"/>') + ON,
+    "two": clip('<rect width="50" height="99"/><rect x="40" width="40" height="99"/>')
+    + ON,
+    "moved": clip('<rect width="100" height="99" transform="scale(.5 1)"/>',
+                  transform="scale(1.6 1)") + ON,
+    "used": '<rect id="r" width="80" height="99" display="inline"/>'.join(["<defs>", "</defs>"])
+    + clip('<use href="#r" x="0" y="0"/>') + ON,
+    "hidden": clip(HALF + '<rect width="200" height="99" visibility="hidden"/>')
+    + ON,
+    "nested": clip(HALF + '<rect x="110" width="90" height="99"/>')
+    + '<clipPath id="d"><rect width="109" height="99"/></clipPath>'
+    + f'<g clip-path="url(#d)"><g clip-path="url(#c)">{ALL}</g></g>',
+    "in its own units": clip('<rect width="40" height="50"/>')
+    + '<g transform="scale(2)" clip-path="url(#c)">'
+    + f'<g transform="scale(.5)">{ALL}</g></g>',
+    "on a use": clip('<rect x="-20" width="80" height="100"/>')
+    + f'<defs><g id="g" transform="translate(-20)">{ALL}</g></defs>'
+    + '<use href="#g" x="20" clip-path="url(#c)"/>',
+    "hole": clip('<path d="M0 0H200V100H0zM80 0H180V100H80z" clip-rule="evenodd"/>')
+    + ON,
+    "clipped itself": clip('<rect width="190" height="99"/>', clip_path="url(#d)")
+    + '<clipPath id="d"><rect width="80" height="99"/></clipPath>' + ON,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_what_is_outside_of_a_clip_is_not_there(way):
+    found, said = bounds(WAYS[way])
+    assert found == [pytest.approx(box) for box in CUT]
+    assert "outside of their clip paths, left out: stone_3." in said
+    assert "cut by their clip paths: stone_2 (50 % is left)." in said
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        clip('<rect width="190" height="99"/>') + ON,
+        clip('<path d="M0 0H200V100H0zM50 0V100H55V0z"/>') + ON,
+        clip(HALF) + f'<g clip-path="none">{ALL}</g>',
+    ],
+)
+def test_what_is_within_a_clip_is_as_it_was(body):
+    found, said = bounds(body)
+    assert (len(found), said) == (3, "")
+
+
+def test_a_shape_within_a_clip_whose_box_is_not_is_as_it_was():
+    round_clip = clip('<circle cx="50" cy="50" r="21"/>')
+    circle = '<circle id="stone_1" cx="50" cy="50" r="20" clip-path="url(#c)"/>'
+    assert bounds(round_clip + circle) == ([pytest.approx([30, 30, 40, 40])], "")
+
+
+def test_a_clip_that_is_not_there_cuts_nothing_and_is_named():
+    found, said = bounds(f'<g clip-path="url(#nothing)">{ALL}</g>')
+    assert len(found) == 3
+    assert "clip paths that are not there, so nothing was cut: nothing." in said
+
+
+def test_an_empty_clip_leaves_nothing():
+    assert bounds(clip("") + ON)[0] == []
+
+
+@pytest.mark.parametrize(
+    ("body", "text"),
+    [
+        ('<mask id="m"/><g mask="url(#m)">{}</g>', "its mask is not read"),
+        ('<g style="clip-path:circle(9px)">{}</g>', "its clip path 'circle"),
+        ('<clipPath id="c"><text>a</text></clipPath><g clip-path="url(#c)">{}</g>', "a text in"),
+        ('<clipPath id="c" clip-path="url(#c)"/><g clip-path="url(#c)">{}</g>', "too deeply"),
+        ('<clipPath id="c" clipPathUnits="objectBoundingBox"/><g clip-path="url(#c)">{}</g>',
+         "shares of its box.* release it"),
+        ("<style>g > rect{{clip-path:url(#c)}}</style>{}", "style sheet says clip-path"),
+    ],
+)  # fmt: skip
+def test_clips_of_other_kinds_are_refused(body, text):
+    with pytest.raises(InputError, match=rf"E114 .*{text}"):
+        bounds(body.format(ALL))
+
+
+def test_clips_that_take_too_long_are_refused():
+    rough = " ".join(f"{i % 200} {i * 7 % 100}" for i in range(3000))
+    star = clip(f'<path d="M{rough}"/>')
+    with pytest.raises(InputError, match=r"E114 .*cross themselves"):
+        bounds(star + ON)
+    fine = " ".join(f"{i / 100} {10 + i % 2}" for i in range(8000)) + " 80 99 0 99"
+    with pytest.raises(InputError, match=r"E110 .*clip paths cut more than"):
+        bounds(clip(f'<path d="M{fine}"/>') + f'<g clip-path="url(#c)">{ALL * 40}</g>')
+
+
+@pytest.mark.parametrize(("rule", "area"), [("nonzero", 300.0), ("evenodd", 200.0)])
+def test_regions_by_both_rules(rule, area):
+    one = np.array([(0, 0), (20, 0), (20, 10), (0, 10)], float)
+    other = one + np.array([10, 0])
+    assert region([one, other], rule).area == area
+    assert region([one, other[::-1]], rule).area == 200.0
+    eight = np.array([(0, 0), (10, 10), (10, 0), (0, 10)], float)
+    assert region([eight], rule).area == 50.0
+
+
+@pytest.mark.parametrize("unit", ["mm", "cm", "m", "in", "ft", "px"])
+@pytest.mark.parametrize("own", ["mm", "cm", "in", "pt", "pc", "q"])
+def test_a_wrong_unit_of_a_drawing_is_corrected(tmp_path, own, unit):
+    page = f'width="200{own}" height="100{own}" viewBox="0 0 400 200"'
+    body = ALL.replace('id="', 'data-x="')
+    (tmp_path / "s.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {page}>{body}</svg>')
+    stones = read_stones(tmp_path / "s.svg", settings=ReadSettings(unit=unit))
+    said = [n.message for n in stones.notices if "gives another unit" in n.message]
+    assert len(said) == (own != unit)
+    metres = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}.get(unit)
+    scale = stones.source.px_per_m
+    if metres is None:
+        assert (scale, stones.by_id(1).area_px) == (None, 1600)
+        return
+    shares = 0.5 if own == unit else 1.0  # of a unit, what a user unit is
+    assert stones.by_id(1).area_px / scale**2 == pytest.approx(
+        (40 * shares * metres) ** 2, rel=0.02
+    )
