@@ -65,7 +65,7 @@ def local_filling_ratio_at(landscape: Landscape, posed: PosedStone, row: int, co
     below it in one of its columns; rays pass through stones; wedges count as filled.  The stone is
     in the view of the landscape; row and column are those of its mask's top-left corner.
     """
-    return landscape.rays.filled_share_at(posed.silhouette, row, col)
+    return float(landscape.rays.filled_share(posed.silhouette, np.array([[row, col]]))[0])
 
 
 def swept_pixels(landscape: Landscape, posed: PosedStone, row: int, col: int) -> Mask:

@@ -18,6 +18,7 @@ if not cython.compiled:
     from drystone.kernels.lists import flags, flags_out, ints_out
 
 Ints = NDArray[np.int32]
+Longs = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +36,15 @@ class RayPattern:
     # run
     runs: Ints
     area: int  # how many pixels that is altogether
+
+    def looks(self, across: int) -> tuple[Longs, Longs]:
+        """Return where the other runs begin, and where they and the beginnings of rows end.
+
+        Pixels are numbered row by row, so many to a row; rows begin left of the image.
+        """
+        row, start, stop = self.runs.T * np.array([[across], [1], [1]])
+        rows = np.arange(0, across * len(self.left), across)
+        return row + start, np.concatenate([rows + self.left, row + stop])
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from drystone.kernels.bits import BitLandscape, bit_landscape
 from drystone.kernels.lowering import skyline
 from drystone.kernels.raster import Mask, mirrored
-from drystone.kernels.rays import RaySums, ray_sums
+from drystone.kernels.rays import RaySums
 from drystone.kernels.silhouette import Ints
 from drystone.model.placement import Side
 from drystone.model.pose import PosedStone
@@ -95,7 +95,7 @@ class Landscape:
     @cached_property
     def rays(self) -> RaySums:
         """What rays to the building side and downwards meet."""
-        return ray_sums(self.occupied, self.height_px - self.built_height_px)
+        return RaySums(self.occupied)
 
     def view(self, posed: PosedStone) -> PosedStone:
         """Return a posed stone as it appears in this view."""
