@@ -1,6 +1,5 @@
 """The landscape L_i: the wall as the next stone sees it, from one end or the other (§3.2)."""
 
-import itertools
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -83,9 +82,8 @@ class Landscape:
 
     @cached_property
     def box_table(self) -> NDArray[np.int64]:
-        """The boxes as rows (left, right, bottom, top)."""
-        numbers = itertools.chain.from_iterable(self.boxes)
-        return np.fromiter(numbers, np.int64, 4 * len(self.boxes)).reshape(-1, 4)
+        """Left, right, bottom and top (4, n) of the boxes."""
+        return np.array(self.boxes, np.int64).reshape(-1, 4).T.copy()
 
     @cached_property
     def bits(self) -> BitLandscape:
