@@ -34,6 +34,9 @@ DIRECTIVES = {
     "cdivision": True,
     "initializedcheck": False,
     "autotestdict": False,
+    # Nobody pickles a kernel or asks for its signature: a tenth of the C for nothing.
+    "auto_pickle": False,
+    "binding": False,
     "infer_types": True,
 }
 

@@ -15,6 +15,7 @@ from drystone.indices import (
     interlocking_width_ratio,
     inward_slope,
     is_boundary,
+    joints_below,
     left_neighbour,
     local_filling_ratio_at,
     neighbour_height_ratio,
@@ -120,6 +121,16 @@ def test_iwr_is_that_of_the_label_image(scene: tuple[Wall, PosedStone, int, int]
     assert interlocking_width_ratio(landscape, box, end) == pytest.approx(
         naive.interlocking(wall.labels, stone, end)
     )
+
+
+def test_of_equals_the_higher_neighbour_and_the_first_joint_are_taken() -> None:
+    occupied = Wall.empty(Site(60, 40)).occupied
+    low, high = Box(0, 10, 4, 12), Box(4, 10, 6, 14)
+    assert left_neighbour(Landscape(occupied, (low, high)), Box(10, 20, 6, 14)) == high
+    one, other = Box(0, 10, 0, 10), Box(11, 20, 0, 10)
+    landscape = Landscape(occupied, (one, other))
+    assert joints_below(landscape, Box(15, 40, 10, 20), 0)[0] == one
+    assert joints_below(landscape, Box(15, 40, 8, 11), 0) == (None, None)
 
 
 def course(*edges: int) -> Landscape:

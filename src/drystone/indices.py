@@ -4,9 +4,8 @@ import math
 from dataclasses import dataclass, fields
 
 import numpy as np
+from numpy.typing import NDArray
 
-from drystone.kernels.boxes import left_neighbour as nearest_left
-from drystone.kernels.boxes import nearest_joints
 from drystone.kernels.raster import Mask
 from drystone.model.landscape import Box, Landscape
 from drystone.model.pose import PosedStone
@@ -65,7 +64,7 @@ def local_filling_ratio_at(landscape: Landscape, posed: PosedStone, row: int, co
     below it in one of its columns; rays pass through stones; wedges count as filled.  The stone is
     in the view of the landscape; row and column are those of its mask's top-left corner.
     """
-    return landscape.rays.filled_share_at(posed.silhouette, row, col)
+    return float(landscape.rays.filled_share(posed.silhouette, np.array([[row, col]]))[0])
 
 
 def swept_pixels(landscape: Landscape, posed: PosedStone, row: int, col: int) -> Mask:
@@ -99,10 +98,18 @@ def left_neighbour(landscape: Landscape, box: Box) -> Box | None:
     """Return the nearest stone on the building side in the same course; None when there is none.
 
     Its rows overlap the stone's by at least half the smaller of the two heights, and it ends left
-    of the stone's middle: outlines may interlock.
+    of the stone's middle: outlines may interlock.  Of stones that end at the same place it is the
+    higher one, then the first.
     """
-    place = nearest_left(landscape.box_table, box)
-    return landscape.boxes[place] if place >= 0 else None
+    _, right, bottom, top = landscape.box_table
+    shared = np.minimum(top, box.top) - np.maximum(bottom, box.bottom)
+    level = 2 * shared >= np.minimum(top - bottom, box.height)
+    beside = np.flatnonzero(level & (2 * right <= box.left + box.right))
+    return max(
+        (landscape.boxes[place] for place in beside.tolist()),
+        key=lambda other: (other.right, other.top),
+        default=None,
+    )
 
 
 def neighbour_height_ratio(
@@ -125,11 +132,22 @@ def joints_below(landscape: Landscape, box: Box, end_px: float) -> tuple[Box | N
 
     below1 is the stone whose top right corner is closest to the box's bottom left corner, below2
     the one whose top left corner is closest to its bottom right corner, both among the stones
-    whose top is not above the stone's vertical centre.
+    whose top is not above the stone's vertical centre; of equals the first.  A corner nearer than
+    `end_px` to the far end of the wall is none.
     """
-    boxes, last = landscape.boxes, landscape.width_px - end_px
-    below1, below2 = nearest_joints(landscape.box_table, box, end_px, last)
-    return boxes[below1] if below1 >= 0 else None, boxes[below2] if below2 >= 0 else None
+    left, right, _, top = landscape.box_table
+    below = 2 * top <= box.top + box.bottom
+    rise = (top - box.bottom) ** 2
+    last = landscape.width_px - end_px
+
+    def nearest(counts: Mask, away_squared: NDArray[np.int64]) -> Box | None:
+        places = np.flatnonzero(below & counts)
+        return landscape.boxes[places[np.argmin(away_squared[places])]] if places.size else None
+
+    return (
+        nearest(right < last, (right - box.left) ** 2 + rise),
+        nearest(left > end_px, (left - box.right) ** 2 + rise),
+    )
 
 
 def interlocking_width_ratio(landscape: Landscape, box: Box, end_px: float) -> float:

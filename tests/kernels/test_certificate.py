@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.certificate import figures
+from drystone.kernels.cones import figures
 from drystone.kernels.simplex import Added, Cones
 from tests.naive import columns as naive
 from tests.strategies import repeatable

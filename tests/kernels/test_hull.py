@@ -5,8 +5,8 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.hull import pixel_hull
 from drystone.kernels.raster import Mask
+from drystone.kernels.silhouette import pixel_hull
 from tests.strategies import blobs, repeatable
 
 shapes = st.tuples(st.integers(1, 9), st.integers(1, 9))

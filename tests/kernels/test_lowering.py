@@ -4,15 +4,11 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels import lowering
 from drystone.kernels.lowering import lowered_positions, skyline
 from drystone.kernels.raster import Mask
 from drystone.kernels.silhouette import silhouette
-from tests.kernels.twins import both_ways
 from tests.naive import placement as naive
 from tests.strategies import landscapes, masks, repeatable
-
-kernel = both_ways(lowering)
 
 
 @repeatable(100)

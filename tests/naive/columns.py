@@ -1,4 +1,4 @@
-"""Slow, obvious twins of drystone.kernels.cones and drystone.kernels.certificate."""
+"""Slow, obvious twins of drystone.kernels.cones."""
 
 import numpy as np
 

@@ -9,7 +9,7 @@ from hypothesis import given
 
 from drystone.contacts.blocks import model_from_labels, model_with
 from drystone.contacts.given import model_from_json
-from drystone.kernels.certificate import Figures
+from drystone.kernels.cones import Figures
 from drystone.kernels.simplex import Optimum
 from drystone.statics import incremental
 from drystone.statics.incremental import (

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from drystone.contacts.blocks import model_from_labels
-from drystone.kernels.certificate import figures
+from drystone.kernels.cones import figures
 from drystone.kernels.simplex import Added, Cones
 from drystone.statics.incremental import LOCAL, LocalAnalysis, certified_bound
 from drystone.statics.limit import lateral_resistance

@@ -1,11 +1,18 @@
-"""Edges of the cones of friction at contact points, as columns of the limit analysis (Eq. 23)."""
+"""Columns of the limit analysis: edges of cones of friction, and checks of answers (Eq. 23).
+
+The program is that of :mod:`drystone.kernels.simplex`, its columns a_j in two parts: those of a
+wall, and those that a stone adds.  Nothing that a solver says of its answer is used.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from drystone.kernels.simplex import Added, Cones
 
 try:
     import cython
@@ -13,7 +20,7 @@ except ImportError:
     from drystone.kernels import shim as cython
 
 if not cython.compiled:
-    from drystone.kernels.lists import doubles, doubles_out, ints_out
+    from drystone.kernels.lists import doubles, doubles_out, ints, ints_out, new_doubles, release
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -101,3 +108,114 @@ def cone_edges(
 def moment(x, y, length, force_x, force_y):
     """Return the moment of a force on an arm, over a length."""
     return x / length * force_y - y / length * force_x
+
+
+class Figures(NamedTuple):
+    """How far an answer is from one; NaN wherever anything that counts is not a number."""
+
+    residual: float  # largest entry of sum x_j a_j + alpha live - rhs
+    violation: float  # by how much a force x_j is below 0 at most
+    total: float  # sum of abs(x_j)
+    largest: float  # largest entry of the velocity v
+    inadmissible: float  # by how much some a_j . v is below 0 at most
+    live: float  # live . v
+    rhs: float  # rhs . v
+
+
+def figures(
+    wall: Cones, weights: Floats, added: Added, alpha: float, forces: Floats, velocity: Floats
+) -> Figures:
+    """Measure the forces and the mechanism of one answer.
+
+    Forces are those of the columns of the wall that are left, then of the new ones; without any the
+    first three figures are 0.  Velocities, (3 (n + k),), are those of all bodies.
+    """
+    new = added.cones
+    columns = len(wall.first) - len(added.closed) + len(new.first)
+    if len(forces) not in (0, columns) or len(velocity) != 3 * (len(weights) + len(added.weights)):
+        raise ValueError("forces or velocities of another program")
+    # The lock of the interpreter is kept: all of it takes less time than getting that back.
+    n: cython.Py_ssize_t = len(weights)
+    rows: cython.Py_ssize_t = len(velocity)
+    check: Check = Check()
+    check.forces, check.loaded = doubles(forces), len(forces) > 0
+    check.velocity = doubles(velocity)
+    check.left = new_doubles(rows + 1)
+    for i in range(rows):
+        check.left[i] = 0.0
+    heavy: cython.p_double = doubles(weights)
+    new_heavy: cython.p_double = doubles(added.weights)
+    closed: cython.p_int = ints(added.closed)
+    column: cython.Py_ssize_t = 0
+    entries: cython.p_double = doubles(wall.entries)
+    first: cython.p_int = ints(wall.first)
+    second: cython.p_int = ints(wall.second)
+    size: cython.Py_ssize_t = len(wall.first)
+    for gone in range(len(added.closed) + 1):
+        stop = closed[gone] if gone < len(added.closed) else size
+        check_columns(check, first, second, entries, size, column, stop)
+        column = stop + 1
+    size = len(new.first)
+    check_columns(check, ints(new.first), ints(new.second), doubles(new.entries), size, 0, size)
+    residual: cython.double = 0.0
+    largest: cython.double = 0.0
+    live: cython.double = 0.0
+    rhs: cython.double = 0.0
+    load: cython.double = alpha
+    for i in range(rows // 3):
+        weight = heavy[i] if i < n else new_heavy[i - n]
+        live += weight * check.velocity[3 * i]
+        rhs += weight * check.velocity[3 * i + 1]
+        if check.loaded:
+            residual = larger(residual, abs(check.left[3 * i] + load * weight))
+            residual = larger(residual, abs(check.left[3 * i + 1] - weight))
+            residual = larger(residual, abs(check.left[3 * i + 2]))
+    for i in range(rows):
+        largest = larger(largest, abs(check.velocity[i]))
+    return Figures(residual, check.violation, check.total, largest, check.inadmissible, live, rhs)
+
+
+@cython.cclass
+class Check:
+    """Forces and velocities, and what was found of all columns so far."""
+
+    def __init__(self) -> None:
+        self.force = 0
+        self.violation = self.total = self.inadmissible = 0.0
+
+    def __dealloc__(self) -> None:
+        release(self.left)
+
+
+def check_columns(check, first, second, entries, size, start, stop):
+    """Go through some of so many columns; their forces come next."""
+    velocity: cython.p_double = check.velocity
+    left: cython.p_double = check.left
+    for column in range(start, stop):
+        one, two = 3 * first[column], 3 * second[column]
+        power = entries[column] * velocity[one]
+        power = power + entries[size + column] * velocity[one + 1]
+        power = power + entries[2 * size + column] * velocity[one + 2]
+        if two >= 0:
+            x = entries[3 * size + column] * velocity[two]
+            x = x + entries[4 * size + column] * velocity[two + 1]
+            power = power + (x + entries[5 * size + column] * velocity[two + 2])
+        check.inadmissible = larger(check.inadmissible, -power)
+        if not check.loaded:
+            continue
+        x = check.forces[check.force]
+        check.force += 1
+        if x == 0.0:
+            continue
+        check.total += abs(x)
+        check.violation = larger(check.violation, -x)
+        for k in range(3):
+            left[one + k] += x * entries[k * size + column]
+        if two >= 0:
+            for k in range(3):
+                left[two + k] += x * entries[(3 + k) * size + column]
+
+
+def larger(one, two):
+    """Return the larger one; what is no number counts as the largest."""
+    return two if two > one or two != two else one

@@ -4,20 +4,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from drystone.kernels.backend import compiled
 from drystone.kernels.raster import Mask
 from drystone.kernels.silhouette import Ints, Silhouette
 
 Positions = NDArray[np.int64]
 
-_fast = compiled("lowering")
-
 
 def skyline(occupied: Mask) -> Ints:
     """Return the row of the highest occupied pixel of each column; the height for none."""
-    if _fast is not None:
-        tops: Ints = _fast.skyline(occupied)
-        return tops
     top = np.where(occupied.any(axis=0), np.argmax(occupied, axis=0), occupied.shape[0])
     return np.asarray(top, np.int32)
 
@@ -30,9 +24,6 @@ def lowered_positions(top: Ints, mask: Silhouette, height: int, clearance: int =
     stand out at the top; with a clearance only those where the mask, with so many px on both sides,
     can come down to one own height above.
     """
-    if _fast is not None:
-        found: Positions = _fast.lowered_positions(top, mask.bottom, mask.height, height, clearance)
-        return found
     rows = _drop_rows(top, mask.bottom)
     inside = rows >= 0
     if clearance and rows.size:

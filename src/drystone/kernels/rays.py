@@ -1,102 +1,75 @@
 """What the rays meet that leave a mask to the left and downwards (Eq. 4)."""
 
 from functools import cached_property
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.backend import compiled
 from drystone.kernels.lowering import Positions
 from drystone.kernels.raster import Mask
 from drystone.kernels.silhouette import Ints, Silhouette
 
 Longs = NDArray[np.int64]
-Number = TypeVar("Number", int, Longs)
-
-_fast = compiled("rays")
-
-
-def ray_sums(occupied: Mask, first: int) -> "RaySums":
-    """Sum up a landscape; there is nothing above the first row."""
-    sums: RaySums = (RaySums if _fast is None else _fast.RaySums)(occupied, first)
-    return sums
 
 
 class RaySums:
-    """Sums of a landscape from which any swept region is counted in a few look-ups."""
+    """Sums of a landscape from which any swept region is counted in a few look-ups.
 
-    def __init__(self, occupied: Mask, first: int) -> None:
+    Tables have a column more than the landscape, and are read as one long row.
+    """
+
+    def __init__(self, occupied: Mask) -> None:
         self.height, self.width = occupied.shape
-        self._first = first
         self._occupied = occupied
 
     @cached_property
     def _along(self) -> Ints:
-        """Pixels left of each column, in each row from the first on."""
-        along = np.zeros((self.height - self._first, self.width + 1), np.int32)
-        np.cumsum(self._occupied[self._first :], axis=1, out=along[:, 1:])
-        return along
+        """Pixels left of each column, in each row."""
+        return self._table(np.cumsum(self._occupied, axis=1, dtype=np.int32))
 
     @cached_property
-    def _above(self) -> Ints:
-        """Pixels left of each column, in all rows above each row from the first on."""
-        above = np.zeros((self.height - self._first + 1, self.width + 1), np.int32)
-        np.cumsum(self._along, axis=0, out=above[1:])
-        return above
+    def _below(self) -> Ints:
+        """Pixels left of each column, in each row and all under it; in the end none."""
+        below = np.zeros((self.height + 1, self.width + 1), np.int32)
+        np.cumsum(self._along[::-1], axis=0, out=below[-2::-1])
+        return below
 
     @cached_property
     def _ends(self) -> Ints:
-        """Column after the last pixel left of each column, in each row from the first on."""
-        ends = np.zeros((self.height - self._first, self.width + 1), np.int32)
-        columns = np.arange(1, self.width + 1)
-        ends[:, 1:] = np.where(self._occupied[self._first :], columns, 0)
-        return np.maximum.accumulate(ends, axis=1)
+        """Column after the last pixel left of each column, in each row."""
+        columns = np.arange(1, self.width + 1, dtype=np.int32)
+        return self._table(np.maximum.accumulate(self._occupied * columns, axis=1))
+
+    def _table(self, numbers: Ints) -> Ints:
+        table = np.zeros((self.height, self.width + 1), np.int32)
+        table[:, 1:] = numbers
+        return table
+
+    def _at(self, positions: Positions) -> Longs:
+        """Return where positions are in the tables."""
+        return np.asarray(positions[:, 0] * (self.width + 1) + positions[:, 1])
 
     def filled_share(self, mask: Silhouette, positions: Positions) -> NDArray[np.float64]:
         """Return the filled share of the swept pixels for positions (n, 2) of one mask (Eq. 4).
 
         Rows and columns are those of its top-left corner.  1 where nothing is swept.
         """
-        rows, cols = positions[:, :1] - self._first, positions[:, 1:]
-        at, starts, stops = mask.rays.runs.T
-        under = np.maximum(rows + mask.height, 0)
+        begins, ends = mask.rays.looks(self.width + 1)
+        at = self._at(positions)
+        under = at + mask.height * (self.width + 1)
         filled = (
-            _sum(self._along, rows + np.arange(mask.height), cols + mask.rays.left)
-            + _sum(self._along, rows + at, cols + stops)
-            - _sum(self._along, rows + at, cols + starts)
-            + (self._above[-1, cols + mask.width] - self._above[-1, cols])[:, 0]
-            - (self._above[under, cols + mask.width] - self._above[under, cols])[:, 0]
+            self._along.take(at[:, None] + ends).sum(axis=1)
+            - self._along.take(at[:, None] + begins).sum(axis=1)
+            + self._below.take(under + mask.width)
+            - self._below.take(under)
         )
-        swept = swept_area(mask, self.height, positions[:, 0], positions[:, 1])
+        down = self.height - mask.height - positions[:, 0]
+        swept = mask.height * positions[:, 1] + mask.width * down + mask.rays.area
         return np.where(swept > 0, filled / np.maximum(swept, 1), 1.0)
-
-    def filled_share_at(self, mask: Silhouette, row: int, col: int) -> float:
-        """Return the same for one position, without the sums."""
-        below = row + mask.height
-        filled = int(np.count_nonzero(self._occupied[below:, col : col + mask.width]))
-        for line, left in zip(self._occupied[row:below], mask.rays.left.tolist(), strict=True):
-            filled += int(np.count_nonzero(line[: col + left]))
-        for at, start, stop in mask.rays.runs.tolist():
-            filled += int(np.count_nonzero(self._occupied[row + at, col + start : col + stop]))
-        swept = swept_area(mask, self.height, row, col)
-        return filled / swept if swept > 0 else 1.0
 
     def empty_beside(self, mask: Silhouette, positions: Positions) -> Longs:
         """Return the pixels between a mask and the next ones to its left, for many positions."""
-        rows = positions[:, :1] - self._first + np.arange(mask.height)
-        cols = positions[:, 1:] + mask.rays.left
-        return np.asarray(cols.sum(axis=1) - _sum(self._ends, rows, cols))
-
-
-def _sum(table: Ints, rows: Longs, cols: Longs) -> Longs:
-    """Sum values of a table along the last axis; above its first row there is nothing."""
-    if not table.size:
-        return np.zeros(len(rows), np.int64)
-    values = np.where(rows >= 0, table[np.maximum(rows, 0), cols], 0)
-    return np.asarray(values.sum(axis=1, dtype=np.int64))
-
-
-def swept_area(mask: Silhouette, height: int, row: Number, col: Number) -> Number:
-    """Return how many pixels of an image so high the rays of a mask sweep."""
-    return mask.height * col + mask.width * (height - row - mask.height) + mask.rays.area
+        left = mask.rays.left
+        looks = np.arange(mask.height) * (self.width + 1) + left
+        last = self._ends.take(self._at(positions)[:, None] + looks).sum(axis=1)
+        return np.asarray(mask.height * positions[:, 1] + int(left.sum()) - last)

@@ -132,7 +132,7 @@ def meeting_point(lines: list[Line], near: Points) -> Points:
     matrix, right = PULL * np.eye(2), np.zeros(2)
     for line in lines:
         normal = np.array([-line.along[1], line.along[0]])
-        matrix += np.outer(normal, normal)
+        matrix += normal[:, None] * normal
         right += normal * float(normal @ (line.point - near))
     move = np.linalg.solve(matrix, right)
     length = float(np.hypot(*move))
@@ -159,5 +159,6 @@ def with_area(line: Points, nodes: Points, more: float = 0.0) -> Points:
 
 def _area_between(line: Points, nodes: Points) -> float:
     """Return the area to the left of a line and to the right of a chain with its ends nearby."""
-    x, y = np.vstack([line, nodes[::-1]]).T
-    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2.0
+    ring = np.concatenate([line, nodes[::-1]])
+    (x, y), (ahead_x, ahead_y) = ring.T, np.concatenate([ring[1:], ring[:1]]).T.copy()
+    return float(x @ ahead_y - y @ ahead_x) / 2.0

@@ -1,11 +1,11 @@
 """What places are worth by the rules of placement, and the best of many (§3.6; Eq. 5, 12, 13)."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.backend import compiled
 from drystone.kernels.lowering import Positions
 from drystone.kernels.rays import RaySums
 from drystone.kernels.silhouette import Ints, Silhouette
@@ -15,7 +15,8 @@ Floats = NDArray[np.float64]
 UNITS = 1e12
 """Merits are compared in units of 1 / UNITS: rounding must not decide between equal places."""
 
-_fast = compiled("spots")
+GUESSES = 16
+"""So many places more than are wanted are counted first; they tell which others can be as good."""
 
 
 class Place(NamedTuple):
@@ -58,13 +59,23 @@ def eq12_merits(
     The box B of Eq. 5 is as high as what is built; `anchor_x` is that of the stone's centroid from
     the left edge of its mask.
     """
-    filling = rays.filled_share(mask, positions)
+    dice, end = _terms(positions, mask, rays, built_height, anchor_x, beta)
+    return np.asarray(rays.filled_share(mask, positions) + dice - end)
+
+
+def _terms(
+    positions: Positions,
+    mask: Silhouette,
+    rays: RaySums,
+    built_height: int,
+    anchor_x: float,
+    beta: float,
+) -> tuple[Floats, Floats]:
+    """Return H(GDS, beta) and x_c / w, for which no ray is counted."""
     from_row = np.clip(rays.height - built_height - positions[:, 0], 0, mask.height)
-    dice = dice_score(
-        mask.area_from[from_row], int(mask.area_from[0]), float(rays.width * built_height)
-    )
-    x_c = positions[:, 1] + anchor_x
-    return np.asarray(filling + threshold(dice, beta) - x_c / rays.width)
+    box_area = float(rays.width * built_height)
+    dice = dice_score(mask.area_from[from_row], int(mask.area_from[0]), box_area)
+    return threshold(dice, beta), (positions[:, 1] + anchor_x) / rays.width
 
 
 def snug_merits(
@@ -102,23 +113,26 @@ def best_by_eq12(
 ) -> list[Place]:
     """Return the positions of the largest :func:`eq12_merits`, the best first, so many at most.
 
-    Positions are by row, then column.  Of equal ones the lower comes first, then the one further to
-    the left.
+    Of equal ones the lower comes first, then the one further to the left.
     """
-    if _fast is None:
-        merits = eq12_merits(positions, mask, rays, built_height, anchor_x, beta)
-        return best(merits, positions, tries)
-    found = _fast.best_by_eq12(positions, mask, rays, built_height, anchor_x, beta, tries)
-    return [Place(*place) for place in found]
+    dice, end = _terms(positions, mask, rays, built_height, anchor_x, beta)
+    return _best_of_most(
+        1.0 + dice - end,
+        lambda some: rays.filled_share(mask, positions[some]) + dice[some] - end[some],
+        positions,
+        tries,
+    )
 
 
 def best_by_height(
     positions: Positions, mask: Silhouette, rays: RaySums, tries: int
 ) -> list[Place]:
-    """Return the lowest positions; of equal ones the best filled, then the one further left."""
-    if _fast is None:
-        return best(rays.filled_share(mask, positions), positions, tries, lowest_first=True)
-    return [Place(*place) for place in _fast.best_by_height(positions, mask, rays, tries)]
+    """Return the lowest positions; of equal ones the best filled, then the one further left.
+
+    Positions are by row, then column.
+    """
+    lowest = positions[positions[:, 0] >= np.min(positions[-tries:, 0], initial=rays.height)]
+    return best(rays.filled_share(mask, lowest), lowest, tries, lowest_first=True)
 
 
 def best_by_snugness(
@@ -130,10 +144,38 @@ def best_by_snugness(
     tries: int,
 ) -> list[Place]:
     """Return the positions of the largest :func:`snug_merits`, as :func:`best_by_eq12`."""
-    if _fast is None:
-        return best(snug_merits(positions, mask, top, rays, weights), positions, tries)
-    found = _fast.best_by_snugness(positions, mask, top, rays, weights, tries)
-    return [Place(*place) for place in found]
+    underside = rays.height - positions[:, 0] - mask.height
+    most = -(
+        weights.height * underside / mask.height + weights.end * (positions[:, 1] / rays.width)
+    )
+    if min(weights.void, weights.gap) < 0.0:
+        most = np.full(len(positions), np.inf)
+    return _best_of_most(
+        most,
+        lambda some: snug_merits(positions[some], mask, top, rays, weights),
+        positions,
+        tries,
+    )
+
+
+def _best_of_most(
+    most: Floats, worth: Callable[[NDArray[np.intp]], Floats], positions: Positions, tries: int
+) -> list[Place]:
+    """Return the best positions, of which is known what each is worth at most.
+
+    Only those are counted that can be among the best.  What is worth most goes through the same
+    operations in the same order as a merit, so rounding does not make it less.
+    """
+    most = np.rint(most * UNITS)
+    order = np.argsort(-most)
+    some = order[: tries + GUESSES]
+    merits = worth(some)
+    if len(some) < len(order):
+        least = np.partition(np.rint(merits * UNITS), -tries)[-tries]
+        if most[order[len(some)]] >= least:
+            some = np.flatnonzero(most >= least)
+            merits = worth(some)
+    return best(merits, positions[some], tries)
 
 
 def best(

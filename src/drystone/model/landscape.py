@@ -1,6 +1,5 @@
 """The landscape L_i: the wall as the next stone sees it, from one end or the other (§3.2)."""
 
-import itertools
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -11,7 +10,7 @@ from numpy.typing import NDArray
 from drystone.kernels.bits import BitLandscape, bit_landscape
 from drystone.kernels.lowering import skyline
 from drystone.kernels.raster import Mask, mirrored
-from drystone.kernels.rays import RaySums, ray_sums
+from drystone.kernels.rays import RaySums
 from drystone.kernels.silhouette import Ints
 from drystone.model.placement import Side
 from drystone.model.pose import PosedStone
@@ -83,9 +82,8 @@ class Landscape:
 
     @cached_property
     def box_table(self) -> NDArray[np.int64]:
-        """The boxes as rows (left, right, bottom, top)."""
-        numbers = itertools.chain.from_iterable(self.boxes)
-        return np.fromiter(numbers, np.int64, 4 * len(self.boxes)).reshape(-1, 4)
+        """Left, right, bottom and top (4, n) of the boxes."""
+        return np.array(self.boxes, np.int64).reshape(-1, 4).T.copy()
 
     @cached_property
     def bits(self) -> BitLandscape:
@@ -95,7 +93,7 @@ class Landscape:
     @cached_property
     def rays(self) -> RaySums:
         """What rays to the building side and downwards meet."""
-        return ray_sums(self.occupied, self.height_px - self.built_height_px)
+        return RaySums(self.occupied)
 
     def view(self, posed: PosedStone) -> PosedStone:
         """Return a posed stone as it appears in this view."""

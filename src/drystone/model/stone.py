@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from drystone.errors import Notice, PlanError
-from drystone.kernels.hull import pixel_hull
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.kernels.raster import Mask
+from drystone.kernels.silhouette import pixel_hull
 from drystone.model.outline import centroid_of, drawn_outline, solid, stone_outline
 
 OUTLINE_TOLERANCE_PX = 0.35

@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 
 from drystone.kernels import simplex
-from drystone.kernels.certificate import Figures, figures
+from drystone.kernels.cones import Figures, figures
 from drystone.kernels.simplex import Added, Answer, Optimum
 from drystone.statics.limit import MESSAGES, lateral_resistance, resistance_between
 from drystone.statics.local_update import PrimalDual, local_update

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from drystone.kernels.certificate import Figures, figures
+from drystone.kernels.cones import Figures, figures
 from drystone.kernels.simplex import Added, Cones
 from drystone.statics.incremental import certified_bound
 from drystone.statics.lp.certificate import certified_fall, no_alpha_of, optimum_of

@@ -6,14 +6,30 @@ least of some differences for every column.  The runs of the mask are tried only
 words of 64 positions; there nearly all positions meet something, most of them at the first runs.
 """
 
-from libc.stdint cimport int32_t, uint64_t
+from libc.stdint cimport uint64_t
 from libc.stdlib cimport free, malloc
-from libc.string cimport memset
+from libc.string cimport memcpy, memset
+
+from drystone.kernels.memory cimport ints, longs, longs_out, more_longs
 
 import numpy as np
 
-from drystone.kernels.compiled.lowering cimport Columns, Found, drop
-from drystone.kernels.compiled.words cimport lowest_bit, pack
+cdef extern from *:
+    """
+    #if defined(_MSC_VER)
+    #include <intrin.h>
+    static int lowest_bit(unsigned long long x) {
+        unsigned long at; _BitScanForward64(&at, x); return (int) at;
+    }
+    #elif defined(__GNUC__)
+    static int lowest_bit(unsigned long long x) { return __builtin_ctzll(x); }
+    #else
+    static int lowest_bit(unsigned long long x) {
+        int at = 0; while (!(x >> at & 1)) at++; return at;
+    }
+    #endif
+    """
+    int lowest_bit(uint64_t x) nogil  # x is not 0
 
 cdef uint64_t ALL = ~<uint64_t> 0
 
@@ -22,38 +38,77 @@ cdef enum:
     PIECE = 128  # the longest run that is two of the last
 
 
-cdef void spread(
-    const uint64_t *row, Py_ssize_t words, Py_ssize_t step, uint64_t *out
-) noexcept nogil:
-    """Set each bit that is set in a row of words, or `step` bits further on."""
-    cdef Py_ssize_t at, far = step >> 6
-    cdef int bit = step & 63
-    for at in range(words - far - 1):
-        out[at] = row[at] | row[at + far] >> bit | row[at + far + 1] << 1 << (63 - bit)
-    for at in range(max(0, words - far - 1), words):
-        out[at] = row[at] | (row[at + far] >> bit if at + far < words else 0)
+cdef class Columns:
+    """Columns chained by a row of each: the first one of a row, and the next one of the same."""
+
+    cdef int *rows
+    cdef int *following
+    cdef int *heads
+    cdef Py_ssize_t cols, count
+
+    def __cinit__(self, Py_ssize_t cols, Py_ssize_t count):
+        self.cols, self.count = cols, count
+        self.rows = <int *> malloc((2 * cols + count) * sizeof(int))
+        if self.rows == NULL:
+            raise MemoryError
+        self.following = self.rows + cols
+        self.heads = self.following + cols
+
+    def __dealloc__(self):
+        free(self.rows)
+
+    cdef void drop(self, const int *top, const int *bottom, Py_ssize_t width) noexcept nogil:
+        """Fill in the row at which a mask comes to rest; negative above the image."""
+        cdef Py_ssize_t col, at
+        cdef int under, row
+        for col in range(self.cols):
+            self.rows[col] = top[col] - bottom[0] - 1
+        for at in range(1, width):
+            under = bottom[at] + 1
+            for col in range(self.cols):
+                row = top[at + col] - under
+                self.rows[col] = row if row < self.rows[col] else self.rows[col]
+
+    cdef Py_ssize_t cover(self) noexcept nogil:
+        """Chain the columns by the row from which on something stands above the mask.
+
+        A mask that is lowered comes to rest two rows before; in between it meets something.  The
+        row that is returned is the first at which something can happen.
+        """
+        cdef Py_ssize_t col, row, start = self.count
+        memset(self.heads, 255, self.count * sizeof(int))
+        for col in range(self.cols - 1, -1, -1):
+            row = max(0, self.rows[col] + 2)
+            start = min(start, row)
+            if row < self.count:
+                self.following[col] = self.heads[row]
+                self.heads[row] = <int> col
+        return max(0, start - 2)
+
+    cdef void mark(self, uint64_t *line, Py_ssize_t row) noexcept nogil:
+        """Set the bits of the columns that are chained to a row."""
+        cdef Py_ssize_t col = self.heads[row]
+        while col >= 0:
+            line[col >> 6] |= <uint64_t> 1 << (col & 63)
+            col = self.following[col]
 
 
-cdef int32_t longest_gap(const uint64_t *row, Py_ssize_t width) noexcept nogil:
-    """Return how many bits there are in the longest run of zeros."""
-    cdef Py_ssize_t word, at, size, run = 0, longest = 0
-    cdef uint64_t bits
-    for word in range((width + 63) >> 6):
-        bits, at, size = row[word], 0, min(64, width - 64 * word)
-        while bits:
-            run += lowest_bit(bits)
-            longest = max(longest, run)
-            at += lowest_bit(bits)
-            bits >>= lowest_bit(bits)
-            run = 0
-            if bits == ALL:
-                at = 64
-                break
-            at += lowest_bit(~bits)
-            bits >>= lowest_bit(~bits)
-        run += max(0, size - at)
-        longest = max(longest, run)
-    return <int32_t> longest
+cdef class Found:
+    """Rows and columns of the positions found so far."""
+
+    cdef long long *at
+    cdef Py_ssize_t count, room
+
+    def __dealloc__(self):
+        free(self.at)
+
+    cdef int add(self, Py_ssize_t row, Py_ssize_t col) except -1 nogil:
+        if self.count == self.room:
+            self.at = more_longs(self.at, 2 * (2 * self.room + 512))
+            self.room = 2 * self.room + 512
+        self.at[2 * self.count], self.at[2 * self.count + 1] = row, col
+        self.count += 1
+        return 0
 
 
 cdef struct Run:
@@ -92,7 +147,7 @@ cdef class Lines:
     def __dealloc__(self):
         free(self.covered)
 
-    cdef void take(self, Py_ssize_t row, bint full, bint full_below, Found found) noexcept nogil:
+    cdef int take(self, Py_ssize_t row, bint full, bint full_below, Found found) except -1 nogil:
         """Add positions of the row above: the mask lands, or meets nothing but would below."""
         cdef Py_ssize_t word
         cdef uint64_t bits
@@ -103,14 +158,7 @@ cdef class Lines:
             while bits:
                 found.add(row, 64 * word + lowest_bit(bits))
                 bits &= bits - 1
-
-
-cdef void mark(uint64_t *line, Columns columns, Py_ssize_t row) noexcept nogil:
-    """Set the bits of the columns that are chained to a row."""
-    cdef Py_ssize_t col = columns.heads[row]
-    while col >= 0:
-        line[col >> 6] |= <uint64_t> 1 << (col & 63)
-        col = columns.following[col]
+        return 0
 
 
 cdef class BitLandscape:
@@ -120,61 +168,62 @@ cdef class BitLandscape:
     bit set where any of the 2**n pixels from there to the right is occupied.
     """
 
-    cdef Py_ssize_t first, height, width, words
-    cdef const int32_t[::1] top
-    cdef uint64_t[:, :, ::1] tables
-    cdef int32_t[::1] gaps
+    cdef Py_ssize_t first, height, width, words, rows
+    cdef const int *top
+    cdef const int *gaps  # the longest run of free pixels of each row
+    cdef const uint64_t *tables
+    cdef tuple kept
 
-    def __init__(self, const unsigned char[:, ::1] occupied, const int32_t[::1] top):
-        cdef Py_ssize_t row, level, rows
-        self.height, self.width, self.top = occupied.shape[0], occupied.shape[1], top
-        self.first = self.height
-        for row in range(self.width):
-            self.first = min(self.first, top[row])
-        self.words = (self.width + 63) // 64 + 1
-        rows = self.height - self.first
-        self.tables = np.zeros((LEVELS, max(1, rows), self.words), np.uint64)
-        self.gaps = np.empty(rows, np.int32)
-        with nogil:
-            for row in range(rows):
-                pack(&occupied[self.first + row, 0], self.width, &self.tables[0, row, 0], NULL)
-                self.gaps[row] = longest_gap(&self.tables[0, row, 0], self.width)
-                for level in range(1, LEVELS):
-                    spread(
-                        &self.tables[level - 1, row, 0],
-                        self.words,
-                        (<Py_ssize_t> 1) << (level - 1),
-                        &self.tables[level, row, 0],
-                    )
+    def __init__(self, occupied, top):
+        self.height, self.width = occupied.shape
+        self.first = top.min()
+        self.words, self.rows = (self.width + 63) // 64 + 1, self.height - self.first
+        built, columns = occupied[self.first :], np.arange(1, self.width + 1, dtype=np.int32)
+        gaps = (columns - np.maximum.accumulate(built * columns, axis=1)).max(axis=1)
+        packed = np.packbits(built, axis=1, bitorder="little")
+        octets = np.zeros((self.rows, 8 * self.words), np.uint8)
+        octets[:, : packed.shape[1]] = packed
+        tables = np.zeros((LEVELS, max(1, self.rows), self.words), np.uint64)
+        tables[0, : self.rows] = octets.view("<u8")
+        for level in range(1, LEVELS):
+            step, last = 1 << (level - 1), tables[level - 1]
+            tables[level] = last | last >> step
+            tables[level, :, :-1] |= last[:, 1:] << (64 - step)
+        signed = tables.view(np.int64)
+        self.kept = (top, gaps, signed)
+        self.top, self.gaps, self.tables = ints(top), ints(gaps), <uint64_t *> longs(signed)
 
     def resting(self, mask):
         """Return all positions of a mask where it rests, by row, then column."""
-        cdef const int32_t[:, ::1] runs = mask.runs
-        cdef const int32_t[::1] bottom = mask.bottom
-        cdef Py_ssize_t cols = self.width - bottom.shape[0] + 1
-        cdef Py_ssize_t rows = self.height - <Py_ssize_t> mask.height + 1, start
+        cdef Py_ssize_t width = mask.width, count = len(mask.runs), start
+        cdef Py_ssize_t cols = self.width - width + 1
+        cdef Py_ssize_t rows = self.height - <Py_ssize_t> mask.height + 1
         if cols <= 0 or rows <= 0:
             return np.empty((0, 2), np.int64)
+        cdef const int *bottom = ints(mask.bottom)
+        cdef const int *runs = ints(mask.runs)
         cdef Columns columns = Columns(cols, rows + 2)
-        cdef Lines lines = Lines(cols, runs.shape[0] * ((bottom.shape[0] + PIECE - 1) // PIECE))
+        cdef Lines lines = Lines(cols, count * ((width + PIECE - 1) // PIECE))
         cdef Found found = Found()
         with nogil:
-            self.prepare(runs, lines)
-            drop(&self.top[0], &bottom[0], cols, bottom.shape[0], columns.rows)
-            start = cover(columns)
+            self.prepare(runs, count, lines)
+            columns.drop(self.top, bottom, width)
+            start = columns.cover()
             self.scan(start, rows, columns, lines, found)
-        return found.positions()
+        positions = np.empty((found.count, 2), np.int64)
+        memcpy(longs_out(positions), found.at, found.count * 2 * sizeof(long long))
+        return positions
 
-    cdef void prepare(self, const int32_t[:, ::1] runs, Lines lines) noexcept nogil:
+    cdef void prepare(self, const int *runs, Py_ssize_t count, Lines lines) noexcept nogil:
         """Cut the runs into pieces, and look up where the dilations of each begin."""
-        cdef Py_ssize_t n, start, length, piece
-        for n in range(runs.shape[0]):
-            start, length = runs[n, 1], runs[n, 2]
+        cdef Py_ssize_t n, row, start, length, piece
+        for n in range(0, 3 * count, 3):
+            row, start, length = runs[n], runs[n + 1], runs[n + 2]
             if length > lines.longest:
-                lines.longest, lines.longest_row = length, runs[n, 0]
+                lines.longest, lines.longest_row = length, row
             while length > 0:
                 piece = min(length, PIECE)
-                self.add_piece(lines, runs[n, 0], start, piece)
+                self.add_piece(lines, row, start, piece)
                 start += piece
                 length -= piece
 
@@ -186,31 +235,32 @@ cdef class BitLandscape:
         cdef const uint64_t *table
         while 2 << level <= length and level + 1 < LEVELS:
             level += 1
-        table = &self.tables[level, 0, 0] + row * self.words
+        table = self.tables + (level * self.rows + row) * self.words
         far = start + length - ((<Py_ssize_t> 1) << level)
         run.row = <int> row
         run.near, run.near_bit = table + (start >> 6), start & 63
         run.far, run.far_bit = table + (far >> 6), far & 63
         lines.count += 1
 
-    cdef void scan(
+    cdef int scan(
         self, Py_ssize_t start, Py_ssize_t rows, Columns columns, Lines lines, Found found
-    ) noexcept nogil:
+    ) except -1 nogil:
         """Find the positions, row by row from the first at which something can happen."""
         cdef Py_ssize_t row
         cdef bint full, full_above = True
         for row in range(start, rows + 1):
             full = True
             if row < rows:
-                mark(lines.covered, columns, row)
+                columns.mark(lines.covered, row)
                 if self.has_room(lines, row + lines.longest_row):
                     full = self.meets_everywhere(lines, row)
             if row > start and not (full_above and columns.heads[row + 1] < 0):
                 memset(lines.landing, 0, lines.words * sizeof(uint64_t))
-                mark(lines.landing, columns, row + 1)
+                columns.mark(lines.landing, row + 1)
                 lines.take(row - 1, full_above, full, found)
             lines.above, lines.now = lines.now, lines.above
             full_above = full
+        return 0
 
     cdef bint has_room(self, Lines lines, Py_ssize_t row) noexcept nogil:
         """Say whether the longest run of the mask fits into a row somewhere."""
@@ -236,17 +286,3 @@ cdef class BitLandscape:
             lines.now[word] = bits
             left |= ~bits
         return left == 0
-
-
-cdef Py_ssize_t cover(Columns columns) noexcept nogil:
-    """Chain the columns by the row from which on something stands above the mask.
-
-    A mask that is lowered comes to rest two rows before; in between it meets something.  The row
-    that is returned is the first at which something can happen.
-    """
-    cdef Py_ssize_t col, start = columns.count
-    for col in range(columns.cols):
-        columns.rows[col] = max(0, columns.rows[col] + 2)
-        start = min(start, columns.rows[col])
-    columns.chain()
-    return max(0, start - 2)

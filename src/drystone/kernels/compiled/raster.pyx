@@ -3,10 +3,31 @@
 
 from libc.math cimport INFINITY, fabs
 
+from drystone.kernels.memory cimport doubles, doubles_out, flags_out, ints_out, pixels, stride
+
 import numpy as np
 
 ctypedef unsigned char byte
-ctypedef unsigned short quarter  # samples of a quarter of a pixel, wide and high
+
+
+cdef struct Source:
+    # The pixels of a mask, and how far they are apart.
+    const byte *pixels
+    Py_ssize_t height
+    Py_ssize_t width
+    Py_ssize_t down
+    Py_ssize_t right
+
+
+cdef struct Sheet:
+    # Pixels of the result: one row and one column more than it is high and wide.
+    Py_ssize_t height
+    Py_ssize_t width
+    int *counts  # samples that hit, a quarter of a pixel wide and high, a free pixel all around
+    int *covered
+    byte *taken
+    int *runs
+    Py_ssize_t room
 
 
 cdef struct Turn:
@@ -24,26 +45,29 @@ cdef struct Box:
     Py_ssize_t right
 
 
-def turned_boxes(const double[:, :] points, const double[:, :] turns):
+def turned_boxes(points, turns):
     """Return what `turned_boxes_numpy` returns."""
+    points, turns = np.ascontiguousarray(points), np.ascontiguousarray(turns)
+    boxes = np.empty((len(turns), 4))
     cdef double x, y, left, bottom, right, top
-    cdef Py_ssize_t at, turn
-    boxes = np.empty((turns.shape[0], 4))
-    cdef double[:, ::1] out = boxes
-    for turn in range(turns.shape[0]):
+    cdef Py_ssize_t i, k, count = 2 * len(points), end = 2 * len(turns)
+    cdef const double *at = doubles(points)
+    cdef const double *way = doubles(turns)
+    cdef double *out = doubles_out(boxes)
+    for k in range(0, end, 2):
         left = bottom = INFINITY
         right = top = -INFINITY
-        for at in range(points.shape[0]):
-            x = points[at, 0] * turns[turn, 0] - points[at, 1] * turns[turn, 1]
-            y = points[at, 0] * turns[turn, 1] + points[at, 1] * turns[turn, 0]
+        for i in range(0, count, 2):
+            x = at[i] * way[k] - at[i + 1] * way[k + 1]
+            y = at[i] * way[k + 1] + at[i + 1] * way[k]
             left, right = min(left, x), max(right, x)
             bottom, top = min(bottom, y), max(top, y)
-        out[turn, 0], out[turn, 1], out[turn, 2], out[turn, 3] = left, bottom, right, top
+        out[2 * k], out[2 * k + 1], out[2 * k + 2], out[2 * k + 3] = left, bottom, right, top
     return boxes
 
 
 def fitted(
-    const byte[:, :] mask,
+    mask,
     (double, double) centre,
     (double, double) turn,
     double scale,
@@ -52,43 +76,49 @@ def fitted(
     (double, double) wanted,
 ):
     """Return what `fitted_numpy` returns."""
-    cdef Py_ssize_t width = grid[0], height = grid[1], k = grid[2], number = 0
+    cdef Py_ssize_t width = grid[0] + 1, height = grid[1] + 1, k = grid[2], number = 0
     cdef Turn way = Turn(turn[0], turn[1], centre[0], centre[1], scale)
+    cdef Source source = Source(
+        pixels(mask), mask.shape[0], mask.shape[1], stride(mask, 0), stride(mask, 1)
+    )
     cdef Box box
-    cdef quarter[:, ::1] counts = np.zeros((4 * (height + 2), 4 * (width + 2)), np.uint16)
-    cdef double[:, ::1] along = np.empty((2, width * k))
-    cdef int[:, ::1] covered = np.empty((height + 1, width + 1), np.intc)
-    cdef byte[:, ::1] taken = np.empty((height + 1, width + 1), np.uint8)
-    cdef Py_ssize_t[:, ::1] runs = np.empty((3, covered.size // 2 + height + 2), np.intp)
-    cdef byte[:, ::1] out
+    counts = np.zeros((4 * (height + 1), 4 * (width + 1)), np.int32)
+    along, covered = np.empty((2, grid[0] * k)), np.empty((height, width), np.int32)
+    taken = np.empty((height, width), np.bool_)
+    runs = np.empty((3, width * height // 2 + height + 1), np.int32)
+    cdef double *steps = doubles_out(along)
+    cdef Sheet sheet = Sheet(
+        height, width, ints_out(counts), ints_out(covered), flags_out(taken), ints_out(runs),
+        runs.shape[1],
+    )
     with nogil:
-        sample(mask, &way, corner[0], corner[1], k, along, counts)
-        number = best_phase(counts, k * k, wanted[0], wanted[1], covered)
-        box = in_one_piece(covered, k * k, taken, runs)
+        sample(&source, &way, corner[0], corner[1], k, steps, &sheet)
+        number = best_phase(&sheet, k * k, wanted[0], wanted[1])
+        box = in_one_piece(&sheet, k * k)
     if box.bottom == 0:
         return None
-    turned = np.empty((box.bottom - box.top, box.right - box.left), np.bool_)
-    out = turned.view(np.uint8)
-    out[:, :] = taken[box.top : box.bottom, box.left : box.right]
+    turned = taken[box.top : box.bottom, box.left : box.right].copy()
     return turned, box.left, box.bottom, number
 
 
 cdef void sample(
-    const byte[:, :] mask,
+    const Source *mask,
     const Turn *way,
     double left,
     double top,
     Py_ssize_t k,
-    double[:, ::1] along,
-    quarter[:, ::1] counts,
+    double *along,
+    Sheet *sheet,
 ) noexcept nogil:
     """Count the samples that hit the mask, line by line; a pixel is left free on every side."""
-    cdef Py_ssize_t height = mask.shape[0], width = mask.shape[1], side = k // 4
-    cdef Py_ssize_t lines = (counts.shape[0] - 8) * side, size = along.shape[1]
+    cdef Py_ssize_t height = mask.height, width = mask.width, side = k // 4
+    cdef Py_ssize_t lines = (sheet.height - 1) * k, size = (sheet.width - 1) * k
+    cdef Py_ssize_t across = 4 * (sheet.width + 1)
     cdef Py_ssize_t line, at, first, stop
     cdef double u, v, col, row
-    cdef double *cols = &along[0, 0]
-    cdef double *rows = &along[1, 0]
+    cdef double *cols = along
+    cdef double *rows = along + size
+    cdef int *counts
     for at in range(size):
         u = ((at + 0.5) / k + left) / way.scale
         cols[at] = way.cos * u
@@ -106,7 +136,8 @@ cdef void sample(
         while first < stop and not inside(cols[stop - 1] + col, rows[stop - 1] + row, width, height):
             stop -= 1
         if first < stop:
-            gather(mask, cols, rows, col, row, first, stop, side, &counts[4 + line // side, 4])
+            counts = sheet.counts + (4 + line // side) * across + 4
+            gather(mask, cols, rows, col, row, first, stop, side, counts)
 
 
 cdef inline bint inside(double col, double row, Py_ssize_t width, Py_ssize_t height) noexcept nogil:
@@ -130,7 +161,7 @@ cdef void clip(
 
 
 cdef void gather(
-    const byte[:, :] mask,
+    const Source *mask,
     const double *cols,
     const double *rows,
     double col,
@@ -138,10 +169,10 @@ cdef void gather(
     Py_ssize_t first,
     Py_ssize_t stop,
     Py_ssize_t side,
-    quarter *counts,
+    int *counts,
 ) noexcept nogil:
-    cdef const byte *source = &mask[0, 0]
-    cdef Py_ssize_t down = mask.strides[0], right = mask.strides[1], at
+    cdef const byte *source = mask.pixels
+    cdef Py_ssize_t down = mask.down, right = mask.right, at
     # Nothing is negative: cutting off the fraction is floor().
     if side == 1:
         for at in range(first, stop):
@@ -154,107 +185,105 @@ cdef void gather(
 
 
 cdef Py_ssize_t best_phase(
-    quarter[:, ::1] counts, int full, double wanted, double tolerance, int[:, ::1] covered
+    Sheet *sheet, int full, double wanted, double tolerance
 ) noexcept nogil:
     """Fill in the counts of the first sub-pixel position of the right area, or of the nearest."""
     cdef Py_ssize_t number, best = 0
     cdef double error, least = INFINITY
     for number in range(16):
-        error = fabs(cover(counts, number, full, covered) - wanted)
+        error = fabs(cover(sheet, number, full) - wanted)
         if error < least:
             best, least = number, error
         if error <= tolerance:
             break
     if number != best:
-        cover(counts, best, full, covered)
+        cover(sheet, best, full)
     return best
 
 
-cdef Py_ssize_t cover(
-    quarter[:, ::1] counts, Py_ssize_t number, int full, int[:, ::1] covered
-) noexcept nogil:
+cdef Py_ssize_t cover(Sheet *sheet, Py_ssize_t number, int full) noexcept nogil:
     """Count the samples of each pixel at a sub-pixel position; return how many are half covered."""
-    cdef Py_ssize_t up = number // 4, right = number % 4, across = counts.shape[1]
+    cdef Py_ssize_t up = number // 4, right = number % 4, across = 4 * (sheet.width + 1)
     cdef Py_ssize_t row, col, area = 0
     cdef int count
-    cdef const quarter *a
-    cdef const quarter *b
-    cdef const quarter *c
-    cdef const quarter *d
-    for row in range(covered.shape[0]):
-        a = &counts[up + 4 * row, 4 - right]
+    cdef const int *a
+    cdef const int *b
+    cdef const int *c
+    cdef const int *d
+    cdef int *covered = sheet.covered
+    for row in range(sheet.height):
+        a = sheet.counts + (up + 4 * row) * across + 4 - right
         b, c, d = a + across, a + 2 * across, a + 3 * across
-        for col in range(covered.shape[1]):
+        for col in range(sheet.width):
             count = a[0] + a[1] + a[2] + a[3] + b[0] + b[1] + b[2] + b[3]
             count += c[0] + c[1] + c[2] + c[3] + d[0] + d[1] + d[2] + d[3]
-            covered[row, col] = count
+            covered[row * sheet.width + col] = count
             area += 2 * count >= full
             a, b, c, d = a + 4, b + 4, c + 4, d + 4
     return area
 
 
-cdef Box in_one_piece(
-    int[:, ::1] covered, int full, byte[:, ::1] taken, Py_ssize_t[:, ::1] runs
-) noexcept nogil:
+cdef Box in_one_piece(Sheet *sheet, int full) noexcept nogil:
     """Take the pixels covered to a half, or to less where a thin neck would break otherwise.
 
     Returns the bounding box of what is taken; its bottom is 0 when there is nothing.
     """
-    cdef Py_ssize_t row, col, attempt
+    cdef Py_ssize_t at, attempt
     cdef int least = full // 2
     for attempt in range(3):
-        for row in range(covered.shape[0]):
-            for col in range(covered.shape[1]):
-                taken[row, col] = covered[row, col] >= least
-        if pieces(taken, runs) == 1:
+        for at in range(sheet.height * sheet.width):
+            sheet.taken[at] = sheet.covered[at] >= least
+        if pieces(sheet) == 1:
             break
         least = full // 4 if attempt == 0 else 1
-    return bounds(taken)
+    return bounds(sheet)
 
 
-cdef Py_ssize_t pieces(byte[:, ::1] taken, Py_ssize_t[:, ::1] runs) noexcept nogil:
+cdef Py_ssize_t pieces(Sheet *sheet) noexcept nogil:
     """Count the pieces, joined at edges or corners, by the runs of the rows."""
-    cdef Py_ssize_t *start = &runs[0, 0]
-    cdef Py_ssize_t *stop = &runs[1, 0]
-    cdef Py_ssize_t *parent = &runs[2, 0]
+    cdef int *start = sheet.runs
+    cdef int *stop = start + sheet.room
+    cdef int *parent = stop + sheet.room
+    cdef const byte *taken
     cdef Py_ssize_t row, col, above, count = 0, last = 0, this = 0, found = 0, one, other
-    for row in range(taken.shape[0]):
+    for row in range(sheet.height):
+        taken = sheet.taken + row * sheet.width
         above, last, this = last, this, count
         col = 0
-        while col < taken.shape[1]:
-            if not taken[row, col]:
+        while col < sheet.width:
+            if not taken[col]:
                 col += 1
                 continue
-            start[count] = col
-            while col < taken.shape[1] and taken[row, col]:
+            start[count] = <int> col
+            while col < sheet.width and taken[col]:
                 col += 1
-            stop[count], parent[count] = col, count
+            stop[count], parent[count] = <int> col, <int> count
             found += 1
             above = last
             while above < this and start[above] <= col:
                 if stop[above] >= start[count]:
                     one, other = root(parent, above), root(parent, count)
                     if one != other:
-                        parent[other] = one
+                        parent[other] = <int> one
                         found -= 1
                 above += 1
             count += 1
     return found
 
 
-cdef inline Py_ssize_t root(Py_ssize_t *parent, Py_ssize_t at) noexcept nogil:
+cdef inline Py_ssize_t root(int *parent, Py_ssize_t at) noexcept nogil:
     while parent[at] != at:
         parent[at] = parent[parent[at]]
         at = parent[at]
     return at
 
 
-cdef Box bounds(byte[:, ::1] taken) noexcept nogil:
-    cdef Box box = Box(taken.shape[0], taken.shape[1], 0, 0)
+cdef Box bounds(Sheet *sheet) noexcept nogil:
+    cdef Box box = Box(sheet.height, sheet.width, 0, 0)
     cdef Py_ssize_t row, col
-    for row in range(taken.shape[0]):
-        for col in range(taken.shape[1]):
-            if taken[row, col]:
+    for row in range(sheet.height):
+        for col in range(sheet.width):
+            if sheet.taken[row * sheet.width + col]:
                 box.top, box.bottom = min(box.top, row), row + 1
                 box.left, box.right = min(box.left, col), max(box.right, col + 1)
     return box

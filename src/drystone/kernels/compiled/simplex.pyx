@@ -11,16 +11,18 @@ be the same bytes on every machine.
 """
 
 from libc.math cimport fabs, frexp, ldexp
-from libc.stdint cimport int32_t, uint64_t
+from libc.stdint cimport uint64_t
 from libc.stdlib cimport free, malloc
 from libc.string cimport memcpy, memset
+
+from drystone.kernels.memory cimport doubles, doubles_out, ints, ints_out
 
 import numpy as np
 
 ctypedef double *p_double
 ctypedef const double *c_double
-ctypedef int32_t *p_int
-ctypedef const int32_t *c_int
+ctypedef int *p_int
+ctypedef const int *c_int
 
 # ---- Data ----------------------------------------------------------------------------------------
 
@@ -79,7 +81,7 @@ cdef struct Columns:
 # The optimal basis of the wall.
 cdef struct WallBasis:
     Py_ssize_t size, alpha_row
-    const int32_t *basic
+    const int *basic
     c_double values, inverse, transposed, reduced_costs, secondary_costs
 
 # The basis inverse: F times the inverse of the wall, bordered by an identity for the new bodies
@@ -101,7 +103,7 @@ cdef struct State:
     Columns old
     Columns new
     Py_ssize_t columns, size, alpha_row
-    const int32_t *closed
+    const int *closed
     Py_ssize_t closed_count
     Inverse inverse
     double speed, pivot
@@ -112,7 +114,7 @@ cdef struct State:
     # artificial one or a closed column, has to be 0.
     p_double rhs, live, values, direction, feasible, velocity, ray, inverse_row, pivot_column
     p_double residual, secondary_values
-    int32_t *basic
+    int *basic
     char *fixed
     # Three more than that, for the ground.
     p_double with_ground, total
@@ -122,9 +124,9 @@ cdef struct State:
     # One number a new column.
     p_int new_first, new_second
     # One number a row or a column, whichever are more.
-    int32_t *listed
+    int *listed
     p_double tableau, small_ray
-    int32_t *small_basic
+    int *small_basic
     # A new inverse, when the old one is inaccurate.
     double *anew
 
@@ -243,8 +245,8 @@ cdef void open_eta(Inverse *inverse, Py_ssize_t row) noexcept nogil:
     cdef double *column = inverse.eta + inverse.count * inverse.size
     memset(column, 0, inverse.size * sizeof(double))
     column[row] = 1.0
-    inverse.slot[row] = <int32_t>inverse.count
-    inverse.eta_row[inverse.count] = <int32_t>row
+    inverse.slot[row] = <int>inverse.count
+    inverse.eta_row[inverse.count] = <int>row
     inverse.count += 1
 
 
@@ -326,7 +328,7 @@ cdef void update_eta(Inverse *inverse, Py_ssize_t row, const double *pivot_colum
             kept[row] = factor
 
 
-cdef bint invert(double *matrix, Py_ssize_t size, double *line, int32_t *swaps) noexcept nogil:
+cdef bint invert(double *matrix, Py_ssize_t size, double *line, int *swaps) noexcept nogil:
     """Invert a matrix in place; False when it has no inverse.
 
     Gauss-Jordan with exchanges of rows: the libraries for it differ in the last bits from machine
@@ -343,7 +345,7 @@ cdef bint invert(double *matrix, Py_ssize_t size, double *line, int32_t *swaps) 
         pivot = matrix[best * size + step]
         if not fabs(pivot) > SINGULAR:
             return False
-        swaps[step] = <int32_t>best
+        swaps[step] = <int>best
         for j in range(size):
             line[j] = matrix[best * size + j]
             matrix[best * size + j] = matrix[step * size + j]
@@ -404,7 +406,7 @@ cdef Py_ssize_t leaving_row(State *state) noexcept nogil:
 
 
 cdef Py_ssize_t harris(
-    const double *pivots, double sign, const double *values, double slack, int32_t *listed,
+    const double *pivots, double sign, const double *values, double slack, int *listed,
     Py_ssize_t count
 ) noexcept nogil:
     """Keep of a list what passes a ratio test with slack, in two passes; return how many.
@@ -433,7 +435,7 @@ cdef Py_ssize_t harris(
 
 cdef Py_ssize_t ratio_test(
     const double *pivots, double sign, const double *values, const double *secondary,
-    int32_t *listed, Py_ssize_t count
+    int *listed, Py_ssize_t count
 ) noexcept nogil:
     """Return what has the smallest ratio of value to pivot, then of secondary value; -1 if none.
 
@@ -456,7 +458,7 @@ cdef Py_ssize_t dual_ratio_test(
     """Return the column, of the first so many, that enters where the pivot row has this sign."""
     cdef Py_ssize_t j, found = 0
     for j in range(count):
-        state.listed[found] = <int32_t>j
+        state.listed[found] = <int>j
         found += sign * state.pivot_row[j] > smallest
     return ratio_test(
         state.pivot_row, sign, state.reduced_costs, state.secondary_costs, state.listed, found
@@ -477,7 +479,7 @@ cdef Py_ssize_t primal_ratio_test(State *state) noexcept nogil:
     if row >= 0:
         return row
     for i in range(state.size):
-        state.listed[found] = <int32_t>i
+        state.listed[found] = <int>i
         found += column[i] > state.pivot and not state.fixed[i] and i != state.alpha_row
     return ratio_test(column, 1.0, state.values, state.secondary_values, state.listed, found)
 
@@ -515,20 +517,20 @@ cdef Py_ssize_t lay_out(State *state, char *memory) noexcept nogil:
         rows[i][0] = <double *>take_memory(memory, &used, (size + 3) * sizeof(double))
     for i in range(4):
         per_column[i][0] = <double *>take_memory(memory, &used, columns * sizeof(double))
-    state.basic = <int32_t *>take_memory(memory, &used, size * sizeof(int32_t))
+    state.basic = <int *>take_memory(memory, &used, size * sizeof(int))
     state.fixed = take_memory(memory, &used, size)
     state.open = take_memory(memory, &used, columns)
-    state.new_first = <int32_t *>take_memory(memory, &used, state.new.count * sizeof(int32_t))
-    state.new_second = <int32_t *>take_memory(memory, &used, state.new.count * sizeof(int32_t))
-    state.listed = <int32_t *>take_memory(memory, &used, (longest + 1) * sizeof(int32_t))
+    state.new_first = <int *>take_memory(memory, &used, state.new.count * sizeof(int))
+    state.new_second = <int *>take_memory(memory, &used, state.new.count * sizeof(int))
+    state.listed = <int *>take_memory(memory, &used, (longest + 1) * sizeof(int))
     i = tableau_size(new, state.new.count + 1)
     state.tableau = <double *>take_memory(memory, &used, i * sizeof(double))
     state.small_ray = <double *>take_memory(
         memory, &used, (new + state.new.count + 1) * sizeof(double)
     )
-    state.small_basic = <int32_t *>take_memory(memory, &used, new * sizeof(int32_t))
-    state.inverse.eta_row = <int32_t *>take_memory(memory, &used, size * sizeof(int32_t))
-    state.inverse.slot = <int32_t *>take_memory(memory, &used, size * sizeof(int32_t))
+    state.small_basic = <int *>take_memory(memory, &used, new * sizeof(int))
+    state.inverse.eta_row = <int *>take_memory(memory, &used, size * sizeof(int))
+    state.inverse.slot = <int *>take_memory(memory, &used, size * sizeof(int))
     state.inverse.factors = <double *>take_memory(memory, &used, (size + 1) * sizeof(double))
     state.inverse.lines = <const double **>take_memory(
         memory, &used, (size + 1) * sizeof(double *)
@@ -557,7 +559,7 @@ cdef void reset(State *state) noexcept nogil:
         state.values[i] = state.feasible[i] = state.wall.values[i]
         state.direction[i] = 0.0
     for i in range(old, state.size):
-        state.basic[i] = <int32_t>(ARTIFICIAL - i)
+        state.basic[i] = <int>(ARTIFICIAL - i)
         state.fixed[i] = True
         state.values[i] = state.rhs[i]
         state.feasible[i] = state.direction[i] = 0.0
@@ -601,7 +603,7 @@ cdef void pivot_on(State *state, Py_ssize_t row, Py_ssize_t variable) noexcept n
         state.direction[i] -= step * column[i]
     state.values[row] = value
     state.direction[row] = step
-    state.basic[row] = <int32_t>variable
+    state.basic[row] = <int>variable
     state.fixed[row] = variable <= ARTIFICIAL
     state.pivots += 1
 
@@ -787,7 +789,7 @@ cdef double SMALL_PERTURBATION = 1e-6
 
 
 cdef int solve_small(
-    double *tableau, Py_ssize_t rows, Py_ssize_t count, int32_t *basic, double *ray, double *lift
+    double *tableau, Py_ssize_t rows, Py_ssize_t count, int *basic, double *ray, double *lift
 ) noexcept nogil:
     """Minimise costs . x for columns x = rhs, x >= 0, of which `ray` is a certificate if empty.
 
@@ -817,7 +819,7 @@ cdef int solve_small(
         for j in range(width):
             line[j] *= flip
         line[count + i] = 1.0
-        basic[i] = <int32_t>(count if flip > 0.0 else -1)
+        basic[i] = <int>(count if flip > 0.0 else -1)
     for i in range(rows):
         line = tableau + i * width
         for j in range(count):
@@ -825,7 +827,7 @@ cdef int solve_small(
         phase1[width - 1] -= line[width - 1]
     for i in range(rows):
         ray[i] = 1.0 if basic[i] >= 0 else -1.0
-        basic[i] = <int32_t>count
+        basic[i] = <int>count
     for j in range(count, width):
         phase1[width + j] = 0.0
     status = two_phases(tableau, rows, count, basic)
@@ -838,7 +840,7 @@ cdef int solve_small(
 
 
 cdef int two_phases(
-    double *tableau, Py_ssize_t rows, Py_ssize_t count, int32_t *basic
+    double *tableau, Py_ssize_t rows, Py_ssize_t count, int *basic
 ) noexcept nogil:
     """Pivot by Dantzig's rule, after a while by Bland's, until no column improves the costs."""
     cdef Py_ssize_t step, row, column, patience = 20 + 10 * rows, width = count + rows + 1
@@ -850,7 +852,7 @@ cdef int two_phases(
         if row < 0:
             return SMALL_UNBOUNDED
         tableau_pivot(tableau, rows + 2, width, row, column)
-        basic[row] = <int32_t>column
+        basic[row] = <int>column
     return SMALL_FAILED
 
 
@@ -875,7 +877,7 @@ cdef Py_ssize_t tableau_column(
 
 cdef Py_ssize_t tableau_row(
     const double *tableau, Py_ssize_t rows, Py_ssize_t count, Py_ssize_t column,
-    const int32_t *basic
+    const int *basic
 ) noexcept nogil:
     """Return the row that leaves, the largest pivot among equals; -1 if none does.
 
@@ -1250,7 +1252,7 @@ cdef int primal_phase(State *state, int max_pivots) noexcept nogil:
 
 # ---- What is written out -------------------------------------------------------------------------
 
-cdef void write_forces(State *state, double unit, double[::1] forces) noexcept nogil:
+cdef void write_forces(State *state, double unit, double *forces) noexcept nogil:
     """Write the forces of the open columns."""
     cdef Py_ssize_t i, j, kept = 0
     memset(state.pivot_row, 0, state.columns * sizeof(double))
@@ -1311,8 +1313,8 @@ cdef double inverse_error(State *state, const double *cols) noexcept nogil:
 
 
 cdef void write_rest(
-    State *state, const double *rows, int32_t[::1] basic, double[::1] reduced_costs,
-    double[::1] secondary_costs
+    State *state, const double *rows, int *basic, double *reduced_costs,
+    double *secondary_costs
 ) noexcept nogil:
     """Write what is basic, reduced costs, and secondary ones that begin anew."""
     cdef Py_ssize_t i, j, kept = 0
@@ -1320,13 +1322,13 @@ cdef void write_rest(
     for i in range(state.size):
         if state.basic[i] >= 0:
             state.pivot_row[state.basic[i]] = 0.0
-    perturbation(0, secondary_costs.shape[0], &secondary_costs[0])
+    perturbation(0, state.columns - state.closed_count, secondary_costs)
     for j in range(state.columns):
         if state.open[j]:
             reduced_costs[kept] = max(state.pivot_row[j], 0.0)
             secondary_costs[kept] = 1.0 + secondary_costs[kept]
             # From now on: the number of the column among those that are left.
-            state.listed[j] = <int32_t>kept
+            state.listed[j] = <int>kept
             kept += 1
     for i in range(state.size):
         basic[i] = state.basic[i]
@@ -1366,40 +1368,25 @@ cdef class Program:
     cdef double unit
     cdef int sign
     cdef Py_ssize_t bodies
-    cdef const double[::1] weights
+    cdef const double *weights
     cdef tuple kept
     cdef list spare
 
     def __init__(self, optimum):
         basis, cones = optimum.basis, optimum.cones
-        cdef const double[::1] values = basis.values, reduced_costs = basis.reduced_costs
-        cdef const double[::1] secondary_costs = basis.secondary_costs
-        cdef const double[:, ::1] inverse = basis.inverse, transposed = basis.transposed
-        cdef const double[:, ::1] entries = cones.entries
-        cdef const int32_t[::1] basic = basis.basic
-        cdef const int32_t[::1] first = 3 * cones.first + 3
-        cdef const int32_t[::1] second = 3 * cones.second + 3
-        self.kept = (basis, cones, first.base, second.base)
-        self.weights = optimum.weights
+        first, second = 3 * cones.first + 3, 3 * cones.second + 3
+        self.kept = (optimum.weights, basis, cones, first, second)
+        self.weights, self.bodies = doubles(optimum.weights), len(optimum.weights)
         self.unit = basis.unit
         self.sign = optimum.sign
-        self.bodies = self.weights.shape[0]
         self.spare = []
         memset(&self.blank, 0, sizeof(State))
-        self.blank.wall.size = basic.shape[0]
-        self.blank.wall.alpha_row = basis.alpha_row
-        self.blank.old.count = first.shape[0]
-        if self.bodies:
-            self.blank.wall.basic = &basic[0]
-            self.blank.wall.values = &values[0]
-            self.blank.wall.inverse = &inverse[0, 0]
-            self.blank.wall.transposed = &transposed[0, 0]
-        if first.shape[0]:
-            self.blank.old.first = &first[0]
-            self.blank.old.second = &second[0]
-            self.blank.old.entries = &entries[0, 0]
-            self.blank.wall.reduced_costs = &reduced_costs[0]
-            self.blank.wall.secondary_costs = &secondary_costs[0]
+        self.blank.wall = WallBasis(
+            len(basis.basic), basis.alpha_row, ints(basis.basic), doubles(basis.values),
+            doubles(basis.inverse), doubles(basis.transposed), doubles(basis.reduced_costs),
+            doubles(basis.secondary_costs),
+        )
+        self.blank.old = Columns(len(first), ints(first), ints(second), doubles(cones.entries))
 
     def solve_added(self, added, int max_pivots):
         """Return the fields of an `Answer`."""
@@ -1408,7 +1395,7 @@ cdef class Program:
         cdef Scratch scratch = self.opened(&state, added, unit)
         cdef int status
         cdef Py_ssize_t i
-        cdef double[::1] written
+        cdef double *written
         with nogil:
             status = solve(&state, max_pivots)
             free(state.anew)
@@ -1416,9 +1403,10 @@ cdef class Program:
         if status == OPTIMAL:
             alpha = self.sign * state.values[state.alpha_row]
             forces = np.empty(state.columns - state.closed_count)
-            write_forces(&state, unit, forces)
+            write_forces(&state, unit, doubles_out(forces))
         if status == OPTIMAL or status == UNSTABLE:
-            written = velocity = np.empty(state.size)
+            velocity = np.empty(state.size)
+            written = doubles_out(velocity)
             for i in range(state.size):
                 written[i] = state.velocity[i] / unit if status == OPTIMAL else state.ray[i]
         self.spare.append(scratch)
@@ -1434,15 +1422,17 @@ cdef class Program:
         inverse = np.empty((state.size, state.size))
         transposed = np.empty((state.size, state.size))
         reduced_costs, secondary_costs = np.empty(left), np.empty(left)
-        cdef int32_t[::1] basic_out = basic
-        cdef double[::1] values_out = values
-        cdef double[::1] reduced_out = reduced_costs, secondary_out = secondary_costs
-        cdef double[:, ::1] rows_out = inverse, cols_out = transposed
+        cdef int *basic_out = ints_out(basic)
+        cdef double *values_out = doubles_out(values)
+        cdef double *reduced_out = doubles_out(reduced_costs)
+        cdef double *secondary_out = doubles_out(secondary_costs)
+        cdef double *rows_out = doubles_out(inverse)
+        cdef double *cols_out = doubles_out(transposed)
         with nogil:
             solve(&state, max_pivots)
-            write_inverse(&state, &rows_out[0, 0], &cols_out[0, 0])
-            write_values(&state, &cols_out[0, 0], &values_out[0])
-            write_rest(&state, &rows_out[0, 0], basic_out, reduced_out, secondary_out)
+            write_inverse(&state, rows_out, cols_out)
+            write_values(&state, cols_out, values_out)
+            write_rest(&state, rows_out, basic_out, reduced_out, secondary_out)
             free(state.anew)
         self.spare.append(scratch)
         return (
@@ -1450,23 +1440,24 @@ cdef class Program:
             secondary_costs,
         )
 
-    cdef double unit_with(self, const double[::1] weights):
+    cdef double unit_with(self, weights) except -1.0:
         """Return the unit of forces: about the weight of the first stone."""
         cdef int exponent = 0
-        if self.bodies or weights.shape[0] == 0:
+        if self.bodies or len(weights) == 0:
             return self.unit
-        frexp(weights[0], &exponent)
+        frexp(doubles(weights)[0], &exponent)
         return ldexp(1.0, exponent)
 
     cdef Scratch opened(self, State *state, added, double unit):
         """Take memory and write the program into it; the caller gives the memory back."""
-        cdef const double[::1] weights = added.weights
-        cdef const int32_t[::1] first = added.cones.first, second = added.cones.second
-        cdef const double[:, ::1] entries = added.cones.entries
-        cdef const int32_t[::1] closed = added.closed
-        cdef Py_ssize_t i, size = self.bodies + weights.shape[0], count = first.shape[0]
+        cones = added.cones
+        cdef const double *weights = doubles(added.weights)
+        cdef c_int first = ints(cones.first)
+        cdef c_int second = ints(cones.second)
+        cdef c_int closed = ints(added.closed)
+        cdef Py_ssize_t i, count = len(cones.first), size = self.bodies + len(added.weights)
         cdef Scratch scratch
-        if second.shape[0] != count or entries.shape[0] != 6 or entries.shape[1] != count:
+        if len(cones.second) != count or cones.entries.shape != (6, count):
             raise ValueError("the arrays of the columns have different lengths")
         state[0] = self.blank
         state.pivot = LARGE_PIVOT
@@ -1487,11 +1478,11 @@ cdef class Program:
         lay_out(state, scratch.memory)
         state.new.first = state.new_first
         state.new.second = state.new_second
-        state.new.entries = &entries[0, 0] if count else NULL
-        state.closed = &closed[0] if closed.shape[0] else NULL
-        state.closed_count = closed.shape[0]
+        state.new.entries = doubles(cones.entries)
+        state.closed = closed
+        state.closed_count = len(added.closed)
         memset(state.open, 1, state.columns)
-        for i in range(closed.shape[0]):
+        for i in range(state.closed_count):
             if not 0 <= closed[i] < state.old.count:
                 raise ValueError(f"there is no column {closed[i]} to close")
             if i and closed[i] <= closed[i - 1]:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from drystone.kernels.certificate import Figures
+from drystone.kernels.cones import Figures
 from drystone.statics.lp.program import EquilibriumProgram, Floats, Solution
 from drystone.statics.result import CERTIFIED, Certificate, LimitStatus
 

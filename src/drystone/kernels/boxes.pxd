@@ -1,1 +1,0 @@
-from drystone.kernels.memory cimport longs

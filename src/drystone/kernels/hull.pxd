@@ -1,3 +1,0 @@
-from drystone.kernels.memory cimport flags, longs_out
-
-cdef Py_ssize_t put(long long *at, Py_ssize_t count, long long x, long long y) noexcept nogil
