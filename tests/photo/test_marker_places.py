@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from drystone.photo.layout import parse_layout
-from drystone.photo.marker_places import placed_markers
 from drystone.photo.markers import FoundMarker
+from drystone.photo.segment_photo import placed_markers
 
 PX_PER_M, HEIGHT_PX = 800.0, 600
 SHEET, SINGLE = parse_layout("A4:50mm"), parse_layout("120mm")

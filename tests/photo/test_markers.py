@@ -6,14 +6,15 @@ import pytest
 
 from drystone.errors import InputError, UsageError
 from drystone.photo import markers
-from drystone.photo.dictionaries import (
+from drystone.photo.layout import parse_layout
+from drystone.photo.markers import (
     DICTIONARIES,
     FAMILIES,
+    FoundMarker,
+    find_markers,
     marker_modules,
     modules_across,
 )
-from drystone.photo.layout import parse_layout
-from drystone.photo.markers import FoundMarker, find_markers
 from drystone.photo.scale import scale_and_view
 from drystone.photo.view import apply
 from tests.photo.scenes import BITS, camera, outline, photograph

@@ -5,9 +5,8 @@ import pytest
 from drystone.errors import InputError
 from drystone.photo.layout import MarkerLayout
 from drystone.photo.markers import FoundMarker, find_markers
-from drystone.photo.rectify import rectify
 from drystone.photo.scale import scale_and_view
-from drystone.photo.view import View, apply
+from drystone.photo.view import View, apply, rectify
 from tests.photo.scenes import camera, outline, photograph
 
 SIDE = 0.05

@@ -7,11 +7,11 @@ from scipy import ndimage
 
 from drystone.errors import InputError
 from drystone.model.stone_size import sizes_of
-from drystone.photo.left_out import SMALL as TOO_SMALL
+from drystone.photo.segment import SMALL as TOO_SMALL
 from drystone.photo.segment import segment
 from drystone.photo.segment_doubts import doubts_of, notices_of, ruler_doubts
+from drystone.photo.segment_ground import SegmentSettings
 from drystone.photo.segment_photo import segment_photo
-from drystone.photo.segment_settings import SegmentSettings
 from drystone_lab.photographs.layout import PhotoLevel
 from drystone_lab.photographs.scene import photograph
 from drystone_lab.photos import overlaps, pixels, score
