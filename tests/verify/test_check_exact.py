@@ -9,8 +9,8 @@ import pytest
 
 from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.model.plan import Plan
-from drystone.verify.canvas import PENETRATION_PX
 from drystone.verify.check import check_plan
+from drystone.verify.replay import PENETRATION_PX
 from drystone.verify.report import PrefixAlpha
 from tests.verify.exact_examples import GAP_PX, block_model, exact_example, hanging_example
 from tests.verify.examples import L_STONE, SLAB, WEDGE, Example

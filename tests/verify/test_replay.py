@@ -10,8 +10,7 @@ from drystone.model.plan import StoneStep
 from drystone.model.site import Site
 from drystone.model.stone import Stone, StoneSet
 from drystone.poses import PoseBook
-from drystone.verify.canvas import place_stone
-from drystone.verify.replay import rebuild_wall, replay_plan
+from drystone.verify.replay import place_stone, rebuild_wall, replay_plan
 from tests.strategies import repeatable, stones
 from tests.verify.examples import L_STONE, example
 

@@ -7,7 +7,7 @@ import pytest
 
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LateralResistance, LimitStatus
-from drystone.verify import stability
+from drystone.verify import claims
 from drystone.verify.check import check_plan
 from tests.verify.exact_examples import exact_example
 
@@ -31,7 +31,7 @@ MADE = exact_example()
 
 
 def told(monkeypatch: pytest.MonkeyPatch, analyse: Analyse) -> list[tuple[str, str]]:
-    monkeypatch.setattr(stability, "lateral_resistance", analyse)
+    monkeypatch.setattr(claims, "lateral_resistance", analyse)
     problems = check_plan(MADE.plan, MADE.stones).problems
     return [(one.code, one.message) for one in problems if one.code in ("E230", "E237")]
 
