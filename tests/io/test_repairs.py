@@ -8,9 +8,9 @@ from PIL import Image
 from scipy import ndimage
 
 from drystone.errors import InputError, LabelImageError
+from drystone.io.checks import _given
 from drystone.io.labels import Census
 from drystone.io.read_stones import ReadSettings, read_stones
-from drystone.io.repairs import _given
 from drystone.io.walls import read_wall
 from tests.io.pictures import areas, codes, discs, many_stones, two_stones
 

@@ -16,8 +16,7 @@ from drystone.io.photo_beside import PhotoSidecar, write_sidecar
 from drystone.io.read_settings import ReadSettings
 from drystone.io.read_stones import read_stones
 from drystone.io.wall_image import write_labels
-from drystone.io.wall_outlines import outlines_painted
-from drystone.io.walls import GivenWall, read_wall
+from drystone.io.walls import GivenWall, outlines_painted, read_wall
 from drystone.io.write_stones import write_stones
 from drystone.statics.limit import lateral_resistance
 

@@ -81,6 +81,16 @@ class IdImage:
     notices: tuple[Notice, ...] = ()  # how colours became ids, and what is ground by the format
     has_edges: bool = False  # some pixels are -1, as a watershed leaves edges and a rim
 
+    @cached_property
+    def census(self) -> Census:
+        """The different ids."""
+        return take_census(self.ids)
+
+    @property
+    def stones(self) -> NDArray[np.bool_]:
+        """True where the id is not that of the background, (h, w)."""
+        return self.census.pixels(self.census.values != self.background)
+
 
 def to_ids(picture: Picture, background: int) -> IdImage:
     """Read ids from grey values, palette indices, numbers or colours; (h, w) or (h, w, c).
@@ -331,9 +341,10 @@ def _ids_of_colours(colours: NDArray[Any], background: int) -> IdImage:
     return IdImage(codes, background, brightness, nearly_grey, (notice,))
 
 
-def check_no_zero(values: NDArray[Any], background: int) -> None:
+def check_no_zero(image: IdImage) -> None:
     """Refuse the value 0 where another one is the background (E108)."""
-    if background != 0 and (values == 0).any():
-        what = f"the value 0 is there beside the background {background}, and no stone can be 0."
-        cure = f"Set those pixels to {background} if they are background, else to a free id."
+    if image.background != 0 and (image.census.values == 0).any():
+        ground = image.background
+        what = f"the value 0 is there beside the background {ground}, and no stone can be 0."
+        cure = f"Set those pixels to {ground} if they are background, else to a free id."
         raise LabelImageError("E108", what, cure=cure)

@@ -13,8 +13,8 @@ import numpy as np
 from drystone.errors import InputError
 from drystone.io.file_errors import listed, short, too_large, unfit
 from drystone.io.foreign import foreign
+from drystone.io.images import BEGINNING
 from drystone.io.json_text import json_of
-from drystone.io.npy import BEGINNING
 from drystone.io.outlines_in.annotations import read_coco, read_labelme, read_sam
 from drystone.io.outlines_in.classes import of_classes
 from drystone.io.outlines_in.dxf import is_dxf, read_dxf

@@ -14,12 +14,13 @@ from drystone.io.checks import (
     check_not_photo,
     check_not_resampled,
     check_not_uniform,
+    without_blends,
+    without_net,
 )
 from drystone.io.file_bytes import file_bytes
 from drystone.io.file_errors import naming
 from drystone.io.images import decode
-from drystone.io.labels import check_no_zero, take_census, to_ids
-from drystone.io.repairs import without_blends, without_net
+from drystone.io.labels import check_no_zero, to_ids
 from drystone.model.wall import Labels
 from drystone.whole_files import write_whole
 
@@ -129,22 +130,20 @@ def read_wall_picture(
     with naming(path.name):
         picture = decode(data, int(max_image_mpx * 1e6))
         image = to_ids(picture, background)
-        census = take_census(image.ids)
         if picture.lossy:
-            check_not_lossy(census, image)
-        if len(census.values) > 1:
+            check_not_lossy(image)
+        if len(image.census.values) > 1:
             if not planned:
-                image, census = without_net(image, census, wall=True)
-            check_background(census, image.background, _CURE, int(image.has_edges))
-            check_not_photo(census)
+                image = without_net(image, wall=True)
+            check_background(image.census, image.background, _CURE, int(image.has_edges))
+            check_not_photo(image.census)
             if not planned:
-                image, census = without_blends(image, census, _BLENDED_PX, wall=True)
-                check_not_resampled(census, image.background)
-        elif int(census.values[0]) == image.background:
+                image = without_blends(image, _BLENDED_PX, wall=True)
+                check_not_resampled(image)
+        elif int(image.census.values[0]) == image.background:
             # One stone may fill the whole image; no stone may not.
-            why = " ".join(notice.message for notice in image.notices)
-            check_not_uniform(census, image.background, why)
-        check_no_zero(census.values, image.background)
+            check_not_uniform(image)
+        check_no_zero(image)
     labels = image.ids.astype(np.uint32)
     labels[labels == image.background] = 0
     return labels, tuple(notice for notice in image.notices if notice.code != "W115")

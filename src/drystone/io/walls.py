@@ -1,13 +1,14 @@
 """Reading what `analyse`, `measure` and `craft` are given: a plan, a block model, or stones."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from drystone.contacts.blocks import pieces_apart
@@ -17,17 +18,19 @@ from drystone.io.file_bytes import file_bytes
 from drystone.io.file_errors import listed, naming
 from drystone.io.foreign import foreign
 from drystone.io.json_text import json_of
-from drystone.io.outlines_in.model import OutlineFile
+from drystone.io.outlines_in.fill import filled_area
+from drystone.io.outlines_in.model import Area, OutlineFile
 from drystone.io.outlines_in.npz import is_npz
-from drystone.io.painted import painted
+from drystone.io.outlines_in.silhouettes import outer_edge
 from drystone.io.photo_beside import read_sidecar, scale_beside
+from drystone.io.pictures import check_size
 from drystone.io.plan_folder import BLOCKS
 from drystone.io.plan_json import read_plan
 from drystone.io.read_outlines import outline_reader, stones_and_outlines
 from drystone.io.read_settings import ReadSettings
 from drystone.io.read_stones import read_stones
 from drystone.io.wall_image import read_wall_image, read_wall_picture
-from drystone.io.wall_outlines import not_cut, outlines_painted, wall_outlines
+from drystone.io.write_stones import painted
 from drystone.kernels.label_runs import label_runs
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.model.plan import Plan
@@ -385,3 +388,88 @@ def _read_json(
         raise refused(f"cannot be read ({error.strerror}).") from error
     with foreign(lambda why: refused(f"is not valid JSON ({why}).")):
         return json_of(data.decode("utf-8-sig"))
+
+
+MOST_PX = 200_000_000
+"""Of a picture of a wall."""
+
+
+def wall_outlines(file: OutlineFile, stones: StoneSet) -> dict[int, Points] | None:
+    """Return the outlines of the stones that were read, (n, 2) by id, counter-clockwise and closed.
+
+    They are in px, y up from the lowest point; of a file in px x is that of its image.  Ground that
+    the file draws is level, and what is wholly under it is not there.  Holes are filled, and of a
+    stone in several pieces the largest counts, as when its pixels are read.  None when some stone
+    is known by pixels only.
+    """
+    known = {stone.id or 0: stone for stone in file.stones}
+    ids = [stone.id for stone in stones]
+    if any(i not in known or known[i].masks or not known[i].areas for i in ids):
+        return None
+    scale = 1.0 if file.unit_m is None else file.unit_m * (stones.source.px_per_m or 1.0)
+    sign = 1.0 if file.y_up else -1.0
+    try:
+        edges = {i: outer_edge(known[i].rings) for i in ids}
+    except ValueError:  # crossings without end
+        return None
+    found = {i: edge * (scale, sign * scale) for i, edge in edges.items() if edge is not None}
+    if len(found) < len(ids):
+        return None
+    if file.ground is not None:
+        found = _on_ground(found, file.ground * (1.0, -1.0))
+    corners = np.concatenate(list(found.values()))
+    # Of an image the left edge is that of the wall, but for what reaches beyond it.
+    left = corners[:, 0].min()
+    left = left if file.unit_m or file.y_up else min(0.0, np.floor(left))
+    origin = np.array([left, corners[:, 1].min()])
+    return {i: _closed(outline - origin) for i, outline in found.items()}
+
+
+def outlines_painted(outlines: Mapping[int, Points]) -> Labels:
+    """Return the label image whose lower left corner is the origin of outlines in px.
+
+    Where they overlap the smaller stone is seen.  E110 where it would fill the memory.
+    """
+    corners = np.concatenate(list(outlines.values()))
+    width, height = (max(1, math.ceil(side - 1e-9)) for side in corners.max(axis=0).tolist())
+    check_size(width, height, MOST_PX, "Is a corner far away from the wall? Correct it.")
+    labels = np.zeros((height, width), np.uint32)
+    size = {i: shapely.Polygon(outline).area for i, outline in outlines.items()}
+    for i in sorted(outlines, key=lambda one: (-size[one], one)):
+        ring = outlines[i][:-1] * (1.0, -1.0) + (0.0, float(height))
+        placed = filled_area(Area((ring,), "nonzero"))
+        if placed is None:
+            continue
+        top, left, bottom, right = placed.sides
+        labels[top:bottom, left:right][placed.mask] = i
+    return labels
+
+
+def not_cut(notices: Collection[Notice]) -> tuple[Notice, ...]:
+    """Leave out that outlines were cut at the edges of their image: blocks are not."""
+    return tuple(one for one in notices if "outside the image, cut off" not in one.message)
+
+
+def _on_ground(rings: Mapping[int, Points], ground: Points) -> dict[int, Points]:
+    """Turn rings until the ground is level; what is buried under it is cut off, or left out."""
+    along = ground[1] - ground[0]
+    cos, sin = along / np.hypot(*along) * np.sign(along[0])
+    above = {}
+    for i, ring in rings.items():
+        corners = (ring - ground[0]) @ [[cos, -sin], [sin, cos]] + ground[0]
+        turned = shapely.make_valid(shapely.Polygon(corners))
+        left, _, right, top = turned.bounds
+        seen = turned & shapely.box(left, ground[0, 1], right, max(top, ground[0, 1]))
+        parts = [part for part in shapely.get_parts(seen) if part.area > 0.0]
+        if parts:
+            above[i] = np.array(max(parts, key=shapely.area).exterior.coords)[:-1]
+    if not above:
+        what = "no stone is above the ground that was drawn."
+        raise LabelImageError("E104", what, cure="Draw the ground under the wall.")
+    return above
+
+
+def _closed(ring: Points) -> Points:
+    """Return a ring as a closed line, counter-clockwise, without corners twice in a row."""
+    shape = shapely.remove_repeated_points(shapely.Polygon(ring), 1e-9)
+    return np.asarray(shapely.get_coordinates(shapely.orient_polygons(shape).exterior))
