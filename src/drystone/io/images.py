@@ -146,7 +146,7 @@ def _read_tiff(data: bytes, max_px: int) -> Picture:
         )
     if page.colours:
         raise _no_ids(page.colours)
-    values, alpha = tiff.values(data, check), None
+    values, alpha = tiff.values(data, page, check), None
     # Tags may speak of an alpha that is not there.
     if page.alpha and values.ndim > 2:
         values, alpha = _without_alpha(values)

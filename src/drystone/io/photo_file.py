@@ -147,7 +147,7 @@ def _tiff(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any],
     if page.colours:
         what = f"TIFF of {page.bits} bits a channel in {page.colours} cannot be read."
         raise unread(what, "Export it in RGB, or with 8 bits a channel.")
-    values = tiff.values(data, check)
+    values = tiff.values(data, page, check)
     # Pillow takes this back for 8 bits; ids keep the numbers of the file, light does not.
     if page.negative and values.dtype == np.uint16:
         values = values.copy()

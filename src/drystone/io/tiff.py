@@ -8,8 +8,8 @@ import math
 import re
 import struct
 import zlib
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -80,6 +80,7 @@ class TiffPage:
     negative: bool  # 0 is white
     nodata: float | None  # the number that stands for nothing
     missing: str  # strips that are not in the file, which are ground; empty for none
+    page: Any  # of tifffile
 
 
 def inspect(data: bytes) -> TiffPage:
@@ -87,10 +88,21 @@ def inspect(data: bytes) -> TiffPage:
     pages = _count_pages(data)
     if pages > 1:
         raise several_pages(f"{pages} pages")
-    with _page(data) as page:
+    with foreign(damaged):
+        # The variants of microscopes that lead elsewhere aside.
+        file = tifffile.TiffFile(  # noqa: TID251 - its chain was followed
+            io.BytesIO(data), is_lsm=False, is_ndpi=False, is_scanimage=False
+        )
+        page: Any = file.pages[0]
+        if not all(isinstance(side, int) for side in page.shape):
+            raise damaged("a side of it is not a number")
         planes, channels = _planes(page), int(page.samplesperpixel)
         compression, photometric = int(page.compression), int(page.photometric)
-        orientation, nodata = page.tags.get(ORIENTATION), page.tags.get(_NODATA)
+        orientation, nothing = page.tags.get(ORIENTATION), page.tags.get(_NODATA)
+        nodata = None
+        if nothing is not None:
+            with suppress(ValueError):
+                nodata = float(str(nothing.value).strip("\0 "))
         missing, chunks = sum(count == 0 for count in page.databytecounts), math.prod(page.chunked)
         lossy = compression in _LOSSY
         found = TiffPage(
@@ -103,8 +115,9 @@ def inspect(data: bytes) -> TiffPage:
             bits=int(np.max(page.bitspersample)),
             orientation=1 if orientation is None else int(orientation.value),
             negative=photometric == 0,
-            nodata=None if nodata is None else _number(str(nodata.value)),
+            nodata=nodata,
             missing=f"{missing} of {chunks} strips or tiles" if missing else "",
+            page=page,
         )
     if planes > 1 or channels > 4:
         said = f"{planes} planes" if planes > 1 else f"{channels} channels"
@@ -112,14 +125,18 @@ def inspect(data: bytes) -> TiffPage:
     return found
 
 
-def values(data: bytes, check: Callable[[int, int], None]) -> NDArray[Any]:
+def values(data: bytes, tags: TiffPage, check: Callable[[int, int], None]) -> NDArray[Any]:
     """Decode the only page of a TIFF, channels last; palette indices and numbers are kept.
 
     Pixels are where the file has them: its orientation turns nothing here.
     """
-    with _page(data) as page:
-        if int(page.compression) in _LOSSY:
-            return _values_by_pillow(data, check)
+    if tags.lossy:
+        # Pillow turns a picture when it loads it.
+        with opened(data, check) as image:
+            orientation = int(image.getexif().get(ORIENTATION, 1))
+            return turned(np.asarray(image), TURNED_BACK.get(orientation, orientation))
+    with foreign(damaged):
+        page = tags.page
         channels, planes = int(page.samplesperpixel), 1
         if int(page.planarconfig) == 2:
             channels, planes = 1, channels
@@ -136,8 +153,6 @@ def values(data: bytes, check: Callable[[int, int], None]) -> NDArray[Any]:
         )  # fmt: skip
         offsets, counts = page.dataoffsets, page.databytecounts
         places = [(int(start), int(n)) for start, n in zip(offsets, counts, strict=False)]
-        nodata = page.tags.get(_NODATA)
-        nothing = None if nodata is None else _number(str(nodata.value))
     down, across = math.ceil(height / rows), math.ceil(width / cols)
     if len(places) < down * across * planes:
         raise damaged("it does not hold all of its strips")
@@ -147,8 +162,11 @@ def values(data: bytes, check: Callable[[int, int], None]) -> NDArray[Any]:
     if sum(count for _, count in places) > len(data):
         raise damaged("its strips lie in each other")
     found = np.zeros((height, width, planes * channels), kind.newbyteorder("="))
-    if nothing is not None and _holds(found.dtype, nothing):
-        found[:] = nothing
+    if tags.nodata is not None:
+        limits = np.iinfo(kind) if kind.kind in "iu" else None
+        holds = limits and limits.min <= tags.nodata <= limits.max and tags.nodata.is_integer()
+        if kind.kind == "f" or holds:
+            found[:] = tags.nodata
     for place, (plane, i, j) in enumerate(np.ndindex(planes, down, across)):
         start, count = places[place]
         if not count:  # sparse
@@ -263,34 +281,6 @@ def turned(values: NDArray[Any], orientation: int) -> NDArray[Any]:
     return np.ascontiguousarray(values[down, right])
 
 
-def _holds(kind: np.dtype[Any], number: float) -> bool:
-    """Tell whether values of a kind can be a number."""
-    if kind.kind not in "iu":
-        return kind.kind == "f"
-    limits = np.iinfo(kind)
-    return bool(limits.min <= number <= limits.max and number == math.floor(number))
-
-
-def _number(text: str) -> float | None:
-    try:
-        return float(text.strip("\0 "))
-    except ValueError:
-        return None
-
-
-@contextmanager
-def _page(data: bytes) -> Iterator[Any]:
-    """Open the first page with tifffile, the variants of microscopes that lead elsewhere aside."""
-    with foreign(damaged):
-        file = tifffile.TiffFile(  # noqa: TID251 - its chain was followed
-            io.BytesIO(data), is_lsm=False, is_ndpi=False, is_scanimage=False
-        )
-        page = file.pages[0]
-        if not all(isinstance(side, int) for side in page.shape):
-            raise damaged("a side of it is not a number")
-        yield page
-
-
 def _count_pages(data: bytes) -> int:
     """Follow the chain of pages, which tifffile does without end where it runs in a circle."""
     order = "<" if data[:2] == b"II" else ">"
@@ -347,10 +337,3 @@ def _unreadable(page: Any) -> str:
         ),
     }
     return next((what for what, found in wrong.items() if found), "")
-
-
-def _values_by_pillow(data: bytes, check: Callable[[int, int], None]) -> NDArray[Any]:
-    """Decode JPEG in a TIFF; Pillow turns a picture when it loads it."""
-    with opened(data, check) as image:
-        orientation = int(image.getexif().get(ORIENTATION, 1))
-        return turned(np.asarray(image), TURNED_BACK.get(orientation, orientation))
