@@ -239,8 +239,10 @@ def test_what_the_contract_does_not_ask_for_may_be_missing() -> None:
     data = bad("steps/0/course_height", ...)
     del data["steps"][1]["alpha_left"], data["steps"][1]["alpha_right"]
     del data["metrics"]["T_LEVEL"], data["metrics"]["E_FLUSH"]
+    data["steps"][0]["stone"] = 17.0
     found = plan_from_json(data)
     assert found.stone_steps[0].course_height is None
+    assert type(found.stone_steps[0].stone) is int
     assert found.wedge_steps[0].alpha_left is None
     assert found.metrics.T_LEVEL is None
 
