@@ -20,7 +20,7 @@ from drystone.io.checks import (
     without_blends,
     without_net,
 )
-from drystone.io.file_bytes import file_bytes
+from drystone.io.file_bytes import given_bytes
 from drystone.io.file_errors import listed, naming
 from drystone.io.images import FORMATS, SUFFIXES, Picture, decode
 from drystone.io.labels import Census, IdImage, check_no_zero, to_ids
@@ -92,7 +92,7 @@ def read_stones(
             with naming(writable(name)):
                 return _read_folder(path, writable(name), settings)
         path = labels
-    data, name = _bytes_of(path), writable(path.name)
+    data, name = given_bytes(path), writable(path.name)
     with naming(name):
         reader = outline_reader(data, name)
         if reader is not None:
@@ -128,18 +128,6 @@ def _of_px(settings: ReadSettings) -> tuple[tuple[str, Any], ...]:
 
 def _max_px(settings: ReadSettings) -> int:
     return int(settings.max_image_mpx * 1e6)
-
-
-def _bytes_of(path: Path) -> bytes:
-    try:
-        return file_bytes(path)
-    except FileNotFoundError:
-        what = "there is no such file or folder."
-        raise InputError("E100", what, where=str(path), cure="Check the path.") from None
-    except OSError as error:
-        what = f"it cannot be read ({error.strerror or error})."
-        cure = "Check that it is a file and that you may read it."
-        raise InputError("E100", what, where=str(path), cure=cure) from error
 
 
 def _read_array(array: Any, settings: ReadSettings) -> StoneSet:
@@ -230,7 +218,7 @@ def _read_folder(folder: Path, name: str, settings: ReadSettings) -> StoneSet:
     doubtful: dict[int, LabelImageError] = {}
     names = tuple(writable(file.name) for file in files)
     for number, (file, own) in enumerate(zip(files, names, strict=True), start=1):
-        data = _bytes_of(file)
+        data = given_bytes(file)
         digest.update(hashlib.sha256(data).digest())
         where = f"{name}/{own}"
         with naming(where):

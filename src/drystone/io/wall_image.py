@@ -7,7 +7,7 @@ import numpy as np
 import tifffile
 from PIL import Image
 
-from drystone.errors import InputError, Notice, UsageError
+from drystone.errors import Notice, UsageError
 from drystone.io.checks import (
     check_background,
     check_not_lossy,
@@ -17,7 +17,7 @@ from drystone.io.checks import (
     without_blends,
     without_net,
 )
-from drystone.io.file_bytes import file_bytes
+from drystone.io.file_bytes import given_bytes
 from drystone.io.file_errors import naming
 from drystone.io.images import decode
 from drystone.io.labels import check_no_zero, to_ids
@@ -121,14 +121,8 @@ def read_wall_picture(
     path: Path, *, background: int = 0, max_image_mpx: float = 200.0, planned: bool = False
 ) -> tuple[Labels, tuple[Notice, ...]]:
     """Return the same, and what was made background, repaired or turned on the way."""
-    try:
-        data = file_bytes(path)
-    except OSError as error:
-        what = f"the file cannot be read ({error.strerror})."
-        cure = "Give the label image of a wall: one id a stone, 0 where there is none."
-        raise InputError("E100", what, where=str(path), cure=cure) from error
     with naming(path.name):
-        picture = decode(data, int(max_image_mpx * 1e6))
+        picture = decode(given_bytes(path), int(max_image_mpx * 1e6))
         image = to_ids(picture, background)
         if picture.lossy:
             check_not_lossy(image)
