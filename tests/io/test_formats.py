@@ -69,26 +69,6 @@ def test_ids_of_8_16_and_32_bits_survive(tmp_path, top, write):
     assert areas(read_stones(tmp_path / "stones.any")) == {7: 375, top: 600}
 
 
-def test_lzw_tiff_of_unsigned_32_bits():
-    labels = two_stones(3, 2**32 - 1)
-    data = pillow(labels.view(np.int32), "TIFF", compression="tiff_lzw")
-    signed, unsigned = (struct.pack("<HHIH", 339, 3, 1, kind) for kind in (2, 1))
-    assert data.count(signed) == 1  # the tag that Pillow cannot write otherwise
-    data = data.replace(signed, unsigned)
-    np.testing.assert_array_equal(decode(data, LIMIT).values, labels)
-
-
-@pytest.mark.parametrize("mode", ["1", "L"])
-def test_white_is_zero_tiff_reads_alike_from_both_decoders(mode):
-    values = two_stones(7, 255, np.uint8) > 9 if mode == "1" else two_stones(7, 9, np.uint8)
-    plain, packed = (
-        decode(pillow(values, "TIFF", compression=c, tiffinfo={262: 0}), LIMIT).values
-        for c in (None, "tiff_lzw")
-    )
-    np.testing.assert_array_equal(packed, plain)
-    assert (plain != values).all()  # Pillow stored them inverted, as the tag asks
-
-
 @pytest.mark.parametrize(("depth", "top"), [(1, 1), (2, 3), (4, 15)])
 @pytest.mark.parametrize("colour_type", [0, 3])
 def test_png_of_few_bits_keeps_its_own_values(depth, top, colour_type):
@@ -121,14 +101,6 @@ def test_colours_are_ids_and_alpha_is_ignored(tmp_path, alpha):
     assert codes(stones) == (["W174", "W115"] if alpha == 0 else ["W115"])
     assert "3 colours" in stones.notices[-1].message
     assert "2 stones" in stones.notices[-1].message
-
-
-@pytest.mark.parametrize("planar", ["contig", "separate"])
-def test_colour_tiff(planar):
-    values = rgb(two_stones())
-    given = values if planar == "contig" else np.moveaxis(values, -1, 0)
-    data = tiff(given, photometric="rgb", planarconfig=planar)
-    np.testing.assert_array_equal(decode(data, LIMIT).values, values)
 
 
 @pytest.mark.parametrize(

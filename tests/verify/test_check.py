@@ -1,5 +1,4 @@
 import json
-from collections.abc import Callable
 from dataclasses import fields, replace
 
 import numpy as np
@@ -8,14 +7,17 @@ import pytest
 from drystone.errors import PlanError
 from drystone.generate import PolygonSettings, polygon_stones
 from drystone.io.plan_json import plan_from_json, plan_to_json
-from drystone.model.plan import Plan, PlanMetrics
+from drystone.model.plan import PlanMetrics
 from drystone.model.stone import Source, StoneSet
 from drystone.planner.settings import PlannerSettings
 from drystone.search.plan_wall import plan_wall
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.result import LimitStatus
+from drystone.verify import claims
 from drystone.verify.check import check_plan
 from drystone.verify.report import PrefixAlpha
 from tests.verify.exact_examples import exact_example
-from tests.verify.examples import L_STONE, SLAB, WEDGE, Example, example
+from tests.verify.examples import L_STONE, SLAB, WEDGE, example
 from tests.verify.tampering import (
     changed,
     codes,
@@ -29,21 +31,19 @@ from tests.verify.tampering import (
 
 
 @pytest.fixture(scope="module")
-def true() -> Example:
+def true():
     return example()
 
 
 @pytest.fixture(scope="module", params=[example, exact_example], ids=["raster", "exact"])
-def either(request: pytest.FixtureRequest) -> Example:
-    return request.param()  # type: ignore[no-any-return]
+def either(request):
+    return request.param()
 
 
 @pytest.mark.parametrize(
     ("scale", "px_per_m"), [(1.0, None), (1.0, 137.0), (0.5, None), (0.5, 200.0)]
 )
-def test_true_plan_passes_in_any_unit_and_at_any_scale(
-    scale: float, px_per_m: float | None
-) -> None:
+def test_true_plan_passes_in_any_unit_and_at_any_scale(scale, px_per_m):
     made = example(scale, px_per_m)
     report = check_plan(made.plan, made.stones, wall_labels=made.wall.labels)
     assert report.problems == ()
@@ -51,13 +51,12 @@ def test_true_plan_passes_in_any_unit_and_at_any_scale(
     assert report.notes == ()
     assert report.overlap_depth < 1e-9
     assert report.area_error == 0
-    assert report.metrics is not None
     assert report.prefixes[0].alpha_left == pytest.approx(0.58)  # a square block slides
     assert [prefix.step for prefix in report.prefixes] == [1, 2, 4, 5, 6]
 
 
 # What is changed in plans of either geometry, and the codes that name it: exactly these.
-EXACT_ON_BOTH: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
+EXACT_ON_BOTH = {
     "unused stone missing": (lambda p: replace(p, unused=()), {"E216"}),
     "settings": (lambda p: replace(p, settings={**p.settings, "wings": 2}), {"E217"}),
     "source centroid": (lambda p: changed(p, 3, source_centroid=(12.0, 13.5)), {"E225"}),
@@ -67,7 +66,7 @@ EXACT_ON_BOTH: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
 }  # fmt: skip
 
 # Changes with more than one consequence: these codes are among those found.
-AMONG_ON_BOTH: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
+AMONG_ON_BOTH = {
     "stone lifted by 1 px": (lambda p: moved(p, L_STONE, 0, 1), {"E230", "E236"}),
     "first stone lifted by 1 px": (lambda p: moved(without(p, SLAB), 3, 0, 1), {"E230"}),
     "stone turned by 180 degrees": (lambda p: changed(p, L_STONE, angle_deg=-90.0), {"E236"}),
@@ -84,7 +83,7 @@ AMONG_ON_BOTH: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
 
 
 @pytest.mark.parametrize("name", [*EXACT_ON_BOTH, *AMONG_ON_BOTH])
-def test_tampering_is_caught_on_either_geometry(either: Example, name: str) -> None:
+def test_tampering_is_caught_on_either_geometry(either, name):
     change, expected = (EXACT_ON_BOTH | AMONG_ON_BOTH)[name]
     labels = either.wall.labels if name in AMONG_ON_BOTH else None
     found = codes(check_plan(change(either.plan), either.stones, wall_labels=labels))
@@ -92,7 +91,7 @@ def test_tampering_is_caught_on_either_geometry(either: Example, name: str) -> N
     assert name in AMONG_ON_BOTH or found == expected
 
 
-EXACT: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
+EXACT = {
     "another digest": (lambda p: replace(p, source={**p.source, "sha256": "0" * 64}), {"E210"}),
     "number of stones": (lambda p: replace(p, source={**p.source, "stones": 7}), {"E211"}),
     "image width": (lambda p: replace(p, source={**p.source, "width_px": 7}), {"E211"}),
@@ -117,17 +116,17 @@ EXACT: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
 
 
 @pytest.mark.parametrize("name", EXACT)
-def test_tampering_is_caught_by_its_code(true: Example, name: str) -> None:
+def test_tampering_is_caught_by_its_code(true, name):
     change, expected = EXACT[name]
     report = check_plan(change(true.plan), true.stones)
     assert codes(report) == expected
     assert not report.ok
 
 
-def test_stones_that_the_settings_do_not_allow_are_named(true: Example) -> None:
+def test_stones_that_the_settings_do_not_allow_are_named(true):
     assert [step.stone for step in true.plan.stone_steps] == [3, 5, SLAB, L_STONE, 300]
 
-    def with_choice(plan: Plan, **values: object) -> Plan:
+    def with_choice(plan, **values):
         return replace(plan, settings={**plan.settings, **values})
 
     assert check_plan(with_choice(true.plan, order="given", ban=[9]), true.stones).ok
@@ -143,7 +142,7 @@ def test_stones_that_the_settings_do_not_allow_are_named(true: Example) -> None:
     ]
 
 
-def test_what_is_claimed_and_cannot_be_is_said_in_words(true: Example) -> None:
+def test_what_is_claimed_and_cannot_be_is_said_in_words(true):
     plan = changed(true.plan, WEDGE, alpha_right=None)
     (problem,) = check_plan(plan, true.stones).problems
     assert problem.message.startswith("alpha_right is null by the plan, 0.")
@@ -153,7 +152,7 @@ def test_what_is_claimed_and_cannot_be_is_said_in_words(true: Example) -> None:
     assert (problem.code, problem.message) == ("E234", said)
 
 
-AMONG: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
+AMONG = {
     "stone moved by 1 px": (lambda p: moved(p, SLAB, 1, 0), {"E232", "E236"}),
     "stone turned by 3 degrees": (lambda p: changed(p, 3, angle_deg=3.0), {"E235", "E236"}),
     "ids swapped": (lambda p: swapped(p, 3, 5), {"E220", "E225", "E236"}),
@@ -177,27 +176,27 @@ AMONG: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
 
 
 @pytest.mark.parametrize("name", AMONG)
-def test_tampering_with_consequences_is_caught(true: Example, name: str) -> None:
+def test_tampering_with_consequences_is_caught(true, name):
     change, expected = AMONG[name]
     report = check_plan(change(true.plan), true.stones, wall_labels=true.wall.labels)
     assert codes(report) >= expected
 
 
 @pytest.mark.parametrize("name", ["SF", "LFR", "GDS", "NHR", "IWR", "IS"])
-def test_every_index_is_verified(either: Example, name: str) -> None:
+def test_every_index_is_verified(either, name):
     report = check_plan(with_index(either.plan, name, 1e-8), either.stones)
     assert codes(report) == {"E232"}
     assert report.problems[0].step == step_of(either.plan, SLAB).step
     assert name in report.problems[0].message
 
 
-def test_llc_is_verified(true: Example) -> None:
+def test_llc_is_verified(true):
     assert codes(check_plan(with_index(true.plan, "LLC", 1e-6), true.stones)) == {"E232"}
     assert check_plan(with_index(true.plan, "LLC", 1e-9), true.stones).ok
 
 
 @pytest.mark.parametrize("name", [field.name for field in fields(PlanMetrics)])
-def test_every_metric_is_verified(either: Example, name: str) -> None:
+def test_every_metric_is_verified(either, name):
     value = getattr(either.plan.metrics, name)
     # A wall of pixels has no contact tolerance: its plan may not claim what comes of others.
     claim = 0.5 if value is None else value + 1e-6 * max(1.0, value)
@@ -211,13 +210,13 @@ def test_every_metric_is_verified(either: Example, name: str) -> None:
     assert name in report.problems[0].message
 
 
-def test_metrics_beyond_the_contract_may_be_left_out(true: Example) -> None:
+def test_metrics_beyond_the_contract_may_be_left_out(true):
     data = plan_to_json(true.plan)
     del data["metrics"]["T_LEVEL"], data["metrics"]["E_FLUSH"]
     assert check_plan(plan_from_json(data), true.stones).ok
 
 
-def test_mirrored_stone_in_the_wall_image_is_caught(either: Example) -> None:
+def test_mirrored_stone_in_the_wall_image_is_caught(either):
     labels = either.wall.labels.copy()
     window = next(p.window for p in either.wall.placements if p.stone_id == L_STONE)
     labels[window] = labels[window][:, ::-1]
@@ -226,7 +225,7 @@ def test_mirrored_stone_in_the_wall_image_is_caught(either: Example) -> None:
     assert [p.step for p in report.problems] == [step_of(either.plan, L_STONE).step]
 
 
-def test_wall_image_of_another_wall_is_caught(true: Example) -> None:
+def test_wall_image_of_another_wall_is_caught(true):
     labels = true.wall.labels.copy()
     labels[0, 0] = 555
     report = check_plan(true.plan, true.stones, wall_labels=labels)
@@ -235,13 +234,13 @@ def test_wall_image_of_another_wall_is_caught(true: Example) -> None:
     assert codes(report) == {"E236"}
 
 
-def test_wall_that_is_no_image_is_refused(true: Example) -> None:
+def test_wall_that_is_no_image_is_refused(true):
     for size in (1e12, 0.1):
         with pytest.raises(PlanError, match="E215"):
             check_plan(replace(true.plan, width=size), true.stones)
 
 
-def test_sources_without_digest_are_not_compared(true: Example) -> None:
+def test_sources_without_digest_are_not_compared(true):
     stones = replace(true.stones, source=replace(true.stones.source, sha256=""))
     report = check_plan(true.plan, stones, wall_labels=true.wall.labels)
     assert report.ok
@@ -249,7 +248,7 @@ def test_sources_without_digest_are_not_compared(true: Example) -> None:
     assert "digest" in report.notes[0]
 
 
-def test_steps_after_a_broken_one_are_said_to_be_unchecked(true: Example) -> None:
+def test_steps_after_a_broken_one_are_said_to_be_unchecked(true):
     report = check_plan(moved(true.plan, SLAB, 0, -1), true.stones)
     assert report.metrics is None
     assert [prefix.step for prefix in report.prefixes] == [1, 2]
@@ -260,7 +259,7 @@ def test_steps_after_a_broken_one_are_said_to_be_unchecked(true: Example) -> Non
     assert data["problems"][0].keys() == {"code", "step", "message"}
 
 
-def test_real_outlines_that_overlap_are_reported_and_no_problem_is_made_of_them() -> None:
+def test_real_outlines_that_overlap_are_reported_and_no_problem_is_made_of_them():
     made = example()
     plan = moved(made.plan, SLAB, 0, -1 / 256)  # rounds to the same pixels
     report = check_plan(plan, made.stones)
@@ -271,13 +270,13 @@ def test_real_outlines_that_overlap_are_reported_and_no_problem_is_made_of_them(
     assert deep.overlap_depth_at == (3, SLAB)
 
 
-def test_stone_that_cannot_be_lowered_in_is_listed(either: Example) -> None:
+def test_stone_that_cannot_be_lowered_in_is_listed(either):
     assert check_plan(either.plan, either.stones).buried == ()
     below_the_slab = moved(either.plan, 300, 22 - 74, 0)
     assert check_plan(below_the_slab, either.stones).buried == (300,)
 
 
-def test_wall_in_the_air_does_not_stand(either: Example) -> None:
+def test_wall_in_the_air_does_not_stand(either):
     alone = moved(replace(either.plan, steps=either.plan.steps[:1]), 3, 0, 1)
     report = check_plan(alone, either.stones)
     (problem,) = (p for p in report.problems if p.code == "E230")
@@ -285,7 +284,7 @@ def test_wall_in_the_air_does_not_stand(either: Example) -> None:
     assert report.prefixes == (PrefixAlpha(1, None, None),)
 
 
-def test_largest_deviation_of_pixel_area_is_reported() -> None:
+def test_largest_deviation_of_pixel_area_is_reported():
     made = example()
     turned = check_plan(changed(made.plan, 3, angle_deg=45.0), made.stones)
     assert turned.area_error_at == 3
@@ -293,7 +292,7 @@ def test_largest_deviation_of_pixel_area_is_reported() -> None:
     assert turned.area_error == pytest.approx(420 / 400 - 1)
 
 
-def test_empty_plan_is_checked(either: Example) -> None:
+def test_empty_plan_is_checked(either):
     empty = PlanMetrics(0.0, None, None, None, 0.0, 0.0, None, None, 0.0)
     ids = tuple(stone.id for stone in either.stones)
     plan = replace(either.plan, steps=(), unused=ids, metrics=empty)
@@ -302,12 +301,12 @@ def test_empty_plan_is_checked(either: Example) -> None:
     assert report.area_error_at is None
 
 
-def test_other_stones_are_reported_and_nothing_is_raised(true: Example) -> None:
+def test_other_stones_are_reported_and_nothing_is_raised(true):
     report = check_plan(true.plan, StoneSet((), Source("none.png", "00" * 32, 1, 1)))
     assert codes(report) >= {"E210", "E211", "E212", "E216"}
 
 
-def test_plan_of_the_planner_passes() -> None:
+def test_plan_of_the_planner_passes():
     rng = np.random.default_rng(4)
     stones = polygon_stones(PolygonSettings(count=9, width_px=44, height_px=28), rng)
     settings = PlannerSettings(two_sided=True)
@@ -316,3 +315,45 @@ def test_plan_of_the_planner_passes() -> None:
     report = check_plan(plan, stones, wall_labels=made.wall.labels)
     assert report.problems == ()
     assert len(plan.stone_steps) >= 3
+
+
+def ending(status, side, *, from_call):
+    """An analysis of which one end is as said, from one call on."""
+    calls = []
+
+    def analyse(model):
+        calls.append(model)
+        both = lateral_resistance(model)
+        end = replace(getattr(both, side), status=status, alpha=None)
+        return both if len(calls) <= from_call else replace(both, **{side: end})
+
+    return analyse
+
+
+MADE = exact_example()
+
+
+def told(monkeypatch, analyse):
+    monkeypatch.setattr(claims, "lateral_resistance", analyse)
+    problems = check_plan(MADE.plan, MADE.stones).problems
+    return [(one.code, one.message) for one in problems if one.code in ("E230", "E237")]
+
+
+def test_a_solver_that_gives_up_is_no_wall_that_falls(monkeypatch):
+    # Of the walls as they are, and in their sturdy models.
+    for from_call, side in ((0, "left"), (3, "right")):
+        found = told(monkeypatch, ending(LimitStatus.FAILED, side, from_call=from_call))
+        assert found
+        for code, message in found:
+            assert code == "E230"
+            assert "the solver gave up, and it is not known whether the wall stands" in message
+
+
+def test_a_wall_that_carries_any_load_stands(monkeypatch):
+    assert told(monkeypatch, ending(LimitStatus.UNBOUNDED, "left", from_call=0)) == []
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_wall_that_falls_is_said_to(monkeypatch, side):
+    found = told(monkeypatch, ending(LimitStatus.UNSTABLE, side, from_call=0))
+    assert ("E230", f"the wall does not stand: {side} unstable.") in found

@@ -1,41 +1,37 @@
 """Plans of exact geometry are verified on their outlines."""
 
 import json
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from drystone.io.plan_json import plan_from_json, plan_to_json
-from drystone.model.plan import Plan
 from drystone.verify.check import check_plan
 from drystone.verify.replay import PENETRATION_PX
 from drystone.verify.report import PrefixAlpha
 from tests.verify.exact_examples import GAP_PX, block_model, exact_example, hanging_example
-from tests.verify.examples import L_STONE, SLAB, WEDGE, Example
+from tests.verify.examples import L_STONE, SLAB, WEDGE
 from tests.verify.tampering import changed, codes, moved, reshaped, step_of, with_setting
 
 
 @pytest.fixture(scope="module")
-def true() -> Example:
+def true():
     return exact_example()
 
 
-def lowered_top(polygon: np.ndarray, by: float) -> np.ndarray:
+def lowered_top(polygon, by):
     return polygon - (polygon == polygon.max(axis=0)) * (0, by)
 
 
-def raised_floor(polygon: np.ndarray, by: float) -> np.ndarray:
+def raised_floor(polygon, by):
     return polygon + (polygon == polygon.min(axis=0)) * (0, by)
 
 
 @pytest.mark.parametrize(
     ("scale", "px_per_m"), [(1.0, None), (1.0, 137.0), (0.5, None), (0.5, 200.0)]
 )
-def test_true_plan_passes_in_any_unit_and_at_any_scale(
-    scale: float, px_per_m: float | None
-) -> None:
+def test_true_plan_passes_in_any_unit_and_at_any_scale(scale, px_per_m):
     made = exact_example(scale, px_per_m)
     plan = plan_from_json(json.loads(json.dumps(plan_to_json(made.plan))))
     labels, blocks = made.wall.labels, block_model(made)
@@ -45,14 +41,13 @@ def test_true_plan_passes_in_any_unit_and_at_any_scale(
     assert report.geometry == report.as_dict()["geometry"] == "exact"
     assert (report.overlap_depth, report.overlap_depth_at, report.buried) == (0.0, None, ())
     assert report.area_error == 0
-    assert report.metrics is not None
     assert report.metrics.F_LR_half == pytest.approx(1.0)  # slabs and blocks slide before they tip
     assert report.prefixes[0].alpha_left == pytest.approx(0.58)
     assert [prefix.step for prefix in report.prefixes] == [1, 2, 4, 5, 6]
 
 
 # What is changed in the plan, and the codes that name it: exactly these.
-EXACT: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
+EXACT = {
     "stone left of the wall": (lambda p: moved(p, 3, -0.31, 0), {"E220"}),
     "stone in the ground": (lambda p: moved(p, 5, 0, -0.07), {"E220"}),
     "stone right of the wall": (lambda p: moved(p, 300, 0.31, 0), {"E220"}),
@@ -78,7 +73,7 @@ EXACT: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
 
 
 @pytest.mark.parametrize("name", EXACT)
-def test_tampering_is_caught_by_its_code(true: Example, name: str) -> None:
+def test_tampering_is_caught_by_its_code(true, name):
     change, expected = EXACT[name]
     report = check_plan(change(true.plan), true.stones)
     assert codes(report) == expected
@@ -86,7 +81,7 @@ def test_tampering_is_caught_by_its_code(true: Example, name: str) -> None:
 
 
 # Changes with more than one consequence: these codes are among those found.
-AMONG: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
+AMONG = {
     "stone lifted beyond the tolerance": (lambda p: moved(p, 300, 0, 0.11), {"E230"}),
     "stone lifted within the tolerance": (lambda p: moved(p, 300, 0, 0.06), {"E234"}),
     "stone turned by 1 degree": (lambda p: changed(p, 3, angle_deg=1.0), {"E235"}),
@@ -106,14 +101,14 @@ AMONG: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
 
 
 @pytest.mark.parametrize("name", AMONG)
-def test_tampering_with_consequences_is_caught(true: Example, name: str) -> None:
+def test_tampering_with_consequences_is_caught(true, name):
     change, expected = AMONG[name]
     report = check_plan(change(true.plan), true.stones, wall_labels=true.wall.labels)
     assert codes(report) >= expected
 
 
 @pytest.mark.parametrize(("into", "allowed"), [(0.04, True), (0.06, False)])
-def test_penetration_is_allowed_up_to_a_limit(true: Example, into: float, allowed: bool) -> None:
+def test_penetration_is_allowed_up_to_a_limit(true, into, allowed):
     report = check_plan(moved(true.plan, SLAB, 0, -GAP_PX - into), true.stones)
     assert ("E221" not in codes(report)) is allowed
     assert report.overlap_depth == pytest.approx(into, abs=1e-6)
@@ -121,7 +116,7 @@ def test_penetration_is_allowed_up_to_a_limit(true: Example, into: float, allowe
     assert (into <= PENETRATION_PX) is allowed
 
 
-def test_what_lies_in_a_stone_that_lies_in_another_is_named_too(true: Example) -> None:
+def test_what_lies_in_a_stone_that_lies_in_another_is_named_too(true):
     """The slab in the first stone, and one more in the end of the slab."""
     lowered = moved(true.plan, SLAB, 0, -0.2)
     x, y = step_of(lowered, SLAB).centroid
@@ -132,7 +127,7 @@ def test_what_lies_in_a_stone_that_lies_in_another_is_named_too(true: Example) -
         assert any(f"source px deep in stone {other}." in message for message in mine)
 
 
-def test_depth_is_said_in_source_px_and_of_wedges_too() -> None:
+def test_depth_is_said_in_source_px_and_of_wedges_too():
     made = exact_example(0.5, 200.0)
     plan = reshaped(made.plan, lambda w: w - (0, 1.2 / 200))
     report = check_plan(plan, made.stones)
@@ -143,7 +138,7 @@ def test_depth_is_said_in_source_px_and_of_wedges_too() -> None:
     assert problem.step == step_of(made.plan, WEDGE).step
 
 
-def test_edges_of_the_wall_are_named_in_source_px() -> None:
+def test_edges_of_the_wall_are_named_in_source_px():
     made = exact_example(0.5)
     report = check_plan(moved(made.plan, 300, 0.75, -0.25), made.stones)
     (problem,) = report.problems
@@ -151,7 +146,7 @@ def test_edges_of_the_wall_are_named_in_source_px() -> None:
     assert "0.24 px below the ground, 0.75 px right of the right" in problem.message
 
 
-def test_stone_that_hangs_between_others_does_not_stand(true: Example) -> None:
+def test_stone_that_hangs_between_others_does_not_stand(true):
     # As near to its neighbours as contacts are, with nothing below it.
     hanging = moved(true.plan, L_STONE, 2.0 - GAP_PX, 3.0)
     report = check_plan(hanging, true.stones)
@@ -160,7 +155,7 @@ def test_stone_that_hangs_between_others_does_not_stand(true: Example) -> None:
     assert PrefixAlpha(step, None, None) in report.prefixes
 
 
-def test_stone_that_only_friction_on_upright_faces_holds_is_named() -> None:
+def test_stone_that_only_friction_on_upright_faces_holds_is_named():
     hanging = hanging_example()
     problems = check_plan(hanging.plan, hanging.stones).problems
     assert [(problem.code, problem.step) for problem in problems] == [("E237", 3)]

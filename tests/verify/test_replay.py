@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from drystone.model.placement import Placement
 from drystone.model.plan import StoneStep
 from drystone.model.site import Site
-from drystone.model.stone import Stone, StoneSet
+from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
 from drystone.verify.replay import place_stone, rebuild_wall, replay_plan
 from tests.strategies import repeatable, stones
@@ -18,7 +18,7 @@ from tests.verify.examples import L_STONE, example
 @pytest.mark.parametrize(
     ("scale", "px_per_m"), [(1.0, None), (1.0, 137.0), (0.5, None), (0.5, 211.3)]
 )
-def test_wall_is_rebuilt_to_the_pixel(scale: float, px_per_m: float | None) -> None:
+def test_wall_is_rebuilt_to_the_pixel(scale, px_per_m):
     made = example(scale, px_per_m)
     found = rebuild_wall(made.plan, made.stones)
     np.testing.assert_array_equal(found.labels, made.wall.labels)
@@ -27,7 +27,7 @@ def test_wall_is_rebuilt_to_the_pixel(scale: float, px_per_m: float | None) -> N
     assert [w.id for w in found.wedges] == [w.id for w in made.wall.wedges]
 
 
-def test_l_stone_turned_by_90_degrees_is_not_mirrored() -> None:
+def test_l_stone_turned_by_90_degrees_is_not_mirrored():
     made = example()
     wall = rebuild_wall(made.plan, made.stones)
     mask = next(p.posed.mask for p in wall.placements if p.stone_id == L_STONE)
@@ -41,9 +41,7 @@ def test_l_stone_turned_by_90_degrees_is_not_mirrored() -> None:
     st.sampled_from([1.0, 0.7, 0.3]),
     st.sampled_from([None, 437.0, 1e-3]),
 )
-def test_pose_of_a_plan_is_the_pose_of_the_planner(
-    stone: Stone, angle_deg: float, scale: float, px_per_m: float | None
-) -> None:
+def test_pose_of_a_plan_is_the_pose_of_the_planner(stone, angle_deg, scale, px_per_m):
     site = Site(40, 30, scale, px_per_m)
     placed = Placement(PoseBook(scale).pose(stone, angle_deg), 7, 11, "right", 2)
     x, y = placed.centroid(site.height_px)
@@ -56,7 +54,7 @@ def test_pose_of_a_plan_is_the_pose_of_the_planner(
     assert found.posed.anchor == placed.posed.anchor
 
 
-def test_wall_size_in_metres_does_not_depend_on_rounding() -> None:
+def test_wall_size_in_metres_does_not_depend_on_rounding():
     made = example()
     for width in range(1, 400, 2):
         plan = replace(made.plan, width=width / 437.0, length_unit="m", px_per_m=437.0,
@@ -64,7 +62,7 @@ def test_wall_size_in_metres_does_not_depend_on_rounding() -> None:
         assert replay_plan(plan, made.stones).site.width_px == (width + 1) // 2
 
 
-def test_pieces_that_overlap_stay_in_the_replay_and_the_wall_ends_before() -> None:
+def test_pieces_that_overlap_stay_in_the_replay_and_the_wall_ends_before():
     made = example()
     second = made.plan.stone_steps[1]
     x, y = second.centroid

@@ -34,6 +34,7 @@ from drystone.io.write_stones import painted
 from drystone.kernels.label_runs import label_runs
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.model.plan import Plan
+from drystone.model.steps import piece_id
 from drystone.model.stone import StoneSet, writable
 from drystone.model.wall import Labels
 from drystone.statics.joints import loose_blocks
@@ -122,10 +123,19 @@ def read_wall(path: Path, settings: ReadSettings | None = None) -> GivenWall:
     if path.suffix.lower() != ".json":
         return _stones(path, settings)
     content = _read_json(path)
-    model = isinstance(content, dict) and ("blocks" in content or "blocks_xywh" in content)
-    if not model and not _is_plan(content):
+    keys = content.keys() if isinstance(content, dict) else set()
+    model = not keys.isdisjoint({"blocks", "blocks_xywh"})
+    # Of any version: what is, or once was, a plan.
+    named = bool(keys) and str(content.get("schema", "")).startswith("drystone-plan")
+    if not (model or named or keys >= {"steps", "source"}):
         return _stones(path, settings)
-    _refuse_reading(settings, "block model" if model else "plan", path)
+    if asked := [name for name, _ in replace(settings, px_per_m=None).changed()]:
+        options = ", ".join(f"--{name.removesuffix('_px').replace('_', '-')}" for name in asked)
+        what = f"this is a {'block model' if model else 'plan'}, which says itself what its stones"
+        cure = f"Leave {'it' if len(asked) == 1 else 'them'} out; it is for pictures and outlines."
+        raise UsageError(
+            "E118", f"{what} are: {options} has no meaning.", where=str(path), cure=cure
+        )
     if model:
         return GivenWall(None, blocks=content)
     plan = read_plan(path)
@@ -140,24 +150,6 @@ def read_wall(path: Path, settings: ReadSettings | None = None) -> GivenWall:
         _refuse_misplaced(labels, plan, path)
         return GivenWall(labels, plan)
     return GivenWall(labels, plan, _blocks_of(plan, path))
-
-
-def _is_plan(content: Any) -> bool:
-    """Tell whether JSON is, or once was, a plan."""
-    if not isinstance(content, dict):
-        return False
-    named = str(content.get("schema", "")).startswith("drystone-plan")
-    return named or {"steps", "source"} <= content.keys()
-
-
-def _refuse_reading(settings: ReadSettings, what: str, path: Path) -> None:
-    """Refuse settings of reading for what says itself what its stones are (E118)."""
-    asked = [name for name, _ in replace(settings, px_per_m=None).changed()]
-    if asked:
-        options = ", ".join(f"--{name.removesuffix('_px').replace('_', '-')}" for name in asked)
-        said = f"this is a {what}, which says itself what its stones are: {options} has no meaning."
-        cure = f"Leave {'it' if len(asked) == 1 else 'them'} out; it is for pictures and outlines."
-        raise UsageError("E118", said, where=str(path), cure=cure)
 
 
 def _stones(path: Path, settings: ReadSettings) -> GivenWall:
@@ -229,14 +221,15 @@ def shows(labels: Labels, plan: Plan) -> bool:
     Of a plan on outlines wedges may be missing that fill no pixel.
     """
     found = set(np.unique(labels).tolist()) - {0}
-    wedges = {step.id for step in plan.wedge_steps}
-    may_miss = wedges if plan.settings.get("geometry") == "exact" else set()
-    return set(_ids(plan)) - may_miss <= found <= set(_ids(plan))
+    planned = set(map(piece_id, plan.steps))
+    exact = plan.settings.get("geometry") == "exact"
+    may_miss = {step.id for step in plan.wedge_steps} if exact else set()
+    return planned - may_miss <= found <= planned
 
 
 def image_name(plan: Plan) -> str:
     """Return the name of the wall image that is written with a plan (DESIGN 2)."""
-    return "wall.png" if max(_ids(plan), default=0) <= 65535 else "wall.tif"
+    return "wall.png" if max(map(piece_id, plan.steps), default=0) <= 65535 else "wall.tif"
 
 
 def read_image_of(plan: Plan, folder: Path) -> Labels | None:
@@ -307,22 +300,16 @@ def _blocks_of(plan: Plan, path: Path) -> dict[str, Any]:
         what = f"there is no {BLOCKS} beside the plan."
     elif not isinstance(blocks, dict):
         what = f"the {BLOCKS} beside the plan is not a block model."
-    elif set(polygons := polygons_from_json(blocks)) != set(_ids(plan)):
+    elif set(polygons := polygons_from_json(blocks)) != set(planned := _planned(plan)):
         what = f"the {BLOCKS} beside the plan has other stones than the plan."
-    elif not _where_planned(plan, polygons):
+    elif not all(
+        math.dist(_centroid(polygon), planned[block]) <= CENTROID_PX / (plan.px_per_m or 1.0)
+        for block, polygon in polygons.items()
+    ):
         what = f"the {BLOCKS} beside the plan has its stones in other places than the plan."
     else:
         return blocks
     raise InputError("E133", what, where=str(path), cure=_TOGETHER)
-
-
-def _where_planned(plan: Plan, polygons: Mapping[int, Points]) -> bool:
-    """Say whether all polygons have their centroids where those of the plan are."""
-    planned, allowed = _planned(plan), CENTROID_PX / (plan.px_per_m or 1.0)
-    return all(
-        math.dist(_centroid(polygon), planned[block]) <= allowed
-        for block, polygon in polygons.items()
-    )
 
 
 def _refuse_misplaced(labels: Labels, plan: Plan, path: Path) -> None:
@@ -371,11 +358,6 @@ def _centroid(polygon: Points) -> tuple[float, float]:
     return x, y
 
 
-def _ids(plan: Plan) -> list[int]:
-    stones = [step.stone for step in plan.stone_steps]
-    return stones + [step.id for step in plan.wedge_steps]
-
-
 def _read_json(
     path: Path, cure: str = "Give a label image, the plan.json of a plan, or a block model."
 ) -> Any:
@@ -422,7 +404,14 @@ def wall_outlines(file: OutlineFile, stones: StoneSet) -> dict[int, Points] | No
     left = corners[:, 0].min()
     left = left if file.unit_m or file.y_up else min(0.0, np.floor(left))
     origin = np.array([left, corners[:, 1].min()])
-    return {i: _closed(outline - origin) for i, outline in found.items()}
+    # Counter-clockwise, without corners twice in a row.
+    shapes = {i: shapely.Polygon(outline - origin) for i, outline in found.items()}
+    return {
+        i: shapely.get_coordinates(
+            shapely.orient_polygons(shapely.remove_repeated_points(shape, 1e-9)).exterior
+        )
+        for i, shape in shapes.items()
+    }
 
 
 def outlines_painted(outlines: Mapping[int, Points]) -> Labels:
@@ -467,9 +456,3 @@ def _on_ground(rings: Mapping[int, Points], ground: Points) -> dict[int, Points]
         what = "no stone is above the ground that was drawn."
         raise LabelImageError("E104", what, cure="Draw the ground under the wall.")
     return above
-
-
-def _closed(ring: Points) -> Points:
-    """Return a ring as a closed line, counter-clockwise, without corners twice in a row."""
-    shape = shapely.remove_repeated_points(shapely.Polygon(ring), 1e-9)
-    return np.asarray(shapely.get_coordinates(shapely.orient_polygons(shape).exterior))
