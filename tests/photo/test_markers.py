@@ -105,12 +105,6 @@ def test_nothing_is_found_where_there_is_nothing():
     assert find_markers(np.zeros((50, 50), dtype=np.uint8)) == ()
 
 
-def test_the_other_family_is_not_found():
-    shown = photograph(to_photo(), SIZE, PLACED)
-    assert find_markers(shown, "apriltag") == ()
-    assert len(find_markers(shown, "aruco")) == 2
-
-
 def test_a_mirrored_marker_is_none():
     shown = photograph(to_photo(), SIZE, PLACED)
     assert find_markers(np.ascontiguousarray(shown[:, ::-1])) == ()

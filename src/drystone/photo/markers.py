@@ -92,18 +92,16 @@ class FoundMarker:
         return float(np.hypot(*sides.T).mean())
 
 
-def find_markers(image: NDArray[np.uint8], dictionary: str = "auto") -> tuple[FoundMarker, ...]:
+def find_markers(image: NDArray[np.uint8]) -> tuple[FoundMarker, ...]:
     """Find markers with the white border around them, in any position, in grey or RGB.
 
-    `dictionary` is a family, or "auto": "aruco" or "apriltag", the one with more markers in the
-    picture, and where there are not two of either the one with most of all families.  They are in
-    the order of their ids; an id may occur twice.  E305 without OpenCV, E174 for another name.
+    They are of the family with more markers in the picture, "aruco" or "apriltag"; where there are
+    not two of either, of the one with most of all families.  They are in the order of their ids; an
+    id may occur twice.  E305 without OpenCV.
     """
     cv2 = load_cv2()
     grey = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_RGB2GRAY)
     grey = np.ascontiguousarray(grey)
-    if dictionary != "auto":
-        return _find(grey, dictionary)
     # The patterns of AprilTag have more squares, so of two the same number they are the surer.
     best = max((_find(grey, name) for name in reversed(DICTIONARIES)), key=len)
     if len(best) > 1:

@@ -197,10 +197,10 @@ def _sorted_out(
     return new[labels], np.where(cut[labels], labels, 0), np.where(small[labels], labels, 0), least
 
 
-def stones_at(labels: NDArray[np.uint16], at_px: tuple[float, float], near: int = 4) -> list[int]:
+def stones_at(labels: NDArray[np.uint16], at_px: tuple[float, float]) -> list[int]:
     """Return the stones around a place."""
     column, row = round(at_px[0]), round(at_px[1])
-    area = labels[max(row - near, 0) : row + near + 1, max(column - near, 0) : column + near + 1]
+    area = labels[max(row - 4, 0) : row + 5, max(column - 4, 0) : column + 5]
     return [int(k) for k in np.unique(area) if k]
 
 
@@ -262,12 +262,12 @@ def lost(
     return tuple(found)
 
 
-def refine_outlines(lab: Planes, stone: Mask, usable: Mask, rounds: int = 2) -> Mask:
+def refine_outlines(lab: Planes, stone: Mask, usable: Mask) -> Mask:
     """Move outlines to where the colour is half way between stone and ground.
 
     `stone` is where stones are, about; `usable` what the photograph shows of ground and stones.
     """
-    for _ in range(rounds):
+    for _ in range(2):
         inner = ndimage.distance_transform_edt(stone)
         outer = ndimage.distance_transform_edt(~stone)
         band = (inner <= BAND_PX) & (outer <= BAND_PX) & usable

@@ -36,15 +36,6 @@ class View:
         """Return the view from straight above: a scale, and nothing to be warped."""
         return cls(np.diag([1.0 / px_per_m, 1.0 / px_per_m, 1.0]), float(px_per_m))
 
-    @property
-    def is_flat(self) -> bool:
-        """True when the photograph needs no warping: a scale was given."""
-        return not self.ids
-
-    def to_ground(self, points_px: NDArray[np.float64] | list[list[float]]) -> NDArray[np.float64]:
-        """Return where (n, 2) points of the photograph are on the ground, metres."""
-        return apply(self.photo_to_ground, np.asarray(points_px, dtype=np.float64))
-
 
 def apply(
     homography: NDArray[np.floating[Any]], points: NDArray[np.floating[Any]]
@@ -84,33 +75,18 @@ class Rectified:
     from_photo: NDArray[np.float64]
 
 
-def rectify(
-    image: NDArray[np.uint8], view: View, px_per_m: float | None = None, max_px: int = MAX_PX
-) -> Rectified:
+def rectify(image: NDArray[np.uint8], view: View, max_px: int = MAX_PX) -> Rectified:
     """Turn a photograph into the picture that a camera far above would take; it shows all of it.
 
-    A flat view of the same scale leaves every px as it is.  `px_per_m` of the result is that of the
-    view unless given, or less where `max_px` would be exceeded.  E173: the horizon or what is near
-    to it is in the photograph.  E110: `px_per_m` was given and makes more than `max_px`.
+    `px_per_m` of the result is that of the view, or less where `max_px` would be exceeded.  E173:
+    the horizon or what is near to it is in the photograph.
     """
     height, width = image.shape[:2]
     refuse_horizon(view, (width, height))
     corners = apply(view.photo_to_ground, SQUARE * (width, height))
     low = corners.min(axis=0)
     extent = corners.max(axis=0) - low
-    scale = view.px_per_m if px_per_m is None else px_per_m
-    if extent[0] * extent[1] * scale**2 > max_px:
-        if px_per_m is not None:
-            raise InputError(
-                "E110",
-                f"seen from above the photograph is {extent[0]:.2f} x {extent[1]:.2f} m, which at "
-                f"{scale:g} px a metre is more than {max_px / 1e6:g} million px.",
-                cure="Ask for fewer px a metre, or crop the photograph.",
-            )
-        scale = math.sqrt(max_px / (extent[0] * extent[1]))
-    if view.is_flat and math.isclose(scale, view.px_per_m, rel_tol=1e-9):
-        everywhere = np.ones((height, width), dtype=np.bool_)
-        return Rectified(image, view.px_per_m, everywhere, np.eye(3))
+    scale = min(view.px_per_m, math.sqrt(max_px / (extent[0] * extent[1])))
     moved = np.array([[scale, 0, -scale * low[0]], [0, scale, -scale * low[1]], [0, 0, 1]])
     across, down = (max(1, math.ceil(side * scale - 1e-6)) for side in extent)
     from_photo = moved @ view.photo_to_ground
