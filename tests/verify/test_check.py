@@ -15,8 +15,9 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LimitStatus
 from drystone.verify import claims
 from drystone.verify.check import check_plan
+from drystone.verify.replay import PENETRATION_PX
 from drystone.verify.report import PrefixAlpha
-from tests.verify.exact_examples import exact_example
+from tests.verify.exact_examples import GAP_PX, block_model, exact_example, hanging_example
 from tests.verify.examples import L_STONE, SLAB, WEDGE, example
 from tests.verify.tampering import (
     changed,
@@ -26,6 +27,7 @@ from tests.verify.tampering import (
     step_of,
     swapped,
     with_index,
+    with_setting,
     without,
 )
 
@@ -35,28 +37,47 @@ def true():
     return example()
 
 
+@pytest.fixture(scope="module")
+def exact():
+    return exact_example()
+
+
 @pytest.fixture(scope="module", params=[example, exact_example], ids=["raster", "exact"])
 def either(request):
     return request.param()
 
 
+@pytest.mark.parametrize("make", [example, exact_example])
 @pytest.mark.parametrize(
     ("scale", "px_per_m"), [(1.0, None), (1.0, 137.0), (0.5, None), (0.5, 200.0)]
 )
-def test_true_plan_passes_in_any_unit_and_at_any_scale(scale, px_per_m):
-    made = example(scale, px_per_m)
-    report = check_plan(made.plan, made.stones, wall_labels=made.wall.labels)
-    assert report.problems == ()
+def test_true_plan_passes_in_any_unit_and_at_any_scale(make, scale, px_per_m):
+    made = make(scale, px_per_m)
+    plan = plan_from_json(json.loads(json.dumps(plan_to_json(made.plan))))
+    blocks = block_model(made) if make is exact_example else None
+    report = check_plan(plan, made.stones, wall_labels=made.wall.labels, blocks=blocks)
     assert report.ok
-    assert report.notes == ()
+    assert (report.problems, report.notes) == ((), ())
     assert report.overlap_depth < 1e-9
     assert report.area_error == 0
     assert report.prefixes[0].alpha_left == pytest.approx(0.58)  # a square block slides
     assert [prefix.step for prefix in report.prefixes] == [1, 2, 4, 5, 6]
+    if make is exact_example:
+        assert report.geometry == report.as_dict()["geometry"] == "exact"
+        assert (report.overlap_depth, report.overlap_depth_at, report.buried) == (0.0, None, ())
+        assert report.metrics.F_LR_half == pytest.approx(1.0)  # blocks slide before they tip
+
+
+def lowered_top(polygon, by):
+    return polygon - (polygon == polygon.max(axis=0)) * (0, by)
+
+
+def raised_floor(polygon, by):
+    return polygon + (polygon == polygon.min(axis=0)) * (0, by)
 
 
 # What is changed in plans of either geometry, and the codes that name it: exactly these.
-EXACT_ON_BOTH = {
+ONLY_BOTH = {
     "unused stone missing": (lambda p: replace(p, unused=()), {"E216"}),
     "settings": (lambda p: replace(p, settings={**p.settings, "wings": 2}), {"E217"}),
     "source centroid": (lambda p: changed(p, 3, source_centroid=(12.0, 13.5)), {"E225"}),
@@ -66,7 +87,7 @@ EXACT_ON_BOTH = {
 }  # fmt: skip
 
 # Changes with more than one consequence: these codes are among those found.
-AMONG_ON_BOTH = {
+AMONG_BOTH = {
     "stone lifted by 1 px": (lambda p: moved(p, L_STONE, 0, 1), {"E230", "E236"}),
     "first stone lifted by 1 px": (lambda p: moved(without(p, SLAB), 3, 0, 1), {"E230"}),
     "stone turned by 180 degrees": (lambda p: changed(p, L_STONE, angle_deg=-90.0), {"E236"}),
@@ -82,16 +103,7 @@ AMONG_ON_BOTH = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", [*EXACT_ON_BOTH, *AMONG_ON_BOTH])
-def test_tampering_is_caught_on_either_geometry(either, name):
-    change, expected = (EXACT_ON_BOTH | AMONG_ON_BOTH)[name]
-    labels = either.wall.labels if name in AMONG_ON_BOTH else None
-    found = codes(check_plan(change(either.plan), either.stones, wall_labels=labels))
-    assert found >= expected
-    assert name in AMONG_ON_BOTH or found == expected
-
-
-EXACT = {
+ONLY_RASTER = {
     "another digest": (lambda p: replace(p, source={**p.source, "sha256": "0" * 64}), {"E210"}),
     "number of stones": (lambda p: replace(p, source={**p.source, "stones": 7}), {"E211"}),
     "image width": (lambda p: replace(p, source={**p.source, "width_px": 7}), {"E211"}),
@@ -115,12 +127,93 @@ EXACT = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", EXACT)
-def test_tampering_is_caught_by_its_code(true, name):
-    change, expected = EXACT[name]
-    report = check_plan(change(true.plan), true.stones)
+AMONG_RASTER = {
+    "stone moved by 1 px": (lambda p: moved(p, SLAB, 1, 0), {"E232", "E236"}),
+    "stone turned by 3 degrees": (lambda p: changed(p, 3, angle_deg=3.0), {"E235", "E236"}),
+    "ids swapped": (lambda p: swapped(p, 3, 5), {"E220", "E225", "E236"}),
+    "stone left out": (lambda p: without(p, 3), {"E216", "E230"}),
+    "wedge under another stone": (lambda p: changed(p, WEDGE, under=3), {"E214"}),
+    "wedge too thin": (lambda p: reshaped(p, lambda w: w - (w == w.max(axis=0)) * (0, 3)),
+                       {"E223", "E224"}),
+    "wedge hanging": (lambda p: reshaped(p, lambda w: w + (w == w.min(axis=0)) * (0, 1)),
+                      {"E223"}),
+    "wedge a pixel narrower": (lambda p: reshaped(p, lambda w: w - (w == w.max(axis=0)) * (1, 0)),
+                               {"E234", "E236"}),
+    "wedge polygon off the grid": (
+        lambda p: reshaped(p, lambda w: w - (w == w.max(axis=0)) * (0.3, 0)), {"E222"}),
+    "largest wedge": (
+        lambda p: replace(p, settings={**p.settings, "stabilise": {"max_wedge_height": 0.1}}),
+        {"E224"}),
+    "wall lower": (lambda p: replace(p, height=25.0), {"E220", "E236"}),
+    "unit of length": (lambda p: replace(p, px_per_m=2.0, length_unit="m"), {"E230", "E236"}),
+    "working scale": (lambda p: replace(p, working_scale=0.5), {"E236"}),
+}  # fmt: skip
+
+
+ONLY_EXACT = {
+    "stone left of the wall": (lambda p: moved(p, 3, -0.31, 0), {"E220"}),
+    "stone in the ground": (lambda p: moved(p, 5, 0, -0.07), {"E220"}),
+    "stone right of the wall": (lambda p: moved(p, 300, 0.31, 0), {"E220"}),
+    "stone above the top": (lambda p: moved(p, SLAB, 0, 4.3), {"E220"}),
+    "stone .2 px into what is below": (lambda p: moved(p, SLAB, 0, -0.2), {"E221"}),
+    "stone .2 px into its neighbour": (lambda p: moved(p, 300, -2.2, 0), {"E221"}),
+    "stone in another": (lambda p: moved(p, 300, 2 - 74, 2), {"E221"}),
+    "stone turned into another": (
+        lambda p: changed(p, SLAB, angle_deg=181.0, rotation_moves=1), {"E221"}),
+    "wedge .2 px into its stone": (
+        lambda p: reshaped(p, lambda w: w + np.array([0, 0.2])), {"E221"}),
+    "wedge clockwise": (lambda p: reshaped(p, lambda w: w[::-1]), {"E222"}),
+    "wedge that crosses itself": (lambda p: reshaped(p, lambda w: w[[0, 2, 1, 3]]), {"E222"}),
+    "wedge without area": (lambda p: reshaped(p, lambda w: w * (1, 0)), {"E222"}),
+    "wedge far outside": (lambda p: reshaped(p, lambda w: w * 1e9), {"E220"}),
+    "wedge too small": (lambda p: with_setting(p, "wedge", thickness=0.5), {"E224"}),
+    "wedge too high": (lambda p: with_setting(p, "wedge", height=0.1), {"E224"}),
+    "two rotation moves": (lambda p: changed(p, 3, rotation_moves=2), {"E235"}),
+    "a turn that is none": (
+        lambda p: changed(with_setting(p, "stabilise", method="wedge"), 3, rotation_moves=1),
+        {"E235"}),
+}  # fmt: skip
+
+
+AMONG_EXACT = {
+    "stone lifted beyond the tolerance": (lambda p: moved(p, 300, 0, 0.11), {"E230"}),
+    "stone lifted within the tolerance": (lambda p: moved(p, 300, 0, 0.06), {"E234"}),
+    "stone turned by 1 degree": (lambda p: changed(p, 3, angle_deg=1.0), {"E235"}),
+    "stone turned further than it may": (
+        lambda p: changed(p, 3, angle_deg=12.1, rotation_moves=1), {"E235"}),
+    "wedge too low": (lambda p: reshaped(p, lambda w: lowered_top(w, 0.2)), {"E223", "E230"}),
+    "wedge hanging": (lambda p: reshaped(p, lambda w: raised_floor(w, 0.2)), {"E223"}),
+    "wedge narrower": (lambda p: reshaped(p, lambda w: w - (w == w.max(axis=0)) * (0.5, 0)),
+                       {"E234"}),
+    "wedge elsewhere": (lambda p: reshaped(p, lambda w: w - (12, 0)), {"E223", "E230", "E236"}),
+    "contact tolerance": (
+        lambda p: with_setting(p, "settle", contact_px=GAP_PX / 2, clearance_px=GAP_PX / 8),
+        {"E223", "E230"}),
+    "raster": (lambda p: replace(p, settings={**p.settings, "geometry": "raster"}), {"E234"}),
+    "unit of length": (lambda p: replace(p, px_per_m=2.0, length_unit="m"), {"E230"}),
+}  # fmt: skip
+
+
+MADE = {"raster": example(), "exact": exact_example()}
+ONLY = {"raster": ONLY_BOTH | ONLY_RASTER, "exact": ONLY_BOTH | ONLY_EXACT}
+AMONG = {"raster": AMONG_BOTH | AMONG_RASTER, "exact": AMONG_BOTH | AMONG_EXACT}
+
+
+@pytest.mark.parametrize(("geometry", "name"), [(one, name) for one in ONLY for name in ONLY[one]])
+def test_tampering_is_caught_by_its_code(geometry, name):
+    change, expected = ONLY[geometry][name]
+    report = check_plan(change(MADE[geometry].plan), MADE[geometry].stones)
     assert codes(report) == expected
     assert not report.ok
+
+
+@pytest.mark.parametrize(
+    ("geometry", "name"), [(one, name) for one in AMONG for name in AMONG[one]]
+)
+def test_tampering_with_consequences_is_caught(geometry, name):
+    made, (change, expected) = MADE[geometry], AMONG[geometry][name]
+    report = check_plan(change(made.plan), made.stones, wall_labels=made.wall.labels)
+    assert codes(report) >= expected
 
 
 def test_stones_that_the_settings_do_not_allow_are_named(true):
@@ -150,36 +243,6 @@ def test_what_is_claimed_and_cannot_be_is_said_in_words(true):
     (problem,) = check_plan(plan, true.stones).problems
     said = "F_LR_half is 0.5 by the plan, but there is no such value."
     assert (problem.code, problem.message) == ("E234", said)
-
-
-AMONG = {
-    "stone moved by 1 px": (lambda p: moved(p, SLAB, 1, 0), {"E232", "E236"}),
-    "stone turned by 3 degrees": (lambda p: changed(p, 3, angle_deg=3.0), {"E235", "E236"}),
-    "ids swapped": (lambda p: swapped(p, 3, 5), {"E220", "E225", "E236"}),
-    "stone left out": (lambda p: without(p, 3), {"E216", "E230"}),
-    "wedge under another stone": (lambda p: changed(p, WEDGE, under=3), {"E214"}),
-    "wedge too thin": (lambda p: reshaped(p, lambda w: w - (w == w.max(axis=0)) * (0, 3)),
-                       {"E223", "E224"}),
-    "wedge hanging": (lambda p: reshaped(p, lambda w: w + (w == w.min(axis=0)) * (0, 1)),
-                      {"E223"}),
-    "wedge a pixel narrower": (lambda p: reshaped(p, lambda w: w - (w == w.max(axis=0)) * (1, 0)),
-                               {"E234", "E236"}),
-    "wedge polygon off the grid": (
-        lambda p: reshaped(p, lambda w: w - (w == w.max(axis=0)) * (0.3, 0)), {"E222"}),
-    "largest wedge": (
-        lambda p: replace(p, settings={**p.settings, "stabilise": {"max_wedge_height": 0.1}}),
-        {"E224"}),
-    "wall lower": (lambda p: replace(p, height=25.0), {"E220", "E236"}),
-    "unit of length": (lambda p: replace(p, px_per_m=2.0, length_unit="m"), {"E230", "E236"}),
-    "working scale": (lambda p: replace(p, working_scale=0.5), {"E236"}),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("name", AMONG)
-def test_tampering_with_consequences_is_caught(true, name):
-    change, expected = AMONG[name]
-    report = check_plan(change(true.plan), true.stones, wall_labels=true.wall.labels)
-    assert codes(report) >= expected
 
 
 @pytest.mark.parametrize("name", ["SF", "LFR", "GDS", "NHR", "IWR", "IS"])
@@ -330,12 +393,9 @@ def ending(status, side, *, from_call):
     return analyse
 
 
-MADE = exact_example()
-
-
 def told(monkeypatch, analyse):
     monkeypatch.setattr(claims, "lateral_resistance", analyse)
-    problems = check_plan(MADE.plan, MADE.stones).problems
+    problems = check_plan(MADE["exact"].plan, MADE["exact"].stones).problems
     return [(one.code, one.message) for one in problems if one.code in ("E230", "E237")]
 
 
@@ -357,3 +417,57 @@ def test_a_wall_that_carries_any_load_stands(monkeypatch):
 def test_a_wall_that_falls_is_said_to(monkeypatch, side):
     found = told(monkeypatch, ending(LimitStatus.UNSTABLE, side, from_call=0))
     assert ("E230", f"the wall does not stand: {side} unstable.") in found
+
+
+@pytest.mark.parametrize(("into", "allowed"), [(0.04, True), (0.06, False)])
+def test_penetration_is_allowed_up_to_a_limit(exact, into, allowed):
+    report = check_plan(moved(exact.plan, SLAB, 0, -GAP_PX - into), exact.stones)
+    assert ("E221" not in codes(report)) is allowed
+    assert report.overlap_depth == pytest.approx(into, abs=1e-6)
+    assert report.overlap_depth_at in {(3, SLAB), (SLAB, WEDGE)}
+    assert (into <= PENETRATION_PX) is allowed
+
+
+def test_what_lies_in_a_stone_that_lies_in_another_is_named_too(exact):
+    """The slab in the first stone, and one more in the end of the slab."""
+    lowered = moved(exact.plan, SLAB, 0, -0.2)
+    x, y = step_of(lowered, SLAB).centroid
+    plan = changed(lowered, 300, centroid=(x + 24.0, y))
+    said = [p for p in check_plan(plan, exact.stones).problems if p.code == "E221"]
+    for stone, other in ((SLAB, 3), (300, SLAB)):
+        mine = [p.message for p in said if p.step == step_of(plan, stone).step]
+        assert any(f"source px deep in stone {other}." in message for message in mine)
+
+
+def test_depth_is_said_in_source_px_and_of_wedges_too():
+    made = exact_example(0.5, 200.0)
+    plan = reshaped(made.plan, lambda w: w - (0, 1.2 / 200))
+    report = check_plan(plan, made.stones)
+    assert report.overlap_depth == pytest.approx(1.2 - GAP_PX, abs=1e-6)
+    assert report.overlap_depth_at == (5, WEDGE)
+    (problem,) = (p for p in report.problems if p.code == "E221")
+    assert "1.19 source px deep in stone 5" in problem.message
+    assert problem.step == step_of(made.plan, WEDGE).step
+
+
+def test_edges_of_the_wall_are_named_in_source_px():
+    made = exact_example(0.5)
+    report = check_plan(moved(made.plan, 300, 0.75, -0.25), made.stones)
+    (problem,) = report.problems
+    assert problem.code == "E220"
+    assert "0.24 px below the ground, 0.75 px right of the right" in problem.message
+
+
+def test_stone_that_hangs_between_others_does_not_stand(exact):
+    # As near to its neighbours as contacts are, with nothing below it.
+    hanging = moved(exact.plan, L_STONE, 2.0 - GAP_PX, 3.0)
+    report = check_plan(hanging, exact.stones)
+    step = step_of(exact.plan, L_STONE).step
+    assert {p.code for p in report.problems if p.step == step} >= {"E230"}
+    assert PrefixAlpha(step, None, None) in report.prefixes
+
+
+def test_stone_that_only_friction_on_upright_faces_holds_is_named():
+    hanging = hanging_example()
+    problems = check_plan(hanging.plan, hanging.stones).problems
+    assert [(problem.code, problem.step) for problem in problems] == [("E237", 3)]
