@@ -25,6 +25,8 @@ _FAX, _DEFLATE = {2, 3, 4}, {8, 32946}
 _PACKED = _FAX | _DEFLATE | {5, 32773}
 """Also LZW and PackBits: all but deflate are unpacked by the library behind Pillow."""
 
+_FAX_OPTIONS = (292, 293)
+
 _LOSSY = {6, 7}
 """JPEG."""
 
@@ -146,18 +148,14 @@ def values(data: bytes, tags: TiffPage, check: Callable[[int, int], None]) -> ND
         if min(rows, cols, height, width, channels) < 1:
             raise damaged("a side of it is 0")
         kind = np.dtype(page.dtype).newbyteorder(page.parent.byteorder)
-        options = {tag: int(page.tags[tag].value) for tag in _FAX_OPTIONS if tag in page.tags}
-        code = _Code(
-            int(page.compression), int(page.predictor), int(page.fillorder), options,
-            kind, int(page.bitspersample), cols, channels,
-        )  # fmt: skip
+        row_bytes = -(-cols * channels * int(page.bitspersample) // 8)
         offsets, counts = page.dataoffsets, page.databytecounts
         places = [(int(start), int(n)) for start, n in zip(offsets, counts, strict=False)]
     down, across = math.ceil(height / rows), math.ceil(width / cols)
     if len(places) < down * across * planes:
         raise damaged("it does not hold all of its strips")
-    room = down * across * planes * rows * code.row_bytes
-    if room > 2 * planes * height * math.ceil(width / cols) * code.row_bytes + _ROOM:
+    room = down * across * planes * rows * row_bytes
+    if room > 2 * planes * height * math.ceil(width / cols) * row_bytes + _ROOM:
         raise damaged("its tiles are larger than the picture")
     if sum(count for _, count in places) > len(data):
         raise damaged("its strips lie in each other")
@@ -173,94 +171,62 @@ def values(data: bytes, tags: TiffPage, check: Callable[[int, int], None]) -> ND
             continue
         top, left = i * rows, j * cols
         there = min(rows, height - top)
-        chunk = code.numbers(data[start : start + count], rows if page.is_tiled else there)
+        piece, high = data[start : start + count], rows if page.is_tiled else there
+        with foreign(damaged):
+            raw = _unpacked(page, piece, (high, cols, row_bytes))
+        if len(raw) < high * row_bytes:
+            raise damaged("a strip of it is too short")
+        table = np.frombuffer(raw, np.uint8, high * row_bytes).reshape(high, row_bytes)
+        chunk = _numbers(page, kind, table, cols * channels, channels).reshape(high, cols, channels)
         part = chunk[:there, : width - left]
         found[top : top + there, left : left + cols, plane : plane + channels] = part
     return found if found.shape[2] > 1 else found[:, :, 0]
 
 
-_FAX_OPTIONS = (292, 293)
+def _unpacked(page: Any, piece: bytes, shape: tuple[int, int, int]) -> bytes:
+    """Return what a packed strip or tile holds; its rows, px and bytes in a row."""
+    rows, width, row_bytes = shape
+    compression, order = int(page.compression), int(page.fillorder)
+    if compression in _DEFLATE | {1}:
+        # 2 has the bits of every byte the other way round.
+        piece = piece.translate(_REVERSED) if order == 2 else piece
+        return piece if compression == 1 else _inflated(piece, rows * row_bytes)
+    # A TIFF of one strip, whose bytes are wanted, or bits of fax codes.
+    bits = 1 if compression in _FAX else 8
+    tags = {256: width if bits == 1 else row_bytes, 257: rows, 258: bits, 259: compression, 262: 1}
+    tags |= {266: order, 273: 8, 277: 1, 278: rows, 279: len(piece)}
+    tags |= {tag: int(page.tags[tag].value) for tag in _FAX_OPTIONS if tag in page.tags}
+    entries = b"".join(struct.pack("<HHII", tag, 4, 1, n) for tag, n in sorted(tags.items()))
+    place = 8 + len(piece) + len(piece) % 2
+    head = (struct.pack("<2sHI", b"II", 42, place) + piece).ljust(place, b"\0")
+    data = head + struct.pack("<H", len(tags)) + entries + b"\0" * 4
+    with opened(data, lambda *_: None) as image:
+        found = np.asarray(image)
+    return bytes((found if bits == 8 else np.packbits(found, axis=1)).data)
 
 
-@dataclass(frozen=True)
-class _Code:
-    """How the numbers of strips and tiles are packed."""
-
-    compression: int
-    predictor: int
-    order: int  # 2 has the bits of every byte the other way round
-    options: dict[int, int]  # tags of fax codes
-    kind: np.dtype[Any]
-    bits: int
-    width: int  # px
-    channels: int
-
-    @property
-    def row_bytes(self) -> int:
-        """Bytes of a row that is not packed."""
-        return -(-self.width * self.channels * self.bits // 8)
-
-    def numbers(self, piece: bytes, rows: int) -> NDArray[Any]:
-        """Return the numbers of a strip or tile, (rows, width, channels)."""
-        want = rows * self.row_bytes
-        with foreign(damaged):
-            found = self._unpacked(piece, rows, want)
-        if len(found) < want:
-            raise damaged("a strip of it is too short")
-        table = np.frombuffer(found, np.uint8, want).reshape(rows, self.row_bytes)
-        shape = rows, self.width, self.channels
-        if self.predictor == 3:
-            return self._floats(table).reshape(shape)
-        if self.bits < 8 or self.bits % 8:
-            return _of_few_bits(table, self.bits, shape[1] * shape[2]).reshape(shape)
-        if self.predictor != 2:
-            return table.view(self.kind).reshape(shape)
-        whole = np.dtype(f"u{self.kind.itemsize}").newbyteorder(self.kind.byteorder)
-        steps = table.view(whole).reshape(shape)
-        whole = whole.newbyteorder("=")
-        return np.cumsum(steps, axis=1, dtype=whole).view(self.kind.newbyteorder("="))
-
-    def _unpacked(self, piece: bytes, rows: int, want: int) -> bytes:
-        """Return what a packed piece holds."""
-        if self.compression in _DEFLATE | {1}:
-            piece = piece.translate(_REVERSED) if self.order == 2 else piece
-            return piece if self.compression == 1 else _inflated(piece, want)
-        # A TIFF of one strip, whose bytes are wanted, or bits of fax codes.
-        bits = 1 if self.compression in _FAX else 8
-        width = self.width if bits == 1 else self.row_bytes
-        tags = {256: width, 257: rows, 258: bits, 259: self.compression, 262: 1}
-        tags |= {266: self.order, 273: 8, 277: 1, 278: rows, 279: len(piece), **self.options}
-        entries = b"".join(struct.pack("<HHII", tag, 4, 1, n) for tag, n in sorted(tags.items()))
-        place = 8 + len(piece) + len(piece) % 2
-        head = struct.pack("<2sHI", b"II", 42, place)
-        data = (
-            (head + piece).ljust(place, b"\0") + struct.pack("<H", len(tags)) + entries + b"\0" * 4
-        )
-        with opened(data, lambda *_: None) as image:
-            found = np.asarray(image)
-        return bytes((found if bits == 8 else np.packbits(found, axis=1)).data)
-
-    def _floats(self, table: NDArray[np.uint8]) -> NDArray[Any]:
-        """Undo the predictor of numbers with a point: bytes of one rank stand together."""
-        rows, size = len(table), self.kind.itemsize
-        by_channel = table.reshape(rows, -1, self.channels)
-        ranks = np.cumsum(by_channel, axis=1, dtype=np.uint8).reshape(rows, size, -1)
-        return np.ascontiguousarray(ranks.swapaxes(1, 2)).view(self.kind.newbyteorder(">"))
-
-
-def _of_few_bits(table: NDArray[np.uint8], bits: int, count: int) -> NDArray[Any]:
-    """Return the numbers of rows that are packed bit after bit, some rows at once."""
-    found = np.empty((len(table), count), np.uint8 if bits < 8 else np.uint16)
-    step = max(1, _BLOCK_PX // count)
-    for top in range(0, len(table), step):
-        part = np.unpackbits(table[top : top + step], axis=1)[:, : bits * count]
-        part = part.reshape(len(part), count, bits)
-        numbers = found[top : top + step]
-        numbers[:] = 0
-        for bit in range(bits):
-            numbers <<= 1
-            numbers |= part[:, :, bit]
-    return found
+def _numbers(
+    page: Any, kind: np.dtype[Any], table: NDArray[np.uint8], count: int, channels: int
+) -> NDArray[Any]:
+    """Return the numbers, `count` a row, that stand in the bytes of rows."""
+    rows, bits = len(table), int(page.bitspersample)
+    if int(page.predictor) == 3:
+        # Differences of bytes, of which those of one rank stand together.
+        steps = np.cumsum(table.reshape(rows, -1, channels), axis=1, dtype=np.uint8)
+        ranks = steps.reshape(rows, kind.itemsize, -1).swapaxes(1, 2)
+        return np.ascontiguousarray(ranks).view(kind.newbyteorder(">"))
+    if bits < 8 or bits % 8:
+        found = np.empty((rows, count), np.uint8 if bits < 8 else np.uint16)
+        weights = (1 << np.arange(bits)[::-1]).astype(found.dtype)
+        for top in range(0, rows, step := max(1, _BLOCK_PX // count)):
+            part = np.unpackbits(table[top : top + step], axis=1)[:, : bits * count]
+            found[top : top + step] = part.reshape(-1, count, bits) @ weights
+        return found
+    if int(page.predictor) != 2:
+        return table.view(kind)
+    whole = np.dtype(f"u{kind.itemsize}")
+    steps = table.view(whole.newbyteorder(kind.byteorder)).reshape(rows, -1, channels)
+    return np.cumsum(steps, axis=1, dtype=whole).view(kind.newbyteorder("="))
 
 
 def _inflated(piece: bytes, want: int) -> bytes:
