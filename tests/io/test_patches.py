@@ -11,8 +11,7 @@ from drystone.errors import LabelImageError
 from drystone.io import patches as module
 from drystone.io.images import Picture
 from drystone.io.labels import take_census, to_ids
-from drystone.io.necks import neck_width_px
-from drystone.io.patches import StonePatch, cut, enclosed
+from drystone.io.patches import StonePatch, cut, enclosed, neck_width_px
 from drystone.io.read_stones import read_stones
 from tests.io.pictures import discs
 from tests.naive import io as naive

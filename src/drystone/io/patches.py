@@ -14,7 +14,6 @@ from scipy import ndimage
 from drystone.errors import LabelImageError, Notice
 from drystone.io.file_errors import MANY, listed, naming, short
 from drystone.io.labels import MAX_ID
-from drystone.io.necks import neck_width_px
 from drystone.io.read_settings import Pieces, ReadSettings
 from drystone.kernels.ids import counted
 from drystone.kernels.label_runs import label_runs, runs_in_pieces
@@ -37,6 +36,13 @@ _WHOLE = np.ones((3, 3), bool)
 
 MOST_PIECES = 100_000
 """Of all stones of a picture: more are no stones but noise, and fill the memory."""
+
+
+_WAIST = 1.6
+"""Both parts must be this many times as thick as the neck between them."""
+
+_PART_SHARE = 0.15
+"""Each part must have this share of the stone."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -360,3 +366,26 @@ def _is_plain(mask: Mask) -> bool:
     some = (mask[row : row + step] for row in range(0, len(mask), step))
     runs = sum(np.count_nonzero(part[:, 1:] != part[:, :-1]) for part in some)
     return bool(_PLAIN_PX * runs < mask.size)
+
+
+def neck_width_px(mask: Mask, most_px: int = 2**17) -> int | None:
+    """Return the width of the neck between two thick parts of a mask; None without one.
+
+    A width of 0 means that the parts meet at a corner of pixels only.  A mask of more than
+    `most_px` is looked at in a coarser picture.  There a neck that is thinner than one of its
+    pixels counts as one of them.
+
+    The neck is the smallest erosion that leaves two parts, each thicker than the neck by a
+    factor 1.6 and with at least 15 % of what the erosion leaves.
+    """
+    step = math.ceil(math.sqrt(mask.size / most_px))
+    depth = ndimage.distance_transform_edt(np.pad(mask[::step, ::step], 1))
+    most = int(depth.max() / _WAIST) + 1 if depth.max() >= 2 * _WAIST else 0
+    for erosion in range(most):
+        parts, count = ndimage.label(depth > erosion)
+        areas = np.bincount(parts.ravel())[1:]
+        thickness = ndimage.maximum(depth, parts, np.arange(1, count + 1))
+        apart = (thickness >= _WAIST * max(erosion, 1)) & (areas >= _PART_SHARE * areas.sum())
+        if np.count_nonzero(apart) > 1:
+            return max(2 * step * erosion, step if step > 1 else 0)
+    return None
