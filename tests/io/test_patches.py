@@ -8,10 +8,9 @@ from hypothesis.extra.numpy import array_shapes, arrays
 from scipy import ndimage
 
 from drystone.errors import LabelImageError
-from drystone.io import patches as module
 from drystone.io.images import Picture
 from drystone.io.labels import take_census, to_ids
-from drystone.io.patches import StonePatch, cut, enclosed, neck_width_px
+from drystone.io.patches import cut, enclosed, neck_width_px
 from drystone.io.read_stones import read_stones
 from tests.io.pictures import discs
 from tests.naive import io as naive
@@ -40,17 +39,6 @@ def test_cut_puts_every_pixel_where_it_was(labels):
 @given(arrays(bool, shapes))
 def test_holes(mask):
     np.testing.assert_array_equal(enclosed(mask), naive.holes(mask))
-
-
-@given(arrays(bool, shapes))
-def test_large_masks_are_looked_at_on_runs_to_the_same_end(mask):
-    found = StonePatch(mask, 0, 0, 1, 12)
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(module, "_LARGE_PX", 1)
-        patched.setattr(module, "_PLAIN_PX", 0)
-        holes, areas = enclosed(mask), StonePatch(mask, 0, 0, 1, 12).piece_areas_px
-    np.testing.assert_array_equal(holes, enclosed(mask))
-    assert areas == found.piece_areas_px
 
 
 @pytest.mark.parametrize("width", [2, 4, 6, 8])

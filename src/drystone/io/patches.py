@@ -16,7 +16,6 @@ from drystone.io.file_errors import MANY, listed, naming, short
 from drystone.io.labels import MAX_ID
 from drystone.io.read_settings import Pieces, ReadSettings
 from drystone.kernels.ids import counted
-from drystone.kernels.label_runs import label_runs, runs_in_pieces
 from drystone.kernels.polygons import Points
 from drystone.kernels.raster import Mask
 from drystone.model.stone import Source, Stone, StoneSet
@@ -30,8 +29,6 @@ _MOST_SPECK_PX = 50
 
 LARGE = 1.5
 """Times the median area: smaller stones are not suspected of being two."""
-_LARGE_PX, _PLAIN_PX = 2**20, 64
-"""From where pieces and holes are found on runs, and how many px there must be to a run."""
 _WHOLE = np.ones((3, 3), bool)
 
 MOST_PIECES = 100_000
@@ -94,12 +91,8 @@ class StonePatch(PlacedMask):
     @cached_property
     def piece_areas_px(self) -> tuple[int, ...]:
         """Number of pixels of each 8-connected piece, in row order."""
-        if _is_plain(self.mask):
-            runs = label_runs(self.mask.view(np.uint8))
-            areas = np.bincount(runs_in_pieces(runs), runs.lengths).astype(int)
-        else:
-            found, count = ndimage.label(self.mask, _WHOLE)
-            areas = counted(found, count)[1:]
+        found, count = ndimage.label(self.mask, _WHOLE)
+        areas = counted(found, count)[1:]
         with naming(str(self)):
             check_count(len(areas))
         return tuple(areas.tolist())
@@ -340,32 +333,9 @@ def _suspect_necks(patches: list[StonePatch]) -> list[Notice]:
 
 def enclosed(mask: Mask) -> Mask:
     """Return the pixels that no 4-connected way around the mask reaches: its holes."""
-    around = np.ones((mask.shape[0] + 2, mask.shape[1] + 2), bool)
-    np.logical_not(mask, out=around[1:-1, 1:-1])
-    if not _is_plain(mask):
-        found, count = ndimage.label(around)
-        return np.zeros_like(mask) if count == 1 else np.asarray(found[1:-1, 1:-1] > 1)
-    runs = label_runs(around.view(np.uint8))
-    pieces = runs_in_pieces(runs, corners=False)
-    holes = pieces != pieces[0]
-    if not holes.any():
-        return np.zeros_like(mask)
-    change = around.view(np.int8).ravel()
-    change[:] = 0
-    change[(runs.rows * runs.width + runs.begins)[holes]] = 1
-    change[(runs.rows * runs.width + runs.ends)[holes]] = -1
-    np.cumsum(change, dtype=np.int8, out=change)
-    return around[1:-1, 1:-1]
-
-
-def _is_plain(mask: Mask) -> bool:
-    """Tell a large mask that has few runs along its rows, which are faster than its pixels."""
-    if mask.size < _LARGE_PX or not mask.flags.c_contiguous:
-        return False
-    step = max(1, _LARGE_PX // mask.shape[1])
-    some = (mask[row : row + step] for row in range(0, len(mask), step))
-    runs = sum(np.count_nonzero(part[:, 1:] != part[:, :-1]) for part in some)
-    return bool(_PLAIN_PX * runs < mask.size)
+    # The way around it comes first, from the corner of the frame.
+    around, _ = ndimage.label(np.pad(~mask, 1, constant_values=True))
+    return np.asarray(around[1:-1, 1:-1] > 1)
 
 
 def neck_width_px(mask: Mask, most_px: int = 2**17) -> int | None:
