@@ -254,7 +254,6 @@ and the published ones that are repaired .01."""
 
 _AROUND = [(r, c) for r in (-1, 0, 1) for c in (-1, 0, 1) if r or c]
 _WEIGHTS = np.array([1 if r and c else 2 for r, c in _AROUND])
-_AT_ONCE_PX = 4_000_000
 
 
 def without_net(image: IdImage, *, wall: bool = False) -> IdImage:
@@ -344,53 +343,25 @@ def _stray(
     census: Census, background: int, least_px: int, *, wall: bool
 ) -> NDArray[np.bool_] | None:
     """Return the pixels of small pieces at stones whose values were blended; None for no few."""
-    lone = np.zeros(census.index.shape, bool)
-    height, width = census.index.shape
-    # By rows, for a picture may have 200 million pixels.
-    step = max(1, _AT_ONCE_PX // max(width, 1))
-    tops = range(0, height, step)
     core = np.zeros(len(census.values) + 1, bool)
-    for top in tops:
-        band = slice(top, top + step)
-        core[census.index[band][census.solid[band]]] = True
+    core[census.index[census.solid]] = True
     ground = census.values == background
-    thin = ~core[1:] & ~ground
-    edges = 0
-    for top in tops:
-        # What lies astray goes by the 3 rows around it.
-        low, high = max(0, top - 3), min(height, top + step + 3)
-        part = Census(census.index[low:high], census.values)
-        stones = ~part.pixels(ground)
-        found = part.pixels(thin) | (astray_px(part) & stones)
-        inner = slice(top - low, min(top + step, height) - low)
-        lone[top : top + step] = found[inner]
-        edges += int(np.count_nonzero((stones & ~census.solid[low:high])[inner]))
+    thin, stones = ~core[1:] & ~ground, ~census.pixels(ground)
+    lone = census.pixels(thin) | (astray_px(census) & stones)
     if not core.any() or not lone.any():
         return None
     runs = label_runs(census.index)
     pieces = runs_in_pieces(runs)
     small = (np.bincount(pieces, runs.lengths) < least_px)[pieces]
-    lengths = runs.lengths[small]
-    begins = (runs.rows * runs.width + runs.begins)[small]
-    place = np.repeat(begins - np.cumsum(lengths) + lengths, lengths) + np.arange(lengths.sum())
-    stray = np.zeros(lone.shape, bool)
-    stray.ravel()[place] = True
-    stray &= lone
+    stray = lone & np.repeat(small, runs.lengths).reshape(lone.shape)
     sure = blended(census, stray)
     stray[stray] = sure if wall else sure | thin[census.index[stray] - 1]
-    if not stray.any():
-        return None
     # What lies on the ground alone is a speck.
-    runs = label_runs(stray.view(np.uint8))
-    pieces = np.repeat(runs_in_pieces(runs), runs.lengths)
-    rows, cols = np.nonzero(stray)
-    at_stone = np.zeros(len(rows), bool)
-    for down, across in _AROUND:
-        near = np.clip(rows + down, 0, height - 1), np.clip(cols + across, 0, width - 1)
-        at_stone |= ~ground[census.index[near] - 1] & ~stray[near]
-    kept = np.isin(pieces, pieces[at_stone])
-    stray[rows, cols] = kept
-    return stray if 0 < np.count_nonzero(kept) <= _FEW * edges else None
+    at_stone = stray & ndimage.maximum_filter(stones & ~stray, 3)
+    found, _ = ndimage.label(stray, np.ones((3, 3)))
+    stray &= np.isin(found, found[at_stone])
+    edges = np.count_nonzero(stones & ~census.solid)
+    return stray if 0 < np.count_nonzero(stray) <= _FEW * edges else None
 
 
 def _given(census: Census, stray: NDArray[np.bool_]) -> NDArray[np.int32]:
