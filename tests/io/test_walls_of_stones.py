@@ -1,8 +1,5 @@
 """A wall is read from all that stones are read from, as blocks where the file has outlines."""
 
-import json
-
-import ezdxf
 import numpy as np
 import pytest
 from PIL import Image
@@ -17,6 +14,7 @@ from drystone.io.wall_image import write_labels
 from drystone.io.walls import outlines_painted, read_wall
 from drystone.io.write_stones import write_stones
 from drystone.statics.limit import lateral_resistance
+from tests.io import labelled
 
 HEIGHT, WIDTH, FOOT = 90, 130, 80
 """Of the image, px, and where the wall stands in it."""
@@ -34,63 +32,14 @@ def upright(scale=1.0):
     return {i: [(x * scale, (FOOT - y) * scale) for x, y in line] for i, line in BLOCKS.items()}
 
 
-def labelme(folder):
-    shapes = [
-        {"label": str(i), "points": line, "shape_type": "polygon"} for i, line in BLOCKS.items()
-    ]
-    content = {"shapes": shapes, "imageHeight": HEIGHT, "imageWidth": WIDTH, "imagePath": "w.jpg"}
-    return _text(folder / "wall.json", json.dumps(content))
+def drawn(form, folder, blocks=BLOCKS):
+    """Blocks as a form has them; "y up" is that of a map."""
+    sign = -1.0 if form == "y up" else 1.0
+    shapes = [(str(i), [(x, sign * y) for x, y in line]) for i, line in blocks.items()]
+    return labelled.FORMS["qupath" if form == "y up" else form](folder, shapes)
 
 
-def coco(folder):
-    images = [{"id": 1, "file_name": "w.jpg", "width": WIDTH, "height": HEIGHT}]
-    found = [
-        {"id": i, "image_id": 1, "segmentation": [list(np.ravel(line).tolist())]}
-        for i, line in BLOCKS.items()
-    ]
-    return _text(folder / "coco.json", json.dumps({"images": images, "annotations": found}))
-
-
-def svg(folder):
-    lines = {i: " ".join(f"{x},{y}" for x, y in line) for i, line in BLOCKS.items()}
-    drawn = "".join(f'<polygon id="stone{i}" points="{line}"/>' for i, line in lines.items())
-    size = f'width="{WIDTH}mm" height="{HEIGHT}mm" viewBox="0 0 {WIDTH} {HEIGHT}"'
-    text = f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{drawn}</svg>'
-    return _text(folder / "wall.svg", text)
-
-
-def geojson(folder):
-    features = [
-        {
-            "type": "Feature",
-            "id": i,
-            "properties": {},
-            "geometry": {
-                "type": "Polygon",
-                "coordinates": [[(x, -y) for x, y in [*line, line[0]]]],
-            },
-        }
-        for i, line in BLOCKS.items()
-    ]
-    content = {"type": "FeatureCollection", "features": features}
-    return _text(folder / "wall.geojson", json.dumps(content))
-
-
-def dxf(folder):
-    document = ezdxf.new("R2010")
-    document.header["$INSUNITS"] = 4
-    for i, line in upright().items():
-        document.modelspace().add_lwpolyline(line, close=True, dxfattribs={"layer": f"stone {i}"})
-    document.saveas(folder / "wall.dxf")
-    return folder / "wall.dxf"
-
-
-def _text(path, text):
-    path.write_text(text)
-    return path
-
-
-OUTLINES = (labelme, coco, svg, geojson, dxf)
+OUTLINES = [*labelled.CLASSES, "y up"]
 
 
 def strength(wall):
@@ -99,25 +48,25 @@ def strength(wall):
 
 @pytest.mark.parametrize("form", OUTLINES)
 def test_outlines_are_blocks_that_stand_on_their_lowest_point(form, tmp_path):
-    wall = read_wall(form(tmp_path))
+    wall = read_wall(drawn(form, tmp_path))
     blocks = [{"id": i, "polygon": line} for i, line in upright().items()]
     truth = lateral_resistance(model_from_json({"blocks": blocks, "mu": 0.6})).value
     assert strength(wall) == pytest.approx(truth, abs=1e-6)
-    assert wall.drawn is (form in (svg, dxf))
+    assert wall.drawn is (form == "dxf")
     px_a_mm = (wall.px_per_m or 1000.0) / 1000.0
-    left = 20.0 if form in (labelme, coco) else 0.0  # of an image x is kept
+    left = 0.0 if form in ("dxf", "y up") else 20.0  # of an image x is kept
     shift = (left - 20.0, 0.0)
     for (_, line), found in zip(sorted(upright().items()), wall.outlines.values(), strict=True):
         want = {tuple(np.round((np.array(corner) + shift) * px_a_mm, 3)) for corner in line}
         assert {tuple(corner) for corner in np.round(found, 3).tolist()} == want
-    if form in (labelme, coco):
+    if form == "labelme":
         assert list(wall.outlines) == [3, 5, 8]
 
 
 @pytest.mark.parametrize("form", OUTLINES)
 def test_their_label_image_is_that_of_the_stones(form, tmp_path):
     """Edges lie on pixel edges, so every rule for them gives the same pixels."""
-    path = form(tmp_path)
+    path = drawn(form, tmp_path)
     wall = read_wall(path, ReadSettings(px_per_m=1000.0))
     found = {i: int((wall.labels == i).sum()) for i in np.unique(wall.labels[wall.labels > 0])}
     stones = read_stones(path, settings=ReadSettings(px_per_m=1000.0))
@@ -126,27 +75,22 @@ def test_their_label_image_is_that_of_the_stones(form, tmp_path):
 
 
 def test_options_of_reading_leave_out_blocks(tmp_path):
-    wall = read_wall(labelme(tmp_path), ReadSettings(skip=(8,)))
+    wall = read_wall(drawn("labelme", tmp_path), ReadSettings(skip=(8,)))
     assert list(wall.outlines) == [3, 5]
     with pytest.raises(DrystoneError, match="background has no meaning"):
-        read_wall(labelme(tmp_path), ReadSettings(background=255))
+        read_wall(drawn("labelme", tmp_path), ReadSettings(background=255))
 
 
 def test_what_reaches_beyond_its_image_is_whole_and_may_not_fill_the_memory(tmp_path):
-    def drawn(far):
+    def reaching(far):
         outside = [(-far, 50.0), (20.0, 50.0), (20.0, 40.0), (-far, 40.0)]
-        shapes = [
-            {"label": str(i), "points": line, "shape_type": "polygon"}
-            for i, line in ({**BLOCKS, 9: outside}).items()
-        ]
-        size = {"imageHeight": HEIGHT, "imageWidth": WIDTH}
-        return _text(tmp_path / "far.json", json.dumps({"shapes": shapes, **size}))
+        return drawn("labelme", tmp_path, {**BLOCKS, 9: outside})
 
-    wall = read_wall(drawn(12.0))
+    wall = read_wall(reaching(12.0))
     assert wall.outlines[9][:, 0].min() == 0.0
     assert not any("cut off" in notice.message for notice in wall.notices)
     with pytest.raises(DrystoneError) as caught:
-        read_wall(drawn(4.5e6))
+        read_wall(reaching(4.5e6))
     assert caught.value.code == "E110"
 
 
@@ -186,7 +130,7 @@ def test_cropped_masks_are_refused_as_nothing_says_where_they_lie(tmp_path):
 
 @pytest.mark.parametrize("ending", [".png", ".tif", ".npy", ".json"])
 def test_what_is_converted_is_read_again(ending, tmp_path):
-    stones = read_stones(dxf(tmp_path), settings=ReadSettings(px_per_m=1000.0))
+    stones = read_stones(drawn("dxf", tmp_path), settings=ReadSettings(px_per_m=1000.0))
     path = tmp_path / f"wall-labels{ending}"
     said = write_stones(stones, path, 1000.0)
     again = read_stones(path)
