@@ -8,12 +8,12 @@ import shapely
 
 from drystone.errors import PlanError
 from drystone.model.placement import Placement
-from drystone.model.plan import StoneStep, WedgeStep
 from drystone.model.stone import Stone
 from drystone.poses import PoseBook
 from drystone.verify.outlines import common_areas, plan_polygons, real_outline
 from tests.verify.exact_examples import exact_example
 from tests.verify.examples import L_STONE, SLAB, WEDGE, example
+from tests.verify.tampering import changed, step_of
 
 
 def bounds(corners):
@@ -56,7 +56,7 @@ def test_turning_is_counter_clockwise_about_the_centroid():
     made = example()
     groups = plan_polygons(made.plan, made.stones)
     corners = next(corners for group in groups for block, corners in group if block == L_STONE)
-    step = next(step for step in made.plan.stone_steps if step.stone == L_STONE)
+    step = step_of(made.plan, L_STONE)
     centre = shapely.Polygon(corners).centroid
     assert (centre.x, centre.y) == pytest.approx(step.centroid, abs=0.05)
     outline = made.stones.by_id(L_STONE).outline
@@ -66,14 +66,9 @@ def test_turning_is_counter_clockwise_about_the_centroid():
 
 def test_what_places_nothing_is_left_out():
     made = example()
-    steps = list(made.plan.steps)
-    first, wedge = steps[0], steps[3]
-    assert isinstance(first, StoneStep)
-    assert isinstance(wedge, WedgeStep)
-    steps[0] = replace(first, stone=77)
-    steps[1] = replace(first, stone=300)
-    steps[3] = replace(wedge, polygon=((0.0, 0.0), (1.0, 1.0), (2.0, 2.0)))
-    groups = plan_polygons(replace(made.plan, steps=tuple(steps)), made.stones)
+    plan = changed(changed(made.plan, 3, stone=77), 5, stone=300)
+    plan = changed(plan, WEDGE, polygon=((0.0, 0.0), (1.0, 1.0), (2.0, 2.0)))
+    groups = plan_polygons(plan, made.stones)
     # Stone 77 is none, 300 comes twice, and the wedge has no area.
     assert [[block for block, _ in group] for group in groups] == [[300], [SLAB], [L_STONE]]
     with pytest.raises(PlanError, match="E215"):
@@ -89,11 +84,7 @@ def test_what_places_nothing_is_left_out():
 )
 def test_polygons_come_counter_clockwise_and_simple(polygon):
     made = example()
-    steps = list(made.plan.steps)
-    wedge = steps[3]
-    assert isinstance(wedge, WedgeStep)
-    steps[3] = replace(wedge, polygon=polygon)
-    groups = plan_polygons(replace(made.plan, steps=tuple(steps)), made.stones)
+    groups = plan_polygons(changed(made.plan, WEDGE, polygon=polygon), made.stones)
     shape = shapely.Polygon(groups[2][1][1])
     assert shape.is_valid
     assert shape.exterior.is_ccw
