@@ -125,15 +125,13 @@ def _no_stones(what: str, cure: str = f"Stones are read from {_EXPECTED}.") -> I
     return InputError("E113", f"this JSON {what}.", cure=cure)
 
 
-def stones_of(read: Reader, data: bytes, name: str, settings: ReadSettings) -> StoneSet:
-    """Read a file of outlines; its source has a scale when the file has a unit."""
-    return stones_and_outlines(read, data, name, settings)[0]
-
-
 def stones_and_outlines(
     read: Reader, data: bytes, name: str, settings: ReadSettings
 ) -> tuple[StoneSet, OutlineFile]:
-    """Return the same, and the outlines under the same ids, some of which may be left out."""
+    """Read a file of outlines: stones, and the outlines of those and others under the same ids.
+
+    The source has a scale when the file has a unit.
+    """
     if len(data) > MOST_TEXT_BYTES:
         megabytes = f"{len(data) / 1e6:.0f} MB, and the limit is {MOST_TEXT_BYTES / 1e6:g} MB"
         cure = "Export the outlines of one image, with fewer corners."

@@ -36,7 +36,12 @@ from drystone.io.patches import (
     stone_set,
 )
 from drystone.io.photo_beside import LABELS, PAGE, read_sidecar, scale_beside
-from drystone.io.read_outlines import check_not_asked, check_unit, outline_reader, stones_of
+from drystone.io.read_outlines import (
+    check_not_asked,
+    check_unit,
+    outline_reader,
+    stones_and_outlines,
+)
 from drystone.io.read_settings import ReadSettings
 from drystone.model.stone import Source, StoneSet, writable
 
@@ -96,12 +101,12 @@ def read_stones(
     with naming(name):
         reader = outline_reader(data, name)
         if reader is not None:
-            return stones_of(reader, data, name, settings)
+            return stones_and_outlines(reader, data, name, settings)[0]
         sidecar = read_sidecar(path)
         if is_npz(data):
             arrays = read_npz(data, _max_px(settings))
             if isinstance(arrays, OutlineFile):
-                return stones_of(lambda *_: arrays, data, name, settings)
+                return stones_and_outlines(lambda *_: arrays, data, name, settings)[0]
             picture = Picture(arrays)
         else:
             picture = decode(data, _max_px(settings))
