@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 from PIL import Image, ImageOps, JpegImagePlugin
 
 from drystone.errors import DrystoneError, ExitCode
-from drystone.photo.segment_doubts import doubts_of
+from drystone.photo.segment_doubts import doubts_of, verdict_of
 from drystone.photo.segment_photo import SegmentedPhoto, segment_photo
-from drystone.photo.verdict import verdict_of
 from drystone_lab.photographs.layout import LEVELS, PhotoLevel
 from drystone_lab.photographs.real import (
     ALL,

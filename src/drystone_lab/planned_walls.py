@@ -8,9 +8,9 @@ from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
 from drystone.statics.model import RigidBlockModel
+from drystone.verify.claims import wall_model
 from drystone.verify.lengths import plan_settings
 from drystone.verify.replay import Stage, replay_plan
-from drystone.verify.stability import wall_model
 from drystone_lab.runs.outcome import execute
 from drystone_lab.table import BenchSettings
 from drystone_lab.walls import IR, PR, R

@@ -9,14 +9,14 @@ from PIL import Image
 
 from drystone.io.wall_image import read_wall_image
 from tests.cli.conftest import Run
-from tests.io.test_walls_of_stones import OUTLINES, coco, dxf, geojson, labelme, svg
+from tests.io.test_walls_of_stones import drawn
 
 QUICK = ["--method", "paper", "--quiet"]
 
 
-@pytest.mark.parametrize("form", OUTLINES)
+@pytest.mark.parametrize("form", ["labelme", "coco", "svg", "y up", "dxf"])
 def test_outlines_in_every_command(form, tmp_path: Path, run: Run) -> None:
-    path = form(tmp_path)
+    path = drawn(form, tmp_path)
     told = run("analyse", path, "--json", "--associative-only").json()
     assert (told["blocks"], told["stands"]) == (3, True)
     measured = run("measure", path, "--json")
@@ -29,24 +29,24 @@ def test_outlines_in_every_command(form, tmp_path: Path, run: Run) -> None:
 
 
 def test_the_scale_of_a_drawing_is_kept(tmp_path: Path, run: Run) -> None:
-    for form in (svg, dxf):
-        assert "0.1 m wide, 0.05 m high" in run("analyse", form(tmp_path), "--mu", "1:2").out
-        at = run("analyse", form(tmp_path), "--px-per-m", "3000")
-        assert "0.1 m wide, 0.05 m high" in at.out
-        assert run("measure", form(tmp_path), "--px-per-m", "3000").code == 0
-        wall = run("measure", form(tmp_path), "--wall", "110x60mm", "--json").json()
-        assert wall["F_SF"] < 0.7
-    refused = run("measure", labelme(tmp_path), "--px-per-m", "3000")
+    path = drawn("dxf", tmp_path)
+    assert "0.1 m wide, 0.05 m high" in run("analyse", path, "--mu", "1:2").out
+    assert "0.1 m wide, 0.05 m high" in run("analyse", path, "--px-per-m", "3000").out
+    assert run("measure", path, "--px-per-m", "3000").code == 0
+    wall = run("measure", path, "--wall", "110x60mm", "--json").json()
+    assert wall["F_SF"] < 0.7
+    refused = run("measure", drawn("labelme", tmp_path), "--px-per-m", "3000")
     assert (refused.code, "would do nothing" in refused.err) == (2, True)
 
 
 @pytest.mark.parametrize("command", ["analyse", "measure", "craft"])
 def test_options_of_reading_are_those_of_stones(command: str, tmp_path: Path, run: Run) -> None:
-    for path in (labelme(tmp_path), coco(tmp_path)):
-        less = run(command, path, "--skip", 8, "--json")
+    for form, last in (("labelme", 8), ("coco", 3)):
+        path = drawn(form, tmp_path)
+        less = run(command, path, "--skip", last, "--json")
         assert less.code == 0
         assert less.out != run(command, path, "--json").out
-    wrong = run(command, labelme(tmp_path), "--mask")
+    wrong = run(command, drawn("labelme", tmp_path), "--mask")
     assert (wrong.code, "E118" in wrong.err) == (2, True)
     blocks = tmp_path / "blocks.json"
     blocks.write_text(json.dumps({"blocks_xywh": [[0, 0, 2, 1]]}))
@@ -56,11 +56,11 @@ def test_options_of_reading_are_those_of_stones(command: str, tmp_path: Path, ru
 
 
 @pytest.mark.parametrize("ending", [".png", ".tif", ".npy", ".json"])
-@pytest.mark.parametrize("form", [labelme, dxf, geojson])
+@pytest.mark.parametrize("form", ["labelme", "dxf", "y up"])
 def test_stones_are_converted_with_their_ids_and_scale(
     form, ending: str, tmp_path: Path, run: Run
 ) -> None:
-    path, to = form(tmp_path), tmp_path / "to" / f"labels{ending}"
+    path, to = drawn(form, tmp_path), tmp_path / "to" / f"labels{ending}"
     first = run("stones", path, "--to", to, "--json").json()
     again = run("stones", to, "--json").json()
     kept = ("stones", "total_area_px", "width_px", "height_px", "clusters")
@@ -77,7 +77,7 @@ def test_what_cannot_be_converted_is_refused_before_anything_is_written(
     tmp_path: Path, run: Run
 ) -> None:
     for name in ("labels.bmp", "stones.json", "labels"):
-        refused = run("stones", labelme(tmp_path), "--to", tmp_path / "to" / name)
+        refused = run("stones", drawn("labelme", tmp_path), "--to", tmp_path / "to" / name)
         assert (refused.code, "E139" in refused.err) == (2, True)
     assert not (tmp_path / "to").exists()
     masks = tmp_path / "masks"

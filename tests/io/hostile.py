@@ -17,21 +17,11 @@ import numpy as np
 from PIL import Image
 
 from drystone.io.read_settings import ReadSettings
-from tests.io.pictures import two_stones
+from tests.io.pictures import png_of, two_stones
 
 EPS = b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 60 36\n%%EndComments\n(x) print\n%%EOF\n"
 STONE = '<rect width="9" height="9"/>'
 LIMIT = 10**6
-
-
-def png(width: int, height: int) -> bytes:
-    """A PNG of one bit a pixel, of which most is missing."""
-    header = struct.pack(">IIBBBBB", width, height, 1, 0, 0, 0, 0)
-    chunks = [(b"IHDR", header), (b"IDAT", zlib.compress(bytes(9))), (b"IEND", b"")]
-    return b"\x89PNG\r\n\x1a\n" + b"".join(
-        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-        for kind, data in chunks
-    )
 
 
 def tiff_of(tags: dict[int, int] | None = None, *, following: int = 0, big: bool = False) -> bytes:
@@ -247,7 +237,7 @@ FILES: dict[str, tuple[Callable[[], bytes], str]] = {
         lambda: coco([[v for x, y in CROSSING for v in (x, y * 900)]]),
         "E110 .*up and down",
     ),
-    "bomb.json": (lambda: labelme(png(20_000, 20_000)), "E110 .*20000 x 20000"),
+    "bomb.json": (lambda: labelme(png_of(20_000, 20_000, 1, 0, bytes(9))), "E110 .*20000 x 20000"),
     "far.dxf": (lambda: dxf(far_away), "E110 .*reaches over .*far away"),
     "far.stl": (
         lambda: stl(np.array([*SLATES, [[0, 0, 2], [90, 0, 2], [0, 0, 99]]])),

@@ -1,5 +1,8 @@
 """Small pictures that the tests of the readers share."""
 
+import struct
+import zlib
+
 import numpy as np
 
 
@@ -36,3 +39,19 @@ def codes(stones):
 
 def areas(stones):
     return {stone.id: stone.area_px for stone in stones}
+
+
+def png_of(width, height, depth, colour_type, lines, palette=b""):
+    """A PNG of packed lines, each with its filter before it; there may be fewer than it says."""
+    header = struct.pack(">IIBBBBB", width, height, depth, colour_type, 0, 0, 0)
+    chunks = [
+        (b"IHDR", header),
+        (b"PLTE", palette),
+        (b"IDAT", zlib.compress(lines)),
+        (b"IEND", b""),
+    ]
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        for kind, data in chunks
+        if data or kind != b"PLTE"
+    )

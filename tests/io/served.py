@@ -1,6 +1,5 @@
 """A local web server that stands for the repository of the published stone sets."""
 
-from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
 from hashlib import sha256
@@ -15,11 +14,11 @@ CONTENTS = {"toy/R.png": b"regular stones", "toy/IR.png": b"irregular stones"}
 
 
 class _Quiet(SimpleHTTPRequestHandler):
-    def log_message(self, *_: object) -> None:
+    def log_message(self, *_):
         """Say nothing."""
 
 
-def toy_set() -> PublishedSet:
+def toy_set():
     """Return a set of two small files."""
     return PublishedSet(
         "stones to play with",
@@ -33,7 +32,7 @@ def toy_set() -> PublishedSet:
     )
 
 
-def lay_open(root: Path) -> None:
+def lay_open(root):
     """Write the files as the repository has them, under their commit."""
     for file in toy_set().files:
         path = root / file.address
@@ -42,7 +41,7 @@ def lay_open(root: Path) -> None:
 
 
 @contextmanager
-def serving(root: Path) -> Iterator[str]:
+def serving(root):
     """Serve a folder on this machine; yield its address."""
     server = ThreadingHTTPServer(("127.0.0.1", 0), partial(_Quiet, directory=root))
     thread = Thread(target=server.serve_forever, args=(0.01,))
@@ -55,7 +54,7 @@ def serving(root: Path) -> Iterator[str]:
         server.server_close()
 
 
-def nobody() -> str:
+def nobody():
     """Return an address of this machine where nobody answers."""
     server = ThreadingHTTPServer(("127.0.0.1", 0), _Quiet)
     port = server.server_address[1]

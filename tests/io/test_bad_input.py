@@ -143,7 +143,7 @@ def slivers():
             ReadSettings(min_area_px=1, pieces="keep-largest"),
         ),
         (slivers(), 31, None),
-        (many_stones(70, 70, size=5, gap=1, first=1, step=977), 4900, None),
+        (many_stones(40, 40, size=5, gap=1, first=1, step=977), 1600, None),
     ],
 )
 def test_labels_that_are_sound(labels, count, settings):

@@ -12,24 +12,21 @@ from drystone.io.plan_folder import blocks_to_json
 from drystone.model.site import Site
 from drystone.model.wall import Wall
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import GROUND, RigidBlockModel
+from drystone.statics.model import GROUND
 from tests.verify.exact_examples import SETTINGS, exact_example
 from tests.verify.examples import WEDGE, example
 
 SCALES = [(1.0, None), (0.5, None), (1.0, 200.0), (0.5, 137.0)]
 
 
-def built(scale: float = 1.0, px_per_m: float | None = None) -> tuple[Wall, RigidBlockModel]:
+def built(scale=1.0, px_per_m=None):
     """Return a wall with a wedge, and its model at another friction than that of its plan."""
     wall = exact_example(scale, px_per_m).wall
-    assert wall.outlines is not None
     return wall, model_of_outlines(wall.outlines, 0.7, SETTINGS.settle.contact_px)
 
 
 @pytest.mark.parametrize(("scale", "px_per_m"), SCALES)
-def test_what_is_written_is_the_model_in_the_units_of_the_plan(
-    scale: float, px_per_m: float | None
-) -> None:
+def test_what_is_written_is_the_model_in_the_units_of_the_plan(scale, px_per_m):
     wall, model = built(scale, px_per_m)
     units = px_per_m or 1.0
     read = model_from_json(json.loads(json.dumps(blocks_to_json(wall, model))))
@@ -52,7 +49,7 @@ def test_what_is_written_is_the_model_in_the_units_of_the_plan(
 
 
 @pytest.mark.parametrize("px_per_m", [None, 200.0])
-def test_polygons_are_those_of_the_plan_wedges_too(px_per_m: float | None) -> None:
+def test_polygons_are_those_of_the_plan_wedges_too(px_per_m):
     example_ = exact_example(1.0, px_per_m)
     wall, model = built(1.0, px_per_m)
     polygons = polygons_from_json(blocks_to_json(wall, model))
@@ -65,15 +62,14 @@ def test_polygons_are_those_of_the_plan_wedges_too(px_per_m: float | None) -> No
     assert planned.symmetric_difference(found).area == pytest.approx(0.0, abs=1e-9)
 
 
-def test_a_wall_of_pixels_needs_none() -> None:
+def test_a_wall_of_pixels_needs_none():
     _, model = built()
     with pytest.raises(ValueError, match="are their pixels"):
         blocks_to_json(example().wall, model)
 
 
-def test_an_empty_wall_has_no_blocks() -> None:
+def test_an_empty_wall_has_no_blocks():
     wall = Wall.empty(Site.from_source(40.0, 20.0, 0.5), exact=True)
-    assert wall.outlines is not None
     read = blocks_to_json(wall, model_of_outlines(wall.outlines, 0.58, 0.1))
     assert read == {"mu": 0.58, "blocks": [], "interfaces": []}
     assert model_from_json(read).blocks == ()

@@ -1,8 +1,6 @@
 """A search goes on from a file to the walls that it would have found; a bad file is refused."""
 
-from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -11,11 +9,8 @@ from drystone.io import checkpoint
 from drystone.io.checkpoint import CHECKPOINT, Checkpoint, read_checkpoint, write_checkpoint
 from drystone.model.site import Site
 from drystone.planner.planner import Planner
-from drystone.planner.settings import PlannerSettings
 from drystone.search.anytime import searching
 from drystone.search.goal import FoundWall
-from drystone.search.packed import PackedWall
-from drystone.search.standing import Chains, Progress, Standing
 from drystone.search.whole_search import run_to_end
 from drystone.search.yard import Yard
 from tests.planner.scenes import RUBBLE_SITE, WITH_WEDGES, few_stones, finish, greedy, rubble
@@ -23,32 +18,26 @@ from tests.planner.scenes import RUBBLE_SITE, WITH_WEDGES, few_stones, finish, g
 SMALL = {"budget": 13, "passes": 3, "chains": 2, "share_every": 2, "cycle": 3}
 
 
-def searched(planner: Planner, start: FoundWall | Standing | None = None) -> list[Progress]:
+def searched(planner, start=None):
     begin = start or FoundWall.of(planner)
     return list(searching(begin, Yard.of(planner), planner.seed))
 
 
-def standings(found: list[Progress]) -> list[Standing]:
+def standings(found):
     return [one.standing for one in found if one.standing is not None]
 
 
-def again(standing: Standing, folder: Path, planner: Planner) -> Standing:
+def again(standing, folder, planner):
     """Write where a search stands, and read it."""
     made_of = {"stones": "abc", "settings": {"mu": 0.58}}
     write_checkpoint(Checkpoint(made_of, standing), folder)
     ids = [stone.id for stone in planner.workshop.stones]
     read = read_checkpoint(folder, ids, planner.settings.search)
-    assert read is not None
     assert read.made_of == made_of
-    assert read.standing is not None
     return read.standing
 
 
-def wedges(walls: tuple[PackedWall, ...]) -> int:
-    return sum(len(group.wedges) for wall in walls for group in wall.groups)
-
-
-def test_a_search_goes_on_from_a_file_to_the_same_walls(tmp_path: Path) -> None:
+def test_a_search_goes_on_from_a_file_to_the_same_walls(tmp_path):
     stones, settings = few_stones(), greedy({"geometry": "exact", **WITH_WEDGES, "search": SMALL})
     planner = finish(Planner(stones, Site(90, 30), seed=2, settings=settings))
     whole = searched(planner)
@@ -69,12 +58,11 @@ def test_a_search_goes_on_from_a_file_to_the_same_walls(tmp_path: Path) -> None:
         assert (tmp_path / CHECKPOINT).read_bytes() == first
 
 
-def test_without_a_search_it_says_what_is_planned(tmp_path: Path) -> None:
+def test_without_a_search_it_says_what_is_planned(tmp_path):
     search = greedy().search
     assert read_checkpoint(tmp_path, [], search) is None
     write_checkpoint(Checkpoint({"--seed": 1}), tmp_path)
     read = read_checkpoint(tmp_path, [], search)
-    assert read is not None
     assert (read.made_of, read.standing) == ({"--seed": 1}, None)
     (tmp_path / CHECKPOINT).unlink()
     (tmp_path / CHECKPOINT).mkdir()
@@ -82,18 +70,17 @@ def test_without_a_search_it_says_what_is_planned(tmp_path: Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def stood() -> tuple[Standing, Planner]:
+def stood():
     """Where chains stand, in the second round, with what they are of."""
     search = {**SMALL, "budget": 24, "patience": 1}
     settings = greedy({"geometry": "exact", "search": search})
     planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
     standing = standings(searched(planner))[-1]
     assert standing.number > 0
-    assert standing.chains is not None
     return standing, planner
 
 
-def refused(folder: Path, planner: Planner, ids: list[int] | None = None) -> str:
+def refused(folder, planner, ids=None):
     known = [stone.id for stone in planner.workshop.stones] if ids is None else ids
     with pytest.raises(PlanError, match="E207") as caught:
         read_checkpoint(folder, known, planner.settings.search)
@@ -116,9 +103,7 @@ def refused(folder: Path, planner: Planner, ids: list[int] | None = None) -> str
         lambda _: b'{"sha256": "", "data": ' + b"9" * 5000 + b"}",
     ],
 )
-def test_a_damaged_file_is_refused(
-    damage: Callable[[bytes], bytes], stood: tuple[Standing, Planner], tmp_path: Path
-) -> None:
+def test_a_damaged_file_is_refused(damage, stood, tmp_path):
     standing, planner = stood
     again(standing, tmp_path, planner)
     path = tmp_path / CHECKPOINT
@@ -128,9 +113,7 @@ def test_a_damaged_file_is_refused(
     assert refused(tmp_path, planner)
 
 
-def test_a_file_that_is_too_large_or_of_another_version_is_refused(
-    stood: tuple[Standing, Planner], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_file_that_is_too_large_or_of_another_version_is_refused(stood, tmp_path, monkeypatch):
     standing, planner = stood
     with monkeypatch.context() as patch:
         patch.setattr(checkpoint, "version", lambda _: "0.0.1")
@@ -141,59 +124,47 @@ def test_a_file_that_is_too_large_or_of_another_version_is_refused(
     assert "too large" in refused(tmp_path, planner)
 
 
-def chains_of(standing: Standing) -> Chains:
-    assert standing.chains is not None
-    return standing.chains
-
-
-CHANGES: dict[str, Callable[[Standing], Standing]] = {
+CHANGES = {
     "rounds": lambda one: replace(one, number=0),
     "round": lambda one: replace(one, before=None),
     "first": lambda one: replace(one, chains=None),
-    "both": lambda one: replace(one, found=chains_of(one).reached.kept),
-    "links": lambda one: replace(one, chains=replace(chains_of(one), links=())),
-    "turn": lambda one: replace(one, chains=replace(chains_of(one), turn=3)),
+    "both": lambda one: replace(one, found=one.chains.reached.kept),
+    "links": lambda one: replace(one, chains=replace(one.chains, links=())),
+    "turn": lambda one: replace(one, chains=replace(one.chains, turn=3)),
     "ends": lambda one: with_best(one, ends=(0, 99)),
     "order": lambda one: with_best(one, ends=(3, 1)),
 }
 
 
-def with_best(standing: Standing, ends: tuple[int, ...]) -> Standing:
-    chains = chains_of(standing)
+def with_best(standing, ends):
+    chains = standing.chains
     planned = next(w for w in chains.reached.kept if w.courses is not None)
-    assert planned.courses is not None
     wall = replace(planned, courses=replace(planned.courses, ends=ends))
     return replace(standing, chains=replace(chains, reached=replace(chains.reached, best=wall)))
 
 
 @pytest.mark.parametrize("change", CHANGES)
-def test_a_search_that_cannot_be_is_refused(
-    change: str, stood: tuple[Standing, Planner], tmp_path: Path
-) -> None:
+def test_a_search_that_cannot_be_is_refused(change, stood, tmp_path):
     standing, planner = stood
     write_checkpoint(Checkpoint({}, CHANGES[change](standing)), tmp_path)
     assert refused(tmp_path, planner)
 
 
-def test_a_search_of_other_stones_is_refused(
-    stood: tuple[Standing, Planner], tmp_path: Path
-) -> None:
+def test_a_search_of_other_stones_is_refused(stood, tmp_path):
     standing, planner = stood
     write_checkpoint(Checkpoint({}, standing), tmp_path)
     assert "other stones" in refused(tmp_path, planner, ids=[1, 2])
 
 
-def test_a_forged_search_whose_walls_do_not_stand_has_a_code(
-    stood: tuple[Standing, Planner],
-) -> None:
+def test_a_forged_search_whose_walls_do_not_stand_has_a_code(stood):
     standing, planner = stood
-    chains = chains_of(standing)
+    chains = standing.chains
     now = chains.links[0].now
     high = replace(now.groups[0], place=(20.0, 30.0))
     floating = replace(now, groups=(high, *now.groups[1:]))
     links = tuple(replace(link, now=floating) for link in chains.links)
     forged = replace(standing, chains=replace(chains, links=links, turn=0))
-    settings: PlannerSettings = planner.settings.updated({"search": {"budget": 60}})
+    settings = planner.settings.updated({"search": {"budget": 60}})
     start = Planner(planner.workshop.stones, planner.workshop.site, settings=settings)
     with pytest.raises(PlanError, match="E207"):
         run_to_end(start, start=forged)

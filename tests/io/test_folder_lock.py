@@ -3,7 +3,6 @@
 import errno
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
@@ -22,12 +21,12 @@ with locked(Path(sys.argv[1])):
 """
 
 
-def enter(folder: Path) -> None:
+def enter(folder):
     with locked(folder):
         assert (folder / LOCK).exists()
 
 
-def test_a_second_run_is_refused_until_the_first_has_ended(tmp_path: Path) -> None:
+def test_a_second_run_is_refused_until_the_first_has_ended(tmp_path):
     with locked(tmp_path):
         with pytest.raises(UsageError, match="E149") as caught:
             enter(tmp_path)
@@ -39,10 +38,9 @@ def test_a_second_run_is_refused_until_the_first_has_ended(tmp_path: Path) -> No
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_lock_ends_with_its_process(tmp_path: Path) -> None:
+def test_a_lock_ends_with_its_process(tmp_path):
     command = [sys.executable, "-c", HOLDING, str(tmp_path)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as other:  # noqa: S603
-        assert other.stdout is not None
         assert other.stdout.readline() == "locked\n"
         with pytest.raises(UsageError, match="E149"):
             enter(tmp_path)
@@ -54,7 +52,7 @@ def test_a_lock_ends_with_its_process(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_what_a_killed_run_was_writing_goes(tmp_path: Path) -> None:
+def test_what_a_killed_run_was_writing_goes(tmp_path):
     part = f".plan.json.{32 * 'a'}.part"
     ours, other = tmp_path / "pareto" / "01", tmp_path / "another run"
     for place in (tmp_path, ours, other):
@@ -67,20 +65,18 @@ def test_what_a_killed_run_was_writing_goes(tmp_path: Path) -> None:
     assert len(list(tmp_path.rglob("mine.part"))) == 3
 
 
-def test_a_lock_that_is_removed_while_it_is_taken_is_taken_again(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_lock_that_is_removed_while_it_is_taken_is_taken_again(tmp_path, monkeypatch):
     """As by a run that ends just then."""
     taken, calls = folder_lock._lock, []
 
-    def late(file: object) -> None:
+    def late(file):
         if not calls:
             (tmp_path / LOCK).unlink()
         elif len(calls) == 1:
             (tmp_path / LOCK).unlink()
             (tmp_path / LOCK).write_bytes(b"")
         calls.append(file)
-        taken(file)  # type: ignore[arg-type]
+        taken(file)
 
     monkeypatch.setattr(folder_lock, "_lock", late)
     with locked(tmp_path):
@@ -90,10 +86,8 @@ def test_a_lock_that_is_removed_while_it_is_taken_is_taken_again(
             enter(tmp_path)
 
 
-def test_where_there_are_no_locks_there_is_none(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def unknown(_: object) -> None:
+def test_where_there_are_no_locks_there_is_none(tmp_path, monkeypatch):
+    def unknown(_):
         raise OSError(errno.ENOLCK, "No locks available")
 
     monkeypatch.setattr(folder_lock, "_lock", unknown)
@@ -102,7 +96,7 @@ def test_where_there_are_no_locks_there_is_none(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_folder_that_cannot_be_written_into_has_a_code(tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_written_into_has_a_code(tmp_path):
     (tmp_path / LOCK).mkdir()
     with pytest.raises(PlanError, match="E206"):
         enter(tmp_path)

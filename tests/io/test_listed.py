@@ -1,7 +1,5 @@
 """Messages stay short, whatever is in a file."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -13,7 +11,7 @@ from drystone.io.read_stones import read_stones
 LONG = "x" * 100_000
 
 
-def test_a_list_has_an_end() -> None:
+def test_a_list_has_an_end():
     assert listed("abc") == "a, b, c"
     assert listed("abcd", "; ", 2) == "a; b; and 2 more"
     assert len(listed([LONG] * 9)) < 5000
@@ -21,7 +19,7 @@ def test_a_list_has_an_end() -> None:
     assert len(short(LONG)) < 200
 
 
-def specks(step: int) -> np.ndarray:
+def specks(step):
     """Stones, and hundreds of specks that have an id each."""
     labels = np.zeros((200, 200), np.uint32)
     labels[2:90, 2:90], labels[2:90, 100:190] = 1, 2
@@ -31,7 +29,7 @@ def specks(step: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("pieces", ["auto", "split", "keep-largest"])
-def test_notices_on_thousands_of_bits_are_short(pieces: str) -> None:
+def test_notices_on_thousands_of_bits_are_short(pieces):
     holes = np.zeros((200, 200), np.uint32)
     for number, (row, col) in enumerate(np.ndindex(10, 10), start=1):
         box = holes[20 * row : 20 * row + 16, 20 * col : 20 * col + 16]
@@ -57,7 +55,7 @@ def test_notices_on_thousands_of_bits_are_short(pieces: str) -> None:
         ("a.obj", f"v 0 0 0\nv 9 0 0\nv 9 0 9\no {LONG}\nf 1 2 {LONG}\n".encode()),
     ],
 )  # fmt: skip
-def test_what_a_file_says_is_repeated_in_short(tmp_path: Path, name: str, data: bytes) -> None:
+def test_what_a_file_says_is_repeated_in_short(tmp_path, name, data):
     (tmp_path / "stones.png").write_bytes(b"labels")
     (tmp_path / name).write_bytes(data)
     with pytest.raises(DrystoneError) as told:

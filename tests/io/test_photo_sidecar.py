@@ -2,7 +2,6 @@
 
 import json
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -19,25 +18,26 @@ from drystone.io.photo_beside import (
     read_sidecar,
     write_sidecar,
 )
-from drystone.io.read_stones import read_stones
+from drystone.io.read_stones import ReadSettings, read_stones
+from tests.io.pictures import areas, two_stones
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
-def test_it_comes_back_beside_its_label_image_only(tmp_path: Path, encoding: str) -> None:
+def test_it_comes_back_beside_its_label_image_only(tmp_path, encoding):
     path = write_sidecar(PhotoSidecar(640, 480, 512.5, "photo.jpg", {"markers": [1]}), tmp_path)
     path.write_text(path.read_text("utf-8"), encoding=encoding)
     assert read_sidecar(tmp_path / "stones.png") == PhotoSidecar(640, 480, 512.5, "photo.jpg")
     assert read_sidecar(tmp_path / "other.png") is None
 
 
-def test_a_folder_without_a_name_has_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_folder_without_a_name_has_none(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert read_sidecar(Path()) is None
     assert photo_of(Path()) is None
 
 
 @pytest.mark.parametrize("more", [None, "", ', "px_per_m": -1', ', "px_per_m": "x"'])
-def test_damage_is_said(tmp_path: Path, more: str | None) -> None:
+def test_damage_is_said(tmp_path, more):
     sides = ', "width_px": 1, "height_px": 1' if more else ""
     text = "[" * 100_000 if more is None else f'{{"schema": "drystone-photo/1"{more}{sides}}}'
     (tmp_path / SIDECAR).write_text(text, encoding="utf-8")
@@ -51,11 +51,10 @@ MARKER = {"id": 0, "corners_m": [[0, 1], [1, 1], [1, 0], [0, 0]]}
 FRAME = {"id": 0, "matrix": np.eye(4).tolist()}
 
 
-def test_what_a_plan_keeps_of_the_photograph_comes_back(tmp_path: Path) -> None:
+def test_what_a_plan_keeps_of_the_photograph_comes_back(tmp_path):
     details = {"source": {"name": "pile.jpg"}, "markers": [MARKER], "P_from_marker": FRAME}
     write_sidecar(PhotoSidecar(640, 480, 512.5, "photo.jpg", details), tmp_path)
     read = read_sidecar(tmp_path / "stones.png")
-    assert read is not None
     kept = {"name": "pile.jpg", "markers": [MARKER], "P_from_marker": FRAME}
     assert dict(read.photograph) == kept
 
@@ -66,14 +65,14 @@ def test_what_a_plan_keeps_of_the_photograph_comes_back(tmp_path: Path) -> None:
     ([MARKER], [1]), ([MARKER], {**FRAME, "matrix": [[float("nan")] * 4] * 4}),
     ([{**MARKER, "id": "one"}], FRAME),
 ])  # fmt: skip
-def test_damaged_markers_are_said(tmp_path: Path, markers: Any, frame: Any) -> None:
+def test_damaged_markers_are_said(tmp_path, markers, frame):
     details = {"markers": markers, "P_from_marker": frame}
     write_sidecar(PhotoSidecar(640, 480, 512.5, "photo.jpg", details), tmp_path)
     with pytest.raises(InputError, match="E112"):
         read_sidecar(tmp_path / "stones.png")
 
 
-def test_a_pile_in_doubt_is_said_again(tmp_path: Path) -> None:
+def test_a_pile_in_doubt_is_said_again(tmp_path):
     labels = np.zeros((40, 60), np.uint8)
     labels[5:30, 5:40] = 1
     Image.fromarray(labels).save(tmp_path / "stones.png")
@@ -85,7 +84,7 @@ def test_a_pile_in_doubt_is_said_again(tmp_path: Path) -> None:
     assert "outlines.html" in said[0]
 
 
-def segmented(folder: Path, picture: bytes = b"a picture") -> Path:
+def segmented(folder, picture=b"a picture"):
     """What `drystone segment` leaves, as far as it matters here."""
     folder.mkdir()
     (folder / "photo.jpg").write_bytes(picture)
@@ -94,7 +93,7 @@ def segmented(folder: Path, picture: bytes = b"a picture") -> Path:
     return folder
 
 
-def planned(stones: Path | None, folder: Path) -> Path | None:
+def planned(stones, folder):
     """Place the photograph and write down what the plan must say of it."""
     folder.mkdir(exist_ok=True)
     beside, record = place_photo(None if stones is None else photo_of(stones), folder)
@@ -102,7 +101,7 @@ def planned(stones: Path | None, folder: Path) -> Path | None:
     return beside
 
 
-def test_the_photograph_goes_beside_the_plan(tmp_path: Path) -> None:
+def test_the_photograph_goes_beside_the_plan(tmp_path):
     found, plan = segmented(tmp_path / "found"), tmp_path / "plan"
     for stones in (found, found / "stones.png"):
         assert photo_of(stones) == found / "photo.jpg"
@@ -114,7 +113,7 @@ def test_the_photograph_goes_beside_the_plan(tmp_path: Path) -> None:
     assert photo_beside(plan) is None
 
 
-def test_a_photograph_that_no_plan_put_there_stays(tmp_path: Path) -> None:
+def test_a_photograph_that_no_plan_put_there_stays(tmp_path):
     mine = tmp_path / "photo.jpg"
     mine.write_bytes(b"mine")
     for _ in range(2):  # the second time beside a plan
@@ -127,7 +126,7 @@ def test_a_photograph_that_no_plan_put_there_stays(tmp_path: Path) -> None:
     assert mine.read_bytes() == b"mine"
 
 
-def test_a_copy_that_somebody_changed_stays(tmp_path: Path) -> None:
+def test_a_copy_that_somebody_changed_stays(tmp_path):
     plan = tmp_path / "plan"
     planned(segmented(tmp_path / "found"), plan)
     (plan / "photo.jpg").write_bytes(b"painted over")
@@ -135,7 +134,7 @@ def test_a_copy_that_somebody_changed_stays(tmp_path: Path) -> None:
     assert (plan / "photo.jpg").read_bytes() == b"painted over"
 
 
-def test_the_photograph_of_the_label_image_stays_beside_it(tmp_path: Path) -> None:
+def test_the_photograph_of_the_label_image_stays_beside_it(tmp_path):
     found = segmented(tmp_path / "found")
     for _ in range(2):
         assert planned(found, found) == found / "photo.jpg"
@@ -151,14 +150,14 @@ def test_the_photograph_of_the_label_image_stays_beside_it(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("text", ["{", "[]", '{"source": 1}', '{"source": {"photo": "x"}}'])
-def test_a_damaged_plan_owns_no_photograph(tmp_path: Path, text: str) -> None:
+def test_a_damaged_plan_owns_no_photograph(tmp_path, text):
     (tmp_path / "photo.png").write_bytes(b"mine")
     (tmp_path / "plan.json").write_text(text, encoding="utf-8")
     place_photo(None, tmp_path)
     assert (tmp_path / "photo.png").read_bytes() == b"mine"
 
 
-def test_the_name_of_a_photograph_leads_nowhere_else(tmp_path: Path) -> None:
+def test_the_name_of_a_photograph_leads_nowhere_else(tmp_path):
     folder = tmp_path / "found"
     folder.mkdir()
     (tmp_path / "photo.jpg").write_bytes(b"not yours")
@@ -167,3 +166,39 @@ def test_the_name_of_a_photograph_leads_nowhere_else(tmp_path: Path) -> None:
         path = folder / "stones.json"
         path.write_text(path.read_text("utf-8").replace('"?"', json.dumps(name)), encoding="utf-8")
         assert photo_of(folder / "stones.png") is None
+
+
+def measured(folder, width=60, height=40, px_per_m=250.0):
+    Image.fromarray(two_stones(7, 300, np.uint16)).save(folder / "stones.png")
+    Image.new("RGB", (60, 40)).save(folder / "photo.jpg")
+    Image.new("RGB", (60, 40)).save(folder / "preview.png")
+    write_sidecar(PhotoSidecar(width, height, px_per_m, "photo.jpg"), folder)
+    return folder
+
+
+@pytest.mark.parametrize("name", [".", "stones.png"])
+def test_scale_of_a_photograph(tmp_path, name):
+    stones = read_stones(measured(tmp_path) / name)
+    assert areas(stones) == {7: 375, 300: 600}
+    assert stones.source.px_per_m == 250.0
+    assert stones.source.path == "stones.png"
+    assert stones.source.files == ()
+
+
+def test_a_resolution_does_not_change_a_picture(tmp_path):
+    settings = ReadSettings(px_per_m=99.0)
+    stones = read_stones(measured(tmp_path), settings=settings)
+    assert stones.source.px_per_m == 250.0
+    assert stones.source.reading == ()
+
+
+def test_another_picture_than_the_one_that_was_measured(tmp_path):
+    measured(tmp_path, width=600, height=400)
+    with pytest.raises(InputError, match=r"E117 .*60 x 40 px.*600 x 400.*drystone segment"):
+        read_stones(tmp_path)
+
+
+def test_other_names_and_other_files_have_no_scale(tmp_path):
+    measured(tmp_path)
+    (tmp_path / "stones.png").rename(tmp_path / "other.png")
+    assert read_stones(tmp_path / "other.png").source.px_per_m is None

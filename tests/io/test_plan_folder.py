@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,15 +16,13 @@ from tests.planner.scenes import RUBBLE_SITE, greedy, rubble
 
 
 @cache
-def planned(geometry: str = "raster") -> ds.PlanResult:
+def planned(geometry="raster"):
     settings = greedy({"geometry": geometry})
     return ds.plan_wall(rubble(), 100, 36, scale=1.0, settings=settings, budget=1, px_per_m=100)
 
 
 @pytest.mark.parametrize("geometry", ["exact", "raster"])
-def test_commands_read_what_python_wrote(
-    geometry: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_commands_read_what_python_wrote(geometry, tmp_path, capsys):
     result = planned(geometry)
     path = ds.write_plan_folder(result, tmp_path / "new" / "out")
     assert path == tmp_path / "new" / "out" / "plan.json"
@@ -39,7 +36,7 @@ def test_commands_read_what_python_wrote(
     capsys.readouterr()
 
 
-def test_no_file_of_another_wall_is_left(tmp_path: Path) -> None:
+def test_no_file_of_another_wall_is_left(tmp_path):
     for geometry in ("exact", "raster"):
         (tmp_path / "mine.txt").write_text("mine")
         ds.write_plan_folder(planned(geometry), str(tmp_path))
@@ -48,7 +45,7 @@ def test_no_file_of_another_wall_is_left(tmp_path: Path) -> None:
     }  # fmt: skip
 
 
-def test_a_planner_becomes_a_plan_at_any_step() -> None:
+def test_a_planner_becomes_a_plan_at_any_step():
     planner = ds.Planner(rubble(), RUBBLE_SITE, seed=1, settings=greedy({}))
     for step in planner.steps():
         if step.number == 2:
@@ -69,14 +66,14 @@ def test_a_planner_becomes_a_plan_at_any_step() -> None:
     assert whole.plan.settings["search"]["budget"] == 1
 
 
-def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_made_is_named(tmp_path):
     (tmp_path / "file").write_text("")
     for place in (tmp_path / "file", tmp_path / "file" / "in"):
         with pytest.raises(ds.DrystoneError, match=r"E206 .*file"):
             ds.write_plan_folder(planned(), place)
 
 
-def test_stones_of_a_few_px_are_not_taken_for_blended_ids(tmp_path: Path) -> None:
+def test_stones_of_a_few_px_are_not_taken_for_blended_ids(tmp_path):
     stones = ds.generate.rubble_stones(
         ds.generate.RubbleSettings(count=14), np.random.default_rng(3)
     )
@@ -88,7 +85,7 @@ def test_stones_of_a_few_px_are_not_taken_for_blended_ids(tmp_path: Path) -> Non
     assert (read_wall(tmp_path).labels == result.wall.labels).all()
 
 
-def test_what_the_stones_were_read_from_is_never_replaced(tmp_path: Path) -> None:
+def test_what_the_stones_were_read_from_is_never_replaced(tmp_path):
     settings = greedy({"geometry": "raster"})
     labels = ds.generate.lay_out(rubble())
     masks = tmp_path / "masks"
@@ -108,7 +105,7 @@ def test_what_the_stones_were_read_from_is_never_replaced(tmp_path: Path) -> Non
             source.unlink()
 
 
-def test_files_that_no_plan_left_stay(tmp_path: Path) -> None:
+def test_files_that_no_plan_left_stay(tmp_path):
     mine = {name: tmp_path / name for name in ("wall.tif", "blocks.json", "photo.jpg")}
     for path in mine.values():
         path.write_bytes(b"mine")
@@ -116,7 +113,7 @@ def test_files_that_no_plan_left_stay(tmp_path: Path) -> None:
     assert {path.read_bytes() for path in mine.values()} == {b"mine"}
 
 
-def test_the_photograph_of_an_earlier_plan_goes(tmp_path: Path) -> None:
+def test_the_photograph_of_an_earlier_plan_goes(tmp_path):
     photo = tmp_path / "pile" / "photo.jpg"
     photo.parent.mkdir()
     Image.fromarray(np.zeros((8, 8, 3), np.uint8)).save(photo)
@@ -131,9 +128,7 @@ def test_the_photograph_of_an_earlier_plan_goes(tmp_path: Path) -> None:
     assert not (folder / "photo.jpg").exists()
 
 
-def test_stones_of_a_program_can_be_checked_with_a_file_of_them(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_stones_of_a_program_can_be_checked_with_a_file_of_them(tmp_path, capsys):
     labels = ds.generate.lay_out(rubble())
     settings = greedy({"geometry": "raster"})
     result = ds.plan_wall(ds.read_stones(labels), 100, 36, settings=settings, budget=1)

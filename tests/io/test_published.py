@@ -1,11 +1,177 @@
-"""The published pictures of stones are read whole."""
+"""Published sets arrive whole or not at all, and what is there is never replaced."""
+
+import sys
+from hashlib import sha256
+from pathlib import Path
 
 import numpy as np
+import pooch
 import pytest
 from PIL import Image
 
+from drystone.errors import InputError
+from drystone.io import published as module
+from drystone.io.published import (
+    LICENCE,
+    NOTICE,
+    SETS,
+    destination,
+    fetch_set,
+    published_file,
+    published_folder,
+)
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.pictures import codes
+from tests.io.served import CONTENTS, lay_open, nobody, serving, toy_set
+
+
+@pytest.fixture(autouse=True)
+def _no_cache(monkeypatch, tmp_path):
+    monkeypatch.setattr(pooch, "os_cache", lambda project: tmp_path / "cache" / project)
+
+
+def test_the_published_files_hash_as_they_should(data_dir):
+    for published in SETS.values():
+        for file in published.files:
+            assert sha256((data_dir / file.name).read_bytes()).hexdigest() == file.sha256
+    assert (data_dir / NOTICE).read_text(encoding="utf-8") == LICENCE
+    assert not any(f.downloaded for s in SETS.values() for f in fetch_set(s, data_dir))
+
+
+def test_no_two_files_are_the_same():
+    files = [file for published in SETS.values() for file in published.files]
+    assert len(files) == 114
+    for field in ("name", "address", "sha256"):
+        assert len({getattr(file, field) for file in files}) == len(files)
+    assert all(len(f.address.split("/")[0]) == 40 and len(f.sha256) == 64 for f in files)
+
+
+@pytest.fixture
+def served(tmp_path):
+    """The folder of a server, with the files of the small set."""
+    lay_open(tmp_path / "served")
+    return tmp_path / "served"
+
+
+def lay_down(folder, *names):
+    for name in names:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(CONTENTS[name])
+    return folder
+
+
+def test_what_is_missing_is_downloaded_once_and_with_its_licence(served, tmp_path):
+    folder = lay_down(tmp_path / "here", "toy/R.png")
+    with serving(served) as address:
+        first = fetch_set(toy_set(), folder, address=address)
+    assert [(file.path, file.downloaded) for file in first] == [
+        (folder / "toy" / "R.png", False), (folder / "toy" / "IR.png", True),
+    ]  # fmt: skip
+    assert {name: (folder / name).read_bytes() for name in CONTENTS} == CONTENTS
+    assert (folder / NOTICE).read_text(encoding="utf-8") == LICENCE
+    again = fetch_set(toy_set(), folder, address=nobody())
+    assert not any(file.downloaded for file in again)
+
+
+def test_what_arrived_before_a_failure_has_its_licence(served, tmp_path):
+    (served / toy_set().files[1].address).unlink()
+    folder = tmp_path / "here"
+    with serving(served) as address, pytest.raises(InputError, match=r"E161 .*404"):
+        fetch_set(toy_set(), folder, address=address)
+    assert (folder / "toy" / "R.png").exists()
+    assert (folder / NOTICE).read_text(encoding="utf-8") == LICENCE
+
+
+def test_another_file_of_the_name_is_not_replaced(tmp_path):
+    mine = lay_down(tmp_path, "toy/R.png") / "toy" / "R.png"
+    mine.write_bytes(b"my own")
+    with pytest.raises(InputError, match=r"E160 .*R\.png.*Move it away"):
+        fetch_set(toy_set(), tmp_path, address=nobody())
+    assert mine.read_bytes() == b"my own"
+
+
+def test_a_download_of_other_contents_is_not_kept(served, tmp_path):
+    (served / toy_set().files[0].address).write_bytes(b"something else")
+    said = r"E160 .*another network, or save http"
+    with serving(served) as address, pytest.raises(InputError, match=said):
+        fetch_set(toy_set(), tmp_path / "here", address=address)
+    assert list((tmp_path / "here").rglob("*.*")) == []
+
+
+def test_no_network_says_what_to_do_by_hand(tmp_path):
+    address = nobody()
+    with pytest.raises(InputError, match=r"E161 .*refused.*DRYSTONE_DATA") as caught:
+        fetch_set(toy_set(), tmp_path, address=address)
+    file = toy_set().files[0]
+    assert f"save {address}/{file.address} as {tmp_path / file.name}" in caught.value.cure
+
+
+def test_a_full_disk_is_no_fault_of_the_network(tmp_path, monkeypatch):
+    def full(*_, **__):
+        raise OSError(28, "No space left on device", str(tmp_path))
+
+    monkeypatch.setattr(pooch, "retrieve", full)
+    with pytest.raises(OSError, match="No space left") as caught:
+        fetch_set(toy_set(), tmp_path, address=nobody())
+    assert caught.value.errno == 28
+
+
+def test_without_pooch_files_that_are_there_are_still_checked(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pooch", None)
+    lay_down(tmp_path, *CONTENTS)
+    assert len(fetch_set(toy_set(), tmp_path)) == 2
+    (tmp_path / "toy" / "IR.png").unlink()
+    with pytest.raises(InputError, match=r"E162 .*drystone\[fetch\].*By hand: save"):
+        fetch_set(toy_set(), tmp_path)
+    with pytest.raises(InputError, match=r"E162 .*--to DIR"):
+        destination(None)
+    assert published_folder(None) is None
+
+
+def test_the_option_wins_over_the_variable_and_that_over_the_cache(tmp_path, monkeypatch):
+    cache = tmp_path / "cache" / "drystone"
+    assert published_folder(None) is None
+    assert destination(None) == cache
+    cache.mkdir(parents=True)
+    assert published_folder(None) is None
+    (cache / "almeida").mkdir()
+    assert published_folder(None) == cache
+    monkeypatch.setenv("DRYSTONE_DATA", str(tmp_path / "named"))
+    assert published_folder(None) == destination(None) == tmp_path / "named"
+    assert published_folder("given") == destination("given") == Path("given")
+
+
+@pytest.fixture
+def toys(monkeypatch, tmp_path):
+    """A folder with the files of a small set, which is a published one here."""
+    monkeypatch.setattr(module, "SETS", {"toy": toy_set()})
+    return lay_down(tmp_path, *CONTENTS)
+
+
+def test_a_published_file_is_opened_only_with_its_contents(toys):
+    assert published_file(toys, "toy/R.png") == toys / "toy" / "R.png"
+    (toys / "toy" / "R.png").write_bytes(CONTENTS["toy/IR.png"])
+    with pytest.raises(InputError) as caught:
+        published_file(toys, "toy/R.png")
+    assert (caught.value.code, caught.value.where) == ("E160", str(toys / "toy" / "R.png"))
+    assert f"drystone fetch toy --to {toys}" in caught.value.cure
+    assert toy_set().files[0].address in caught.value.cure
+    assert published_file(toys, "toy/IR.png").exists()
+
+
+def test_files_of_the_cache_are_fetched_again_without_naming_it(toys, monkeypatch):
+    monkeypatch.setattr(pooch, "os_cache", lambda _: toys)
+    (toys / "toy" / "R.png").write_bytes(b"another")
+    with pytest.raises(InputError, match=r"\(`drystone fetch toy`\)"):
+        published_file(toys, "toy/R.png")
+
+
+def test_what_is_missing_or_in_no_set_is_not_checked(toys):
+    (toys / "mine.png").write_bytes(b"mine")
+    assert published_file(toys, "mine.png") == toys / "mine.png"
+    (toys / "toy" / "R.png").unlink()
+    assert not published_file(toys, "toy/R.png").exists()
+
 
 COUNTS = {
     "almeida/IR.png": 61,

@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import numpy as np
 import pytest
 import tifffile
@@ -9,7 +7,7 @@ from drystone.errors import DrystoneError, PlanError
 from drystone.io.wall_image import read_wall_image, write_wall_image
 
 
-def wall(*ids: int) -> np.ndarray:
+def wall(*ids):
     """A course of touching stones under empty rows, one of them in two pieces."""
     labels = np.zeros((12, 10 * len(ids)), np.uint32)
     for index, value in enumerate(ids):
@@ -27,7 +25,7 @@ def wall(*ids: int) -> np.ndarray:
         ((2**32 - 1, 2**24 + 1), "wall.tif"),
     ],
 )
-def test_wall_image_keeps_every_id(tmp_path: Path, ids: tuple[int, ...], name: str) -> None:
+def test_wall_image_keeps_every_id(tmp_path, ids, name):
     path = write_wall_image(wall(*ids), tmp_path)
     assert path == tmp_path / name
     found = read_wall_image(path)
@@ -36,17 +34,17 @@ def test_wall_image_keeps_every_id(tmp_path: Path, ids: tuple[int, ...], name: s
     assert [p.name for p in tmp_path.iterdir()] == [name]
 
 
-def test_empty_wall_is_written(tmp_path: Path) -> None:
+def test_empty_wall_is_written(tmp_path):
     path = write_wall_image(np.zeros((3, 4), np.uint32), tmp_path)
     assert np.asarray(Image.open(path)).tolist() == [[0] * 4] * 3
 
 
-def test_folder_that_is_not_there_is_named(tmp_path: Path) -> None:
+def test_folder_that_is_not_there_is_named(tmp_path):
     with pytest.raises(PlanError, match="E206"):
         write_wall_image(wall(1, 2), tmp_path / "none")
 
 
-def test_nothing_is_dropped_split_or_filled(tmp_path: Path) -> None:
+def test_nothing_is_dropped_split_or_filled(tmp_path):
     labels = wall(3, 300)
     labels[8, 4] = 0  # a hole
     labels[0, 9] = 77  # a speck
@@ -54,12 +52,12 @@ def test_nothing_is_dropped_split_or_filled(tmp_path: Path) -> None:
     np.testing.assert_array_equal(read_wall_image(path), labels)
 
 
-def test_one_stone_may_fill_the_image(tmp_path: Path) -> None:
+def test_one_stone_may_fill_the_image(tmp_path):
     path = write_wall_image(np.full((40, 20), 7, np.uint32), tmp_path)
     assert (read_wall_image(path) == 7).all()
 
 
-def test_other_background_becomes_zero(tmp_path: Path) -> None:
+def test_other_background_becomes_zero(tmp_path):
     labels = wall(3, 300)
     labels[labels == 0] = 999
     path = write_wall_image(labels, tmp_path)
@@ -69,7 +67,7 @@ def test_other_background_becomes_zero(tmp_path: Path) -> None:
         read_wall_image(write_wall_image(labels, tmp_path), background=999)
 
 
-def test_files_that_are_no_walls_are_refused_with_a_code(tmp_path: Path) -> None:
+def test_files_that_are_no_walls_are_refused_with_a_code(tmp_path):
     rng = np.random.default_rng(1)
     many = np.kron(rng.integers(1, 255, (6, 9)), np.ones((9, 9), int)).astype(np.uint8)
     Image.fromarray(many).save(tmp_path / "lossy.jpg", quality=60)

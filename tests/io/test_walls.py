@@ -1,10 +1,7 @@
 """Images of walls beside their plans."""
 
 import math
-from collections.abc import Callable
-from pathlib import Path
-from types import SimpleNamespace
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,43 +12,31 @@ import drystone as ds
 from drystone.errors import InputError
 from drystone.io.wall_image import write_labels, write_wall_image
 from drystone.io.walls import _seen, read_wall, shows
-from drystone.model.plan import Plan
-from drystone.model.stone import Stone
 from drystone.poses import PoseBook
 from tests.strategies import repeatable, stones
-from tests.verify.examples import L_STONE, Example, example
+from tests.verify.examples import L_STONE, SLAB, WEDGE, example
 from tests.verify.tampering import moved, reshaped, swapped
 
-
-def plan(geometry: str) -> Any:
-    """Stones 3 and 7, and wedge 9."""
-    stones = (SimpleNamespace(stone=3), SimpleNamespace(stone=7))
-    wedges = (SimpleNamespace(id=9),)
-    return SimpleNamespace(
-        settings={"geometry": geometry},
-        steps=stones + wedges,
-        stone_steps=stones,
-        wedge_steps=wedges,
-    )
+PLANNED = [3, 5, SLAB, L_STONE, 300, WEDGE]
 
 
 @pytest.mark.parametrize(
     ("seen", "raster", "exact"),
     [
-        ([3, 7, 9], True, True),
-        ([3, 7], False, True),  # a wedge that fills no pixel
-        ([3, 9], False, False),
-        ([3, 7, 8], False, False),
-        ([3, 7, 8, 9], False, False),
+        (PLANNED, True, True),
+        (PLANNED[:-1], False, True),  # a wedge that fills no pixel
+        (PLANNED[1:], False, False),
+        ([*PLANNED[:-1], 8], False, False),
+        ([*PLANNED, 8], False, False),
     ],
 )
-def test_an_image_shows_what_is_in_the_plan(seen: list[int], raster: bool, exact: bool) -> None:
-    labels = np.array([[0, *seen]], np.uint32)
-    assert shows(labels, plan("raster")) is raster
-    assert shows(labels, plan("exact")) is exact
+def test_an_image_shows_what_is_in_the_plan(seen, raster, exact):
+    labels, plan = np.array([[0, *seen]], np.uint32), example().plan
+    assert shows(labels, plan) is raster
+    assert shows(labels, replace(plan, settings={"geometry": "exact"})) is exact
 
 
-def written(made: Example, plan: Plan, folder: Path) -> Path:
+def written(made, plan, folder):
     """A plan on pixels with the image of a wall that may be another."""
     ds.write_plan(plan, folder / "plan.json")
     write_wall_image(made.wall.labels, folder)
@@ -61,9 +46,7 @@ def written(made: Example, plan: Plan, folder: Path) -> Path:
 @pytest.mark.parametrize(
     ("scale", "px_per_m"), [(1.0, None), (1.0, 137.0), (0.5, None), (0.5, 200.0)]
 )
-def test_a_plan_on_pixels_has_its_stones_where_they_are_seen(
-    scale: float, px_per_m: float | None, tmp_path: Path
-) -> None:
+def test_a_plan_on_pixels_has_its_stones_where_they_are_seen(scale, px_per_m, tmp_path):
     made = example(scale, px_per_m)
     assert read_wall(written(made, made.plan, tmp_path)).plan == made.plan
     off = moved(made.plan, L_STONE, 2.5 / (scale * (px_per_m or 1.0)), 0)
@@ -72,7 +55,7 @@ def test_a_plan_on_pixels_has_its_stones_where_they_are_seen(
     assert caught.value.code == "E133"
 
 
-ELSEWHERE: dict[str, Callable[[Plan], Plan]] = {
+ELSEWHERE = {
     "ids swapped": lambda p: swapped(p, 3, 300),
     "stone lifted": lambda p: moved(p, 3, 0, 10),
     "wedge elsewhere": lambda p: reshaped(p, lambda w: w - (3, 0)),
@@ -81,14 +64,14 @@ ELSEWHERE: dict[str, Callable[[Plan], Plan]] = {
 
 
 @pytest.mark.parametrize("name", ELSEWHERE)
-def test_other_places_are_refused(name: str, tmp_path: Path) -> None:
+def test_other_places_are_refused(name, tmp_path):
     made = example()
     with pytest.raises(InputError) as caught:
         read_wall(written(made, ELSEWHERE[name](made.plan), tmp_path))
     assert caught.value.code == "E133"
 
 
-def test_an_image_that_is_far_too_large_for_the_plan_is_not_decoded(tmp_path: Path) -> None:
+def test_an_image_that_is_far_too_large_for_the_plan_is_not_decoded(tmp_path):
     made = example()
     folder = written(made, made.plan, tmp_path)
     write_labels(np.ones((1001, 1000), np.uint8), next(folder.glob("wall.*")))
@@ -96,7 +79,7 @@ def test_an_image_that_is_far_too_large_for_the_plan_is_not_decoded(tmp_path: Pa
         read_wall(folder)
 
 
-def test_half_a_px_is_no_other_place(tmp_path: Path) -> None:
+def test_half_a_px_is_no_other_place(tmp_path):
     made = example()
     plan = moved(made.plan, L_STONE, 0.5, -0.5)
     assert read_wall(written(made, plan, tmp_path)).plan == plan
@@ -108,9 +91,7 @@ def test_half_a_px_is_no_other_place(tmp_path: Path) -> None:
     st.floats(-180.0, 179.9),
     st.sampled_from([1.0, 0.7, 0.3, 0.1, 0.04]),
 )
-def test_no_pose_of_the_planner_is_in_another_place(
-    stone: Stone, angle_deg: float, scale: float
-) -> None:
+def test_no_pose_of_the_planner_is_in_another_place(stone, angle_deg, scale):
     posed = PoseBook(scale).pose(stone, angle_deg)
     labels = np.pad(posed.mask.astype(np.uint32) * 6, ((2, 3), (4, 1)))
     (found, (centroid, allowed)) = next(iter(_seen(labels).items()))
@@ -119,7 +100,7 @@ def test_no_pose_of_the_planner_is_in_another_place(
     assert off <= allowed
 
 
-def test_centroids_are_those_of_pixel_squares() -> None:
+def test_centroids_are_those_of_pixel_squares():
     labels = np.array([[0, 5, 5, 0], [9, 5, 5, 5], [9, 0, 0, 2**32 - 1]], np.uint32)
     seen = {block: place for block, (place, _) in _seen(labels).items()}
     assert seen[5] == pytest.approx((11.5 / 5, 9.5 / 5))

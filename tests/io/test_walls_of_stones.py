@@ -1,10 +1,5 @@
 """A wall is read from all that stones are read from, as blocks where the file has outlines."""
 
-import json
-from collections.abc import Callable
-from pathlib import Path
-
-import ezdxf
 import numpy as np
 import pytest
 from PIL import Image
@@ -16,10 +11,10 @@ from drystone.io.photo_beside import PhotoSidecar, write_sidecar
 from drystone.io.read_settings import ReadSettings
 from drystone.io.read_stones import read_stones
 from drystone.io.wall_image import write_labels
-from drystone.io.wall_outlines import outlines_painted
-from drystone.io.walls import GivenWall, read_wall
+from drystone.io.walls import outlines_painted, read_wall
 from drystone.io.write_stones import write_stones
 from drystone.statics.limit import lateral_resistance
+from tests.io import labelled
 
 HEIGHT, WIDTH, FOOT = 90, 130, 80
 """Of the image, px, and where the wall stands in it."""
@@ -32,144 +27,79 @@ BLOCKS = {
 """Corners by id, px, y down."""
 
 
-def upright(scale: float = 1.0) -> dict[int, list[tuple[float, float]]]:
+def upright(scale=1.0):
     """The same corners, y up from the foot."""
     return {i: [(x * scale, (FOOT - y) * scale) for x, y in line] for i, line in BLOCKS.items()}
 
 
-def labelme(folder: Path) -> Path:
-    shapes = [
-        {"label": str(i), "points": line, "shape_type": "polygon"} for i, line in BLOCKS.items()
-    ]
-    content = {"shapes": shapes, "imageHeight": HEIGHT, "imageWidth": WIDTH, "imagePath": "w.jpg"}
-    return _text(folder / "wall.json", json.dumps(content))
+def drawn(form, folder, blocks=BLOCKS):
+    """Blocks as a form has them; "y up" is that of a map."""
+    sign = -1.0 if form == "y up" else 1.0
+    shapes = [(str(i), [(x, sign * y) for x, y in line]) for i, line in blocks.items()]
+    return labelled.FORMS["qupath" if form == "y up" else form](folder, shapes)
 
 
-def coco(folder: Path) -> Path:
-    images = [{"id": 1, "file_name": "w.jpg", "width": WIDTH, "height": HEIGHT}]
-    found = [
-        {"id": i, "image_id": 1, "segmentation": [list(np.ravel(line).tolist())]}
-        for i, line in BLOCKS.items()
-    ]
-    return _text(folder / "coco.json", json.dumps({"images": images, "annotations": found}))
+OUTLINES = [*labelled.CLASSES, "y up"]
 
 
-def svg(folder: Path) -> Path:
-    lines = {i: " ".join(f"{x},{y}" for x, y in line) for i, line in BLOCKS.items()}
-    drawn = "".join(f'<polygon id="stone{i}" points="{line}"/>' for i, line in lines.items())
-    size = f'width="{WIDTH}mm" height="{HEIGHT}mm" viewBox="0 0 {WIDTH} {HEIGHT}"'
-    text = f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{drawn}</svg>'
-    return _text(folder / "wall.svg", text)
-
-
-def geojson(folder: Path) -> Path:
-    features = [
-        {
-            "type": "Feature",
-            "id": i,
-            "properties": {},
-            "geometry": {
-                "type": "Polygon",
-                "coordinates": [[(x, -y) for x, y in [*line, line[0]]]],
-            },
-        }
-        for i, line in BLOCKS.items()
-    ]
-    content = {"type": "FeatureCollection", "features": features}
-    return _text(folder / "wall.geojson", json.dumps(content))
-
-
-def dxf(folder: Path) -> Path:
-    document = ezdxf.new("R2010")  # type: ignore[attr-defined]
-    document.header["$INSUNITS"] = 4
-    for i, line in upright().items():
-        document.modelspace().add_lwpolyline(line, close=True, dxfattribs={"layer": f"stone {i}"})
-    document.saveas(folder / "wall.dxf")
-    return folder / "wall.dxf"
-
-
-def _text(path: Path, text: str) -> Path:
-    path.write_text(text)
-    return path
-
-
-OUTLINES = (labelme, coco, svg, geojson, dxf)
-
-
-def strength(wall: GivenWall) -> float:
-    assert wall.outlines is not None
-    found = lateral_resistance(model_of_traced(wall.outlines, 0.6)).value
-    assert found is not None
-    return found
+def strength(wall):
+    return lateral_resistance(model_of_traced(wall.outlines, 0.6)).value
 
 
 @pytest.mark.parametrize("form", OUTLINES)
-def test_outlines_are_blocks_that_stand_on_their_lowest_point(
-    form: Callable[[Path], Path], tmp_path: Path
-) -> None:
-    wall = read_wall(form(tmp_path))
+def test_outlines_are_blocks_that_stand_on_their_lowest_point(form, tmp_path):
+    wall = read_wall(drawn(form, tmp_path))
     blocks = [{"id": i, "polygon": line} for i, line in upright().items()]
     truth = lateral_resistance(model_from_json({"blocks": blocks, "mu": 0.6})).value
     assert strength(wall) == pytest.approx(truth, abs=1e-6)
-    assert wall.outlines is not None
-    assert wall.drawn is (form in (svg, dxf))
+    assert wall.drawn is (form == "dxf")
     px_a_mm = (wall.px_per_m or 1000.0) / 1000.0
-    left = 20.0 if form in (labelme, coco) else 0.0  # of an image x is kept
+    left = 0.0 if form in ("dxf", "y up") else 20.0  # of an image x is kept
     shift = (left - 20.0, 0.0)
     for (_, line), found in zip(sorted(upright().items()), wall.outlines.values(), strict=True):
         want = {tuple(np.round((np.array(corner) + shift) * px_a_mm, 3)) for corner in line}
         assert {tuple(corner) for corner in np.round(found, 3).tolist()} == want
-    if form in (labelme, coco):
+    if form == "labelme":
         assert list(wall.outlines) == [3, 5, 8]
 
 
 @pytest.mark.parametrize("form", OUTLINES)
-def test_their_label_image_is_that_of_the_stones(
-    form: Callable[[Path], Path], tmp_path: Path
-) -> None:
+def test_their_label_image_is_that_of_the_stones(form, tmp_path):
     """Edges lie on pixel edges, so every rule for them gives the same pixels."""
-    path = form(tmp_path)
+    path = drawn(form, tmp_path)
     wall = read_wall(path, ReadSettings(px_per_m=1000.0))
-    assert wall.labels is not None
     found = {i: int((wall.labels == i).sum()) for i in np.unique(wall.labels[wall.labels > 0])}
     stones = read_stones(path, settings=ReadSettings(px_per_m=1000.0))
     assert list(found.values()) == [stone.area_px for stone in sorted(stones, key=lambda s: s.id)]
     assert wall.labels[-1].any()
 
 
-def test_options_of_reading_leave_out_blocks(tmp_path: Path) -> None:
-    wall = read_wall(labelme(tmp_path), ReadSettings(skip=(8,)))
-    assert wall.outlines is not None
+def test_options_of_reading_leave_out_blocks(tmp_path):
+    wall = read_wall(drawn("labelme", tmp_path), ReadSettings(skip=(8,)))
     assert list(wall.outlines) == [3, 5]
     with pytest.raises(DrystoneError, match="background has no meaning"):
-        read_wall(labelme(tmp_path), ReadSettings(background=255))
+        read_wall(drawn("labelme", tmp_path), ReadSettings(background=255))
 
 
-def test_what_reaches_beyond_its_image_is_whole_and_may_not_fill_the_memory(tmp_path: Path) -> None:
-    def drawn(far: float) -> Path:
+def test_what_reaches_beyond_its_image_is_whole_and_may_not_fill_the_memory(tmp_path):
+    def reaching(far):
         outside = [(-far, 50.0), (20.0, 50.0), (20.0, 40.0), (-far, 40.0)]
-        shapes = [
-            {"label": str(i), "points": line, "shape_type": "polygon"}
-            for i, line in ({**BLOCKS, 9: outside}).items()
-        ]
-        size = {"imageHeight": HEIGHT, "imageWidth": WIDTH}
-        return _text(tmp_path / "far.json", json.dumps({"shapes": shapes, **size}))
+        return drawn("labelme", tmp_path, {**BLOCKS, 9: outside})
 
-    wall = read_wall(drawn(12.0))
-    assert wall.outlines is not None
+    wall = read_wall(reaching(12.0))
     assert wall.outlines[9][:, 0].min() == 0.0
     assert not any("cut off" in notice.message for notice in wall.notices)
     with pytest.raises(DrystoneError) as caught:
-        read_wall(drawn(4.5e6))
+        read_wall(reaching(4.5e6))
     assert caught.value.code == "E110"
 
 
-def image() -> np.ndarray:
+def image():
     wall = {i: np.array([*line, line[0]]) for i, line in upright().items()}
     return np.pad(outlines_painted(wall), ((30, HEIGHT - FOOT), (0, WIDTH - 120)))
 
 
-def test_pixels_of_every_form_are_a_label_image(tmp_path: Path) -> None:
+def test_pixels_of_every_form_are_a_label_image(tmp_path):
     labels = image()
     folder, npz, segmented = tmp_path / "masks", tmp_path / "wall.npz", tmp_path / "segmented"
     folder.mkdir()
@@ -182,14 +112,13 @@ def test_pixels_of_every_form_are_a_label_image(tmp_path: Path) -> None:
     write_sidecar(PhotoSidecar(130, 90, 250.0), segmented)
     for path, ids in ((folder, [1, 2, 3]), (npz, [3, 5, 8]), (segmented, [3, 5, 8])):
         wall = read_wall(path)
-        assert wall.labels is not None
         assert np.unique(wall.labels).tolist() == [0, *ids]
         assert ((wall.labels > 0) == (labels > 0)).all()
         assert wall.px_per_m == (250.0 if path == segmented else None)
     assert read_wall(segmented / "stones.png").px_per_m == 250.0
 
 
-def test_cropped_masks_are_refused_as_nothing_says_where_they_lie(tmp_path: Path) -> None:
+def test_cropped_masks_are_refused_as_nothing_says_where_they_lie(tmp_path):
     for number in (1, 2, 3):
         mask = np.full((20 + number, 30), 255, np.uint8)
         mask[:2] = 0
@@ -200,8 +129,8 @@ def test_cropped_masks_are_refused_as_nothing_says_where_they_lie(tmp_path: Path
 
 
 @pytest.mark.parametrize("ending", [".png", ".tif", ".npy", ".json"])
-def test_what_is_converted_is_read_again(ending: str, tmp_path: Path) -> None:
-    stones = read_stones(dxf(tmp_path), settings=ReadSettings(px_per_m=1000.0))
+def test_what_is_converted_is_read_again(ending, tmp_path):
+    stones = read_stones(drawn("dxf", tmp_path), settings=ReadSettings(px_per_m=1000.0))
     path = tmp_path / f"wall-labels{ending}"
     said = write_stones(stones, path, 1000.0)
     again = read_stones(path)
@@ -214,7 +143,7 @@ def test_what_is_converted_is_read_again(ending: str, tmp_path: Path) -> None:
         assert read_stones(path).source.px_per_m is None
 
 
-def test_a_sidecar_is_of_the_image_that_it_names(tmp_path: Path) -> None:
+def test_a_sidecar_is_of_the_image_that_it_names(tmp_path):
     write_labels(image(), tmp_path / "one.png")
     write_labels(image(), tmp_path / "other.png")
     write_sidecar(PhotoSidecar(130, 90, 250.0, labels="one.png"), tmp_path)
@@ -224,7 +153,7 @@ def test_a_sidecar_is_of_the_image_that_it_names(tmp_path: Path) -> None:
     assert read_stones(tmp_path / "other.png").source.px_per_m is None
 
 
-def test_a_photograph_of_a_wall_is_told_how_walls_are_traced(tmp_path: Path) -> None:
+def test_a_photograph_of_a_wall_is_told_how_walls_are_traced(tmp_path):
     noise = np.random.default_rng(1).integers(0, 256, (80, 90, 3), np.uint8)
     smooth = np.full((80, 90, 3), 200, np.uint8)
     smooth[40:] = noise[40:]
@@ -237,7 +166,7 @@ def test_a_photograph_of_a_wall_is_told_how_walls_are_traced(tmp_path: Path) -> 
         assert "segment" not in caught.value.cure
 
 
-def test_other_cures_stay(tmp_path: Path) -> None:
+def test_other_cures_stay(tmp_path):
     write_sidecar(PhotoSidecar(130, 90, 250.0), tmp_path)
     with pytest.raises(DrystoneError, match="stands beside the label image") as caught:
         read_wall(tmp_path / "stones.json")

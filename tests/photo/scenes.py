@@ -96,7 +96,7 @@ def light(grey):
 def distance_error_percent(view, to_photo, width_m, height_m):
     """Largest error of distances between nine points of the ground, percent."""
     points = np.array([[x, y] for x in (-1, 0, 1) for y in (-1, 0, 1)]) * (width_m, height_m) / 2
-    found = view.to_ground(apply(to_photo, points))
+    found = apply(view.photo_to_ground, apply(to_photo, points))
     one, other = np.triu_indices(len(points), 1)
     true = np.linalg.norm(points[one] - points[other], axis=1)
     return 100.0 * np.abs(np.linalg.norm(found[one] - found[other], axis=1) / true - 1.0).max()

@@ -6,14 +6,15 @@ import pytest
 
 from drystone.errors import InputError, UsageError
 from drystone.photo import markers
-from drystone.photo.dictionaries import (
+from drystone.photo.layout import parse_layout
+from drystone.photo.markers import (
     DICTIONARIES,
     FAMILIES,
+    FoundMarker,
+    find_markers,
     marker_modules,
     modules_across,
 )
-from drystone.photo.layout import parse_layout
-from drystone.photo.markers import FoundMarker, find_markers
 from drystone.photo.scale import scale_and_view
 from drystone.photo.view import apply
 from tests.photo.scenes import BITS, camera, outline, photograph
@@ -102,12 +103,6 @@ def test_nothing_is_found_where_there_is_nothing():
     noise = np.random.default_rng(1).integers(0, 256, (300, 400, 3), dtype=np.uint8)
     assert find_markers(noise) == ()
     assert find_markers(np.zeros((50, 50), dtype=np.uint8)) == ()
-
-
-def test_the_other_family_is_not_found():
-    shown = photograph(to_photo(), SIZE, PLACED)
-    assert find_markers(shown, "apriltag") == ()
-    assert len(find_markers(shown, "aruco")) == 2
 
 
 def test_a_mirrored_marker_is_none():

@@ -10,10 +10,8 @@ from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from drystone.errors import InputError
-from drystone.photo.left_out import EDGE, FAINT
-from drystone.photo.segment import segment
-from drystone.photo.segment_doubts import LISTED, doubts_of, notices_of
-from drystone.photo.verdict import verdict_of
+from drystone.photo.segment import EDGE, FAINT, segment
+from drystone.photo.segment_doubts import LISTED, doubts_of, notices_of, verdict_of
 from drystone_lab.photographs.layout import LEVELS
 from drystone_lab.photographs.scene import layout_of, photograph
 from drystone_lab.photos import _small, pixels, segment_photo

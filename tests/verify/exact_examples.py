@@ -1,24 +1,22 @@
 """A small wall of outlines made by hand, with a plan that claims what is true of it."""
 
 import json
-from typing import Any
 
 import numpy as np
 
 from drystone.contacts.settled import model_of_outlines
 from drystone.io.plan_folder import blocks_to_json
-from drystone.kernels.polygons import Points, on_grid
+from drystone.kernels.polygons import on_grid
 from drystone.kernels.raster import turn
-from drystone.model.placement import Settled, Side
+from drystone.model.placement import Settled
 from drystone.model.site import Site
-from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone.model.wedge_shape import WedgeSettings
 from drystone.planner.settings import PlannerSettings
 from drystone.settle.placing import settled_placement, settled_wedge
 from drystone.settle.rest import placed_outline
 from tests.planner.scenes import stones_of_masks
-from tests.verify.examples import L_STONE, SLAB, WALL_PX, WEDGE, Example, plan_of, stone_set
+from tests.verify.examples import L_STONE, SLAB, WALL_PX, WEDGE, plan_of, stone_set
 
 GAP_PX = 0.01
 """Between all that touches."""
@@ -31,7 +29,7 @@ SETTINGS = PlannerSettings(
 )
 
 
-def exact_example(scale: float = 1.0, px_per_m: float | None = None, *, count: int = 5) -> Example:
+def exact_example(scale=1.0, px_per_m=None, *, count=5):
     """Return a slab on two pillars with a wedge on the lower one, an L beside them turned by 90.
 
     Only the first `count` stones of these.
@@ -49,7 +47,7 @@ def exact_example(scale: float = 1.0, px_per_m: float | None = None, *, count: i
     return plan_of(wall, stones, SETTINGS, {})
 
 
-def hanging_example() -> Example:
+def hanging_example():
     """Return a stone that hangs between two blocks by friction on their upright faces."""
     masks = {1: np.ones((30, 30), bool), 2: np.ones((30, 30), bool), 3: np.ones((20, 20), bool)}
     stones = stones_of_masks(masks)
@@ -59,37 +57,31 @@ def hanging_example() -> Example:
     return plan_of(wall, stones, SETTINGS, {})
 
 
-def with_stone(
-    wall: Wall, stones: StoneSet, turned: tuple[int, float], corner: tuple[float, float]
-) -> Wall:
+def with_stone(wall, stones, turned, corner):
     """Add a stone, the bottom-left corner of its box at a place; the slab with its wedge."""
-    assert wall.outlines is not None
     stone_id, angle_deg = turned
     outline = stones.by_id(stone_id).outline_within(SETTINGS.settle.outline_px)
     x, y = (np.array(corner) - turn(outline, angle_deg).min(axis=0)).tolist()
     x, y = on_grid(np.array([x, y])).tolist()
     settled = Settled(x, y, placed_outline(outline, angle_deg, x, y))
-    side: Side = "right" if stone_id == 300 else "left"
+    side = "right" if stone_id == 300 else "left"
     placement = settled_placement(
         wall.outlines, wall.site, stones.by_id(stone_id), angle_deg, settled, side, 0
     )
-    assert placement is not None
     if stone_id != SLAB:
         return wall.add(placement)
     above = wall.add(placement).outlines
-    assert above is not None
     return wall.add(placement, (settled_wedge(above, wall.site, WEDGE, SLAB, wedge_px()),))
 
 
-def wedge_px() -> Points:
+def wedge_px():
     """The wedge between the lower pillar and the slab, 8 px wide and nearly 4 px high."""
     low, high = 16 + 2 * GAP_PX, 20 + GAP_PX
     return on_grid(np.array([[42.0, low], [50.0, low], [50.0, high], [42.0, high]]))
 
 
-def block_model(made: Example) -> Any:
+def block_model(made):
     """Return what blocks.json beside the plan of a wall of outlines says, read again."""
-    assert made.wall.outlines is not None
     settle = SETTINGS.settle
     model = model_of_outlines(made.wall.outlines, SETTINGS.mu, settle.contact_px)
     return json.loads(json.dumps(blocks_to_json(made.wall, model)))

@@ -1,11 +1,10 @@
 """Small walls made by hand, with plans that claim what is true of them."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from drystone.model.placement import Placement, Side, Wedge
+from drystone.model.placement import Placement, Wedge
 from drystone.model.plan import Plan
 from drystone.model.site import Site
 from drystone.model.stone import Source, Stone, StoneSet
@@ -31,7 +30,7 @@ class Example:
     wall: Wall
 
 
-def stone_set() -> StoneSet:
+def stone_set():
     """Two pillars of different height, a slab, an L, and a small stone that is not used."""
     l_shape = np.ones((8, 12), bool)
     l_shape[:4, 6:] = False
@@ -50,7 +49,7 @@ def stone_set() -> StoneSet:
     return StoneSet(tuple(stones), Source("stones.png", "ab" * 32, left, 30))
 
 
-def example(scale: float = 1.0, px_per_m: float | None = None) -> Example:
+def example(scale=1.0, px_per_m=None):
     """Return a slab on two pillars with a wedge on the lower one, an L beside them turned by 90.
 
     At a scale of 1 the site is 84 x 30 px; other scales must keep all edges on whole px.
@@ -66,8 +65,8 @@ def example(scale: float = 1.0, px_per_m: float | None = None) -> Example:
     ):
         posed = PoseBook(scale).pose(stones.by_id(stone_id), angle_deg)
         row = site.height_px - round(bottom * scale) - posed.height_px
-        side: Side = "right" if stone_id == 300 else "left"
-        wedges: tuple[Wedge, ...] = ()
+        side = "right" if stone_id == 300 else "left"
+        wedges = ()
         if stone_id == SLAB:
             shape, at = np.array([[4, 8], [14 - 4, 42]]) * scale
             mask = np.ones(shape.astype(int), bool)
@@ -77,9 +76,7 @@ def example(scale: float = 1.0, px_per_m: float | None = None) -> Example:
     return plan_of(built, stones, SETTINGS, heights)
 
 
-def plan_of(
-    wall: Wall, stones: StoneSet, settings: PlannerSettings, heights: Mapping[int, float]
-) -> Example:
+def plan_of(wall, stones, settings, heights):
     """Return the plan of a wall of 84 x 30 px, with what the planner finds true of it."""
     planner = Planner(stones, wall.site, settings=settings)
     planner.restore(wall, heights)

@@ -1,5 +1,4 @@
 import json
-from collections.abc import Callable
 from dataclasses import fields, replace
 
 import numpy as np
@@ -8,14 +7,18 @@ import pytest
 from drystone.errors import PlanError
 from drystone.generate import PolygonSettings, polygon_stones
 from drystone.io.plan_json import plan_from_json, plan_to_json
-from drystone.model.plan import Plan, PlanMetrics
+from drystone.model.plan import PlanMetrics
 from drystone.model.stone import Source, StoneSet
 from drystone.planner.settings import PlannerSettings
 from drystone.search.plan_wall import plan_wall
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.result import LimitStatus
+from drystone.verify import claims
 from drystone.verify.check import check_plan
+from drystone.verify.replay import PENETRATION_PX
 from drystone.verify.report import PrefixAlpha
-from tests.verify.exact_examples import exact_example
-from tests.verify.examples import L_STONE, SLAB, WEDGE, Example, example
+from tests.verify.exact_examples import GAP_PX, block_model, exact_example, hanging_example
+from tests.verify.examples import L_STONE, SLAB, WEDGE, example
 from tests.verify.tampering import (
     changed,
     codes,
@@ -24,40 +27,57 @@ from tests.verify.tampering import (
     step_of,
     swapped,
     with_index,
+    with_setting,
     without,
 )
 
 
 @pytest.fixture(scope="module")
-def true() -> Example:
+def true():
     return example()
 
 
+@pytest.fixture(scope="module")
+def exact():
+    return exact_example()
+
+
 @pytest.fixture(scope="module", params=[example, exact_example], ids=["raster", "exact"])
-def either(request: pytest.FixtureRequest) -> Example:
-    return request.param()  # type: ignore[no-any-return]
+def either(request):
+    return request.param()
 
 
+@pytest.mark.parametrize("make", [example, exact_example])
 @pytest.mark.parametrize(
     ("scale", "px_per_m"), [(1.0, None), (1.0, 137.0), (0.5, None), (0.5, 200.0)]
 )
-def test_true_plan_passes_in_any_unit_and_at_any_scale(
-    scale: float, px_per_m: float | None
-) -> None:
-    made = example(scale, px_per_m)
-    report = check_plan(made.plan, made.stones, wall_labels=made.wall.labels)
-    assert report.problems == ()
+def test_true_plan_passes_in_any_unit_and_at_any_scale(make, scale, px_per_m):
+    made = make(scale, px_per_m)
+    plan = plan_from_json(json.loads(json.dumps(plan_to_json(made.plan))))
+    blocks = block_model(made) if make is exact_example else None
+    report = check_plan(plan, made.stones, wall_labels=made.wall.labels, blocks=blocks)
     assert report.ok
-    assert report.notes == ()
+    assert (report.problems, report.notes) == ((), ())
     assert report.overlap_depth < 1e-9
     assert report.area_error == 0
-    assert report.metrics is not None
     assert report.prefixes[0].alpha_left == pytest.approx(0.58)  # a square block slides
     assert [prefix.step for prefix in report.prefixes] == [1, 2, 4, 5, 6]
+    if make is exact_example:
+        assert report.geometry == report.as_dict()["geometry"] == "exact"
+        assert (report.overlap_depth, report.overlap_depth_at, report.buried) == (0.0, None, ())
+        assert report.metrics.F_LR_half == pytest.approx(1.0)  # blocks slide before they tip
+
+
+def lowered_top(polygon, by):
+    return polygon - (polygon == polygon.max(axis=0)) * (0, by)
+
+
+def raised_floor(polygon, by):
+    return polygon + (polygon == polygon.min(axis=0)) * (0, by)
 
 
 # What is changed in plans of either geometry, and the codes that name it: exactly these.
-EXACT_ON_BOTH: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
+ONLY_BOTH = {
     "unused stone missing": (lambda p: replace(p, unused=()), {"E216"}),
     "settings": (lambda p: replace(p, settings={**p.settings, "wings": 2}), {"E217"}),
     "source centroid": (lambda p: changed(p, 3, source_centroid=(12.0, 13.5)), {"E225"}),
@@ -67,7 +87,7 @@ EXACT_ON_BOTH: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
 }  # fmt: skip
 
 # Changes with more than one consequence: these codes are among those found.
-AMONG_ON_BOTH: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
+AMONG_BOTH = {
     "stone lifted by 1 px": (lambda p: moved(p, L_STONE, 0, 1), {"E230", "E236"}),
     "first stone lifted by 1 px": (lambda p: moved(without(p, SLAB), 3, 0, 1), {"E230"}),
     "stone turned by 180 degrees": (lambda p: changed(p, L_STONE, angle_deg=-90.0), {"E236"}),
@@ -83,16 +103,7 @@ AMONG_ON_BOTH: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", [*EXACT_ON_BOTH, *AMONG_ON_BOTH])
-def test_tampering_is_caught_on_either_geometry(either: Example, name: str) -> None:
-    change, expected = (EXACT_ON_BOTH | AMONG_ON_BOTH)[name]
-    labels = either.wall.labels if name in AMONG_ON_BOTH else None
-    found = codes(check_plan(change(either.plan), either.stones, wall_labels=labels))
-    assert found >= expected
-    assert name in AMONG_ON_BOTH or found == expected
-
-
-EXACT: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
+ONLY_RASTER = {
     "another digest": (lambda p: replace(p, source={**p.source, "sha256": "0" * 64}), {"E210"}),
     "number of stones": (lambda p: replace(p, source={**p.source, "stones": 7}), {"E211"}),
     "image width": (lambda p: replace(p, source={**p.source, "width_px": 7}), {"E211"}),
@@ -116,44 +127,7 @@ EXACT: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", EXACT)
-def test_tampering_is_caught_by_its_code(true: Example, name: str) -> None:
-    change, expected = EXACT[name]
-    report = check_plan(change(true.plan), true.stones)
-    assert codes(report) == expected
-    assert not report.ok
-
-
-def test_stones_that_the_settings_do_not_allow_are_named(true: Example) -> None:
-    assert [step.stone for step in true.plan.stone_steps] == [3, 5, SLAB, L_STONE, 300]
-
-    def with_choice(plan: Plan, **values: object) -> Plan:
-        return replace(plan, settings={**plan.settings, **values})
-
-    assert check_plan(with_choice(true.plan, order="given", ban=[9]), true.stones).ok
-    assert check_plan(with_choice(true.plan, pin=[9]), true.stones).ok  # it may be missing
-    (problem,) = check_plan(with_choice(true.plan, ban=[SLAB]), true.stones).problems
-    assert (problem.code, problem.step) == ("E239", 3)
-    assert problem.message == f"stone {SLAB} is banned."
-    steps = (true.plan.steps[1], true.plan.steps[0], *true.plan.steps[2:])
-    plan = replace(with_choice(true.plan, order="given"), steps=steps)
-    problems = [p for p in check_plan(plan, true.stones).problems if p.code == "E239"]
-    assert [problem.message for problem in problems] == [
-        "stone 3 comes after stone 5 in an order that is given."
-    ]
-
-
-def test_what_is_claimed_and_cannot_be_is_said_in_words(true: Example) -> None:
-    plan = changed(true.plan, WEDGE, alpha_right=None)
-    (problem,) = check_plan(plan, true.stones).problems
-    assert problem.message.startswith("alpha_right is null by the plan, 0.")
-    plan = replace(true.plan, metrics=replace(true.plan.metrics, F_LR_half=0.5))
-    (problem,) = check_plan(plan, true.stones).problems
-    said = "F_LR_half is 0.5 by the plan, but there is no such value."
-    assert (problem.code, problem.message) == ("E234", said)
-
-
-AMONG: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
+AMONG_RASTER = {
     "stone moved by 1 px": (lambda p: moved(p, SLAB, 1, 0), {"E232", "E236"}),
     "stone turned by 3 degrees": (lambda p: changed(p, 3, angle_deg=3.0), {"E235", "E236"}),
     "ids swapped": (lambda p: swapped(p, 3, 5), {"E220", "E225", "E236"}),
@@ -176,28 +150,116 @@ AMONG: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", AMONG)
-def test_tampering_with_consequences_is_caught(true: Example, name: str) -> None:
-    change, expected = AMONG[name]
-    report = check_plan(change(true.plan), true.stones, wall_labels=true.wall.labels)
+ONLY_EXACT = {
+    "stone left of the wall": (lambda p: moved(p, 3, -0.31, 0), {"E220"}),
+    "stone in the ground": (lambda p: moved(p, 5, 0, -0.07), {"E220"}),
+    "stone right of the wall": (lambda p: moved(p, 300, 0.31, 0), {"E220"}),
+    "stone above the top": (lambda p: moved(p, SLAB, 0, 4.3), {"E220"}),
+    "stone .2 px into what is below": (lambda p: moved(p, SLAB, 0, -0.2), {"E221"}),
+    "stone .2 px into its neighbour": (lambda p: moved(p, 300, -2.2, 0), {"E221"}),
+    "stone in another": (lambda p: moved(p, 300, 2 - 74, 2), {"E221"}),
+    "stone turned into another": (
+        lambda p: changed(p, SLAB, angle_deg=181.0, rotation_moves=1), {"E221"}),
+    "wedge .2 px into its stone": (
+        lambda p: reshaped(p, lambda w: w + np.array([0, 0.2])), {"E221"}),
+    "wedge clockwise": (lambda p: reshaped(p, lambda w: w[::-1]), {"E222"}),
+    "wedge that crosses itself": (lambda p: reshaped(p, lambda w: w[[0, 2, 1, 3]]), {"E222"}),
+    "wedge without area": (lambda p: reshaped(p, lambda w: w * (1, 0)), {"E222"}),
+    "wedge far outside": (lambda p: reshaped(p, lambda w: w * 1e9), {"E220"}),
+    "wedge too small": (lambda p: with_setting(p, "wedge", thickness=0.5), {"E224"}),
+    "wedge too high": (lambda p: with_setting(p, "wedge", height=0.1), {"E224"}),
+    "two rotation moves": (lambda p: changed(p, 3, rotation_moves=2), {"E235"}),
+    "a turn that is none": (
+        lambda p: changed(with_setting(p, "stabilise", method="wedge"), 3, rotation_moves=1),
+        {"E235"}),
+}  # fmt: skip
+
+
+AMONG_EXACT = {
+    "stone lifted beyond the tolerance": (lambda p: moved(p, 300, 0, 0.11), {"E230"}),
+    "stone lifted within the tolerance": (lambda p: moved(p, 300, 0, 0.06), {"E234"}),
+    "stone turned by 1 degree": (lambda p: changed(p, 3, angle_deg=1.0), {"E235"}),
+    "stone turned further than it may": (
+        lambda p: changed(p, 3, angle_deg=12.1, rotation_moves=1), {"E235"}),
+    "wedge too low": (lambda p: reshaped(p, lambda w: lowered_top(w, 0.2)), {"E223", "E230"}),
+    "wedge hanging": (lambda p: reshaped(p, lambda w: raised_floor(w, 0.2)), {"E223"}),
+    "wedge narrower": (lambda p: reshaped(p, lambda w: w - (w == w.max(axis=0)) * (0.5, 0)),
+                       {"E234"}),
+    "wedge elsewhere": (lambda p: reshaped(p, lambda w: w - (12, 0)), {"E223", "E230", "E236"}),
+    "contact tolerance": (
+        lambda p: with_setting(p, "settle", contact_px=GAP_PX / 2, clearance_px=GAP_PX / 8),
+        {"E223", "E230"}),
+    "raster": (lambda p: replace(p, settings={**p.settings, "geometry": "raster"}), {"E234"}),
+    "unit of length": (lambda p: replace(p, px_per_m=2.0, length_unit="m"), {"E230"}),
+}  # fmt: skip
+
+
+MADE = {"raster": example(), "exact": exact_example()}
+ONLY = {"raster": ONLY_BOTH | ONLY_RASTER, "exact": ONLY_BOTH | ONLY_EXACT}
+AMONG = {"raster": AMONG_BOTH | AMONG_RASTER, "exact": AMONG_BOTH | AMONG_EXACT}
+
+
+@pytest.mark.parametrize(("geometry", "name"), [(one, name) for one in ONLY for name in ONLY[one]])
+def test_tampering_is_caught_by_its_code(geometry, name):
+    change, expected = ONLY[geometry][name]
+    report = check_plan(change(MADE[geometry].plan), MADE[geometry].stones)
+    assert codes(report) == expected
+    assert not report.ok
+
+
+@pytest.mark.parametrize(
+    ("geometry", "name"), [(one, name) for one in AMONG for name in AMONG[one]]
+)
+def test_tampering_with_consequences_is_caught(geometry, name):
+    made, (change, expected) = MADE[geometry], AMONG[geometry][name]
+    report = check_plan(change(made.plan), made.stones, wall_labels=made.wall.labels)
     assert codes(report) >= expected
 
 
+def test_stones_that_the_settings_do_not_allow_are_named(true):
+    assert [step.stone for step in true.plan.stone_steps] == [3, 5, SLAB, L_STONE, 300]
+
+    def with_choice(plan, **values):
+        return replace(plan, settings={**plan.settings, **values})
+
+    assert check_plan(with_choice(true.plan, order="given", ban=[9]), true.stones).ok
+    assert check_plan(with_choice(true.plan, pin=[9]), true.stones).ok  # it may be missing
+    (problem,) = check_plan(with_choice(true.plan, ban=[SLAB]), true.stones).problems
+    assert (problem.code, problem.step) == ("E239", 3)
+    assert problem.message == f"stone {SLAB} is banned."
+    steps = (true.plan.steps[1], true.plan.steps[0], *true.plan.steps[2:])
+    plan = replace(with_choice(true.plan, order="given"), steps=steps)
+    problems = [p for p in check_plan(plan, true.stones).problems if p.code == "E239"]
+    assert [problem.message for problem in problems] == [
+        "stone 3 comes after stone 5 in an order that is given."
+    ]
+
+
+def test_what_is_claimed_and_cannot_be_is_said_in_words(true):
+    plan = changed(true.plan, WEDGE, alpha_right=None)
+    (problem,) = check_plan(plan, true.stones).problems
+    assert problem.message.startswith("alpha_right is null by the plan, 0.")
+    plan = replace(true.plan, metrics=replace(true.plan.metrics, F_LR_half=0.5))
+    (problem,) = check_plan(plan, true.stones).problems
+    said = "F_LR_half is 0.5 by the plan, but there is no such value."
+    assert (problem.code, problem.message) == ("E234", said)
+
+
 @pytest.mark.parametrize("name", ["SF", "LFR", "GDS", "NHR", "IWR", "IS"])
-def test_every_index_is_verified(either: Example, name: str) -> None:
+def test_every_index_is_verified(either, name):
     report = check_plan(with_index(either.plan, name, 1e-8), either.stones)
     assert codes(report) == {"E232"}
     assert report.problems[0].step == step_of(either.plan, SLAB).step
     assert name in report.problems[0].message
 
 
-def test_llc_is_verified(true: Example) -> None:
+def test_llc_is_verified(true):
     assert codes(check_plan(with_index(true.plan, "LLC", 1e-6), true.stones)) == {"E232"}
     assert check_plan(with_index(true.plan, "LLC", 1e-9), true.stones).ok
 
 
 @pytest.mark.parametrize("name", [field.name for field in fields(PlanMetrics)])
-def test_every_metric_is_verified(either: Example, name: str) -> None:
+def test_every_metric_is_verified(either, name):
     value = getattr(either.plan.metrics, name)
     # A wall of pixels has no contact tolerance: its plan may not claim what comes of others.
     claim = 0.5 if value is None else value + 1e-6 * max(1.0, value)
@@ -211,13 +273,13 @@ def test_every_metric_is_verified(either: Example, name: str) -> None:
     assert name in report.problems[0].message
 
 
-def test_metrics_beyond_the_contract_may_be_left_out(true: Example) -> None:
+def test_metrics_beyond_the_contract_may_be_left_out(true):
     data = plan_to_json(true.plan)
     del data["metrics"]["T_LEVEL"], data["metrics"]["E_FLUSH"]
     assert check_plan(plan_from_json(data), true.stones).ok
 
 
-def test_mirrored_stone_in_the_wall_image_is_caught(either: Example) -> None:
+def test_mirrored_stone_in_the_wall_image_is_caught(either):
     labels = either.wall.labels.copy()
     window = next(p.window for p in either.wall.placements if p.stone_id == L_STONE)
     labels[window] = labels[window][:, ::-1]
@@ -226,7 +288,7 @@ def test_mirrored_stone_in_the_wall_image_is_caught(either: Example) -> None:
     assert [p.step for p in report.problems] == [step_of(either.plan, L_STONE).step]
 
 
-def test_wall_image_of_another_wall_is_caught(true: Example) -> None:
+def test_wall_image_of_another_wall_is_caught(true):
     labels = true.wall.labels.copy()
     labels[0, 0] = 555
     report = check_plan(true.plan, true.stones, wall_labels=labels)
@@ -235,13 +297,13 @@ def test_wall_image_of_another_wall_is_caught(true: Example) -> None:
     assert codes(report) == {"E236"}
 
 
-def test_wall_that_is_no_image_is_refused(true: Example) -> None:
+def test_wall_that_is_no_image_is_refused(true):
     for size in (1e12, 0.1):
         with pytest.raises(PlanError, match="E215"):
             check_plan(replace(true.plan, width=size), true.stones)
 
 
-def test_sources_without_digest_are_not_compared(true: Example) -> None:
+def test_sources_without_digest_are_not_compared(true):
     stones = replace(true.stones, source=replace(true.stones.source, sha256=""))
     report = check_plan(true.plan, stones, wall_labels=true.wall.labels)
     assert report.ok
@@ -249,7 +311,7 @@ def test_sources_without_digest_are_not_compared(true: Example) -> None:
     assert "digest" in report.notes[0]
 
 
-def test_steps_after_a_broken_one_are_said_to_be_unchecked(true: Example) -> None:
+def test_steps_after_a_broken_one_are_said_to_be_unchecked(true):
     report = check_plan(moved(true.plan, SLAB, 0, -1), true.stones)
     assert report.metrics is None
     assert [prefix.step for prefix in report.prefixes] == [1, 2]
@@ -260,7 +322,7 @@ def test_steps_after_a_broken_one_are_said_to_be_unchecked(true: Example) -> Non
     assert data["problems"][0].keys() == {"code", "step", "message"}
 
 
-def test_real_outlines_that_overlap_are_reported_and_no_problem_is_made_of_them() -> None:
+def test_real_outlines_that_overlap_are_reported_and_no_problem_is_made_of_them():
     made = example()
     plan = moved(made.plan, SLAB, 0, -1 / 256)  # rounds to the same pixels
     report = check_plan(plan, made.stones)
@@ -271,13 +333,13 @@ def test_real_outlines_that_overlap_are_reported_and_no_problem_is_made_of_them(
     assert deep.overlap_depth_at == (3, SLAB)
 
 
-def test_stone_that_cannot_be_lowered_in_is_listed(either: Example) -> None:
+def test_stone_that_cannot_be_lowered_in_is_listed(either):
     assert check_plan(either.plan, either.stones).buried == ()
     below_the_slab = moved(either.plan, 300, 22 - 74, 0)
     assert check_plan(below_the_slab, either.stones).buried == (300,)
 
 
-def test_wall_in_the_air_does_not_stand(either: Example) -> None:
+def test_wall_in_the_air_does_not_stand(either):
     alone = moved(replace(either.plan, steps=either.plan.steps[:1]), 3, 0, 1)
     report = check_plan(alone, either.stones)
     (problem,) = (p for p in report.problems if p.code == "E230")
@@ -285,7 +347,7 @@ def test_wall_in_the_air_does_not_stand(either: Example) -> None:
     assert report.prefixes == (PrefixAlpha(1, None, None),)
 
 
-def test_largest_deviation_of_pixel_area_is_reported() -> None:
+def test_largest_deviation_of_pixel_area_is_reported():
     made = example()
     turned = check_plan(changed(made.plan, 3, angle_deg=45.0), made.stones)
     assert turned.area_error_at == 3
@@ -293,7 +355,7 @@ def test_largest_deviation_of_pixel_area_is_reported() -> None:
     assert turned.area_error == pytest.approx(420 / 400 - 1)
 
 
-def test_empty_plan_is_checked(either: Example) -> None:
+def test_empty_plan_is_checked(either):
     empty = PlanMetrics(0.0, None, None, None, 0.0, 0.0, None, None, 0.0)
     ids = tuple(stone.id for stone in either.stones)
     plan = replace(either.plan, steps=(), unused=ids, metrics=empty)
@@ -302,12 +364,12 @@ def test_empty_plan_is_checked(either: Example) -> None:
     assert report.area_error_at is None
 
 
-def test_other_stones_are_reported_and_nothing_is_raised(true: Example) -> None:
+def test_other_stones_are_reported_and_nothing_is_raised(true):
     report = check_plan(true.plan, StoneSet((), Source("none.png", "00" * 32, 1, 1)))
     assert codes(report) >= {"E210", "E211", "E212", "E216"}
 
 
-def test_plan_of_the_planner_passes() -> None:
+def test_plan_of_the_planner_passes():
     rng = np.random.default_rng(4)
     stones = polygon_stones(PolygonSettings(count=9, width_px=44, height_px=28), rng)
     settings = PlannerSettings(two_sided=True)
@@ -316,3 +378,96 @@ def test_plan_of_the_planner_passes() -> None:
     report = check_plan(plan, stones, wall_labels=made.wall.labels)
     assert report.problems == ()
     assert len(plan.stone_steps) >= 3
+
+
+def ending(status, side, *, from_call):
+    """An analysis of which one end is as said, from one call on."""
+    calls = []
+
+    def analyse(model):
+        calls.append(model)
+        both = lateral_resistance(model)
+        end = replace(getattr(both, side), status=status, alpha=None)
+        return both if len(calls) <= from_call else replace(both, **{side: end})
+
+    return analyse
+
+
+def told(monkeypatch, analyse):
+    monkeypatch.setattr(claims, "lateral_resistance", analyse)
+    problems = check_plan(MADE["exact"].plan, MADE["exact"].stones).problems
+    return [(one.code, one.message) for one in problems if one.code in ("E230", "E237")]
+
+
+def test_a_solver_that_gives_up_is_no_wall_that_falls(monkeypatch):
+    # Of the walls as they are, and in their sturdy models.
+    for from_call, side in ((0, "left"), (3, "right")):
+        found = told(monkeypatch, ending(LimitStatus.FAILED, side, from_call=from_call))
+        assert found
+        for code, message in found:
+            assert code == "E230"
+            assert "the solver gave up, and it is not known whether the wall stands" in message
+
+
+def test_a_wall_that_carries_any_load_stands(monkeypatch):
+    assert told(monkeypatch, ending(LimitStatus.UNBOUNDED, "left", from_call=0)) == []
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_wall_that_falls_is_said_to(monkeypatch, side):
+    found = told(monkeypatch, ending(LimitStatus.UNSTABLE, side, from_call=0))
+    assert ("E230", f"the wall does not stand: {side} unstable.") in found
+
+
+@pytest.mark.parametrize(("into", "allowed"), [(0.04, True), (0.06, False)])
+def test_penetration_is_allowed_up_to_a_limit(exact, into, allowed):
+    report = check_plan(moved(exact.plan, SLAB, 0, -GAP_PX - into), exact.stones)
+    assert ("E221" not in codes(report)) is allowed
+    assert report.overlap_depth == pytest.approx(into, abs=1e-6)
+    assert report.overlap_depth_at in {(3, SLAB), (SLAB, WEDGE)}
+    assert (into <= PENETRATION_PX) is allowed
+
+
+def test_what_lies_in_a_stone_that_lies_in_another_is_named_too(exact):
+    """The slab in the first stone, and one more in the end of the slab."""
+    lowered = moved(exact.plan, SLAB, 0, -0.2)
+    x, y = step_of(lowered, SLAB).centroid
+    plan = changed(lowered, 300, centroid=(x + 24.0, y))
+    said = [p for p in check_plan(plan, exact.stones).problems if p.code == "E221"]
+    for stone, other in ((SLAB, 3), (300, SLAB)):
+        mine = [p.message for p in said if p.step == step_of(plan, stone).step]
+        assert any(f"source px deep in stone {other}." in message for message in mine)
+
+
+def test_depth_is_said_in_source_px_and_of_wedges_too():
+    made = exact_example(0.5, 200.0)
+    plan = reshaped(made.plan, lambda w: w - (0, 1.2 / 200))
+    report = check_plan(plan, made.stones)
+    assert report.overlap_depth == pytest.approx(1.2 - GAP_PX, abs=1e-6)
+    assert report.overlap_depth_at == (5, WEDGE)
+    (problem,) = (p for p in report.problems if p.code == "E221")
+    assert "1.19 source px deep in stone 5" in problem.message
+    assert problem.step == step_of(made.plan, WEDGE).step
+
+
+def test_edges_of_the_wall_are_named_in_source_px():
+    made = exact_example(0.5)
+    report = check_plan(moved(made.plan, 300, 0.75, -0.25), made.stones)
+    (problem,) = report.problems
+    assert problem.code == "E220"
+    assert "0.24 px below the ground, 0.75 px right of the right" in problem.message
+
+
+def test_stone_that_hangs_between_others_does_not_stand(exact):
+    # As near to its neighbours as contacts are, with nothing below it.
+    hanging = moved(exact.plan, L_STONE, 2.0 - GAP_PX, 3.0)
+    report = check_plan(hanging, exact.stones)
+    step = step_of(exact.plan, L_STONE).step
+    assert {p.code for p in report.problems if p.step == step} >= {"E230"}
+    assert PrefixAlpha(step, None, None) in report.prefixes
+
+
+def test_stone_that_only_friction_on_upright_faces_holds_is_named():
+    hanging = hanging_example()
+    problems = check_plan(hanging.plan, hanging.stones).problems
+    assert [(problem.code, problem.step) for problem in problems] == [("E237", 3)]

@@ -1,20 +1,16 @@
 """What a rigid-body engine says against a plan."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
 
 from drystone.contacts.settled import PlacedPolygons, model_of_outlines
-from drystone.model.plan import Plan
 from drystone.physics.building import BlockMove, BuildUp, build_up, tilt_of
 from drystone.physics.scatter import TiltResult
 from drystone.physics.tilt import TiltTrial
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import Direction
 from drystone.verify.engine import CONFIRMED, check_engine, claimed_alpha
-from drystone.verify.report import Problem
 from tests.verify.exact_examples import exact_example
 from tests.verify.examples import SLAB, WEDGE
 
@@ -23,31 +19,31 @@ PLAN = exact_example().plan
 IDS = [step.stone for step in PLAN.stone_steps]
 
 
-def claiming(left: float | None, right: float | None, **without: float | None) -> Plan:
+def claiming(left, right, **without):
     none = {"F_LR_coulomb": None, "alpha_left_coulomb": None, "alpha_right_coulomb": None}
     claims = {"alpha_left": left, "alpha_right": right, **none, **without}
     return replace(PLAN, metrics=replace(PLAN.metrics, **claims))
 
 
-def built(*fallen: int, first_fall: int | None = None) -> BuildUp:
+def built(*fallen, first_fall=None):
     moves = [BlockMove(i, n, 9.0, 0.3, 0.0, 0.0, i in fallen) for n, i in enumerate(IDS, 1)]
     moves.insert(3, BlockMove(WEDGE, 3, 9.0, 0.3, 0.0, 0.0, WEDGE in fallen))
     return BuildUp(tuple(moves), {}, {}, (0.0,) * len(IDS), (), first_fall, MU)
 
 
-def tilts(left: float | None, right: float | None, **trial: Any) -> tuple[TiltResult, TiltResult]:
-    def result(direction: Direction, alpha: float | None) -> TiltResult:
+def tilts(left, right, **trial):
+    def result(direction, alpha):
         fields = {"resolution": 0.001, **trial}
         return TiltResult(direction, (TiltTrial(direction, alpha, None, (), 0.0, **fields),))
 
     return result("left", left), result("right", right)
 
 
-def codes(problems: list[Problem]) -> list[str]:
+def codes(problems):
     return [problem.code for problem in problems]
 
 
-def test_blocks_that_fall_are_named_with_the_step() -> None:
+def test_blocks_that_fall_are_named_with_the_step():
     (problem,) = check_engine(PLAN, built(SLAB, WEDGE, first_fall=3), None)
     assert (problem.code, problem.step) == ("E241", PLAN.stone_steps[2].step)
     assert f"stone {SLAB}, wedge {WEDGE}." in problem.message
@@ -69,29 +65,27 @@ def test_blocks_that_fall_are_named_with_the_step() -> None:
         (claiming(0.5, 0.4, F_LR_coulomb=0.0), (0.01, 0.01), []),
     ],
 )
-def test_a_tilt_below_the_claim_is_named(
-    plan: Plan, found: tuple[float | None, float | None], said: list[str]
-) -> None:
+def test_a_tilt_below_the_claim_is_named(plan, found, said):
     problems = check_engine(plan, built(), tilts(*found))
     assert codes(problems) == ["E242"] * len(said)
     for problem, side in zip(problems, said, strict=True):
         assert f"tilted to the {side} " in problem.message
 
 
-def test_the_resolution_of_the_tilt_is_no_contradiction() -> None:
+def test_the_resolution_of_the_tilt_is_no_contradiction():
     plan = claiming(0.5, 0.5)
     assert codes(check_engine(plan, built(), tilts(0.4, 0.4, resolution=0.1))) == []
     assert codes(check_engine(plan, built(), tilts(0.4, 0.4, resolution=0.02))) == ["E242"] * 2
 
 
-def test_what_comes_down_on_the_level_table_carries_nothing() -> None:
+def test_what_comes_down_on_the_level_table_carries_nothing():
     problems = check_engine(claiming(0.5, 0.4), built(), tilts(None, None, fell_at_rest=True))
     assert codes(problems) == ["E242"] * 2
     assert "alpha = 0.000 in the engine, 0% of the 0.500" in problems[0].message
 
 
 @pytest.mark.parametrize("courses", [2, 4])
-def test_a_stack_that_claims_full_interlock_is_found_out(courses: int) -> None:
+def test_a_stack_that_claims_full_interlock_is_found_out(courses):
     """Bricks in a stack tip at width over height, whatever a plan claims of them."""
     pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
     brick = np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]])

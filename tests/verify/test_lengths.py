@@ -1,29 +1,27 @@
 """What a plan says of itself: its settings, also when not all of them can be used."""
 
 from dataclasses import replace
-from typing import Any
 
 import pytest
 
-from drystone.model.plan import Plan
 from drystone.planner.settings import METHODS, PlannerSettings
 from drystone.verify.lengths import plan_settings
 from tests.verify.examples import example
 
 
-def plan_with(settings: dict[str, Any], method: str = "best") -> Plan:
+def plan_with(settings, method="best"):
     whole = METHODS.get(method, PlannerSettings()).as_dict() | settings
     return replace(example().plan, method=method, settings=whole)
 
 
-def test_usable_settings_are_taken_as_they_are() -> None:
+def test_usable_settings_are_taken_as_they_are():
     settings, problems = plan_settings(plan_with({"mu": 0.6}))
     assert settings == replace(METHODS["best"], mu=0.6)
     assert problems == []
 
 
 @pytest.mark.parametrize("method", ["paper", "best"])
-def test_a_setting_out_of_range_is_the_one_of_the_plans_method(method: str) -> None:
+def test_a_setting_out_of_range_is_the_one_of_the_plans_method(method):
     settings, (problem,) = plan_settings(plan_with({"mu": -3.0, "vary": 0.1}, method))
     assert settings == replace(METHODS[method], vary=0.1)
     assert problem.code == "E217"
@@ -32,13 +30,13 @@ def test_a_setting_out_of_range_is_the_one_of_the_plans_method(method: str) -> N
     assert problem.message.endswith("The others are those of the plan.")
 
 
-def test_of_a_method_that_is_not_known_the_default_is_used() -> None:
+def test_of_a_method_that_is_not_known_the_default_is_used():
     settings, (problem,) = plan_settings(plan_with({"orientations": "north"}, "custom"))
     assert settings == PlannerSettings()
     assert "Used instead, the package's own: orientations = 'quarter'." in problem.message
 
 
-def test_unknown_ones_are_left_out_and_wrong_groups_named() -> None:
+def test_unknown_ones_are_left_out_and_wrong_groups_named():
     stop = {"filling": 0.9, "wonder": 1}
     settings, (problem,) = plan_settings(plan_with({"wings": 2, "stop": stop, "score": 3}))
     assert settings == METHODS["best"].updated({"stop": {"filling": 0.9}})
@@ -46,13 +44,13 @@ def test_unknown_ones_are_left_out_and_wrong_groups_named() -> None:
     assert "Left out: stop.wonder, wings." in problem.message
 
 
-def test_those_that_need_each_other_are_kept_in_any_order() -> None:
+def test_those_that_need_each_other_are_kept_in_any_order():
     policy = {"selection_rule": "towers", "search": {"budget": 1}, "mu": -1.0}
     settings, _ = plan_settings(plan_with(policy))
     assert (settings.selection_rule, settings.search.budget) == ("towers", 1)
 
 
-def test_what_a_plan_does_not_say_is_the_default_beside_a_bad_setting_too() -> None:
+def test_what_a_plan_does_not_say_is_the_default_beside_a_bad_setting_too():
     plan = replace(example().plan, method="best", settings={"search": {"budget": 1}, "mu": -1.0})
     settings, _ = plan_settings(plan)
     assert settings == PlannerSettings().updated({"search": {"budget": 1}})

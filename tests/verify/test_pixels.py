@@ -8,13 +8,11 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.polygons import Points
-from drystone.kernels.raster import Mask, turn
+from drystone.kernels.raster import turn
 from drystone.model import stone as stone_module
 from drystone.model.outline import stone_outline
 from drystone.model.overlap import deepest_overlap
-from drystone.model.stone import Stone, StoneSet
-from drystone.search.plan_result import PlanResult
+from drystone.model.stone import Stone
 from drystone.search.plan_wall import plan_wall
 from drystone.settle.rest import placed_outline
 from drystone.verify.check import check_plan
@@ -29,7 +27,7 @@ from tests.verify.tampering import codes, step_of
 STEP = step_of(exact_example().plan, SLAB)
 
 
-def problems(mask: Mask, outline: Points, angle_deg: float = 0.0) -> list[str]:
+def problems(mask, outline, angle_deg=0.0):
     """What is said of an outline of some pixels, about their centroid, at some place."""
     at = np.array([31.5, 12.25])
     step = replace(STEP, angle_deg=angle_deg)
@@ -39,7 +37,7 @@ def problems(mask: Mask, outline: Points, angle_deg: float = 0.0) -> list[str]:
 
 @repeatable(60)
 @given(mask=masks(max_px=9))
-def test_the_rim_is_around_the_pixels(mask: Mask) -> None:
+def test_the_rim_is_around_the_pixels(mask):
     slow = {(point.x, point.y) for point in naive.rim(mask)}
     found = [tuple(point) for point in rim_px(naive.filled(mask)).tolist()]
     assert len(found) == len(set(found))
@@ -48,7 +46,7 @@ def test_the_rim_is_around_the_pixels(mask: Mask) -> None:
 
 @repeatable(150)
 @given(mask=holed(), angle_deg=st.floats(-180, 180))
-def test_outlines_of_stones_are_those_of_their_pixels(mask: Mask, angle_deg: float) -> None:
+def test_outlines_of_stones_are_those_of_their_pixels(mask, angle_deg):
     assert problems(mask, Stone(1, mask).outline, angle_deg) == []
 
 
@@ -58,29 +56,27 @@ def test_outlines_of_stones_are_those_of_their_pixels(mask: Mask, angle_deg: flo
     angle_deg=st.floats(-180, 180),
     factor=st.sampled_from([0.5, 0.866, 0.98, 0.999, 1.001, 1.2]),
 )
-def test_a_scaled_outline_is_named(mask: Mask, angle_deg: float, factor: float) -> None:
+def test_a_scaled_outline_is_named(mask, angle_deg, factor):
     """Also one that stays within the tolerance of every pixel."""
     (*_, said) = problems(mask, Stone(1, mask).outline * factor, angle_deg)
     assert f"has {factor**2:.6g} times the area that was read" in said
 
 
 @pytest.mark.parametrize("shift", [(0.9, 0.0), (-0.9, 0.0), (0.0, 0.9), (0.0, -0.9)])
-def test_an_outline_beside_its_pixels_is_named(shift: tuple[float, float]) -> None:
+def test_an_outline_beside_its_pixels_is_named(shift):
     brick = np.ones((12, 20), bool)
     (said,) = problems(brick, Stone(1, brick).outline + shift)
     assert "is 0.9 source px from the rim that was read; 0.5 are allowed" in said
     assert problems(brick, Stone(1, brick).outline + 0.5 * np.array(shift)) == []
 
 
-def test_an_outline_of_another_shape_and_the_same_area_is_named() -> None:
+def test_an_outline_of_another_shape_and_the_same_area_is_named():
     slim, flat = np.ones((10, 24), bool), np.ones((12, 20), bool)
     assert len(problems(slim, Stone(1, flat).outline)) == 1
 
 
 @pytest.mark.parametrize(("factor", "named"), [(1.0, False), (0.97, True), (1.03, True)])
-def test_check_does_not_take_the_word_of_whoever_reads_outlines(
-    monkeypatch: pytest.MonkeyPatch, factor: float, named: bool
-) -> None:
+def test_check_does_not_take_the_word_of_whoever_reads_outlines(monkeypatch, factor, named):
     monkeypatch.setattr(stone_module, "stone_outline", lambda *of: factor * stone_outline(*of))
     made = exact_example()
     report = check_plan(made.plan, made.stones)
@@ -90,27 +86,26 @@ def test_check_does_not_take_the_word_of_whoever_reads_outlines(
     }
 
 
-def frame() -> Mask:
+def frame():
     mask = np.ones((40, 40), bool)
     mask[10:30, 10:30] = False
     return mask
 
 
-def ring(outer: float, inner: float) -> Mask:
+def ring(outer, inner):
     y, x = np.mgrid[: 2 * int(outer) + 1, : 2 * int(outer) + 1] - outer
     return (np.hypot(x, y) <= outer) & (np.hypot(x, y) >= inner)
 
 
-def planned(stones: StoneSet, width: float, height: float) -> PlanResult:
+def planned(stones, width, height):
     return plan_wall(stones, width, height, seed=1, settings=greedy(), scale=1.0)
 
 
-def deepest_by_pixels(result: PlanResult) -> float:
+def deepest_by_pixels(result):
     """How deep the pixel squares of two placed stones lie in each other, holes filled."""
     shapes = []
     for placement in result.wall.placements:
         stone, settled = placement.posed.stone, placement.settled
-        assert settled is not None
         rows, cols = np.nonzero(naive.filled(stone.mask))
         left, low = cols, len(stone.mask) - rows - 1
         squares = shapely.union_all(shapely.box(left, low, left + 1, low + 1))
@@ -121,12 +116,10 @@ def deepest_by_pixels(result: PlanResult) -> float:
     return deepest_overlap(shapes)[0]
 
 
-def test_frames_are_laid_as_if_they_were_filled() -> None:
+def test_frames_are_laid_as_if_they_were_filled():
     kept = planned(stones_of_masks({i: frame() for i in range(1, 5)}), 160, 40)
     whole = planned(stones_of_masks({i: np.ones((40, 40), bool) for i in range(1, 5)}), 160, 40)
     assert len(kept.plan.steps) == 4
-    assert kept.wall.outlines is not None
-    assert whole.wall.outlines is not None
     np.testing.assert_array_equal(
         kept.wall.outlines.polygons.corners, whole.wall.outlines.polygons.corners
     )
@@ -138,7 +131,7 @@ def test_frames_are_laid_as_if_they_were_filled() -> None:
     )
 
 
-def test_rings_among_discs_and_bricks_do_not_overlap() -> None:
+def test_rings_among_discs_and_bricks_do_not_overlap():
     shapes = [ring(22, 9)] * 5 + [ring(6.9, 0)] * 5 + [np.ones((20, 35), bool)] * 5
     stones = stones_of_masks(dict(enumerate(shapes, 1)))
     result = planned(stones, 180, 90)

@@ -1,3 +1,4 @@
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -5,30 +6,50 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from drystone.errors import PlanError
+from drystone.generate import PolygonSettings, polygon_stones
+from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.model.placement import Placement
 from drystone.model.plan import StoneStep
 from drystone.model.site import Site
-from drystone.model.stone import Stone, StoneSet
+from drystone.model.stone import StoneSet
+from drystone.planner.settings import method_settings
 from drystone.poses import PoseBook
-from drystone.verify.canvas import place_stone
-from drystone.verify.replay import rebuild_wall, replay_plan
+from drystone.search.plan_wall import plan_wall
+from drystone.verify.check import check_plan
+from drystone.verify.replay import place_stone, rebuild_wall, replay_plan
 from tests.strategies import repeatable, stones
-from tests.verify.examples import L_STONE, example
+from tests.verify.exact_examples import exact_example
+from tests.verify.examples import L_STONE, SLAB, WEDGE, example
+from tests.verify.tampering import changed, moved, reshaped
+
+ROUNDING_PX = 1e-9
+"""Of lengths that were in metres."""
 
 
+def read_again(plan):
+    return plan_from_json(json.loads(json.dumps(plan_to_json(plan))))
+
+
+@pytest.mark.parametrize("make", [example, exact_example])
 @pytest.mark.parametrize(
     ("scale", "px_per_m"), [(1.0, None), (1.0, 137.0), (0.5, None), (0.5, 211.3)]
 )
-def test_wall_is_rebuilt_to_the_pixel(scale: float, px_per_m: float | None) -> None:
-    made = example(scale, px_per_m)
-    found = rebuild_wall(made.plan, made.stones)
+def test_wall_is_rebuilt_to_the_pixel(make, scale, px_per_m):
+    made = make(scale, px_per_m)
+    found = rebuild_wall(read_again(made.plan), made.stones)
     np.testing.assert_array_equal(found.labels, made.wall.labels)
     assert found.site == made.wall.site
     assert [p.side for p in found.placements] == [p.side for p in made.wall.placements]
-    assert [w.id for w in found.wedges] == [w.id for w in made.wall.wedges]
+    (mine,), (its,) = found.wedges, made.wall.wedges
+    assert (mine.id, mine.under, mine.row, mine.col) == (WEDGE, SLAB, its.row, its.col)
+    np.testing.assert_array_equal(mine.mask, its.mask)
+    assert (mine.corners is None) == (make is example)
+    if make is exact_example:
+        np.testing.assert_allclose(mine.corners, its.corners, rtol=0, atol=ROUNDING_PX)
 
 
-def test_l_stone_turned_by_90_degrees_is_not_mirrored() -> None:
+def test_l_stone_turned_by_90_degrees_is_not_mirrored():
     made = example()
     wall = rebuild_wall(made.plan, made.stones)
     mask = next(p.posed.mask for p in wall.placements if p.stone_id == L_STONE)
@@ -42,9 +63,7 @@ def test_l_stone_turned_by_90_degrees_is_not_mirrored() -> None:
     st.sampled_from([1.0, 0.7, 0.3]),
     st.sampled_from([None, 437.0, 1e-3]),
 )
-def test_pose_of_a_plan_is_the_pose_of_the_planner(
-    stone: Stone, angle_deg: float, scale: float, px_per_m: float | None
-) -> None:
+def test_pose_of_a_plan_is_the_pose_of_the_planner(stone, angle_deg, scale, px_per_m):
     site = Site(40, 30, scale, px_per_m)
     placed = Placement(PoseBook(scale).pose(stone, angle_deg), 7, 11, "right", 2)
     x, y = placed.centroid(site.height_px)
@@ -57,7 +76,7 @@ def test_pose_of_a_plan_is_the_pose_of_the_planner(
     assert found.posed.anchor == placed.posed.anchor
 
 
-def test_wall_size_in_metres_does_not_depend_on_rounding() -> None:
+def test_wall_size_in_metres_does_not_depend_on_rounding():
     made = example()
     for width in range(1, 400, 2):
         plan = replace(made.plan, width=width / 437.0, length_unit="m", px_per_m=437.0,
@@ -65,15 +84,122 @@ def test_wall_size_in_metres_does_not_depend_on_rounding() -> None:
         assert replay_plan(plan, made.stones).site.width_px == (width + 1) // 2
 
 
-def test_pieces_that_overlap_stay_in_the_replay_and_the_wall_ends_before() -> None:
-    made = example()
-    second = made.plan.stone_steps[1]
-    x, y = second.centroid
-    moved = replace(second, centroid=(x - 25, y))
-    steps = [moved if step is second else step for step in made.plan.steps]
-    replay = replay_plan(replace(made.plan, steps=tuple(steps)), made.stones)
+@pytest.mark.parametrize(
+    ("make", "said"), [(example, "80 working px"), (exact_example, "source px deep in stone 3")]
+)
+def test_pieces_that_overlap_stay_in_the_replay_and_the_wall_ends_before(make, said):
+    made = make()
+    replay = replay_plan(moved(made.plan, 5, -25, 0), made.stones)
     assert replay.broken_at == 2
-    assert [problem.code for problem in replay.problems] == ["E221"]
-    assert "80 working px" in replay.problems[0].message
+    assert [p.code for p in replay.problems if p.step == 2] == ["E221"]
+    assert said in replay.problems[0].message
     assert [p.stone_id for p in replay.wall.placements] == [3]
     assert len(replay.pieces) == 6
+    assert 5 in replay.labels
+
+
+def stone_set():
+    settings = PolygonSettings(count=8, width_px=44, height_px=28)
+    return polygon_stones(settings, np.random.default_rng(4))
+
+
+def planned(stones, px_per_m, built=None, rounds=1, heights=None):
+    settings = method_settings("best").updated(
+        {"geometry": "exact", "search": {"budget": rounds + 1}}
+    )
+    how = {"seed": 3, "settings": settings, "scale": 0.5, "px_per_m": px_per_m}
+    return plan_wall(stones, 160, 90, built=built, course_heights_px=heights, **how)
+
+
+@pytest.fixture(scope="module")
+def made():
+    stones = stone_set()
+    return planned(stones, 437.0), stones
+
+
+def raster_part(placement):
+    """What has no lengths in units of the plan."""
+    posed = placement.posed
+    pixels = posed.mask.shape, posed.mask.tobytes(), placement.row, placement.col
+    said = placement.stone_id, posed.angle_deg, placement.side, placement.rotation_moves
+    return *said, *pixels
+
+
+def test_wall_of_the_planner_is_rebuilt_and_its_plan_passes(made):
+    result, stones = made
+    report = check_plan(read_again(result.plan), stones, wall_labels=result.wall.labels)
+    assert (report.problems, report.overlap_depth) == ((), 0.0)
+    found = rebuild_wall(read_again(result.plan), stones)
+    np.testing.assert_array_equal(found.labels, result.wall.labels)
+    assert len(found.placements) == len(result.wall.placements) >= 5
+    for mine, its in zip(found.placements, result.wall.placements, strict=True):
+        assert raster_part(mine) == raster_part(its)
+        rounding = ROUNDING_PX
+        np.testing.assert_allclose(mine.settled.corners, its.settled.corners, rtol=0, atol=rounding)
+        assert mine.settled.x_px == pytest.approx(its.settled.x_px, rel=0, abs=rounding)
+        np.testing.assert_allclose(mine.posed.anchor, its.posed.anchor, rtol=0, atol=rounding)
+
+
+def test_going_on_from_a_partial_plan_gives_the_same_plan():
+    stones, stones_built = stone_set(), 4
+    whole = planned(stones, None, rounds=0)
+    steps = whole.plan.steps[:stones_built]
+    built = rebuild_wall(read_again(replace(whole.plan, steps=steps)), stones)
+    heights = {
+        step.stone: step.course_height * 0.5
+        for step in whole.plan.stone_steps[:stones_built]
+        if step.course_height is not None
+    }
+    again = planned(stones, None, built, rounds=0, heights=heights)
+    assert json.dumps(plan_to_json(again.plan)) == json.dumps(plan_to_json(whole.plan))
+    assert again.wall.labels.tobytes() == whole.wall.labels.tobytes()
+
+
+def test_wall_that_cannot_be_built_is_refused_with_the_step():
+    made = exact_example()
+    others = StoneSet(tuple(stone for stone in made.stones if stone.id != SLAB))
+    with pytest.raises(PlanError, match="E212") as caught:
+        rebuild_wall(made.plan, others)
+    assert caught.value.where == "step 3"
+    unknown = replace(made.plan, settings={**made.plan.settings, "wings": 2})
+    with pytest.raises(PlanError, match="E217") as caught:
+        rebuild_wall(unknown, made.stones)
+    assert caught.value.where == "settings"
+
+
+def test_a_stone_hidden_in_another_has_no_pixel():
+    made = exact_example()
+    replay = replay_plan(moved(made.plan, 300, 4 - 74, 4), made.stones)
+    assert [p.code for p in replay.problems] == ["E221"]
+    assert replay.pieces[-1].item is None
+
+
+@pytest.mark.parametrize(
+    ("right", "expected"), [(84.48, []), (84.52, []), (84.78, []), (84.8, ["E220"])]
+)
+def test_the_outline_decides_whether_a_stone_is_in_the_wall(right, expected):
+    # A wall of 84.49 px has 84 columns; a stone may fill half of the next one, and .3 px more.
+    made = exact_example()
+    plan = moved(replace(made.plan, width=84.49), 300, right - 84, 0)
+    assert [p.code for p in replay_plan(plan, made.stones).problems] == expected
+
+
+def test_wedge_may_fill_no_pixel_and_is_a_block_nevertheless():
+    made = exact_example(scale=0.1, count=3)
+    assert WEDGE not in made.wall.labels
+    replay = replay_plan(read_again(made.plan), made.stones)
+    assert replay.problems == ()
+    np.testing.assert_array_equal(replay.labels, made.wall.labels)
+    (wedge,) = replay.wall.wedges
+    assert wedge.mask.size == 0
+    report = check_plan(made.plan, made.stones, wall_labels=made.wall.labels)
+    # What a wedge may be does not depend on the working px.
+    assert report.problems == ()
+
+
+def test_wedge_of_huge_size_is_refused_before_it_is_drawn():
+    made = exact_example()
+    replay = replay_plan(reshaped(made.plan, lambda w: w * 1e12), made.stones)
+    assert [p.code for p in replay.problems] == ["E220"]
+    replay = replay_plan(changed(made.plan, 3, centroid=(1e300, 10.0)), made.stones)
+    assert [p.code for p in replay.problems] == ["E220"]

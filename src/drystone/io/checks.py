@@ -1,5 +1,6 @@
 """Pictures that are no label images are told apart and refused (users' table of bad input)."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -7,10 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from drystone.errors import InputError, LabelImageError
+from drystone.errors import InputError, LabelImageError, Notice
+from drystone.io.file_errors import listed
 from drystone.io.json_text import json_in
 from drystone.io.labels import Census, IdImage
 from drystone.kernels.ids import counted
+from drystone.kernels.label_runs import label_runs, runs_in_pieces
 
 RARE_PX = 10
 _MANY_VALUES = 64
@@ -38,14 +41,15 @@ def check_no_plan(folder: Path) -> None:
         raise InputError("E113", "this folder is a plan, made of stones already.", cure=cure)
 
 
-def check_not_uniform(census: Census, background: int, why: str = "") -> None:
-    """Refuse a picture of one value (E104); `why` says what became background."""
-    if len(census.values) > 1:
+def check_not_uniform(image: IdImage) -> None:
+    """Refuse a picture of one value (E104), and say what became background."""
+    if len(image.census.values) > 1:
         return
-    value = int(census.values[0])
-    height, width = census.index.shape
+    value = int(image.census.values[0])
+    height, width = image.ids.shape
     what = f"no stones: all {width} x {height} px are {value}"
-    if value == background:
+    if value == image.background:
+        why = " ".join(notice.message for notice in image.notices)
         hint = "Draw every stone in an id of its own, from 1."
         raise LabelImageError("E104", " ".join((f"{what} (background).", why)).strip(), cure=hint)
     cure = f"Is {value} the background? Then the stones are missing; else leave a rim of 0."
@@ -92,9 +96,9 @@ def _has_islands(index: NDArray[Any], common: int) -> bool:
     return bool(areas.max() >= RARE_PX)
 
 
-def check_not_lossy(ids: Census, image: IdImage) -> None:
+def check_not_lossy(image: IdImage) -> None:
     """Refuse JPEG: it changes values, so ids are lost (E101), or it is a photo (E102)."""
-    brightness = image.ids if image.brightness is None else image.brightness
+    ids, brightness = image.census, image.ids if image.brightness is None else image.brightness
     # In JPEG labels .4 ... .95 of all neighbours are equal, in photos less than .2 (measured).
     equal = brightness[:, :-1] == brightness[:, 1:]
     if equal.size and len(ids.values) > _MANY_VALUES and equal.mean() < _PLAIN_SHARE_LOSSY:
@@ -167,21 +171,22 @@ def blended(census: Census, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return np.asarray((low < here) & (here < high))
 
 
-def check_not_resampled(census: Census, background: int) -> None:
+def check_not_resampled(image: IdImage) -> None:
     """Refuse labels that were blurred, anti-aliased or scaled by interpolation (E101)."""
-    _check_no_values_of_edges(census, background)
-    _check_no_edges_of_others(census, background)
+    _check_no_values_of_edges(image)
+    _check_no_edges_of_others(image)
 
 
-def _check_no_values_of_edges(census: Census, background: int) -> None:
+def _check_no_values_of_edges(image: IdImage) -> None:
     """Refuse values that are there at the edges of stones only."""
+    census = image.census
     if len(census.values) <= 20:
         return
     plain = np.zeros(len(census.values) + 1, bool)
     plain[census.index[census.solid]] = True
     thin = ~plain[1:]
     # A few pixels are noise, and not the edges of stones.
-    few = 0.1 * np.count_nonzero(~census.solid & ~census.pixels(census.values == background))
+    few = 0.1 * np.count_nonzero(~census.solid & image.stones)
     if 2 * thin.sum() <= plain.sum() or census.counts[thin].sum() <= few:
         return
     if blended(census, census.pixels(thin)).mean() >= _BLENDED_SHARE:
@@ -194,12 +199,13 @@ def _check_no_values_of_edges(census: Census, background: int) -> None:
         )
 
 
-def _check_no_edges_of_others(census: Census, background: int) -> None:
+def _check_no_edges_of_others(image: IdImage) -> None:
     """Refuse edges in the ids of other stones: blending leaves them where ids are dense."""
+    census = image.census
     if len(census.values) < _FEW_VALUES:
         return
     # Joints between stones may be thin, and of any value.
-    of_stones = ~census.pixels(census.values == background)
+    of_stones = image.stones
     astray = astray_px(census) & of_stones
     outline = int((~census.solid & of_stones)[1:-1, 1:-1].sum())
     if int(astray.sum()) < _ASTRAY_SHARE * outline:
@@ -231,3 +237,147 @@ def astray_px(census: Census) -> NDArray[np.bool_]:
     astray = np.zeros_like(core)
     astray[rows[lone] + 1, cols[lone] + 1] = True
     return astray
+
+
+_VOID = (255, 65535, 2**32 - 1)
+"""What data sets call no class, and what -1 becomes without a sign."""
+
+_NET_SHARE = 0.5
+"""Of the outlines of stones, what a net of edges touches at least; measured: 1, .99, .97."""
+
+_NET_WIDTH = 0.5
+"""Of the mean width of stones, what a net of edges has at most; measured: .12, .16, .29."""
+
+_FEW = 0.1
+"""Share of the outlines of stones that may be blended; scaled or blurred labels have .5 and more,
+and the published ones that are repaired .01."""
+
+_AROUND = [(r, c) for r in (-1, 0, 1) for c in (-1, 0, 1) if r or c]
+_WEIGHTS = np.array([1 if r and c else 2 for r, c in _AROUND])
+
+
+def without_net(image: IdImage, *, wall: bool = False) -> IdImage:
+    """Make a value background that is a net of edges around stones, and say so (W135)."""
+    census = image.census
+    net = _net(census, image.background)
+    if net is None:
+        return image
+    value = int(census.values[net])
+    count = int(census.counts[net])
+    what = f"the value {value} ({count} px) is a net of edges around stones: read as background."
+    cure = "Use --no-mask (mask=False in Python) to keep it as a stone."
+    if wall:
+        cure = "If it is of stone, draw its parts in ids of their own."
+    ids = np.where(census.index == net + 1, image.background, image.ids).astype(image.ids.dtype)
+    notices = (*image.notices, Notice("W135", what, cure))
+    return replace(image, ids=ids, brightness=None, notices=notices)
+
+
+def _net(census: Census, background: int) -> int | None:
+    """Return the position of a value that is thin and lies around most of the stones."""
+    index, n = census.index, len(census.values)
+    if n < 3:
+        return None
+    pairs: list[tuple[NDArray[Any], NDArray[Any]]] = []
+    for a, b in ((index[:, :-1], index[:, 1:]), (index[:-1], index[1:])):
+        apart = a != b
+        if 2 * np.count_nonzero(apart) > apart.size:  # noise
+            return None
+        pairs.append((a[apart] - 1, b[apart] - 1))
+    a, b = (np.concatenate(side) for side in zip(*pairs, strict=True))
+    ground = census.values == background
+    at_ground = ground[a] | ground[b]
+    of_each = np.bincount(a, minlength=n) + np.bincount(b, minlength=n)
+    off_ground = np.bincount(a[~at_ground], minlength=n) + np.bincount(b[~at_ground], minlength=n)
+    # Of all stones but the one that is looked at.
+    outlines = len(a) - (of_each - off_ground)
+    areas = census.counts[~ground].sum() - census.counts
+    with np.errstate(divide="ignore", invalid="ignore"):
+        narrow = census.counts / of_each < _NET_WIDTH * (areas / outlines)
+        around = off_ground >= _NET_SHARE * outlines
+    for net in np.flatnonzero(narrow & around & ~ground & (areas > 0)).tolist():
+        stones = ~ground
+        stones[net] = False
+        found, _ = ndimage.label(census.pixels(stones))
+        count = int((np.bincount(found.ravel())[1:] >= RARE_PX).sum())
+        if count >= (1 if int(census.values[net]) in _VOID else 3):
+            return int(net)
+    return None
+
+
+def without_blends(image: IdImage, least_px: int, *, wall: bool = False) -> IdImage:
+    """Give few blended pixels at edges to the stones or the ground that they touch most (W136).
+
+    Pieces of fewer than `least_px` are no stones.  Nothing is done where so many pixels are blended
+    that stones could change.
+    """
+    census = image.census
+    stray = _stray(census, image.background, least_px, wall=wall)
+    if stray is None:
+        return image
+    rows, cols = np.nonzero(stray)
+    index = _given(census, stray)
+    values = census.values[index[rows, cols] - 1]
+    ids = image.ids.copy()
+    ids[rows, cols] = values
+    took, counts = np.unique(values, return_counts=True)
+    parts = [
+        f"{'background' if value == image.background else f'stone {value}'}: {count}"
+        for value, count in zip(took.tolist(), counts.tolist(), strict=True)
+    ]
+    what = (
+        f"{len(rows)} px at edges have values that were blended; each was given to what it "
+        f"touches most ({listed(parts)})."
+    )
+    cure = (
+        "Use --min-area 1 --pieces split (min_area_px=1, pieces='split' in Python) to keep their "
+        "values."
+    )
+    if wall:
+        cure = "Export the ids without anti-aliasing if they are right as they are."
+    notices = (*image.notices, Notice("W136", what, cure))
+    return replace(image, ids=ids, brightness=None, notices=notices)
+
+
+def _stray(
+    census: Census, background: int, least_px: int, *, wall: bool
+) -> NDArray[np.bool_] | None:
+    """Return the pixels of small pieces at stones whose values were blended; None for no few."""
+    core = np.zeros(len(census.values) + 1, bool)
+    core[census.index[census.solid]] = True
+    ground = census.values == background
+    thin, stones = ~core[1:] & ~ground, ~census.pixels(ground)
+    lone = census.pixels(thin) | (astray_px(census) & stones)
+    if not core.any() or not lone.any():
+        return None
+    runs = label_runs(census.index)
+    pieces = runs_in_pieces(runs)
+    small = (np.bincount(pieces, runs.lengths) < least_px)[pieces]
+    stray = lone & np.repeat(small, runs.lengths).reshape(lone.shape)
+    sure = blended(census, stray)
+    stray[stray] = sure if wall else sure | thin[census.index[stray] - 1]
+    # What lies on the ground alone is a speck.
+    at_stone = stray & ndimage.maximum_filter(stones & ~stray, 3)
+    found, _ = ndimage.label(stray, np.ones((3, 3)))
+    stray &= np.isin(found, found[at_stone])
+    edges = np.count_nonzero(stones & ~census.solid)
+    return stray if 0 < np.count_nonzero(stray) <= _FEW * edges else None
+
+
+def _given(census: Census, stray: NDArray[np.bool_]) -> NDArray[np.int32]:
+    """Return the positions of values with those of stray pixels chosen by their neighbours.
+
+    A side counts twice as much as a corner; pixels among stray ones wait for those around them.
+    """
+    index = np.pad(np.where(stray, 0, census.index), 1)
+    rows, cols = np.nonzero(stray)
+    rows, cols = rows + 1, cols + 1
+    while len(rows):
+        near = np.stack([index[rows + r, cols + c] for r, c in _AROUND], axis=1)
+        alike = near[:, :, None] == near[:, None, :]
+        votes = np.where(near > 0, (alike * _WEIGHTS).sum(axis=2), 0)
+        best = votes.argmax(axis=1)
+        chosen = near[np.arange(len(rows)), best]
+        index[rows, cols] = chosen
+        rows, cols = rows[chosen == 0], cols[chosen == 0]
+    return index[1:-1, 1:-1].astype(np.int32)

@@ -4,6 +4,8 @@ import errno
 import stat
 from pathlib import Path
 
+from drystone.errors import InputError
+
 MOST_BYTES = 2_000_000_000
 """Larger files are refused: a picture of 200 million px has at most 1.6 billion."""
 
@@ -27,3 +29,16 @@ def file_bytes(path: Path, most: int = MOST_BYTES) -> bytes:
     if len(data) > found.st_size:
         raise OSError(errno.EBUSY, "it grows while it is read", str(path))
     return data
+
+
+def given_bytes(path: Path) -> bytes:
+    """Read the same of what stones, walls or photographs are read from; E100 where that fails."""
+    try:
+        return file_bytes(path)
+    except FileNotFoundError:
+        what, cure = "there is no such file or folder.", "Check the path."
+        raise InputError("E100", what, where=str(path), cure=cure) from None
+    except OSError as error:
+        what = f"it cannot be read ({error.strerror or error})."
+        cure = "Check that it is a file and that you may read it."
+        raise InputError("E100", what, where=str(path), cure=cure) from error

@@ -1,5 +1,7 @@
 """Bytes of a picture file to its values, unchanged: no palette applied, no depth lost."""
 
+import io
+import math
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -8,10 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.errors import InputError, Notice
-from drystone.io import npy, tiff
+from drystone.io import tiff
 from drystone.io.file_errors import damaged, several_pages, unread
+from drystone.io.foreign import foreign
 from drystone.io.pictures import check_size, format_of, opened
 from drystone.io.tiff import ORIENTATION, TURNS, turned
+
+BEGINNING = b"\x93NUMPY"
 
 FORMATS = (
     "PNG, TIFF, BMP, GIF, NPY, NPZ; JSON of labelme, COCO, SAM, Label Studio or VIA; GeoJSON, CVAT "
@@ -42,8 +47,8 @@ def decode(data: bytes, max_px: int) -> Picture:
     """
     if not data:
         raise InputError("E106", "the file is empty (0 bytes).", cure="Export it again.")
-    if data.startswith(npy.BEGINNING):
-        return Picture(npy.array_of(data, max_px))
+    if data.startswith(BEGINNING):
+        return Picture(array_of(data, max_px))
     kind = format_of(data)
     if kind == "TIFF":
         return _read_tiff(data, max_px)
@@ -141,7 +146,7 @@ def _read_tiff(data: bytes, max_px: int) -> Picture:
         )
     if page.colours:
         raise _no_ids(page.colours)
-    values, alpha = tiff.values(data, check), None
+    values, alpha = tiff.values(data, page, check), None
     # Tags may speak of an alpha that is not there.
     if page.alpha and values.ndim > 2:
         values, alpha = _without_alpha(values)
@@ -151,3 +156,41 @@ def _read_tiff(data: bytes, max_px: int) -> Picture:
         notices.append(Notice("W135", what, "Export the file again if stones should be there."))
     picture = Picture(values, page.lossy, alpha, page.nodata, tuple(notices))
     return _turned(picture, page.orientation)
+
+
+def array_of(data: bytes, max_px: int) -> NDArray[Any]:
+    """Return the array of an NPY file; it can be read only."""
+    with foreign(damaged):
+        file = io.BytesIO(data)
+        version = np.lib.format.read_magic(file)
+        read = np.lib.format.read_array_header_1_0
+        if version != (1, 0):
+            read = np.lib.format.read_array_header_2_0
+        shape, fortran, dtype = read(file)
+    if dtype.hasobject:
+        raise _pickled(data)
+    if min(shape, default=0) < 0 or not dtype.itemsize:
+        raise damaged("a side is below 0, or its values have no bytes")
+    count, start = math.prod(shape), file.tell()
+    if count * dtype.itemsize > len(data) - start:
+        raise damaged("there are fewer bytes than its shape asks for")
+    if count:
+        height, width = (*shape, 1, 1)[:2]
+        check_size(width, height, max_px)
+    with foreign(damaged):
+        values = np.frombuffer(data, dtype, count, start)
+        return values.reshape(shape, order="F" if fortran else "C")
+
+
+def _pickled(data: bytes) -> InputError:
+    """Make the error for objects of Python; the masks of cellpose lie in such."""
+    cellpose = all(name in data for name in (b"masks", b"outlines"))
+    what = "objects of cellpose (_seg.npy)" if cellpose else "Python objects"
+    masks = "Save masks as PNG" if cellpose else "Save the array of ids by itself"
+    return unread(
+        f"it holds {what}, and pickle is not read, as it may run programs.",
+        f"Export the masks: in the cellpose window 'File > {masks}', or in Python "
+        "`np.save('masks.npy', np.load(FILE, allow_pickle=True).item()['masks'])`."
+        if cellpose
+        else f"{masks}, as whole numbers.",
+    )

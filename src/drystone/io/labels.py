@@ -81,6 +81,16 @@ class IdImage:
     notices: tuple[Notice, ...] = ()  # how colours became ids, and what is ground by the format
     has_edges: bool = False  # some pixels are -1, as a watershed leaves edges and a rim
 
+    @cached_property
+    def census(self) -> Census:
+        """The different ids."""
+        return take_census(self.ids)
+
+    @property
+    def stones(self) -> NDArray[np.bool_]:
+        """True where the id is not that of the background, (h, w)."""
+        return self.census.pixels(self.census.values != self.background)
+
 
 def to_ids(picture: Picture, background: int) -> IdImage:
     """Read ids from grey values, palette indices, numbers or colours; (h, w) or (h, w, c).
@@ -97,25 +107,23 @@ def to_ids(picture: Picture, background: int) -> IdImage:
     if mask is not None:
         return IdImage(mask, 0, notices=(*notices, *said))
     no_ids = _no_numbers(values, picture.nodata, background)
-    ground = _united([transparent, *(there for _, there in no_ids)])
+    grounds = [there for _, there in no_ids]
+    grounds += [] if transparent is None else [transparent]
+    ground = np.logical_or.reduce(grounds) if grounds else None
+    fill, channels = max(background, 0), 1 if values.ndim == 2 else values.shape[2]
     if ground is not None:
-        fill = max(background, 0)
-        if values.ndim == 3:
-            grey = fill <= 255 or values.shape[2] == 2
-            parts = [fill] * 4 if grey else [fill >> shift & 255 for shift in (0, 8, 16, 24)]
-            parts = parts[: values.shape[2]]
-            values = np.where(
-                ground[..., None], np.asarray(parts, _room_for(max(parts), values.dtype)), values
-            )
-        else:
-            values = np.where(ground, np.asarray(fill, _room_for(fill, values.dtype)), values)
+        grey = fill <= 255 or channels < 3
+        parts = [fill if grey else fill >> shift & 255 for shift in (0, 8, 16, 24)][:channels]
+        kind = values.dtype
+        if kind.kind != "f":  # whole numbers may need more room
+            kind = np.result_type(kind, np.min_scalar_type(max(parts)))
+        planes = np.where(ground[..., None], np.asarray(parts, kind), np.atleast_3d(values))
+        values = planes[..., 0] if channels == 1 else planes
     values = _whole_numbers(values)
-    if values.ndim == 2:
-        image = _ids_of_numbers(values, max(background, 0))
-    elif values.shape[2] == 2:
-        image = _ids_of_numbers(values[:, :, 0], max(background, 0))
+    if channels > 2:
+        image = _ids_of_colours(values[:, :, :3], fill)
     else:
-        image = _ids_of_colours(values[:, :, :3], max(background, 0))
+        image = _ids_of_numbers(values if channels == 1 else values[:, :, 0], fill)
     if values.ndim == 3 and values.shape[2] in (2, 4):
         _check_alpha(values[:, :, -1], image)
     if ground is not None:
@@ -171,16 +179,6 @@ def _no_numbers(
         if background < -1:
             found.append(("", values == background))
     return [(name, there) for name, there in found if there.any()]
-
-
-def _united(masks: list[NDArray[np.bool_] | None]) -> NDArray[np.bool_] | None:
-    found = [mask for mask in masks if mask is not None]
-    return np.logical_or.reduce(found) if found else None
-
-
-def _room_for(value: int, kind: np.dtype[Any]) -> np.dtype[Any]:
-    """Return a kind of numbers that has room for one value and those of another kind."""
-    return kind if kind.kind == "f" else np.result_type(kind, np.min_scalar_type(value))
 
 
 def _ground_notice(name: str, there: NDArray[np.bool_], cure: str = "") -> Notice:
@@ -331,9 +329,10 @@ def _ids_of_colours(colours: NDArray[Any], background: int) -> IdImage:
     return IdImage(codes, background, brightness, nearly_grey, (notice,))
 
 
-def check_no_zero(values: NDArray[Any], background: int) -> None:
+def check_no_zero(image: IdImage) -> None:
     """Refuse the value 0 where another one is the background (E108)."""
-    if background != 0 and (values == 0).any():
-        what = f"the value 0 is there beside the background {background}, and no stone can be 0."
-        cure = f"Set those pixels to {background} if they are background, else to a free id."
+    if image.background != 0 and (image.census.values == 0).any():
+        ground = image.background
+        what = f"the value 0 is there beside the background {ground}, and no stone can be 0."
+        cure = f"Set those pixels to {ground} if they are background, else to a free id."
         raise LabelImageError("E108", what, cure=cure)

@@ -1,5 +1,6 @@
 """Binary masks: which pictures are masks, and their stones (DESIGN 4.1)."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -7,9 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from drystone.errors import LabelImageError, Notice
 from drystone.io.checks import blended
 from drystone.io.file_errors import unfit
+from drystone.io.images import Picture
 from drystone.io.labels import Census, IdImage, take_census
+from drystone.io.outlines_in.nested import Seen, not_stones, of_one_picture, said_of
+from drystone.io.patches import StonePatch
+from drystone.io.read_settings import ReadSettings
 from drystone.kernels.raster import Mask
 
 _USUAL_STONE_VALUES = (1, 255, 65535, 2**32 - 1)
@@ -30,17 +36,16 @@ class BinaryMask:
     between_px: int  # pixels with values between them (anti-aliasing), given to the nearer one
 
 
-def find_mask(
-    image: IdImage, ids: Census, wanted: bool | None, *, lossy: bool = False
-) -> BinaryMask | None:
+def find_mask(image: IdImage, wanted: bool | None, *, lossy: bool = False) -> BinaryMask | None:
     """Read a picture as a binary mask if it is one; ids that are to be read as one are refused.
 
-    `ids` is the census of the ids, of at least two values.  `wanted` forces a mask, or forbids it;
-    None decides: two values, one of them the background, are a mask, and so is a picture of two
-    values and blended edges.  Compression (`lossy`) left noise in the background.
+    There are at least two values.  `wanted` forces a mask, or forbids it; None decides: two values,
+    one of them the background, are a mask, and so is a picture of two values and blended edges.
+    Compression (`lossy`) left noise in the background.
     """
     if wanted is False:
         return None
+    ids = image.census
     if len(ids.values) == 2 and (wanted or image.background in ids.values):
         binary = _split(ids, image.background)
         return binary if wanted or not _is_one_id(binary) else None
@@ -52,34 +57,24 @@ def find_mask(
         return None
     if len(grey.values) > 1 and wanted:
         binary = _split(grey, image.background)
-        _check_lost(_lost(grey, binary, _NOISE if lossy else 0.0), binary)
+        # Blurred edges of a mask have values between, too, but they are not plain.
+        share = np.abs(grey.values - binary.background) / abs(binary.stone - binary.background)
+        off = share > (_NOISE if lossy else 0.0)
+        plain, between = (
+            np.count_nonzero(grey.pixels(some) & grey.solid)
+            for some in (off, off & (2 * share < 1))
+        )
+        if between > _LOST * plain:
+            raise unfit(
+                f"{between / plain:.0%} of its plain areas are neither background "
+                f"({binary.background}) nor near to stone ({binary.stone}), and would be lost.",
+                "If the values are ids, leave --mask (mask=True in Python) out, and export them "
+                "as PNG where they are in a JPEG.",
+            )
         return binary
     if len(grey.values) > 1 and _is_antialiased(grey, image.background):
         return _split(grey, image.background)
     return None
-
-
-def _check_lost(lost: float, binary: BinaryMask) -> None:
-    """Refuse ids that are to be read as a mask (E118): many stones would be background."""
-    if lost > _LOST:
-        raise unfit(
-            f"{lost:.0%} of its plain areas are neither background "
-            f"({binary.background}) nor near to stone ({binary.stone}), and would be lost.",
-            "If the values are ids, leave --mask (mask=True in Python) out, and export them "
-            "as PNG where they are in a JPEG.",
-        )
-
-
-def _lost(census: Census, binary: BinaryMask, noise: float) -> float:
-    """Return how much of the plain areas off the background is taken for background.
-
-    Blurred edges of a mask have values between, too, but they are not plain.
-    """
-    low = binary.background
-    share = np.abs(census.values - low) / abs(binary.stone - low)
-    off = census.pixels(share > noise) & census.solid
-    between = census.pixels((share > noise) & (2 * share < 1)) & census.solid
-    return float(between.sum()) / max(1, int(off.sum()))
 
 
 def components(mask: Mask) -> tuple[NDArray[np.int32], int]:
@@ -120,3 +115,36 @@ def _is_antialiased(census: Census, background: int) -> bool:
     at_edge = blended(census, between)
     plain = census.solid[between]
     return bool(at_edge.mean() >= 0.8 and at_edge[plain].all())
+
+
+def ground_in(picture: Picture, background: int) -> NDArray[np.bool_]:
+    """Return the mask, (h, w), of a picture that looks like the background of the others."""
+    values = np.asarray(picture.values, float)
+    grey = values if values.ndim == 2 else values[..., :3].max(axis=2)
+    apart = np.abs(grey - background)
+    return np.asarray(2.0 * apart >= apart.max())
+
+
+def without_others(
+    patches: Sequence[StonePatch],
+    sizes: Sequence[tuple[int, ...]],
+    doubtful: Mapping[int, LabelImageError],
+    settings: ReadSettings,
+) -> tuple[list[StonePatch], list[Notice]]:
+    """Leave out what is not a stone of one picture, as a program masks it.
+
+    A `doubtful` mask (E105) is refused as before, unless it is the ground of the others.
+    """
+    few = 0 < 2 * len(doubtful) <= len(patches)
+    if len(set(sizes)) > 1 or not (few or of_one_picture(patches)):
+        left: dict[int, str] = {}
+    else:
+        masks = {p.id: p for p in patches if p.area_px and p.id not in settings.skip}
+        size_px = (sizes[0][1], sizes[0][0])
+        left = not_stones(Seen(masks, size_px, frozenset(settings.keep), by_program=True))
+    for number, error in doubtful.items():
+        if number not in {*left, *settings.keep, *settings.skip}:
+            raise error
+    kept = [patch for patch in patches if patch.id not in left]
+    names = {patch.id: patch.name for patch in patches}
+    return kept, [said_of(left, len(patches), names)] if left else []

@@ -14,10 +14,8 @@ from scipy import ndimage
 from drystone.errors import LabelImageError, Notice
 from drystone.io.file_errors import MANY, listed, naming, short
 from drystone.io.labels import MAX_ID
-from drystone.io.necks import neck_width_px
 from drystone.io.read_settings import Pieces, ReadSettings
 from drystone.kernels.ids import counted
-from drystone.kernels.label_runs import label_runs, runs_in_pieces
 from drystone.kernels.polygons import Points
 from drystone.kernels.raster import Mask
 from drystone.model.stone import Source, Stone, StoneSet
@@ -31,12 +29,17 @@ _MOST_SPECK_PX = 50
 
 LARGE = 1.5
 """Times the median area: smaller stones are not suspected of being two."""
-_LARGE_PX, _PLAIN_PX = 2**20, 64
-"""From where pieces and holes are found on runs, and how many px there must be to a run."""
 _WHOLE = np.ones((3, 3), bool)
 
 MOST_PIECES = 100_000
 """Of all stones of a picture: more are no stones but noise, and fill the memory."""
+
+
+_WAIST = 1.6
+"""Both parts must be this many times as thick as the neck between them."""
+
+_PART_SHARE = 0.15
+"""Each part must have this share of the stone."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,12 +91,8 @@ class StonePatch(PlacedMask):
     @cached_property
     def piece_areas_px(self) -> tuple[int, ...]:
         """Number of pixels of each 8-connected piece, in row order."""
-        if _is_plain(self.mask):
-            runs = label_runs(self.mask.view(np.uint8))
-            areas = np.bincount(runs_in_pieces(runs), runs.lengths).astype(int)
-        else:
-            found, count = ndimage.label(self.mask, _WHOLE)
-            areas = counted(found, count)[1:]
+        found, count = ndimage.label(self.mask, _WHOLE)
+        areas = counted(found, count)[1:]
         with naming(str(self)):
             check_count(len(areas))
         return tuple(areas.tolist())
@@ -334,29 +333,29 @@ def _suspect_necks(patches: list[StonePatch]) -> list[Notice]:
 
 def enclosed(mask: Mask) -> Mask:
     """Return the pixels that no 4-connected way around the mask reaches: its holes."""
-    around = np.ones((mask.shape[0] + 2, mask.shape[1] + 2), bool)
-    np.logical_not(mask, out=around[1:-1, 1:-1])
-    if not _is_plain(mask):
-        found, count = ndimage.label(around)
-        return np.zeros_like(mask) if count == 1 else np.asarray(found[1:-1, 1:-1] > 1)
-    runs = label_runs(around.view(np.uint8))
-    pieces = runs_in_pieces(runs, corners=False)
-    holes = pieces != pieces[0]
-    if not holes.any():
-        return np.zeros_like(mask)
-    change = around.view(np.int8).ravel()
-    change[:] = 0
-    change[(runs.rows * runs.width + runs.begins)[holes]] = 1
-    change[(runs.rows * runs.width + runs.ends)[holes]] = -1
-    np.cumsum(change, dtype=np.int8, out=change)
-    return around[1:-1, 1:-1]
+    # The way around it comes first, from the corner of the frame.
+    around, _ = ndimage.label(np.pad(~mask, 1, constant_values=True))
+    return np.asarray(around[1:-1, 1:-1] > 1)
 
 
-def _is_plain(mask: Mask) -> bool:
-    """Tell a large mask that has few runs along its rows, which are faster than its pixels."""
-    if mask.size < _LARGE_PX or not mask.flags.c_contiguous:
-        return False
-    step = max(1, _LARGE_PX // mask.shape[1])
-    some = (mask[row : row + step] for row in range(0, len(mask), step))
-    runs = sum(np.count_nonzero(part[:, 1:] != part[:, :-1]) for part in some)
-    return bool(_PLAIN_PX * runs < mask.size)
+def neck_width_px(mask: Mask, most_px: int = 2**17) -> int | None:
+    """Return the width of the neck between two thick parts of a mask; None without one.
+
+    A width of 0 means that the parts meet at a corner of pixels only.  A mask of more than
+    `most_px` is looked at in a coarser picture.  There a neck that is thinner than one of its
+    pixels counts as one of them.
+
+    The neck is the smallest erosion that leaves two parts, each thicker than the neck by a
+    factor 1.6 and with at least 15 % of what the erosion leaves.
+    """
+    step = math.ceil(math.sqrt(mask.size / most_px))
+    depth = ndimage.distance_transform_edt(np.pad(mask[::step, ::step], 1))
+    most = int(depth.max() / _WAIST) + 1 if depth.max() >= 2 * _WAIST else 0
+    for erosion in range(most):
+        parts, count = ndimage.label(depth > erosion)
+        areas = np.bincount(parts.ravel())[1:]
+        thickness = ndimage.maximum(depth, parts, np.arange(1, count + 1))
+        apart = (thickness >= _WAIST * max(erosion, 1)) & (areas >= _PART_SHARE * areas.sum())
+        if np.count_nonzero(apart) > 1:
+            return max(2 * step * erosion, step if step > 1 else 0)
+    return None

@@ -13,7 +13,7 @@ from PIL import Image, ImageOps
 
 from drystone.errors import InputError, Notice
 from drystone.io import tiff
-from drystone.io.file_bytes import file_bytes
+from drystone.io.file_bytes import file_bytes, given_bytes
 from drystone.io.file_errors import naming, too_large, unread
 from drystone.io.pictures import check_size, format_of, opened
 from drystone.io.tiff import ORIENTATION, TURNED_BACK, TURNS, turned
@@ -54,7 +54,9 @@ def read_photo(path: str | Path, max_px: int = MAX_PX) -> Photo:
     """Read a JPEG, PNG or TIFF photograph."""
     path = Path(path)
     with naming(str(path)):
-        data = _bytes_of(path)
+        data = given_bytes(path)
+        if not data:
+            raise InputError("E106", "the file is empty (0 bytes).", cure="Copy it again.")
         values, orientation, deep = _decode(data, partial(_check, max_px=max_px))
         _refuse_labels(values, path.name)
         rgb, notices = _to_rgb(values)
@@ -84,18 +86,6 @@ def _refuse_labels(values: NDArray[Any], name: str) -> None:
     if equal.size and equal.mean() > PLAIN:
         what = "this is a label image already, plain areas on 0, and not a photograph."
         raise InputError("E175", what, cure=f"`drystone plan {name}` reads it.")
-
-
-def _bytes_of(path: Path) -> bytes:
-    try:
-        data = file_bytes(path)
-    except OSError as error:
-        what = f"the photograph cannot be read ({error.strerror})."
-        cure = "Check the path and your right to read it."
-        raise InputError("E100", what, cure=cure) from error
-    if not data:
-        raise InputError("E106", "the file is empty (0 bytes).", cure="Copy it again.")
-    return data
 
 
 def _decode(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any], int, bool]:
@@ -147,7 +137,7 @@ def _tiff(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any],
     if page.colours:
         what = f"TIFF of {page.bits} bits a channel in {page.colours} cannot be read."
         raise unread(what, "Export it in RGB, or with 8 bits a channel.")
-    values = tiff.values(data, check)
+    values = tiff.values(data, page, check)
     # Pillow takes this back for 8 bits; ids keep the numbers of the file, light does not.
     if page.negative and values.dtype == np.uint16:
         values = values.copy()

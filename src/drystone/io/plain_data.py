@@ -4,7 +4,7 @@ import dataclasses
 import json
 import math
 import operator
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from functools import cache
 from types import UnionType
@@ -27,6 +27,24 @@ def _shallow(value: Any) -> Any:
     return operator.index(value)
 
 
+def to_plain(kind: Any, value: Any) -> Any:
+    """Return a value of a declared type in JSON's own types; equal values give equal text."""
+    kinds = get_args(kind)
+    if value is None:
+        return None
+    if isinstance(kind, type) and dataclasses.is_dataclass(kind):
+        return {name: to_plain(one, getattr(value, name)) for name, one in _types(kind).items()}
+    if get_origin(kind) is tuple:
+        several = kinds[:1] * len(value) if kinds[-1] is Ellipsis else kinds
+        return [to_plain(one, item) for one, item in zip(several, value, strict=True)]
+    if get_origin(kind) is Mapping:
+        return {name: to_plain(kinds[1], item) for name, item in value.items()}
+    if kind is int:
+        return operator.index(value)
+    # Adding zero turns -0.0 into 0.0: the two are equal.
+    return float(value) + 0.0 if float in (kind, *kinds) else value
+
+
 def from_plain(kind: type[Value], data: Any) -> Value:
     """Return what :func:`as_json` was given, once its JSON is read."""
     found: Value = _read(kind, data)
@@ -46,7 +64,10 @@ def _read(kind: Any, data: Any) -> Any:
         return _tuple(kinds, data)
     if kind is float and isinstance(data, int | float) and not isinstance(data, bool):
         return _float(data)
-    if origin is Literal:
+    if origin is Mapping and isinstance(data, dict):
+        data = {name: _read(kinds[1], item) for name, item in data.items()}
+        known = True
+    elif origin is Literal:
         known = isinstance(data, str) and data in kinds
     else:
         known = origin is None and type(data) is kind

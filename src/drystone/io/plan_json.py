@@ -3,9 +3,9 @@
 import hashlib
 import json
 import math
-import operator
+import sys
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from functools import cache
 from importlib import resources
@@ -19,13 +19,13 @@ from drystone.indices import INDEX_NAMES
 from drystone.io.file_bytes import file_bytes
 from drystone.io.foreign import foreign
 from drystone.io.json_text import json_of, plain
-from drystone.model.plan import SCHEMA, Plan, PlanMetrics, Point, StoneStep, WedgeStep
+from drystone.io.plain_data import from_plain, to_plain
+from drystone.model.plan import SCHEMA, Plan, PlanMetrics, StoneStep, WedgeStep
 from drystone.whole_files import write_whole
 
 MOST_PLAN_BYTES = 100_000_000
 """Larger plans are refused: of a hundred thousand stones, and their wedges."""
 
-_METRIC_NAMES = tuple(PlanMetrics.__dataclass_fields__)
 _SOURCE_NAMES = ("path", "sha256", "stones", "width_px", "height_px", "files", "reading")
 _LONGEST_MESSAGE = 240
 
@@ -92,89 +92,45 @@ def plan_to_json(plan: Plan) -> dict[str, Any]:
         "schema": SCHEMA,
         "version": plan.version,
         "method": plan.method,
-        "seed": _whole(plan.seed),
+        "seed": to_plain(int, plan.seed),
         "settings": plain(plan.settings, ordered=True),
         "units": {
             "length": plan.length_unit,
-            "px_per_m": _number(plan.px_per_m),
-            "working_scale": _number(plan.working_scale),
+            "px_per_m": to_plain(float, plan.px_per_m),
+            "working_scale": to_plain(float, plan.working_scale),
         },
         "source": plain(source) | plain(
             {name: value for name, value in plan.source.items() if name not in source},
             ordered=True,
         ),
-        "wall": {"width": _number(plan.width), "height": _number(plan.height)},
+        "wall": {"width": to_plain(float, plan.width), "height": to_plain(float, plan.height)},
         "steps": [_step_to_json(step) for step in plan.steps],
-        "unused": [_whole(stone_id) for stone_id in plan.unused],
+        "unused": to_plain(tuple[int, ...], plan.unused),
         "stopped": plan.stopped,
-        "metrics": {name: _number(getattr(plan.metrics, name)) for name in _METRIC_NAMES},
+        "metrics": to_plain(PlanMetrics, plan.metrics),
     }  # fmt: skip
     _validate(data, "plan")
     return data
 
 
-def _number(value: float | None) -> float | None:
-    # Adding zero turns -0.0 into 0.0: the two are equal, and equal plans give equal bytes.
-    return None if value is None else float(value) + 0.0
-
-
-def _numbers(values: Iterable[float]) -> list[float]:
-    return [float(value) + 0.0 for value in values]
-
-
-def _whole(value: int) -> int:
-    return operator.index(value)
-
-
-def _indices(values: Mapping[str, float | None]) -> dict[str, float | None]:
-    others = sorted(set(values) - set(INDEX_NAMES))
-    return {name: _number(values[name]) for name in (*INDEX_NAMES, *others) if name in values}
-
-
-def _point(pair: Sequence[float]) -> Point:
-    return float(pair[0]), float(pair[1])
-
-
-def _same(value: Any) -> Any:
-    return value
-
-
-_WHOLE = (_whole, int)
-_NUMBER = (_number, _number)
-_POINT = (_numbers, _point)
-_FORMS: Mapping[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
-    "angle_deg": (_number, float),
-    "source_centroid": _POINT,
-    "centroid": _POINT,
-    "side": (_same, _same),
-    "indices": (_indices, lambda data: {name: _number(data[name]) for name in INDEX_NAMES}),
-    "course_height": _NUMBER,
-    "alpha_left": _NUMBER,
-    "alpha_right": _NUMBER,
-    "polygon": (
-        lambda points: list(map(_numbers, points)),
-        lambda points: tuple(map(_point, points)),
-    ),
-}
-"""How the fields of steps are written and read that are no whole numbers."""
-
-
-def _names(step: Any) -> list[str]:
-    """Return the fields of a step, or of a type of steps, in their order."""
-    return [field.name for field in fields(step) if field.name != "kind"]
-
-
 def _step_to_json(step: StoneStep | WedgeStep) -> dict[str, Any]:
-    """Return the fields of a step in their order, the kind as the second."""
-    values = {name: _FORMS.get(name, _WHOLE)[0](getattr(step, name)) for name in _names(step)}
-    return {"step": values.pop("step"), "kind": step.kind, **values}
+    """Return the fields of a step in their order, the kind as the second, indices in theirs."""
+    values = to_plain(type(step), step)
+    if indices := values.get("indices"):
+        others = sorted(indices.keys() - set(INDEX_NAMES))
+        names = [name for name in (*INDEX_NAMES, *others) if name in indices]
+        values["indices"] = {name: indices[name] for name in names}
+    return {"step": values.pop("step"), "kind": values.pop("kind"), **values}
 
 
 def _step_from_json(data: Mapping[str, Any]) -> StoneStep | WedgeStep:
     step: type[StoneStep | WedgeStep] = StoneStep if data["kind"] == "stone" else WedgeStep
-    # A plan of other hands may leave out what the contract does not ask for: None.
-    values = {name: _FORMS.get(name, _WHOLE)[1](data.get(name)) for name in _names(step)}
-    return step(**values)
+    # A plan of other hands may leave out what the contract does not ask for, and write 1.0 for 1.
+    values = {field.name: data.get(field.name) for field in fields(step)}
+    values |= {field.name: int(data[field.name]) for field in fields(step) if field.type is int}
+    if step is StoneStep:
+        values["indices"] = {name: data["indices"][name] for name in INDEX_NAMES}
+    return from_plain(step, values)
 
 
 def plan_from_json(data: Any, where: str = "plan") -> Plan:
@@ -182,14 +138,14 @@ def plan_from_json(data: Any, where: str = "plan") -> Plan:
     _validate(data, where)
     units, wall = data["units"], data["wall"]
     # A plan of other hands may leave out the two metrics that the contract does not ask for.
-    metrics: dict[str, Any] = {n: _number(data["metrics"].get(n)) for n in _METRIC_NAMES}
+    metrics = {field.name: data["metrics"].get(field.name) for field in fields(PlanMetrics)}
     return Plan(
         version=data["version"],
         method=data["method"],
         seed=int(data["seed"]),
         settings=data["settings"],
         length_unit=units["length"],
-        px_per_m=_number(units["px_per_m"]),
+        px_per_m=to_plain(float, units["px_per_m"]),
         working_scale=float(units["working_scale"]),
         source=data["source"],
         width=float(wall["width"]),
@@ -197,7 +153,7 @@ def plan_from_json(data: Any, where: str = "plan") -> Plan:
         steps=tuple(map(_step_from_json, data["steps"])),
         unused=tuple(int(stone_id) for stone_id in data["unused"]),
         stopped=data["stopped"],
-        metrics=PlanMetrics(**metrics),
+        metrics=from_plain(PlanMetrics, metrics),
     )
 
 
@@ -219,24 +175,19 @@ def _parsed(data: bytes, where: str) -> Any:
         cure = "Give the plan.json that `drystone plan -o` wrote; it may be cut short."
         return PlanError("E203", f"the file is not valid JSON ({why}).", where=where, cure=cure)
 
+    def no_number(name: str) -> Any:
+        raise ValueError(f"{name} is not a JSON number")
+
+    def without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        found = dict(pairs)
+        if len(found) < len(pairs):
+            twice, _ = Counter(name for name, _ in pairs).most_common(1)[0]
+            raise ValueError(f"{_short(twice)} is given twice in one object")
+        return found
+
     with foreign(no_json):
-        return json_of(
-            data.decode("utf-8-sig"),
-            parse_constant=_refuse_constant,
-            object_pairs_hook=_without_repeats,
-        )
-
-
-def _refuse_constant(name: str) -> Any:
-    raise ValueError(f"{name} is not a JSON number")
-
-
-def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) < len(pairs):
-        twice, _ = Counter(name for name, _ in pairs).most_common(1)[0]
-        raise ValueError(f"{_short(twice)} is given twice in one object")
-    return found
+        text = data.decode("utf-8-sig")
+        return json_of(text, parse_constant=no_number, object_pairs_hook=without_repeats)
 
 
 def _validate(data: Any, where: str) -> None:
@@ -290,16 +241,10 @@ def _not_finite(value: Any, path: str) -> str | None:
     elif isinstance(value, list):
         items = ((f"[{index}]", item) for index, item in enumerate(value))
     else:
-        return path if isinstance(value, int | float) and not _is_finite(value) else None
+        large = isinstance(value, int) and abs(value) > sys.float_info.max
+        return path if large or (isinstance(value, float) and not math.isfinite(value)) else None
     found = (_not_finite(item, path + name) for name, item in items)
     return next((bad for bad in found if bad is not None), None)
-
-
-def _is_finite(value: float) -> bool:
-    try:
-        return math.isfinite(value)
-    except OverflowError:
-        return False
 
 
 def _short(value: Any, *, quote: bool = True) -> str:

@@ -3,6 +3,7 @@
 import json
 import os
 import shlex
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from hashlib import sha256
@@ -20,29 +21,10 @@ RAW = f"https://raw.githubusercontent.com/{REPOSITORY}"
 NOTICE = "LICENSE-StablePacking-2D.txt"
 """Name of the licence that is written beside the files, as it asks for."""
 
-LICENCE = """\
-MIT License
+_PUBLISHED = json.loads(Path(__file__).with_name("published.json").read_text())
 
-Copyright (c) 2024 qianqing-wanggg
-
-Permission is hereby granted, free of charge, to any person obtaining a copy
-of this software and associated documentation files (the "Software"), to deal
-in the Software without restriction, including without limitation the rights
-to use, copy, modify, merge, publish, distribute, sublicense, and/or sell
-copies of the Software, and to permit persons to whom the Software is
-furnished to do so, subject to the following conditions:
-
-The above copyright notice and this permission notice shall be included in all
-copies or substantial portions of the Software.
-
-THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR
-IMPLIED, INCLUDING BUT NOT LIMITED TO THE WARRANTIES OF MERCHANTABILITY,
-FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE
-AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER
-LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM,
-OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE
-SOFTWARE.
-"""
+LICENCE = "\n".join(_PUBLISHED["licence"])
+"""The MIT licence of the files."""
 
 PAPER = (
     "Q. Wang, K. R. M. dos Santos and K. Beyer (2024), An image-based stacking method for 2D "
@@ -71,7 +53,7 @@ class PublishedSet:
 
 SETS = {
     name: PublishedSet(one["text"], one["source"], tuple(PublishedFile(*f) for f in one["files"]))
-    for name, one in json.loads(Path(__file__).with_name("published.json").read_text()).items()
+    for name, one in _PUBLISHED["sets"].items()
 }
 """What there is, by name."""
 
@@ -93,8 +75,7 @@ def published_folder(given: str | None) -> Path | None:
 
     Else it is the cache of ``drystone fetch``, when that has something in it.
     """
-    named = given or os.environ.get(VARIABLE)
-    if named:
+    if named := given or os.environ.get(VARIABLE):
         return Path(named)
     cache = _cache()
     return cache if cache is not None and cache.is_dir() and any(cache.iterdir()) else None
@@ -102,11 +83,9 @@ def published_folder(given: str | None) -> Path | None:
 
 def destination(given: str | None) -> Path:
     """Return the folder that files are fetched into: the option, ``DRYSTONE_DATA`` or the cache."""
-    named = given or os.environ.get(VARIABLE)
-    if named:
+    if named := given or os.environ.get(VARIABLE):
         return Path(named)
-    cache = _cache()
-    if cache is None:
+    if (cache := _cache()) is None:
         raise _extra_missing("fetch", f"Or name a folder: `--to DIR`, or {VARIABLE}.")
     return cache
 
@@ -120,11 +99,14 @@ def published_file(folder: Path, name: str) -> Path:
     for known, published in SETS.items():
         for file in published.files:
             path = folder / file.name
-            inside = file.name == name or file.name.startswith(f"{name}/")
-            if inside and _sha256(path) not in (file.sha256, None):
-                to = "" if folder == _cache() else f" --to {shlex.quote(str(folder))}"
-                cure = f"Move it away and fetch it again (`drystone fetch {known}{to}`), or"
-                raise _other_contents(path, cure, f"{RAW}/{file.address}")
+            if name != file.name and not file.name.startswith(f"{name}/"):
+                continue
+            with suppress(OSError):
+                found = path.stat()
+                if _hash_of(path, found.st_size, found.st_mtime_ns) != file.sha256:
+                    to = "" if folder == _cache() else f" --to {shlex.quote(str(folder))}"
+                    cure = f"Move it away and fetch it again (`drystone fetch {known}{to}`), or"
+                    raise _other_contents(path, cure, f"{RAW}/{file.address}")
     return folder / name
 
 
@@ -145,15 +127,6 @@ def fetch_set(wanted: PublishedSet, folder: Path, *, address: str = RAW) -> list
             raise _other_contents(path, "Move it away and fetch it again, or", url)
         fetched.append(Fetched(file, path, missing))
     return fetched
-
-
-def _sha256(path: Path) -> str | None:
-    """Return the hash of a file; None when it cannot be read."""
-    try:
-        found = path.stat()
-        return _hash_of(path, found.st_size, found.st_mtime_ns)
-    except OSError:
-        return None
 
 
 @lru_cache
@@ -180,7 +153,10 @@ def _download(file: PublishedFile, path: Path, url: str) -> None:
             raise
         if (answer := getattr(error, "response", None)) is not None:
             answer.close()  # pooch leaves the connection of a refusal (404) open
-        what = f"cannot be downloaded ({_reason(error)})."
+        reason: BaseException = error
+        while reason.__context__ is not None:  # the innermost error knows
+            reason = reason.__context__
+        what = f"cannot be downloaded ({type(reason).__name__}: {reason})."
         raise InputError("E161", what, where=str(path), cure=_by_hand(url, path)) from error
 
 
@@ -191,13 +167,6 @@ def _cache() -> Path | None:
     except ImportError:
         return None
     return Path(pooch.os_cache("drystone"))
-
-
-def _reason(error: BaseException) -> str:
-    """Say in a few words why a download failed: the innermost error knows."""
-    while error.__context__ is not None:
-        error = error.__context__
-    return f"{type(error).__name__}: {error}"
 
 
 def _by_hand(url: str, path: Path) -> str:

@@ -13,8 +13,8 @@ import numpy as np
 from drystone.errors import InputError
 from drystone.io.file_errors import listed, short, too_large, unfit
 from drystone.io.foreign import foreign
+from drystone.io.images import BEGINNING
 from drystone.io.json_text import json_of
-from drystone.io.npy import BEGINNING
 from drystone.io.outlines_in.annotations import read_coco, read_labelme, read_sam
 from drystone.io.outlines_in.classes import of_classes
 from drystone.io.outlines_in.dxf import is_dxf, read_dxf
@@ -124,15 +124,13 @@ def _no_stones(what: str, cure: str = f"Stones are read from {_EXPECTED}.") -> I
     return InputError("E113", f"this JSON {what}.", cure=cure)
 
 
-def stones_of(read: Reader, data: bytes, name: str, settings: ReadSettings) -> StoneSet:
-    """Read a file of outlines; its source has a scale when the file has a unit."""
-    return stones_and_outlines(read, data, name, settings)[0]
-
-
 def stones_and_outlines(
     read: Reader, data: bytes, name: str, settings: ReadSettings
 ) -> tuple[StoneSet, OutlineFile]:
-    """Return the same, and the outlines under the same ids, some of which may be left out."""
+    """Read a file of outlines: stones, and the outlines of those and others under the same ids.
+
+    The source has a scale when the file has a unit.
+    """
     if len(data) > MOST_TEXT_BYTES:
         megabytes = f"{len(data) / 1e6:.0f} MB, and the limit is {MOST_TEXT_BYTES / 1e6:g} MB"
         cure = "Export the outlines of one image, with fewer corners."

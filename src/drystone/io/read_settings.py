@@ -91,25 +91,17 @@ class ReadSettings:
         )
 
     def __post_init__(self) -> None:
-        for name, value, choices in (
-            ("pieces", self.pieces, get_args(Pieces)),
-            ("holes", self.holes, get_args(Holes)),
-            ("unit", self.unit, get_args(Unit)),
-            ("up", self.up, get_args(Up)),
-        ):
-            if value not in choices:
-                raise _usage(
-                    f"{name} is {value!r}", f"Use one of: {', '.join(filter(None, choices))}."
-                )
+        wrong = {
+            name: f"one of: {', '.join(filter(None, get_args(kind)))}"
+            for name, kind in (("pieces", Pieces), ("holes", Holes), ("unit", Unit), ("up", Up))
+            if getattr(self, name) not in get_args(kind)
+        }
         if self.min_area_px is not None and self.min_area_px < 1:
-            raise _usage(f"min_area_px is {self.min_area_px}", "Use 1 or more.")
+            wrong["min_area_px"] = "1 or more"
         if not 0.0 < self.max_image_mpx <= _MOST_MPX:
-            raise _usage(
-                f"max_image_mpx is {self.max_image_mpx}", "Use a number above 0, up to 1e6."
-            )
+            wrong["max_image_mpx"] = "a number above 0, up to 1e6"
         if self.px_per_m is not None and not 0.0 < self.px_per_m <= MOST_PX_PER_M:
-            raise _usage(f"px_per_m is {self.px_per_m}", "Use a number above 0, up to 1e9.")
-
-
-def _usage(what: str, cure: str) -> UsageError:
-    return UsageError("E119", f"{what}, which means nothing.", where="ReadSettings", cure=cure)
+            wrong["px_per_m"] = "a number above 0, up to 1e9"
+        for name, instead in wrong.items():
+            what = f"{name} is {getattr(self, name)!r}, which means nothing."
+            raise UsageError("E119", what, where="ReadSettings", cure=f"Use {instead}.")

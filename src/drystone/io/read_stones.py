@@ -17,13 +17,14 @@ from drystone.io.checks import (
     check_not_photo,
     check_not_resampled,
     check_not_uniform,
+    without_blends,
+    without_net,
 )
-from drystone.io.file_bytes import file_bytes
+from drystone.io.file_bytes import given_bytes
 from drystone.io.file_errors import listed, naming
 from drystone.io.images import FORMATS, SUFFIXES, Picture, decode
-from drystone.io.labels import Census, IdImage, check_no_zero, take_census, to_ids
-from drystone.io.mask_folder import ground_in, without_others
-from drystone.io.masks import BinaryMask, components, find_mask
+from drystone.io.labels import Census, IdImage, check_no_zero, to_ids
+from drystone.io.masks import BinaryMask, components, find_mask, ground_in, without_others
 from drystone.io.outlines_in.model import OutlineFile
 from drystone.io.outlines_in.npz import is_npz, read_npz
 from drystone.io.patches import (
@@ -35,9 +36,13 @@ from drystone.io.patches import (
     stone_set,
 )
 from drystone.io.photo_beside import LABELS, PAGE, read_sidecar, scale_beside
-from drystone.io.read_outlines import check_not_asked, check_unit, outline_reader, stones_of
+from drystone.io.read_outlines import (
+    check_not_asked,
+    check_unit,
+    outline_reader,
+    stones_and_outlines,
+)
 from drystone.io.read_settings import ReadSettings
-from drystone.io.repairs import without_blends, without_net
 from drystone.model.stone import Source, StoneSet, writable
 
 __all__ = ["ReadSettings", "read_stones"]
@@ -92,16 +97,16 @@ def read_stones(
             with naming(writable(name)):
                 return _read_folder(path, writable(name), settings)
         path = labels
-    data, name = _bytes_of(path), writable(path.name)
+    data, name = given_bytes(path), writable(path.name)
     with naming(name):
         reader = outline_reader(data, name)
         if reader is not None:
-            return stones_of(reader, data, name, settings)
+            return stones_and_outlines(reader, data, name, settings)[0]
         sidecar = read_sidecar(path)
         if is_npz(data):
             arrays = read_npz(data, _max_px(settings))
             if isinstance(arrays, OutlineFile):
-                return stones_of(lambda *_: arrays, data, name, settings)
+                return stones_and_outlines(lambda *_: arrays, data, name, settings)[0]
             picture = Picture(arrays)
         else:
             picture = decode(data, _max_px(settings))
@@ -130,18 +135,6 @@ def _max_px(settings: ReadSettings) -> int:
     return int(settings.max_image_mpx * 1e6)
 
 
-def _bytes_of(path: Path) -> bytes:
-    try:
-        return file_bytes(path)
-    except FileNotFoundError:
-        what = "there is no such file or folder."
-        raise InputError("E100", what, where=str(path), cure="Check the path.") from None
-    except OSError as error:
-        what = f"it cannot be read ({error.strerror or error})."
-        cure = "Check that it is a file and that you may read it."
-        raise InputError("E100", what, where=str(path), cure=cure) from error
-
-
 def _read_array(array: Any, settings: ReadSettings) -> StoneSet:
     if isinstance(array, np.ma.MaskedArray):
         array = array.filled(settings.background)
@@ -158,22 +151,28 @@ def _read_picture(picture: Picture, source: Source, settings: ReadSettings) -> S
     reading = _of_px(settings)
     image = to_ids(picture, settings.background)
     height, width = image.ids.shape
-    given = image.ids
-    image, census, binary = _checked(image, picture.lossy, settings)
+    given = image.census.values
+    image, binary = _checked(image, picture.lossy, settings)
     if binary is None:
-        check_count(len(census.values) - 1)
+        values = image.census.values
+        check_count(len(values) - 1)
         # What became background is left out already.
-        skip = (i for i in settings.skip if i in census.values or not (given == i).any())
-        settings = replace(settings, skip=tuple(skip))
-        check_no_zero(census.values, image.background)
-        ids = np.where(census.values == image.background, 0, census.values)
-        patches, notices = cut(census.index, ids), image.notices
+        skip = tuple(i for i in settings.skip if i in values or i not in given)
+        settings = replace(settings, skip=skip)
+        check_no_zero(image)
+        patches = cut(image.census.index, np.where(values == image.background, 0, values))
+        notices = image.notices
     else:
         labels, count = components(binary.mask)
         check_count(count)
         patches = cut(labels, np.arange(1, count + 1))
         settings = replace(settings, min_area_px=smallest_of_mask_px(patches, settings))
-        notices = (*_not_of_colours(image), _mask_notice(binary, count))
+        between = ""
+        if binary.between_px:
+            between = f"; {binary.between_px} px of values between them went to the nearer one"
+        said = f"{binary.background} background, {binary.stone} stone{between}"
+        text = f"read as a binary mask ({said}): {count} components, numbered in row order."
+        notices = (*_not_of_colours(image), Notice("W114", text))
     source = replace(source, width_px=width, height_px=height, reading=reading)
     return stone_set(patches, notices, source, settings)
 
@@ -185,44 +184,26 @@ def _not_of_colours(image: IdImage) -> tuple[Notice, ...]:
 
 def _checked(
     image: IdImage, lossy: bool, settings: ReadSettings
-) -> tuple[IdImage, Census, BinaryMask | None]:
+) -> tuple[IdImage, BinaryMask | None]:
     """Refuse what is no picture of stones; return it repaired, and the mask if it is one."""
-    census = take_census(image.ids)
-    why = " ".join(notice.message for notice in image.notices)
-    check_not_uniform(census, image.background, why)
+    check_not_uniform(image)
     if lossy and not settings.mask:
-        check_not_lossy(census, image)
-    binary = find_mask(image, census, settings.mask, lossy=lossy)
+        check_not_lossy(image)
+    binary = find_mask(image, settings.mask, lossy=lossy)
     if binary is None:
-        check_not_photo(census)
-        if settings.mask is None:
-            net = image
-            image, census = without_net(image, census)
-            if image is not net:
-                check_not_uniform(census, image.background, image.notices[-1].message)
-                binary = find_mask(image, census, settings.mask)
+        check_not_photo(image.census)
+        if settings.mask is None and (net := without_net(image)) is not image:
+            image = net
+            check_not_uniform(image)
+            binary = find_mask(image, None)
     if binary is None:
-        check_background(census, image.background, rim_px=int(image.has_edges))
-        least_px = settings.min_area_px or MIN_AREA_PX
-        image, census = without_blends(image, census, least_px)
-        check_not_resampled(census, image.background)
+        check_background(image.census, image.background, rim_px=int(image.has_edges))
+        image = without_blends(image, settings.min_area_px or MIN_AREA_PX)
+        check_not_resampled(image)
     else:
         ends = np.array([binary.background, binary.stone])
-        # In bytes, and in place of the one of ids: a picture may have 200 million pixels.
-        census = Census(binary.mask.view(np.uint8) + np.uint8(1), ends)
-        check_background(census, binary.background)
-    return image, census, binary
-
-
-def _mask_notice(binary: BinaryMask, count: int) -> Notice:
-    between = ""
-    if binary.between_px:
-        between = f"; {binary.between_px} px of values between them went to the nearer one"
-    return Notice(
-        "W114",
-        f"read as a binary mask ({binary.background} background, {binary.stone} stone{between}): "
-        f"{count} components, numbered in row order.",
-    )
+        check_background(Census(binary.mask.view(np.uint8) + np.uint8(1), ends), binary.background)
+    return image, binary
 
 
 def _read_folder(folder: Path, name: str, settings: ReadSettings) -> StoneSet:
@@ -242,7 +223,7 @@ def _read_folder(folder: Path, name: str, settings: ReadSettings) -> StoneSet:
     doubtful: dict[int, LabelImageError] = {}
     names = tuple(writable(file.name) for file in files)
     for number, (file, own) in enumerate(zip(files, names, strict=True), start=1):
-        data = _bytes_of(file)
+        data = given_bytes(file)
         digest.update(hashlib.sha256(data).digest())
         where = f"{name}/{own}"
         with naming(where):
@@ -287,14 +268,15 @@ def _mask_of_one(
         notice = Notice("W118", text, "Check that it is not an empty picture.")
         return np.full((height, width), full), (notice,) if full else ()
     # mask=False is about pictures of many stones: here every picture is a mask.
-    image, census, binary = _checked(image, picture.lossy, ReadSettings(mask=settings.mask or None))
+    image, binary = _checked(image, picture.lossy, ReadSettings(mask=settings.mask or None))
     said = tuple(
         replace(notice, message=f"{where}: {notice.message}") for notice in _not_of_colours(image)
     )
     if binary is not None:
         return binary.mask, said
-    if len(census.values) == 2:
+    values = image.census.values
+    if len(values) == 2:
         return image.ids != image.background, said
-    what = f"{len(census.values)} values in a mask of one stone."
+    what = f"{len(values)} values in a mask of one stone."
     cure = "A folder holds one black-and-white mask a stone; give a label image by itself."
     raise LabelImageError("E111", what, cure=cure)

@@ -8,8 +8,8 @@ import math
 import re
 import struct
 import zlib
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,6 +24,8 @@ from drystone.io.pictures import opened
 _FAX, _DEFLATE = {2, 3, 4}, {8, 32946}
 _PACKED = _FAX | _DEFLATE | {5, 32773}
 """Also LZW and PackBits: all but deflate are unpacked by the library behind Pillow."""
+
+_FAX_OPTIONS = (292, 293)
 
 _LOSSY = {6, 7}
 """JPEG."""
@@ -80,6 +82,7 @@ class TiffPage:
     negative: bool  # 0 is white
     nodata: float | None  # the number that stands for nothing
     missing: str  # strips that are not in the file, which are ground; empty for none
+    page: Any  # of tifffile
 
 
 def inspect(data: bytes) -> TiffPage:
@@ -87,10 +90,21 @@ def inspect(data: bytes) -> TiffPage:
     pages = _count_pages(data)
     if pages > 1:
         raise several_pages(f"{pages} pages")
-    with _page(data) as page:
+    with foreign(damaged):
+        # The variants of microscopes that lead elsewhere aside.
+        file = tifffile.TiffFile(  # noqa: TID251 - its chain was followed
+            io.BytesIO(data), is_lsm=False, is_ndpi=False, is_scanimage=False
+        )
+        page: Any = file.pages[0]
+        if not all(isinstance(side, int) for side in page.shape):
+            raise damaged("a side of it is not a number")
         planes, channels = _planes(page), int(page.samplesperpixel)
         compression, photometric = int(page.compression), int(page.photometric)
-        orientation, nodata = page.tags.get(ORIENTATION), page.tags.get(_NODATA)
+        orientation, nothing = page.tags.get(ORIENTATION), page.tags.get(_NODATA)
+        nodata = None
+        if nothing is not None:
+            with suppress(ValueError):
+                nodata = float(str(nothing.value).strip("\0 "))
         missing, chunks = sum(count == 0 for count in page.databytecounts), math.prod(page.chunked)
         lossy = compression in _LOSSY
         found = TiffPage(
@@ -103,8 +117,9 @@ def inspect(data: bytes) -> TiffPage:
             bits=int(np.max(page.bitspersample)),
             orientation=1 if orientation is None else int(orientation.value),
             negative=photometric == 0,
-            nodata=None if nodata is None else _number(str(nodata.value)),
+            nodata=nodata,
             missing=f"{missing} of {chunks} strips or tiles" if missing else "",
+            page=page,
         )
     if planes > 1 or channels > 4:
         said = f"{planes} planes" if planes > 1 else f"{channels} channels"
@@ -112,14 +127,18 @@ def inspect(data: bytes) -> TiffPage:
     return found
 
 
-def values(data: bytes, check: Callable[[int, int], None]) -> NDArray[Any]:
+def values(data: bytes, tags: TiffPage, check: Callable[[int, int], None]) -> NDArray[Any]:
     """Decode the only page of a TIFF, channels last; palette indices and numbers are kept.
 
     Pixels are where the file has them: its orientation turns nothing here.
     """
-    with _page(data) as page:
-        if int(page.compression) in _LOSSY:
-            return _values_by_pillow(data, check)
+    if tags.lossy:
+        # Pillow turns a picture when it loads it.
+        with opened(data, check) as image:
+            orientation = int(image.getexif().get(ORIENTATION, 1))
+            return turned(np.asarray(image), TURNED_BACK.get(orientation, orientation))
+    with foreign(damaged):
+        page = tags.page
         channels, planes = int(page.samplesperpixel), 1
         if int(page.planarconfig) == 2:
             channels, planes = 1, channels
@@ -129,120 +148,85 @@ def values(data: bytes, check: Callable[[int, int], None]) -> NDArray[Any]:
         if min(rows, cols, height, width, channels) < 1:
             raise damaged("a side of it is 0")
         kind = np.dtype(page.dtype).newbyteorder(page.parent.byteorder)
-        options = {tag: int(page.tags[tag].value) for tag in _FAX_OPTIONS if tag in page.tags}
-        code = _Code(
-            int(page.compression), int(page.predictor), int(page.fillorder), options,
-            kind, int(page.bitspersample), cols, channels,
-        )  # fmt: skip
+        row_bytes = -(-cols * channels * int(page.bitspersample) // 8)
         offsets, counts = page.dataoffsets, page.databytecounts
         places = [(int(start), int(n)) for start, n in zip(offsets, counts, strict=False)]
-        nodata = page.tags.get(_NODATA)
-        nothing = None if nodata is None else _number(str(nodata.value))
     down, across = math.ceil(height / rows), math.ceil(width / cols)
     if len(places) < down * across * planes:
         raise damaged("it does not hold all of its strips")
-    room = down * across * planes * rows * code.row_bytes
-    if room > 2 * planes * height * math.ceil(width / cols) * code.row_bytes + _ROOM:
+    room = down * across * planes * rows * row_bytes
+    if room > 2 * planes * height * math.ceil(width / cols) * row_bytes + _ROOM:
         raise damaged("its tiles are larger than the picture")
     if sum(count for _, count in places) > len(data):
         raise damaged("its strips lie in each other")
     found = np.zeros((height, width, planes * channels), kind.newbyteorder("="))
-    if nothing is not None and _holds(found.dtype, nothing):
-        found[:] = nothing
+    if tags.nodata is not None:
+        limits = np.iinfo(kind) if kind.kind in "iu" else None
+        holds = limits and limits.min <= tags.nodata <= limits.max and tags.nodata.is_integer()
+        if kind.kind == "f" or holds:
+            found[:] = tags.nodata
     for place, (plane, i, j) in enumerate(np.ndindex(planes, down, across)):
         start, count = places[place]
         if not count:  # sparse
             continue
         top, left = i * rows, j * cols
         there = min(rows, height - top)
-        chunk = code.numbers(data[start : start + count], rows if page.is_tiled else there)
+        piece, high = data[start : start + count], rows if page.is_tiled else there
+        with foreign(damaged):
+            raw = _unpacked(page, piece, (high, cols, row_bytes))
+        if len(raw) < high * row_bytes:
+            raise damaged("a strip of it is too short")
+        table = np.frombuffer(raw, np.uint8, high * row_bytes).reshape(high, row_bytes)
+        chunk = _numbers(page, kind, table, cols * channels, channels).reshape(high, cols, channels)
         part = chunk[:there, : width - left]
         found[top : top + there, left : left + cols, plane : plane + channels] = part
     return found if found.shape[2] > 1 else found[:, :, 0]
 
 
-_FAX_OPTIONS = (292, 293)
+def _unpacked(page: Any, piece: bytes, shape: tuple[int, int, int]) -> bytes:
+    """Return what a packed strip or tile holds; its rows, px and bytes in a row."""
+    rows, width, row_bytes = shape
+    compression, order = int(page.compression), int(page.fillorder)
+    if compression in _DEFLATE | {1}:
+        # 2 has the bits of every byte the other way round.
+        piece = piece.translate(_REVERSED) if order == 2 else piece
+        return piece if compression == 1 else _inflated(piece, rows * row_bytes)
+    # A TIFF of one strip, whose bytes are wanted, or bits of fax codes.
+    bits = 1 if compression in _FAX else 8
+    tags = {256: width if bits == 1 else row_bytes, 257: rows, 258: bits, 259: compression, 262: 1}
+    tags |= {266: order, 273: 8, 277: 1, 278: rows, 279: len(piece)}
+    tags |= {tag: int(page.tags[tag].value) for tag in _FAX_OPTIONS if tag in page.tags}
+    entries = b"".join(struct.pack("<HHII", tag, 4, 1, n) for tag, n in sorted(tags.items()))
+    place = 8 + len(piece) + len(piece) % 2
+    head = (struct.pack("<2sHI", b"II", 42, place) + piece).ljust(place, b"\0")
+    data = head + struct.pack("<H", len(tags)) + entries + b"\0" * 4
+    with opened(data, lambda *_: None) as image:
+        found = np.asarray(image)
+    return bytes((found if bits == 8 else np.packbits(found, axis=1)).data)
 
 
-@dataclass(frozen=True)
-class _Code:
-    """How the numbers of strips and tiles are packed."""
-
-    compression: int
-    predictor: int
-    order: int  # 2 has the bits of every byte the other way round
-    options: dict[int, int]  # tags of fax codes
-    kind: np.dtype[Any]
-    bits: int
-    width: int  # px
-    channels: int
-
-    @property
-    def row_bytes(self) -> int:
-        """Bytes of a row that is not packed."""
-        return -(-self.width * self.channels * self.bits // 8)
-
-    def numbers(self, piece: bytes, rows: int) -> NDArray[Any]:
-        """Return the numbers of a strip or tile, (rows, width, channels)."""
-        want = rows * self.row_bytes
-        with foreign(damaged):
-            found = self._unpacked(piece, rows, want)
-        if len(found) < want:
-            raise damaged("a strip of it is too short")
-        table = np.frombuffer(found, np.uint8, want).reshape(rows, self.row_bytes)
-        shape = rows, self.width, self.channels
-        if self.predictor == 3:
-            return self._floats(table).reshape(shape)
-        if self.bits < 8 or self.bits % 8:
-            return _of_few_bits(table, self.bits, shape[1] * shape[2]).reshape(shape)
-        if self.predictor != 2:
-            return table.view(self.kind).reshape(shape)
-        whole = np.dtype(f"u{self.kind.itemsize}").newbyteorder(self.kind.byteorder)
-        steps = table.view(whole).reshape(shape)
-        whole = whole.newbyteorder("=")
-        return np.cumsum(steps, axis=1, dtype=whole).view(self.kind.newbyteorder("="))
-
-    def _unpacked(self, piece: bytes, rows: int, want: int) -> bytes:
-        """Return what a packed piece holds."""
-        if self.compression in _DEFLATE | {1}:
-            piece = piece.translate(_REVERSED) if self.order == 2 else piece
-            return piece if self.compression == 1 else _inflated(piece, want)
-        # A TIFF of one strip, whose bytes are wanted, or bits of fax codes.
-        bits = 1 if self.compression in _FAX else 8
-        width = self.width if bits == 1 else self.row_bytes
-        tags = {256: width, 257: rows, 258: bits, 259: self.compression, 262: 1}
-        tags |= {266: self.order, 273: 8, 277: 1, 278: rows, 279: len(piece), **self.options}
-        entries = b"".join(struct.pack("<HHII", tag, 4, 1, n) for tag, n in sorted(tags.items()))
-        place = 8 + len(piece) + len(piece) % 2
-        head = struct.pack("<2sHI", b"II", 42, place)
-        data = (
-            (head + piece).ljust(place, b"\0") + struct.pack("<H", len(tags)) + entries + b"\0" * 4
-        )
-        with opened(data, lambda *_: None) as image:
-            found = np.asarray(image)
-        return bytes((found if bits == 8 else np.packbits(found, axis=1)).data)
-
-    def _floats(self, table: NDArray[np.uint8]) -> NDArray[Any]:
-        """Undo the predictor of numbers with a point: bytes of one rank stand together."""
-        rows, size = len(table), self.kind.itemsize
-        by_channel = table.reshape(rows, -1, self.channels)
-        ranks = np.cumsum(by_channel, axis=1, dtype=np.uint8).reshape(rows, size, -1)
-        return np.ascontiguousarray(ranks.swapaxes(1, 2)).view(self.kind.newbyteorder(">"))
-
-
-def _of_few_bits(table: NDArray[np.uint8], bits: int, count: int) -> NDArray[Any]:
-    """Return the numbers of rows that are packed bit after bit, some rows at once."""
-    found = np.empty((len(table), count), np.uint8 if bits < 8 else np.uint16)
-    step = max(1, _BLOCK_PX // count)
-    for top in range(0, len(table), step):
-        part = np.unpackbits(table[top : top + step], axis=1)[:, : bits * count]
-        part = part.reshape(len(part), count, bits)
-        numbers = found[top : top + step]
-        numbers[:] = 0
-        for bit in range(bits):
-            numbers <<= 1
-            numbers |= part[:, :, bit]
-    return found
+def _numbers(
+    page: Any, kind: np.dtype[Any], table: NDArray[np.uint8], count: int, channels: int
+) -> NDArray[Any]:
+    """Return the numbers, `count` a row, that stand in the bytes of rows."""
+    rows, bits = len(table), int(page.bitspersample)
+    if int(page.predictor) == 3:
+        # Differences of bytes, of which those of one rank stand together.
+        steps = np.cumsum(table.reshape(rows, -1, channels), axis=1, dtype=np.uint8)
+        ranks = steps.reshape(rows, kind.itemsize, -1).swapaxes(1, 2)
+        return np.ascontiguousarray(ranks).view(kind.newbyteorder(">"))
+    if bits < 8 or bits % 8:
+        found = np.empty((rows, count), np.uint8 if bits < 8 else np.uint16)
+        weights = (1 << np.arange(bits)[::-1]).astype(found.dtype)
+        for top in range(0, rows, step := max(1, _BLOCK_PX // count)):
+            part = np.unpackbits(table[top : top + step], axis=1)[:, : bits * count]
+            found[top : top + step] = part.reshape(-1, count, bits) @ weights
+        return found
+    if int(page.predictor) != 2:
+        return table.view(kind)
+    whole = np.dtype(f"u{kind.itemsize}")
+    steps = table.view(whole.newbyteorder(kind.byteorder)).reshape(rows, -1, channels)
+    return np.cumsum(steps, axis=1, dtype=whole).view(kind.newbyteorder("="))
 
 
 def _inflated(piece: bytes, want: int) -> bytes:
@@ -261,34 +245,6 @@ def turned(values: NDArray[Any], orientation: int) -> NDArray[Any]:
     down = slice(None, None, -1 if orientation in (3, 4, 7, 8) else 1)
     right = slice(None, None, -1 if orientation in (2, 3, 6, 7) else 1)
     return np.ascontiguousarray(values[down, right])
-
-
-def _holds(kind: np.dtype[Any], number: float) -> bool:
-    """Tell whether values of a kind can be a number."""
-    if kind.kind not in "iu":
-        return kind.kind == "f"
-    limits = np.iinfo(kind)
-    return bool(limits.min <= number <= limits.max and number == math.floor(number))
-
-
-def _number(text: str) -> float | None:
-    try:
-        return float(text.strip("\0 "))
-    except ValueError:
-        return None
-
-
-@contextmanager
-def _page(data: bytes) -> Iterator[Any]:
-    """Open the first page with tifffile, the variants of microscopes that lead elsewhere aside."""
-    with foreign(damaged):
-        file = tifffile.TiffFile(  # noqa: TID251 - its chain was followed
-            io.BytesIO(data), is_lsm=False, is_ndpi=False, is_scanimage=False
-        )
-        page = file.pages[0]
-        if not all(isinstance(side, int) for side in page.shape):
-            raise damaged("a side of it is not a number")
-        yield page
 
 
 def _count_pages(data: bytes) -> int:
@@ -347,10 +303,3 @@ def _unreadable(page: Any) -> str:
         ),
     }
     return next((what for what, found in wrong.items() if found), "")
-
-
-def _values_by_pillow(data: bytes, check: Callable[[int, int], None]) -> NDArray[Any]:
-    """Decode JPEG in a TIFF; Pillow turns a picture when it loads it."""
-    with opened(data, check) as image:
-        orientation = int(image.getexif().get(ORIENTATION, 1))
-        return turned(np.asarray(image), TURNED_BACK.get(orientation, orientation))

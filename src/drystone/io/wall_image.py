@@ -7,19 +7,20 @@ import numpy as np
 import tifffile
 from PIL import Image
 
-from drystone.errors import InputError, Notice, UsageError
+from drystone.errors import Notice, UsageError
 from drystone.io.checks import (
     check_background,
     check_not_lossy,
     check_not_photo,
     check_not_resampled,
     check_not_uniform,
+    without_blends,
+    without_net,
 )
-from drystone.io.file_bytes import file_bytes
+from drystone.io.file_bytes import given_bytes
 from drystone.io.file_errors import naming
 from drystone.io.images import decode
-from drystone.io.labels import check_no_zero, take_census, to_ids
-from drystone.io.repairs import without_blends, without_net
+from drystone.io.labels import check_no_zero, to_ids
 from drystone.model.wall import Labels
 from drystone.whole_files import write_whole
 
@@ -120,31 +121,23 @@ def read_wall_picture(
     path: Path, *, background: int = 0, max_image_mpx: float = 200.0, planned: bool = False
 ) -> tuple[Labels, tuple[Notice, ...]]:
     """Return the same, and what was made background, repaired or turned on the way."""
-    try:
-        data = file_bytes(path)
-    except OSError as error:
-        what = f"the file cannot be read ({error.strerror})."
-        cure = "Give the label image of a wall: one id a stone, 0 where there is none."
-        raise InputError("E100", what, where=str(path), cure=cure) from error
     with naming(path.name):
-        picture = decode(data, int(max_image_mpx * 1e6))
+        picture = decode(given_bytes(path), int(max_image_mpx * 1e6))
         image = to_ids(picture, background)
-        census = take_census(image.ids)
         if picture.lossy:
-            check_not_lossy(census, image)
-        if len(census.values) > 1:
+            check_not_lossy(image)
+        if len(image.census.values) > 1:
             if not planned:
-                image, census = without_net(image, census, wall=True)
-            check_background(census, image.background, _CURE, int(image.has_edges))
-            check_not_photo(census)
+                image = without_net(image, wall=True)
+            check_background(image.census, image.background, _CURE, int(image.has_edges))
+            check_not_photo(image.census)
             if not planned:
-                image, census = without_blends(image, census, _BLENDED_PX, wall=True)
-                check_not_resampled(census, image.background)
-        elif int(census.values[0]) == image.background:
+                image = without_blends(image, _BLENDED_PX, wall=True)
+                check_not_resampled(image)
+        elif int(image.census.values[0]) == image.background:
             # One stone may fill the whole image; no stone may not.
-            why = " ".join(notice.message for notice in image.notices)
-            check_not_uniform(census, image.background, why)
-        check_no_zero(census.values, image.background)
+            check_not_uniform(image)
+        check_no_zero(image)
     labels = image.ids.astype(np.uint32)
     labels[labels == image.background] = 0
     return labels, tuple(notice for notice in image.notices if notice.code != "W115")

@@ -1,13 +1,14 @@
 """Reading what `analyse`, `measure` and `craft` are given: a plan, a block model, or stones."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from drystone.contacts.blocks import pieces_apart
@@ -17,20 +18,23 @@ from drystone.io.file_bytes import file_bytes
 from drystone.io.file_errors import listed, naming
 from drystone.io.foreign import foreign
 from drystone.io.json_text import json_of
-from drystone.io.outlines_in.model import OutlineFile
+from drystone.io.outlines_in.fill import filled_area
+from drystone.io.outlines_in.model import Area, OutlineFile
 from drystone.io.outlines_in.npz import is_npz
-from drystone.io.painted import painted
+from drystone.io.outlines_in.silhouettes import outer_edge
 from drystone.io.photo_beside import read_sidecar, scale_beside
+from drystone.io.pictures import check_size
 from drystone.io.plan_folder import BLOCKS
 from drystone.io.plan_json import read_plan
 from drystone.io.read_outlines import outline_reader, stones_and_outlines
 from drystone.io.read_settings import ReadSettings
 from drystone.io.read_stones import read_stones
 from drystone.io.wall_image import read_wall_image, read_wall_picture
-from drystone.io.wall_outlines import not_cut, outlines_painted, wall_outlines
+from drystone.io.write_stones import painted
 from drystone.kernels.label_runs import label_runs
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.model.plan import Plan
+from drystone.model.steps import piece_id
 from drystone.model.stone import StoneSet, writable
 from drystone.model.wall import Labels
 from drystone.statics.joints import loose_blocks
@@ -119,10 +123,19 @@ def read_wall(path: Path, settings: ReadSettings | None = None) -> GivenWall:
     if path.suffix.lower() != ".json":
         return _stones(path, settings)
     content = _read_json(path)
-    model = isinstance(content, dict) and ("blocks" in content or "blocks_xywh" in content)
-    if not model and not _is_plan(content):
+    keys = content.keys() if isinstance(content, dict) else set()
+    model = not keys.isdisjoint({"blocks", "blocks_xywh"})
+    # Of any version: what is, or once was, a plan.
+    named = bool(keys) and str(content.get("schema", "")).startswith("drystone-plan")
+    if not (model or named or keys >= {"steps", "source"}):
         return _stones(path, settings)
-    _refuse_reading(settings, "block model" if model else "plan", path)
+    if asked := [name for name, _ in replace(settings, px_per_m=None).changed()]:
+        options = ", ".join(f"--{name.removesuffix('_px').replace('_', '-')}" for name in asked)
+        what = f"this is a {'block model' if model else 'plan'}, which says itself what its stones"
+        cure = f"Leave {'it' if len(asked) == 1 else 'them'} out; it is for pictures and outlines."
+        raise UsageError(
+            "E118", f"{what} are: {options} has no meaning.", where=str(path), cure=cure
+        )
     if model:
         return GivenWall(None, blocks=content)
     plan = read_plan(path)
@@ -137,24 +150,6 @@ def read_wall(path: Path, settings: ReadSettings | None = None) -> GivenWall:
         _refuse_misplaced(labels, plan, path)
         return GivenWall(labels, plan)
     return GivenWall(labels, plan, _blocks_of(plan, path))
-
-
-def _is_plan(content: Any) -> bool:
-    """Tell whether JSON is, or once was, a plan."""
-    if not isinstance(content, dict):
-        return False
-    named = str(content.get("schema", "")).startswith("drystone-plan")
-    return named or {"steps", "source"} <= content.keys()
-
-
-def _refuse_reading(settings: ReadSettings, what: str, path: Path) -> None:
-    """Refuse settings of reading for what says itself what its stones are (E118)."""
-    asked = [name for name, _ in replace(settings, px_per_m=None).changed()]
-    if asked:
-        options = ", ".join(f"--{name.removesuffix('_px').replace('_', '-')}" for name in asked)
-        said = f"this is a {what}, which says itself what its stones are: {options} has no meaning."
-        cure = f"Leave {'it' if len(asked) == 1 else 'them'} out; it is for pictures and outlines."
-        raise UsageError("E118", said, where=str(path), cure=cure)
 
 
 def _stones(path: Path, settings: ReadSettings) -> GivenWall:
@@ -226,14 +221,15 @@ def shows(labels: Labels, plan: Plan) -> bool:
     Of a plan on outlines wedges may be missing that fill no pixel.
     """
     found = set(np.unique(labels).tolist()) - {0}
-    wedges = {step.id for step in plan.wedge_steps}
-    may_miss = wedges if plan.settings.get("geometry") == "exact" else set()
-    return set(_ids(plan)) - may_miss <= found <= set(_ids(plan))
+    planned = set(map(piece_id, plan.steps))
+    exact = plan.settings.get("geometry") == "exact"
+    may_miss = {step.id for step in plan.wedge_steps} if exact else set()
+    return planned - may_miss <= found <= planned
 
 
 def image_name(plan: Plan) -> str:
     """Return the name of the wall image that is written with a plan (DESIGN 2)."""
-    return "wall.png" if max(_ids(plan), default=0) <= 65535 else "wall.tif"
+    return "wall.png" if max(map(piece_id, plan.steps), default=0) <= 65535 else "wall.tif"
 
 
 def read_image_of(plan: Plan, folder: Path) -> Labels | None:
@@ -304,22 +300,16 @@ def _blocks_of(plan: Plan, path: Path) -> dict[str, Any]:
         what = f"there is no {BLOCKS} beside the plan."
     elif not isinstance(blocks, dict):
         what = f"the {BLOCKS} beside the plan is not a block model."
-    elif set(polygons := polygons_from_json(blocks)) != set(_ids(plan)):
+    elif set(polygons := polygons_from_json(blocks)) != set(planned := _planned(plan)):
         what = f"the {BLOCKS} beside the plan has other stones than the plan."
-    elif not _where_planned(plan, polygons):
+    elif not all(
+        math.dist(_centroid(polygon), planned[block]) <= CENTROID_PX / (plan.px_per_m or 1.0)
+        for block, polygon in polygons.items()
+    ):
         what = f"the {BLOCKS} beside the plan has its stones in other places than the plan."
     else:
         return blocks
     raise InputError("E133", what, where=str(path), cure=_TOGETHER)
-
-
-def _where_planned(plan: Plan, polygons: Mapping[int, Points]) -> bool:
-    """Say whether all polygons have their centroids where those of the plan are."""
-    planned, allowed = _planned(plan), CENTROID_PX / (plan.px_per_m or 1.0)
-    return all(
-        math.dist(_centroid(polygon), planned[block]) <= allowed
-        for block, polygon in polygons.items()
-    )
 
 
 def _refuse_misplaced(labels: Labels, plan: Plan, path: Path) -> None:
@@ -368,11 +358,6 @@ def _centroid(polygon: Points) -> tuple[float, float]:
     return x, y
 
 
-def _ids(plan: Plan) -> list[int]:
-    stones = [step.stone for step in plan.stone_steps]
-    return stones + [step.id for step in plan.wedge_steps]
-
-
 def _read_json(
     path: Path, cure: str = "Give a label image, the plan.json of a plan, or a block model."
 ) -> Any:
@@ -385,3 +370,89 @@ def _read_json(
         raise refused(f"cannot be read ({error.strerror}).") from error
     with foreign(lambda why: refused(f"is not valid JSON ({why}).")):
         return json_of(data.decode("utf-8-sig"))
+
+
+MOST_PX = 200_000_000
+"""Of a picture of a wall."""
+
+
+def wall_outlines(file: OutlineFile, stones: StoneSet) -> dict[int, Points] | None:
+    """Return the outlines of the stones that were read, (n, 2) by id, counter-clockwise and closed.
+
+    They are in px, y up from the lowest point; of a file in px x is that of its image.  Ground that
+    the file draws is level, and what is wholly under it is not there.  Holes are filled, and of a
+    stone in several pieces the largest counts, as when its pixels are read.  None when some stone
+    is known by pixels only.
+    """
+    known = {stone.id or 0: stone for stone in file.stones}
+    ids = [stone.id for stone in stones]
+    if any(i not in known or known[i].masks or not known[i].areas for i in ids):
+        return None
+    scale = 1.0 if file.unit_m is None else file.unit_m * (stones.source.px_per_m or 1.0)
+    sign = 1.0 if file.y_up else -1.0
+    try:
+        edges = {i: outer_edge(known[i].rings) for i in ids}
+    except ValueError:  # crossings without end
+        return None
+    found = {i: edge * (scale, sign * scale) for i, edge in edges.items() if edge is not None}
+    if len(found) < len(ids):
+        return None
+    if file.ground is not None:
+        found = _on_ground(found, file.ground * (1.0, -1.0))
+    corners = np.concatenate(list(found.values()))
+    # Of an image the left edge is that of the wall, but for what reaches beyond it.
+    left = corners[:, 0].min()
+    left = left if file.unit_m or file.y_up else min(0.0, np.floor(left))
+    origin = np.array([left, corners[:, 1].min()])
+    # Counter-clockwise, without corners twice in a row.
+    shapes = {i: shapely.Polygon(outline - origin) for i, outline in found.items()}
+    return {
+        i: shapely.get_coordinates(
+            shapely.orient_polygons(shapely.remove_repeated_points(shape, 1e-9)).exterior
+        )
+        for i, shape in shapes.items()
+    }
+
+
+def outlines_painted(outlines: Mapping[int, Points]) -> Labels:
+    """Return the label image whose lower left corner is the origin of outlines in px.
+
+    Where they overlap the smaller stone is seen.  E110 where it would fill the memory.
+    """
+    corners = np.concatenate(list(outlines.values()))
+    width, height = (max(1, math.ceil(side - 1e-9)) for side in corners.max(axis=0).tolist())
+    check_size(width, height, MOST_PX, "Is a corner far away from the wall? Correct it.")
+    labels = np.zeros((height, width), np.uint32)
+    size = {i: shapely.Polygon(outline).area for i, outline in outlines.items()}
+    for i in sorted(outlines, key=lambda one: (-size[one], one)):
+        ring = outlines[i][:-1] * (1.0, -1.0) + (0.0, float(height))
+        placed = filled_area(Area((ring,), "nonzero"))
+        if placed is None:
+            continue
+        top, left, bottom, right = placed.sides
+        labels[top:bottom, left:right][placed.mask] = i
+    return labels
+
+
+def not_cut(notices: Collection[Notice]) -> tuple[Notice, ...]:
+    """Leave out that outlines were cut at the edges of their image: blocks are not."""
+    return tuple(one for one in notices if "outside the image, cut off" not in one.message)
+
+
+def _on_ground(rings: Mapping[int, Points], ground: Points) -> dict[int, Points]:
+    """Turn rings until the ground is level; what is buried under it is cut off, or left out."""
+    along = ground[1] - ground[0]
+    cos, sin = along / np.hypot(*along) * np.sign(along[0])
+    above = {}
+    for i, ring in rings.items():
+        corners = (ring - ground[0]) @ [[cos, -sin], [sin, cos]] + ground[0]
+        turned = shapely.make_valid(shapely.Polygon(corners))
+        left, _, right, top = turned.bounds
+        seen = turned & shapely.box(left, ground[0, 1], right, max(top, ground[0, 1]))
+        parts = [part for part in shapely.get_parts(seen) if part.area > 0.0]
+        if parts:
+            above[i] = np.array(max(parts, key=shapely.area).exterior.coords)[:-1]
+    if not above:
+        what = "no stone is above the ground that was drawn."
+        raise LabelImageError("E104", what, cure="Draw the ground under the wall.")
+    return above

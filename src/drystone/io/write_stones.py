@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from drystone.errors import Notice, UsageError
-from drystone.io.painted import painted
+from drystone.errors import InputError, Notice, UsageError
+from drystone.io.file_errors import MANY, listed
 from drystone.io.photo_beside import SIDECAR, PhotoSidecar, read_sidecar, write_sidecar
 from drystone.io.wall_image import write_labels
 from drystone.model.stone import Stone, StoneSet
+from drystone.model.wall import Labels
 from drystone.whole_files import write_whole
 
 PICTURES = (".png", ".tif", ".tiff", ".npy")
@@ -61,3 +62,39 @@ def _shape(stone: Stone, height_px: int) -> dict[str, Any]:
     corners = stone.outline * (1.0, -1.0) + (x, height_px - y)
     points = np.round(corners, 3).tolist()
     return {"label": str(stone.id), "points": points, "shape_type": "polygon", "flags": {}}
+
+
+MOST_HIDDEN = 0.5
+"""A stone of which more lies under others is not where it was drawn: masks were cropped."""
+
+
+def painted(stones: StoneSet) -> tuple[Labels, tuple[Notice, ...]]:
+    """Return a label image of the size of the source, and which stones lie over each other.
+
+    What several stones have in common goes to the smallest (W119).  E304: half of a stone lies
+    under others.
+    """
+    height, width = stones.source.height_px, stones.source.width_px
+    labels = np.zeros((height, width), np.uint32)
+    for stone in sorted(stones, key=lambda one: (-one.area_px, one.id)):
+        rows, cols = stone.mask.shape
+        top = height - stone.bottom_px - rows
+        window = labels[top : top + rows, stone.left_px : stone.left_px + cols]
+        window[stone.mask] = stone.id
+    ids, counts = np.unique(labels, return_counts=True)
+    left = dict(zip(ids.tolist(), counts.tolist(), strict=True))
+    under = {stone.id: stone.area_px - left.get(stone.id, 0) for stone in stones}
+    hidden = [stone.id for stone in stones if under[stone.id] > MOST_HIDDEN * stone.area_px]
+    if hidden:
+        raise InputError(
+            "E304",
+            f"more than half of these stones lies under others: {listed(hidden)}.",
+            where=stones.source.path,
+            cure="Nothing says where they lie in the wall if their masks were cropped: give masks "
+            "of the whole picture. --skip leaves out a stone that lies over others.",
+        )
+    found = [f"{stone} ({px} px)" for stone, px in sorted(under.items()) if px]
+    if not found:
+        return labels, ()
+    text = f"what stones have in common went to the smaller one, from: {listed(found, most=MANY)}."
+    return labels, (Notice("W119", text, "Draw them beside each other."),)

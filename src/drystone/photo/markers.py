@@ -7,18 +7,13 @@ it.  Edges are not moved by blur.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.photo.dictionaries import (
-    DICTIONARIES,
-    OTHERS,
-    load_cv2,
-    modules_across,
-    opencv_dictionary,
-)
+from drystone.errors import UsageError
 
 Points = NDArray[np.float64]
 
@@ -44,6 +39,39 @@ FEW_SQUARES = 6
 """Squares along the edge of a marker, its black border too, of which a chance find is likely."""
 
 
+DICTIONARIES = {"aruco": "DICT_4X4_50", "apriltag": "DICT_APRILTAG_36h11"}
+"""Name of a family that is printed, here and in OpenCV."""
+
+OTHERS = {
+    "aruco5x5": "DICT_5X5_1000",
+    "aruco6x6": "DICT_6X6_1000",
+    "aruco7x7": "DICT_7X7_1000",
+    "original": "DICT_ARUCO_ORIGINAL",
+    "mip36h12": "DICT_ARUCO_MIP_36h12",
+    "apriltag25h9": "DICT_APRILTAG_25h9",
+    "apriltag36h10": "DICT_APRILTAG_36h10",
+    "aruco4x4": "DICT_4X4_1000",
+    "apriltag16h5": "DICT_APRILTAG_16h5",
+}
+"""Families that are read where there is none of the printed ones; the smaller dictionaries of
+OpenCV are the first ids of these."""
+
+FAMILIES = {
+    "aruco": "ArUco 4x4_50",
+    "apriltag": "AprilTag 36h11",
+    "aruco5x5": "ArUco 5x5",
+    "aruco6x6": "ArUco 6x6",
+    "aruco7x7": "ArUco 7x7",
+    "original": "ArUco Original",
+    "mip36h12": "ArUco MIP 36h12",
+    "apriltag25h9": "AprilTag 25h9",
+    "apriltag36h10": "AprilTag 36h10",
+    "aruco4x4": "ArUco 4x4",
+    "apriltag16h5": "AprilTag 16h5",
+}
+"""Name of a family for people."""
+
+
 @dataclass(frozen=True, eq=False)
 class FoundMarker:
     """A marker in a photograph.
@@ -64,18 +92,16 @@ class FoundMarker:
         return float(np.hypot(*sides.T).mean())
 
 
-def find_markers(image: NDArray[np.uint8], dictionary: str = "auto") -> tuple[FoundMarker, ...]:
+def find_markers(image: NDArray[np.uint8]) -> tuple[FoundMarker, ...]:
     """Find markers with the white border around them, in any position, in grey or RGB.
 
-    `dictionary` is a family, or "auto": "aruco" or "apriltag", the one with more markers in the
-    picture, and where there are not two of either the one with most of all families.  They are in
-    the order of their ids; an id may occur twice.  E305 without OpenCV, E174 for another name.
+    They are of the family with more markers in the picture, "aruco" or "apriltag"; where there are
+    not two of either, of the one with most of all families.  They are in the order of their ids; an
+    id may occur twice.  E305 without OpenCV.
     """
     cv2 = load_cv2()
     grey = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_RGB2GRAY)
     grey = np.ascontiguousarray(grey)
-    if dictionary != "auto":
-        return _find(grey, dictionary)
     # The patterns of AprilTag have more squares, so of two the same number they are the surer.
     best = max((_find(grey, name) for name in reversed(DICTIONARIES)), key=len)
     if len(best) > 1:
@@ -115,18 +141,16 @@ def _quads(
         detector = aruco.ArucoDetector(opencv_dictionary(dictionary), parameters)
         corners, ids, _ = detector.detectMarkers(grey)
         for one, quad in zip([] if ids is None else np.ravel(ids), corners, strict=True):
-            placed = int(one), quad.reshape(4, 2)
-            if not any(_same(placed, other) for other in quads):
-                quads.append(placed)
+            at = quad.reshape(4, 2)
+            middle = at.mean(axis=0)
+            # Two finds are one marker when one lies over the other of the same id.
+            if not any(
+                known == one
+                and np.hypot(*(middle - by.mean(axis=0))) < 0.5 * np.hypot(*(by[0] - by[2]))
+                for known, by in quads
+            ):
+                quads.append((int(one), at))
     return quads
-
-
-def _same(one: tuple[int, NDArray[Any]], other: tuple[int, NDArray[Any]]) -> bool:
-    """Whether two finds are one marker: the same id, one lies over the other."""
-    if one[0] != other[0]:
-        return False
-    apart = np.hypot(*(one[1].mean(axis=0) - other[1].mean(axis=0)))
-    return bool(apart < 0.5 * np.hypot(*(other[1][0] - other[1][2])))
 
 
 def _refined(grey: NDArray[np.uint8], corners: NDArray[Any], across: int) -> NDArray[np.float64]:
@@ -220,3 +244,47 @@ def _meeting(one: tuple[Points, Points], other: tuple[Points, Points]) -> Points
     if abs(np.linalg.det(matrix)) < 1e-6:
         return np.full(2, np.nan)
     return np.asarray(one[0] + np.linalg.solve(matrix, other[0] - one[0])[0] * one[1])
+
+
+def load_cv2() -> Any:
+    """Return OpenCV; it is an extra, so it is loaded only when it is needed (E305 without it)."""
+    try:
+        return import_module("cv2")
+    except ImportError as error:
+        raise UsageError(
+            "E305",
+            "OpenCV (cv2) is not installed, and it knows the markers and turns pictures.",
+            where="photo",
+            cure="Install it with `pip install drystone[photo]`.",
+        ) from error
+
+
+def opencv_dictionary(name: str) -> Any:
+    """Return OpenCV's dictionary of a family; E174 for a name that is none."""
+    known = DICTIONARIES | OTHERS
+    if name not in known:
+        what, cure = f"{name!r} is not a family of markers.", f"Known: {', '.join(DICTIONARIES)}."
+        raise UsageError("E174", what, where="--dictionary", cure=cure)
+    aruco = load_cv2().aruco
+    return aruco.getPredefinedDictionary(getattr(aruco, known[name]))
+
+
+def modules_across(name: str) -> int:
+    """Return how many squares a marker of this family is wide, with its black border."""
+    return int(opencv_dictionary(name).markerSize) + 2
+
+
+def marker_modules(name: str, marker_id: int) -> NDArray[np.bool_]:
+    """Return (n, n) squares of a marker, row 0 at its top, True where black; the outermost all are.
+
+    E174 for an id that the family does not have.
+    """
+    dictionary = opencv_dictionary(name)
+    if not 0 <= marker_id < len(dictionary.bytesList):
+        what = f"the family {name!r} has no marker {marker_id}."
+        cure = f"Its ids are 0 to {len(dictionary.bytesList) - 1}."
+        raise UsageError("E174", what, where="--ids", cure=cure)
+    across = int(dictionary.markerSize) + 2
+    picture = load_cv2().aruco.generateImageMarker(dictionary, marker_id, across)
+    black: NDArray[np.bool_] = np.asarray(picture) < 128
+    return black

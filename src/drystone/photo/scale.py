@@ -7,43 +7,64 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import least_squares
 
 from drystone.errors import InputError, Notice
-from drystone.photo.common_plane import CommonPlane, Piece, direct, fit_plane
-from drystone.photo.dictionaries import DICTIONARIES, FAMILIES
 from drystone.photo.layout import MarkerLayout
-from drystone.photo.markers import FoundMarker
-from drystone.photo.rectify import refuse_horizon
-from drystone.photo.view import SQUARE, View, apply, jacobian
+from drystone.photo.markers import DICTIONARIES, FAMILIES, FoundMarker
+from drystone.photo.view import SQUARE, View, apply, depth, jacobian, refuse_horizon
+
+Points = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class MarkerLimits:
-    """When markers are not used, and when they are not believed."""
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A rigid piece of paper with points on it."""
 
-    least_side_px: float = 40.0  # smaller markers are left out (W171)
-    small_side_px: float = 100.0  # when the largest marker is smaller, the scale is in doubt (W172)
-    least_slant: float = 0.35  # length over width; those more foreshortened are left out (W171)
-    most_percent: float = 1.0  # residual of a marker over its side; beyond, they disagree (E172)
-    # Difference of the sizes of two papers, where it is no noise, beyond which they disagree.
-    most_size_percent: float = 1.5
-    surer: float = 15.0  # F statistic from which on it is no noise
-    doubtful_percent: float = 0.5  # residual of all from which on the scale is in doubt (W172)
+    seen_px: Points  # (n, 2) points in the photograph
+    flat_m: Points  # (n, 2) the same points on the paper, metres
+
+
+@dataclass(frozen=True, eq=False)
+class CommonPlane:
+    """A plane that all pieces lie on."""
+
+    to_plane: Points  # (3, 3) homography from the photograph to the plane, metres
+    # Of each piece, (n, 2): from the points of the paper where it fits best to those of the
+    # photograph, metres on the plane.
+    off_m: tuple[Points, ...]
+    # (n,) sizes that would fit better, over those given; the largest piece in the photograph has 1.
+    sizes: Points
+    # How much better they fit (F statistic): near to 1 for noise, far above for wrong sizes.
+    surer: float
+
+
+LEAST_SIDE_PX, SMALL_SIDE_PX = 40.0, 100.0
+"""Smaller markers are left out (W171); the scale is in doubt when none is larger (W172)."""
+
+LEAST_SLANT = 0.35
+"""Length over width; markers that are more foreshortened are left out (W171)."""
+
+DOUBTFUL_PERCENT, MOST_PERCENT = 0.5, 1.0
+"""Residual over the side of a marker: of all, from which on the scale is in doubt (W172), and of
+one, beyond which markers disagree (E172)."""
+
+MOST_SIZE_PERCENT, SURER = 1.5, 15.0
+"""Difference of the sizes of two papers beyond which they disagree, and the F statistic from which
+on it is no noise."""
 
 
 def scale_and_view(
     found: tuple[FoundMarker, ...],
     layout: MarkerLayout,
     size_px: tuple[int, int],
-    limits: MarkerLimits | None = None,
 ) -> View:
     """Find the scale and the perspective of a photograph from at least two markers.
 
     `size_px` is width and height of the photograph.  E170 fewer than two markers that can be used;
     E171 an id twice; E172 markers that disagree; E173 a view with the horizon in it.
     """
-    limits = limits or MarkerLimits()
-    used, notices = _usable(found, layout, limits)
+    used, notices = _usable(found, layout)
     groups = sorted({layout.group(marker.id) for marker in used})
     papers = [[marker for marker in used if layout.group(marker.id) == one] for one in groups]
     plane = fit_plane(
@@ -57,19 +78,32 @@ def scale_and_view(
     )
     if plane is None:
         raise _disagreement("No view of the ground gives all of them their size")
-    residual_m = _believed(papers, plane, layout, limits)
+    residual_m = _believed(papers, plane, layout)
     percent = 100.0 * residual_m / layout.side_m
-    notices += _doubts(used, percent, limits)
+    largest = max(marker.side_px for marker in used)
+    if largest < SMALL_SIDE_PX:
+        said = f"The largest marker is {largest:.0f} px wide: the scale may be 1 % off."
+        notices.append(Notice("W172", said, _NEARER))
+    if percent > DOUBTFUL_PERCENT:
+        said = f"The corners of the markers are {percent:.1f} % of a marker off on average."
+        notices.append(Notice("W172", said, "Are they flat, sharp, and in the same plane?"))
     refuse_horizon(View(plane.to_plane, 1.0, (used[0].id,)), size_px)
-    to_ground = _upright(plane.to_plane, size_px)
-    metres_per_px = math.sqrt(np.linalg.det(jacobian(to_ground, _middle(size_px))))
+    # The plane is turned and moved so that the picture stays upright and begins at 0, 0.
+    middle = np.array(size_px) / 2.0
+    local = jacobian(plane.to_plane, middle)
+    angle = math.atan2(local[1, 0] - local[0, 1], local[0, 0] + local[1, 1])
+    cos, sin = math.cos(angle), math.sin(angle)
+    turned = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]]) @ plane.to_plane
+    low = apply(turned, SQUARE * size_px).min(axis=0)
+    to_ground = np.array([[1.0, 0.0, -low[0]], [0.0, 1.0, -low[1]], [0.0, 0.0, 1.0]]) @ turned
+    metres_per_px = math.sqrt(np.linalg.det(jacobian(to_ground, middle)))
     ids = tuple(marker.id for marker in used)
-    return View(to_ground, 1.0 / metres_per_px, ids, 1000.0 * residual_m, percent, notices)
+    return View(to_ground, 1.0 / metres_per_px, ids, 1000.0 * residual_m, percent, tuple(notices))
 
 
 def _usable(
-    found: Sequence[FoundMarker], layout: MarkerLayout, limits: MarkerLimits
-) -> tuple[tuple[FoundMarker, ...], tuple[Notice, ...]]:
+    found: Sequence[FoundMarker], layout: MarkerLayout
+) -> tuple[tuple[FoundMarker, ...], list[Notice]]:
     """Return at least two markers that can be measured, and say which were left out."""
     notices: list[Notice] = []
     family = found[0].dictionary if found else "aruco"
@@ -90,11 +124,11 @@ def _usable(
         known_ids = ", ".join(map(str, layout.ids or ()))
         said = f"{_markers(strange)} left out: not one {others} ({known_ids})."
         notices.append(Notice("W170", said))
-    small = [one for one in known if one.side_px < limits.least_side_px]
-    slanted = [one for one in known if one not in small and _slant(one) < limits.least_slant]
+    small = [one for one in known if one.side_px < LEAST_SIDE_PX]
+    slanted = [one for one in known if one not in small and _slant(one) < LEAST_SLANT]
     used = tuple(one for one in known if one not in small and one not in slanted)
     for poor, why in (
-        (small, f"smaller than {limits.least_side_px:g} px"),
+        (small, f"smaller than {LEAST_SIDE_PX:g} px"),
         (slanted, "seen at too flat an angle"),
     ):
         if poor:
@@ -102,7 +136,7 @@ def _usable(
             notices.append(Notice("W171", f"Markers left out, {why}: {said}.", _NEARER))
     if len(used) < 2:
         raise _too_few(found, used, notices, strange)
-    return used, tuple(notices)
+    return used, notices
 
 
 def _other_family(found: Sequence[FoundMarker], layout: MarkerLayout) -> Notice:
@@ -163,10 +197,16 @@ def _believed(
     papers: Sequence[Sequence[FoundMarker]],
     plane: CommonPlane,
     layout: MarkerLayout,
-    limits: MarkerLimits,
 ) -> float:
     """Return the residual of all corners, metres; refuse markers that disagree (E172)."""
-    _same_size(papers, plane, layout, limits)
+    # Perspective can hide from the residual that sizes differ.
+    spread = 100.0 * (float(plane.sizes.max() / plane.sizes.min()) - 1.0)
+    if plane.surer > SURER and spread > MOST_SIZE_PERCENT:
+        low, high = (papers[int(one)][0].id for one in (plane.sizes.argmin(), plane.sizes.argmax()))
+        raise _disagreement(
+            f"Marker {high} seems to be {spread:.1f} % larger than marker {low}, and both should "
+            f"measure {1000 * layout.side_m:g} mm"
+        )
     square_m = {
         marker.id: (off[4 * i : 4 * i + 4] ** 2).sum(axis=1)
         for paper, off in zip(papers, plane.off_m, strict=True)
@@ -174,30 +214,13 @@ def _believed(
     }
     rms_m = {one: math.sqrt(float(square.mean())) for one, square in square_m.items()}
     worst = max(rms_m, key=lambda one: rms_m[one])
-    if not 100.0 * rms_m[worst] <= limits.most_percent * layout.side_m:
+    if not 100.0 * rms_m[worst] <= MOST_PERCENT * layout.side_m:
         raise _disagreement(
             f"Marker {worst} is {1000 * rms_m[worst]:.1f} mm off "
             f"({100 * rms_m[worst] / layout.side_m:.1f} % of its side; the limit is "
-            f"{limits.most_percent:g} %)"
+            f"{MOST_PERCENT:g} %)"
         )
     return math.sqrt(float(np.concatenate(list(square_m.values())).mean()))
-
-
-def _same_size(
-    papers: Sequence[Sequence[FoundMarker]],
-    plane: CommonPlane,
-    layout: MarkerLayout,
-    limits: MarkerLimits,
-) -> None:
-    """Refuse markers of sizes that differ (E172): perspective can hide that from the residual."""
-    spread = 100.0 * (float(plane.sizes.max() / plane.sizes.min()) - 1.0)
-    if plane.surer <= limits.surer or spread <= limits.most_size_percent:
-        return
-    low, high = (papers[int(one)][0].id for one in (plane.sizes.argmin(), plane.sizes.argmax()))
-    raise _disagreement(
-        f"Marker {high} seems to be {spread:.1f} % larger than marker {low}, and both should "
-        f"measure {1000 * layout.side_m:g} mm"
-    )
 
 
 def _disagreement(what: str) -> InputError:
@@ -210,20 +233,6 @@ def _disagreement(what: str) -> InputError:
     )
 
 
-def _doubts(
-    used: Sequence[FoundMarker], percent: float, limits: MarkerLimits
-) -> tuple[Notice, ...]:
-    notices = []
-    largest = max(marker.side_px for marker in used)
-    if largest < limits.small_side_px:
-        said = f"The largest marker is {largest:.0f} px wide: the scale may be 1 % off."
-        notices.append(Notice("W172", said, _NEARER))
-    if percent > limits.doubtful_percent:
-        said = f"The corners of the markers are {percent:.1f} % of a marker off on average."
-        notices.append(Notice("W172", said, "Are they flat, sharp, and in the same plane?"))
-    return tuple(notices)
-
-
 def _slant(marker: FoundMarker) -> float:
     """Return how foreshortened a marker is: 1 from straight above, 0 from the side."""
     local = jacobian(direct(SQUARE, marker.corners_px), np.array([0.5, 0.5]))
@@ -231,19 +240,130 @@ def _slant(marker: FoundMarker) -> float:
     return float(short / long)
 
 
-def _upright(to_plane: NDArray[np.float64], size_px: tuple[int, int]) -> NDArray[np.float64]:
-    """Turn and move the plane so that the picture stays upright and begins at 0, 0."""
-    local = jacobian(to_plane, _middle(size_px))
-    angle = math.atan2(local[1, 0] - local[0, 1], local[0, 0] + local[1, 1])
-    cos, sin = math.cos(angle), math.sin(angle)
-    turned = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]]) @ to_plane
-    low = apply(turned, SQUARE * size_px).min(axis=0)
-    return np.array([[1.0, 0.0, -low[0]], [0.0, 1.0, -low[1]], [0.0, 0.0, 1.0]]) @ turned
-
-
-def _middle(size_px: tuple[int, int]) -> NDArray[np.float64]:
-    return np.array([size_px[0] / 2.0, size_px[1] / 2.0])
-
-
 def _markers(ids: Sequence[int]) -> str:
     return f"marker{'s' * (len(ids) > 1)} {', '.join(map(str, ids))}"
+
+
+def fit_plane(pieces: Sequence[Piece]) -> CommonPlane | None:
+    """Find the plane for which every piece has its size and shape.
+
+    The sum of squares of the distances, in px of the photograph, between the points that were
+    seen and those of the pieces is made least over the homography and the poses of the pieces
+    (turned and moved, never mirrored).  None when no homography of any meaning was found.
+    """
+    # Numbers near to 1 for the solver: px and metres are unlike by orders of magnitude.
+    every_px = np.concatenate([piece.seen_px for piece in pieces])
+    centre = every_px.mean(axis=0)
+    spread = float(np.abs(every_px - centre).max())
+    unit_px = np.array([[1.0, 0.0, -centre[0]], [0.0, 1.0, -centre[1]], [0.0, 0.0, spread]])
+    unit_m = max(float(np.ptp(piece.flat_m, axis=0).max()) for piece in pieces)
+    areas = [float(np.prod(np.ptp(piece.seen_px, axis=0))) for piece in pieces]
+    order = sorted(range(len(pieces)), key=lambda one: -areas[one])
+    scaled = [Piece(apply(unit_px, pieces[i].seen_px), pieces[i].flat_m / unit_m) for i in order]
+    # It begins with the homography of the largest piece, and what that is without perspective.
+    largest = scaled[0]
+    design = np.column_stack([largest.flat_m, np.ones(len(largest.flat_m))])
+    rows, *_ = np.linalg.lstsq(design, largest.seen_px, rcond=None)
+    beginnings = np.vstack([rows.T, [0.0, 0.0, 1.0]]), direct(largest.flat_m, largest.seen_px)
+    tried = [_least(scaled, to_seen) for to_seen in beginnings]
+    found = [one for one in tried if one is not None]
+    if not found:
+        return None
+    best = min(found, key=lambda one: one.cost)
+    to_plane = np.diag([unit_m, unit_m, 1.0]) @ np.linalg.inv(best.to_seen) @ unit_px
+    to_plane = to_plane / depth(to_plane, every_px.mean(axis=0)[None])[0]
+    sizes = np.ones(len(pieces))
+    sized, surer = _sizes(scaled, best)
+    sizes[order] = sized
+    off_m = []
+    for piece in pieces:
+        on_plane = apply(to_plane, piece.seen_px)
+        turn, shift = rigid(piece.flat_m, on_plane)
+        off_m.append(on_plane - (piece.flat_m @ turn.T + shift))
+    return CommonPlane(to_plane, tuple(off_m), sizes, surer)
+
+
+@dataclass(frozen=True, eq=False)
+class _Fit:
+    """A homography from the plane to the photograph, poses (angle, x, y) and half the squares."""
+
+    to_seen: Points
+    poses: Points
+    cost: float
+
+
+def _least(pieces: Sequence[Piece], to_seen: Points) -> _Fit | None:
+    """Return the homography and the poses of the least cost near to a homography."""
+    poses = [np.zeros(3)]
+    with np.errstate(all="ignore"):
+        for piece in pieces[1:]:
+            turn, shift = rigid(piece.flat_m, apply(np.linalg.inv(to_seen), piece.seen_px))
+            poses.append(np.array([np.arctan2(turn[1, 0], turn[0, 0]), *shift]))
+        start = np.concatenate([(to_seen / to_seen[2, 2]).ravel()[:8], *poses[1:]])
+        if not np.isfinite(start).all():
+            return None
+        result = least_squares(_misses, start, args=(pieces, 3), method="lm", max_nfev=4000)
+    # A camera neither mirrors the ground nor sees a marker across the horizon.
+    homography = np.append(result.x[:8], 1.0).reshape(3, 3)
+    if not np.isfinite(result.x).all() or np.linalg.det(homography) <= 0:
+        return None
+    back = np.linalg.inv(homography)
+    if any((depth(back, piece.seen_px) <= 0).any() for piece in pieces):
+        return None
+    return _Fit(homography, result.x[8:].reshape(-1, 3), float(result.cost))
+
+
+def _sizes(pieces: Sequence[Piece], best: _Fit) -> tuple[Points, float]:
+    """Return the sizes, over those given, that would fit best, and how much better they fit."""
+    more = len(pieces) - 1
+    if not more:
+        return np.ones(1), 0.0
+    free = np.column_stack([best.poses, np.zeros(more)])
+    start = np.concatenate([best.to_seen.ravel()[:8], free.ravel()])
+    with np.errstate(all="ignore"):
+        result = least_squares(_misses, start, args=(pieces, 4), method="lm", max_nfev=4000)
+    sizes = np.exp(np.append(0.0, result.x[8:].reshape(-1, 4)[:, 3]))
+    left = 2 * sum(len(piece.seen_px) for piece in pieces) - len(start)
+    # Corners are never better than a few thousandths of a px, whatever a computed picture says.
+    noise = max(float(result.cost), 1e-12) / left
+    return np.asarray(sizes), float(best.cost - result.cost) / more / noise
+
+
+def _misses(variables: Points, pieces: Sequence[Piece], each: int) -> Points:
+    """Return how far each point of the paper is from where it was seen.
+
+    `each` numbers say how a piece lies, after the first: angle, x, y (and the logarithm of its
+    size).
+    """
+    homography = np.append(variables[:8], 1.0).reshape(3, 3)
+    poses = np.zeros((len(pieces), 4))
+    poses[1:, :each] = variables[8:].reshape(-1, each)
+    missed = []
+    for piece, (angle, x, y, size) in zip(pieces, poses, strict=True):
+        cos, sin = np.exp(size) * np.cos(angle), np.exp(size) * np.sin(angle)
+        placed = piece.flat_m @ np.array([[cos, sin], [-sin, cos]]) + (x, y)
+        missed.append(apply(homography, placed) - piece.seen_px)
+    return np.concatenate(missed).ravel()
+
+
+def direct(source: Points, target: Points) -> Points:
+    """Return the homography of four or more points by the direct linear transformation."""
+    x, y = source.T
+    u, v = target.T
+    one, none = np.ones_like(x), np.zeros_like(x)
+    rows = np.concatenate(
+        [
+            np.column_stack([x, y, one, none, none, none, -u * x, -u * y, -u]),
+            np.column_stack([none, none, none, x, y, one, -v * x, -v * y, -v]),
+        ]
+    )
+    solution = np.linalg.svd(rows)[2][-1].reshape(3, 3)
+    return np.asarray(solution / solution[2, 2])
+
+
+def rigid(source: Points, target: Points) -> tuple[Points, Points]:
+    """Return the turn and the shift, never mirrored, that lay source on target best."""
+    a, b = source - source.mean(axis=0), target - target.mean(axis=0)
+    angle = np.arctan2((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(), (a * b).sum())
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    return turn, target.mean(axis=0) - turn @ source.mean(axis=0)

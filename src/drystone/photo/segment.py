@@ -1,5 +1,6 @@
 """Stones in a photograph of stones laid out on a ground of another colour."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,11 +9,8 @@ from scipy import ndimage
 
 from drystone.errors import InputError
 from drystone.kernels.raster import Mask
-from drystone.photo.left_out import EDGE, FAINT, PAPER, SHADOW, SMALL, LeftOut, lost, shapes
-from drystone.photo.segment_ground import GroundModel, fit_ground
-from drystone.photo.segment_outline import contrast_along, refine_outlines
-from drystone.photo.segment_settings import SegmentSettings
-from drystone.photo.segment_shadow import Shadows, find_shadows
+from drystone.photo.segment_ground import GroundModel, Planes, SegmentSettings, fit_ground
+from drystone.photo.segment_shadow import find_shadows
 from drystone.photo.segment_split import Labels, Neck, split_stones
 
 WORKING_PX = 1_600_000
@@ -27,6 +25,39 @@ ROUGH = 6.0
 
 _HORN = 0.12
 """Half the thickness of ends that are no stone, over that of the stone."""
+
+
+EDGE = "at the edge of the photograph or cut by it"
+PAPER = "beside a marker, which may be its paper"
+SMALL = "too small (--min-area)"
+SHADOW = "has the colour of shaded ground"
+FAINT = "hardly differs from the ground"
+THIN = "too thin"
+
+_BESIDE_PX = 4
+"""How far from a stone its blurred rim reaches, which is no shape of its own."""
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """A shape that was not taken for a stone."""
+
+    at_px: tuple[float, float]  # its middle, column and row
+    area_px: int
+    why: str
+
+    @property
+    def text(self) -> str:
+        """What a notice says of it."""
+        column, row = self.at_px
+        return f"{self.area_px} px at ({column:.0f}, {row:.0f}), {self.why}"
+
+
+BAND_PX = 4
+"""How far an outline may be moved at a time."""
+
+_WINDOW_PX = 11
+_LEAST_CONTRAST = 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,49 +93,45 @@ def segment(
     papers = np.zeros(image.shape[:2], bool) if papers is None else papers
     usable = ~papers if inside is None else inside & ~papers
     ground = fit_ground(image, usable, settings.ground)
-    unlike, low = _unlike(ground, usable)
-    foreground = _surely(unlike, low, ground)
+    # What may not be ground is far from its colour by what the ground itself varies ...
+    distance = np.where(usable, ground.distance, 0)
+    near = distance[usable & (distance < 6)]
+    low = float(np.clip(1.3 * np.percentile(near, 98), 3.0, 6.0)) if near.size else 3.0
+    unlike = ndimage.binary_opening(distance > low)
+    # ... and surely is none in pieces that are far from it somewhere.
+    pieces, count = ndimage.label(unlike)
+    farthest = np.asarray(ndimage.maximum(ground.distance, pieces, np.arange(count + 1)))
+    foreground = unlike & (farthest > 1.6 * low)[pieces]
     shadows = find_shadows(ground, foreground, usable)
     stone = _solid(foreground & ~shadows.mask, usable)
     stone = refine_outlines(ground.lab, stone, usable)
     stone = _without_horns(_solid(stone, usable))
-    beside = _beside(stone, papers)
+    pieces, _ = ndimage.label(stone, np.ones((3, 3)))
+    beside = stone & np.isin(pieces, pieces[ndimage.binary_dilation(papers, iterations=5)])
     labels, necks = split_stones(stone & ~beside, ground.lab, settings)
     found, cut, small, least_px = _sorted_out(labels, usable | papers, settings)
     if not found.any():
         raise _no_stones(len(shapes(cut, EDGE)), ground)
     causes = {SHADOW: shadows.mask, FAINT: unlike & ~foreground}
     known = stone | (labels > 0)
+    # Stones of which a part, but not all, has the colour of shaded ground.
+    body = ndimage.binary_opening(shadows.alike & (found > 0), iterations=3)
+    alike = np.bincount(found[body], minlength=found.max() + 1) / np.bincount(found.ravel())
+    shaded = np.flatnonzero((alike > 0.15) & (alike < 0.85) & (np.arange(len(alike)) > 0))
     left_out = (
         *shapes(cut, EDGE), *shapes(beside, PAPER), *lost(unlike, known, causes, least_px),
         *shapes(small, SMALL),
     )  # fmt: skip
-    count = int(found.max())
-    contrast = contrast_along(ground.lab, found.astype(np.int32), count)
+    contrast = contrast_along(ground.lab, found.astype(np.int32))
     return FoundStones(
         labels=found,
         necks=tuple(neck for neck in necks if stones_at(found, neck.at_px)),
-        contrast=tuple(float(value) for value in contrast),
-        shaded=_shaded(found, shadows, count),
+        contrast=tuple(contrast.tolist()),
+        shaded=tuple(shaded.tolist()),
         left_out=left_out,
         ground=ground,
         shadow_level=shadows.level,
     )
-
-
-def _unlike(ground: GroundModel, usable: Mask) -> tuple[Mask, float]:
-    """Return what may not be ground: far from its colour by what the ground itself varies."""
-    distance = np.where(usable, ground.distance, 0)
-    near = distance[usable & (distance < 6)]
-    low = float(np.clip(1.3 * np.percentile(near, 98), 3.0, 6.0)) if near.size else 3.0
-    return np.asarray(ndimage.binary_opening(distance > low)), low
-
-
-def _surely(unlike: Mask, low: float, ground: GroundModel) -> Mask:
-    """Return the pieces that are far from the colour of the ground somewhere."""
-    pieces, count = ndimage.label(unlike)
-    seen = ndimage.maximum(ground.distance, pieces, np.arange(count + 1))
-    return np.asarray(unlike & (np.asarray(seen) > 1.6 * low)[pieces])
 
 
 def _solid(mask: Mask, usable: Mask) -> Mask:
@@ -137,17 +164,6 @@ def _without_horns(stone: Mask) -> Mask:
     return stone
 
 
-def _beside(stone: Mask, papers: Mask) -> Mask:
-    """Return what touches markers."""
-    if not papers.any():
-        return np.zeros_like(stone)
-    pieces, count = ndimage.label(stone, np.ones((3, 3)))
-    touched = np.zeros(count + 1, bool)
-    touched[np.unique(pieces[ndimage.binary_dilation(papers, iterations=5)])] = True
-    touched[0] = False
-    return np.asarray(stone & touched[pieces])
-
-
 def _sorted_out(
     labels: Labels, shown: Mask, settings: SegmentSettings
 ) -> tuple[NDArray[np.uint16], Labels, Labels, float]:
@@ -159,7 +175,11 @@ def _sorted_out(
     areas[0] = 0
     least = settings.min_area_px
     if least is None:
-        least = max(_FLOOR_SHARE * float(shown.sum()), _usual(areas) / 50)
+        # Half of all that was found belongs to pieces larger than the usual area.
+        ordered = np.sort(areas)[::-1]
+        total = np.cumsum(ordered)
+        usual = float(ordered[np.searchsorted(total, total[-1] / 2)])
+        least = max(_FLOOR_SHARE * float(shown.sum()), usual / 50)
     large = areas >= least
     number = np.arange(len(areas))
     middles = np.array(ndimage.center_of_mass(labels > 0, labels, number[1:])).reshape(-1, 2)
@@ -177,26 +197,11 @@ def _sorted_out(
     return new[labels], np.where(cut[labels], labels, 0), np.where(small[labels], labels, 0), least
 
 
-def _usual(areas: NDArray[np.int64]) -> float:
-    """Return the area that half of all that was found belongs to pieces larger than."""
-    ordered = np.sort(areas)[::-1]
-    total = np.cumsum(ordered)
-    return float(ordered[int(np.searchsorted(total, total[-1] / 2))]) if total[-1] else 0.0
-
-
-def stones_at(labels: NDArray[np.uint16], at_px: tuple[float, float], near: int = 4) -> list[int]:
+def stones_at(labels: NDArray[np.uint16], at_px: tuple[float, float]) -> list[int]:
     """Return the stones around a place."""
     column, row = round(at_px[0]), round(at_px[1])
-    area = labels[max(row - near, 0) : row + near + 1, max(column - near, 0) : column + near + 1]
+    area = labels[max(row - 4, 0) : row + 5, max(column - 4, 0) : column + 5]
     return [int(k) for k in np.unique(area) if k]
-
-
-def _shaded(labels: NDArray[np.uint16], shadows: Shadows, count: int) -> tuple[int, ...]:
-    """Return stones of which a part, but not all, has the colour of shaded ground."""
-    body = ndimage.binary_opening(shadows.alike & (labels > 0), iterations=3)
-    alike = np.bincount(labels[body], minlength=count + 1)
-    share = alike / np.maximum(np.bincount(labels.ravel(), minlength=count + 1), 1)
-    return tuple(int(k) for k in range(1, count + 1) if 0.15 < share[k] < 0.85)
 
 
 def _no_stones(cut: int, ground: GroundModel) -> InputError:
@@ -215,3 +220,93 @@ def _no_stones(cut: int, ground: GroundModel) -> InputError:
             "masks (docs/photographs.md)."
         )
     return InputError("E175", f"{what}.", cure=cure)
+
+
+def shapes(mask: NDArray[np.integer] | Mask, why: str) -> tuple[LeftOut, ...]:
+    """Return the shapes of labels, or the pieces of a mask, the largest first."""
+    labels = ndimage.label(mask)[0] if mask.dtype == bool else mask
+    areas = np.bincount(labels.ravel())
+    numbers = [int(k) for k in np.flatnonzero(areas) if k]
+    middles = ndimage.center_of_mass(labels > 0, labels, numbers) if numbers else []
+    found = [
+        LeftOut((float(x) + 0.5, float(y) + 0.5), int(areas[k]), why)
+        for k, (y, x) in zip(numbers, middles, strict=True)
+    ]
+    return tuple(sorted(found, key=lambda one: -one.area_px))
+
+
+def lost(
+    unlike: Mask, known: Mask, causes: Mapping[str, Mask], least_px: float
+) -> tuple[LeftOut, ...]:
+    """Return what is `unlike` the ground, as large as a stone, and in nothing that is `known`.
+
+    `causes` say for what reason each px was taken away; without one it was too thin.
+    """
+    rest = unlike & ~ndimage.binary_dilation(known, iterations=_BESIDE_PX)
+    pieces, count = ndimage.label(ndimage.binary_opening(rest, iterations=2))
+    areas = np.bincount(pieces.ravel(), minlength=count + 1)
+    near = np.zeros(count + 1, bool)
+    near[np.unique(pieces[ndimage.binary_dilation(known, iterations=_BESIDE_PX + 3)])] = True
+    found: list[LeftOut] = []
+    for why, part in (*causes.items(), (THIN, None)):
+        share = np.ones(count + 1)
+        if part is not None:
+            share = np.bincount(pieces[part], minlength=count + 1) / np.maximum(areas, 1)
+        chosen = (areas >= least_px) & (share >= 0.5)
+        chosen[0] = False
+        areas = np.where(chosen, 0, areas)
+        if why in (SHADOW, THIN):
+            # The shadow of a stone and the rim of one are no shapes of their own.
+            chosen &= ~near
+        found += shapes(np.where(chosen[pieces], pieces, 0), why)
+    return tuple(found)
+
+
+def refine_outlines(lab: Planes, stone: Mask, usable: Mask) -> Mask:
+    """Move outlines to where the colour is half way between stone and ground.
+
+    `stone` is where stones are, about; `usable` what the photograph shows of ground and stones.
+    """
+    for _ in range(2):
+        inner = ndimage.distance_transform_edt(stone)
+        outer = ndimage.distance_transform_edt(~stone)
+        band = (inner <= BAND_PX) & (outer <= BAND_PX) & usable
+        here, there = _sides(lab, inner > BAND_PX, (outer > BAND_PX) & usable)
+        way = here - there
+        contrast = np.sqrt((way**2).sum(axis=-1))
+        share = ((lab - there) * way).sum(axis=-1) / np.maximum(contrast, 1e-6) ** 2
+        moved = np.where(band & (contrast > _LEAST_CONTRAST), share > 0.5, stone)
+        stone = ndimage.median_filter(moved.astype(np.uint8), 5).astype(bool)
+    return stone
+
+
+def contrast_along(lab: Planes, labels: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Return the contrast in Lab along the weakest quarter of every outline, 1 ... n."""
+    stone = labels > 0
+    inner = ndimage.distance_transform_edt(stone)
+    outer = ndimage.distance_transform_edt(~stone)
+    here, there = _sides(lab, inner > 2, outer > 2)
+    contrast = np.sqrt(((here - there) ** 2).sum(axis=-1))
+    rim = np.where(inner == 1, labels, 0)
+    found = (contrast[rim == number] for number in range(1, int(labels.max()) + 1))
+    # What other stones enclose has no rim.
+    return np.array([float(np.percentile(one, 25)) if one.size else 0.0 for one in found])
+
+
+def _sides(lab: Planes, inside: Mask, outside: Mask) -> tuple[Planes, Planes]:
+    """Return the mean colours nearby of what is inside and of what is outside."""
+    sides = []
+    for part in (inside, outside):
+        weight = _near(part.astype(np.float32))
+        colour = [
+            _near(np.where(part, lab[..., k], np.float32(0))) / np.maximum(weight, 1e-4)
+            for k in range(3)
+        ]
+        sides.append(np.where((weight > 1e-3)[..., None], np.stack(colour, axis=-1), lab))
+    return sides[0], sides[1]
+
+
+def _near(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return the mean nearby; twice a box is nearly a Gaussian, and faster."""
+    once = ndimage.uniform_filter(values, _WINDOW_PX)
+    return np.asarray(ndimage.uniform_filter(once, _WINDOW_PX))

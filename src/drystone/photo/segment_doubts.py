@@ -9,9 +9,8 @@ from skimage.measure import regionprops
 
 from drystone.errors import Notice
 from drystone.model.stone_size import sizes_of
-from drystone.photo.left_out import EDGE, PAPER
-from drystone.photo.segment import FoundStones, stones_at
-from drystone.photo.segment_settings import SegmentSettings
+from drystone.photo.segment import EDGE, PAPER, FoundStones, stones_at
+from drystone.photo.segment_ground import SegmentSettings
 
 LOW_CONTRAST = 8.0
 """Distance in CIELAB from the ground below which an outline is not to be relied on."""
@@ -30,6 +29,31 @@ RULED = 0.8
 
 LISTED = 8
 """Shapes that were left out and that a notice names."""
+
+
+CLEAR = 5.0
+"""Contrast of the usual outline over what the ground itself varies: from here on it is plain.
+
+Photographs of river beds, walls and rooms have .8 to 4.7, stones on tarpaulin, cloth, wood, gravel
+and grass 6.2 and more."""
+
+LITTLE, VERY_LITTLE = 0.05, 0.01
+"""Shares of the photograph that are stone, least on varied ground and on any."""
+
+VARIED = 4.0
+"""What a ground varies in CIELAB, robust standard deviation, that is more than cloth or wood."""
+
+UNEVEN = 0.85
+"""How much darker the darkest place of the ground is lit: beyond, stones there get lost."""
+
+SHEET = 0.35
+"""Share of the photograph from which on a stone may be the sheet that stones lie on."""
+
+LEFT_OUT, LEFT_OUT_SHARE = 2.0, 0.1
+"""What was left out over what was found, and over the photograph, that is more than some stones."""
+
+FEW = 3
+"""So many stones are looked at one by one."""
 
 
 @dataclass(frozen=True)
@@ -58,9 +82,13 @@ def doubts_of(
     sizes = sizes_of(found.labels)
     settings = settings or SegmentSettings()
     at = {size.id: size.at_px for size in sizes}
-    doubts = [*_necks(found, px_per_m)]
+    doubts = _necks(found, px_per_m)
     known = {stone for doubt in doubts for stone in doubt.stones}
-    doubts += [doubt for doubt in _hollow(found, at) if doubt.stones[0] not in known]
+    for region in regionprops(found.labels):
+        stone = int(region.label)
+        if stone not in known and float(region.solidity) < HOLLOW:
+            text = f"stone {stone} at {_place(at[stone])} has a hollow outline"
+            doubts.append(Doubt("W175", (stone,), at[stone], f"{text}: it may be two stones"))
     doubts += [
         Doubt("W176" if one.why in (EDGE, PAPER) else "W182", (), one.at_px, one.text)
         for one in found.left_out
@@ -114,17 +142,13 @@ def notices_of(doubts: Iterable[Doubt]) -> tuple[Notice, ...]:
     texts: dict[str, list[str]] = {}
     for doubt in doubts:
         texts.setdefault(doubt.code, []).append(doubt.text)
+    # Of many shapes that were left out the largest are named, as stones.json has all.
+    if more := texts.get("W182", [])[LISTED:]:
+        texts["W182"][LISTED:] = [f"and {len(more)} more in stones.json"]
     return tuple(
-        Notice(code, f"{_KINDS[code][0]}: {_listed(code, said)}.", _KINDS[code][1])
+        Notice(code, f"{_KINDS[code][0]}: {'; '.join(said)}.", _KINDS[code][1])
         for code, said in sorted(texts.items())
     )
-
-
-def _listed(code: str, texts: list[str]) -> str:
-    """Return the texts; of many shapes that were left out the largest, as stones.json has all."""
-    if code != "W182" or len(texts) <= LISTED:
-        return "; ".join(texts)
-    return f"{'; '.join(texts[:LISTED])}; and {len(texts) - LISTED} more in stones.json"
 
 
 _KINDS = {
@@ -142,17 +166,6 @@ _KINDS = {
     ),
 }
 """What a code means, and the cure."""
-
-
-def _hollow(found: FoundStones, at: dict[int, tuple[float, float]]) -> list[Doubt]:
-    doubts = []
-    for region in regionprops(found.labels):
-        share = float(region.solidity)
-        if share < HOLLOW:
-            stone = int(region.label)
-            text = f"stone {stone} at {_place(at[stone])} has a hollow outline"
-            doubts.append(Doubt("W175", (stone,), at[stone], f"{text}: it may be two stones"))
-    return doubts
 
 
 def _necks(found: FoundStones, px_per_m: float | None) -> list[Doubt]:
@@ -176,3 +189,70 @@ def _necks(found: FoundStones, px_per_m: float | None) -> list[Doubt]:
 
 def _place(at_px: tuple[float, float]) -> str:
     return f"({at_px[0]:.0f}, {at_px[1]:.0f}) px"
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What speaks against all that was found; empty when nothing does."""
+
+    reasons: tuple[str, ...]
+
+    @property
+    def doubtful(self) -> bool:
+        """Whether a person must look before anything is built of it."""
+        return bool(self.reasons)
+
+    @property
+    def notices(self) -> tuple[Notice, ...]:
+        """The reasons as a notice."""
+        if not self.reasons:
+            return ()
+        return (Notice("W183", f"doubtful: {'; '.join(self.reasons)}.", _CURE),)
+
+
+_CURE = (
+    "Look at outlines.html. Lay the stones apart on a plain sheet of another colour and photograph "
+    "nothing else, or crop the photograph to it; masks of a river bed or a wall come from other "
+    "programs (docs/photographs.md)."
+)
+
+
+def verdict_of(found: FoundStones, doubts: Iterable[Doubt] = ()) -> Verdict:
+    """Judge what was found by the whole picture: ground, shares, contrast, and doubts."""
+    areas = np.bincount(found.labels.ravel(), minlength=2)[1:]
+    shown = found.labels.size
+    stone = float(areas.sum()) / shown
+    varies = float(found.ground.spread.max())
+    contrast = float(np.median(found.contrast))
+    reasons = []
+    if contrast < CLEAR * varies:
+        reasons.append(
+            f"the ground is not plain (its colour varies by {varies:.0f}, and what was found "
+            f"differs from it by {contrast:.0f}, in CIELAB)"
+        )
+    if found.ground.uneven > UNEVEN:
+        percent = 100 * (1 - found.ground.uneven)
+        reasons.append(
+            f"the light is very uneven (the darkest ground has {percent:.0f} % of the brightest)"
+        )
+    if areas.max() > SHEET * shown:
+        percent = 100 * float(areas.max()) / shown
+        reasons.append(
+            f"stone {int(areas.argmax()) + 1} takes up {percent:.0f} % of the photograph and may "
+            "be the sheet that the stones lie on"
+        )
+    if stone < (LITTLE if varies > VARIED else VERY_LITTLE):
+        reasons.append(
+            f"only {100 * stone:.2g} % of the photograph was taken for stones, which may be paint, "
+            "dirt or light"
+        )
+    left_out = sum(one.area_px for one in found.left_out) / shown
+    if left_out > max(LEFT_OUT * stone, LEFT_OUT_SHARE):
+        reasons.append(
+            f"{100 * left_out:.0f} % of the photograph differs from the ground and was left out, "
+            f"{100 * stone:.0f} % was taken for stones"
+        )
+    doubted = {one for doubt in doubts for one in doubt.stones}
+    if found.count >= FEW and len(doubted) > found.count / 2:
+        reasons.append(f"{len(doubted)} of {found.count} stones are in doubt")
+    return Verdict(tuple(reasons))

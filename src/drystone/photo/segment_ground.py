@@ -1,7 +1,7 @@
 """The colour of the ground in a photograph, and the light on it."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,10 +11,30 @@ from skimage.filters import threshold_otsu
 
 from drystone.errors import InputError
 from drystone.kernels.raster import Mask
-from drystone.photo.segment_settings import Ground
 
 Planes = NDArray[np.float32]
 """(h, w, 3)."""
+
+
+Ground = Literal["auto", "light", "dark"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SegmentSettings:
+    """How stones are told from the ground."""
+
+    # The lightest or the darkest large area of the photograph; or the colour that is most frequent
+    # along the borders and all over.
+    ground: Ground = "auto"
+    # Smaller areas are no stones; None for a fiftieth of a usual stone (and at least a five
+    # thousandth of the picture).
+    min_area_px: float | None = None
+    split: bool = True  # cut touching stones apart at narrow necks
+    split_below: float = 0.6  # necks narrower than this share of the thinner part are cut
+    other_colour_below: float = 0.85  # the same between parts of different colours
+    doubt_below: float = 0.8  # those that are not cut are reported below this share
+    unusual: float = 6.0  # stones so many times larger or smaller than the median are reported
+
 
 LEAST_SHARE = 0.2
 """Share of the picture that must be ground, or it is no photograph of stones laid out."""
@@ -59,7 +79,12 @@ def fit_ground(image: NDArray[np.uint8], usable: Mask, ground: Ground) -> Ground
         [ndimage.gaussian_filter(light[..., k], 2.0)[::step, ::step] for k in range(3)], axis=-1
     )
     field = _fit_light(coarse, usable[::step, ::step], ground)
-    log_ground = _evaluated(field, usable.shape)
+    # It is smooth, so it is evaluated on few places.
+    planes = np.moveaxis(_basis((40, 40)) @ field, -1, 0)
+    ratio = (usable.shape[0] / 40, usable.shape[1] / 40)
+    log_ground = np.stack(
+        [ndimage.zoom(plane, ratio, order=1, mode="nearest") for plane in planes], axis=-1
+    ).astype(np.float32)
     log_light = np.log(np.maximum(smooth, 1e-3)) - log_ground
     middle = log_ground[usable].mean(axis=0)
     even = np.exp(log_light + middle)
@@ -155,17 +180,6 @@ def _basis(shape: tuple[int, int]) -> NDArray[np.float64]:
     return np.stack(
         [x ** (order - k) * y**k for order in range(4) for k in range(order + 1)], axis=-1
     )
-
-
-def _evaluated(field: NDArray[np.float64], shape: tuple[int, int]) -> Planes:
-    """Evaluate the light everywhere; it is smooth, so coarse first."""
-    coarse = _basis((40, 40)) @ field
-    ratio = (shape[0] / 40, shape[1] / 40)
-    fine = [
-        ndimage.zoom(coarse[..., k], ratio, order=1, grid_mode=False, mode="nearest")
-        for k in range(3)
-    ]
-    return np.stack(fine, axis=-1).astype(np.float32)
 
 
 def _statistics(

@@ -1,6 +1,8 @@
 """From a photograph to stones: scale and view, the picture from above, which px are stone."""
 
 import math
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,17 +12,29 @@ from skimage.draw import polygon2mask
 
 from drystone.errors import Notice, UsageError
 from drystone.kernels.raster import Mask
+from drystone.model.frames3d import Pose3d, Quaternion
 from drystone.photo.layout import MarkerLayout, page_mm
-from drystone.photo.marker_places import PlacedMarker, placed_markers
 from drystone.photo.markers import FoundMarker, find_markers
-from drystone.photo.rectify import rectify
-from drystone.photo.scale import scale_and_view
+from drystone.photo.scale import rigid, scale_and_view
 from drystone.photo.segment import WORKING_PX, FoundStones, segment
-from drystone.photo.segment_settings import SegmentSettings
-from drystone.photo.view import SQUARE, View, apply
+from drystone.photo.segment_ground import SegmentSettings
+from drystone.photo.view import SQUARE, View, apply, rectify
 
 QUIET_ZONE = 0.3
 """White border of a single marker over its side, that is no ground."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedMarker:
+    """A marker in P: corners (4, 2) in metres, y up, from the upper left of its print, clockwise.
+
+    The pose is that of its frame: the origin in its middle, X to the right and Y up in its print, Z
+    out of it, as OpenCV has it.  All markers that were seen of its sheet say where that is.
+    """
+
+    id: int
+    corners_m: NDArray[np.float64]
+    pose: Pose3d
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,64 +74,46 @@ def segment_photo(
     perspective.  `min_area` is in "px" of the result or in "cm2", and replaces what the settings
     say.  E170 to E173 of the markers, E175 no stones, E176 no ground.
     """
+    layout: MarkerLayout | None = None
+    view: View | None = None
+    inside: Mask | None = None
+    px_per_m: float | None = None
+    markers: tuple[FoundMarker, ...] = ()
     if isinstance(scale, MarkerLayout):
-        return _by_markers(image, scale, settings, min_area, max_px)
-    height, width = image.shape[:2]
-    share = min(1.0, math.sqrt(max_px / (height * width)))
-    size = (max(1, int(width * share)), max(1, int(height * share)))
-    picture = image
-    if share < 1.0:
-        picture = np.asarray(Image.fromarray(image).resize(size, Image.Resampling.LANCZOS))
-    by = (size[0] / width, size[1] / height)
-    px_per_m = None if scale is None else scale * math.sqrt(by[0] * by[1])
-    from_photo = np.diag([*by, 1.0])
-    markers = _markers_if_possible(image)
-    papers = papers_of(markers, None, from_photo, picture.shape[:2])
-    found = segment(picture, None, _with_area(settings, min_area, px_per_m), papers)
-    view = None if scale is None else View.flat(scale)
-    ids = tuple(dict.fromkeys(marker.id for marker in markers))
-    return SegmentedPhoto(picture, found, from_photo, px_per_m, view, unasked=ids)
-
-
-def _markers_if_possible(image: NDArray[np.uint8]) -> tuple[FoundMarker, ...]:
-    """Return the markers of a photograph whose scale is not theirs; none without OpenCV."""
-    try:
-        return find_markers(image)
-    except UsageError:
-        return ()
-
-
-def _by_markers(
-    image: NDArray[np.uint8],
-    layout: MarkerLayout,
-    settings: SegmentSettings | None,
-    min_area: tuple[float, str] | None,
-    max_px: int,
-) -> SegmentedPhoto:
-    markers = find_markers(image)
-    view = scale_and_view(markers, layout, (image.shape[1], image.shape[0]))
-    above = rectify(image, view, max_px=max_px)
-    papers = papers_of(markers, layout, above.from_photo, above.inside.shape)
-    settings = _with_area(settings, min_area, above.px_per_m)
-    found = segment(above.values, above.inside, settings, papers)
+        layout, markers = scale, find_markers(image)
+        view = scale_and_view(markers, layout, (image.shape[1], image.shape[0]))
+        above = rectify(image, view, max_px=max_px)
+        picture, inside, from_photo = above.values, above.inside, above.from_photo
+        px_per_m = above.px_per_m
+    else:
+        height, width = image.shape[:2]
+        share = min(1.0, math.sqrt(max_px / (height * width)))
+        size = (max(1, int(width * share)), max(1, int(height * share)))
+        picture = image
+        if share < 1.0:
+            picture = np.asarray(Image.fromarray(image).resize(size, Image.Resampling.LANCZOS))
+        by = (size[0] / width, size[1] / height)
+        from_photo = np.diag([*by, 1.0])
+        if scale is not None:
+            view, px_per_m = View.flat(scale), scale * math.sqrt(by[0] * by[1])
+        with suppress(UsageError):  # nobody asked for markers: none without OpenCV
+            markers = find_markers(image)
+    if min_area is not None:
+        value, unit = min_area
+        if unit == "cm2":
+            if px_per_m is None:
+                raise ValueError("an area in cm2 needs a scale")
+            value *= 1e-4 * px_per_m**2
+        settings = replace(settings or SegmentSettings(), min_area_px=value)
+    papers = papers_of(markers, layout, from_photo, picture.shape[:2])
+    result = SegmentedPhoto(
+        picture, segment(picture, inside, settings, papers), from_photo, px_per_m, view
+    )
+    if view is None or layout is None:
+        return replace(result, unasked=tuple(dict.fromkeys(marker.id for marker in markers)))
     used = [marker for marker in markers if marker.id in view.ids]
-    height = above.values.shape[0]
-    placed = placed_markers(used, layout, above.from_photo, above.px_per_m, height)
-    return SegmentedPhoto(above.values, found, above.from_photo, above.px_per_m, view, placed)
-
-
-def _with_area(
-    settings: SegmentSettings | None, min_area: tuple[float, str] | None, px_per_m: float | None
-) -> SegmentSettings:
-    settings = settings or SegmentSettings()
-    if min_area is None:
-        return settings
-    value, unit = min_area
-    if unit == "cm2":
-        if px_per_m is None:
-            raise ValueError("an area in cm2 needs a scale")
-        value *= 1e-4 * px_per_m**2
-    return replace(settings, min_area_px=value)
+    placed = placed_markers(used, layout, from_photo, above.px_per_m, len(picture))
+    return replace(result, markers=placed)
 
 
 def papers_of(
@@ -136,7 +132,14 @@ def papers_of(
         seen = apply(from_photo, marker.corners_px)
         if layout is not None and layout.page is not None and layout.lists(marker.id):
             paper = SQUARE * (np.array(page_mm(layout.page)) / 1000.0 * layout.printed)
-            outline = _similar(layout.corners_m(marker.id), seen, paper)
+            # Points of the plane as complex numbers: a turn with a scale is one factor.
+            known, at, sheet = (
+                one @ (1.0, 1.0j) for one in (layout.corners_m(marker.id), seen, paper)
+            )
+            centred = known - known.mean()
+            factor = np.vdot(centred, at - at.mean()) / np.vdot(centred, centred)
+            moved = (sheet - known.mean()) * factor + at.mean()
+            outline = np.column_stack([moved.real, moved.imag])
         else:
             middle = seen.mean(axis=0)
             outline = middle + (seen - middle) * (1 + 2 * QUIET_ZONE)
@@ -144,13 +147,28 @@ def papers_of(
     return covered
 
 
-def _similar(
-    known: NDArray[np.float64], seen: NDArray[np.float64], points: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Move points as the turn, shift and scale do that bring `known` to `seen`."""
-    # Points of the plane as complex numbers: a turn with a scale is one factor.
-    one, other = (side[:, 0] + 1j * side[:, 1] for side in (known, seen))
-    centred = one - one.mean()
-    factor = np.vdot(centred, other - other.mean()) / np.vdot(centred, centred)
-    moved = (points[:, 0] + 1j * points[:, 1] - one.mean()) * factor + other.mean()
-    return np.column_stack([moved.real, moved.imag])
+def placed_markers(
+    markers: Sequence[FoundMarker],
+    layout: MarkerLayout,
+    from_photo: NDArray[np.float64],
+    px_per_m: float,
+    height_px: int,
+) -> tuple[PlacedMarker, ...]:
+    """Place markers of a photograph in P, by their ids.
+
+    `from_photo` leads from px of the photograph to those of the picture from above.
+    """
+    flip, top = np.array([1.0, -1.0]), np.array([0.0, height_px / px_per_m])
+    ordered = sorted(markers, key=lambda marker: marker.id)
+    seen = {one.id: apply(from_photo, one.corners_px) / px_per_m * flip + top for one in ordered}
+    printed = {one: layout.corners_m(one) * flip for one in seen}
+    placed = []
+    for one, corners in seen.items():
+        paper = [other for other in seen if layout.group(other) == layout.group(one)]
+        on_paper, in_p = (np.concatenate([of[i] for i in paper]) for of in (printed, seen))
+        turn, shift = rigid(on_paper, in_p)
+        x, y = (turn @ printed[one].mean(axis=0) + shift).tolist()
+        half = math.atan2(turn[1, 0], turn[0, 0]) / 2.0
+        pose = Pose3d(x, y, 0.0, Quaternion(0.0, 0.0, math.sin(half), math.cos(half)))
+        placed.append(PlacedMarker(one, corners, pose))
+    return tuple(placed)

@@ -51,14 +51,22 @@ def find_shadows(ground: GroundModel, foreground: Mask, usable: Mask) -> Shadows
     noise = 1.48 * float(np.median(np.abs(light[~foreground & usable])))
     foreground = foreground | (usable & (light < -(0.1 + 3 * noise)))
     about = ~foreground & usable
-    tinted = foreground & _tinted(ground, light, about)
-    rough = _roughness(light)
+    # Ground with less light: its colours are as far apart as the ground's.
+    tint = np.abs(ground.log_light - light[..., None])
+    own = 1.48 * float(np.median(tint[about], axis=0).max())
+    tinted = foreground & (tint.max(axis=-1) < 0.05 + 0.12 * np.abs(light) + 2.5 * own)
+    tinted &= (light > _DARKEST) & (light < _LIGHTEST)
+    # Shaded ground is no rougher than lit.
+    square = ndimage.uniform_filter(light**2, WINDOW_PX)
+    rough = np.sqrt(np.maximum(square - ndimage.uniform_filter(light, WINDOW_PX) ** 2, 0))
     alike = tinted & (rough < 0.03 + 2.5 * float(np.median(rough[about])))
     none = Shadows(np.zeros_like(foreground), 1.0, None, alike)
     if alike.sum() < 50:
         return none
     width = 0.08 + 2.5 * noise
-    level = _level(light[alike])
+    counts, edges = np.histogram(light[alike], bins=80, range=(_DARKEST, 0.0))
+    best = int(ndimage.gaussian_filter1d(counts.astype(float), 1.5).argmax())
+    level = float(edges[best] + edges[best + 1]) / 2
     near = np.abs(light - level)
     body = ndimage.binary_opening(alike & (near < width), iterations=2)
     # Uneven light is known about, so a shadow may be a little lighter or darker in places.
@@ -72,36 +80,16 @@ def find_shadows(ground: GroundModel, foreground: Mask, usable: Mask) -> Shadows
     # The soft edge of a shadow, on the side of the lit ground, has light of its own.
     depth = ndimage.distance_transform_edt(foreground)
     edge = around & ((depth <= WINDOW_PX) | _grown(body, WINDOW_PX // 2))
-    zone = _behind(sure, direction, _reach(sure))
+    # A shadow may be as long as the largest stones are wide.
+    reach = max(10, int(3 * float(ndimage.distance_transform_edt(sure).max())))
+    zone = _behind(sure, direction, reach)
     body = _open_ended(body, sure, direction)
     edge &= _grown(body, WINDOW_PX + 3)
     return Shadows((body | edge) & zone, float(np.exp(level)), direction, alike)
 
 
-def _tinted(ground: GroundModel, light: NDArray[np.float32], about: Mask) -> Mask:
-    """Return what may be ground with less light: its colours are as far apart as the ground's."""
-    tint = np.abs(ground.log_light - light[..., None])
-    noise = 1.48 * float(np.median(tint[about], axis=0).max())
-    near = tint.max(axis=-1) < 0.05 + 0.12 * np.abs(light) + 2.5 * noise
-    return np.asarray(near & (light > _DARKEST) & (light < _LIGHTEST))
-
-
 def _grown(mask: Mask, by_px: int) -> Mask:
     return np.asarray(ndimage.binary_dilation(mask, iterations=by_px))
-
-
-def _roughness(light: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return the standard deviation of the light nearby: shaded ground is no rougher than lit."""
-    mean = ndimage.uniform_filter(light, WINDOW_PX)
-    square = ndimage.uniform_filter(light**2, WINDOW_PX)
-    return np.asarray(np.sqrt(np.maximum(square - mean**2, 0)), np.float32)
-
-
-def _level(light: NDArray[np.float32]) -> float:
-    """Return the most frequent value."""
-    counts, edges = np.histogram(light, bins=80, range=(_DARKEST, 0.0))
-    best = int(ndimage.gaussian_filter1d(counts.astype(float), 1.5).argmax())
-    return float(edges[best] + edges[best + 1]) / 2
 
 
 def _direction(core: Mask, sure: Mask) -> Vector | None:
@@ -153,12 +141,6 @@ def _open_ended(body: Mask, sure: Mask, direction: Vector) -> Mask:
     kept = on_stone < 0.5 * total
     kept[0] = False
     return np.asarray(kept[areas])
-
-
-def _reach(sure: Mask) -> int:
-    """Return how long a shadow may be, px: as long as the largest stones are wide."""
-    depth = ndimage.distance_transform_edt(sure)
-    return max(10, int(3 * float(depth.max())))
 
 
 def _behind(sure: Mask, direction: Vector, reach: int) -> Mask:

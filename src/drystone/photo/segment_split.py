@@ -9,8 +9,7 @@ from skimage.feature import peak_local_max
 from skimage.segmentation import watershed
 
 from drystone.kernels.raster import Mask
-from drystone.photo.segment_ground import Planes
-from drystone.photo.segment_settings import SegmentSettings
+from drystone.photo.segment_ground import Planes, SegmentSettings
 
 Labels = NDArray[np.int32]
 
@@ -87,10 +86,14 @@ def _joined(
 
     while True:
         thick = ndimage.maximum(depth, basins, np.arange(basins.max() + 1))
-        measured = {
-            pair: _neck(line, depth, 2 * float(min(thick[pair[0]], thick[pair[1]])))
-            for pair, line in _lines(basins).items()
-        }
+        measured = {}
+        for pair, line in _lines(basins).items():
+            # The line of a watershed wanders; the ground is as near on both sides as the neck is
+            # wide.
+            width = max(1.0, 2 * float(depth[tuple(line.T)].max()))
+            row, column = line.mean(axis=0).tolist()
+            thickness = max(2 * float(min(thick[pair[0]], thick[pair[1]])), 1e-9)
+            measured[pair] = Neck((column, row), width, width / thickness, False)
         kept = {pair: neck for pair, neck in measured.items() if narrow(pair, neck)}
         joined = [pair for pair in measured if pair not in kept]
         if not joined:
@@ -119,10 +122,3 @@ def _lines(basins: Labels) -> dict[tuple[int, int], NDArray[np.intp]]:
             at = where[(low == pair[0]) & (high == pair[1])]
             found.setdefault((int(pair[0]), int(pair[1])), []).append(at)
     return {pair: np.concatenate(parts) for pair, parts in found.items()}
-
-
-def _neck(line: NDArray[np.intp], depth: NDArray[np.float64], thickness: float) -> Neck:
-    # The line of a watershed wanders; the ground is as near on both sides as the neck is wide.
-    width = max(1.0, 2 * float(depth[tuple(line.T)].max()))
-    row, column = line.mean(axis=0)
-    return Neck((float(column), float(row)), width, width / max(thickness, 1e-9), False)

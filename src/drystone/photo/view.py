@@ -1,12 +1,14 @@
 """How a photograph shows the ground."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.errors import Notice
+from drystone.errors import InputError, Notice
+from drystone.photo.markers import load_cv2
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 """Corners of a unit square, clockwise with y down; times a size those of a picture."""
@@ -34,15 +36,6 @@ class View:
         """Return the view from straight above: a scale, and nothing to be warped."""
         return cls(np.diag([1.0 / px_per_m, 1.0 / px_per_m, 1.0]), float(px_per_m))
 
-    @property
-    def is_flat(self) -> bool:
-        """True when the photograph needs no warping: a scale was given."""
-        return not self.ids
-
-    def to_ground(self, points_px: NDArray[np.float64] | list[list[float]]) -> NDArray[np.float64]:
-        """Return where (n, 2) points of the photograph are on the ground, metres."""
-        return apply(self.photo_to_ground, np.asarray(points_px, dtype=np.float64))
-
 
 def apply(
     homography: NDArray[np.floating[Any]], points: NDArray[np.floating[Any]]
@@ -62,3 +55,79 @@ def jacobian(homography: NDArray[np.float64], point: NDArray[np.float64]) -> NDA
     w = float(depth(homography, point[None])[0])
     moved = apply(homography, point[None])[0]
     return np.asarray((homography[:2, :2] - np.outer(moved, homography[2, :2])) / w)
+
+
+MAX_PX = 60_000_000
+"""Size that a rectified picture has at most."""
+
+MAX_STRETCH = 10.0
+"""How many times coarser the farthest px of a photograph may be than the nearest."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rectified:
+    """The ground as seen from straight above."""
+
+    values: NDArray[np.uint8]  # (h, w, 3) RGB; black where the photograph shows nothing
+    px_per_m: float  # px of this picture in a metre
+    inside: NDArray[np.bool_]  # (h, w) where the photograph shows something
+    # (3, 3) homography from photo px to px of this picture (pixel centres at +0.5 in both).
+    from_photo: NDArray[np.float64]
+
+
+def rectify(image: NDArray[np.uint8], view: View, max_px: int = MAX_PX) -> Rectified:
+    """Turn a photograph into the picture that a camera far above would take; it shows all of it.
+
+    `px_per_m` of the result is that of the view, or less where `max_px` would be exceeded.  E173:
+    the horizon or what is near to it is in the photograph.
+    """
+    height, width = image.shape[:2]
+    refuse_horizon(view, (width, height))
+    corners = apply(view.photo_to_ground, SQUARE * (width, height))
+    low = corners.min(axis=0)
+    extent = corners.max(axis=0) - low
+    scale = min(view.px_per_m, math.sqrt(max_px / (extent[0] * extent[1])))
+    moved = np.array([[scale, 0, -scale * low[0]], [0, scale, -scale * low[1]], [0, 0, 1]])
+    across, down = (max(1, math.ceil(side * scale - 1e-6)) for side in extent)
+    from_photo = moved @ view.photo_to_ground
+    values, inside = _warped(image, from_photo, (across, down))
+    return Rectified(values, scale, inside, from_photo)
+
+
+def refuse_horizon(view: View, size_px: tuple[int, int]) -> None:
+    """Refuse a view with the horizon, or almost, inside the photograph (E173)."""
+    corners = SQUARE * size_px
+    w = depth(view.photo_to_ground, corners)
+    seen = bool((w > 0).all())
+    if seen:
+        areas = [abs(np.linalg.det(jacobian(view.photo_to_ground, corner))) for corner in corners]
+        seen = max(areas) <= MAX_STRETCH**2 * min(areas)
+    if not seen:
+        raise InputError(
+            "E173",
+            "the photograph was taken at so flat an angle that the far end of the ground, or the "
+            "horizon, is in it; sizes there mean nothing.",
+            cure="Photograph the stones from above, or crop what is far away.",
+        )
+
+
+def _warped(
+    image: NDArray[np.uint8], from_photo: NDArray[np.float64], size: tuple[int, int]
+) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
+    cv2 = load_cv2()
+    # OpenCV puts 0 at the centre of the first pixel, here it is at its corner.
+    half = np.array([[1.0, 0.0, 0.5], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]])
+    by = np.linalg.inv(half) @ from_photo @ half
+    shown = np.full(image.shape[:2], 255, dtype=np.uint8)
+    middle = np.array([image.shape[1] / 2.0, image.shape[0] / 2.0])
+    finer = float(np.abs(np.linalg.det(jacobian(from_photo, middle))))
+    if finer < 0.5:
+        # Px of the photograph between the samples would be skipped, and thin gaps with them.
+        blur = 0.5 * math.sqrt(1.0 / finer - 1.0)
+        image = cv2.GaussianBlur(image, (0, 0), blur)
+    values = cv2.warpPerspective(
+        image, by, size, flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE
+    )
+    inside = np.asarray(cv2.warpPerspective(shown, by, size, flags=cv2.INTER_NEAREST)) > 0
+    values[~inside] = 0
+    return np.asarray(values, dtype=np.uint8), inside

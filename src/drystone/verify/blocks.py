@@ -98,10 +98,10 @@ def _same(claimed: list[Interface], found: list[Interface]) -> bool:
     """Say whether two lists hold the same contacts, in any order."""
     left = list(found)
     for face in claimed:
-        match = next((other for other in left if _meets(face, other)), None)
+        match = next((place for place, other in enumerate(left) if _meets(face, other)), None)
         if match is None:
             return False
-        left = [other for other in left if other is not match]
+        del left[match]
     return not left
 
 

@@ -9,16 +9,18 @@ from drystone.model.overlap import deepest_overlap, shape_of
 from drystone.model.placement import Placement, Wedge
 from drystone.model.plan import Plan, PlanMetrics, WedgeStep
 from drystone.model.stone import StoneSet
-from drystone.model.wall import Labels, Wall
+from drystone.model.wall import Labels
 from drystone.planner.dropping import wedge_limits
 from drystone.statics.model import RigidBlockModel
 from drystone.verify.blocks import check_blocks
 from drystone.verify.claims import (
     Reference,
+    Stability,
     check_choice,
     check_indices,
     check_metrics,
     check_source,
+    check_stability,
     check_stone_claims,
     check_unused,
     recompute_metrics,
@@ -32,9 +34,8 @@ from drystone.verify.pieces import (
     check_wedge,
     is_buried,
 )
-from drystone.verify.replay import Replay, Stage, replay_plan
+from drystone.verify.replay import Replay, replay_plan
 from drystone.verify.report import CheckReport, Problem
-from drystone.verify.stability import Stability, check_stability
 
 
 def check_plan(
@@ -110,40 +111,29 @@ def _check_stages(replay: Replay, standing: Stability, reference: Reference) -> 
     """Verify indices and wedges of every stage."""
     problems = []
     unit, wall = replay.site.units_per_px, replay.wall
+    settings, stock = reference.settings, reference.stock
     steps = {p.id: p.step for p in replay.pieces if isinstance(p.step, WedgeStep)}
     stages = zip(replay.stages, standing.resistances, standing.models, strict=True)
     for stage, resistance, model in stages:
         if resistance is not None:
             problems += check_indices(stage, resistance, reference, unit)
         for wedge in stage.group.wedges:
-            problems += _check_wedge(stage, (steps[wedge.id], wedge), model, wall, reference)
+            step, settled = steps[wedge.id], stage.group.placement.settled
+            if wedge.corners is None or settled is None or wall.outlines is None:
+                problems += check_wedge(
+                    step, wedge, stage.after.labels, settings.stabilise, stock.mean_height_px
+                )
+                continue
+            problems += check_settled_wedge(
+                step,
+                wedge.corners,
+                model or RigidBlockModel((), (), settings.mu),
+                settled.corners,
+                wall.outlines.polygons,
+                wall.site.extent_px[0],
+                wedge_limits(settings, stock, wall.site),
+            )
     return problems
-
-
-def _check_wedge(
-    stage: Stage,
-    wedge_and_step: tuple[WedgeStep, Wedge],
-    model: RigidBlockModel | None,
-    wall: Wall,
-    reference: Reference,
-) -> list[Problem]:
-    """Verify the rules of wedging on the geometry of the plan."""
-    step, wedge = wedge_and_step
-    settings, stock = reference.settings, reference.stock
-    settled = stage.group.placement.settled
-    if wedge.corners is None or settled is None or wall.outlines is None:
-        return check_wedge(
-            step, wedge, stage.after.labels, settings.stabilise, stock.mean_height_px
-        )
-    return check_settled_wedge(
-        step,
-        wedge.corners,
-        model or RigidBlockModel((), (), settings.mu),
-        settled.corners,
-        wall.outlines.polygons,
-        wall.site.extent_px[0],
-        wedge_limits(settings, stock, wall.site),
-    )
 
 
 def _check_image(replay: Replay, wall_labels: Labels) -> list[Problem]:

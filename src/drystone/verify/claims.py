@@ -4,22 +4,115 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 from drystone.clusters import cluster_stones
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.settled import model_of_outlines
 from drystone.model.landscape import Landscape
 from drystone.model.plan import Plan, PlanMetrics, StoneStep
 from drystone.model.stone import StoneSet
+from drystone.model.wall import Wall
 from drystone.planner.assemble import Frame, plan_metrics
 from drystone.planner.build import Build
 from drystone.planner.evaluate import action_indices
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Stock
+from drystone.planner.sturdy import sturdy_model_of
 from drystone.poses import PoseBook
 from drystone.search.plan_result import other_resistances
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import RigidBlockModel
-from drystone.statics.result import LateralResistance
+from drystone.statics.model import GROUND, RigidBlockModel
+from drystone.statics.result import LateralResistance, LimitStatus
 from drystone.verify.replay import Replay, Stage
-from drystone.verify.report import Problem, contradicted
-from drystone.verify.stability import ALPHA_TOLERANCE, differs
+from drystone.verify.report import PrefixAlpha, Problem, contradicted
+
+UNKNOWN = "the solver gave up, and it is not known whether the wall stands"
+
+ALPHA_TOLERANCE = 1e-7
+"""Between load multipliers claimed and found: two solvers' optima of one program."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stability:
+    """What the walls on the way carry."""
+
+    resistances: tuple[LateralResistance | None, ...]
+    """After each stage; None where the wall hangs in the air."""
+    models: tuple[RigidBlockModel | None, ...]
+    prefixes: tuple[PrefixAlpha, ...]
+    problems: tuple[Problem, ...]
+    """E230: it does not stand, or the solver gave up; E231: another load multiplier is claimed;
+    E237: a wall of outlines stands by friction that it should not need."""
+
+
+def check_stability(stages: Sequence[Stage], settings: PlannerSettings) -> Stability:
+    """Analyse every prefix of the plan; only the wall with all wedges of a stone must stand."""
+    models = [wall_model(stage.after, settings) for stage in stages]
+    found = [None if model is None else lateral_resistance(model) for model in models]
+    problems: list[Problem] = []
+    prefixes = []
+    for stage, both in zip(stages, found, strict=True):
+        alphas = (None, None) if both is None else (both.left.alpha, both.right.alpha)
+        prefixes.append(PrefixAlpha(stage.last.step, *alphas))
+        problems += _judge(stage, both) or _not_sturdy(stage, settings)
+    return Stability(tuple(found), tuple(models), tuple(prefixes), tuple(problems))
+
+
+def wall_model(wall: Wall, settings: PlannerSettings) -> RigidBlockModel | None:
+    """Return the model of a wall on its geometry; None when nothing stands on the ground."""
+    if wall.outlines is None:
+        if not (wall.labels[-1] > 0).any():
+            return None
+        return model_from_labels(wall.labels, settings.mu).model
+    settle = settings.settle
+    model = model_of_outlines(wall.outlines, settings.mu, settle.contact_px, settle.setback)
+    grounded = any(interface.other == GROUND for interface in model.interfaces)
+    return model if grounded else None
+
+
+def differs(claimed: float | None, found: float | None, tolerance: float) -> bool:
+    """Say whether two values are not the same, None being a value of its own."""
+    if claimed is None or found is None:
+        return claimed is not found
+    return not abs(claimed - found) <= tolerance * max(1.0, abs(found))
+
+
+def _not_sturdy(stage: Stage, settings: PlannerSettings) -> list[Problem]:
+    """Say that a wall of outlines does not stand in its sturdy model (E237)."""
+    outlines = stage.after.outlines
+    if outlines is None:
+        return []
+    found = lateral_resistance(sturdy_model_of(outlines, settings.mu, settings.settle))
+    if found.stable:
+        return []
+    if found.failed:
+        return [Problem("E230", stage.last.step, f"{UNKNOWN} with less friction and contact.")]
+    message = (
+        "the wall needs friction of upright faces, or friction or gaps at their limit, to stand."
+    )
+    return [Problem("E237", stage.last.step, message)]
+
+
+def _judge(stage: Stage, resistance: LateralResistance | None) -> list[Problem]:
+    last = stage.last
+    if resistance is None:
+        return [Problem("E230", last.step, "nothing of the wall stands on the ground.")]
+    said = {LimitStatus.UNSTABLE: "the wall does not stand", LimitStatus.FAILED: UNKNOWN}
+    sides = resistance.left, resistance.right
+    falls = [
+        f"{said[side.status]}: {side.direction} {side.status.value}."
+        for side in sides
+        if side.status in said
+    ]
+    if falls:
+        return [Problem("E230", last.step, message) for message in falls]
+    claims = zip(
+        ("alpha_left", "alpha_right"), (last.alpha_left, last.alpha_right), sides, strict=True
+    )
+    return [
+        Problem("E231", last.step, contradicted(name, claimed, side.alpha))
+        for name, claimed, side in claims
+        if differs(claimed, side.alpha, ALPHA_TOLERANCE)
+    ]
+
 
 TOLERANCE = 1e-9
 """Of everything but load multipliers; the same sums in the same order, so rounding only."""
@@ -191,10 +284,8 @@ def _wrong_turning(step: StoneStep, reference: Reference) -> str | None:
     most, low, high = _allowed_turns(moves, settings)
     if moves > most:
         return f"rotation_moves is {moves} by the plan, more than its settings allow."
-    turns = [
-        abs((step.angle_deg - angle + 180.0) % 360.0 - 180.0)
-        for angle in _orientation_angles(step.stone, reference)
-    ]
+    angles = reference.book.angles(reference.stones.by_id(step.stone), settings.orientations)
+    turns = [abs((step.angle_deg - angle + 180.0) % 360.0 - 180.0) for angle in angles]
     if any(low - ANGLE_TOLERANCE_DEG <= t <= high + ANGLE_TOLERANCE_DEG for t in turns):
         return None
     return (
@@ -213,8 +304,3 @@ def _allowed_turns(moves: int, settings: PlannerSettings) -> tuple[int, float, f
     # About one point it only turns one way.
     low = limits.step_deg if moves == 1 else 0.0
     return limits.max_pivots if turns else 0, low, limits.max_turn_deg if moves else 0.0
-
-
-def _orientation_angles(stone_id: int, reference: Reference) -> Sequence[float]:
-    stone = reference.stones.by_id(stone_id)
-    return reference.book.angles(stone, reference.settings.orientations)

@@ -14,8 +14,8 @@ from drystone.model.plan import Plan, WedgeStep
 from drystone.model.site import Site
 from drystone.model.steps import Step, grouped, piece_id
 from drystone.model.stone import OUTLINE_TOLERANCE_PX, StoneSet
-from drystone.verify.canvas import settled_stone
 from drystone.verify.lengths import plan_settings, plan_site, source_points
+from drystone.verify.replay import settled_stone
 
 NO_AREA_PX = 1e-9
 """A polygon with an area below this, in square px, has none but for rounding."""

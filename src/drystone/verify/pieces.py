@@ -25,9 +25,8 @@ from drystone.placement.feasible import can_be_lowered
 from drystone.settle.wedge import WedgeLimits, squeezed_out
 from drystone.stabilise.settings import StabiliseSettings
 from drystone.statics.model import RigidBlockModel
-from drystone.verify.canvas import PENETRATION_PX
 from drystone.verify.lengths import working_points
-from drystone.verify.replay import Stage
+from drystone.verify.replay import PENETRATION_PX, Stage
 from drystone.verify.report import Problem
 
 SAME_AREA = 1e-6

@@ -14,8 +14,8 @@ from skimage.draw import polygon2mask
 from skimage.transform import warp
 
 from drystone.kernels.raster import Mask
-from drystone.photo.dictionaries import marker_modules
 from drystone.photo.layout import ON_A_SHEET, MarkerLayout, page_mm, parse_layout
+from drystone.photo.markers import marker_modules
 from drystone_lab.photographs.layout import GroundKind, Labels, PhotoLevel, Rock, lay_stones
 
 Plane = NDArray[np.float32]

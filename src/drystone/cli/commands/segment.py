@@ -19,10 +19,16 @@ from drystone.io.photo_beside import LABELS, PAGE, SIDECAR, PhotoSidecar, write_
 from drystone.io.photo_file import Photo, read_photo
 from drystone.model.stone_size import StoneSize, median_sides, sizes_of
 from drystone.photo.layout import MarkerLayout, parse_layout, parse_size_m
-from drystone.photo.segment_doubts import Doubt, doubts_of, notices_of, ruler_doubts
+from drystone.photo.segment_doubts import (
+    Doubt,
+    Verdict,
+    doubts_of,
+    notices_of,
+    ruler_doubts,
+    verdict_of,
+)
+from drystone.photo.segment_ground import SegmentSettings
 from drystone.photo.segment_photo import SegmentedPhoto, segment_photo
-from drystone.photo.segment_settings import SegmentSettings
-from drystone.photo.verdict import Verdict, verdict_of
 from drystone.photo.view import apply
 from drystone.whole_files import write_whole
 

@@ -18,10 +18,10 @@ from drystone.drawing.words.checked import PICTURE, Checked
 from drystone.errors import PlanError
 from drystone.model.steps import piece_id
 from drystone.statics.limit import lateral_resistance
+from drystone.verify.claims import wall_model
 from drystone.verify.outlines import common_areas
 from drystone.verify.replay import replay_plan
 from drystone.verify.report import Problem
-from drystone.verify.stability import wall_model
 
 MISPLACED = ("E220", "E221", "E222", "E223", "E224", "E240")
 """Problems of a stone or wedge where it lies."""

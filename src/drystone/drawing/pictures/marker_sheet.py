@@ -11,7 +11,6 @@ from drystone.drawing.drawing import Surface
 from drystone.drawing.files import pdf_bytes
 from drystone.drawing.outlines import pixel_loops
 from drystone.drawing.sheet.page import SheetPage
-from drystone.photo.dictionaries import FAMILIES, marker_modules
 from drystone.photo.layout import (
     CHECK_LINE_MM,
     MIDDLE_MM,
@@ -21,6 +20,7 @@ from drystone.photo.layout import (
     sheet_positions_m,
     single_position_m,
 )
+from drystone.photo.markers import FAMILIES, marker_modules
 from drystone.whole_files import write_whole
 
 

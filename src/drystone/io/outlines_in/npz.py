@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from drystone.errors import InputError
 from drystone.io.file_errors import damaged, too_large, unusable
 from drystone.io.foreign import foreign
-from drystone.io.npy import array_of
+from drystone.io.images import array_of
 from drystone.io.outlines_in.fill import trimmed
 from drystone.io.outlines_in.gathered import Gathered
 from drystone.io.outlines_in.model import OutlineFile

@@ -1,0 +1,132 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.contacts.settled import PlacedPolygons, model_of_outlines
+from drystone.kernels.polygons import no_polygons
+from drystone.model.outlines import Outlines
+from drystone.model.plan import WedgeStep
+from drystone.model.site import Site
+from drystone.settle.wedge import WedgeLimits
+from drystone.verify.pieces import check_settled_wedge, lies_under, swept_upwards
+from tests.polygons import simple_polygons
+from tests.strategies import repeatable
+
+STEP = WedgeStep(3, 9, 7, (), None, None)
+LIMITS = WedgeLimits(least_thickness=1.0, greatest_height=6.0, greatest_area=30.0)
+SLAB = np.array([[0, 8.01], [15, 8.01], [15, 10], [0, 10]])
+WIDTH = 20.0
+
+
+def box(left, bottom, right, top):
+    return np.array([[left, bottom], [right, bottom], [right, top], [left, top]])
+
+
+def model(wedge, *more):
+    """A pillar, a lower one, a slab on the first, and a wedge that may hold it."""
+    blocks = [(1, box(0, 0.01, 5, 8)), (2, box(10, 0.01, 15, 5)), (7, SLAB)]
+    return model_of_outlines(PlacedPolygons.of([*blocks, (9, wedge), *more]), 0.58, 0.1)
+
+
+def found(wedge, *more, **limits):
+    blocks = model(wedge, *more)
+    wall = no_polygons().added([box(0, 0.01, 5, 8), box(10, 0.01, 15, 5), SLAB, wedge])
+    problems = check_settled_wedge(
+        STEP, wedge, blocks, SLAB, wall, WIDTH, replace(LIMITS, **limits)
+    )
+    assert all(problem.step == 3 for problem in problems)
+    return [f"{problem.code} {problem.message}" for problem in problems]
+
+
+def test_wedge_must_touch_its_stone_from_below():
+    assert found(box(11, 5.01, 14, 8.0)) == []
+    assert found(box(11, 5.01, 14, 7.85)) == ["E223 wedge 9 does not touch stone 7 from below."]
+    # It stands on the stone that it should hold, and at its side.
+    (holds, stands) = found(box(5, 10.01, 8, 12.5))
+    assert "does not touch" in holds
+    assert "stands on nothing" in stands
+    assert "does not touch" in found(box(15.05, 0, 18, 9))[0]
+
+
+def test_wedge_must_stand_on_something():
+    assert found(box(11, 5.2, 14, 8.0)) == ["E223 wedge 9 stands on nothing."]
+    on_ground = found(box(5.5, 0.01, 9.5, 8.0), greatest_height=9, greatest_area=99)
+    assert [line[:4] for line in on_ground] == ["E224"]
+    # It may stand on another that comes after it.
+    upper, lower = box(11, 6.52, 14, 8.0), (10, box(11, 5.01, 14, 6.51))
+    assert found(upper, lower) == []
+    assert found(upper) == ["E223 wedge 9 stands on nothing."]
+
+
+def test_wedge_is_one_that_a_mason_would_cut():
+    """The limits themselves are tested beside the rule."""
+    (line,) = found(box(11, 5.01, 13.9, 8.0), greatest_height=2.98)
+    assert line == (
+        "E224 no mason would cut wedge 9 (source px): 2.9 wide, at least 3; "
+        "2.99 high, at most 2.98; 1.031 times as high as wide, at most 1."
+    )
+    # Rounding to the grid is no fault.
+    assert found(box(11, 5.01, 13.999995, 7.999995)) == []
+
+
+def test_wedge_at_the_end_of_the_wall_has_something_beside_it():
+    wedge = box(11, 5.01, 14, 8.0)
+    assert found(wedge, room_px=5.0) == []
+    (line,) = found(wedge, room_px=5.1)
+    assert line.endswith("(source px): nothing beside it at the end of the wall.")
+
+
+TOP = 40.0
+
+
+def placed(*blocks):
+    return Outlines.empty(Site(60, 40)).added(list(enumerate(blocks, 1)), 1.0)
+
+
+@repeatable(30)
+@given(simple_polygons(), st.integers(0, 2**31))
+def test_sweep_is_everything_above_the_lowest_points(corners, seed):
+    """The slow twin: a point is passed when the ray downwards from it meets the polygon."""
+    swept, polygon = swept_upwards(corners, TOP), shapely.Polygon(corners)
+    left, low, right, high = polygon.bounds
+    rng = np.random.default_rng(seed)
+    for x, y in rng.uniform([left - 1, low - 1], [right + 1, high + 3], (60, 2)).tolist():
+        ray = shapely.LineString([(x, y), (x, low - 2)])
+        near = shapely.distance(swept.boundary, shapely.Point(x, y)) < 1e-6
+        assert near or swept.contains(shapely.Point(x, y)) == ray.intersects(polygon)
+
+
+@pytest.mark.parametrize(
+    ("earlier", "expected"),
+    [
+        (box(2, 12, 8, 16), True),
+        (box(2, -9, 8, -0.01), False),  # it stands on it
+        (box(-5, -9, 15, 0.0), False),
+        (box(-5, -9, 15, 0.04), False),  # as deep in its bed as it may be
+        (box(-5, -9, 15, 0.2), True),
+        (box(-9, 0, -0.01, 16), False),  # beside it, and higher
+        (box(-9, 12, 0.9, 16), False),  # a sliver above it
+        (box(-9, 12, 1.1, 16), True),
+        (box(9.1, 12, 19, 16), False),
+        (box(8.9, 12, 19, 16), True),
+        (box(30, 12, 40, 16), False),
+        (np.array([[4.0, 20.0], [9.0, 21.0], [3.0, 25.0]]), True),
+    ],
+)
+def test_block_is_buried_by_what_is_wide_enough_above_it(earlier, expected):
+    block = box(0, 0, 10, 10)
+    assert lies_under(block, placed(earlier), 1.0) is expected
+    # Others that are in nobody's way change nothing.
+    assert lies_under(block, placed(box(0, -5, 10, -0.01), earlier), 1.0) is expected
+
+
+def test_hook_over_what_is_there_can_be_lowered_and_under_it_cannot():
+    arch = np.array([[0, 0], [2, 0], [2, 6], [8, 6], [8, 0], [10, 0], [10, 8], [0, 8]], float)
+    assert not lies_under(arch, placed(box(3, 0, 7, 5.9)), 0.5)
+    clamp = np.array([[0, 0], [10, 0], [10, 2], [2, 2], [2, 6], [10, 6], [10, 8], [0, 8]], float)
+    assert lies_under(clamp, placed(box(3, 2.1, 20, 5.9)), 0.5)
+    assert not lies_under(clamp, placed(), 0.5)
