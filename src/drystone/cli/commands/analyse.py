@@ -22,7 +22,7 @@ from drystone.cli.numbers import (
     whole_from,
 )
 from drystone.cli.output import note, prepare_files, print_json, print_table
-from drystone.cli.progress import counting_bar
+from drystone.cli.progress import busy, counting_bar
 from drystone.cli.reading import add_wall, reading_from
 from drystone.drawing.words.analysis import (
     Card,
@@ -147,7 +147,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         associative_only=arguments.associative_only, solver=arguments.solver,
     )  # fmt: skip
     if pictures:
-        _write_all(pictures, wall, card, loads, per_unit_m)
+        with busy("drawing", quiet=arguments.json, after_s=2.0):
+            _write_all(pictures, wall, card, loads, per_unit_m)
     report, rows = card.report(), card.rows()
     if wall.sweep is not None:
         report["gaps"] = sweep_report(wall.sweep)
@@ -209,13 +210,13 @@ def _print_range(
         from drystone.drawing.report.analysis import draw_analysis  # noqa: PLC0415 - slow import
 
         _clear(pictures[0].parent)
-        draw_analysis(pictures, wall, loads, ends)
+        with busy("drawing", quiet=arguments.json, after_s=2.0):
+            draw_analysis(pictures, wall, loads, ends)
     if arguments.json:
         print_json(card.report())
     else:
         print_table(f"{arguments.wall_path}: {counted(len(model.blocks), 'block')}", card.rows())
-    failed = any(end.status is LimitStatus.FAILED for end in ends)
-    if failed:
+    if any(end.status is LimitStatus.FAILED for end in ends):
         return _keep_failure(model, loads, pictures)
     falls = any(end.status is LimitStatus.UNSTABLE for end in ends)
     return ExitCode.CHECK_FAILED if falls else ExitCode.DONE

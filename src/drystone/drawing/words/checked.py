@@ -188,6 +188,7 @@ class Checked:
     def rows(self) -> list[tuple[str, str]]:
         """Return names and values, one a line."""
         plan, report = self.plan, self.report
+        buried = ", ".join(map(str, report.buried))
         rows = [
             (
                 "stones",
@@ -195,7 +196,7 @@ class Checked:
             ),
             ("overlap", f"{report.overlap_depth:.2f} source px deep by the outlines"),
             ("area", f"pixel areas agree to {100 * report.area_error:.1f} %"),
-            ("buried", ", ".join(map(str, report.buried)) or "none"),
+            ("buried", f"{buried}: cannot be lowered in from above" if buried else "none"),
         ]
         if self.asked_physics:
             found = self.physics

@@ -69,10 +69,8 @@ class Rehearsed:
         """Return what there is to say as JSON (docs/plan-format.md)."""
         stayed = [end for run in self.runs for end in run.stones if not end.fallen]
         steps = {step.stone: step.step for step in self.plan.stone_steps}
-        away, turns = (
-            [end.share or 0.0 for end in stayed],
-            [abs(end.turn_deg or 0) for end in stayed],
-        )
+        away = [end.share or 0.0 for end in stayed]
+        turns = [abs(end.turn_deg or 0) for end in stayed]
         return {
             "judge": "engine" if self.engine else "settling",
             "loop": "open" if self.again is None else "closed",
@@ -122,5 +120,5 @@ class Rehearsed:
         ):  # fmt: skip
             if (found := told[key]) is not None:
                 low, median, high = map(form.format, found.values())
-                rows.append((name, f"{median} ({low} to {high})"))
+                rows.append((name, f"median {median}, 90 % within {low} to {high}"))
         return rows
