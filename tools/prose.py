@@ -1,8 +1,7 @@
 """Keep what people read plain: messages of the code, the README and the pages of docs.
 
 A fault is "is no X" for "is not an X", "stone(s)", a number without the zero before its point, and
-a sentence above 25 words, where a colon ends one too.  Messages have none.  What pages still have
-is in prose.txt, a number a page, that may only shrink: ``python tools/prose.py --write`` writes it.
+a sentence above 25 words, where a colon ends one too.
 """
 
 import ast
@@ -12,7 +11,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-LEFT = ROOT / "tools" / "prose.txt"
 MOST_WORDS = 25
 FAULTS = (
     re.compile(r"(?<!here )\b(?:is|are) no (?!longer\b|more\b|data\b|\w+er than\b)[a-z]\w*", re.I),
@@ -50,10 +48,8 @@ def messages(tree: ast.Module) -> Iterator[tuple[int, str]]:
 
 
 def main() -> int:
-    """Print faults; 1 when a message has one, or a page more than are left to mend."""
-    rows = (line.split() for line in LEFT.read_text(encoding="utf-8").splitlines())
-    left = {name: int(count) for name, count in rows}
-    said, found = list[str](), dict[str, int]()
+    """Print faults; 1 when there are any."""
+    said = list[str]()
     for path in sorted((ROOT / "src").rglob("*.py")):
         if path.name in QUOTED:
             continue
@@ -61,14 +57,8 @@ def main() -> int:
             if " " in text:
                 said += [f"{path.relative_to(ROOT)}:{line}: {fault}" for fault in faults(text)]
     for path in sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")]):
-        name = str(path.relative_to(ROOT))
-        wrong = list(faults(CODE.sub(" X ", path.read_text(encoding="utf-8"))))
-        found[name] = len(wrong)
-        if len(wrong) > left.get(name, 0):
-            said += [f"{name}: {len(wrong)} faults, at most {left.get(name, 0)} before:", *wrong]
-    if "--write" in sys.argv:
-        lines = [f"{name} {count}\n" for name, count in found.items() if count]
-        LEFT.write_text("".join(lines), encoding="utf-8")
+        wrong = faults(CODE.sub(" X ", path.read_text(encoding="utf-8")))
+        said += [f"{path.relative_to(ROOT)}: {fault}" for fault in wrong]
     sys.stdout.write("".join(f"{line}\n" for line in said))
     return int(bool(said))
 

@@ -2,13 +2,13 @@
 
 import argparse
 import platform
-import sys
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 
 from drystone.cli.output import make_folder, print_json, say
+from drystone.cli.progress import busy
 from drystone.cli.settings import read_toml
 from drystone.errors import ExitCode, UsageError
 from drystone.io.published import published_folder
@@ -98,7 +98,8 @@ def _tables(arguments: argparse.Namespace, suite: str) -> Sequence[Table]:
         shake=arguments.shake, say=say,
     )  # fmt: skip
     if not public:
-        return run_suite(suite, settings)
+        with busy(suite, quiet=arguments.json, after_s=2.0):
+            return run_suite(suite, settings)
     from drystone_lab.public.bench import run_public  # noqa: PLC0415 - see above
     from drystone_lab.public.store import Stamp  # noqa: PLC0415
 
@@ -146,8 +147,7 @@ def _data(given: str | None) -> Path | None:
     """Return the folder of published data: the option, DRYSTONE_DATA, the cache, or none."""
     folder = published_folder(given)
     if folder is not None and not folder.is_dir():
-        said = f"drystone: there is no folder {folder}; rows that need it are left out"
-        print(said, file=sys.stderr)
+        say(f"drystone: there is no folder {folder}; rows that need it are left out")
         return None
     return folder
 

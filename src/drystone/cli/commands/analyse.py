@@ -21,7 +21,7 @@ from drystone.cli.numbers import (
     whole_from,
 )
 from drystone.cli.output import note, prepare_files, print_json, print_table
-from drystone.cli.progress import counting_bar
+from drystone.cli.progress import busy, counting_bar
 from drystone.cli.reading import add_wall, reading_from
 from drystone.drawing.words.analysis import (
     SCATTER,
@@ -150,7 +150,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if folder is not None:
         from drystone.drawing.report.analysis import write_analysis  # noqa: PLC0415 - slow import
 
-        write_analysis(folder, card, loads, per_unit_m)
+        with busy("drawing", quiet=arguments.json, after_s=2.0):
+            write_analysis(folder, card, loads, per_unit_m)
     report, rows = card.report(), card.rows()
     if wall.sweep is not None:
         report["gaps"] = sweep_report(wall.sweep)

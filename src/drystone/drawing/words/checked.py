@@ -188,11 +188,12 @@ class Checked:
         """Return names and values, one a line."""
         plan, report = self.plan, self.report
         placed = f"{len(plan.stone_steps)} placed, " + counted(len(plan.wedge_steps), "wedge")
+        buried = ", ".join(map(str, report.buried))
         rows = [
             ("stones", placed),
             ("overlap", f"{report.overlap_depth:.2f} source px deep by the outlines"),
             ("area", f"pixel areas agree to {100 * report.area_error:.1f} %"),
-            ("buried", ", ".join(map(str, report.buried)) or "none"),
+            ("buried", f"{buried}: cannot be lowered in from above" if buried else "none"),
         ]
         if self.asked_physics:
             found = self.physics

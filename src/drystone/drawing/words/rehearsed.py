@@ -120,5 +120,5 @@ class Rehearsed:
         ):  # fmt: skip
             if (found := told[key]) is not None:
                 low, median, high = map(form.format, found.values())
-                rows.append((name, f"{median} ({low} to {high})"))
+                rows.append((name, f"median {median}, 90% within {low} to {high}"))
         return rows

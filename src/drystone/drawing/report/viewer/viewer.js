@@ -964,7 +964,8 @@ class Viewer {
   arc(degrees, cy) {
     const angle = ((((degrees + 180) % 360) + 360) % 360) - 180;
     const [cx, r] = [158, 17];
-    if (Math.abs(angle) < 0.05) return [draw("path", { class: "ds-arc", d: `M${cx - 14} ${cy}H${cx + 14}m-6 -5l6 5l-6 5` })];
+    // Nobody turns a stone by less: the words say "as it lies", too.
+    if (Math.abs(angle) < 2.5) return [draw("path", { class: "ds-arc", d: `M${cx - 14} ${cy}H${cx + 14}m-6 -5l6 5l-6 5` })];
     const words = draw("text", { class: "ds-caption", x: cx, y: 2 * cy + 8 }, `${Math.abs(angle).toFixed(0)}° ${angle > 0 ? "↺" : "↻"}`);
     const at = (turn) => [cx + r * Math.sin(turn), cy - r * Math.cos(turn)];
     const radians = (-angle * Math.PI) / 180;
