@@ -14,7 +14,7 @@ from drystone.model.wall import Group
 from drystone.planner.build import Build, Candidate
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.planner import Planner
-from drystone.planner.replay import judged, replayed, stands
+from drystone.planner.replay import judged, replayed
 from drystone.planner.settings import PlannerSettings
 from drystone.settle.placing import settled_placement
 from drystone.settle.rest import placed_outline
@@ -253,9 +253,7 @@ def test_what_stands_stands_in_both_models_and_carries_a_load() -> None:
         planner.build, [groups["ground"]], {}, planner.workshop, planner.settings
     )
     action: Candidate = build.actions[0]
-    assert stands(action)
-    assert not stands(replace(action, sturdy=False))
-    right = action.resistance.right
-    for alpha in (0.0, None):
-        resistance = replace(action.resistance, right=replace(right, alpha=alpha))
-        assert not stands(replace(action, resistance=resistance))
+    assert action.stands
+    assert not replace(action, sturdy=False).stands
+    for llc in (0.0, None):
+        assert not replace(action, indices=replace(action.indices, LLC=llc)).stands

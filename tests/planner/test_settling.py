@@ -157,7 +157,7 @@ def test_drops_are_above_what_is_there_and_inside_the_wall() -> None:
     assert sum(map(len, found)) > 20
     for drop in (drop for mine in found for drop in mine):
         side, posed = drop.trial.landscape.side, drop.trial.poses[0]
-        scene, _ = proposer.view(side)
+        scene = proposer.view(side).scene
         corners = step.workshop.outlines.hung(posed.stone, posed.angle_deg, side).turned.corners
         shape = shapely.Polygon(corners + np.array(drop.start))
         left, low, right, _ = shape.bounds

@@ -60,7 +60,7 @@ def replayed(
         if fitted is not None:
             action = judged(build, fitted, course_heights_px, evaluator)
             solves += Solves.of(action)
-            if stands(action):
+            if action.stands:
                 build = build.add(action, keep=keep)
         if build is stood:
             left_out.append(group.placement.stone_id)
@@ -75,11 +75,6 @@ def judged(
     height = course_heights_px.get(placement.stone_id)
     proposal = Proposal(group, placement.posed.angle_deg, course_height_px=height)
     return evaluator.judge(build, Landscape.of(build.wall, placement.side), proposal)
-
-
-def stands(action: Candidate) -> bool:
-    """Say whether the wall stands after an action, in both models, and carries some load."""
-    return action.sturdy and (action.resistance.value or 0.0) > 0.0
 
 
 def _has_room(wall: Wall, group: Group, limits: WedgeLimits) -> bool:

@@ -15,7 +15,6 @@ from drystone.planner.build import Build
 from drystone.planner.deadline import NEVER, Deadline, TimeIsUp
 from drystone.planner.events import INTERRUPTED, OUT_OF_TIME, Incumbent, Stopped
 from drystone.planner.planner import Planner
-from drystone.planner.replay import stands
 from drystone.planner.sturdy import ROUNDS
 from drystone.search.anytime import searching
 from drystone.search.chain import forget, without
@@ -78,7 +77,7 @@ def run_to_end(
         stopped = _built(planner, NEVER if first_whole else until, told)
         if planner.settings.search.budget == 1 or stopped in (INTERRUPTED, OUT_OF_TIME):
             return SearchEnd(planner, stopped, 1, ())
-        fallen = tuple(one.stone_id for one in planner.build.actions if not stands(one))
+        fallen = tuple(one.stone_id for one in planner.build.actions if not one.stands)
         if fallen:
             return SearchEnd(planner, stopped, 1, (), fallen=fallen)
     try:
