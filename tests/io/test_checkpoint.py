@@ -15,7 +15,7 @@ from drystone.planner.settings import PlannerSettings
 from drystone.search.anytime import searching
 from drystone.search.goal import FoundWall
 from drystone.search.packed import PackedWall
-from drystone.search.standing import Chains, Progress, Standing
+from drystone.search.state import Chains, Progress, SearchState
 from drystone.search.whole_search import run_to_end
 from drystone.search.yard import Yard
 from tests.planner.scenes import RUBBLE_SITE, WITH_WEDGES, few_stones, finish, greedy, rubble
@@ -23,25 +23,25 @@ from tests.planner.scenes import RUBBLE_SITE, WITH_WEDGES, few_stones, finish, g
 SMALL = {"budget": 13, "passes": 3, "chains": 2, "share_every": 2, "cycle": 3}
 
 
-def searched(planner: Planner, start: FoundWall | Standing | None = None) -> list[Progress]:
+def searched(planner: Planner, start: FoundWall | SearchState | None = None) -> list[Progress]:
     begin = start or FoundWall.of(planner)
     return list(searching(begin, Yard.of(planner), planner.seed))
 
 
-def standings(found: list[Progress]) -> list[Standing]:
-    return [one.standing for one in found if one.standing is not None]
+def states_of(found: list[Progress]) -> list[SearchState]:
+    return [one.state for one in found if one.state is not None]
 
 
-def again(standing: Standing, folder: Path, planner: Planner) -> Standing:
+def again(state: SearchState, folder: Path, planner: Planner) -> SearchState:
     """Write where a search stands, and read it."""
     made_of = {"stones": "abc", "settings": {"mu": 0.58}}
-    write_checkpoint(Checkpoint(made_of, standing), folder)
+    write_checkpoint(Checkpoint(made_of, state), folder)
     ids = [stone.id for stone in planner.workshop.stones]
     read = read_checkpoint(folder, ids, planner.settings.search)
     assert read is not None
     assert read.made_of == made_of
-    assert read.standing is not None
-    return read.standing
+    assert read.state is not None
+    return read.state
 
 
 def wedges(walls: tuple[PackedWall, ...]) -> int:
@@ -52,11 +52,11 @@ def test_a_search_goes_on_from_a_file_to_the_same_walls(tmp_path: Path) -> None:
     stones, settings = few_stones(), greedy({"geometry": "exact", **WITH_WEDGES, "search": SMALL})
     planner = finish(Planner(stones, Site(90, 30), seed=2, settings=settings))
     whole = searched(planner)
-    stood = standings(whole)
+    stood = states_of(whole)
     assert [one.walls for one in stood] == [2, 3, 5, 7, 9, 11, 13]
     assert any(group.wedges for wall in whole[-1].kept for group in wall.groups)
-    for standing in stood[:-1:2]:
-        read = again(standing, tmp_path, planner)
+    for state in stood[:-1:2]:
+        read = again(state, tmp_path, planner)
         found = searched(planner, read)
         assert found[-1].walls == whole[-1].walls
         assert found[-1].best.groups == whole[-1].best.groups
@@ -75,22 +75,22 @@ def test_without_a_search_it_says_what_is_planned(tmp_path: Path) -> None:
     write_checkpoint(Checkpoint({"--seed": 1}), tmp_path)
     read = read_checkpoint(tmp_path, [], search)
     assert read is not None
-    assert (read.made_of, read.standing) == ({"--seed": 1}, None)
+    assert (read.made_of, read.state) == ({"--seed": 1}, None)
     (tmp_path / CHECKPOINT).unlink()
     (tmp_path / CHECKPOINT).mkdir()
     assert read_checkpoint(tmp_path, [], search) is None
 
 
 @pytest.fixture(scope="module")
-def stood() -> tuple[Standing, Planner]:
+def stood() -> tuple[SearchState, Planner]:
     """Where chains stand, in the second round, with what they are of."""
     search = {**SMALL, "budget": 24, "patience": 1}
     settings = greedy({"geometry": "exact", "search": search})
     planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
-    standing = standings(searched(planner))[-1]
-    assert standing.number > 0
-    assert standing.chains is not None
-    return standing, planner
+    state = states_of(searched(planner))[-1]
+    assert state.number > 0
+    assert state.chains is not None
+    return state, planner
 
 
 def refused(folder: Path, planner: Planner, ids: list[int] | None = None) -> str:
@@ -117,10 +117,10 @@ def refused(folder: Path, planner: Planner, ids: list[int] | None = None) -> str
     ],
 )
 def test_a_damaged_file_is_refused(
-    damage: Callable[[bytes], bytes], stood: tuple[Standing, Planner], tmp_path: Path
+    damage: Callable[[bytes], bytes], stood: tuple[SearchState, Planner], tmp_path: Path
 ) -> None:
-    standing, planner = stood
-    again(standing, tmp_path, planner)
+    state, planner = stood
+    again(state, tmp_path, planner)
     path = tmp_path / CHECKPOINT
     whole = path.read_bytes()
     path.write_bytes(damage(whole))
@@ -129,24 +129,24 @@ def test_a_damaged_file_is_refused(
 
 
 def test_a_file_that_is_too_large_or_of_another_version_is_refused(
-    stood: tuple[Standing, Planner], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    stood: tuple[SearchState, Planner], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    standing, planner = stood
+    state, planner = stood
     with monkeypatch.context() as patch:
         patch.setattr(checkpoint, "version", lambda _: "0.0.1")
-        again(standing, tmp_path, planner)
+        again(state, tmp_path, planner)
     assert "of drystone 0.0.1" in refused(tmp_path, planner)
-    again(standing, tmp_path, planner)
+    again(state, tmp_path, planner)
     monkeypatch.setattr(checkpoint, "LARGEST_BYTES", 1000)
     assert "too large" in refused(tmp_path, planner)
 
 
-def chains_of(standing: Standing) -> Chains:
-    assert standing.chains is not None
-    return standing.chains
+def chains_of(state: SearchState) -> Chains:
+    assert state.chains is not None
+    return state.chains
 
 
-CHANGES: dict[str, Callable[[Standing], Standing]] = {
+CHANGES: dict[str, Callable[[SearchState], SearchState]] = {
     "rounds": lambda one: replace(one, number=0),
     "round": lambda one: replace(one, before=None),
     "first": lambda one: replace(one, chains=None),
@@ -158,41 +158,41 @@ CHANGES: dict[str, Callable[[Standing], Standing]] = {
 }
 
 
-def with_best(standing: Standing, ends: tuple[int, ...]) -> Standing:
-    chains = chains_of(standing)
+def with_best(state: SearchState, ends: tuple[int, ...]) -> SearchState:
+    chains = chains_of(state)
     planned = next(w for w in chains.reached.kept if w.courses is not None)
     assert planned.courses is not None
     wall = replace(planned, courses=replace(planned.courses, ends=ends))
-    return replace(standing, chains=replace(chains, reached=replace(chains.reached, best=wall)))
+    return replace(state, chains=replace(chains, reached=replace(chains.reached, best=wall)))
 
 
 @pytest.mark.parametrize("change", CHANGES)
 def test_a_search_that_cannot_be_is_refused(
-    change: str, stood: tuple[Standing, Planner], tmp_path: Path
+    change: str, stood: tuple[SearchState, Planner], tmp_path: Path
 ) -> None:
-    standing, planner = stood
-    write_checkpoint(Checkpoint({}, CHANGES[change](standing)), tmp_path)
+    state, planner = stood
+    write_checkpoint(Checkpoint({}, CHANGES[change](state)), tmp_path)
     assert refused(tmp_path, planner)
 
 
 def test_a_search_of_other_stones_is_refused(
-    stood: tuple[Standing, Planner], tmp_path: Path
+    stood: tuple[SearchState, Planner], tmp_path: Path
 ) -> None:
-    standing, planner = stood
-    write_checkpoint(Checkpoint({}, standing), tmp_path)
+    state, planner = stood
+    write_checkpoint(Checkpoint({}, state), tmp_path)
     assert "other stones" in refused(tmp_path, planner, ids=[1, 2])
 
 
 def test_a_forged_search_whose_walls_do_not_stand_has_a_code(
-    stood: tuple[Standing, Planner],
+    stood: tuple[SearchState, Planner],
 ) -> None:
-    standing, planner = stood
-    chains = chains_of(standing)
+    state, planner = stood
+    chains = chains_of(state)
     now = chains.links[0].now
     high = replace(now.groups[0], place=(20.0, 30.0))
     floating = replace(now, groups=(high, *now.groups[1:]))
     links = tuple(replace(link, now=floating) for link in chains.links)
-    forged = replace(standing, chains=replace(chains, links=links, turn=0))
+    forged = replace(state, chains=replace(chains, links=links, turn=0))
     settings: PlannerSettings = planner.settings.updated({"search": {"budget": 60}})
     start = Planner(planner.workshop.stones, planner.workshop.site, settings=settings)
     with pytest.raises(PlanError, match="E207"):
