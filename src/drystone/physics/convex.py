@@ -40,7 +40,9 @@ def convex_parts(outline: Points) -> tuple[Points, ...]:
     faces = set(_sides(ring))
     parts: list[list[_Corner]] = []
     for cell in _cells(outline):
-        grown = _reaching(whole, _middle(cell), [(s, s not in faces) for s in _sides(cell)])
+        grown = _reaching(
+            whole, _corner(np.mean(cell, axis=0)), [(s, s not in faces) for s in _sides(cell)]
+        )
         parts += [grown] if grown else _slabs(ring, whole, faces.intersection(_sides(cell)), cell)
     return tuple(without_straight_corners(np.array(part)) for part in parts)
 
@@ -112,7 +114,8 @@ def _cells(outline: Points) -> list[list[_Corner]]:
     shared = [(a, b) for a, b in owner if (b, a) in owner and a < b]
     for a, b in sorted(shared, key=lambda side: (-dist(*side), side)):
         key, gone = owner[a, b], owner[b, a]
-        joined = _joined(cells[key], cells[gone], a, b)
+        i, j = cells[key].index(b), cells[gone].index(a)
+        joined = cells[key][i:] + cells[key][:i] + (cells[gone][j:] + cells[gone][:j])[1:-1]
         at = joined.index(a), joined.index(b)
         if all(_turns_left(joined[i - 1], joined[i], joined[(i + 1) % len(joined)]) for i in at):
             cells[key] = joined
@@ -152,19 +155,8 @@ def _sides(cell: list[_Corner]) -> list[_Side]:
     return list(zip(cell, cell[1:] + cell[:1], strict=True))
 
 
-def _joined(first: list[_Corner], second: list[_Corner], a: _Corner, b: _Corner) -> list[_Corner]:
-    """Join two cells over the side from a to b of the first one."""
-    i, j = first.index(b), second.index(a)
-    around, back = first[i:] + first[:i], second[j:] + second[:j]
-    return around + back[1:-1]
-
-
 def _corner(point: Points) -> _Corner:
     return float(point[0]), float(point[1])
-
-
-def _middle(cell: list[_Corner]) -> _Corner:
-    return _corner(np.mean(cell, axis=0))
 
 
 def _distinct(points: Points, size: float) -> list[_Corner]:
