@@ -18,6 +18,7 @@ from drystone.planner.replay import judged, replayed
 from drystone.planner.settings import PlannerSettings
 from drystone.settle.placing import settled_placement
 from drystone.settle.rest import placed_outline
+from tests.narrow import not_none
 from tests.planner.scenes import (
     RUBBLE_SITE,
     WITH_WEDGES,
@@ -133,8 +134,9 @@ def laid(planner: Planner, stone_id: int, left: float, level: float) -> Group:
     x, y = left + 10.0, 5.0 + 10.01 * level + 0.01
     corners = placed_outline(planner.workshop.outlines.outline(stone), 0.0, x, y)
     outlines = Outlines.empty(site)
-    placement = settled_placement(outlines, site, stone, 0.0, Settled(x, y, corners), "left", 0)
-    assert placement is not None
+    placement = not_none(
+        settled_placement(outlines, site, stone, 0.0, Settled(x, y, corners), "left", 0)
+    )
     return Group(placement)
 
 

@@ -69,12 +69,6 @@ def parted(plan: Any) -> tuple[Any, list[float]]:
     return plan, []
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_threads_do_not_shape_the_plan(method: str, tmp_path: Path) -> None:
-    one, *more = (planned(method, tmp_path / str(jobs), n_jobs=jobs) for jobs in (1, 3))
-    assert more == [one]
-
-
 @pytest.mark.parametrize("name", WALLS)
 def test_threads_do_not_shape_walls_of_outlines(name: str, tmp_path: Path) -> None:
     assert exact(name, tmp_path / "3", n_jobs=3) == exact(name, tmp_path / "1")

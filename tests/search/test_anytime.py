@@ -42,6 +42,7 @@ from drystone.search.state import Link, Progress, SearchState
 from drystone.search.whole_search import run_to_end
 from drystone.search.yard import Yard
 from drystone.verify.check import check_plan
+from tests.narrow import not_none
 from tests.planner.scenes import RUBBLE_SITE, Ticks, after_looks, blocks, finish, greedy, rubble
 
 SMALL = {"passes": 3, "chains": 2, "share_every": 2, "cycle": 3}
@@ -289,8 +290,7 @@ def test_a_search_goes_on_from_where_it_stood_to_the_walls_that_it_would_have_fo
 
 
 def state(progress: Progress) -> SearchState:
-    assert progress.state is not None
-    return progress.state
+    return not_none(progress.state)
 
 
 def test_a_plan_that_is_kept_is_that_of_an_interrupt_and_leads_to_the_whole_one() -> None:
@@ -468,8 +468,7 @@ def test_a_full_wall_is_incomplete_without_a_pinned_stone() -> None:
     assert [notice.code for notice in result.notices] == ["W120"]
     planner = finish(Planner(large, Site(60, 20), settings=pinned))
     found = FoundWall.of(planner)
-    assert found.figures is not None
-    assert found.figures.missing == 1
+    assert not_none(found.figures).missing == 1
 
 
 def test_in_a_given_order_the_last_stones_are_built_again() -> None:

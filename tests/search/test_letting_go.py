@@ -13,6 +13,7 @@ from drystone.planner.views import SideView
 from drystone.search.letting_go import Aim, Hand, Resting
 from drystone.settle.rest import Turned
 from drystone.settle.wedged import wedged
+from tests.narrow import not_none
 from tests.planner.scenes import RUBBLE_SITE, rubble
 from tests.search.yards import Plot
 
@@ -24,8 +25,7 @@ class Drop:
 
     def __init__(self, side: Side, settings: LayingSettings) -> None:
         plot = Plot(rubble(2, 8), RUBBLE_SITE)
-        outlines = plot.lay(*plot.rows(1)).build.wall.outlines
-        assert outlines is not None
+        outlines = not_none(plot.lay(*plot.rows(1)).build.wall.outlines)
         self.view = SideView.bare(100.0, side, 0.58, 1.0).grown(outlines.polygons)
         stone = next(s for s in plot.stones if s.id not in dict(outlines.blocks))
         outline = plot.yard.workshop.outlines.outline(stone)
@@ -159,11 +159,10 @@ def test_a_stone_is_wedged_at_the_cheapest_place_first() -> None:
     assert [one.cost for one in found] == sorted(one.cost for one in found)
     for one in found:
         settled = one.repose.settled
-        assert one.wedge is not None
         top = float(settled.corners[:, 1].max())
         unsure = hand.settings.rest * max(0.0, 1.0 - one.repose.margin)
         assert one.cost == pytest.approx(abs(top - 25.0) / drop.unit_px + 0.2 + unsure)
-        assert one.wedge.tobytes() == expected[round(settled.x_px), round(settled.y_px)]
+        assert not_none(one.wedge).tobytes() == expected[round(settled.x_px), round(settled.y_px)]
 
 
 def test_a_stone_that_rests_above_the_wall_or_far_from_its_top_does_not_count() -> None:

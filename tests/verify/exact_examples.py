@@ -63,7 +63,6 @@ def with_stone(
     wall: Wall, stones: StoneSet, turned: tuple[int, float], corner: tuple[float, float]
 ) -> Wall:
     """Add a stone, the bottom-left corner of its box at a place; the slab with its wedge."""
-    assert wall.outlines is not None
     stone_id, angle_deg = turned
     outline = stones.by_id(stone_id).outline_within(SETTINGS.settle.outline_px)
     x, y = (np.array(corner) - turn(outline, angle_deg).min(axis=0)).tolist()
@@ -71,7 +70,7 @@ def with_stone(
     settled = Settled(x, y, placed_outline(outline, angle_deg, x, y))
     side: Side = "right" if stone_id == 300 else "left"
     placement = settled_placement(
-        wall.outlines, wall.site, stones.by_id(stone_id), angle_deg, settled, side, 0
+        wall.exact, wall.site, stones.by_id(stone_id), angle_deg, settled, side, 0
     )
     assert placement is not None
     if stone_id != SLAB:
@@ -89,7 +88,6 @@ def wedge_px() -> Points:
 
 def block_model(made: Example) -> Any:
     """Return what blocks.json beside the plan of a wall of outlines says, read again."""
-    assert made.wall.outlines is not None
     settle = SETTINGS.settle
-    model = model_of_outlines(made.wall.outlines, SETTINGS.mu, settle.contact_px)
+    model = model_of_outlines(made.wall.exact, SETTINGS.mu, settle.contact_px)
     return json.loads(json.dumps(blocks_to_json(made.wall, model)))

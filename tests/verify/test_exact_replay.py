@@ -74,11 +74,9 @@ def test_wall_of_the_planner_is_rebuilt_and_its_plan_passes(
     assert len(found.placements) == len(result.wall.placements) >= 5
     for mine, its in zip(found.placements, result.wall.placements, strict=True):
         assert raster_part(mine) == raster_part(its)
-        assert mine.settled is not None
-        assert its.settled is not None
         rounding = ROUNDING_PX
-        np.testing.assert_allclose(mine.settled.corners, its.settled.corners, rtol=0, atol=rounding)
-        assert mine.settled.x_px == pytest.approx(its.settled.x_px, rel=0, abs=rounding)
+        np.testing.assert_allclose(mine.exact.corners, its.exact.corners, rtol=0, atol=rounding)
+        assert mine.exact.x_px == pytest.approx(its.exact.x_px, rel=0, abs=rounding)
         np.testing.assert_allclose(mine.posed.anchor, its.posed.anchor, rtol=0, atol=rounding)
 
 

@@ -73,25 +73,10 @@ class Masonry:
         steps: Mapping[int, int] | None = None,
         mu: float = 0.58,
     ) -> "Masonry":
-        """Return the wall of a label image, along sub-pixel outlines.
+        """Return the wall of a label image, row 0 at the top, along sub-pixel outlines.
 
-        Parameters
-        ----------
-        labels : (h, w) integer array
-            0 where nothing is; row 0 at the top.
-        wedge_ids : collection of int
-            Labels that are wedges.
-        settings : CraftSettings, optional
-            The usual ones unless given.
-        steps : mapping of int to int, optional
-            Of a plan, by label.
-        mu : float
-            Coefficient of friction, for what wedges carry.
-
-        Raises
-        ------
-        UsageError
-            E191 for the id of a wedge that is not in the image.
+        `steps` are those of a plan, by label; `mu` is for what wedges carry.  UsageError (E191): a
+        label that is said to be a wedge is not in the image.
         """
         picture = model_from_labels(labels, mu)
         outlines = outlines_of_labels(labels[: picture.ground_row]) if picture.model.blocks else {}

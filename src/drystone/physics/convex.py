@@ -97,7 +97,10 @@ def _reaching(
         found = shapely.get_parts(shapely.Polygon(region).intersection(whole))
         piece = next((p for p in found if p.intersects(shapely.Point(inside))), None)
         if isinstance(piece, shapely.Polygon) and not piece.interiors:
-            ring = _distinct(shapely.get_coordinates(shapely.orient_polygons(piece))[:-1], size)
+            corners = shapely.get_coordinates(shapely.orient_polygons(piece))[:-1]
+            # Rounding may have made several of one.
+            apart = np.hypot(*(corners - np.roll(corners, 1, axis=0)).T) > STRAIGHT * size
+            ring = _corners(corners[apart])
             if _is_convex(ring, size):
                 return ring
     return None
@@ -109,7 +112,11 @@ def _cells(outline: Points) -> list[list[_Corner]]:
     Triangles are joined over their longest common sides first, as long as both ends stay convex
     (Hertel and Mehlhorn 1983: at most four times the fewest cells).
     """
-    cells = dict(enumerate(_triangles(outline)))
+    triangles = shapely.constrained_delaunay_triangles(shapely.Polygon(outline)).geoms
+    cells = {
+        key: _corners(shapely.get_coordinates(shapely.orient_polygons(triangle))[:3])
+        for key, triangle in enumerate(triangles)
+    }
     owner = {side: key for key, cell in cells.items() for side in _sides(cell)}
     shared = [(a, b) for a, b in owner if (b, a) in owner and a < b]
     for a, b in sorted(shared, key=lambda side: (-dist(*side), side)):
@@ -142,11 +149,6 @@ def _left_of(region: list[_Corner], side: _Side, reach: float) -> list[_Corner]:
     return kept
 
 
-def _triangles(outline: Points) -> list[list[_Corner]]:
-    found = shapely.constrained_delaunay_triangles(shapely.Polygon(outline)).geoms
-    return [_corners(shapely.get_coordinates(shapely.orient_polygons(t))[:3]) for t in found]
-
-
 def _corners(points: Points) -> list[_Corner]:
     return [(float(x), float(y)) for x, y in points]
 
@@ -157,12 +159,6 @@ def _sides(cell: list[_Corner]) -> list[_Side]:
 
 def _corner(point: Points) -> _Corner:
     return float(point[0]), float(point[1])
-
-
-def _distinct(points: Points, size: float) -> list[_Corner]:
-    """Leave out corners that rounding has made of one."""
-    apart = np.hypot(*(points - np.roll(points, 1, axis=0)).T) > STRAIGHT * size
-    return _corners(points[apart])
 
 
 def _is_convex(ring: list[_Corner], size: float) -> bool:

@@ -56,7 +56,12 @@ def replayed(
     for group in groups:
         stood, fitted = build, None
         if not (strict and left_out) and _has_room(build.wall, group, limits):
-            fitted = _fitted(build.wall, group, workshop.next_wedge(build))
+            number = workshop.next_wedge(build)
+            if build.wall.outlines is not None:
+                fitted = settled_again(build.wall, group, number)
+            else:
+                wedges = (replace(wedge, id=k) for k, wedge in enumerate(group.wedges, number))
+                fitted = Group(group.placement, tuple(wedges))
         if fitted is not None:
             action = judged(build, fitted, course_heights_px, evaluator)
             solves += Solves.of(action)
@@ -89,14 +94,3 @@ def _has_room(wall: Wall, group: Group, limits: WedgeLimits) -> bool:
     if any(squeezed_out(corners, stone, around, width, limits) for _, corners in wedges):
         return False
     return not any(crosses_any(corners, polygons) for corners in (stone, *(c for _, c in wedges)))
-
-
-def _fitted(wall: Wall, group: Group, number: int) -> Group | None:
-    """Return a step with the pixels that it fills now, and its wedges numbered from a number on.
-
-    None when the stone fills no pixel.
-    """
-    if wall.outlines is not None:
-        return settled_again(wall, group, number)
-    wedges = (replace(wedge, id=number + k) for k, wedge in enumerate(group.wedges))
-    return Group(group.placement, tuple(wedges))

@@ -136,7 +136,9 @@ class _Round:
                 if link is None:
                     return None
                 built = link.done - at.links[k].done
-                at = _with_link(at, link, built)
+                more = Reached(built, link.best, link.solves - at.links[k].solves, link.kept)
+                links = (*at.links[:k], replace(link, kept=()), *at.links[k + 1 :])
+                at = replace(at, reached=at.reached + more, links=links, turn=k + 1)
                 state = SearchState(self.number, self.before, (), at) if built == each else None
                 yield self.after(at.reached, state)
                 if built < counts[k]:
@@ -149,8 +151,8 @@ class _Round:
                 return self._in_all(at.reached)
             # All chains know then which changes have helped in each.
             known = sum((link.learnt for link in at.links), at.links[0].known)
-            links = [replace(link, known=known, learnt=Credits()) for link in at.links]
-            at = replace(at, links=tuple(_shared(links)), turn=0)
+            again = [replace(link, known=known, learnt=Credits()) for link in at.links]
+            at = replace(at, links=tuple(_shared(again)), turn=0)
         return None
 
     def after(self, reached: Reached, state: SearchState | None) -> Progress:
@@ -166,13 +168,6 @@ def _together(walls: Sequence[PackedWall]) -> Reached:
     """Say what the first walls of a round have come to."""
     first, *others = map(Reached.of, walls)
     return sum(others, first)
-
-
-def _with_link(at: Chains, link: Link, built: int) -> Chains:
-    """Add the walls of the chain whose turn it is."""
-    more = Reached(built, link.best, link.solves - at.links[at.turn].solves, link.kept)
-    links = (*at.links[: at.turn], replace(link, kept=()), *at.links[at.turn + 1 :])
-    return replace(at, reached=at.reached + more, links=links, turn=at.turn + 1)
 
 
 def _links(found: Sequence[PackedWall], number: int, chains: int) -> list[Link]:

@@ -193,7 +193,10 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
             cure="Give the one that is built, or the one to begin with.",
         )
     method = method or ("custom" if settings else "best")
-    settings = _searched(settings or method_settings(method), budget, seconds)
+    settings = settings or method_settings(method)
+    one_wall = settings.by_policy or settings.geometry == "raster"
+    if budget is not None or (math.isfinite(seconds) and not one_wall):
+        settings = settings.updated({"search": {"budget": UNLIMITED if budget is None else budget}})
     scale = working_scale(stones) if scale is None else float(scale)
     if not 0 < scale <= 1:
         raise UsageError(
@@ -286,14 +289,6 @@ class _PlanOrigin:
             solves=first.solves,
             choice=tuple(plans) if to_choose else (),
         )
-
-
-def _searched(settings: PlannerSettings, budget: int | None, seconds: float) -> PlannerSettings:
-    """Return the settings with the budget that is asked for, by number or by time."""
-    single = settings.by_policy or settings.geometry == "raster"
-    if budget is None and (single or not math.isfinite(seconds)):
-        return settings
-    return settings.updated({"search": {"budget": UNLIMITED if budget is None else budget}})
 
 
 def _notices(
