@@ -68,7 +68,6 @@ class Masonry:
         cls,
         labels: Labels,
         wedge_ids: Collection[int] = frozenset(),
-        settings: CraftSettings | None = None,
         *,
         steps: Mapping[int, int] | None = None,
         mu: float = 0.58,
@@ -80,7 +79,7 @@ class Masonry:
         """
         picture = model_from_labels(labels, mu)
         outlines = outlines_of_labels(labels[: picture.ground_row]) if picture.model.blocks else {}
-        return cls(outlines, picture.model, wedge_ids, steps or {}, settings or CraftSettings())
+        return cls(outlines, picture.model, wedge_ids, steps or {})
 
     @cached_property
     def loops(self) -> Mapping[int, Points]:

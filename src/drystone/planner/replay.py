@@ -64,7 +64,7 @@ def replayed(
                 fitted = Group(group.placement, tuple(wedges))
         if fitted is not None:
             action = judged(build, fitted, course_heights_px, evaluator)
-            solves += Solves.of(action)
+            solves += action.solves
             if action.stands:
                 build = build.add(action, keep=keep)
         if build is stood:

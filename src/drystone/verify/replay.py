@@ -7,7 +7,7 @@ from drystone.errors import PlanError
 from drystone.model.placement import Placement, Wedge
 from drystone.model.plan import Plan, StoneStep, WedgeStep
 from drystone.model.site import Site
-from drystone.model.steps import Fault, Step, grouped, id_fault
+from drystone.model.steps import Step, grouped, id_fault
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Group, Labels, Wall
 from drystone.planner.settings import PlannerSettings
@@ -83,7 +83,7 @@ def replay_plan(plan: Plan, stones: StoneSet) -> Replay:
     settings, problems = plan_settings(plan)
     site = plan_site(plan)
     groups, disorder = grouped(plan.steps)
-    problems += map(_problem_of, disorder)
+    problems += disorder
     exact = settings.geometry == "exact"
     canvas = ExactCanvas(site, stones, settings.settle) if exact else RasterCanvas(site, stones)
     wall, broken_at = Wall.empty(site, exact=exact), None
@@ -124,9 +124,5 @@ def _derive(
         else:
             pieces.append(piece)
             repeated = id_fault(step, used, largest)
-            problems += found if repeated is None else [_problem_of(repeated), *found]
+            problems += found if repeated is None else [repeated, *found]
     return pieces, problems
-
-
-def _problem_of(fault: Fault) -> Problem:
-    return Problem(fault.code, fault.step, fault.message)
