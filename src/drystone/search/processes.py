@@ -25,7 +25,7 @@ of IR on pixels (.46 GB, and no more after 300 s).
 @contextmanager
 def processes(count: int) -> Iterator[Executor | None]:
     """Start processes; they end with the block, whatever they do then."""
-    executor = process_pool(count, MUCH_MEMORY) if count > 1 else None
+    executor = process_pool(count, MUCH_MEMORY) if count != 1 else None
     try:
         yield executor
     finally:
@@ -37,7 +37,7 @@ def processes(count: int) -> Iterator[Executor | None]:
 @contextmanager
 def threads(count: int) -> Iterator[Executor | None]:
     """Start threads that evaluate candidates; with 1, nothing is started and None is given."""
-    executor = ThreadPoolExecutor(count) if count > 1 else None
+    executor = ThreadPoolExecutor(count) if count != 1 else None
     try:
         yield executor
     finally:
