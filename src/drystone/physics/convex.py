@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 
 from drystone.kernels.polygons import Points
+from drystone.model.overlap import common_parts
 
 _Corner = tuple[float, float]
 _Side = tuple[_Corner, _Corner]
@@ -94,9 +95,10 @@ def _reaching(
         region = [(left, low), (right, low), (right, high), (left, high)]
         for side, moved in sides:
             region = _left_of(region, side, reach * size if moved else 0.0)
-        found = shapely.get_parts(shapely.Polygon(region).intersection(whole))
+        # In floats a part may leave out a flat corner of the stone, and stick out of it there.
+        found = common_parts(shapely.Polygon(region), whole) if region else ()
         piece = next((p for p in found if p.intersects(shapely.Point(inside))), None)
-        if isinstance(piece, shapely.Polygon) and not piece.interiors:
+        if piece is not None and not piece.interiors:
             corners = shapely.get_coordinates(shapely.orient_polygons(piece))[:-1]
             # Rounding may have made several of one.
             apart = np.hypot(*(corners - np.roll(corners, 1, axis=0)).T) > STRAIGHT * size
