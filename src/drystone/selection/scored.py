@@ -20,22 +20,45 @@ others."""
 
 @dataclass(frozen=True)
 class Craft:
-    """How well a stone sits, in costs of about 0 to 1, all but the last two best at 0."""
+    """How well a stone sits, in costs of about 0 to 1, all but the last two best at 0.
 
-    height: float  # of the stone's centroid over the ground, in mean stone heights
-    void: float  # empty area under the stone, in mean stone areas
-    gap: float  # empty area between the stone and its neighbour on the building side, likewise
-    # area beside it, on the other side, that the remaining stones cannot fill, likewise
+    Parameters
+    ----------
+    height : float
+        Of the stone's centroid over the ground, in mean stone heights.
+    void : float
+        Empty area under the stone, in mean stone areas.
+    gap : float
+        Empty area between the stone and its neighbour on the building side, likewise.
+    slot : float
+        Area beside it, on the other side, that the remaining stones cannot fill, likewise.
+    headroom : float
+        Area above it that the remaining stones cannot fill below the wall's top, likewise.
+    step : float
+        Difference of its top and its neighbour's, in mean stone heights (as NHR).
+    roughness : float
+        Mean deviation of its top from level, in mean stone heights.
+    upright : float
+        How much higher than wide it stands: max(0, 1 - width / height).
+    joint : float
+        1 - IWR, or 1 - IS for a boundary stone.
+    area : float
+        Of the stone, in mean stone areas; its weight is a bonus for large stones.
+    thickness : float
+        Shorter side of the stone's box, in mean stone heights; its weight is a bonus for stones
+        that do not fit into what is left below the wall's top in the end.
+    """
+
+    height: float
+    void: float
+    gap: float
     slot: float
-    # area above it that the remaining stones cannot fill below the wall's top, likewise
     headroom: float
-    step: float  # difference of its top and its neighbour's, in mean stone heights (as NHR)
-    roughness: float  # mean deviation of its top from level, in mean stone heights
-    upright: float  # how much higher than wide it stands: max(0, 1 - width / height)
-    joint: float  # 1 - IWR, or 1 - IS for a boundary stone
-    area: float  # of the stone, in mean stone areas; its weight is a bonus for large stones
-    # shorter side of the stone's box, in mean stone heights; its weight is a bonus for stones that
-    # do not fit into what is left below the wall's top in the end
+    step: float
+    roughness: float
+    upright: float
+    joint: float
+    area: float
     thickness: float
 
 
