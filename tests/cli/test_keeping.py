@@ -14,7 +14,7 @@ from drystone.io.plan_json import read_plan
 from drystone.planner.events import Callbacks
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import SoFar, plan_wall
-from drystone.search.standing import Progress, Standing
+from drystone.search.state import Progress, SearchState
 from tests.cli.conftest import WALL
 from tests.planner.scenes import greedy, rubble
 
@@ -31,9 +31,9 @@ class Clock:
 
 
 def progress(walls, merit):
-    standing = None if walls == 1 else Standing(0, None, ())
+    state = None if walls == 1 else SearchState(0, None, ())
     best = cast(Any, SimpleNamespace(merit=merit))
-    return Progress(walls, best, cast(Any, None), (), standing)
+    return Progress(walls, best, cast(Any, None), (), state)
 
 
 def so_far(one):
@@ -71,7 +71,7 @@ def test_plans_are_kept_when_they_are_better_and_seldom(kept, tmp_path):
     assert after(0.1, progress(4, 2.0)) == []
     # Walls that are no better are progress of the search all the same.
     assert after(EVERY_S, progress(5, 2.0)) == ["search"]
-    assert after(EVERY_S, replace(progress(5, 1.0), standing=None)) == []
+    assert after(EVERY_S, replace(progress(5, 1.0), state=None)) == []
     assert after(0.1, progress(6, 3.0)) == ["search", "plan"]
 
 

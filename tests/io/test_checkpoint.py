@@ -23,29 +23,29 @@ def searched(planner, start=None):
     return list(searching(begin, Yard.of(planner), planner.seed))
 
 
-def standings(found):
-    return [one.standing for one in found if one.standing is not None]
+def states_of(found):
+    return [one.state for one in found if one.state is not None]
 
 
-def again(standing, folder, planner):
+def again(state, folder, planner):
     """Write where a search stands, and read it."""
     made_of = {"stones": "abc", "settings": {"mu": 0.58}}
-    write_checkpoint(Checkpoint(made_of, standing), folder)
+    write_checkpoint(Checkpoint(made_of, state), folder)
     ids = [stone.id for stone in planner.workshop.stones]
     read = read_checkpoint(folder, ids, planner.settings.search)
     assert read.made_of == made_of
-    return read.standing
+    return read.state
 
 
 def test_a_search_goes_on_from_a_file_to_the_same_walls(tmp_path):
     stones, settings = few_stones(), greedy({"geometry": "exact", **WITH_WEDGES, "search": SMALL})
     planner = finish(Planner(stones, Site(90, 30), seed=2, settings=settings))
     whole = searched(planner)
-    stood = standings(whole)
+    stood = states_of(whole)
     assert [one.walls for one in stood] == [2, 3, 5, 7, 9, 11, 13]
     assert any(group.wedges for wall in whole[-1].kept for group in wall.groups)
-    for standing in stood[:-1:2]:
-        read = again(standing, tmp_path, planner)
+    for state in stood[:-1:2]:
+        read = again(state, tmp_path, planner)
         found = searched(planner, read)
         assert found[-1].walls == whole[-1].walls
         assert found[-1].best.groups == whole[-1].best.groups
@@ -63,7 +63,7 @@ def test_without_a_search_it_says_what_is_planned(tmp_path):
     assert read_checkpoint(tmp_path, [], search) is None
     write_checkpoint(Checkpoint({"--seed": 1}), tmp_path)
     read = read_checkpoint(tmp_path, [], search)
-    assert (read.made_of, read.standing) == ({"--seed": 1}, None)
+    assert (read.made_of, read.state) == ({"--seed": 1}, None)
     (tmp_path / CHECKPOINT).unlink()
     (tmp_path / CHECKPOINT).mkdir()
     assert read_checkpoint(tmp_path, [], search) is None
@@ -75,9 +75,9 @@ def stood():
     search = {**SMALL, "budget": 24, "patience": 1}
     settings = greedy({"geometry": "exact", "search": search})
     planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
-    standing = standings(searched(planner))[-1]
-    assert standing.number > 0
-    return standing, planner
+    state = states_of(searched(planner))[-1]
+    assert state.number > 0
+    return state, planner
 
 
 def refused(folder, planner, ids=None):
@@ -104,8 +104,8 @@ def refused(folder, planner, ids=None):
     ],
 )
 def test_a_damaged_file_is_refused(damage, stood, tmp_path):
-    standing, planner = stood
-    again(standing, tmp_path, planner)
+    state, planner = stood
+    again(state, tmp_path, planner)
     path = tmp_path / CHECKPOINT
     whole = path.read_bytes()
     path.write_bytes(damage(whole))
@@ -114,12 +114,12 @@ def test_a_damaged_file_is_refused(damage, stood, tmp_path):
 
 
 def test_a_file_that_is_too_large_or_of_another_version_is_refused(stood, tmp_path, monkeypatch):
-    standing, planner = stood
+    state, planner = stood
     with monkeypatch.context() as patch:
         patch.setattr(checkpoint, "version", lambda _: "0.0.1")
-        again(standing, tmp_path, planner)
+        again(state, tmp_path, planner)
     assert "of drystone 0.0.1" in refused(tmp_path, planner)
-    again(standing, tmp_path, planner)
+    again(state, tmp_path, planner)
     monkeypatch.setattr(checkpoint, "LARGEST_BYTES", 1000)
     assert "too large" in refused(tmp_path, planner)
 
@@ -136,34 +136,34 @@ CHANGES = {
 }
 
 
-def with_best(standing, ends):
-    chains = standing.chains
+def with_best(state, ends):
+    chains = state.chains
     planned = next(w for w in chains.reached.kept if w.courses is not None)
     wall = replace(planned, courses=replace(planned.courses, ends=ends))
-    return replace(standing, chains=replace(chains, reached=replace(chains.reached, best=wall)))
+    return replace(state, chains=replace(chains, reached=replace(chains.reached, best=wall)))
 
 
 @pytest.mark.parametrize("change", CHANGES)
 def test_a_search_that_cannot_be_is_refused(change, stood, tmp_path):
-    standing, planner = stood
-    write_checkpoint(Checkpoint({}, CHANGES[change](standing)), tmp_path)
+    state, planner = stood
+    write_checkpoint(Checkpoint({}, CHANGES[change](state)), tmp_path)
     assert refused(tmp_path, planner)
 
 
 def test_a_search_of_other_stones_is_refused(stood, tmp_path):
-    standing, planner = stood
-    write_checkpoint(Checkpoint({}, standing), tmp_path)
+    state, planner = stood
+    write_checkpoint(Checkpoint({}, state), tmp_path)
     assert "other stones" in refused(tmp_path, planner, ids=[1, 2])
 
 
 def test_a_forged_search_whose_walls_do_not_stand_has_a_code(stood):
-    standing, planner = stood
-    chains = standing.chains
+    state, planner = stood
+    chains = state.chains
     now = chains.links[0].now
     high = replace(now.groups[0], place=(20.0, 30.0))
     floating = replace(now, groups=(high, *now.groups[1:]))
     links = tuple(replace(link, now=floating) for link in chains.links)
-    forged = replace(standing, chains=replace(chains, links=links, turn=0))
+    forged = replace(state, chains=replace(chains, links=links, turn=0))
     settings = planner.settings.updated({"search": {"budget": 60}})
     start = Planner(planner.workshop.stones, planner.workshop.site, settings=settings)
     with pytest.raises(PlanError, match="E207"):

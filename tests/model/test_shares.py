@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from drystone.kernels.coverage import Grid
 from drystone.model.shares import Shares
+from tests.narrow import not_none
 from tests.strategies import repeatable
 
 Block = tuple[int, Grid, int, int]
@@ -117,6 +118,5 @@ def test_a_block_beside_the_site_adds_nothing() -> None:
 
 def test_fresh_cells_are_cropped_to_the_site() -> None:
     shares = Shares.empty(2, 3)
-    fresh = shares.fresh(np.array([[0.7, 0.9, 0.8], [0.6, 0.2, 1.0]]), 2, 1)
-    assert fresh is not None
+    fresh = not_none(shares.fresh(np.array([[0.7, 0.9, 0.8], [0.6, 0.2, 1.0]]), 2, 1))
     assert (fresh[0].tolist(), fresh[1:]) == ([[True]], (0, 2))

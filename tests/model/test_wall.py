@@ -96,8 +96,7 @@ def test_with_outlines_a_pixel_is_whose_share_is_largest_where_half_is_covered()
     third = second.add(_settled(5, 5.31, 2.1, 8.3, 4.3))
     assert third.labels[1].tolist() == [3, 3, 3, 5, 0, 0]
     assert not empty.occupied.any()
-    assert third.outlines is not None
-    assert third.outlines.ids == (3, 9, 90, 5)
+    assert third.exact.ids == (3, 9, 90, 5)
     assert third.wedges == (wedge,)
     assert third.height_px == 2
     with pytest.raises(ValueError, match="read-only"):
@@ -118,10 +117,9 @@ def test_outlined_are_the_stone_and_its_wedges() -> None:
     wedges = tuple(
         Wedge(i, 3, np.ones((1, 1), bool), 0, 0, c) for i, c in ((8, corners), (9, None))
     )
-    assert stone.settled is not None
     found = outlined(stone, wedges)
     assert [block for block, _ in found] == [3, 8]
-    assert found[0][1] is stone.settled.corners
+    assert found[0][1] is stone.exact.corners
     assert found[1][1] is corners
 
 

@@ -27,18 +27,6 @@ def unfillable(lengths: list[tuple[int, ...]], limit: int) -> list[int]:
     return [min(length - total for total in sums if total <= length) for length in range(limit + 1)]
 
 
-def free_area_under(occupied: list[list[bool]], cells: Iterable[tuple[int, int]]) -> int:
-    """Pixels below some pixels (row, column) down to the next occupied one or the ground."""
-    taken = set(cells)
-    count = 0
-    for row, col in taken:
-        below = row + 1
-        while (below, col) not in taken and below < len(occupied) and not occupied[below][col]:
-            count += 1
-            below += 1
-    return count
-
-
 @dataclass(frozen=True)
 class Tried:
     """A candidate of a step."""

@@ -1,5 +1,7 @@
 """Convex parts: they cover the boundary from inside, and no seam ends at a corner."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 import shapely
@@ -10,47 +12,43 @@ from drystone.kernels.outline import pixel_polygon
 from drystone.physics.convex import convex_parts
 from tests.strategies import masks, repeatable, whole
 
-COMB = np.array(
-    [
-        [0, 0],
-        [5, 0],
-        [5, 3],
-        [4, 3],
-        [4, 1],
-        [3, 1],
-        [3, 3],
-        [2, 3],
-        [2, 1],
-        [1, 1],
-        [1, 3],
-        [0, 3],
-    ],
-    float,
+COMB = np.column_stack(
+    ([0.0, 5, 5, 4, 4, 3, 3, 2, 2, 1, 1, 0], [0.0, 0, 3, 3, 1, 1, 3, 3, 1, 1, 3, 3])
 )
 NOSE = np.array(
     [[0, 0], [2.8, 0], [2.8, 0.2], [3, 0.2], [3, 0.6], [2.6, 3], [0.5, 2.8], [0, 3]], float
 )
 
 
+FLAT_CORNER = [1.0, 1, 1, 1, 1, 1, 2, 3, 2, 0.5, 0.3125, 1, 1, 1, 1, 0.5]
+"""Of a star: areas of floats leave out its tenth corner."""
+
+GRID = 2.0**-40
+"""Without a grid areas in common come out wrong now and then (drystone.model.overlap)."""
+
+
+def star(reach: Sequence[float]) -> np.ndarray:
+    angle = np.arange(len(reach)) * 2.0 * np.pi / len(reach)
+    return np.array(reach)[:, None] * np.column_stack((np.cos(angle), np.sin(angle)))
+
+
 @st.composite
 def stars(draw: st.DrawFn) -> np.ndarray:
     """Star-shaped outlines, most of them concave."""
     count = draw(st.integers(3, 24))
-    reach = np.array(draw(st.lists(st.floats(0.3, 3.0), min_size=count, max_size=count)))
-    angle = np.arange(count) * 2.0 * np.pi / count
-    return np.column_stack((reach * np.cos(angle), reach * np.sin(angle)))
+    return star(draw(st.lists(st.floats(0.3, 3.0), min_size=count, max_size=count)))
 
 
 def check(outline: np.ndarray) -> list[shapely.Polygon]:
     """Check the parts of an outline, and return them."""
     parts = [shapely.Polygon(part) for part in convex_parts(outline)]
     whole = shapely.Polygon(outline)
-    covered = shapely.union_all(parts)
-    assert covered.difference(whole).area < 1e-9 * whole.area
+    covered = shapely.union_all(parts, grid_size=GRID)
+    assert shapely.difference(covered, whole, grid_size=GRID).area < 1e-9 * whole.area
     # Of the boundary nothing is left open, nor just below it.
     assert whole.exterior.difference(covered.buffer(1e-6)).length == 0.0
-    skin = whole.difference(whole.buffer(-1e-3, join_style="mitre"))
-    assert skin.difference(covered).area < 1e-6 * whole.area
+    skin = shapely.difference(whole, whole.buffer(-1e-3, join_style="mitre"), grid_size=GRID)
+    assert shapely.difference(skin, covered, grid_size=GRID).area < 1e-6 * whole.area
     for part in parts:
         assert part.exterior.is_ccw
         assert part.convex_hull.area == pytest.approx(part.area, rel=1e-7)
@@ -79,6 +77,7 @@ def check_seams(outline: np.ndarray) -> None:
 @given(stars())
 @example(COMB)
 @example(NOSE)
+@example(star(FLAT_CORNER))
 def test_parts_cover_the_boundary_and_seams_end_away_from_corners(outline: np.ndarray) -> None:
     parts = check(outline)
     check_seams(outline)

@@ -9,8 +9,9 @@ from drystone.physics.scene import EngineScene, EngineSettings
 from drystone.physics.table import TiltingTable
 from drystone.physics.tilt import TiltSettings, TiltTrial, tilt_once
 from drystone_lab.statics_cases import MU, WALLS
+from tests.narrow import not_none
 
-NO_ENGINE = "pymunk is not installed (extra `physics`)"
+pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
 
 Rectangle = tuple[float, float, float, float]
 
@@ -55,7 +56,6 @@ HOOK = np.array([[0, 0], [4, 0], [4, 3], [3, 3], [3, 1], [1, 1], [1, 3], [0, 3]]
     ],
 )
 def test_closed_forms(scene: EngineScene, direction: str, expected: float) -> None:
-    pytest.importorskip("pymunk", reason=NO_ENGINE)
     trial = tilt_once(scene, direction)
     assert trial.alpha == pytest.approx(expected, rel=0.012)
     assert trial.first_motion == trial.alpha
@@ -65,7 +65,6 @@ def test_closed_forms(scene: EngineScene, direction: str, expected: float) -> No
 
 def test_density_weighs() -> None:
     """A heavy foot and a light head: 5.5 b / (2 x 5 x .5 + ...) by moments about the toe."""
-    pytest.importorskip("pymunk", reason=NO_ENGINE)
     column = scene_of((0, 0, 1, 1), (0, 1, 1, 1), mu=0.9)
     # Both topple about the toe of the lower one unless the upper one goes first, at 1.
     heavy_head = EngineScene(column.outlines, 0.9, densities={2: 4.0})
@@ -75,19 +74,16 @@ def test_density_weighs() -> None:
 
 def test_concave_stones_keep_their_hollow() -> None:
     """A block in the hollow of a hook stands on its floor, and the hook weighs what it weighs."""
-    pytest.importorskip("pymunk", reason=NO_ENGINE)
     block = np.array([[1.5, 1], [2.5, 1], [2.5, 2.5], [1.5, 2.5]])
     trial = tilt_once(EngineScene({1: HOOK, 2: block}, 0.9), "right")
     assert not trial.fell_at_rest
     assert trial.settled_shift < 0.01
     # The block leans against the wall of the hook at 1 / 1.5 and comes to rest there.
     assert trial.first_motion == pytest.approx(1 / 1.5, rel=0.012)
-    assert trial.alpha is not None
-    assert trial.alpha > 0.7
+    assert not_none(trial.alpha) > 0.7
 
 
 def test_what_does_not_stand_is_said() -> None:
-    pytest.importorskip("pymunk", reason=NO_ENGINE)
     trial = tilt_once(scene_of((0, 0, 1, 1), (0.6, 1, 1, 1), mu=0.6), "left")
     assert trial.fell_at_rest
     assert trial.alpha is None
@@ -96,7 +92,6 @@ def test_what_does_not_stand_is_said() -> None:
 
 
 def test_what_never_falls_has_no_alpha() -> None:
-    pytest.importorskip("pymunk", reason=NO_ENGINE)
     settings = TiltSettings(greatest=0.3)
     trial = tilt_once(scene_of((0, 0, 2, 1), mu=0.58), "right", None, settings)
     assert trial.alpha is None
@@ -105,7 +100,6 @@ def test_what_never_falls_has_no_alpha() -> None:
 
 
 def test_same_input_same_result() -> None:
-    pytest.importorskip("pymunk", reason=NO_ENGINE)
     scene = scene_of(*OFFSET, mu=0.9)
     plain = Variation("plain", EngineSettings(), TiltSettings())
     noisy = Variation(
@@ -137,7 +131,6 @@ def test_noise_stays_within_its_size() -> None:
 
 
 def test_rounded_corners_keep_faces_where_they_are() -> None:
-    pytest.importorskip("pymunk", reason=NO_ENGINE)
     scene = scene_of((0, 0, 1, 1), (0, 1, 1, 1), mu=0.6)
     table = TiltingTable(scene, EngineSettings(corner_radius=0.01))
     table.tilt(0.0)
@@ -147,7 +140,6 @@ def test_rounded_corners_keep_faces_where_they_are() -> None:
 
 
 def test_copies_go_their_own_way() -> None:
-    pytest.importorskip("pymunk", reason=NO_ENGINE)
     table = TiltingTable(scene_of((0, 0, 1, 1), mu=0.2), EngineSettings())
     before = table.poses()
     twin = table.copy()
@@ -210,7 +202,6 @@ def test_walls_that_fall_at_rest_have_no_alpha() -> None:
 
 def test_a_published_wall_falls_without_dilatancy() -> None:
     """Example 3 of Ferris and Tin-Loi: .3558 without dilatancy, .4037 with."""
-    pytest.importorskip("pymunk", reason=NO_ENGINE)
     wall = WALLS[2]
     quick = Variation("few iterations", EngineSettings(iterations=50), TiltSettings(coarse=0.064))
     scene, rng = scene_of(*wall.rectangles, mu=MU), np.random.default_rng(0)

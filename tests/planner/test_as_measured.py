@@ -8,7 +8,6 @@ from drystone.errors import InputError
 from drystone.model.site import Site
 from drystone.planner.measured import MeasuredPose
 from drystone.planner.planner import Planner
-from drystone.planner.replay import stands
 from drystone.planner.settings import PlannerSettings
 from tests.planner.scenes import blocks, greedy
 
@@ -52,7 +51,7 @@ def test_a_stone_put_under_a_planned_one_is_built_before_it(
     seen = one.observe(at({1: (30.0, 5.0), 2: (30.0, 15.0 + height), 3: (30.0, 10.0 + height / 2)}))
     assert (seen.stands, seen.notices, seen.added) == (True, (), (3,))
     assert order(one) == [1, 3, 2]
-    assert all(stands(action) for action in one.build.actions)
+    assert all(action.stands for action in one.build.actions)
 
 
 @BOTH

@@ -17,6 +17,7 @@ from drystone.planner.profile import Profile
 from drystone.planner.proposing import RasterProposer, Spotted, StoneTrial
 from drystone.planner.settings import PlannerSettings
 from drystone.statics.incremental import IncrementalAnalysis
+from tests.narrow import not_none
 from tests.planner.scenes import RUBBLE_SITE, blocks, greedy, rubble
 
 Key = tuple[int, float, str]
@@ -103,8 +104,7 @@ def test_the_second_fold_tries_the_cluster_of_the_winner(monkeypatch: pytest.Mon
     planner = Planner(stones, Site(60, 20), settings=settings)
     calls = _Calls(monkeypatch)
     attempt = Attempt(planner.workshop, settings, planner.build)
-    chosen = attempt.choose(np.random.default_rng(0))
-    assert chosen is not None
+    chosen = not_none(attempt.choose(np.random.default_rng(0)))
     tried = {stone_id for stone_id, _, _ in calls.proposed}
     members = {1, 2, 3} if chosen.stone_id <= 3 else {4, 5, 6}
     assert members <= tried
@@ -117,8 +117,7 @@ def test_the_height_of_a_course_is_the_mean_of_other_stones() -> None:
     settings = PlannerSettings(sampling="full", orientations="sf")
     planner = Planner(stones, Site(60, 20), settings=settings)
     attempt = Attempt(planner.workshop, settings, planner.build)
-    chosen = attempt.choose(np.random.default_rng(0))
-    assert chosen is not None
+    chosen = not_none(attempt.choose(np.random.default_rng(0)))
     assert chosen.stone_id == 1
     assert chosen.proposal.course_height_px == 7.0
     assert chosen.course_height_px == 7.0

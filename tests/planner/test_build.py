@@ -12,6 +12,7 @@ from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
+from drystone.planner.solves import Solves
 from drystone.search.whole_search import run_to_end
 from drystone.statics.incremental import (
     SIMPLEX,
@@ -23,6 +24,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.lp.highs import WARM
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
+from tests.narrow import not_none
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble
 
 SETTINGS = [PlannerSettings(sampling="full", two_sided=True), greedy()]
@@ -57,10 +59,9 @@ def test_every_candidate_is_as_strong_as_its_model_analysed_whole(
         ):
             assert found.status is sought.status
             assert found.alpha == pytest.approx(sought.alpha, abs=1e-9)
-            assert found.certificate is not None
-            assert found.certificate.holds
+            assert not_none(found.certificate).holds
             assert found.solver in {SIMPLEX, WARM}  # from the bases of the wall, not from the start
-        assert not candidate.solved_cold
+        assert candidate.solves == Solves()
         unlike += _alphas(candidate.resistance) != _alphas(judged[0].resistance)
     assert unlike > 4
 

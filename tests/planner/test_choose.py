@@ -18,6 +18,7 @@ from drystone.selection.algorithm2 import SelectionSettings
 from drystone.selection.scored import ScoreSettings
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
+from tests.narrow import not_none
 
 EMPTY = Build(Wall.empty(Site(20, 20)), RigidBlockModel((), ()))
 INDICES = Indices(SF=1.0, LFR=1.0, GDS=0.5, NHR=0.0, IWR=0.5, IS=0.0, LLC=0.5, boundary=False)
@@ -78,8 +79,9 @@ class _Judge:
 
 def test_algorithm_2_analyses_everything_and_gives_the_candidate_back() -> None:
     judge = _Judge({1: 0.2, 2: 0.9, 3: None})
-    chosen = choose_by_algorithm2([_proposal(i) for i in (1, 2, 3)], judge, SelectionSettings())
-    assert chosen is not None
+    chosen = not_none(
+        choose_by_algorithm2([_proposal(i) for i in (1, 2, 3)], judge, SelectionSettings())
+    )
     assert chosen.stone_id == 2
     assert judge.batches == [[1, 2, 3]]
     nothing = _Judge({1: None, 2: 0.0})
@@ -101,16 +103,14 @@ def _by_score(
 
 def test_the_cheapest_that_stands_is_chosen() -> None:
     chosen, judge = _by_score({1: 0.3, 2: 0.1, 3: 0.2}, {1: 0.5, 2: None, 3: 0.5})
-    assert chosen is not None
-    assert chosen.stone_id == 3
+    assert not_none(chosen).stone_id == 3
     assert judge.batches == [[2, 3], [1]]  # one of the first two stands, so it goes on
 
 
 def test_analysing_ends_when_enough_stand() -> None:
     chosen, judge = _by_score(dict.fromkeys((5, 6, 7, 8), 1.0), dict.fromkeys((5, 6, 7, 8), 0.5))
     assert judge.batches == [[5, 6]]
-    assert chosen is not None
-    assert chosen.stone_id == 5  # equal costs: the lower id
+    assert not_none(chosen).stone_id == 5  # equal costs: the lower id
 
 
 @pytest.mark.parametrize(
@@ -142,5 +142,4 @@ def test_what_carries_nothing_does_not_stand() -> None:
 )
 def test_resistance_counts_among_those_analysed(settings: dict[str, float], chosen: int) -> None:
     best, _ = _by_score({1: 0.0, 2: 0.3, 3: 0.4}, {1: 0.1, 2: 0.9, 3: 1.0}, **settings)
-    assert best is not None
-    assert best.stone_id == chosen
+    assert not_none(best).stone_id == chosen

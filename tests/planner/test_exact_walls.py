@@ -93,7 +93,7 @@ def check(result: PlanResult, stones: StoneSet) -> None:
     plan = plan_from_json(json.loads(json.dumps(plan_to_json(result.plan))))
     report = check_plan(plan, stones, wall_labels=result.wall.labels)
     assert report.problems == ()
-    assert report.overlap_depth == 0.0
+    assert (report.overlap_depth, report.buried) == (0.0, ())
     assert len(report.prefixes) == len(result.wall.groups)
     assert all(p.alpha_left and p.alpha_right for p in report.prefixes)
 
@@ -103,10 +103,9 @@ def check_outlines(result: PlanResult, settings: PlannerSettings, site: Site) ->
     shapes, filled = [], 0
     for group in result.wall.groups:
         placement = group.placement
-        assert placement.settled is not None
         outline = placement.posed.stone.outline_within(settings.settle.outline_px)
         x, y, corners = (
-            placement.settled.x_px, placement.settled.y_px, placement.settled.corners
+            placement.exact.x_px, placement.exact.y_px, placement.exact.corners
         )  # fmt: skip
         assert np.array_equal(placed_outline(outline, placement.posed.angle_deg, x, y), corners)
         shapes += [shapely.Polygon(c) for _, c in outlined(placement, group.wedges)]
@@ -186,10 +185,8 @@ def test_walls_of_a_search_are_true() -> None:
     assert walls == 4
     states = best.build.states()
     for before, after in pairwise(states):
-        assert before.wall.outlines is not None
-        assert after.wall.outlines is not None
-        count = len(before.wall.outlines.ids)
-        assert after.wall.outlines.ids[:count] == before.wall.outlines.ids
+        count = len(before.wall.exact.ids)
+        assert after.wall.exact.ids[:count] == before.wall.exact.ids
     assert all(action.sturdy for action in best.build.actions)
     result = plan_wall(stones, *WALL_PX, seed=3, settings=WEDGES, scale=0.5)
     check(result, stones)

@@ -31,6 +31,8 @@ def test_the_plan_is_that_of_the_slow_planner(seed: int) -> None:
         )
         assert [w.id for w in group.wedges] == [w.id for w in tried.wedges]
     np.testing.assert_array_equal(result.wall.labels, slow.labels)
+    for step, tried in zip(result.plan.stone_steps, slow.built, strict=True):
+        assert step.indices == pytest.approx(tried.action.indices.as_dict(), abs=1e-9)
     alphas = [s for s in result.plan.steps if s.alpha_left is not None]
     found = [(step.alpha_left, step.alpha_right) for step in alphas]
     assert found == [pytest.approx(tried.alphas, abs=1e-9) for tried in slow.built]

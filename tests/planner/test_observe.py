@@ -20,7 +20,6 @@ from drystone.planner.events import Step, Stopped
 from drystone.planner.measured import MeasuredPose, fitted
 from drystone.planner.observe import Measurement, Observation
 from drystone.planner.planner import Planner
-from drystone.planner.replay import stands
 from drystone.planner.settings import PlannerSettings
 from drystone.search.plan_result import finish as finish_plan
 from drystone.statics.limit import lateral_resistance
@@ -125,7 +124,7 @@ def check_wall(one: Planner) -> None:
                 assert polygon.intersection(other).area < 1e-9
         model = model_of_outlines(wall.outlines, one.settings.mu, settle.contact_px)
     assert lateral_resistance(model).stable
-    assert all(stands(action) for action in one.build.actions)
+    assert all(action.stands for action in one.build.actions)
 
 
 def found_wrong(one: Planner) -> set[str]:

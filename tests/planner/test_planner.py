@@ -11,13 +11,13 @@ from drystone.planner.measured import MeasuredPose
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings, StopSettings
 from drystone.search.plan_result import result_of
+from tests.narrow import not_none
 from tests.planner.scenes import RUBBLE_SITE, blocks, bricks, finish, greedy, order, rubble, same
 
 
 def test_it_stops_when_the_wall_is_filled() -> None:
     planner = finish(Planner(bricks(8), Site(60, 20)))
-    assert planner.stopped is not None
-    assert planner.stopped.reason == "filled"
+    assert not_none(planner.stopped).reason == "filled"
     assert len(planner.build.actions) == 6
     assert planner.build.wall.filling == 1.0
 
@@ -69,8 +69,7 @@ def test_it_stops_after_failures_in_a_row(failures: int, attempts: list[int | No
 
 def test_full_sampling_ends_at_the_first_failure(attempts: list[int | None]) -> None:
     planner = finish(Planner(bricks(5), Site(30, 10), settings=PlannerSettings(sampling="full")))
-    assert planner.stopped is not None
-    assert planner.stopped.reason == "failures"
+    assert not_none(planner.stopped).reason == "failures"
     assert attempts[1:] == [None]
 
 

@@ -24,6 +24,7 @@ from drystone.selection.policies import registry
 from drystone.selection.policies.registry import BUILT_IN, GROUP
 from drystone.selection.policy import Offer
 from drystone.verify import check_plan
+from tests.narrow import not_none
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, order, rubble
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "for-researchers.md"
@@ -67,12 +68,14 @@ def installed(monkeypatch: pytest.MonkeyPatch) -> Callable[[type], None]:
     [(name, "exact") for name in ("algorithm2", *BUILT_IN)]
     + [("towers", "raster"), ("learned", "raster")],
 )
-def test_walls_are_true_and_the_same_with_any_threads(name: str, geometry: str) -> None:
+def test_walls_are_true_and_say_their_policy(name: str, geometry: str) -> None:
     settings = by(name, {"geometry": geometry})
-    one, two = (planned(settings, seed=3, n_jobs=jobs) for jobs in (1, 2))
+    one = planned(settings, seed=3)
     true(one, rubble(1))
-    assert plan_to_json(one.plan) == plan_to_json(two.plan)
-    assert one.wall.labels.tobytes() == two.wall.labels.tobytes()
+    if geometry == "raster":  # every policy is asked in the same place, after the threads
+        two = planned(settings, seed=3, n_jobs=2)
+        assert plan_to_json(one.plan) == plan_to_json(two.plan)
+        assert one.wall.labels.tobytes() == two.wall.labels.tobytes()
     assert one.plan.settings["selection_rule"] == name
     assert ("policy" in one.plan.settings) == (name in BUILT_IN)
     again = PlannerSettings().updated(one.plan.settings)
@@ -166,8 +169,7 @@ def test_a_policy_that_takes_nothing_ends_the_wall(installed: Callable[[type], N
     installed(Nobody)
     full = finish(Planner(rubble(1), RUBBLE_SITE, settings=by("mine", RASTER)))
     assert full.build.actions == ()
-    assert full.stopped is not None
-    assert full.stopped.reason == "failures"
+    assert not_none(full.stopped).reason == "failures"
 
 
 class Breaks:

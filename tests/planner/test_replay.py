@@ -14,10 +14,11 @@ from drystone.model.wall import Group
 from drystone.planner.build import Build, Candidate
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.planner import Planner
-from drystone.planner.replay import judged, replayed, stands
+from drystone.planner.replay import judged, replayed
 from drystone.planner.settings import PlannerSettings
 from drystone.settle.placing import settled_placement
 from drystone.settle.rest import placed_outline
+from tests.narrow import not_none
 from tests.planner.scenes import (
     RUBBLE_SITE,
     WITH_WEDGES,
@@ -133,8 +134,9 @@ def laid(planner: Planner, stone_id: int, left: float, level: float) -> Group:
     x, y = left + 10.0, 5.0 + 10.01 * level + 0.01
     corners = placed_outline(planner.workshop.outlines.outline(stone), 0.0, x, y)
     outlines = Outlines.empty(site)
-    placement = settled_placement(outlines, site, stone, 0.0, Settled(x, y, corners), "left", 0)
-    assert placement is not None
+    placement = not_none(
+        settled_placement(outlines, site, stone, 0.0, Settled(x, y, corners), "left", 0)
+    )
     return Group(placement)
 
 
@@ -253,9 +255,7 @@ def test_what_stands_stands_in_both_models_and_carries_a_load() -> None:
         planner.build, [groups["ground"]], {}, planner.workshop, planner.settings
     )
     action: Candidate = build.actions[0]
-    assert stands(action)
-    assert not stands(replace(action, sturdy=False))
-    right = action.resistance.right
-    for alpha in (0.0, None):
-        resistance = replace(action.resistance, right=replace(right, alpha=alpha))
-        assert not stands(replace(action, resistance=resistance))
+    assert action.stands
+    assert not replace(action, sturdy=False).stands
+    for llc in (0.0, None):
+        assert not replace(action, indices=replace(action.indices, LLC=llc)).stands

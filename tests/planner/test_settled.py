@@ -11,6 +11,7 @@ from drystone.model.wall import Group, Wall
 from drystone.planner.settled import settled_in, stands_out_px
 from drystone.settle.rest import SettlingScene, Turned, come_to_rest
 from drystone.settle.settings import SettleSettings
+from tests.narrow import not_none
 
 BRICK = Stone(1, np.ones((6, 10), bool))
 
@@ -22,8 +23,7 @@ def pushed_to_an_end(
     settings = settings or SettleSettings()
     turned = Turned.of(BRICK.outline_within(0.35), 0.0, side, BRICK.area_px**0.5)
     scene = SettlingScene.of(no_polygons(), site.extent_px[0], side, 0.58)
-    found = come_to_rest(turned, scene, (5.0, 3.02), settings)
-    assert found is not None
+    found = not_none(come_to_rest(turned, scene, (5.0, 3.02), settings))
     out_px = stands_out_px(found.settled.corners, site)
     assert 0.0 < out_px < settings.beyond_px
     return settled_in(Wall.empty(site, exact=True), BRICK, side, found, wedge_id=9)
@@ -37,8 +37,7 @@ def test_stones_are_taken_in_at_both_ends_however_wide_the_wall_is(
 ) -> None:
     # Columns that are less than half in the wall have no pixels.
     site = Site.from_source((40.0 + more_px) / scale, 30.0 / scale, scale)
-    found = pushed_to_an_end(site, side)
-    assert found is not None
+    found = not_none(pushed_to_an_end(site, side))
     placement = found.placement
     assert placement.posed.mask.all()
     end = placement.col if side == "left" else placement.col + placement.posed.width_px

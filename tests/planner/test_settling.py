@@ -22,6 +22,7 @@ from drystone.planner.proposing import Key, StoneTrial, one_by_one
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settling import ExactProposer
 from drystone.planner.stock import Stock
+from tests.narrow import not_none
 from tests.planner.scenes import RUBBLE_SITE, blocks, bricks, finish, greedy, rubble
 
 BOTH_RULES = pytest.mark.parametrize("rule", ["score", "algorithm2"])
@@ -73,8 +74,7 @@ def test_a_first_batch_that_cannot_be_used_is_not_the_last(monkeypatch: pytest.M
         ]
 
     monkeypatch.setattr(Attempt, "_judge", severe)
-    chosen = attempt.choose(np.random.default_rng(0))
-    assert chosen is not None
+    chosen = not_none(attempt.choose(np.random.default_rng(0)))
     assert _key(chosen.proposal) in [_key(p) for p in second]
 
 
@@ -157,7 +157,7 @@ def test_drops_are_above_what_is_there_and_inside_the_wall() -> None:
     assert sum(map(len, found)) > 20
     for drop in (drop for mine in found for drop in mine):
         side, posed = drop.trial.landscape.side, drop.trial.poses[0]
-        scene, _ = proposer.view(side)
+        scene = proposer.view(side).scene
         corners = step.workshop.outlines.hung(posed.stone, posed.angle_deg, side).turned.corners
         shape = shapely.Polygon(corners + np.array(drop.start))
         left, low, right, _ = shape.bounds
@@ -195,8 +195,7 @@ def _placed(step: _Step, stone_id: int, start: tuple[float, float]) -> Build:
     """The build with one stone settled from a place."""
     proposer = step.proposer()
     trial = _upright(step, stone_id)
-    proposal = proposer._settle(Drop(trial, 0, start, (0.0, (trial.key, 0))))
-    assert proposal is not None
+    proposal = not_none(proposer._settle(Drop(trial, 0, start, (0.0, (trial.key, 0)))))
     attempt = Attempt(step.workshop, step.settings, step.build)
     (candidate,) = attempt._judge([proposal])
     assert candidate.sturdy
@@ -206,8 +205,7 @@ def _placed(step: _Step, stone_id: int, start: tuple[float, float]) -> Build:
 def test_methods_of_stabilisation() -> None:
     beside = (15.02, 15.5)  # both left ends at that of the wall
     for method in ("both", "wedge"):
-        found = _one(method, beside)
-        assert found is not None
+        found = not_none(_one(method, beside))
         (wedge,) = found.stabilised.wedges
         assert (wedge.id, wedge.under) == (5, 2)
         assert wedge.corners is not None
@@ -217,8 +215,7 @@ def test_methods_of_stabilisation() -> None:
         assert _one(method, beside) is None
     # With its centroid over the post it rests, whatever may be done.
     for method in ("both", "wedge", "rotation", "none"):
-        found = _one(method, (28.0, 15.5), post=25.0)
-        assert found is not None
+        found = not_none(_one(method, (28.0, 15.5), post=25.0))
         assert found.stabilised.wedges == ()
 
 
@@ -232,15 +229,13 @@ def _tilted(method: str) -> Proposal | None:
 
 def test_only_methods_that_rotate_turn_a_stone() -> None:
     for method in ("both", "rotation"):
-        found = _tilted(method)
-        assert found is not None
+        found = not_none(_tilted(method))
         placement = found.stabilised.placement
         assert placement.rotation_moves == 1
         assert placement.posed.angle_deg == pytest.approx(0.0, abs=0.1)
         assert abs(found.trial_angle_deg) == 4.0
     assert _tilted("none") is None
-    wedged = _tilted("wedge")
-    assert wedged is not None
+    wedged = not_none(_tilted("wedge"))
     assert wedged.stabilised.placement.posed.angle_deg == wedged.trial_angle_deg
     assert wedged.stabilised.placement.rotation_moves == 0
     assert len(wedged.stabilised.wedges) == 1

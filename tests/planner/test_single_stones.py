@@ -11,6 +11,7 @@ from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
 from drystone.selection.scored import PIN_BONUS, ScoreSettings
+from tests.narrow import not_none
 from tests.planner.scenes import RUBBLE_SITE, blocks, bricks, finish, greedy, order, rubble
 
 
@@ -32,8 +33,7 @@ def test_why_a_wall_ends_without_banned_stones() -> None:
     def said(changes: dict[str, object], stones: int = 3) -> str:
         settings = PlannerSettings().updated(changes)
         planner = finish(Planner(bricks(stones), Site(60, 10), settings=settings))
-        assert planner.stopped is not None
-        return planner.stopped.text
+        return not_none(planner.stopped).text
 
     ids = [stone.id for stone in bricks(4)]
     assert said({"ban": [ids[0]]}) == "all stones that are not banned placed"
@@ -130,9 +130,7 @@ def test_what_finds_no_place_in_its_turn_is_set_aside() -> None:
     settings = replace(settings, skip_too_large=True)
     small = finish(Planner(stones, Site(60, 10), settings=settings))
     assert stones_of(small) == [1, 3, 4]
-    assert small.stopped is not None
-    assert small.stopped.reason == "filled"
+    assert not_none(small.stopped).reason == "filled"
     narrow = finish(Planner(stones, Site(45, 10), settings=settings))
     assert stones_of(narrow) == [1, 3]
-    assert narrow.stopped is not None
-    assert narrow.stopped.text == "no stone is left that was not tried in its turn"
+    assert not_none(narrow.stopped).text == "no stone is left that was not tried in its turn"

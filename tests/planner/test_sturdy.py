@@ -227,7 +227,7 @@ def test_failures_of_the_solver_are_counted_in_either_model(
     assert attempt.choose(np.random.default_rng(0)) is None
     judged = list(attempt._judged.values())
     assert judged
-    assert all(candidate.failed and candidate.solved_cold for candidate in judged)
+    assert all(candidate.solves == Solves(1, 1) for candidate in judged)
     assert attempt.solves == Solves(len(judged), len(judged))
 
 

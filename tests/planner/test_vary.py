@@ -9,7 +9,6 @@ import pytest
 from drystone.planner.planner import Planner
 from drystone.planner.settings import method_settings
 from drystone.planner.vary import varied
-from drystone.search.plan_wall import plan_wall
 from drystone.selection.scored import ScoreSettings
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, order, rubble, same
 
@@ -41,13 +40,6 @@ def test_another_seed_gives_another_wall_and_the_same_seed_the_same() -> None:
     # Without it nothing is random here.
     plain = [built(seed, 0.0) for seed in (1, 2)]
     assert same(*plain)
-
-
-def test_the_plan_records_the_weights_themselves() -> None:
-    settings = greedy({"search": {"budget": 3}})
-    result = plan_wall(rubble(), 100, 36, seed=3, settings=settings, scale=1.0)
-    assert result.plan.settings == settings.as_dict()
-    assert result.plan.settings["vary"] == 0.3
 
 
 @pytest.mark.parametrize("seed", [1, 4])

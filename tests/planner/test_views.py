@@ -8,7 +8,8 @@ from drystone.kernels.polygons import Points, Polygons, no_polygons
 from drystone.kernels.profiles import bare, raised
 from drystone.model.placement import Side
 from drystone.model.site import Site
-from drystone.planner.views import OutlineView, Views
+from drystone.planner.views import SideView, Views
+from drystone.settle.rest import SettlingScene
 from tests.polygons import random_polygon
 from tests.strategies import repeatable
 
@@ -21,17 +22,16 @@ def heap(seed: int, count: int) -> list[Points]:
     return [random_polygon(rng, 7, 10.0) + at[k] for k in range(count)]
 
 
-def bits(view: OutlineView) -> list[bytes]:
-    return [part.tobytes() for part in (*view.built, *view.seen, *view.profile)]
+def bits(view: SideView) -> list[bytes]:
+    return [part.tobytes() for part in (*view.scene.polygons, *view.profile)]
 
 
-def at_once(built: Polygons, side: Side) -> OutlineView:
-    width = SITE.extent_px[0]
-    seen = built if side == "left" else built.mirrored(width)
+def at_once(built: Polygons, side: Side) -> SideView:
+    scene = SettlingScene.of(built, SITE.extent_px[0], side, 0.58)
     profile = bare(SITE.width_px)
-    for index in range(len(seen)):
-        profile = raised(profile, seen.polygon(index), index, 1.0 / SITE.scale)
-    return OutlineView(built, seen, profile)
+    for index in range(len(scene.polygons)):
+        profile = raised(profile, scene.polygons.polygon(index), index, 1.0 / SITE.scale)
+    return SideView(scene, profile, 1.0 / SITE.scale)
 
 
 @repeatable(40)
@@ -49,16 +49,23 @@ def test_a_view_does_not_depend_on_what_was_asked_for_before(
         polygons = one if first else [*one[:2], *other[2:]]
         built = no_polygons().added(polygons[:count])
         side: Side = "left" if from_left else "right"
-        assert bits(found.of(built, side)) == bits(at_once(built, side))
+        assert bits(found.of(built, side, 0.58)) == bits(at_once(built, side))
 
 
 def test_a_wall_that_differs_in_the_last_bit_of_a_corner_is_another_one() -> None:
     polygons = heap(5, 2)
     found = Views(SITE)
-    found.of(no_polygons().added(polygons), "left")
+    found.of(no_polygons().added(polygons), "left", 0.58)
     moved = polygons[0].copy()
     moved[0, 0] = np.nextafter(moved[0, 0], 99.0)
     built = no_polygons().added([moved, polygons[1]])
-    assert bits(found.of(built, "left")) == bits(at_once(built, "left"))
+    assert bits(found.of(built, "left", 0.58)) == bits(at_once(built, "left"))
     split = Polygons(built.corners, np.array([0, 4, 14], np.int32), built.boxes, built.edges)
-    assert found.of(split, "left").built is split
+    assert found.of(split, "left", 0.58).scene.polygons.first.tolist() == [0, 4, 14]
+
+
+def test_the_view_of_the_same_wall_is_the_same_one_and_the_last_piece_has_a_column() -> None:
+    built = no_polygons().added(heap(5, 3))
+    view = SideView.bare(100.0, "right", 0.58, 1.3).grown(built)
+    assert view.grown(built) is view
+    assert len(view.profile.tops) == 77

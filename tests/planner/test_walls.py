@@ -22,6 +22,7 @@ from drystone.planner.settings import PlannerSettings
 from drystone.search.plan_result import mean_top
 from drystone.search.plan_wall import plan_wall, working_scale
 from drystone.verify import check_plan
+from tests.narrow import not_none
 from tests.planner.scenes import blocks, bricks, greedy, rubble, stones_of_masks
 
 
@@ -104,15 +105,13 @@ def _trial(planner: Planner, stone_id: int) -> StoneTrial:
 def test_a_stone_bridges_two_pillars_without_a_wedge(settings: PlannerSettings) -> None:
     sizes = {1: (20, 20), 2: (20, 20), 3: (60, 8)}
     planner, evaluator = _scene(sizes, {1: (0, 0), 2: (40, 0)}, settings)
-    proposal = _proposed(planner, planner.build, 3)
-    assert proposal is not None
+    proposal = not_none(_proposed(planner, planner.build, 3))
     placement = proposal.stabilised.placement
     assert (placement.row, placement.col, placement.rotation_moves) == (12, 0, 0)
     assert proposal.stabilised.wedges == ()
     candidate = _judged(evaluator, planner.build, proposal)
     assert candidate.resistance.stable
-    assert candidate.resistance.value is not None
-    assert candidate.resistance.value > 0.3
+    assert not_none(candidate.resistance.value) > 0.3
 
 
 def _half_supported(ids: tuple[int, int, int]) -> Build:
@@ -121,8 +120,7 @@ def _half_supported(ids: tuple[int, int, int]) -> Build:
     settings = PlannerSettings().updated({"stabilise": {"method": "wedge"}})
     sizes = {high: (20, 20), low: (20, 16), slab: (60, 8)}
     planner, evaluator = _scene(sizes, {high: (0, 0), low: (40, 0)}, settings)
-    proposal = _proposed(planner, planner.build, slab)
-    assert proposal is not None
+    proposal = not_none(_proposed(planner, planner.build, slab))
     return planner.build.add(_judged(evaluator, planner.build, proposal))
 
 
@@ -145,8 +143,7 @@ def test_two_wedges_get_two_ids() -> None:
     build = planner.build
     for slab in (3, 6):
         planner.build = build
-        proposal = _proposed(planner, build, slab)
-        assert proposal is not None
+        proposal = not_none(_proposed(planner, build, slab))
         build = build.add(_judged(evaluator, build, proposal))
     assert [wedge.id for wedge in build.wall.wedges] == [7, 8]
 

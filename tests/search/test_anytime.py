@@ -38,10 +38,11 @@ from drystone.search.goal import Courses, FoundWall
 from drystone.search.packed import PackedWall, archived, found_again
 from drystone.search.plan_wall import SoFar, plan_wall
 from drystone.search.processes import processes
-from drystone.search.standing import Link, Progress, Standing
+from drystone.search.state import Link, Progress, SearchState
 from drystone.search.whole_search import run_to_end
 from drystone.search.yard import Yard
 from drystone.verify.check import check_plan
+from tests.narrow import not_none
 from tests.planner.scenes import RUBBLE_SITE, Ticks, after_looks, blocks, finish, greedy, rubble
 
 SMALL = {"passes": 3, "chains": 2, "share_every": 2, "cycle": 3}
@@ -269,28 +270,27 @@ def test_an_interrupt_keeps_the_best_wall_so_far() -> None:
 def test_a_search_goes_on_from_where_it_stood_to_the_walls_that_it_would_have_found() -> None:
     planner = first(25, seed=1, patience=1)
     whole = searched(planner)
-    stood = [k for k, one in enumerate(whole) if one.standing is not None]
-    rounds = {standing(whole[k]).number for k in stood}
+    stood = [k for k, one in enumerate(whole) if one.state is not None]
+    rounds = {state(whole[k]).number for k in stood}
     assert len(rounds) > 1
-    assert {standing(whole[k]).chains is None for k in stood} == {True, False}
+    assert {state(whole[k]).chains is None for k in stood} == {True, False}
     # Where there is but a first wall, and where the budget cut a chain short, there is nothing.
     assert set(range(len(whole))) - set(stood) <= {0, len(whole) - 1}
     yard = Yard.of(planner)
     for k in stood[1::4]:
-        again = list(searching(standing(whole[k]), yard, planner.seed))
-        assert standing(whole[k]).walls == whole[k].walls
+        again = list(searching(state(whole[k]), yard, planner.seed))
+        assert state(whole[k]).walls == whole[k].walls
         assert all(alike(one, other) for one, other in zip(again, whole[k:], strict=True))
     # One that goes on with a smaller budget ends.
     last = whole[stood[-1]]
-    assert standing(last).before is not None
+    assert state(last).before is not None
     less = planner.settings.updated({"search": {"budget": 1}})
-    (only,) = searching(standing(last), Yard(planner.workshop, less), planner.seed)
+    (only,) = searching(state(last), Yard(planner.workshop, less), planner.seed)
     assert (only.walls, only.best) == (last.walls, last.best)
 
 
-def standing(progress: Progress) -> Standing:
-    assert progress.standing is not None
-    return progress.standing
+def state(progress: Progress) -> SearchState:
+    return not_none(progress.state)
 
 
 def test_a_plan_that_is_kept_is_that_of_an_interrupt_and_leads_to_the_whole_one() -> None:
@@ -311,7 +311,7 @@ def test_a_plan_that_is_kept_is_that_of_an_interrupt_and_leads_to_the_whole_one(
     ]
     for one in told[len(placed) + 1 :: 2]:
         again = plan_wall(
-            stones, 100, 36, scale=1.0, seed=1, settings=settings, standing=standing(one.progress)
+            stones, 100, 36, scale=1.0, seed=1, settings=settings, state=state(one.progress)
         )
         assert again.plan == whole.plan
 
@@ -468,8 +468,7 @@ def test_a_full_wall_is_incomplete_without_a_pinned_stone() -> None:
     assert [notice.code for notice in result.notices] == ["W120"]
     planner = finish(Planner(large, Site(60, 20), settings=pinned))
     found = FoundWall.of(planner)
-    assert found.figures is not None
-    assert found.figures.missing == 1
+    assert not_none(found.figures).missing == 1
 
 
 def test_in_a_given_order_the_last_stones_are_built_again() -> None:

@@ -30,6 +30,7 @@ from drystone.search.yard import Yard
 from drystone.statics.incremental import IncrementalResult
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.verify.check import check_plan
+from tests.narrow import not_none
 from tests.planner import scenes
 from tests.planner.scenes import RUBBLE_SITE, blocks, greedy, rubble
 
@@ -53,9 +54,7 @@ def yard() -> Yard:
 @pytest.fixture(scope="module")
 def planned(yard: Yard) -> FoundWall:
     # Not the cheapest plan of all, which would only be found again.
-    found = newly_planned(yard, rng(14))
-    assert found is not None
-    return found
+    return not_none(newly_planned(yard, rng(14)))
 
 
 def poses(found: FoundWall) -> list[tuple[int, float, bytes]]:
@@ -84,11 +83,9 @@ def check(found: FoundWall, yard: Yard) -> None:
 
 def test_a_plan_is_laid_and_the_rest_goes_on_top(planned: FoundWall, yard: Yard) -> None:
     check(planned, yard)
-    assert planned.figures is not None
-    assert planned.figures.stones >= 6
+    assert not_none(planned.figures).stones >= 6
     again, *others = (newly_planned(yard, rng(seed)) for seed in (14, 3, 4))
-    assert again is not None
-    assert poses(again) == poses(planned)
+    assert poses(not_none(again)) == poses(planned)
     assert any(other is not None and poses(other) != poses(planned) for other in others)
     site = yard.workshop.site
     begun = yard.planner()
@@ -110,11 +107,9 @@ def test_lower_courses_stay(
         return lay(plan, start, *rest)
 
     monkeypatch.setattr("drystone.search.by_courses.lay", spied)
-    assert planned.courses is not None
-    ends, changed = planned.courses.ends, set[int]()
+    ends, changed = not_none(planned.courses).ends, set[int]()
     for seed in range(8):
-        new = change(planned, yard, rng(seed))
-        assert new is not None
+        new = not_none(change(planned, yard, rng(seed)))
         check(new, yard)
         same = [a == b for a, b in zip(poses(new), poses(planned), strict=False)]
         count = same.index(False) if False in same else len(same)
@@ -170,8 +165,7 @@ def test_every_solve_that_failed_is_counted(
     fails = partial(gives_up, Evaluator.loaded)
     monkeypatch.setattr(Evaluator, "loaded", partialmethod(fails))
     known = () if change is newly_planned else (planned,)
-    found = change(*known, yard, rng(5))
-    assert found is not None
+    found = not_none(change(*known, yard, rng(5)))
     assert found.solves.failed == sum(solved) > 0
 
 
@@ -222,9 +216,7 @@ def test_what_stays_is_where_it_was(free: Build, yard: Yard) -> None:
     for p in left.wall.placements:
         was = before[p.stone_id]
         assert p.posed.angle_deg == was.posed.angle_deg
-        assert p.settled is not None
-        assert was.settled is not None
-        assert (p.settled.corners == was.settled.corners).all()
+        assert (p.exact.corners == was.exact.corners).all()
     assert all(a.resistance.stable and a.sturdy for a in left.actions)
     assert without(free, frozenset(), yard).build is free
 

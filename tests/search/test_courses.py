@@ -19,6 +19,7 @@ from drystone.poses import PoseBook
 from drystone.search.course_task import HIGH, LEFT_OUT, PINNED, CourseTask, ground_of, task_of
 from drystone.search.courses import CoursePlan, PlannedStone, placed, plan_courses, resumed
 from drystone.settle.rest import placed_outline
+from tests.narrow import not_none
 from tests.planner.scenes import blocks
 
 TOLERANCE_PX = 0.35
@@ -41,9 +42,7 @@ def task(
     stones: Collection[Stone], size: tuple[float, float], cell_px: float = 1.0,
     settings: CourseSettings = QUICK, **options: Any,
 ) -> CourseTask:  # fmt: skip
-    found = task_of(stones, size, cell_px, TOLERANCE_PX, settings, **options)
-    assert found is not None
-    return found
+    return not_none(task_of(stones, size, cell_px, TOLERANCE_PX, settings, **options))
 
 
 def outlines(plan: CoursePlan, stones: StoneSet) -> list[list[Points]]:
@@ -101,8 +100,7 @@ def test_equal_seeds_give_equal_plans_and_the_cost_is_that_of_the_plan() -> None
     one = task(RUBBLE.stones, SIZE, 4.0)
     plan = plan_courses(one, 5)
     assert plan_courses(one, 5) == plan != plan_courses(one, 6)
-    again = resumed(one, plan.courses)
-    assert again is not None
+    again = not_none(resumed(one, plan.courses))
     layout = evaluate(one.poses, again, one.ground, one.rules)
     assert placed(one, again, layout) == plan
     assert layout.cost == plan.cost
@@ -210,8 +208,7 @@ def test_no_plan_has_more_courses_than_it_may() -> None:
     single = [
         (PlannedStone(i, angles[i][0], "left", 18.0, 18.0, 0.0, 36.0, 36.0),) for i in range(1, 21)
     ]
-    start = resumed(one, single)
-    assert start is not None
+    start = not_none(resumed(one, single))
     assert start.sizes.tolist() == [1] * one.rules.courses
     assert one.rules.courses < 20
     assert sorted(start.order.tolist()) == list(range(20))

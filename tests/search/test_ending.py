@@ -30,6 +30,7 @@ from drystone.search.whole_search import (
 )
 from drystone.search.yard import Yard
 from drystone.statics.model import RigidBlockModel
+from tests.narrow import not_none
 from tests.planner.scenes import (
     ROUNDED,
     ROUNDED_SITE,
@@ -88,10 +89,8 @@ def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere() -> Non
     yard = Yard.of(planner)
     wall = PackedWall.of(FoundWall.of(planner).judged(yard, THOROUGH))
     better = repaired(planner, wall)
-    assert wall.figures is not None
-    assert better.figures is not None
     assert better.merit > wall.merit
-    assert better.figures.fallen < wall.figures.fallen
+    assert not_none(better.figures).fallen < not_none(wall.figures).fallen
     found = found_again(better, yard)
     assert found.judged(yard, THOROUGH).merit == pytest.approx(better.merit)
     assert repaired(planner, wall).groups == better.groups
@@ -261,9 +260,7 @@ def test_a_wall_that_falls_when_it_is_let_go_gives_way_to_one_that_stays(
 
     monkeypatch.setattr("drystone.search.whole_search.fall_of", fall)
     other, _ = surest(planner, walls)
-    assert other is not None
-    assert len(other.groups) != lost
+    assert len(not_none(other).groups) != lost
     monkeypatch.setattr("drystone.search.whole_search.fall_of", lambda *_: True)
     again, _ = surest(planner, walls)
-    assert again is not None
-    assert again.merit == best.merit  # all fall
+    assert not_none(again).merit == best.merit  # all fall

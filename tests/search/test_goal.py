@@ -17,6 +17,7 @@ from drystone.planner.solves import Solves
 from drystone.search.goal import FoundWall, WallFigures, figures_of, merit_of, possible_filling
 from drystone.search.packed import MOST, STEPS, PackedWall, archived, score_of
 from drystone.search.yard import Yard
+from tests.narrow import not_none
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble
 from tests.strategies import repeatable
 
@@ -65,11 +66,9 @@ def test_what_is_judged_carries_no_more(seed: int) -> None:
     planner = finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=greedy()))
     found = FoundWall.of(planner)
     judged = found.judged(Yard.of(planner))
-    assert found.figures is not None
     assert judged.figures is not None
-    assert found.figures.F_LR_coulomb is None
-    assert judged.figures.F_LR_coulomb is not None
-    assert 0.0 <= judged.figures.F_LR_coulomb <= judged.figures.F_LR
+    assert not_none(found.figures).F_LR_coulomb is None
+    assert 0.0 <= not_none(judged.figures.F_LR_coulomb) <= judged.figures.F_LR
     assert judged.merit <= found.merit
     assert judged.judged(Yard.of(planner)) is judged
 
@@ -98,8 +97,7 @@ def test_nothing_is_gained_beyond_an_aim(
 def test_figures_are_those_of_the_wall() -> None:
     planner = finish(Planner(rubble(), RUBBLE_SITE, settings=greedy()))
     placed = [action.stone_id for action in planner.build.actions]
-    figures = figures_of(planner.build, [*placed[:2], 98, 99])
-    assert figures is not None
+    figures = not_none(figures_of(planner.build, [*placed[:2], 98, 99]))
     assert (figures.stones, figures.missing) == (len(placed), 2)
     assert figures.F_SF == planner.build.wall.filling
     assert figures.F_LR == planner.build.actions[-1].resistance.value
@@ -160,8 +158,7 @@ some_walls = st.lists(
 
 
 def rank(wall: PackedWall) -> tuple[float, tuple[int, ...]]:
-    assert wall.figures is not None
-    return wall.merit, score_of(wall.figures)
+    return wall.merit, score_of(not_none(wall.figures))
 
 
 def beaten(one: PackedWall, by: PackedWall) -> bool:

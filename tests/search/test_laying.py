@@ -28,8 +28,7 @@ def statuses(laid: CourseLaying) -> list[list[str]]:
 
 
 def corners_of(laid: CourseLaying) -> dict[int, Points]:
-    assert laid.build.wall.outlines is not None
-    return dict(laid.build.wall.outlines.blocks)
+    return dict(laid.build.wall.exact.blocks)
 
 
 def boxes(laid: CourseLaying) -> dict[int, list[float]]:

@@ -3,16 +3,17 @@
 from dataclasses import replace
 from itertools import pairwise
 
-import numpy as np
 import pytest
 import shapely
 
-from drystone.kernels.profiles import bare, hanging, raised
+from drystone.kernels.profiles import hanging
 from drystone.model.placement import Side
 from drystone.planner.laying_settings import LayingSettings
-from drystone.search.letting_go import Aim, Hand, Resting, SideView
-from drystone.settle.rest import SettlingScene, Turned
+from drystone.planner.views import SideView
+from drystone.search.letting_go import Aim, Hand, Resting
+from drystone.settle.rest import Turned
 from drystone.settle.wedged import wedged
+from tests.narrow import not_none
 from tests.planner.scenes import RUBBLE_SITE, rubble
 from tests.search.yards import Plot
 
@@ -24,9 +25,8 @@ class Drop:
 
     def __init__(self, side: Side, settings: LayingSettings) -> None:
         plot = Plot(rubble(2, 8), RUBBLE_SITE)
-        outlines = plot.lay(*plot.rows(1)).build.wall.outlines
-        assert outlines is not None
-        self.view = SideView.bare(100.0, side, 0.58, 1.0).grown(outlines)
+        outlines = not_none(plot.lay(*plot.rows(1)).build.wall.outlines)
+        self.view = SideView.bare(100.0, side, 0.58, 1.0).grown(outlines.polygons)
         stone = next(s for s in plot.stones if s.id not in dict(outlines.blocks))
         outline = plot.yard.workshop.outlines.outline(stone)
         self.stone = Turned.of(outline, 0.0, side, stone.area_px**0.5)
@@ -159,11 +159,10 @@ def test_a_stone_is_wedged_at_the_cheapest_place_first() -> None:
     assert [one.cost for one in found] == sorted(one.cost for one in found)
     for one in found:
         settled = one.repose.settled
-        assert one.wedge is not None
         top = float(settled.corners[:, 1].max())
         unsure = hand.settings.rest * max(0.0, 1.0 - one.repose.margin)
         assert one.cost == pytest.approx(abs(top - 25.0) / drop.unit_px + 0.2 + unsure)
-        assert one.wedge.tobytes() == expected[round(settled.x_px), round(settled.y_px)]
+        assert not_none(one.wedge).tobytes() == expected[round(settled.x_px), round(settled.y_px)]
 
 
 def test_a_stone_that_rests_above_the_wall_or_far_from_its_top_does_not_count() -> None:
@@ -178,23 +177,3 @@ def test_a_stone_that_rests_above_the_wall_or_far_from_its_top_does_not_count() 
     assert 0 < len(found) < len(tops)
     for one in found:
         assert one.repose.settled.corners[:, 1].max() == pytest.approx(lower, abs=0.2)
-
-
-@pytest.mark.parametrize("side", ["left", "right"])
-def test_a_view_grows_as_if_all_were_seen_at_once(side: Side) -> None:
-    plot = Plot(rubble(4, 10), RUBBLE_SITE)
-    view = SideView.bare(100.0, side, 0.58, 1.3)
-    for state in plot.lay(*plot.rows(2)).build.states():
-        outlines = state.wall.outlines
-        assert outlines is not None
-        view = view.grown(outlines)
-        assert view.grown(outlines) is view
-    scene = SettlingScene.of(outlines.polygons, 100.0, side, 0.58)
-    profile = bare(77)
-    for index in range(len(scene.polygons)):
-        profile = raised(profile, scene.polygons.polygon(index), index, 1.3)
-    assert len(scene.polygons) > 4
-    assert view.scene.side == side
-    pairs = [*zip(view.scene.polygons, scene.polygons, strict=True)]
-    for mine, at_once in [*pairs, *zip(view.profile, profile, strict=True)]:
-        assert np.asarray(mine).tobytes() == np.asarray(at_once).tobytes()

@@ -102,10 +102,6 @@ def gone_on_with(result: PlanResult) -> dict[str, Any]:
     return {"built": result.wall, "course_heights_px": result.plan.course_heights_px}
 
 
-def steps_of(result: PlanResult) -> list[Any]:
-    return list(result.plan.steps)
-
-
 @pytest.mark.parametrize("way", WAYS)
 def test_a_first_wall_cut_short_is_a_plan_that_is_gone_on_with(way: str) -> None:
     options = {"budget": 3, **WAYS[way]}

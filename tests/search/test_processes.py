@@ -12,6 +12,7 @@ import pytest
 from loky import ProcessPoolExecutor
 
 from drystone.search.processes import processes, threads
+from tests.narrow import not_none
 
 GROWTH_BYTES = 350_000_000
 """More than what loky takes for a leak if it is not told otherwise."""
@@ -55,8 +56,7 @@ def test_an_interrupt_while_they_end_waits_until_they_have(
 def test_processes_hear_no_interrupt_from_their_very_beginning() -> None:
     before = signal.pthread_sigmask(signal.SIG_BLOCK, ())
     with processes(2) as workers:
-        assert workers is not None
-        heard = workers.submit(heard_here).result()
+        heard = not_none(workers).submit(heard_here).result()
     assert heard == ({signal.SIGINT, signal.SIGTERM} | before, [signal.SIG_IGN] * 2)
     assert signal.pthread_sigmask(signal.SIG_BLOCK, ()) == before
 
@@ -71,6 +71,7 @@ ASKING = """
 import time
 from loky.backend.resource_tracker import _resource_tracker
 from drystone.search.processes import processes
+from tests.narrow import not_none
 
 with processes(2) as workers:
     busy = [workers.submit(time.sleep, 0.0 if k < 2 else 1000.0) for k in range(4)]
@@ -86,8 +87,7 @@ def test_processes_end_with_the_one_that_asks_whatever_kills_it() -> None:
     with subprocess.Popen(  # noqa: S603 - our own code
         command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
     ) as asking:
-        assert asking.stdout is not None
-        left = {int(one) for one in asking.stdout.readline().split()}
+        left = {int(one) for one in not_none(asking.stdout).readline().split()}
         assert len(left) == 3
         assert all(alive(one) for one in left)
         asking.kill()

@@ -16,6 +16,7 @@ from drystone.statics.model import GROUND, Block, Direction, RigidBlockModel
 from drystone.statics.result import LimitResult, Mechanism
 from tests.kernels.simplex_walls import needs_kernel
 from tests.naive.wedging import NaiveMotion
+from tests.narrow import not_none
 from tests.search.wedge_walls import all_places, limits_of, small_walls
 
 MU = 0.5
@@ -132,10 +133,9 @@ def test_a_mechanism_fails_under_the_load_that_the_wall_carries(wall: int) -> No
     blocks = draft.analysis.model.blocks
     for direction, sign in (("left", -1.0), ("right", 1.0)):
         motion = draft.motion(direction)  # type: ignore[arg-type]
-        assert motion is not None
         pushed = raised = 0.0
         for block in blocks:
-            along, up, turning = motion.twists[block.id]
+            along, up, turning = not_none(motion).twists[block.id]
             x, y = block.centroid
             pushed += sign * block.weight * (along - turning * y)
             raised += block.weight * (up + turning * x)
@@ -173,9 +173,7 @@ def motion_of(model: RigidBlockModel, mechanism: Mechanism) -> Motion:
 
 def failing(model: RigidBlockModel) -> LimitResult:
     both = lateral_resistance(model, mechanism=True)
-    assert both.left.alpha is not None
-    assert both.right.alpha is not None
-    return both.left if both.left.alpha <= both.right.alpha else both.right
+    return both.left if not_none(both.left.alpha) <= not_none(both.right.alpha) else both.right
 
 
 def test_what_the_mechanism_does_not_violate_does_not_help() -> None:
@@ -184,9 +182,7 @@ def test_what_the_mechanism_does_not_violate_does_not_help() -> None:
         build = made.build
         one = failing(build.model)
         assert one.mechanism is not None
-        assert one.alpha is not None
-        outlines = build.wall.outlines
-        assert outlines is not None
+        outlines = build.wall.exact
         lax = replace(limits_of(made), least_thickness=0.1, greatest_height=12.0, mu=3.0)
         places = all_places(build, lax)
         rates = motion_of(build.model, one.mechanism).resisted_by(places)
@@ -200,9 +196,8 @@ def test_what_the_mechanism_does_not_violate_does_not_help() -> None:
             # The weight of the wedge is another thing: here it has none.
             weightless = replace(model.blocks[-1], density=1e-9)
             after = lateral_resistance(replace(model, blocks=(*model.blocks[:-1], weightless)))
-            alpha = after.left.alpha if one.direction == "left" else after.right.alpha
-            assert alpha is not None
-            assert violated or alpha <= one.alpha + 1e-6
+            alpha = not_none(after.left.alpha if one.direction == "left" else after.right.alpha)
+            assert violated or alpha <= not_none(one.alpha) + 1e-6
             seen[violated] += 1
     assert min(seen.values()) > 3
 

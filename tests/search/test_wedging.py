@@ -36,6 +36,7 @@ from drystone.settle.rest import placed_outline
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.verify import check_plan
+from tests.narrow import not_none
 from tests.planner.scenes import Ticks, after_looks, greedy, stones_of_masks
 from tests.search.wedge_walls import LARGE, all_places, limits_of, small_walls
 
@@ -92,12 +93,10 @@ def built(
         outline = made.workshop.outlines.outline(STONES.by_id(stone_id))
         x, y = on_grid(np.array([left, low]) - outline.min(axis=0)).tolist()
         settled = Settled(x, y, placed_outline(outline, 0.0, x, y))
-        outlines = made.build.wall.outlines
-        assert outlines is not None
-        placement = settled_placement(
-            outlines, SITE, STONES.by_id(stone_id), 0.0, settled, "left", 0
+        outlines = made.build.wall.exact
+        placement = not_none(
+            settled_placement(outlines, SITE, STONES.by_id(stone_id), 0.0, settled, "left", 0)
         )
-        assert placement is not None
         own = (wedges or {}).get(stone_id, [])
         under = tuple(Wedge(0, stone_id, NOTHING, 0, 0, on_grid(corners)) for corners in own)
         groups.append(Group(placement, under))
@@ -115,9 +114,7 @@ def outlines_of(build: Build) -> list[Points]:
 
 
 def value(build: Build) -> float:
-    found = build.actions[-1].resistance.value
-    assert found is not None
-    return found
+    return not_none(build.actions[-1].resistance.value)
 
 
 def check(made: Planner, build: Build, stones: StoneSet) -> None:

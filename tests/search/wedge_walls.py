@@ -31,8 +31,7 @@ def limits_of(made: Planner) -> WedgeLimits:
 
 def all_places(build: Build, limits: WedgeLimits) -> list[WedgePlace]:
     """Wedges under all stones that may get one more."""
-    assert build.wall.outlines is not None
-    placed = PlacedPolygons(build.wall.outlines.ids, build.wall.outlines.polygons)
+    placed = PlacedPolygons(build.wall.exact.ids, build.wall.exact.polygons)
     width = build.wall.site.extent_px[0]
     found: list[WedgePlace] = []
     for step, group in enumerate(build.wall.groups):

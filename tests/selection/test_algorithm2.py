@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from drystone.indices import Indices
 from drystone.selection.algorithm2 import Action, SelectionSettings, select_action, weighted_sum
 from tests.naive.selection import algorithm2
+from tests.narrow import not_none
 from tests.strategies import repeatable
 
 EVEN = Indices(SF=1, LFR=0.5, GDS=0.5, NHR=0.5, IWR=0.5, IS=0.5, LLC=0.5, boundary=False)
@@ -50,8 +51,7 @@ def test_choice_is_that_of_the_appendix(pi: list[Action], weights: tuple[float, 
     if expected is None:
         assert selected is None
         return
-    assert selected is not None
-    assert pi[selected.position] == expected
+    assert pi[not_none(selected).position] == expected
     assert weighted_sum(expected, settings) == pytest.approx(
         sum(w * t for w, t in zip(weights, expected.terms, strict=True))
     )
@@ -60,8 +60,7 @@ def test_choice_is_that_of_the_appendix(pi: list[Action], weights: tuple[float, 
 @pytest.mark.parametrize("llc", [0.0, -0.1, None])
 def test_nothing_that_does_not_stand_is_chosen(llc: float | None) -> None:
     assert select_action([action(1, LLC=llc), action(2, LLC=llc)]) is None
-    selected = select_action([action(1, LLC=llc, GDS=1.0), action(2, LLC=1e-9)])
-    assert selected is not None
+    selected = not_none(select_action([action(1, LLC=llc, GDS=1.0), action(2, LLC=1e-9)]))
     assert selected.position == 1
     assert select_action([]) is None
 
@@ -69,12 +68,10 @@ def test_nothing_that_does_not_stand_is_chosen(llc: float | None) -> None:
 @pytest.mark.parametrize("name", ["LLC", "NHR", "IWR", "GDS", "LFR"])
 def test_equal_values_do_not_vanish_by_rounding(name: str) -> None:
     for value, count in itertools.product((0.1 + 0.2, 0.7 / 3, 1 / 3, 1e-3), (3, 6, 7, 10)):
-        selected = select_action([action(k + 1, **{name: value}) for k in range(count)])
-        assert selected is not None
+        selected = not_none(select_action([action(k + 1, **{name: value}) for k in range(count)]))
         assert (selected.survivors, selected.position) == ((tuple(range(count)),) * 6, 0)
     # Values a rounding apart pass together.
-    selected = select_action([action(1, LLC=0.3), action(2, LLC=0.1 + 0.2, GDS=0.6)])
-    assert selected is not None
+    selected = not_none(select_action([action(1, LLC=0.3), action(2, LLC=0.1 + 0.2, GDS=0.6)]))
     assert (selected.survivors[1], selected.position) == ((0, 1), 1)
 
 
@@ -90,28 +87,24 @@ def test_equal_values_do_not_vanish_by_rounding(name: str) -> None:
 def test_earlier_criteria_decide_before_later_ones(
     better: dict[str, float], worse: dict[str, float]
 ) -> None:
-    selected = select_action([action(1, **worse), action(2, **better)])
-    assert selected is not None
+    selected = not_none(select_action([action(1, **worse), action(2, **better)]))
     assert selected.position == 1
 
 
 def test_boundary_and_inner_stones_are_compared_among_their_own_kind() -> None:
     inner = [action(1, IWR=0.9), action(2, IWR=0.7)]
     boundary = [action(3, IS=0.2, boundary=True), action(4, IS=0.1, boundary=True)]
-    selected = select_action([*inner, *boundary])
-    assert selected is not None
+    selected = not_none(select_action([*inner, *boundary]))
     # Against a common mean of .475 both inner ones would pass and no boundary stone.
     assert selected.survivors == ((0, 1, 2, 3),) * 3 + ((0, 2),) * 3
     # A better boundary stone survives for the later filters.
     better = action(3, IS=0.2, GDS=0.9, boundary=True)
-    selected = select_action([*inner, better])
-    assert selected is not None
+    selected = not_none(select_action([*inner, better]))
     assert selected.position == 2
 
 
 def test_ties_go_to_the_lower_id_then_to_the_first() -> None:
-    selected = select_action([action(9), action(4), action(4), action(4)])
-    assert selected is not None
+    selected = not_none(select_action([action(9), action(4), action(4), action(4)]))
     assert selected.position == 1
 
 

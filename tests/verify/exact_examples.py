@@ -66,7 +66,7 @@ def with_stone(wall, stones, turned, corner):
     settled = Settled(x, y, placed_outline(outline, angle_deg, x, y))
     side = "right" if stone_id == 300 else "left"
     placement = settled_placement(
-        wall.outlines, wall.site, stones.by_id(stone_id), angle_deg, settled, side, 0
+        wall.exact, wall.site, stones.by_id(stone_id), angle_deg, settled, side, 0
     )
     if stone_id != SLAB:
         return wall.add(placement)
@@ -83,5 +83,5 @@ def wedge_px():
 def block_model(made):
     """Return what blocks.json beside the plan of a wall of outlines says, read again."""
     settle = SETTINGS.settle
-    model = model_of_outlines(made.wall.outlines, SETTINGS.mu, settle.contact_px)
+    model = model_of_outlines(made.wall.exact, SETTINGS.mu, settle.contact_px)
     return json.loads(json.dumps(blocks_to_json(made.wall, model)))

@@ -44,7 +44,7 @@ def test_every_block_lies_where_the_plan_puts_it(scale, px_per_m):
 def test_a_settled_wall_is_its_own_outlines(px_per_m):
     made = exact_example(px_per_m=px_per_m)
     found = dict(pair for group in plan_polygons(made.plan, made.stones) for pair in group)
-    settled = dict(made.wall.outlines.blocks)
+    settled = dict(made.wall.exact.blocks)
     assert list(found) == list(settled)
     for block, corners in settled.items():
         # A plan gives the places of stones to some 1e-7 px.

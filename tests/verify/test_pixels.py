@@ -121,7 +121,7 @@ def test_frames_are_laid_as_if_they_were_filled():
     whole = planned(stones_of_masks({i: np.ones((40, 40), bool) for i in range(1, 5)}), 160, 40)
     assert len(kept.plan.steps) == 4
     np.testing.assert_array_equal(
-        kept.wall.outlines.polygons.corners, whole.wall.outlines.polygons.corners
+        kept.wall.exact.polygons.corners, whole.wall.exact.polygons.corners
     )
     assert deepest_by_pixels(kept) < 0.5
     assert kept.metrics.F_SF == pytest.approx(0.75 * whole.metrics.F_SF)

@@ -16,7 +16,7 @@ from drystone.io.plan_folder import write_plan_folder
 from drystone.planner.events import UNFINISHED
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import SoFar
-from drystone.search.standing import Standing
+from drystone.search.state import SearchState
 
 WRITTEN = (
     "plan.json", "report.html", "wall.png", "wall.tif", "picture.png", "mechanism_left.png",
@@ -46,22 +46,22 @@ class Keeper:
     ) -> None:
         self._folder, self._made_of, self._photo = folder, made_of, photo
         self._search, self._plan = _Pace(clock), _Pace(clock)
-        self._standing: Standing | None = None
-        self._kept: Standing | None = None
+        self._state: SearchState | None = None
+        self._kept: SearchState | None = None
         self._merit: float | None = None
         self._record: Mapping[str, Any] | None = None
         self._told = False
 
-    def begin(self, standing: Standing | None) -> None:
+    def begin(self, state: SearchState | None) -> None:
         """Say in the folder what is planned there, and from where a search goes on."""
-        self._standing = standing
+        self._state = state
         self._keep_search()
 
     def __call__(self, so_far: SoFar) -> None:
         """Keep what there is so far, if it is time to; a full disk does not end a search."""
         progress = so_far.progress
-        if progress is not None and progress.standing is not None:
-            self._standing = progress.standing
+        if progress is not None and progress.state is not None:
+            self._state = progress.state
         merit = None if progress is None else progress.best.merit
         better = merit is None or self._merit is None or merit > self._merit
         whole = progress is not None and progress.walls == 1
@@ -72,22 +72,22 @@ class Keeper:
                 with self._plan:
                     self._keep_plan(so_far.plan())
                 self._merit = merit
-            elif self._standing is not self._kept and self._search.due:
+            elif self._state is not self._kept and self._search.due:
                 self._keep_search()
         except (DrystoneError, OSError) as error:
             self._tell(error)
 
     def end(self, result: PlanResult) -> None:
         """Keep where a search stands that is to be gone on with; a finished plan is enough."""
-        if result.plan.stopped in UNFINISHED and self._standing is not None:
+        if result.plan.stopped in UNFINISHED and self._state is not None:
             self._keep_search()
         else:
             remove_checkpoint(self._folder)
 
     def _keep_search(self) -> None:
         with self._search:
-            write_checkpoint(Checkpoint(self._made_of, self._standing), self._folder)
-            self._kept = self._standing
+            write_checkpoint(Checkpoint(self._made_of, self._state), self._folder)
+            self._kept = self._state
 
     def _keep_plan(self, result: PlanResult) -> None:
         """Write a plan that is not finished, without pictures; those of another plan go."""

@@ -80,7 +80,7 @@ def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:
     ready = working_in(folder, (*WRITTEN, CHECKPOINT), overwrite=overwrite, within=PLACES)
     with nullcontext() if prepared else ready:
         keeper = Keeper(folder, made_of(request), photo)
-        keeper.begin(earlier.standing)
+        keeper.begin(earlier.state)
         _announce(request)
         seconds = None if request.first_whole else request.seconds
         bar = step_bar(len(stones), request.settings, seconds, quiet=request.quiet)
@@ -103,7 +103,7 @@ def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:
                 begin=None if begin is None else rebuild_wall(begin, stones),
                 choice=request.pareto,
                 keep=keeper,
-                standing=earlier.standing,
+                state=earlier.state,
             )
         # What it has come to is not lost by a second interrupt.
         with held():

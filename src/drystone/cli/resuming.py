@@ -18,7 +18,7 @@ from drystone.model.plan import Plan
 from drystone.planner.events import UNFINISHED, Stopped
 from drystone.planner.planner import Planner
 from drystone.search.plan_result import result_of
-from drystone.search.standing import Standing
+from drystone.search.state import SearchState
 from drystone.verify.replay import rebuild_wall
 
 
@@ -27,7 +27,7 @@ class Earlier:
     """What an earlier run of the same command has left."""
 
     plan: Plan | None = None  # partial, to be gone on with; or finished
-    standing: Standing | None = None  # where its search stands, which goes on whatever the plan is
+    state: SearchState | None = None  # where its search stands, which goes on whatever the plan is
     begun: bool = False  # whether there is anything of it
 
     @property
@@ -37,8 +37,8 @@ class Earlier:
 
     def tell(self) -> None:
         """Say what is gone on with."""
-        if self.standing is not None:
-            note(f"going on after {self.standing.walls} walls")
+        if self.state is not None:
+            note(f"going on after {self.state.walls} walls")
         elif self.plan is not None:
             note(f"going on after {len(self.plan.stone_steps)} stones")
         elif self.begun:
@@ -88,8 +88,8 @@ def earlier_run(request: PlanRequest) -> Earlier:
             _refuse(different, path)
         return Earlier(plan, begun=(folder / CHECKPOINT).exists() or plan is not None)
     _refuse([n for n in asked if kept.made_of.get(n) != asked[n]], folder / CHECKPOINT)
-    if kept.standing is not None:
-        return Earlier(standing=kept.standing, begun=True)
+    if kept.state is not None:
+        return Earlier(state=kept.state, begun=True)
     # Beside a checkpoint a finished plan is an earlier one, or was not written to the end.
     partial = plan is not None and not different and plan.stopped in UNFINISHED
     return Earlier(plan if partial else None, begun=True)

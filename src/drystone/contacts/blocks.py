@@ -75,9 +75,9 @@ def model_from_labels(labels: Labels, mu: float = 0.58) -> ImageModel:
                 " the wall stands on its lowest stone pixel.",
             )
         )
-    standing = labels[:height]
-    model = RigidBlockModel(_all_blocks(standing), find_interfaces(standing), mu)
-    return ImageModel(model, height, (*notices, *notice_of_pieces(standing)))
+    above = labels[:height]
+    model = RigidBlockModel(_all_blocks(above), find_interfaces(above), mu)
+    return ImageModel(model, height, (*notices, *notice_of_pieces(above)))
 
 
 def model_with(

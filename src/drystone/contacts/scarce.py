@@ -51,8 +51,8 @@ def scarce_contacts(
 
 def _near_pixels(labels: Labels, block: int, others: set[int]) -> tuple[int | None, float]:
     """Return the nearest label that is not touched, and how many px lie between."""
-    standing = np.flatnonzero((labels > 0).any(axis=1))[-1] + 1
-    cells = np.vstack([labels[:standing].astype(np.int64), np.full((1, labels.shape[1]), -1)])
+    lowest = np.flatnonzero((labels > 0).any(axis=1))[-1] + 1
+    cells = np.vstack([labels[:lowest].astype(np.int64), np.full((1, labels.shape[1]), -1)])
     rows, cols = np.nonzero(cells == block)
     reach = 8
     while True:

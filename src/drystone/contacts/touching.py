@@ -22,9 +22,9 @@ def touching_interfaces(
         for ends, normal in _common_pieces(polygon, neighbour, tolerance)
     ]
     taken = [interface.points for interface in found]
-    standing = _corners_on_edges(polygon, neighbour, tolerance)
+    resting = _corners_on_edges(polygon, neighbour, tolerance)
     carrying = [(p, (-x, -y)) for p, (x, y) in _corners_on_edges(neighbour, polygon, tolerance)]
-    for point, normal in (*standing, *carrying):
+    for point, normal in (*resting, *carrying):
         near = (np.hypot(*(ends - point).T).min() <= 2.0 * tolerance for ends in taken)
         if not any(near):
             found.append(Interface(block, other, point[None, :], normal))

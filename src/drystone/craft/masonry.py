@@ -25,24 +25,6 @@ lines that cut it, and what they cut, take as much memory and time."""
 class Masonry:
     """A wall of any origin, as the rules look at it.
 
-    Parameters
-    ----------
-    outlines : mapping of int to (n, 2) float array
-        Corners of stones and wedges by id, wall frame, y up, either way round, closed or not.
-    model : RigidBlockModel or None
-        Contacts, where they are known; None for a drawn wall.
-    wedge_ids : collection of int
-        Which of them are wedges.
-    steps : mapping of int to int
-        Step of the plan that places a stone or wedge; empty for what is no plan.
-    settings : CraftSettings
-        What counts as a joint, a bearing and so on.
-    cut : bool
-        Wedges are the outlines to which they shall be cut, as in plans on outlines; otherwise they
-        are small stones or pixels, and their shape is not judged.
-    per_m : float or None
-        Units of length in a metre, where that is known.
-
     Raises
     ------
     UsageError
@@ -58,13 +40,18 @@ class Masonry:
     ([(1, 2)], 1.0)
     """
 
+    # corners of stones and wedges by id, wall frame, y up, either way round, closed or not
     outlines: Mapping[int, Points]
-    model: RigidBlockModel | None = None
-    wedge_ids: Collection[int] = frozenset()
+    model: RigidBlockModel | None = None  # contacts, where they are known; None for a drawn wall
+    wedge_ids: Collection[int] = frozenset()  # which of them are wedges
+    # step of the plan that places a stone or wedge; empty for what is no plan
     steps: Mapping[int, int] = field(default_factory=dict)
+    # what counts as a joint, a bearing and so on
     settings: CraftSettings = field(default_factory=CraftSettings)
+    # wedges are the outlines to which they shall be cut, as in plans on outlines; otherwise they
+    # are small stones or pixels, and their shape is not judged
     cut: bool = False
-    per_m: float | None = None
+    per_m: float | None = None  # units of length in a metre, where that is known
 
     def __post_init__(self) -> None:
         strangers = sorted(set(self.wedge_ids) - set(self.outlines))
@@ -81,34 +68,18 @@ class Masonry:
         cls,
         labels: Labels,
         wedge_ids: Collection[int] = frozenset(),
-        settings: CraftSettings | None = None,
         *,
         steps: Mapping[int, int] | None = None,
         mu: float = 0.58,
     ) -> "Masonry":
-        """Return the wall of a label image, along sub-pixel outlines.
+        """Return the wall of a label image, row 0 at the top, along sub-pixel outlines.
 
-        Parameters
-        ----------
-        labels : (h, w) integer array
-            0 where nothing is; row 0 at the top.
-        wedge_ids : collection of int
-            Labels that are wedges.
-        settings : CraftSettings, optional
-            The usual ones unless given.
-        steps : mapping of int to int, optional
-            Of a plan, by label.
-        mu : float
-            Coefficient of friction, for what wedges carry.
-
-        Raises
-        ------
-        UsageError
-            E191 for the id of a wedge that is not in the image.
+        `steps` are those of a plan, by label; `mu` is for what wedges carry.  UsageError (E191): a
+        label that is said to be a wedge is not in the image.
         """
         picture = model_from_labels(labels, mu)
         outlines = outlines_of_labels(labels[: picture.ground_row]) if picture.model.blocks else {}
-        return cls(outlines, picture.model, wedge_ids, steps or {}, settings or CraftSettings())
+        return cls(outlines, picture.model, wedge_ids, steps or {})
 
     @cached_property
     def loops(self) -> Mapping[int, Points]:

@@ -75,14 +75,12 @@ class RubbleSettings:
             check_setting(ok, what, "rubble")
         # Long stones that lie askew have large boxes.
         names = ("width_px", "height_px") + (("tilt_deg",) if self.tilt_deg else ())
-        check_room(self.count, self._box_px(), names, "rubble")
-
-    def _box_px(self) -> tuple[float, float]:
-        """Return the sides of the box about a stone of middle size that is tilted most."""
+        # The box about a stone of middle size that is tilted most.
         width, height = self.width_px * self.courses / self.count, self.height_px / self.courses
         tilt = math.radians(min(self.tilt_deg, 45.0))
         cos, sin = math.cos(tilt), math.sin(tilt)
-        return width * cos + height * sin, width * sin + height * cos
+        size_px = width * cos + height * sin, width * sin + height * cos
+        check_room(self.count, size_px, names, "rubble")
 
 
 def course_sizes(settings: RubbleSettings, rng: Generator) -> NDArray[np.float64]:

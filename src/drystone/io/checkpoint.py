@@ -17,7 +17,7 @@ from drystone.io.plain_data import as_json, from_plain
 from drystone.planner.search_settings import SearchSettings
 from drystone.search.operators import OPERATORS
 from drystone.search.packed import PackedWall
-from drystone.search.standing import Chains, Standing
+from drystone.search.state import Chains, SearchState
 from drystone.whole_files import write_whole
 
 CHECKPOINT = "checkpoint.json"
@@ -33,7 +33,7 @@ class Checkpoint:
 
     made_of: Mapping[str, Any]
     """All that shapes the plan: stones, wall, seed, settings, of JSON's own types."""
-    standing: Standing | None = None
+    state: SearchState | None = None
     """Where its search stands; None while there is but a first wall."""
 
 
@@ -44,7 +44,7 @@ def write_checkpoint(checkpoint: Checkpoint, folder: Path) -> None:
             "schema": SCHEMA,
             "version": version("drystone"),
             "made_of": checkpoint.made_of,
-            "search": checkpoint.standing,
+            "search": checkpoint.state,
         }
     )
     text = f'{{"sha256": "{_digest(data)}",\n"data": {data}}}\n'
@@ -65,14 +65,14 @@ def read_checkpoint(
         if path.stat().st_size > LARGEST_BYTES:
             raise ValueError("it is too large")
         data = _data(path.read_bytes())
-        standing = None if data["search"] is None else from_plain(Standing, data["search"])
-        if standing is not None:
-            _check(standing, frozenset(stone_ids), search)
+        state = None if data["search"] is None else from_plain(SearchState, data["search"])
+        if state is not None:
+            _check(state, frozenset(stone_ids), search)
     except (OSError, ValueError, RecursionError) as error:
         what = f"the search cannot go on from it: {error}."
         cure = "Remove it and give the same command again: the partial plan is gone on from."
         raise PlanError("E207", what, where=str(path), cure=cure) from error
-    return Checkpoint(data["made_of"], standing)
+    return Checkpoint(data["made_of"], state)
 
 
 def remove_checkpoint(folder: Path) -> None:
@@ -102,16 +102,16 @@ def _data(text: bytes) -> Mapping[str, Any]:
     return data
 
 
-def _check(standing: Standing, stone_ids: frozenset[int], search: SearchSettings) -> None:
+def _check(state: SearchState, stone_ids: frozenset[int], search: SearchSettings) -> None:
     """Raise ValueError where a search cannot be so."""
-    chains, found = standing.chains, standing.found
-    if (standing.number == 0) != (standing.before is None) or standing.number < 0:
+    chains, found = state.chains, state.found
+    if (state.number == 0) != (state.before is None) or state.number < 0:
         raise ValueError("its rounds do not follow each other")
     if (chains is None) != bool(found) or len(found) > search.passes:
         raise ValueError("it has not the first walls of a round")
     if chains is not None and not _possible(chains, search):
         raise ValueError("its chains are not those of the settings")
-    for wall in _walls(standing):
+    for wall in _walls(state):
         ids = [group.stone_id for group in wall.groups]
         ends = (0, *wall.courses.ends, len(ids)) if wall.courses else ()
         if not stone_ids.issuperset(ids) or len(set(ids)) < len(ids):
@@ -131,11 +131,11 @@ def _possible(chains: Chains, search: SearchSettings) -> bool:
     )
 
 
-def _walls(standing: Standing) -> Iterator[PackedWall]:
+def _walls(state: SearchState) -> Iterator[PackedWall]:
     """Iterate over all walls of a search."""
-    chains = standing.chains
-    yield from standing.found
-    for reached in (standing.before, chains.reached if chains else None):
+    chains = state.chains
+    yield from state.found
+    for reached in (state.before, chains.reached if chains else None):
         yield from () if reached is None else (reached.best, *reached.kept)
     for link in chains.links if chains else ():
         yield from (link.now, link.best, *link.kept)

@@ -56,13 +56,11 @@ def stone_outline(mask: Mask, tolerance_px: float) -> Points:
     # Traced in one of four positions: how a stone was turned in the photograph changes nothing.
     ways = [np.rot90(solid(mask), quarter) for quarter in range(4)]
     quarter = min(range(4), key=lambda way: (ways[way].shape, ways[way].tobytes()))
-    return turn(_traced(ways[quarter], tolerance_px), -90.0 * quarter)
-
-
-def _traced(pixels: Mask, tolerance_px: float) -> Points:
+    pixels = ways[quarter]
     contour, area_px = _contour(pixels), float(np.count_nonzero(pixels))
     about_centroid = contour - np.array(centroid_of(pixels))
-    return _within(_mended(contour), about_centroid, area_px, tolerance_px)
+    corners = _within(_mended(contour), about_centroid, area_px, tolerance_px)
+    return turn(corners, -90.0 * quarter)
 
 
 def drawn_outline(ring: Points, tolerance_px: float) -> Points:

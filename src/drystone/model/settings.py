@@ -53,7 +53,10 @@ def updated(settings: Settings, changes: Mapping[str, Any], prefix: str = "") ->
         return dataclasses.replace(settings, **values)  # type: ignore[type-var]
     except ValueError as error:
         where = f"settings {prefix.removesuffix('.')}".rstrip()
-        cure = _to_change(str(error), list(values), prefix)
+        # The values that the message speaks of, or the few that were given.
+        spoken_of = [name for name in values if re.search(rf"\b{name}\b", str(error))]
+        names = [f"{prefix}{name}" for name in spoken_of or values]
+        cure = f"Change {' or '.join(names)}." if len(names) <= 3 else "Change the value."
         raise UsageError("E123", f"{error}.", where=where, cure=cure) from None
 
 
@@ -112,13 +115,6 @@ class Ranged:
                 and allowed.get("above", -math.inf) < value < allowed.get("below", math.inf)
             ):
                 raise ValueError(f"{field.name} must be {range_text(allowed)}, not {value}")
-
-
-def _to_change(message: str, given: list[str], prefix: str) -> str:
-    """Name the values to change: those that a message speaks of, or the few that were given."""
-    spoken_of = [name for name in given if re.search(rf"\b{name}\b", message)]
-    names = [f"{prefix}{name}" for name in spoken_of or given]
-    return f"Change {' or '.join(names)}." if len(names) <= 3 else "Change the value."
 
 
 def check_finite(settings: Any) -> None:

@@ -9,12 +9,17 @@ Step = StoneStep | WedgeStep
 
 
 @dataclass(frozen=True)
-class Fault:
-    """A step that cannot be where it is, or cannot have its id."""
+class Problem:
+    """One claim of a plan that does not hold."""
 
-    code: str  # an id; the order
-    step: int  # number that the step gives itself
+    code: str  # stable code, ``"E210"`` to ``"E242"``; documented in ``docs/errors.md``
+    # number that the step concerned gives itself; None when it is the plan as a whole
+    step: int | None
     message: str
+
+    def __str__(self) -> str:
+        where = "" if self.step is None else f"step {self.step}: "
+        return f"{self.code} {where}{self.message}"
 
 
 def piece_id(step: Step) -> int:
@@ -27,47 +32,47 @@ def piece_name(step: Step) -> str:
     return f"{step.kind} {piece_id(step)}"
 
 
-def grouped(steps: Sequence[Step]) -> tuple[list[list[Step]], list[Fault]]:
+def grouped(steps: Sequence[Step]) -> tuple[list[list[Step]], list[Problem]]:
     """Put each stone and its wedges together (E214 where the order is not the contract's)."""
     groups: list[list[Step]] = []
     faults = []
     for number, step in enumerate(steps, 1):
         if step.step != number:
-            faults.append(Fault("E214", step.step, f"this is step {number} of the plan."))
+            faults.append(Problem("E214", step.step, f"this is step {number} of the plan."))
         if isinstance(step, StoneStep):
             groups.append([step])
             continue
         above = groups[-1][0] if groups else None
         if not isinstance(above, StoneStep) or above.stone != step.under:
             message = f"wedge {step.id} does not follow stone {step.under}, which it supports."
-            faults.append(Fault("E214", step.step, message))
+            faults.append(Problem("E214", step.step, message))
         if groups:
             groups[-1].append(step)
     for group in groups:
         early = [s.step for s in group[:-1] if (s.alpha_left, s.alpha_right) != (None, None)]
         faults += [
-            Fault("E214", at, "load multipliers are claimed before the stone's last wedge.")
+            Problem("E214", at, "load multipliers are claimed before the stone's last wedge.")
             for at in early
         ]
     return groups, faults
 
 
-def id_fault(step: Step, used: set[int], largest: int) -> Fault | None:
+def id_fault(step: Step, used: set[int], largest: int) -> Problem | None:
     """Note the id of a step as used; say when it was, or is not one of a wedge (E213).
 
     The ids of wedges are larger than `largest`, that of a stone.
     """
     name, its_id = piece_name(step), piece_id(step)
     if its_id in used:
-        return Fault("E213", step.step, f"{name} was placed before.")
+        return Problem("E213", step.step, f"{name} was placed before.")
     used.add(its_id)
     if isinstance(step, WedgeStep) and its_id <= largest:
         message = f"{name} has an id that is not larger than every stone's."
-        return Fault("E213", step.step, message)
+        return Problem("E213", step.step, message)
     return None
 
 
-def first_fault(plan: Plan) -> Fault | None:
+def first_fault(plan: Plan) -> Problem | None:
     """Return the first fault of the steps of a plan that its stones are not needed for."""
     largest = max((*plan.unused, *(step.stone for step in plan.stone_steps)), default=0)
     used: set[int] = set()

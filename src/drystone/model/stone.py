@@ -146,36 +146,23 @@ class Stone:
 
 @dataclass(frozen=True)
 class Source:
-    """Where stones came from.
+    """Where stones came from."""
 
-    Parameters
-    ----------
-    path : str
-        Base name of the file or folder; empty for arrays.
-    sha256 : str
-        Digest of the bytes that were read.
-    width_px, height_px : int
-        Size of the source image (of a folder of masks: of the largest).
-    files : tuple of str
-        File names in the order of their numbers when the source is a folder.
-    reading : tuple of (str, value) pairs
-        Settings that the source was read with, where they are not the defaults: what reads it
-        again needs them.
-    px_per_m : float or None
-        Source px in a metre, when the source says so itself: a rectified photograph, a drawing in
-        millimetres.
-    photograph : tuple of (str, value) pairs
-        Of the photograph that the stones were found in: its name, its markers with their corners in
-        the frame P, and P_from_marker, the frame of one of them in P.
-    """
-
-    path: str = ""
-    sha256: str = ""
+    path: str = ""  # base name of the file or folder; empty for arrays
+    sha256: str = ""  # digest of the bytes that were read
+    # size of the source image (of a folder of masks: of the largest)
     width_px: int = 0
     height_px: int = 0
+    # file names in the order of their numbers when the source is a folder
     files: tuple[str, ...] = ()
+    # settings that the source was read with, where they are not the defaults: what reads it again
+    # needs them
     reading: tuple[tuple[str, Any], ...] = ()
+    # source px in a metre, when the source says so itself: a rectified photograph, a drawing in
+    # millimetres
     px_per_m: float | None = None
+    # of the photograph that the stones were found in: its name, its markers with their corners in
+    # the frame P, and P_from_marker, the frame of one of them in P
     photograph: tuple[tuple[str, Any], ...] = ()
 
     def __post_init__(self) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 
 from drystone.kernels.polygons import Points
+from drystone.model.overlap import common_parts
 
 _Corner = tuple[float, float]
 _Side = tuple[_Corner, _Corner]
@@ -40,7 +41,9 @@ def convex_parts(outline: Points) -> tuple[Points, ...]:
     faces = set(_sides(ring))
     parts: list[list[_Corner]] = []
     for cell in _cells(outline):
-        grown = _reaching(whole, _middle(cell), [(s, s not in faces) for s in _sides(cell)])
+        grown = _reaching(
+            whole, _corner(np.mean(cell, axis=0)), [(s, s not in faces) for s in _sides(cell)]
+        )
         parts += [grown] if grown else _slabs(ring, whole, faces.intersection(_sides(cell)), cell)
     return tuple(without_straight_corners(np.array(part)) for part in parts)
 
@@ -92,10 +95,14 @@ def _reaching(
         region = [(left, low), (right, low), (right, high), (left, high)]
         for side, moved in sides:
             region = _left_of(region, side, reach * size if moved else 0.0)
-        found = shapely.get_parts(shapely.Polygon(region).intersection(whole))
+        # In floats a part may leave out a flat corner of the stone, and stick out of it there.
+        found = common_parts(shapely.Polygon(region), whole) if region else ()
         piece = next((p for p in found if p.intersects(shapely.Point(inside))), None)
-        if isinstance(piece, shapely.Polygon) and not piece.interiors:
-            ring = _distinct(shapely.get_coordinates(shapely.orient_polygons(piece))[:-1], size)
+        if piece is not None and not piece.interiors:
+            corners = shapely.get_coordinates(shapely.orient_polygons(piece))[:-1]
+            # Rounding may have made several of one.
+            apart = np.hypot(*(corners - np.roll(corners, 1, axis=0)).T) > STRAIGHT * size
+            ring = _corners(corners[apart])
             if _is_convex(ring, size):
                 return ring
     return None
@@ -107,12 +114,17 @@ def _cells(outline: Points) -> list[list[_Corner]]:
     Triangles are joined over their longest common sides first, as long as both ends stay convex
     (Hertel and Mehlhorn 1983: at most four times the fewest cells).
     """
-    cells = dict(enumerate(_triangles(outline)))
+    triangles = shapely.constrained_delaunay_triangles(shapely.Polygon(outline)).geoms
+    cells = {
+        key: _corners(shapely.get_coordinates(shapely.orient_polygons(triangle))[:3])
+        for key, triangle in enumerate(triangles)
+    }
     owner = {side: key for key, cell in cells.items() for side in _sides(cell)}
     shared = [(a, b) for a, b in owner if (b, a) in owner and a < b]
     for a, b in sorted(shared, key=lambda side: (-dist(*side), side)):
         key, gone = owner[a, b], owner[b, a]
-        joined = _joined(cells[key], cells[gone], a, b)
+        i, j = cells[key].index(b), cells[gone].index(a)
+        joined = cells[key][i:] + cells[key][:i] + (cells[gone][j:] + cells[gone][:j])[1:-1]
         at = joined.index(a), joined.index(b)
         if all(_turns_left(joined[i - 1], joined[i], joined[(i + 1) % len(joined)]) for i in at):
             cells[key] = joined
@@ -139,11 +151,6 @@ def _left_of(region: list[_Corner], side: _Side, reach: float) -> list[_Corner]:
     return kept
 
 
-def _triangles(outline: Points) -> list[list[_Corner]]:
-    found = shapely.constrained_delaunay_triangles(shapely.Polygon(outline)).geoms
-    return [_corners(shapely.get_coordinates(shapely.orient_polygons(t))[:3]) for t in found]
-
-
 def _corners(points: Points) -> list[_Corner]:
     return [(float(x), float(y)) for x, y in points]
 
@@ -152,25 +159,8 @@ def _sides(cell: list[_Corner]) -> list[_Side]:
     return list(zip(cell, cell[1:] + cell[:1], strict=True))
 
 
-def _joined(first: list[_Corner], second: list[_Corner], a: _Corner, b: _Corner) -> list[_Corner]:
-    """Join two cells over the side from a to b of the first one."""
-    i, j = first.index(b), second.index(a)
-    around, back = first[i:] + first[:i], second[j:] + second[:j]
-    return around + back[1:-1]
-
-
 def _corner(point: Points) -> _Corner:
     return float(point[0]), float(point[1])
-
-
-def _middle(cell: list[_Corner]) -> _Corner:
-    return _corner(np.mean(cell, axis=0))
-
-
-def _distinct(points: Points, size: float) -> list[_Corner]:
-    """Leave out corners that rounding has made of one."""
-    apart = np.hypot(*(points - np.roll(points, 1, axis=0)).T) > STRAIGHT * size
-    return _corners(points[apart])
 
 
 def _is_convex(ring: list[_Corner], size: float) -> bool:

@@ -85,13 +85,13 @@ def shake_once(
                 return shaken.beyond(shifts, settings.limit)
         return ()
 
-    settled, standing = table.poses(), table
+    settled, stood = table.poses(), table
     low, step, suspect = 0.0, settings.coarse, 0.0
     while low < settings.greatest:
-        table = standing.copy()
+        table = stood.copy()
         found = moved(table, low + step)
         if not found:
-            low, standing = low + step, table
+            low, stood = low + step, table
             # Smaller steps may have led past what a larger one set off.
             step = settings.coarse if low >= suspect else step
         elif step > settings.fine:

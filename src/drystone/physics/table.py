@@ -79,8 +79,10 @@ class TiltingTable:
         # A part too thin to be rounded keeps its corners.
         rounded = self._settings.corner_radius > 0 and isinstance(inner, shapely.Polygon)
         rounded = rounded and not inner.is_empty
-        outline = _outline(inner) if rounded else corners
-        radius = self._settings.corner_radius if rounded else 0.0
+        outline, radius = corners, 0.0
+        if rounded:
+            ring = shapely.get_coordinates(shapely.orient_polygons(inner))[:-1]
+            outline, radius = without_straight_corners(ring), self._settings.corner_radius
         shape = load_engine().Poly(body, outline.tolist(), radius=radius)
         # The friction of a pair is the product of both.
         shape.friction = sqrt(mu)
@@ -146,11 +148,6 @@ class TiltingTable:
     def _free(self) -> list[Any]:
         dynamic = load_engine().Body.DYNAMIC
         return [body for body in self._space.bodies if body.body_type == dynamic]
-
-
-def _outline(part: shapely.Polygon) -> Points:
-    """Return the corners of a convex part, counter-clockwise."""
-    return without_straight_corners(shapely.get_coordinates(shapely.orient_polygons(part))[:-1])
 
 
 def load_engine() -> Any:

@@ -73,12 +73,12 @@ def _raised(
     level: TiltingTable, direction: Direction, settings: TiltSettings, settled_shift: float
 ) -> TiltTrial:
     """Raise the table until blocks come down."""
-    settled, standing = level.poses(), level
+    settled, stood = level.poses(), level
     sign = -1.0 if direction == "left" else 1.0
     low, step, suspect = 0.0, settings.coarse, 0.0
     first_motion: float | None = None
     while low < settings.greatest:
-        table = (level if settings.from_level else standing).copy()
+        table = (level if settings.from_level else stood).copy()
         stands = hold(table, sign * (low + step), settled, settings)
         still = stands and table.shifts(settled).max() <= settings.noticeable
         first = first_motion is None and not still
@@ -88,10 +88,10 @@ def _raised(
         if first:
             first_motion = low + step / 2
         if not stands:
-            moved = table.beyond(table.shifts(standing.poses()), settings.noticeable)
+            moved = table.beyond(table.shifts(stood.poses()), settings.noticeable)
             alpha = low + step / 2
             return TiltTrial(direction, alpha, first_motion, moved, settled_shift, step / 2)
-        low, standing = low + step, table
+        low, stood = low + step, table
         # Smaller steps may have led past what a larger one set off.
         step = settings.coarse if first or low >= suspect else step
     resolution = min(step, settings.fine) / 2

@@ -19,7 +19,7 @@ from drystone.planner.build import Build, Candidate
 from drystone.planner.dropping import wedge_limits
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.measured import MeasuredPlace
-from drystone.planner.replay import judged, replayed, stands
+from drystone.planner.replay import judged, replayed
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settled import settled_in, stands_out_px
 from drystone.planner.workshop import Workshop
@@ -153,7 +153,7 @@ def far_from(build: Build, places: Mapping[int, MeasuredPlace]) -> tuple[int, ..
 
 def _amiss(build: Build, places: Mapping[int, MeasuredPlace]) -> tuple[int, int]:
     """Return after how many stones a wall does not stand, and how many are far off."""
-    return sum(not stands(action) for action in build.actions), len(far_from(build, places))
+    return sum(not action.stands for action in build.actions), len(far_from(build, places))
 
 
 def _built(
@@ -207,7 +207,7 @@ def _put(
     fallback: Candidate | None = None
     for found in islice(options(build, one, workshop, settings), JUDGED):
         candidate = judged(build, found, course_heights_px, evaluator)
-        if stands(candidate):
+        if candidate.stands:
             return candidate
         fallback = fallback or candidate
     return fallback

@@ -12,7 +12,7 @@ from drystone.kernels.outline import pixel_polygon
 from drystone.kernels.polygons import area_and_centroid
 from drystone.metrics.measure import measure_labels
 from drystone.model.placement import Placement, Wedge
-from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
+from drystone.model.plan import FIGURES, Plan, PlanMetrics, StoneStep, WedgeStep
 from drystone.model.site import Site
 from drystone.model.wall import Wall
 from drystone.planner.build import Build
@@ -110,17 +110,12 @@ def plan_metrics(
         stone_area_px=sum(p.posed.stone.area_px for p in wall.placements) * scale**2,
         lateral_resistance=resistance.value,
     )
+    figures: dict[str, Any] = {name: getattr(measured, name) for name in FIGURES}
     return PlanMetrics(
-        F_SF=measured.F_SF,
-        F_AV=measured.F_AV,
-        F_AH=measured.F_AH,
-        F_LR=measured.F_LR,
-        T_LEVEL=measured.T_LEVEL,
-        E_FLUSH=measured.E_FLUSH,
         alpha_left=resistance.left.alpha,
         alpha_right=resistance.right.alpha,
         wedge_area=wedge_area(wall) / (frame.site.px_per_m or 1.0) ** 2,
-        **others,
+        **(figures | dict(others)),
     )
 
 

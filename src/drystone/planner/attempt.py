@@ -189,7 +189,7 @@ class Attempt:
             [proposals[k] for k in new],
         )
         self._judged.update(zip([keys[k] for k in new], results, strict=True))
-        self.solves = sum(map(Solves.of, results), self.solves)
+        self.solves = sum((one.solves for one in results), self.solves)
         # NHR depends on the other candidates, which differ between the folds.
         return [
             self._evaluator.compared(self._landscapes[proposal.side], proposal, self._judged[key])

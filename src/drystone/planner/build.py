@@ -1,6 +1,6 @@
 """The state of construction: what is built, and what it carries."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from drystone.contacts.interfaces import PointContacts
@@ -8,6 +8,7 @@ from drystone.indices import Indices
 from drystone.model.placement import Side
 from drystone.model.site import Site
 from drystone.model.wall import Group, Wall
+from drystone.planner.solves import Solves
 from drystone.statics.incremental import IncrementalAnalysis, incremental_analysis
 from drystone.statics.lp.program import Units
 from drystone.statics.model import RigidBlockModel
@@ -46,14 +47,12 @@ class Candidate:
     course_height_px: float | None
     model: RigidBlockModel
     resistance: LateralResistance
-    # True when an answer found from the bases of the wall had no certificate, and a model was
-    # solved from the start
-    solved_cold: bool = False
     # the model of outlines with fewer and less able contacts, in which the wall must stand as
     # well (`sturdy`); None for pixels
     sturdy_model: RigidBlockModel | None = None
     sturdy: bool = True  # whether it does
-    failed: bool = False  # True when the solver gave up on one of the models
+    # 1 where the solver had trouble with either model
+    solves: Solves = field(default_factory=Solves)
 
     def __repr__(self) -> str:
         return f"<Candidate: {self.said}>"

@@ -23,6 +23,7 @@ from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings
+from drystone.planner.solves import Solves
 from drystone.planner.stock import Stock
 from drystone.planner.sturdy import falls_when_let_go, sturdy_model_with
 from drystone.statics.incremental import IncrementalAnalysis, IncrementalResult
@@ -84,21 +85,16 @@ class Evaluator:
                 proposal.course_height_px,
                 self.stock.narrowest_px,
             )
-        candidate = Candidate(
-            proposal, indices, course_height, loaded.model, resistance, loaded.grown.solved_cold,
-            failed=resistance.failed,
+        judged = Candidate(
+            proposal, indices, course_height, loaded.model, resistance,
+            solves=_trouble(loaded.grown),
         )  # fmt: skip
         if sturdy is None:
-            return candidate
+            return judged
         with self.profile.part("limit analysis"):
             stands = sturdy.grown.resistance.stable and not falls_when_let_go(loaded.model)
-        return replace(
-            candidate,
-            sturdy_model=sturdy.model,
-            sturdy=stands,
-            solved_cold=candidate.solved_cold or sturdy.grown.solved_cold,
-            failed=candidate.failed or sturdy.grown.resistance.failed,
-        )
+        solves = _trouble(loaded.grown, sturdy.grown)
+        return replace(judged, sturdy_model=sturdy.model, sturdy=stands, solves=solves)
 
     def loaded(self, build: Build, blocks: list[Outlined]) -> Loaded:
         """Return what a wall of outlines carries with a stone and its wedges, source px."""
@@ -134,6 +130,11 @@ class Evaluator:
         )
         indices = replace(judged.indices, NHR=nhr)
         return replace(judged, proposal=proposal, indices=indices, course_height_px=course_height)
+
+
+def _trouble(*models: IncrementalResult) -> Solves:
+    failed, cold = (m.resistance.failed for m in models), (m.solved_cold for m in models)
+    return Solves(int(any(failed)), int(any(cold)))
 
 
 def action_indices(

@@ -13,23 +13,12 @@ class Step:
 
     Poses are in metres (:mod:`drystone.model.frames3d`); without a scale of the site they raise
     UsageError (E131).
-
-    Parameters
-    ----------
-    number : int
-        1 for the first stone.
-    action : Candidate
-        Stone, placement, wedges, indices and resistance.
-    build : Build
-        The state after it.
-    candidates : int
-        How many candidates were evaluated for it.
     """
 
-    number: int
-    action: Candidate
-    build: Build
-    candidates: int
+    number: int  # 1 for the first stone
+    action: Candidate  # stone, placement, wedges, indices and resistance
+    build: Build  # the state after it
+    candidates: int  # how many candidates were evaluated for it
 
     def __repr__(self) -> str:
         x_px, y_px = self.action.stabilised.placement.centroid(self.build.wall.site.height_px)

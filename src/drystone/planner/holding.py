@@ -16,19 +16,14 @@ def holds(wall: Wall, group: Group, mu: float) -> bool:
     height = wall.site.height_px
     new = _blocks(group, height)
     built = [block for one in wall.groups for block in _blocks(one, height)]
-    low, high = _box(new)
+    corners = np.vstack([points for _, points in new])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    low, high = low - (high - low), high + (high - low)  # as much again around it
     near = [
         block for block in built
         if (block[1].max(axis=0) >= low).all() and (block[1].min(axis=0) <= high).all()
     ]  # fmt: skip
     return stays(near, new, mu)
-
-
-def _box(blocks: list[tuple[int, Points]]) -> tuple[Points, Points]:
-    """Return the corners of the box of some blocks, with as much again around it."""
-    corners = np.vstack([points for _, points in blocks])
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    return low - (high - low), high + (high - low)
 
 
 def _blocks(group: Group, height_px: int) -> list[tuple[int, Points]]:

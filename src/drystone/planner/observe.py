@@ -19,7 +19,6 @@ from drystone.planner.measured import (
     places_of,
     require_known,
 )
-from drystone.planner.replay import stands
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import sides_of
 from drystone.planner.workshop import Workshop
@@ -34,29 +33,17 @@ SAME_PX, SAME_DEG = 0.01, 0.01
 
 @dataclass(frozen=True)
 class Deviation:
-    """How far a stone is from where it was planned.
+    """How far a stone is from where it was planned."""
 
-    Parameters
-    ----------
-    stone_id : int
-        The stone.
-    dx, dy : float
-        Measured less planned, in units of the plan: metres when the site has a scale, otherwise
-        source px.
-    shift_px : float
-        The length of that, source px.
-    angle_deg : float
-        Measured less planned, counter-clockwise, in [-180, 180).
-    moved_px, turned_deg : float
-        From where it was measured to where the planner has it now, source px and degrees: what it
-        took to bring outlines apart and to make the stone rest.
-    """
-
-    stone_id: int
+    stone_id: int  # the stone
+    # measured less planned, in units of the plan: metres when the site has a scale, otherwise
+    # source px
     dx: float
     dy: float
-    shift_px: float
-    angle_deg: float
+    shift_px: float  # the length of that, source px
+    angle_deg: float  # measured less planned, counter-clockwise, in [-180, 180)
+    # from where it was measured to where the planner has it now, source px and degrees: what it
+    # took to bring outlines apart and to make the stone rest
     moved_px: float
     turned_deg: float
 
@@ -129,7 +116,7 @@ def observed(
     now = build
     if added or len(order) < len(groups) or not all(places[i].as_planned for i in order):
         now = rebuilt(start, build, order, added, places, workshop, settings)
-    unsteady = tuple(action.stone_id for action in now.actions if not stands(action))
+    unsteady = tuple(action.stone_id for action in now.actions if not action.stands)
     px = workshop.site.px_per_m or 1.0
     observation = Observation(
         poses={

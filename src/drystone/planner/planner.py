@@ -19,7 +19,7 @@ from drystone.planner.profile import Profile
 from drystone.planner.replay import judged
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
-from drystone.planner.vary import varied
+from drystone.planner.vary import WEIGHT_DRAWS, varied
 from drystone.planner.workshop import Workshop
 
 
@@ -76,7 +76,7 @@ class Planner:
             self.workshop = workshop or Workshop.prepare(stones, site, self.settings)
         self.executor = executor
         # Every wall has weights of its own, all its steps the same.
-        rng = np.random.default_rng([seed, 2_000_000])
+        rng = np.random.default_rng([seed, WEIGHT_DRAWS])
         spread = self.settings.vary
         self._weighted = varied(self.settings, spread, rng) if spread else self.settings
         self.build = self._empty()

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 Part = Literal[
     "preparation", "placement", "stabilisation", "contacts", "limit analysis", "indices", "metrics",
@@ -14,9 +14,7 @@ Part = Literal[
 tilts of the wall; the indices of the actions; figures of merit, for methods that look at them;
 all that is built after the first wall, by the clock."""
 
-PARTS: tuple[Part, ...] = (
-    "preparation", "placement", "stabilisation", "contacts", "limit analysis", "indices", "metrics",
-)  # fmt: skip
+PARTS: tuple[Part, ...] = get_args(Part)[:-1]
 """The parts of the work on a wall: all but the search, which is many walls."""
 
 

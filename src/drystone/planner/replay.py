@@ -56,11 +56,16 @@ def replayed(
     for group in groups:
         stood, fitted = build, None
         if not (strict and left_out) and _has_room(build.wall, group, limits):
-            fitted = _fitted(build.wall, group, workshop.next_wedge(build))
+            number = workshop.next_wedge(build)
+            if build.wall.outlines is not None:
+                fitted = settled_again(build.wall, group, number)
+            else:
+                wedges = (replace(wedge, id=k) for k, wedge in enumerate(group.wedges, number))
+                fitted = Group(group.placement, tuple(wedges))
         if fitted is not None:
             action = judged(build, fitted, course_heights_px, evaluator)
-            solves += Solves.of(action)
-            if stands(action):
+            solves += action.solves
+            if action.stands:
                 build = build.add(action, keep=keep)
         if build is stood:
             left_out.append(group.placement.stone_id)
@@ -77,11 +82,6 @@ def judged(
     return evaluator.judge(build, Landscape.of(build.wall, placement.side), proposal)
 
 
-def stands(action: Candidate) -> bool:
-    """Say whether the wall stands after an action, in both models, and carries some load."""
-    return action.sturdy and (action.resistance.value or 0.0) > 0.0
-
-
 def _has_room(wall: Wall, group: Group, limits: WedgeLimits) -> bool:
     """Say whether a step overlaps nothing; on outlines something must be beside its wedges."""
     if wall.outlines is None:
@@ -94,14 +94,3 @@ def _has_room(wall: Wall, group: Group, limits: WedgeLimits) -> bool:
     if any(squeezed_out(corners, stone, around, width, limits) for _, corners in wedges):
         return False
     return not any(crosses_any(corners, polygons) for corners in (stone, *(c for _, c in wedges)))
-
-
-def _fitted(wall: Wall, group: Group, number: int) -> Group | None:
-    """Return a step with the pixels that it fills now, and its wedges numbered from a number on.
-
-    None when the stone fills no pixel.
-    """
-    if wall.outlines is not None:
-        return settled_again(wall, group, number)
-    wedges = (replace(wedge, id=number + k) for k, wedge in enumerate(group.wedges))
-    return Group(group.placement, tuple(wedges))

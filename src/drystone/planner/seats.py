@@ -14,6 +14,7 @@ from drystone.kernels.polygons import Points, Polygons, area_and_centroid, no_po
 from drystone.model.builder import BuilderErrors
 from drystone.model.stone import Stone
 from drystone.model.wall import Group, Wall, outlined
+from drystone.planner.vary import TRIAL_DRAWS
 from drystone.poses import RecentlyUsed
 from drystone.settle.putting import fallen_share, moved, put_down
 from drystone.settle.settings import SettleSettings
@@ -130,7 +131,7 @@ class Seats:
         wedges = [corners for _, corners in outlined(placement, group.wedges)[1:]]
         around = in_order(built, near)
         # Drawn as it lies in the wall, so that it does not matter how its photograph was turned.
-        put = self._errors.built(planned, np.random.default_rng([7, k, stone.id]))
+        put = self._errors.built(planned, np.random.default_rng([TRIAL_DRAWS, k, stone.id]))
         rest, pushed = put_down(
             put, around.added(wedges) if wedges else around, self._mu, self._settle
         )

@@ -17,7 +17,8 @@ from drystone.planner.build import Proposal
 from drystone.planner.dropping import Drop, Dropped, drop_terms, in_order, shortlist, wedge_limits
 from drystone.planner.proposing import Apply, Key, Proposer, StoneTrial, one_by_one
 from drystone.planner.settled import settled_in
-from drystone.settle.rest import Repose, SettlingScene, come_to_rest
+from drystone.planner.views import SideView
+from drystone.settle.rest import Repose, come_to_rest
 from drystone.settle.wedge import WedgeLimits
 from drystone.settle.wedged import wedged
 
@@ -38,9 +39,7 @@ class ExactProposer(Proposer):
     rests.
     """
 
-    _views: dict[Side, tuple[SettlingScene, HeightProfile]] = field(
-        default_factory=dict, init=False
-    )
+    _views: dict[Side, SideView] = field(default_factory=dict, init=False)
     _dropped: dict[Key, Dropped] = field(default_factory=dict, init=False)
     _settled: dict[tuple[Key, int], Proposal | None] = field(default_factory=dict, init=False)
 
@@ -80,13 +79,11 @@ class ExactProposer(Proposer):
             given.update(drop.key for drop in batch)
             yield batch
 
-    def view(self, side: Side) -> tuple[SettlingScene, HeightProfile]:
+    def view(self, side: Side) -> SideView:
         """Return what is built and how high it is, as it is seen from a side."""
         if side not in self._views:
-            wall = self.build.wall
-            view = self.workshop.views.of(wall.exact.polygons, side)
-            scene = SettlingScene(view.seen, wall.site.extent_px[0], side, self.settings.mu)
-            self._views[side] = scene, view.profile
+            built = self.build.wall.exact.polygons
+            self._views[side] = self.workshop.views.of(built, side, self.settings.mu)
         return self._views[side]
 
     @cached_property
@@ -130,7 +127,7 @@ class ExactProposer(Proposer):
             )
             stones = in_a_row([one.profile for one in hung])
             constants = self.workshop.costs.of(poses, self.settings.score)
-            places, limit = drops(self.view(side)[1], stones, self._terms, constants, wanted)
+            places, limit = drops(self.view(side).profile, stones, self._terms, constants, wanted)
         next_ones = iter(places)
         return [
             Dropped(trial, tuple(islice(next_ones, len(trial.poses))), limit) for trial in trials
@@ -155,7 +152,7 @@ class ExactProposer(Proposer):
     def _settle(self, drop: Drop) -> Proposal | None:
         """Let a stone go where it was dropped; None when it does not rest inside the wall."""
         side, posed = drop.trial.landscape.side, drop.trial.poses[0]
-        scene, profile = self.view(side)
+        scene, profile = self.view(side).scene, self.view(side).profile
         hung = self.workshop.outlines.hung(posed.stone, posed.angle_deg, side)
         start = self._beside(drop.start, hung.profile, profile)
         method, settings = self.settings.stabilise.method, self.settings.settle

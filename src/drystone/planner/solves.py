@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass
 
-from drystone.planner.build import Candidate
-
 
 @dataclass(frozen=True)
 class Solves:
@@ -11,11 +9,6 @@ class Solves:
 
     failed: int = 0  # it gave up, and the candidate was passed over
     cold: int = 0  # it had to start anew, which costs time alone
-
-    @classmethod
-    def of(cls, candidate: Candidate) -> "Solves":
-        """Count the trouble with one candidate."""
-        return cls(int(candidate.failed), int(candidate.solved_cold))
 
     def __add__(self, other: "Solves") -> "Solves":
         """Add up."""

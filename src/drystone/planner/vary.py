@@ -1,4 +1,4 @@
-"""Craft weights that differ from wall to wall, so that another seed gives another wall."""
+"""What is drawn from a seed: streams of numbers, and craft weights that differ between walls."""
 
 import math
 from dataclasses import fields, replace
@@ -7,6 +7,12 @@ import numpy as np
 
 from drystone.planner.settings import PlannerSettings
 from drystone.selection.scored import ScoreSettings
+
+WEIGHT_DRAWS, CHAIN_DRAWS, FIRST_DRAWS, REPAIR_DRAWS = (k * 1_000_000 for k in (2, 3, 4, 5))
+"""Follow a plan's seed, and keep these streams apart from those of its steps, numbered from 0."""
+
+TRIAL_DRAWS = 7
+"""Begins the streams of errors of builders, which are the same for all seeds of plans."""
 
 
 def varied(settings: PlannerSettings, spread: float, rng: np.random.Generator) -> PlannerSettings:

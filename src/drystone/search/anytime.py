@@ -4,7 +4,7 @@ Once chains find nothing better for long, another round begins with other first 
 that is drawn depends on the seed and on the number of a wall, and what chains share on how many
 walls they have built: the same budget gives the same wall, however many processes work and whatever
 the clock says.  The clock decides only how large the budget is.  So a search that was cut off goes
-on from where it stood (:mod:`drystone.search.standing`) to the same walls.
+on from where it stood (:mod:`drystone.search.state`) to the same walls.
 """
 
 import pickle
@@ -21,7 +21,7 @@ from drystone.search.chain import Job, more_links, one_pass, wedged
 from drystone.search.goal import FoundWall
 from drystone.search.operators import Credits
 from drystone.search.packed import PackedWall
-from drystone.search.standing import Chains, Link, Progress, Reached, Standing
+from drystone.search.state import Chains, Link, Progress, Reached, SearchState
 from drystone.search.yard import Yard
 
 NOTABLE = 0.01
@@ -49,7 +49,7 @@ Result = TypeVar("Result")
 
 
 def searching(
-    start: FoundWall | Standing, yard: Yard, seed: int, executor: Executor | None = None
+    start: FoundWall | SearchState, yard: Yard, seed: int, executor: Executor | None = None
 ) -> Iterator[Progress]:
     """Look for better walls than that of the seed itself, or go on from where a search was cut off.
 
@@ -59,7 +59,7 @@ def searching(
     """
     settings = yard.settings
     job = Job(pickle.dumps((yard.workshop.stones, yard.workshop.site, settings)), seed, yard.until)
-    if isinstance(start, Standing):
+    if isinstance(start, SearchState):
         at = start
         reached = at.chains.reached if at.chains else _together(at.found)
         yield _Round(at.number, at.before, job, settings.search, executor).after(reached, at)
@@ -74,7 +74,7 @@ def searching(
         # the budget 1, which is the wall without them.
         try:
             yard.until.look()
-            at = Standing(0, None, (PackedWall.of(wedged(start, yard)),))
+            at = SearchState(0, None, (PackedWall.of(wedged(start, yard)),))
         except TimeIsUp:
             return
     while True:
@@ -83,7 +83,7 @@ def searching(
         before = None if chains is None else (yield from one.improved(chains))
         if before is None:
             return
-        at = Standing(at.number + 1, before, ())
+        at = SearchState(at.number + 1, before, ())
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +117,7 @@ class _Round:
                 if wall is None:
                     return None
                 found = (*found, wall)
-                yield self.after(_together(found), Standing(self.number, self.before, found))
+                yield self.after(_together(found), SearchState(self.number, self.before, found))
         reached = _together(found)
         links = tuple(_links(found, self.number, search.chains))
         return Chains(reached, links, 0, reached.walls, reached.best.merit + NOTABLE)
@@ -136,9 +136,11 @@ class _Round:
                 if link is None:
                     return None
                 built = link.done - at.links[k].done
-                at = _with_link(at, link, built)
-                standing = Standing(self.number, self.before, (), at) if built == each else None
-                yield self.after(at.reached, standing)
+                more = Reached(built, link.best, link.solves - at.links[k].solves, link.kept)
+                links = (*at.links[:k], replace(link, kept=()), *at.links[k + 1 :])
+                at = replace(at, reached=at.reached + more, links=links, turn=k + 1)
+                state = SearchState(self.number, self.before, (), at) if built == each else None
+                yield self.after(at.reached, state)
                 if built < counts[k]:
                     # It became too late; what later chains have built is not in the budget.
                     return None
@@ -149,14 +151,14 @@ class _Round:
                 return self._in_all(at.reached)
             # All chains know then which changes have helped in each.
             known = sum((link.learnt for link in at.links), at.links[0].known)
-            links = [replace(link, known=known, learnt=Credits()) for link in at.links]
-            at = replace(at, links=tuple(_shared(links)), turn=0)
+            again = [replace(link, known=known, learnt=Credits()) for link in at.links]
+            at = replace(at, links=tuple(_shared(again)), turn=0)
         return None
 
-    def after(self, reached: Reached, standing: Standing | None) -> Progress:
+    def after(self, reached: Reached, state: SearchState | None) -> Progress:
         """Say how far the search is, from what this round has come to."""
         whole = self._in_all(reached)
-        return Progress(whole.walls, whole.best, whole.solves, whole.kept, standing)
+        return Progress(whole.walls, whole.best, whole.solves, whole.kept, state)
 
     def _in_all(self, reached: Reached) -> Reached:
         return reached if self.before is None else self.before + reached
@@ -166,13 +168,6 @@ def _together(walls: Sequence[PackedWall]) -> Reached:
     """Say what the first walls of a round have come to."""
     first, *others = map(Reached.of, walls)
     return sum(others, first)
-
-
-def _with_link(at: Chains, link: Link, built: int) -> Chains:
-    """Add the walls of the chain whose turn it is."""
-    more = Reached(built, link.best, link.solves - at.links[at.turn].solves, link.kept)
-    links = (*at.links[: at.turn], replace(link, kept=()), *at.links[at.turn + 1 :])
-    return replace(at, reached=at.reached + more, links=links, turn=at.turn + 1)
 
 
 def _links(found: Sequence[PackedWall], number: int, chains: int) -> list[Link]:

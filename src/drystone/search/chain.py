@@ -20,13 +20,14 @@ from drystone.planner.replay import Replayed
 from drystone.planner.search_settings import SearchSettings
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
+from drystone.planner.vary import CHAIN_DRAWS, FIRST_DRAWS
 from drystone.planner.workshop import Workshop
 from drystone.search.by_courses import newly_planned, relaid, replanned
 from drystone.search.goal import FoundWall
 from drystone.search.operators import NEW, RECREATED, REPLANNED, Credits, shares
 from drystone.search.packed import PackedWall, archived, found_again
 from drystone.search.ruin import RUINS, taken_down
-from drystone.search.standing import Link
+from drystone.search.state import Link
 from drystone.search.wedging import wedged_up
 from drystone.search.yard import Yard
 
@@ -65,7 +66,7 @@ def one_pass(job: Job, number: int, planned_share: float) -> PackedWall | None:
     try:
         yard = job.yard
         job.until.look()
-        rng = np.random.default_rng([job.seed, 4_000_000 + number])
+        rng = np.random.default_rng([job.seed, FIRST_DRAWS + number])
         found = None
         if planned_first(yard.settings) and rng.random() < planned_share:
             found = newly_planned(yard, rng)
@@ -111,7 +112,7 @@ def _lengthened(link: Link, now: FoundWall, seed: int, yard: Yard) -> tuple[Link
     position, length = in_cycle(link.done, search.cycle)
     if position == 0 and link.best.courses is not None:
         now = found_again(link.best, yard)
-    rng = np.random.default_rng([seed, 3_000_000 + link.number, link.done])
+    rng = np.random.default_rng([seed, CHAIN_DRAWS + link.number, link.done])
     planned = now.courses is not None
     operator = (link.known + link.learnt).drawn(shares(planned, search.polish), rng)
     # A part of a planned wall that is built up freely has no plan any more.

@@ -22,6 +22,7 @@ from drystone.model.outlines import Outlined
 from drystone.physics.building import build_up, tilt_of
 from drystone.physics.scatter import Variation
 from drystone.physics.tilt import TiltSettings
+from drystone.planner.vary import TRIAL_DRAWS
 from drystone.search.rehearsal import (
     IN_ENGINE,
     Groups,
@@ -108,7 +109,7 @@ class _Stone:
     """A stone of a plan with its wedges, as they were seen."""
 
     def __init__(self, group: Sequence[Outlined], errors: BuilderErrors) -> None:
-        rng = np.random.default_rng([7, group[0][0]])
+        rng = np.random.default_rng([TRIAL_DRAWS, group[0][0]])
         nothing = errors.times(0.0)
         self.id = group[0][0]
         self.seen, *wedges = [nothing.built(corners, rng) for _, corners in group]

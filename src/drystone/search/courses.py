@@ -18,7 +18,6 @@ from drystone.kernels.course_types import (
     Arrangement,
     Cooling,
     Layout,
-    Poses,
 )
 from drystone.kernels.courses import anneal, evaluate
 from drystone.kernels.raster import turn
@@ -95,7 +94,10 @@ def _scattered(task: CourseTask, dice: Dice) -> Arrangement:
     for i in range(count - 1, 0, -1):
         j = dice.below(i + 1)
         order[i], order[j] = order[j], order[i]
-    turns = [_flat(poses, stone, dice) for stone in range(count)]
+    turns = []
+    for heights in poses.height.reshape(-1, 4).tolist():
+        flat = [i for i in range(4) if heights[i] <= min(heights) + 1]
+        turns.append(flat[dice.below(len(flat))])
     sizes, width, height, tallest = [0], 0, int(task.ground.tops.mean()), 0
     for stone in order:
         pose = 4 * stone + turns[stone]
@@ -109,13 +111,6 @@ def _scattered(task: CourseTask, dice: Dice) -> Arrangement:
         width += int(poses.width[pose])
         tallest += int(poses.height[pose])
     return _arrangement(order, turns, sizes, [(size + 1) // 2 for size in sizes])
-
-
-def _flat(poses: Poses, stone: int, dice: Dice) -> int:
-    """Return one of the turns in which a stone is not higher than in the others."""
-    heights = poses.height[4 * stone : 4 * stone + 4].tolist()
-    turns = [i for i in range(4) if heights[i] <= min(heights) + 1]
-    return turns[dice.below(len(turns))]
 
 
 def _arrangement(*parts: list[int]) -> Arrangement:

@@ -25,19 +25,10 @@ def terminable() -> Iterator[Callable[[], int | None]]:
         came.append(number)
         raise Terminated if number == signal.SIGTERM else KeyboardInterrupt
 
-    if not _may_set():
-        yield lambda: None
-        return
-    before = {one: signal.getsignal(one) for one in SIGNALS}
-    for one, handler in before.items():
-        # What runs in the background of a shell does not hear Ctrl-C.
-        if one != signal.SIGINT or handler != signal.SIG_IGN:
-            signal.signal(one, end)
-    try:
+    # What runs in the background of a shell does not hear Ctrl-C.
+    deaf = signal.getsignal(signal.SIGINT) == signal.SIG_IGN
+    with _handled(end, SIGNALS[1:] if deaf else SIGNALS):
         yield lambda: came[-1] if came else None
-    finally:
-        for one, handler in before.items():
-            signal.signal(one, handler)
 
 
 @contextmanager
@@ -46,18 +37,11 @@ def held() -> Iterator[None]:
 
     For the end of a work: a second signal must not take away what the first one has left.
     """
-    if not _may_set():
-        yield
-        return
     came: list[int] = []
-    before = {one: signal.getsignal(one) for one in SIGNALS}
-    for one in SIGNALS:
-        signal.signal(one, lambda number, _: came.append(number))
     try:
-        yield
+        with _handled(lambda number, _: came.append(number), SIGNALS):
+            yield
     finally:
-        for one, handler in before.items():
-            signal.signal(one, handler)
         if came:
             signal.raise_signal(came[0])
 
@@ -78,8 +62,19 @@ def blocked() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _may_set() -> bool:
-    """Say whether handlers may be set here, and those that are there can be put back."""
-    return threading.current_thread() is threading.main_thread() and not any(
-        signal.getsignal(one) is None for one in SIGNALS
-    )
+@contextmanager
+def _handled(
+    handler: Callable[[int, FrameType | None], None], signals: tuple[signal.Signals, ...]
+) -> Iterator[None]:
+    """Have signals handled so, where handlers may be set, and those that are there put back."""
+    before = {one: signal.getsignal(one) for one in SIGNALS}
+    if threading.current_thread() is not threading.main_thread() or None in before.values():
+        yield
+        return
+    for one in signals:
+        signal.signal(one, handler)
+    try:
+        yield
+    finally:
+        for one in signals:
+            signal.signal(one, before[one])

@@ -7,13 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from drystone.kernels.polygons import Points, mirrored_polygon, no_polygons
-from drystone.kernels.profiles import Floats, HeightProfile, StoneProfile, bare, hanging, raised
-from drystone.model.outlines import Outlines
-from drystone.model.placement import Side
+from drystone.kernels.polygons import Points
+from drystone.kernels.profiles import Floats, StoneProfile, hanging
 from drystone.planner.laying_settings import LayingSettings
+from drystone.planner.views import SideView
 from drystone.poses import wrap_deg
-from drystone.settle.rest import Repose, SettlingScene, Turned, repose, rests, touch_down
+from drystone.settle.rest import Repose, Turned, repose, rests, touch_down
 from drystone.settle.settings import SettleSettings
 from drystone.settle.wedge import WedgeLimits
 from drystone.settle.wedged import held
@@ -26,37 +25,6 @@ CLOSED_UP = 0.25
 
 SAME_PX, SAME_DEG = 1.0, 0.05
 """Stones that rest so near to each other rest alike."""
-
-
-@dataclass(frozen=True, eq=False)
-class SideView:
-    """What is built and how high it is, seen so that the building side is on the left."""
-
-    scene: SettlingScene
-    profile: HeightProfile
-    column_px: float  # width of the profile's columns, source px
-
-    @classmethod
-    def bare(cls, width_px: float, side: Side, mu: float, column_px: float) -> "SideView":
-        """Look at the bare ground."""
-        scene = SettlingScene(no_polygons(), width_px, side, mu)
-        return cls(scene, bare(math.ceil(width_px / column_px)), column_px)
-
-    def grown(self, outlines: Outlines) -> "SideView":
-        """Return the view of a wall that has more stones than this one, after the same ones."""
-        scene, profile = self.scene, self.profile
-        seen = len(scene.polygons)
-        new = [outlines.polygons.polygon(i) for i in range(seen, len(outlines.polygons))]
-        if not new:
-            return self
-        if scene.side == "right":
-            new = [mirrored_polygon(corners, scene.width_px) for corners in new]
-        for index, corners in enumerate(new, seen):
-            profile = raised(profile, corners, index, self.column_px)
-        polygons = scene.polygons.added(new)
-        return SideView(
-            SettlingScene(polygons, scene.width_px, scene.side, scene.mu), profile, self.column_px
-        )
 
 
 @dataclass(frozen=True)

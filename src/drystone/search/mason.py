@@ -21,9 +21,10 @@ from drystone.planner.evaluate import Evaluator, Loaded
 from drystone.planner.laying_settings import LayingSettings
 from drystone.planner.settled import settled_in
 from drystone.planner.solves import Solves
+from drystone.planner.views import SideView
 from drystone.poses import wrap_deg
 from drystone.search.courses import CoursePlan, PlannedStone
-from drystone.search.letting_go import Aim, Hand, Resting, SideView
+from drystone.search.letting_go import Aim, Hand, Resting
 from drystone.search.yard import Yard
 
 Status = Literal["as planned", "half turn", "elsewhere", "used", "no place", "no rest", "falls"]
@@ -161,7 +162,7 @@ class Mason:
             return StoneLaying(planned, "used")
         outlines, site = build.wall.outlines, workshop.site
         assert outlines is not None  # noqa: S101 - a course plan is laid on outlines
-        view = self.views[side] = self.views[side].grown(outlines)
+        view = self.views[side] = self.views[side].grown(outlines.polygons)
         unit_px = workshop.stock.mean_height_px / site.scale
         highest_px = site.extent_px[1] + self.yard.settings.settle.beyond_px
         stone = workshop.stones.by_id(planned.stone_id)

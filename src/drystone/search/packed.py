@@ -61,8 +61,7 @@ class PackedWall:
 
 
 def _packed_group(group: Group, heights: dict[int, float]) -> PackedGroup:
-    placement, settled = group.placement, group.placement.settled
-    assert settled is not None  # noqa: S101 - searches are of walls on outlines
+    placement, settled = group.placement, group.placement.exact
     return PackedGroup(
         placement.stone_id,
         placement.posed.angle_deg,
@@ -119,7 +118,11 @@ def archived(kept: Iterable[PackedWall], more: Iterable[PackedWall]) -> tuple[Pa
     scored.sort(key=lambda one: (one[0].merit, one[1]), reverse=True)
     found: list[tuple[PackedWall, tuple[int, ...]]] = []
     for wall, score in scored:
-        if not any(_as_good(other, score) for _, other in found):
+        # One that lacks fewer is better whatever its figures are.
+        if not any(
+            other[0] > score[0] or all(a >= b for a, b in zip(other, score, strict=True))
+            for _, other in found
+        ):
             found.append((wall, score))
     return tuple(wall for wall, _ in found[:MOST])
 
@@ -128,10 +131,3 @@ def score_of(figures: WallFigures) -> tuple[int, ...]:
     """Return the pinned stones that are there, and the figures in steps; higher is better."""
     steps = (round(getattr(figures, name) / step) for name, step in STEPS.items())
     return (-figures.missing, *steps)
-
-
-def _as_good(one: tuple[int, ...], other: tuple[int, ...]) -> bool:
-    """Say whether a wall is at least as good as another in every figure, and lacks no more."""
-    if one[0] != other[0]:
-        return one[0] > other[0]
-    return all(a >= b for a, b in zip(one, other, strict=True))

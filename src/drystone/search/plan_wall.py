@@ -22,7 +22,7 @@ from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.search.interrupts import held
 from drystone.search.plan_result import PlanResult, finish, missing_stones, provenance_of
 from drystone.search.processes import processes, threads
-from drystone.search.standing import Progress, Standing
+from drystone.search.state import Progress, SearchState
 from drystone.search.warm_start import begin_with
 from drystone.search.whole_search import SearchEnd, as_found, cut_off, run_to_end
 
@@ -98,7 +98,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     begin: Wall | None = None,
     choice: bool = False,
     keep: Callable[[SoFar], None] | None = None,
-    standing: Standing | None = None,
+    state: SearchState | None = None,
     coulomb: bool = True,
 ) -> PlanResult:
     """Plan a wall.
@@ -149,7 +149,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     keep : callable, optional
         Told of what there is so far, whenever a stone of the first wall is placed or walls of the
         search are built: to be kept, so that a program that is killed loses little.
-    standing : Standing, optional
+    state : SearchState, optional
         Where a search of the same stones, wall, seed and settings was cut off
         (:class:`SoFar`): it goes on from there to the plan that it would have come to itself.
     coulomb : bool
@@ -167,7 +167,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         E138: the seed is negative, or both `built` and `begin` are given; E123: the budget is less
         than 1; E120 to E127, E137, E145: the wall, the scale or the stones make no sense together.
     PlanError
-        E207: a wall of `standing` cannot be built again.
+        E207: a wall of `state` cannot be built again.
 
     Examples
     --------
@@ -193,7 +193,10 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
             cure="Give the one that is built, or the one to begin with.",
         )
     method = method or ("custom" if settings else "best")
-    settings = _searched(settings or method_settings(method), budget, seconds)
+    settings = settings or method_settings(method)
+    one_wall = settings.by_policy or settings.geometry == "raster"
+    if budget is not None or (math.isfinite(seconds) and not one_wall):
+        settings = settings.updated({"search": {"budget": UNLIMITED if budget is None else budget}})
     scale = working_scale(stones) if scale is None else float(scale)
     if not 0 < scale <= 1:
         raise UsageError(
@@ -219,7 +222,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
             left_out = () if begin is None else begin_with(first, begin, course_heights_px or {})
             ended = run_to_end(
                 first,
-                start=standing,
+                start=state,
                 until=Deadline.after(seconds),
                 grace_s=grace_s,
                 first_whole=first_whole,
@@ -286,14 +289,6 @@ class _PlanOrigin:
             solves=first.solves,
             choice=tuple(plans) if to_choose else (),
         )
-
-
-def _searched(settings: PlannerSettings, budget: int | None, seconds: float) -> PlannerSettings:
-    """Return the settings with the budget that is asked for, by number or by time."""
-    single = settings.by_policy or settings.geometry == "raster"
-    if budget is None and (single or not math.isfinite(seconds)):
-        return settings
-    return settings.updated({"search": {"budget": UNLIMITED if budget is None else budget}})
 
 
 def _notices(

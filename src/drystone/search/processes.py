@@ -25,29 +25,25 @@ of IR on pixels (.46 GB, and no more after 300 s).
 @contextmanager
 def processes(count: int) -> Iterator[Executor | None]:
     """Start processes; they end with the block, whatever they do then."""
-    if count == 1:
-        yield None
-        return
-    executor = process_pool(count, MUCH_MEMORY)
+    executor = process_pool(count, MUCH_MEMORY) if count != 1 else None
     try:
         yield executor
     finally:
-        with held():
-            executor.shutdown(wait=True, kill_workers=True)
+        if executor is not None:
+            with held():
+                executor.shutdown(wait=True, kill_workers=True)
 
 
 @contextmanager
 def threads(count: int) -> Iterator[Executor | None]:
     """Start threads that evaluate candidates; with 1, nothing is started and None is given."""
-    if count == 1:
-        yield None
-        return
-    executor = ThreadPoolExecutor(count)
+    executor = ThreadPoolExecutor(count) if count != 1 else None
     try:
         yield executor
     finally:
-        with held():
-            executor.shutdown()
+        if executor is not None:
+            with held():
+                executor.shutdown()
 
 
 def process_pool(count: int, env: Mapping[str, str]) -> Any:

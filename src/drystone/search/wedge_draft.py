@@ -169,8 +169,7 @@ class WedgeDraft:
     @classmethod
     def of(cls, build: Build, limits: WedgeLimits) -> "WedgeDraft":
         """Begin with a finished wall of outlines that knows its states."""
-        outlines = build.wall.outlines
-        assert outlines is not None  # noqa: S101 - its caller knows
+        outlines = build.wall.exact
         return cls(
             analysis_of(build),
             PlacedPolygons(outlines.ids, outlines.polygons),

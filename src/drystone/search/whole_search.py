@@ -15,15 +15,15 @@ from drystone.planner.build import Build
 from drystone.planner.deadline import NEVER, Deadline, TimeIsUp
 from drystone.planner.events import INTERRUPTED, OUT_OF_TIME, Incumbent, Stopped
 from drystone.planner.planner import Planner
-from drystone.planner.replay import stands
 from drystone.planner.sturdy import ROUNDS
+from drystone.planner.vary import REPAIR_DRAWS
 from drystone.search.anytime import searching
 from drystone.search.chain import forget, without
 from drystone.search.goal import LAST_RUNS, FoundWall, WallFigures, first_falls
 from drystone.search.interrupts import held
 from drystone.search.packed import PackedWall, archived, found_again
 from drystone.search.ruin import with_all_above
-from drystone.search.standing import Progress, Standing
+from drystone.search.state import Progress, SearchState
 from drystone.search.yard import Yard
 from drystone.statics.flow.flow_search import NonassociativeSettings
 from drystone.statics.flow.release import fall_of
@@ -58,7 +58,7 @@ class SearchEnd(NamedTuple):
 def run_to_end(
     planner: Planner,
     *,
-    start: Standing | None = None,
+    start: SearchState | None = None,
     until: Deadline = NEVER,
     grace_s: float = math.inf,
     first_whole: bool = False,
@@ -78,7 +78,7 @@ def run_to_end(
         stopped = _built(planner, NEVER if first_whole else until, told)
         if planner.settings.search.budget == 1 or stopped in (INTERRUPTED, OUT_OF_TIME):
             return SearchEnd(planner, stopped, 1, ())
-        fallen = tuple(one.stone_id for one in planner.build.actions if not stands(one))
+        fallen = tuple(one.stone_id for one in planner.build.actions if not one.stands)
         if fallen:
             return SearchEnd(planner, stopped, 1, (), fallen=fallen)
     try:
@@ -96,7 +96,7 @@ def run_to_end(
 
 def _improved(
     planner: Planner,
-    start: Standing | Stopped,
+    start: SearchState | Stopped,
     until: Deadline,
     grace_s: float,
     executor: Executor | None,
@@ -106,7 +106,7 @@ def _improved(
     progress: Progress | None = None
     lost = interrupted = False
     try:
-        begun = start if isinstance(start, Standing) else FoundWall.of(planner)
+        begun = start if isinstance(start, SearchState) else FoundWall.of(planner)
         yard = Yard.of(planner, until)
         with planner.profile.part("search"):
             for progress in searching(begun, yard, planner.seed, executor):
@@ -224,7 +224,7 @@ def repaired(planner: Planner, best: PackedWall, until: Deadline = NEVER) -> Pac
         gone = first_falls(found.build, yard, LAST_RUNS)
         if not gone:
             break
-        walls, rng = [], np.random.default_rng([planner.seed, 5_000_000, turn])
+        walls, rng = [], np.random.default_rng([planner.seed, REPAIR_DRAWS, turn])
         for chosen in (gone, with_all_above(found.build, gone)):
             build, _, solves = without(found.build, chosen, yard)
             walls += [FoundWall.measured(build, yard, solves)]

@@ -60,16 +60,16 @@ def check_plan(
     """
     replay = replay_plan(plan, stones)
     reference = Reference.of(stones, replay.settings, plan.working_scale)
-    standing = check_stability(replay.stages, replay.settings)
+    stability = check_stability(replay.stages, replay.settings)
     problems = [*check_source(plan, stones), *check_unused(plan, stones), *replay.problems]
     problems += check_choice(plan, replay.settings)
     problems += _check_pieces(replay, reference)
-    problems += standing.problems + tuple(_check_stages(replay, standing, reference))
+    problems += stability.problems + tuple(_check_stages(replay, stability, reference))
     if wall_labels is not None:
         problems += _check_image(replay, wall_labels)
     metrics: PlanMetrics | None = None
-    whole = replay.broken_at is None and None not in standing.models
-    model = standing.models[-1] if whole and standing.models else None
+    whole = replay.broken_at is None and None not in stability.models
+    model = stability.models[-1] if whole and stability.models else None
     if blocks is not None and replay.exact:
         problems += check_blocks(blocks, plan, replay, model)
     if whole:
@@ -84,7 +84,7 @@ def check_plan(
         buried=tuple(stage.stone.stone for stage in replay.stages if is_buried(stage)),
         area_error=area_error,
         area_error_at=area_error_at,
-        prefixes=standing.prefixes,
+        prefixes=stability.prefixes,
         metrics=metrics,
         notes=tuple(_notes(plan, stones, replay, wall_labels, blocks)),
         geometry=replay.settings.geometry,
@@ -107,13 +107,13 @@ def _check_pieces(replay: Replay, reference: Reference) -> list[Problem]:
     return problems
 
 
-def _check_stages(replay: Replay, standing: Stability, reference: Reference) -> list[Problem]:
+def _check_stages(replay: Replay, stability: Stability, reference: Reference) -> list[Problem]:
     """Verify indices and wedges of every stage."""
     problems = []
     unit, wall = replay.site.units_per_px, replay.wall
     settings, stock = reference.settings, reference.stock
     steps = {p.id: p.step for p in replay.pieces if isinstance(p.step, WedgeStep)}
-    stages = zip(replay.stages, standing.resistances, standing.models, strict=True)
+    stages = zip(replay.stages, stability.resistances, stability.models, strict=True)
     for stage, resistance, model in stages:
         if resistance is not None:
             problems += check_indices(stage, resistance, reference, unit)

@@ -16,7 +16,7 @@ from drystone.model.overlap import overlap_depth, shape_of
 from drystone.model.placement import Placement, Settled, Wedge
 from drystone.model.plan import Plan, StoneStep, WedgeStep
 from drystone.model.site import Site
-from drystone.model.steps import Fault, Step, grouped, id_fault, piece_id, piece_name
+from drystone.model.steps import Problem, Step, grouped, id_fault, piece_id, piece_name
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Group, Labels, Wall
 from drystone.planner.settings import PlannerSettings
@@ -25,7 +25,6 @@ from drystone.settle.placing import settled_placement, settled_wedge
 from drystone.settle.rest import placed_outline
 from drystone.settle.settings import SettleSettings
 from drystone.verify.lengths import plan_settings, plan_site, source_points, working_points
-from drystone.verify.report import Problem
 
 SIDES = "above the top", "below the ground", "left of the left end", "right of the right"
 """Where a piece may leave the site."""
@@ -285,7 +284,7 @@ def replay_plan(plan: Plan, stones: StoneSet) -> Replay:
     settings, problems = plan_settings(plan)
     site = plan_site(plan)
     groups, disorder = grouped(plan.steps)
-    problems += map(_problem_of, disorder)
+    problems += disorder
     exact = settings.geometry == "exact"
     canvas = ExactCanvas(site, stones, settings.settle) if exact else RasterCanvas(site, stones)
     wall, broken_at = Wall.empty(site, exact=exact), None
@@ -326,9 +325,5 @@ def _derive(
         else:
             pieces.append(piece)
             repeated = id_fault(step, used, largest)
-            problems += found if repeated is None else [_problem_of(repeated), *found]
+            problems += found if repeated is None else [repeated, *found]
     return pieces, problems
-
-
-def _problem_of(fault: Fault) -> Problem:
-    return Problem(fault.code, fault.step, fault.message)

@@ -5,19 +5,9 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from drystone.model.plan import PlanMetrics
+from drystone.model.steps import Problem
 
-
-@dataclass(frozen=True)
-class Problem:
-    """One claim of a plan that does not hold."""
-
-    code: str  # stable code, ``"E210"`` to ``"E242"``; documented in ``docs/errors.md``
-    step: int | None  # number of the step concerned; None when it is the plan as a whole
-    message: str
-
-    def __str__(self) -> str:
-        where = "" if self.step is None else f"step {self.step}: "
-        return f"{self.code} {where}{self.message}"
+__all__ = ["CheckReport", "PrefixAlpha", "Problem", "contradicted"]
 
 
 def contradicted(name: str, claimed: float | None, found: float | None) -> str:

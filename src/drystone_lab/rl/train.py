@@ -15,13 +15,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.random import Generator
 
 from drystone.errors import DrystoneError, ExitCode, UsageError
 from drystone.planner.workshop import Workshop
-from drystone.selection.policies.choices import Lowest
-from drystone.selection.policies.learned import FEATURES, ValueModel
-from drystone.selection.policy import Offer
+from drystone.selection.policies.choices import LOWEST
+from drystone.selection.policies.learned import FEATURES, ValueModel, learned
 from drystone.whole_files import refuse_existing
 from drystone_lab.rl.draw import DrawSettings, draw_wall
 from drystone_lab.rl.episode import Episode, prepared
@@ -73,7 +71,7 @@ def train(
     model = ValueModel((0.0,) * len(FEATURES), {})
     done = walls = 0
     while done < settings.rounds and time.monotonic() - start <= seconds:
-        new = _branchings(settings, done, _best(model) if done else lowest)
+        new = _branchings(settings, done, learned(model).choose if done else LOWEST.choose)
         found += new
         if not found:
             raise UsageError(
@@ -94,7 +92,7 @@ def train(
         )
     others = [_workshop(settings, VALIDATION + k) for k in range(settings.validation)]
     by_random, by_lowest, by_value = (
-        mean_merit(choose, others) for choose in (at_random, lowest, _best(model))
+        mean_merit(choose, others) for choose in (at_random, LOWEST.choose, learned(model).choose)
     )
     say(
         f"on {settings.validation} other walls: merit {by_random:.3f} at random, "
@@ -119,13 +117,6 @@ def mean_merit(choose: Choose, workshops: Sequence[Workshop]) -> float:
     return math.fsum(merits) / len(workshops)
 
 
-def lowest(offers: Sequence[Offer], rng: Generator) -> int:
-    """Choose the lowest of some offers (:class:`drystone.selection.policies.choices.Lowest`)."""
-    position = Lowest().choose(offers, rng)
-    assert position is not None  # noqa: S101 - there are offers
-    return position
-
-
 def _branchings(settings: TrainSettings, number: int, choose: Choose) -> list[Branching]:
     """Return the branchings of a round."""
     first = number * settings.walls
@@ -142,10 +133,6 @@ def _workshop(settings: TrainSettings, number: int) -> Workshop:
     draw = replace(settings.draw, kinds=(kinds[number % len(kinds)],))
     rng = np.random.default_rng([settings.seed, 2, number])
     return prepared(*draw_wall(draw, rng))
-
-
-def _best(model: ValueModel) -> Choose:
-    return lambda offers, _: model.best(offers)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -7,7 +7,7 @@ import pytest
 
 from drystone.planner.planner import Planner
 from drystone.search.goal import figures_of, merit_of, possible_filling
-from drystone.selection.policies.choices import Lowest
+from drystone.selection.policies.choices import LOWEST
 from drystone_lab.rl.draw import draw_wall
 from drystone_lab.rl.episode import ARRIVING, Episode, prepared
 from tests.lab.rl.walls import SMALL, bricks
@@ -19,7 +19,7 @@ def test_builds_the_wall_of_the_planner_with_the_same_policy() -> None:
         stones, site = draw_wall(SMALL, np.random.default_rng(seed))
         episode = Episode(prepared(stones, site))
         while not episode.over:
-            episode.take(Lowest().choose(episode.offers, rng))
+            episode.take(LOWEST.choose(episode.offers, rng))
         settings = replace(ARRIVING, selection_rule="lowest")
         planner = Planner(stones, site, settings=settings)
         list(planner.steps())

@@ -7,8 +7,8 @@ CODE = """
 import sys
 sys.modules["gymnasium"] = None
 from drystone.errors import UsageError
-from drystone.selection.policies.learned import Learned
-Learned()
+from drystone.selection.policies.learned import learned
+learned()
 try:
     import drystone_lab.rl
 except UsageError as error:

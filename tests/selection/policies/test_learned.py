@@ -10,9 +10,9 @@ import pytest
 from drystone.errors import UsageError
 from drystone.selection.policies.learned import (
     FEATURES,
-    Learned,
     ValueModel,
     features,
+    learned,
     model_from_json,
     shipped_model,
 )
@@ -78,15 +78,15 @@ def test_ranks_compare_with_the_others() -> None:
 
 def test_the_largest_value_is_chosen() -> None:
     offers = [offered(1), offered(2, indices={"LFR": 0.9}), offered(3, indices={"LLC": 0.9})]
-    assert Learned(weighing(LFR=1.0)).choose(offers, RNG) == 1
-    assert Learned(weighing(LLC=1.0)).choose(offers, RNG) == 2
-    assert Learned(weighing(LLC=-1.0, LFR=-5.0)).choose(offers, RNG) == 0
+    assert learned(weighing(LFR=1.0)).choose(offers, RNG) == 1
+    assert learned(weighing(LLC=1.0)).choose(offers, RNG) == 2
+    assert learned(weighing(LLC=-1.0, LFR=-5.0)).choose(offers, RNG) == 0
     assert weighing(LFR=2.0).values(offers).tolist() == pytest.approx([1.6, 1.8, 1.6])
 
 
 def test_ties_go_to_the_lower_id_then_the_first() -> None:
     offers = [offered(2), offered(1, angle_deg=90.0), offered(1, angle_deg=-90.0)]
-    assert Learned(weighing()).choose(offers, RNG) == 1
+    assert learned(weighing()).choose(offers, RNG) == 1
 
 
 def worse(**changes: Any) -> Any:
@@ -108,8 +108,8 @@ def worse(**changes: Any) -> Any:
 )  # fmt: skip
 def test_weights_of_the_package_prefer_low_tight_places(bad: Any) -> None:
     good = offered(1, indices={"LFR": 0.95, "GDS": 0.9, "LLC": 0.6})
-    assert Learned().choose([bad, good], RNG) == 1
-    assert Learned().choose([good, bad], RNG) == 0
+    assert learned().choose([bad, good], RNG) == 1
+    assert learned().choose([good, bad], RNG) == 0
 
 
 def test_file_is_read_as_it_was_written() -> None:

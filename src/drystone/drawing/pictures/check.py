@@ -130,18 +130,18 @@ def _unstable(checked: Checked, problem: Problem) -> FailureView:
     groups, title = stage.after.groups, _short(problem)
     there = {group.placement.stone_id for group in groups}
     there |= {wedge.id for group in groups for wedge in group.wedges}
-    standing = {block: loop for block, loop in checked.planned.items() if block in there}
+    planned = {block: loop for block, loop in checked.planned.items() if block in there}
     # With all its friction a wall that is not sturdy does not begin to fall.
     model = wall_model(stage.after, replay.settings) if problem.code == FALLS else None
     mechanism = None if model is None else lateral_resistance(model, mechanism=True).left.mechanism
     if mechanism is None:
-        return FailureView(title, standing, _ids(checked, {stage.stone.step}), size=checked.size)
-    motion = motion_of(standing, mechanism)
+        return FailureView(title, planned, _ids(checked, {stage.stone.step}), size=checked.size)
+    motion = motion_of(planned, mechanism)
     blocks = list(zip(motion.regions, motion.at(1.0), motion.share.tolist(), strict=True))
     moving = [region.id for region, _, share in blocks if share > NOTABLE]
     ended = {region.id: loops[0] for region, loops, _ in blocks}
     title = f"{title} How it begins to fall, enlarged"
-    return FailureView(title, standing, moving, ended, size=checked.size)
+    return FailureView(title, planned, moving, ended, size=checked.size)
 
 
 def _ids(checked: Checked, steps: set[int | None]) -> list[int]:

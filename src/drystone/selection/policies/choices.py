@@ -2,12 +2,15 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from drystone.selection.algorithm2 import TIE_DIGITS, Action, SelectionSettings, weighted_sum
 from drystone.selection.policies.settings import PolicySettings
 from drystone.selection.policy import Offer
+
+Filter = Callable[[Sequence[Offer]], list[Offer]]
 
 
 class Random:
@@ -18,85 +21,91 @@ class Random:
         return int(rng.integers(len(candidates)))
 
 
-class Lowest:
-    """The lowest centroid, then the largest LFR, then the nearest to the building side.
+@dataclass(frozen=True)
+class Largest:
+    """The action of the largest values, the first of which counts most; ties go to the lower id."""
 
-    That is the order in which the released code of the paper's authors goes through the places of
-    one stone (lowest, tightest, first from the building side), here between stones.
-    """
+    values: Callable[[Sequence[Offer]], Sequence[Sequence[float]]]  # of all candidates
 
-    def choose(self, candidates: Sequence[Offer], rng: np.random.Generator) -> int | None:  # noqa: ARG002
+    def choose(self, candidates: Sequence[Offer], rng: np.random.Generator) -> int:  # noqa: ARG002
         """See :class:`drystone.selection.policy.Policy`."""
+        values = self.values(candidates)
 
         def rank(k: int) -> tuple[float, ...]:
-            offer = candidates[k]
-            firsts = offer.centroid_px[1], -offer.indices.LFR, offer.from_end_px
-            rounded = (round(value, TIE_DIGITS) for value in firsts)
-            return (*rounded, offer.stone_id)
+            return (*(-round(value, TIE_DIGITS) for value in values[k]), candidates[k].stone_id)
 
         return min(range(len(candidates)), key=rank)
 
 
-class Scalarised:
-    """The largest weighted sum of LLC, -NHR, IWR or IS, GDS, LFR and SF.
+LOWEST = Largest(
+    lambda offers: [(-o.centroid_px[1], o.indices.LFR, -o.from_end_px) for o in offers]
+)
+"""The lowest centroid, then the largest LFR, then the nearest to the building side.
+
+That is the order in which the released code of the paper's authors goes through the places of one
+stone (lowest, tightest, first from the building side), here between stones."""
+
+
+def scalarised(weights: SelectionSettings, w_sf: float) -> Largest:
+    """Return the policy of the largest weighted sum of LLC, -NHR, IWR or IS, GDS, LFR and SF.
 
     The paper says of Johns et al. (2020) and Lambert and Kennedy (2012) that they sum all
     objectives linearly; which terms and weights they have it does not say.  These are the paper's
     own indices, without its filters; `w_sf` is the weight of SF.
     """
 
-    def __init__(self, weights: SelectionSettings, w_sf: float) -> None:
-        self._weights = weights
-        self._w_sf = w_sf
+    def total(offer: Offer) -> float:
+        return (
+            weighted_sum(Action(offer.stone_id, offer.indices), weights) + w_sf * offer.indices.SF
+        )
 
-    def choose(self, candidates: Sequence[Offer], rng: np.random.Generator) -> int | None:  # noqa: ARG002
-        """See :class:`drystone.selection.policy.Policy`; ties as in Algorithm 2."""
-
-        def rank(k: int) -> tuple[float, int]:
-            offer = candidates[k]
-            action = Action(offer.stone_id, offer.indices)
-            total = weighted_sum(action, self._weights) + self._w_sf * offer.indices.SF
-            return -round(total, TIE_DIGITS), offer.stone_id
-
-        return min(range(len(candidates)), key=rank)
+    return Largest(lambda offers: [(total(offer),) for offer in offers])
 
 
-class Filters:
-    """Fixed thresholds one after the other; the lowest of what passes.
+@dataclass(frozen=True)
+class Sieve:
+    """Filters one after the other; of what passes the lowest.
 
-    The order: support, IWR (IS at the ends of the wall), NHR, LFR.  A filter that nothing passes
-    is left out, so there is always a choice.  The paper says of Liu et al. (2021) and Thangavelu
-    et al. (2018) that they remove undesirable solutions by a hierarchy of filters made of
-    features; features, order, thresholds and the last choice are our reading.  Unlike the means
-    of Algorithm 2 these thresholds do not depend on the other candidates.
+    A filter that nothing passes is left out, so there is always a choice.
     """
 
-    def __init__(self, settings: PolicySettings) -> None:
-        self._settings = settings
+    filters: Sequence[Filter]
 
-    def choose(self, candidates: Sequence[Offer], rng: np.random.Generator) -> int | None:
+    def choose(self, candidates: Sequence[Offer], rng: np.random.Generator) -> int:
         """See :class:`drystone.selection.policy.Policy`."""
-        settings = self._settings
+        pool = list(candidates)
+        for passing in self.filters:
+            pool = passing(pool) or pool
+        return list(candidates).index(pool[LOWEST.choose(pool, rng)])
 
-        def bonded(offer: Offer) -> bool:
-            least = settings.min_slope if offer.indices.boundary else settings.min_interlocking
-            return offer.indices.third >= least
 
-        filters: tuple[Callable[[Offer], bool], ...] = (
-            lambda offer: offer.support_width_px >= settings.min_support * offer.width_px,
-            bonded,
-            lambda offer: offer.indices.NHR <= settings.max_step,
-            lambda offer: offer.indices.LFR >= settings.min_filling,
+def thresholds(settings: PolicySettings) -> Sieve:
+    """Return the policy of fixed thresholds: of support, IWR (IS at the wall's ends), NHR, LFR.
+
+    The paper says of Liu et al. (2021) and Thangavelu et al. (2018) that they remove undesirable
+    solutions by a hierarchy of filters made of features; features, order, thresholds and the last
+    choice are our reading.  Unlike the means of Algorithm 2 these thresholds do not depend on the
+    other candidates.
+    """
+
+    def bonded(offer: Offer) -> bool:
+        least = settings.min_slope if offer.indices.boundary else settings.min_interlocking
+        return offer.indices.third >= least
+
+    return Sieve(
+        (
+            lambda pool: [
+                o for o in pool if o.support_width_px >= settings.min_support * o.width_px
+            ],
+            lambda pool: list(filter(bonded, pool)),
+            lambda pool: [o for o in pool if o.indices.NHR <= settings.max_step],
+            lambda pool: [o for o in pool if o.indices.LFR >= settings.min_filling],
         )
-        pool = list(range(len(candidates)))
-        for passes in filters:
-            pool = [k for k in pool if passes(candidates[k])] or pool
-        lowest = Lowest().choose([candidates[k] for k in pool], rng)
-        return None if lowest is None else pool[lowest]
+    )
 
 
-class Towers:
-    """The least weighted cost of four terms with the weights of Furrer et al. (2017).
+def towers(settings: PolicySettings) -> Largest:
+    """Return the policy of the least cost of four terms, with the weights of Furrer et al. (2017).
 
     What the terms became in a wall in 2D, all of it our reading:
 
@@ -110,26 +119,20 @@ class Towers:
     Each term is divided by the largest of the candidates, so that the weights compare like with
     like.  A stone that nothing bears from below has the largest of the last two.
     """
+    terms: tuple[tuple[float, Callable[[Offer], float | None]], ...] = (
+        (settings.w_area, lacking_support),
+        (settings.w_energy, lambda offer: offer.turned_deg),
+        (settings.w_distance, centre_distance_px),
+        (settings.w_normal, slope_rad),
+    )
 
-    def __init__(self, settings: PolicySettings) -> None:
-        self._settings = settings
+    def values(offers: Sequence[Offer]) -> list[tuple[float]]:
+        shares = [(weight, _shares([term(o) for o in offers])) for weight, term in terms]
+        return [
+            (-math.fsum(weight * share[k] for weight, share in shares),) for k in range(len(offers))
+        ]
 
-    def choose(self, candidates: Sequence[Offer], rng: np.random.Generator) -> int | None:  # noqa: ARG002
-        """See :class:`drystone.selection.policy.Policy`; ties go to the lower id."""
-        settings = self._settings
-        terms: tuple[tuple[float, Callable[[Offer], float | None]], ...] = (
-            (settings.w_area, lacking_support),
-            (settings.w_energy, lambda offer: offer.turned_deg),
-            (settings.w_distance, centre_distance_px),
-            (settings.w_normal, slope_rad),
-        )
-        shares = [(weight, _shares([term(o) for o in candidates])) for weight, term in terms]
-
-        def rank(k: int) -> tuple[float, int]:
-            cost = math.fsum(weight * values[k] for weight, values in shares)
-            return round(cost, TIE_DIGITS), candidates[k].stone_id
-
-        return min(range(len(candidates)), key=rank)
+    return Largest(values)
 
 
 def lacking_support(offer: Offer) -> float:

@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.errors import UsageError
-from drystone.selection.algorithm2 import TIE_DIGITS
-from drystone.selection.policies.choices import centre_distance_px, slope_rad
+from drystone.selection.policies.choices import Largest, centre_distance_px, slope_rad
 from drystone.selection.policy import Offer
 
 Floats = NDArray[np.float64]
@@ -54,15 +53,6 @@ class ValueModel:
         """Return the value of each of some offers that are compared with each other, (n,)."""
         return np.asarray(features(offers) @ np.array(self.weights), np.float64)
 
-    def best(self, offers: Sequence[Offer]) -> int:
-        """Return the position of the largest value; ties go to the lower id."""
-        values = self.values(offers).tolist()
-
-        def rank(k: int) -> tuple[float, int]:
-            return -round(values[k], TIE_DIGITS), offers[k].stone_id
-
-        return min(range(len(offers)), key=rank)
-
     def to_json(self) -> str:
         """Return the text of the file: the same for the same model."""
         content = {
@@ -73,8 +63,8 @@ class ValueModel:
         return json.dumps(content | {"sha256": _digest(content)}, indent=1) + "\n"
 
 
-class Learned:
-    """The largest learned value; by the model of the package when none is given.
+def learned(model: ValueModel | None = None) -> Largest:
+    """Return the policy of the largest value; by the model of the package when none is given.
 
     The paper says of Liu et al. (2018) and Menezes et al. (2021) that they formulate a reward and
     train a model by it.  Reward, model and training are ours; theirs choose the order of the
@@ -82,13 +72,8 @@ class Learned:
     (``drystone_lab.rl.train``).  Among several stones it compares their places, and knows nothing
     of which stone is better kept for later.
     """
-
-    def __init__(self, model: ValueModel | None = None) -> None:
-        self._model = model or shipped_model()
-
-    def choose(self, candidates: Sequence[Offer], rng: np.random.Generator) -> int | None:  # noqa: ARG002
-        """See :class:`drystone.selection.policy.Policy`."""
-        return self._model.best(candidates)
+    known = model or shipped_model()
+    return Largest(lambda offers: known.values(offers)[:, None].tolist())
 
 
 def features(offers: Sequence[Offer]) -> Floats:

@@ -5,10 +5,10 @@ from importlib.metadata import entry_points
 
 from drystone.errors import UsageError, meant
 from drystone.selection.algorithm2 import SelectionSettings
-from drystone.selection.policies.choices import Filters, Lowest, Random, Scalarised, Towers
-from drystone.selection.policies.learned import Learned
+from drystone.selection.policies.choices import LOWEST, Random, scalarised, thresholds, towers
+from drystone.selection.policies.learned import learned
 from drystone.selection.policies.settings import PolicySettings
-from drystone.selection.policies.table1 import Filtered, Summed, learned_parts, parts
+from drystone.selection.policies.table1 import filtered, learned_parts, parts, summed
 from drystone.selection.policy import Policy, broken
 
 GROUP = "drystone.policies"
@@ -25,17 +25,17 @@ Maker = Callable[[PolicySettings, SelectionSettings], Policy]
 
 BUILT_IN: Mapping[str, Maker] = {
     "random": lambda *_: Random(),
-    "lowest": lambda *_: Lowest(),
-    "scalarised": lambda settings, weights: Scalarised(weights, settings.w_sf),
-    "filter": lambda settings, _: Filters(settings),
-    "towers": lambda settings, _: Towers(settings),
-    "learned": lambda *_: Learned(),
-    "johns": lambda settings, _: Summed(parts("johns", settings)),
-    "lambert": lambda settings, _: Summed(parts("lambert", settings)),
-    "liu2021": lambda settings, _: Filtered(parts("liu2021", settings)),
-    "thangavelu": lambda settings, _: Filtered(parts("thangavelu", settings), contacts=True),
-    "menezes": lambda settings, _: Learned(learned_parts(parts("menezes", settings))),
-    "liu2018": lambda settings, _: Learned(learned_parts(parts("liu2018", settings))),
+    "lowest": lambda *_: LOWEST,
+    "scalarised": lambda settings, weights: scalarised(weights, settings.w_sf),
+    "filter": lambda settings, _: thresholds(settings),
+    "towers": lambda settings, _: towers(settings),
+    "learned": lambda *_: learned(),
+    "johns": lambda settings, _: summed(parts("johns", settings)),
+    "lambert": lambda settings, _: summed(parts("lambert", settings)),
+    "liu2021": lambda settings, _: filtered(parts("liu2021", settings)),
+    "thangavelu": lambda settings, _: filtered(parts("thangavelu", settings), contacts=True),
+    "menezes": lambda settings, _: learned(learned_parts(parts("menezes", settings))),
+    "liu2018": lambda settings, _: learned(learned_parts(parts("liu2018", settings))),
 }
 """Policies of this package beside the paper's, and what makes them."""
 

@@ -7,12 +7,11 @@ et al. (2018) maximise the number of contacting stones, and that Johns et al. (2
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from types import MappingProxyType
 
-import numpy as np
-
-from drystone.selection.algorithm2 import MEAN_SLACK, TIE_DIGITS
-from drystone.selection.policies.choices import Lowest, lacking_support
+from drystone.selection.algorithm2 import MEAN_SLACK
+from drystone.selection.policies.choices import Largest, Sieve, lacking_support
 from drystone.selection.policies.learned import FEATURES, ValueModel, shipped_model
 from drystone.selection.policies.settings import PolicySettings
 from drystone.selection.policy import Offer
@@ -55,21 +54,13 @@ def parts(name: str, settings: PolicySettings) -> tuple[str, ...]:
     return tuple(part for part in MARKS[name] if getattr(settings, part, True))
 
 
-def _bond(offer: Offer) -> float:
-    return 0.5 if offer.indices.boundary else offer.indices.IWR
-
-
-def _slope(offer: Offer) -> float:
-    return offer.indices.IS if offer.indices.boundary else 0.0
-
-
 TERMS: Mapping[str, Callable[[Offer], float]] = MappingProxyType(
     {
         "packing": lambda offer: offer.indices.LFR,
         "course": lambda offer: -offer.indices.NHR,
-        "interlocking": _bond,
+        "interlocking": lambda offer: 0.5 if offer.indices.boundary else offer.indices.IWR,
         "footing": lambda offer: 1.0 - lacking_support(offer),
-        "sloping": _slope,
+        "sloping": lambda offer: offer.indices.IS if offer.indices.boundary else 0.0,
         "gravity": lambda offer: -offer.turned_deg / 90.0,
         "lateral": lambda offer: offer.indices.LLC or 0.0,
     }
@@ -77,46 +68,34 @@ TERMS: Mapping[str, Callable[[Offer], float]] = MappingProxyType(
 """What is good in a component, larger is better."""
 
 
-class Summed:
-    """The largest sum of the components (linear scalarisation); ties go to the lower id."""
-
-    def __init__(self, components: Sequence[str]) -> None:
-        self._components = components
-
-    def choose(self, candidates: Sequence[Offer], rng: np.random.Generator) -> int | None:  # noqa: ARG002
-        """See :class:`drystone.selection.policy.Policy`."""
-
-        def rank(k: int) -> tuple[float, int]:
-            total = math.fsum(TERMS[part](candidates[k]) for part in self._components)
-            return -round(total, TIE_DIGITS), candidates[k].stone_id
-
-        return min(range(len(candidates)), key=rank)
+def summed(components: Sequence[str]) -> Largest:
+    """Return the policy of the largest sum of some components (linear scalarisation)."""
+    return Largest(
+        lambda offers: [(math.fsum(TERMS[part](o) for part in components),) for o in offers]
+    )
 
 
-class Filtered:
-    """Filters at the mean of what is left, one after the other; of what passes the lowest.
+def filtered(components: Sequence[str], *, contacts: bool = False) -> Sieve:
+    """Return the policy of filters at the mean of what is left, one a component.
 
     With `contacts` interlocking is the number of stones that a stone touches, and only those with
     the most pass.
     """
+    by_contacts = {"interlocking": _most_touching} if contacts else {}
+    return Sieve(
+        [by_contacts.get(part, partial(_at_least_mean, TERMS[part])) for part in components]
+    )
 
-    def __init__(self, components: Sequence[str], *, contacts: bool = False) -> None:
-        self._components = components
-        self._contacts = contacts
 
-    def choose(self, candidates: Sequence[Offer], rng: np.random.Generator) -> int | None:
-        """See :class:`drystone.selection.policy.Policy`."""
-        pool = list(candidates)
-        for part in self._components:
-            if part == "interlocking" and self._contacts:
-                most = max(len(offer.touches) for offer in pool)
-                pool = [offer for offer in pool if len(offer.touches) == most]
-                continue
-            values = [TERMS[part](offer) for offer in pool]
-            least = math.fsum(values) / len(values) - MEAN_SLACK
-            pool = [offer for offer, value in zip(pool, values, strict=True) if value >= least]
-        lowest = Lowest().choose(pool, rng)
-        return None if lowest is None else list(candidates).index(pool[lowest])
+def _most_touching(pool: Sequence[Offer]) -> list[Offer]:
+    most = max(len(offer.touches) for offer in pool)
+    return [offer for offer in pool if len(offer.touches) == most]
+
+
+def _at_least_mean(term: Callable[[Offer], float], pool: Sequence[Offer]) -> list[Offer]:
+    values = [term(offer) for offer in pool]
+    least = math.fsum(values) / len(values) - MEAN_SLACK
+    return [offer for offer, value in zip(pool, values, strict=True) if value >= least]
 
 
 def learned_parts(components: Sequence[str]) -> ValueModel:

@@ -60,7 +60,7 @@ class Chains:
 
 
 @dataclass(frozen=True, eq=False)
-class Standing:
+class SearchState:
     """Where a search stands."""
 
     number: int  # of the round, from 0
@@ -81,4 +81,4 @@ class Progress(Reached):
 
     # From where it goes on to the walls that it would find itself; None where the clock or the
     # budget has cut a chain short, and before there is more than the first wall.
-    standing: Standing | None = None
+    state: SearchState | None = None
