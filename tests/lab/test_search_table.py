@@ -14,16 +14,17 @@ from drystone_lab.search_runs import (
     COLUMNS,
     FIGURES,
     SPENT,
+    WAYS,
     SearchResult,
     SearchRun,
     SearchTask,
+    SearchWay,
     append_results,
     chosen_ways,
     in_words,
     read_results,
     searched,
 )
-from drystone_lab.search_ways import WAYS, SearchWay
 from drystone_lab.table import BenchSettings
 from drystone_lab.walls import BRICKS
 

@@ -11,7 +11,7 @@ from drystone.generate.brick import BrickSettings, brick_stones
 from drystone.search.plan_wall import plan_wall
 from drystone_lab import search_ways
 from drystone_lab.runs.spec import generated
-from drystone_lab.search_ways import BETWEEN_SEEDS, SearchWay, WayState, looked_at_times, tries
+from drystone_lab.search_runs import BETWEEN_SEEDS, SearchWay, WayState, looked_at_times, tries
 from drystone_lab.walls import Target
 
 STONES = brick_stones(BrickSettings(count=4), np.random.default_rng(1))

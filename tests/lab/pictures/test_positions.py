@@ -1,8 +1,9 @@
 import numpy as np
+from matplotlib.figure import Figure
 
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
-from drystone_lab.reproduce.fig8 import Layer, plot_position_layers, plot_position_values
+from drystone_lab.reproduce.fig8 import plot_position_layers, plot_position_values
 
 LABELS = np.zeros((6, 10), np.uint32)
 LABELS[4:, :5] = 1
@@ -13,7 +14,8 @@ POSED = PosedStone(Stone(9, MASK), 0.0, 1.0, MASK, (2.0, 1.0))
 def test_a_position_is_drawn_where_the_centroid_is():
     at = np.zeros((5, 7), bool)
     at[2, 3] = True
-    ax = plot_position_layers(LABELS, POSED, [Layer(at, "#d55e00", "here")])
+    ax = Figure().add_subplot()
+    plot_position_layers(ax, LABELS, POSED, [("here", "#d55e00", at)])
     (image,) = ax.images
     rgba, (left, right, bottom, top) = image.get_array(), image.get_extent()
     ((row, col),) = np.argwhere(rgba[..., 3] > 0).tolist()
@@ -25,7 +27,8 @@ def test_a_position_is_drawn_where_the_centroid_is():
 
 def test_values_are_at_the_centroids_and_the_stone_at_the_chosen_one():
     positions = np.array([[2, 0], [2, 1], [4, 5]])
-    ax = plot_position_values(LABELS, POSED, positions, np.array([1.0, 0.9, 0.5]), (2, 0))
+    ax = Figure().add_subplot()
+    plot_position_values(ax, LABELS, POSED, positions, np.array([1.0, 0.9, 0.5]), (2, 0))
     (dots,) = [one for one in ax.collections if one.get_gid() == "values"]
     np.testing.assert_allclose(dots.get_offsets(), [[2, 3], [3, 3], [7, 1]])
     np.testing.assert_allclose(dots.get_array(), [1.0, 0.9, 0.5])

@@ -1,11 +1,12 @@
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from drystone.model.placement import Wedge
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
 from drystone.stabilise.support import Support
-from drystone_lab.pictures.support import SupportedStone, plot_standing
+from drystone_lab.reproduce.fig9 import SupportedStone, plot_standing
 
 LABELS = np.zeros((10, 20), np.uint32)
 LABELS[6:, :8] = 1
@@ -28,7 +29,8 @@ def test_a_is_the_nearer_end_and_the_sign_is_that_of_the_fall():
 
 
 def test_points_of_a_stone_that_falls():
-    ax = plot_standing(LABELS, TRIAL, (0, 0, 20, 10))
+    ax = Figure().add_subplot()
+    plot_standing(ax, LABELS, TRIAL, (0, 0, 20, 10))
     drawn = lines(ax)
     assert drawn["AB"] == [[8, 4], [4, 4]]
     assert drawn["C"] == [[10, 5.5]]
@@ -39,7 +41,8 @@ def test_points_of_a_stone_that_falls():
 
 
 def test_a_wedge_has_its_sizes_and_leaves_the_supported_side_alone():
-    ax = plot_standing(LABELS, WEDGED, (0, 0, 20, 10), before=TRIAL)
+    ax = Figure().add_subplot()
+    plot_standing(ax, LABELS, WEDGED, (0, 0, 20, 10), before=TRIAL)
     patches = {patch.get_gid(): patch for patch in ax.patches}
     assert "turn" not in patches
     box = patches["wedge-10"].get_path().get_extents()

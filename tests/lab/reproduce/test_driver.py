@@ -13,7 +13,7 @@ from drystone.errors import InputError, UsageError
 from drystone_lab.reproduce.driver import EVERY_S, ItemProgress, MadeItem, Options, reproduce
 from drystone_lab.reproduce.folder import write_tables
 from drystone_lab.reproduce.item import Output, PaperItem
-from drystone_lab.runs.runner import one_by_one
+from drystone_lab.runs.outcome import one_by_one
 from drystone_lab.table import Table
 from tests.lab.reproduce import fakes
 

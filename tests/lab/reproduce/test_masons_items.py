@@ -10,10 +10,17 @@ from PIL import Image
 from drystone.contacts.blocks import model_from_labels
 from drystone.metrics.measure import measure_labels
 from drystone.statics.limit import lateral_resistance
-from drystone_lab.reproduce import base_case, table2
+from drystone_lab.reproduce import base_case
 from drystone_lab.reproduce.item import Context
-from drystone_lab.reproduce.masons import FIG13, TracedWall, masons_wall, treatments
-from drystone_lab.reproduce.table2 import best_trial, tenths
+from drystone_lab.reproduce.masons import (
+    FIG13,
+    TABLE2,
+    TracedWall,
+    best_trial,
+    masons_wall,
+    tenths,
+    treatments,
+)
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.spec import published
 from drystone_lab.walls import Target
@@ -90,7 +97,7 @@ def test_base_case(here: Context) -> None:
 
 def test_table2(here: Context) -> None:
     stand_in = replace(RUBBLE, name="other", number=4, stand_in=True)
-    output = on(table2.TABLE2, BLOCKS, stand_in).make(here)
+    output = on(TABLE2, BLOCKS, stand_in).make(here)
     outcomes = here.run([BLOCKS.run(seed) for seed in SEEDS])
     mine = {str(row["what"]).split(",")[0]: row for row in rows(output, "table2")
             if row["wall"] == 1}  # fmt: skip

@@ -7,7 +7,7 @@ from drystone.model.site import Site
 from drystone.selection.policies.learned import FEATURES
 from drystone_lab.rl.draw import draw_wall
 from drystone_lab.rl.episode import Episode, prepared
-from drystone_lab.rl.rollouts import Branching, at_random, branching, finished, fitted, spread_of
+from drystone_lab.rl.train import Branching, at_random, branching, finished, fitted, spread_of
 from tests.lab.rl.walls import SMALL, bricks
 
 

@@ -10,8 +10,15 @@ from drystone.errors import ExitCode, UsageError
 from drystone.selection.policies.learned import FEATURES, model_from_json, shipped_model
 from drystone_lab.rl.draw import DrawSettings, draw_wall
 from drystone_lab.rl.episode import prepared
-from drystone_lab.rl.rollouts import at_random
-from drystone_lab.rl.train import HELD_OUT, TRAINED_ON, TrainSettings, main, mean_merit, train
+from drystone_lab.rl.train import (
+    HELD_OUT,
+    TRAINED_ON,
+    TrainSettings,
+    at_random,
+    main,
+    mean_merit,
+    train,
+)
 
 TINY = TrainSettings(
     seed=3, rounds=1, walls=12, validation=6, strength=10.0,

@@ -10,8 +10,7 @@ import pytest
 
 from drystone.errors import DrystoneError
 from drystone_lab.runs import workers as module
-from drystone_lab.runs.outcome import RunStore
-from drystone_lab.runs.runner import Runner
+from drystone_lab.runs.outcome import Runner, RunStore
 from drystone_lab.runs.workers import ONE_THREAD, crew, processes_at_work
 from tests.lab.runs.bricks import NOT_SIX, deadly, endless, kept, run
 

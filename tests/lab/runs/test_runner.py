@@ -3,8 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from drystone_lab.runs.outcome import RunOutcome, RunStore
-from drystone_lab.runs.runner import Runner, one_by_one
+from drystone_lab.runs.outcome import Runner, RunOutcome, RunStore, one_by_one
 from drystone_lab.runs.spec import RunSpec
 from tests.lab.runs.bricks import kept, run
 
