@@ -67,7 +67,7 @@ FILLING = PaperItem(
                       "notes": ["Of {0.runs[0].source.kind}s."]},
         },
         "times": {"walls": {"title": "Seconds", "columns": ["seed", "s"]}},
-        "captions": {"fill": "Filling over the seed."},
+        "captions": {"fill": "Of others.", "filling": "Filling over {0.runs[0].seed}."},
     },
     study=walls,
     tables={"walls": _rows},
