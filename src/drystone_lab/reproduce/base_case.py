@@ -23,7 +23,7 @@ from drystone_lab.pictures.charts import figure_of, group_panels
 from drystone_lab.pictures.walls import Panel, sheet_of, wall_aspect
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import rounded
-from drystone_lab.reproduce.item import Claimed, Context, Drawn, PaperItem, Rows
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials, sheet
 from drystone_lab.table import Cell
@@ -91,7 +91,7 @@ def _rules(case: BaseCase) -> Rows:
         yield result.direction, rule, str(result.status), alpha, over, papers, words
 
 
-def _pictures(case: BaseCase) -> Iterator[Drawn]:
+def _pictures(case: BaseCase) -> Iterator[ItemFigure]:
     title = f"{case.built.name}, seed {case.built.seeds[0]}"
     yield sheet(case.built, "fig14", 1, lambda _: title)
     for rule, result in case.mechanisms:
@@ -102,13 +102,13 @@ def _pictures(case: BaseCase) -> Iterator[Drawn]:
             loose = rule != "associative"
             name = f"fig15_{result.direction}{'_coulomb' * loose}"
             about = (result.direction, "no dilatancy" if loose else rule)
-            yield Drawn(name, figure_of(ax), about)
+            yield ItemFigure(name, figure_of(ax), about)
     metrics: dict[str, dict[str, Sequence[float | None]]] = {
         "alpha / mu": {side: case.over_mu(side) for side in ALPHAS}
     }
     for name in ("F_SF", "F_AV", "F_AH"):
         metrics[name] = {case.built.name: case.trials.values(name)}
-    yield Drawn("fig14_seeds", group_panels(metrics, claims={"alpha / mu": ALPHAS}))
+    yield ItemFigure("fig14_seeds", group_panels(metrics, claims={"alpha / mu": ALPHAS}))
 
 
 BASE_CASE = PaperItem(
@@ -158,7 +158,7 @@ def _wedges(found: StudyWalls) -> Rows:
             yield one.wall.number, wedge.id, wedge.under, *rounded_sizes
 
 
-def _wedges_picture(trials: Trials, wall: Wall) -> Drawn:
+def _wedges_picture(trials: Trials, wall: Wall) -> ItemFigure:
     zoomed = [
         (letter, wedge, _box(wall, wedge))
         for letter, wedge in zip("abc", shown(wall), strict=False)
@@ -190,7 +190,7 @@ def _wedges_picture(trials: Trials, wall: Wall) -> Drawn:
         for letter, wedge, box in zoomed
     ]  # fmt: skip
     figure = sheet_of([Panel(title, aspect, draw_whole), *zooms], 2)
-    return Drawn(f"fig19_wall{trials.wall.number}", figure, trials.wall)
+    return ItemFigure(f"fig19_wall{trials.wall.number}", figure, trials.wall)
 
 
 def shown(wall: Wall) -> list[Wedge]:

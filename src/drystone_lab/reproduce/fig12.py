@@ -21,7 +21,7 @@ from drystone.drawing.pictures.stones import plot_labels
 from drystone.kernels.boundary import EMPTY, boundary_of
 from drystone.model.wall import Labels, Wall
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
-from drystone_lab.reproduce.item import Claimed, Context, Drawn, PaperItem, Rows
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.walls import PR, Target
 
@@ -155,7 +155,7 @@ def _interfaces(found: Blocks) -> Rows:
         )  # fmt: skip
 
 
-def _picture(found: Blocks) -> Drawn:
+def _picture(found: Blocks) -> ItemFigure:
     labels, model = found.labels, found.model
     figure = Figure(figsize=(6.4, 7.5), layout="constrained")
     first, second, third = figure.subplots(3, 1)
@@ -167,7 +167,7 @@ def _picture(found: Blocks) -> Drawn:
         gid = f"centre-{block.id}"
         third.plot(*block.centroid, "^", color=CENTRE, markersize=7, gid=gid, zorder=5)
     third.set_title("(c) rigid blocks", fontsize=9, loc="left")
-    return Drawn("fig12", figure)
+    return ItemFigure("fig12", figure)
 
 
 def _claims(found: Blocks) -> Iterator[Claimed]:

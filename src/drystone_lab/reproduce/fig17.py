@@ -21,7 +21,7 @@ from drystone.metrics.paths import (
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
 from drystone_lab.reproduce.cells import rounded
-from drystone_lab.reproduce.item import Context, Drawn, PaperItem, Rows
+from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.walls import PR, Target
 
@@ -89,7 +89,7 @@ def _paths(walls: Sequence[Paths]) -> Rows:
                 yield paths.name, way, rank, at, round(path.length_px, 4), excess
 
 
-def _picture(paths: Paths, number: int) -> Drawn:
+def _picture(paths: Paths, number: int) -> ItemFigure:
     figure = Figure(figsize=(6.4, 4.4), layout="constrained")
     for ax, (way, found, _, count) in zip(figure.subplots(2, 1), paths.ways, strict=True):
         pad = np.array([PAD_TOP, PAD_LEFT])
@@ -97,7 +97,7 @@ def _picture(paths: Paths, number: int) -> Drawn:
         lengths = ", ".join(f"{path.length_px:.0f}" for path in found[:count])
         ax.set_title(f"{paths.name}: {way} paths of {lengths} px", fontsize=8, loc="left")
     counts = {"across": len(paths.across[:ACROSS]), "upright": len(paths.upright[:UPRIGHT])}
-    return Drawn("fig17-masons" if number else "fig17", figure, {"name": paths.name, **counts})
+    return ItemFigure("fig17-masons" if number else "fig17", figure, {"name": paths.name, **counts})
 
 
 PATHS = PaperItem(

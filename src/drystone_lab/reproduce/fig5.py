@@ -15,7 +15,7 @@ from drystone.drawing.pictures.stones import plot_stones
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
 from drystone_lab.pictures.charts import name_axes
-from drystone_lab.reproduce.item import Claimed, Context, Drawn, PaperItem, Rows
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.walls import MASONS, PR, Target
 
@@ -132,7 +132,7 @@ def _stones(sets: Clustered) -> Rows:
         yield stone.id, sets[0].clusters[stone.id], *(round(each, 4) for each in features)
 
 
-def _picture(sets: Clustered) -> Drawn:
+def _picture(sets: Clustered) -> ItemFigure:
     drawn = sets[0]
     figure = Figure(figsize=(7.2, 6.4), layout="constrained")
     parts = figure.subfigures(2, 1, squeeze=False, height_ratios=(1.5, 1.0))
@@ -141,7 +141,7 @@ def _picture(sets: Clustered) -> Drawn:
     plot_features(above.add_subplot(), drawn.features, ids, drawn.clusters)
     plot_stones(drawn.stones, drawn.clusters, below.add_subplot())
     about = {"count": len(ids), "name": drawn.name, "number": drawn.number}
-    return Drawn("fig5", figure, about)
+    return ItemFigure("fig5", figure, about)
 
 
 def _claims(sets: Clustered) -> Iterator[Claimed]:

@@ -28,7 +28,7 @@ from drystone_lab.reproduce.construction import (
     construction,
     place_of,
 )
-from drystone_lab.reproduce.item import Context, Drawn, PaperItem, Rows
+from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.table import Cell
 from drystone_lab.walls import PR, Target
@@ -345,21 +345,21 @@ def _ranges(found: MomentPlaces) -> Rows:
             yield name, len(values), *(round(value, 4) for value in cells)
 
 
-def _pictures(found: MomentPlaces) -> Iterator[Drawn]:
+def _pictures(found: MomentPlaces) -> Iterator[ItemFigure]:
     rows = -(-len(found.cases) // 2)
     figure = Figure(figsize=(7.2, rows * 1.28), layout="constrained")
     panels = figure.subplots(rows, 2, squeeze=False).ravel().tolist()
     for ax, (index, verdict, place) in zip(panels, found.cases, strict=True):
         title = f"{index} = {place.values[index]:.3f}, {verdict}: stone {place.posed.stone.id}"
         plot_action(found.action(place), {MARKS[index]}, ax, title=title).set_axis_off()
-    yield Drawn("fig6", figure)
+    yield ItemFigure("fig6", figure)
     place = found.place
     values = ", ".join(f"{name} {value:.2f}" for name, value in place.values.items())
     figure = Figure(figsize=(8.4, 3.1), layout="constrained")
     title = f"stone {place.posed.stone.id}: {values}"
     ax = plot_action(found.action(place), set(MARKS.values()), figure.add_subplot(), title=title)
     ax.set_xlabel("working px", fontsize=7, labelpad=1)
-    yield Drawn("fig7", figure)
+    yield ItemFigure("fig7", figure)
 
 
 INDICES = PaperItem(

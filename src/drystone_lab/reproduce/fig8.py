@@ -21,7 +21,7 @@ from drystone.kernels.spots import eq12_merits
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Labels
 from drystone_lab.reproduce.construction import Moment, amid_course, construction
-from drystone_lab.reproduce.item import Claimed, Context, Drawn, PaperItem, Rows
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.table import Cell
 from drystone_lab.walls import PR, Target
@@ -210,7 +210,7 @@ def _best(found: PositionTrial, positions: Positions) -> tuple[Cell, ...]:
     return col, bottom, round(float(values[best]), 4)
 
 
-def _drawn(found: PositionTrial) -> Drawn:
+def _drawn(found: PositionTrial) -> ItemFigure:
     moment, posed, maps, resting = found.moment, found.posed, found.maps, found.resting
     figure = Figure(figsize=(7.2, 7.05), layout="constrained")
     first, second, third = figure.subplots(3, 1)
@@ -229,7 +229,9 @@ def _drawn(found: PositionTrial) -> Drawn:
     plot_position_layers(second, labels, posed, near)
     plot_position_values(third, labels, posed, resting, found.values(resting), found.chosen)
     built = len(moment.wall.placements)
-    return Drawn("fig8", figure, {"stone": posed.stone.id, "built": built, "wall": found.wall.name})
+    return ItemFigure(
+        "fig8", figure, {"stone": posed.stone.id, "built": built, "wall": found.wall.name}
+    )
 
 
 def _claims(found: PositionTrial) -> Iterator[Claimed]:

@@ -18,7 +18,7 @@ from drystone.stabilise.rotate import rotate_to_rest
 from drystone.stabilise.stabilise import WedgeStock, make_stable
 from drystone.stabilise.support import Pose, Support, falling_side, support_polyline
 from drystone_lab.reproduce.construction import Construction, Moment, construction
-from drystone_lab.reproduce.item import Context, Drawn, PaperItem, Rows
+from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.table import Cell
 from drystone_lab.walls import PR, Target
@@ -318,7 +318,7 @@ def _cases(found: Falls) -> Rows:
             yield case.stone_id, case.moment.number, pose, *points, cross, *turn, *size
 
 
-def _picture(found: Falls) -> Drawn:
+def _picture(found: Falls) -> ItemFigure:
     figure = Figure(figsize=(9.3, len(found.shown) * 2.3), layout="constrained")
     panels = figure.subplots(len(found.shown), 3, squeeze=False)
     for axes, case in zip(panels.tolist(), found.shown, strict=True):
@@ -335,7 +335,7 @@ def _picture(found: Falls) -> Drawn:
                 ax.set_axis_off()
                 ax.text(0.5, 0.5, "fails: it meets what is there,\nor a limit, before it rests",
                         ha="center", va="center", size=8, transform=ax.transAxes)  # fmt: skip
-    return Drawn("fig9", figure)
+    return ItemFigure("fig9", figure)
 
 
 STABILISING = PaperItem(

@@ -90,7 +90,7 @@ class Claimed(NamedTuple):
     values: Mapping[str, object]  # What both are formatted with
 
 
-class Drawn(NamedTuple):
+class ItemFigure(NamedTuple):
     """A picture; its caption is that of the longest key with which its name begins."""
 
     name: str
@@ -113,7 +113,7 @@ class PaperItem:
     times: Mapping[str, Callable[[Any], Rows]] = field(default_factory=dict)
     # Where times are what is claimed: the table of claims is one of times, and no paragraph
     timed_claims: bool = False
-    pictures: Callable[[Any], Iterable[Drawn]] = lambda _: ()  # Draws
+    pictures: Callable[[Any], Iterable[ItemFigure]] = lambda _: ()  # Draws
 
     @property
     def needs(self) -> tuple[str, ...]:

@@ -30,7 +30,7 @@ from drystone_lab.pictures.walls import (
 )
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, rounded
-from drystone_lab.reproduce.item import Context, Drawn, PaperItem, Rows
+from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials
 from drystone_lab.runs.outcome import RunOutcome
@@ -204,7 +204,7 @@ def _metrics(walls: TreatedWalls) -> Rows:
         yield each.wall.name, "paper, Table 2", None, None, *REFERENCES[each.wall.number]
 
 
-def _gaps_picture(walls: TreatedWalls) -> Drawn:
+def _gaps_picture(walls: TreatedWalls) -> ItemFigure:
     panels = [
         masonry_panel(f"{each.wall.name}, {name}", labels, each.clusters, 1 / each.wall.scale)
         for each, _ in walls
@@ -213,7 +213,7 @@ def _gaps_picture(walls: TreatedWalls) -> Drawn:
             ("drawn together, dilated", each.papers_way),
         )
     ]
-    return Drawn("fig13", sheet_of(panels, 2))
+    return ItemFigure("fig13", sheet_of(panels, 2))
 
 
 FIG13 = PaperItem(
@@ -376,7 +376,7 @@ TABLE2 = PaperItem(
         ],
     },
     pictures=lambda found: [
-        Drawn(
+        ItemFigure(
             "fig18",
             sheet_of([panel for wall in found[1] for panel in _five_panels(found[0], wall)], 4),
         )

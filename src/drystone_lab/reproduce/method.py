@@ -27,7 +27,7 @@ from drystone.statics.result import LateralResistance
 from drystone_lab.pictures.walls import Panel, plot_walls, sheet_of, wall_aspect, wall_panel
 from drystone_lab.reproduce.cells import rounded
 from drystone_lab.reproduce.construction import Construction, construction
-from drystone_lab.reproduce.item import Claimed, Context, Drawn, PaperItem, Rows
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.walls import PR, Target
 
@@ -78,21 +78,21 @@ def _steps(run: Construction) -> Rows:
         )  # fmt: skip
 
 
-def _workflow(run: Construction) -> Iterator[Drawn]:
+def _workflow(run: Construction) -> Iterator[ItemFigure]:
     stones, count = run.workshop.stones, len(run.stages)
     shown = sorted({1, max(1, count // 3), max(1, 2 * count // 3), count})
     walls = [
         (f"after {number} stones", run.stages[number - 1].after, run.workshop.clusters)
         for number in shown
     ]
-    yield Drawn("fig3", plot_walls(walls, 2), {"placed": count, "count": len(stones)})
+    yield ItemFigure("fig3", plot_walls(walls, 2), {"placed": count, "count": len(stones)})
     empty = Wall.empty(run.wall.site)
     panels = [
         Panel("the stones", wall_aspect(stones.source.height_px / stones.source.width_px),
               lambda ax: plot_stones(stones, run.workshop.clusters, ax)),
         wall_panel("the landscape before the first stone: free between its bounds", empty, {}),
     ]  # fmt: skip
-    yield Drawn("fig4", sheet_of(panels, 2))
+    yield ItemFigure("fig4", sheet_of(panels, 2))
 
 
 WORKFLOW = PaperItem(
@@ -148,7 +148,7 @@ def _filters(step: Selection) -> Rows:
         )  # fmt: skip
 
 
-def _selection_picture(step: Selection) -> Drawn:
+def _selection_picture(step: Selection) -> ItemFigure:
     figure = Figure(figsize=(6.4, 0.4 + 0.22 * len(step.candidates)), layout="constrained")
     ax = figure.add_subplot()
     for k, passed in enumerate(step.passed):
@@ -159,7 +159,7 @@ def _selection_picture(step: Selection) -> Drawn:
     ax.set_xticks(range(1, len(FILTERS) + 1), FILTERS, fontsize=7)
     ax.set_ylabel("stone, angle in degrees")
     counts = " > ".join(str(len(survivors)) for survivors in step.selected.survivors)
-    return Drawn("fig10", figure, counts)
+    return ItemFigure("fig10", figure, counts)
 
 
 SELECTION = PaperItem(
@@ -204,12 +204,12 @@ def _two_claims(found: TwoStones) -> Iterator[Claimed]:
     yield Claimed("sliding", holds, {"alpha": alpha, "mu": mu})
 
 
-def _two_picture(found: TwoStones) -> Drawn:
+def _two_picture(found: TwoStones) -> ItemFigure:
     figure = Figure(figsize=(5.0, 3.6), layout="constrained")
     forces = found.both.right.forces
     if forces is not None:
         plot_forces(found.labels, found.model, forces, figure.add_subplot())
-    return Drawn("fig11", figure)
+    return ItemFigure("fig11", figure)
 
 
 RIGID = PaperItem(

@@ -25,7 +25,7 @@ from drystone_lab.pictures.charts import (
 from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import LEVEL, Trend, figures_of, metric_cells, rounded, trend
-from drystone_lab.reproduce.item import Claimed, Context, Drawn, PaperItem, Rows
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials, each_wall, medians
 from drystone_lab.runs.outcome import RunOutcome
@@ -260,7 +260,7 @@ _wall_rows = each_wall(
 )  # fmt: skip
 
 
-def _noise_pictures(levels: NoiseLevels) -> Iterator[Drawn]:
+def _noise_pictures(levels: NoiseLevels) -> Iterator[ItemFigure]:
     walls = []
     for level in levels.all:
         place = level.ours.middle
@@ -268,17 +268,17 @@ def _noise_pictures(levels: NoiseLevels) -> Iterator[Drawn]:
         resistance = "-" if figures["F_LR"] is None else f"{figures['F_LR']:.2f}"
         title = f"{level.ours.wall.name}\nF_SF {figures['F_SF'] or 0.0:.2f}, F_LR {resistance}"
         walls.append(level.built.drawn(level.ours, f"{title}, seed {seed}", place))
-    yield Drawn("fig22", plot_walls(walls, 2))
+    yield ItemFigure("fig22", plot_walls(walls, 2))
     yield _scatter(levels)
     names = (f"F_SF > {FILLED:g}", f"F_SF <= {FILLED:g}", "published walls",
              "random choice, median")  # fmt: skip
     ticks = {level.noise: f"{level.noise}{'*' if level.generated else ''}" for level in levels.all}
     axes = {"F_SF": "F_SF", "F_LR": "F_LR", "F_AV": "F_AV, %", "F_AH": "F_AH, %"}
     panels = [_panel(levels, name, words) for name, words in axes.items()]
-    yield Drawn("fig24", noise_panels(panels, names, ticks))
+    yield ItemFigure("fig24", noise_panels(panels, names, ticks))
 
 
-def _scatter(levels: NoiseLevels) -> Drawn:
+def _scatter(levels: NoiseLevels) -> ItemFigure:
     groups = {
         f"{level.noise} %{' gen.' if level.generated else ''}": list(
             zip(level.ours.values("F_LR"), level.ours.values("F_SF"), strict=True)
@@ -297,7 +297,7 @@ def _scatter(levels: NoiseLevels) -> Drawn:
                 fontsize=6.5, arrowprops={"arrowstyle": "-|>", "linewidth": 0.7, "shrinkB": 1.5},
                 gid=f"example-{level.noise}",
             )  # fmt: skip
-    return Drawn("fig23", figure)
+    return ItemFigure("fig23", figure)
 
 
 def _panel(levels: NoiseLevels, name: str, words: str) -> NoisePanel:
@@ -367,12 +367,12 @@ def gain_of(key: str, gains: Sequence[float]) -> Claimed:
     return Claimed(key, median(gains) > 0 and p < LEVEL if enough else None, {"words": words})
 
 
-def _turned_pictures(found: StudyWalls) -> Iterator[Drawn]:
+def _turned_pictures(found: StudyWalls) -> Iterator[ItemFigure]:
     walls = [
         found.titled(one, f"{one.wall.name}, orientations {one.way}, seed {found.seeds[0]}")
         for one in found
     ]
-    yield Drawn("fig25", plot_walls(walls, 2))
+    yield ItemFigure("fig25", plot_walls(walls, 2))
     panels = {
         figure: {
             f"{one.wall.number} %{' gen.' * one.wall.stand_in}, {one.way}": one.values(figure)
@@ -380,7 +380,7 @@ def _turned_pictures(found: StudyWalls) -> Iterator[Drawn]:
         }
         for figure in ("F_SF", "F_LR")
     }
-    yield Drawn("fig25-figures", group_panels(panels))
+    yield ItemFigure("fig25-figures", group_panels(panels))
 
 
 TURNED = PaperItem(

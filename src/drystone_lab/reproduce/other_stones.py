@@ -13,7 +13,7 @@ from drystone.model.wall import Wall
 from drystone_lab.pictures.charts import TWO_IN, plot_two_figures
 from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import LEVEL, figures_of, metric_cells, placed_of
-from drystone_lab.reproduce.item import Claimed, Context, Drawn, PaperItem, Rows
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials, built, each_wall, medians
 from drystone_lab.runs.spec import Changes, generated, published
@@ -63,14 +63,14 @@ def rounded_findings(found: StudyWalls) -> Iterator[Claimed]:
         yield Claimed(name, p < LEVEL, {"shape": shape, "words": words})
 
 
-def _rounded_pictures(found: StudyWalls) -> Iterator[Drawn]:
+def _rounded_pictures(found: StudyWalls) -> Iterator[ItemFigure]:
     walls = []
     for one in found:
         filling, interlocking, *_ = metric_cells(one.outcomes[one.middle])
         title = f"{one.wall.name}\nF_SF {filling}, F_AV {interlocking} %"
         title += f", seed {one.specs[one.middle].seed}"
         walls.append(found.drawn(one, title, one.middle))
-    yield Drawn("fig26", plot_walls(walls, 2))
+    yield ItemFigure("fig26", plot_walls(walls, 2))
     groups = {
         one.wall.name: list(zip(one.values("F_SF"), one.values("F_AV"), strict=True))
         for one in found
@@ -78,7 +78,7 @@ def _rounded_pictures(found: StudyWalls) -> Iterator[Drawn]:
     figure = Figure(figsize=TWO_IN)
     ax = plot_two_figures(groups, figure.add_subplot(), across="F_SF", up="F_AV, %")
     ax.legend(fontsize=7, frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
-    yield Drawn("fig27", figure)
+    yield ItemFigure("fig27", figure)
 
 
 ROUNDED = PaperItem(
@@ -142,11 +142,11 @@ def _irregular(found: StudyWalls) -> Rows:
         yield "the paper's", "published", None, f"wall {number}", placed, 91, *[None] * 6
 
 
-def _irregular_picture(found: StudyWalls) -> Drawn:
+def _irregular_picture(found: StudyWalls) -> ItemFigure:
     walls = [
         found.titled(one, f"{found.name} at {one.wall.scale:g}, from {one.way}") for one in found
     ]
-    return Drawn("figB33", plot_walls(walls, 2))
+    return ItemFigure("figB33", plot_walls(walls, 2))
 
 
 IRREGULAR = PaperItem(
@@ -279,7 +279,7 @@ def _bricks(found: Bricks) -> Rows:
         )  # fmt: skip
 
 
-def _bricks_picture(found: Bricks) -> Drawn:
+def _bricks_picture(found: Bricks) -> ItemFigure:
     walls = []
     for aspect, one, wall in found:
         outcome = one.outcomes[0]
@@ -287,7 +287,7 @@ def _bricks_picture(found: Bricks) -> Drawn:
         colours = {brick: number for number, brick in enumerate(sorted(outcome.clusters), 1)}
         title = f"aspect {aspect:g}, from {one.way}: F_SF {outcome.figures['F_SF']:.2f}"
         walls.append((title, wall, colours))
-    return Drawn("figB34", plot_walls(walls, len(ASPECTS)))
+    return ItemFigure("figB34", plot_walls(walls, len(ASPECTS)))
 
 
 BRICKS = PaperItem(

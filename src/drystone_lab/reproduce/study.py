@@ -8,7 +8,7 @@ from drystone.model.wall import Wall
 from drystone_lab.pictures.charts import group_panels
 from drystone_lab.pictures.walls import TitledWall, plot_walls
 from drystone_lab.reproduce import cells
-from drystone_lab.reproduce.item import Context, Drawn, Rows
+from drystone_lab.reproduce.item import Context, ItemFigure, Rows
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.spec import Changes, RunSpec
 from drystone_lab.table import Cell
@@ -164,12 +164,12 @@ def pairs(way: str, others: Sequence[str]) -> Callable[[StudyWalls], Rows]:
 
 def strips(
     found: StudyWalls, name: str, figures: Sequence[str], label: Callable[[Trials], str]
-) -> Drawn:
+) -> ItemFigure:
     """Draw a point a wall: a panel a figure, a group a set and way."""
     panels = {figure: {label(one): one.values(figure) for one in found} for figure in figures}
-    return Drawn(name, group_panels(panels), found)
+    return ItemFigure(name, group_panels(panels), found)
 
 
-def sheet(found: StudyWalls, name: str, columns: int, label: Callable[[Trials], str]) -> Drawn:
+def sheet(found: StudyWalls, name: str, columns: int, label: Callable[[Trials], str]) -> ItemFigure:
     """Draw the wall of the first seed of every set and way."""
-    return Drawn(name, plot_walls([found.titled(one, label(one)) for one in found], columns))
+    return ItemFigure(name, plot_walls([found.titled(one, label(one)) for one in found], columns))

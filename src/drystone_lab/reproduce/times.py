@@ -17,7 +17,7 @@ from drystone.selection.sampling import Sampling
 from drystone_lab.pictures.growth import plot_growth, step_time_panels
 from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import metric_cells, placed_of, trend
-from drystone_lab.reproduce.item import Claimed, Context, Drawn, PaperItem, Rows
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.reproduce.study import ONE_WAY, StudyWalls, built
 from drystone_lab.table import Cell
@@ -210,7 +210,9 @@ STEPS = PaperItem(
         "steps": lambda found: step_rows(found.walls),
     },
     pictures=lambda found: [
-        Drawn("fig28", step_time_panels({SAMPLINGS[k]: w.steps for k, w in found.walls.items()}))
+        ItemFigure(
+            "fig28", step_time_panels({SAMPLINGS[k]: w.steps for k, w in found.walls.items()})
+        )
     ],
 )
 
@@ -291,7 +293,7 @@ def _scales(found: ScaledWalls) -> Rows:
         yield scale, wall.size, *placed_of(one.outcomes[0]), *metric_cells(one.outcomes[0])
 
 
-def _scales_pictures(found: ScaledWalls) -> Iterator[Drawn]:
+def _scales_pictures(found: ScaledWalls) -> Iterator[ItemFigure]:
     ids = sorted({i for one in found.built for i in one.outcomes[0].clusters})
     colours = {stone_id: number for number, stone_id in enumerate(ids, 1)}
     walls = []
@@ -300,7 +302,7 @@ def _scales_pictures(found: ScaledWalls) -> Iterator[Drawn]:
         title = f"scale {scale:g}: {wall.size} px, {figures['placed']} stones, "
         title += f"F_SF {figures['F_SF']:.2f}"
         walls.append((title, found.built.wall(one), colours))
-    yield Drawn("fig29", plot_walls(walls, 2))
+    yield ItemFigure("fig29", plot_walls(walls, 2))
     figure = Figure(figsize=(6.4, 4.0))
     series = {
         "whole wall": [(float(wall.pixels), wall.seconds) for wall in found.timed.values()],
@@ -311,7 +313,7 @@ def _scales_pictures(found: ScaledWalls) -> Iterator[Drawn]:
         claims += [("paper: whole wall", "x", px, s) for px, s in PAPER_WALL_S.items()]
         claims += [("paper: longest step, below", "v", px, s) for px, s in PAPER_STEP_S.items()]
     plot_growth(figure.add_subplot(), series, claims)
-    yield Drawn("fig29-time", figure)
+    yield ItemFigure("fig29-time", figure)
 
 
 RESOLUTION = PaperItem(

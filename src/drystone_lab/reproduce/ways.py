@@ -7,7 +7,7 @@ from statistics import median
 from drystone_lab.pictures.charts import figure_of, group_panels, plot_two_figures
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, rounded
-from drystone_lab.reproduce.item import Claimed, Context, Drawn, PaperItem
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.reproduce.study import (
     Study,
@@ -46,14 +46,14 @@ def _named(one: Trials) -> tuple[str, str]:
     return one.wall.name, one.way
 
 
-def _beta_picture(found: StudyWalls) -> Drawn:
+def _beta_picture(found: StudyWalls) -> ItemFigure:
     panels = {
         f"{group.name}, {figure}": {one.way: one.values(figure) for one in group}
         for group in found.by_wall
         for figure in METRICS
     }
     title = "Walls by the threshold beta of GDS; lines are medians"
-    return Drawn("beta", group_panels(panels, title=title))
+    return ItemFigure("beta", group_panels(panels, title=title))
 
 
 BETA = PaperItem(
@@ -125,14 +125,14 @@ def _stabilised_claims(found: StudyWalls) -> Iterator[Claimed]:
         yield Claimed("together", best == "both", {"name": group.name, "best": best})
 
 
-def _wedges_picture(group: StudyWalls, number: int) -> Drawn:
+def _wedges_picture(group: StudyWalls, number: int) -> ItemFigure:
     points = {
         one.way: tuple(zip(_wedge_share(one), one.values("F_SF"), strict=True)) for one in group
     }
     # The set is named in the picture itself, as one of them stands in for the paper's.
     across = f"{group.name}: area of wedges, % of the wall"
     figure = figure_of(plot_two_figures(points, across=across, up="F_SF"))
-    return Drawn(f"fig20_{number}", figure, group)
+    return ItemFigure(f"fig20_{number}", figure, group)
 
 
 def _wedge_cells(one: Trials) -> tuple[float | None, ...]:
@@ -242,7 +242,7 @@ BOTH_ENDS = PaperItem(
 NUMBERS = {"R": "B.30", "PR": "B.31", "IR": "B.32"}
 
 
-def _methods_picture(group: StudyWalls) -> Drawn:
+def _methods_picture(group: StudyWalls) -> ItemFigure:
     number = NUMBERS.get(group.name, "B.1")
     drawn = sheet(group, f"fig{number.replace('.', '')}", len(SIDES), lambda one: one.way)
     return drawn._replace(about=(number, group.name))

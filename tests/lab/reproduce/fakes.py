@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from matplotlib.figure import Figure
 
 from drystone.errors import InputError
-from drystone_lab.reproduce.item import Context, Drawn, PaperItem, Rows
+from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.spec import RunSpec, generated
 
@@ -39,11 +39,11 @@ def _times(found: Walls) -> Rows:
         yield run.seed, outcome.times["wall"]
 
 
-def _picture(found: Walls) -> Drawn:
+def _picture(found: Walls) -> ItemFigure:
     figure = Figure(figsize=(2, 1))
     filled = [outcome.figures["F_SF"] for outcome in found.outcomes]
     figure.add_subplot().plot([run.seed for run in found.runs], filled, marker="o")
-    return Drawn("filling", figure)
+    return ItemFigure("filling", figure)
 
 
 def broken(context: Context) -> Walls:
