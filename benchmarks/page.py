@@ -5,8 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from benchmarks import growth
-from benchmarks.scenes import data_folder
-from drystone_lab.table import BenchSettings, Table
+from drystone_lab.table import Table
 
 TABLE = re.compile(r"<!-- table (\w+) -->\n(.*?)<!-- end -->", re.DOTALL)
 
@@ -31,14 +30,8 @@ def rewritten(text: str, tables: Mapping[str, Table]) -> str:
     )
 
 
-def growth_tables(images: Path) -> dict[str, Table]:
-    """Plan walls by the clock, with pictures; return the tables by their names in the page."""
-    found = growth.run(BenchSettings(data=data_folder(), output=images, seed=1))
-    return dict(zip(("pixels", "steps", "larger"), found, strict=True))
-
-
 def write_page(page: Path, tables: Mapping[str, Table]) -> None:
-    """Write all tables of a page anew, and the pictures beside it."""
-    every = {**tables, **growth_tables(page.parent / "images")}
+    """Write all tables of a page anew."""
+    every = {**tables, "larger": growth.larger_walls(seed=1)}
     text = page.read_text(encoding="utf-8")
     page.write_text(rewritten(text, every), encoding="utf-8")

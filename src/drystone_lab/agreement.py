@@ -7,7 +7,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.lp.extremes import Solver
 from drystone.statics.result import LateralResistance
 from drystone_lab.planned_walls import PlannedWall, missing_data, planned_walls
-from drystone_lab.table import BenchSettings, Cell, Table
+from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 
 SOLVERS: tuple[Solver, ...] = ("highs", "highs-ipm", "clarabel")
 
@@ -17,18 +17,8 @@ AGREED = 1e-8
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
     """Return how far solvers are apart, and how well answers are certified."""
-    rows = [_row(wall) for wall in planned_walls(settings)]
-    return (
-        Table(
-            "Planned walls: every step by HiGHS simplex, HiGHS interior point, and Clarabel",
-            ("wall", "steps", "answers", "same status", "largest difference", "certified",
-             "largest gap", "largest residual", "alpha", "without dilatancy", "verdict"),
-            tuple(rows),
-            ("An answer is one direction of one step. alpha is the lesser of both directions of"
-             " the finished wall; the factor without dilatancy is the least verified one found.",
-             *missing_data(settings)),
-        ),
-    )  # fmt: skip
+    rows = (_row(wall) for wall in planned_walls(settings))
+    return (worded(BENCH["walls"]["agreement"], rows, more=missing_data(settings)),)
 
 
 def _row(wall: PlannedWall) -> tuple[Cell, ...]:

@@ -11,17 +11,11 @@ from drystone.physics.building import BuildUp, build_up, tilt_of
 from drystone.verify.outlines import plan_polygons
 from drystone_lab.planned_walls import missing_data
 from drystone_lab.runs.outcome import execute
-from drystone_lab.table import BenchSettings, Cell, Table
+from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 from drystone_lab.walls import BRICKS, JUDGED, Target
 
 SEEDS = 5
 """Walls of each set."""
-
-COLUMNS = (
-    "wall", "stones", "fallen", "moved most px", "share", "turn deg", "overlap px",
-    "alpha left", "tilt left", "alpha right", "tilt right",
-)  # fmt: skip
-
 
 BothSides = tuple[float | None, float | None]
 
@@ -45,9 +39,8 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
         if (stones := target.stones(settings.data)) is not None
         for seed in range(settings.seed, settings.seed + (1 if settings.quick else SEEDS))
     ]
-    rows = tuple(_row(one) for one in judged)
     return (
-        Table("Walls of one pass on outlines in the engine", COLUMNS, rows, missing_data(settings)),
+        worded(BENCH["engine"]["walls"], map(_row, judged), more=missing_data(settings)),
         _summary(judged),
     )
 
@@ -86,24 +79,11 @@ def _summary(judged: Sequence[EngineWall]) -> Table:
         if None not in one.alphas and None not in one.tilts
     ]
     ratios = [tilt / alpha for alpha, tilt in pairs if alpha > 0]
-    return Table(
-        "Load multipliers beside tilts",
-        ("walls", "nothing falls", "both sides", "rank correlation", "weaker side", "tilt / alpha"),
-        (
-            (
-                len(judged),
-                f"{standing} of {len(judged)}",
-                len(pairs),
-                _rank_correlation(pairs),
-                _rank_correlation(weaker),
-                median(ratios) if ratios else None,
-            ),
-        ),
-        (
-            "Rank correlation (Spearman) of alpha and the tangent of the tilt at failure, over "
-            "both sides of all walls, and over the weaker sides; then the median ratio.",
-        ),
-    )
+    row = (
+        len(judged), f"{standing} of {len(judged)}", len(pairs), _rank_correlation(pairs),
+        _rank_correlation(weaker), median(ratios) if ratios else None,
+    )  # fmt: skip
+    return worded(BENCH["engine"]["summary"], [row])
 
 
 def _rank_correlation(pairs: Sequence[tuple[float, float]]) -> float | None:

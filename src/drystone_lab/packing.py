@@ -17,18 +17,13 @@ from drystone.poses import PoseBook
 from drystone_lab.planned_walls import missing_data
 from drystone_lab.runs.outcome import FIGURES, RunOutcome
 from drystone_lab.runs.spec import RunSpec
-from drystone_lab.search_ways import SEARCH, WAYS, looked_at_times
-from drystone_lab.table import BenchSettings, Cell, Table
+from drystone_lab.search_runs import SEARCH, WAYS, looked_at_times
+from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 from drystone_lab.walls import BRICKS, SEARCHED, Target, chosen
 
 SECONDS = 30
 TURNS: dict[str, tuple[float, ...] | None] = {"quarter": (0.0, 90.0, 180.0, 270.0), "any": None}
 """Orientations that the packer may use, from the initial pose of a stone on."""
-
-COLUMNS = (
-    "wall", "height px", "strip px, quarter turns", "density", "strip px, any angle", "density",
-    "wall px", "possible F_SF", "our F_SF", "placed",
-)  # fmt: skip
 
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
@@ -42,20 +37,8 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
         if stones is not None:
             rows.append(_row(packer, target, stones, seconds, settings.seed))
             settings.say(", ".join(map(str, rows[-1])))
-    return (
-        Table(
-            f"Strips that hold all stones, and walls of this planner, {seconds} s each",
-            COLUMNS,
-            tuple(rows),
-            (
-                "The strip is as high as the wall; the packer (spyrrow, one thread) makes it as "
-                "short as it can, with no gravity and no order. Density: area of the stones over "
-                "that of the strip.",
-                "Ours: the search on outlines, in CPU time of one process.",
-                *missing_data(settings),
-            ),
-        ),
-    )
+    words = BENCH["packing"]["strips"]
+    return (worded(words, rows, more=missing_data(settings), seconds=seconds),)
 
 
 def load_packer() -> Any:

@@ -16,27 +16,16 @@ from drystone.photo.segment_photo import SegmentedPhoto, segment_photo
 from drystone_lab.photographs.layout import LEVELS, PhotoLevel
 from drystone_lab.photographs.real import (
     ALL,
-    FOLDER,
     RealPhoto,
     pixels_of,
     there,
     truth_of,
 )
 from drystone_lab.photographs.scene import Photograph, inverse, layout_of, moved, photograph
-from drystone_lab.table import BenchSettings, Cell, Table
+from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 
 MATCHED = 0.5
 """Intersection over union from which on a stone counts as found."""
-
-COLUMNS = (
-    "photograph", "stones", "found", "recall", "precision", "median IoU", "worst IoU",
-    "scale error %", "shadow", "seconds",
-)  # fmt: skip
-
-REAL_COLUMNS = (
-    "photograph", "source", "licence", "as asked for", "stones", "found", "recall", "precision",
-    "median IoU", "verdict", "exit code",
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -65,21 +54,10 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
         cases.append((name, "an error", _outcome(_small(level), change)))
         settings.say(", ".join(cases[-1]))
     return (
-        Table(
-            "Stones in rendered photographs", COLUMNS, tuple(rows),
-            (
-                "Stones that the edge cuts are left out of both. A stone is found when its "
-                f"intersection over union (IoU) is {MATCHED} or more.",
-                "Scale error: the largest, of distances between nine places on the ground. "
-                "Shadow: share of the light that the generator took, and that was found.",
-                "Stones of the generator are flat: that higher parts of a stone are nearer to the "
-                "camera is not in these numbers.",
-            ),
-        ),
-        Table("Photographs that give an error, not a number", ("case", "expected", "result"),
-              tuple(cases)),
+        worded(BENCH["photos"]["rendered"], rows),
+        worded(BENCH["photos"]["refused"], cases),
         _real(settings),
-    )  # fmt: skip
+    )
 
 
 def _real(settings: BenchSettings) -> Table:
@@ -88,15 +66,7 @@ def _real(settings: BenchSettings) -> Table:
     for photo in there(settings.data):
         rows.append(_real_row(photo, settings.data))
         settings.say(", ".join(map(str, rows[-1])))
-    return Table(
-        "Real photographs", REAL_COLUMNS, tuple(rows),
-        (
-            f"{len(rows)} of {len(ALL)} are there; the others belong into the folder "
-            f"{FOLDER} of --data (docs/photographs.md says from where).",
-            "Median IoU is of the stones that were found, IoU 0.5 or more. Without a number in "
-            "precision only some of the stones are known.",
-        ),
-    )  # fmt: skip
+    return worded(BENCH["photos"]["real"], rows, there=len(rows), all=len(ALL))
 
 
 def _real_row(photo: RealPhoto, data: Path | None) -> tuple[Cell, ...]:
@@ -201,7 +171,7 @@ def _row(level: PhotoLevel) -> tuple[Cell, ...]:
     try:
         result = segment_photo(image, layout_of(level))
     except DrystoneError as error:
-        return (level.name, int(made.truth.max()), error.code, *[None] * (len(COLUMNS) - 3))
+        return (level.name, int(made.truth.max()), error.code, *[None] * 7)
     seconds = time.perf_counter() - start
     got = score(made, result)
     return (

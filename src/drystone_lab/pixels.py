@@ -21,7 +21,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult, LimitStatus
 from drystone_lab.statics_cases import HEIGHT, MU, WALLS, Rectangle, closed_forms
-from drystone_lab.table import BenchSettings, Cell, Table
+from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 
 Points = NDArray[np.float64]
 
@@ -294,15 +294,7 @@ def _published(*, quick: bool) -> Table:
         told = _both(*expected)
         verdict = "pass" if hits else "miss"
         rows.append((name, mu, told, pixels, pixel_error, outlines, outline_error, verdict))
-    return Table(
-        f"Published cases from pictures, {BRICK_PX} px a brick height",
-        ("case", "mu", "expected", "pixels", "error, pixels", "outlines", "error, outlines",
-         "verdict"),
-        tuple(rows),
-        (f"Errors are relative to the expected factor, the larger of both directions (absolute"
-         f" where that is 0); tolerance {TOLERANCE:g}. Where left and right differ both are given.",
-         "Edges lie on the nearest pixel edge: a brick 4 x 1.75 is 45 or 46 px wide."),
-    )  # fmt: skip
+    return worded(BENCH["pixels"]["published"], rows)
 
 
 def _compared(
@@ -332,17 +324,7 @@ def _refinement(settings: BenchSettings) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for seed in range(settings.seed, settings.seed + count):
         rows += _study_rows(seed, heights, refinement_errors(heights, seed=seed, **few))
-    return Table(
-        "Walls of tilted joints: |alpha - alpha of the polygons|",
-        ("walls of seed", "height px", "cases", "pixels, mean", "pixels, worst",
-         "outlines, mean", "outlines, worst", "order, pixels", "order, outlines"),
-        tuple(rows),
-        ("Nine walls of 3 to 5 courses, bed and head joints tilted, each at three sub-pixel"
-         " positions, both directions. The order p is that of error ~ height^-p.",
-         "No bend and no piece of a joint of these walls is shorter than 0.04 wall heights, 1.6 px"
-         " at 40 px: what a picture cannot show does not converge with it (with pieces down to"
-         " 0.003 wall heights the order was 0.88)."),
-    )  # fmt: skip
+    return worded(BENCH["pixels"]["refinement"], rows)
 
 
 def _study_rows(

@@ -19,7 +19,7 @@ from drystone_lab.statics_cases import (
     closed_forms,
     least_thickness,
 )
-from drystone_lab.table import BenchSettings, Cell, Table
+from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 
 CLOSED_FORM_TOLERANCE = 1e-6
 
@@ -108,15 +108,7 @@ def _closed_forms(*, quick: bool) -> Table:
         ]
         both_rules = not quick or number % QUICK_STEP == 0
         rows += _rows(case.name, case.model, expected, both_rules=both_rules)
-    return Table(
-        "Closed forms: load factors alpha on the tilting table",
-        COLUMNS,
-        tuple(rows),
-        (
-            f"Tolerance {CLOSED_FORM_TOLERANCE:g}. The running bond has no formula: its factor is "
-            "the answer of another program.",
-        ),
-    )
+    return _cases("closed_forms", rows)
 
 
 def _ferris(*, quick: bool) -> Table:
@@ -130,16 +122,11 @@ def _ferris(*, quick: bool) -> Table:
         both_rules = not quick or wall.number in QUICK_WALLS
         name = f"example {wall.number}, {wall.blocks} blocks"
         rows += _rows(name, wall.model, [expected, expected], both_rules=both_rules)
-    return Table(
-        "Walls of Ferris and Tin-Loi (2001): load factors alpha on the tilting table",
-        COLUMNS,
-        tuple(rows),
-        (
-            f"Tolerance {FERRIS_TOLERANCE:g}, half a unit of the fifth digit.",
-            "Without dilatancy there are several solutions, and methods find different ones. The "
-            "ranges hold what others found; no factor may be above the associative one.",
-        ),
-    )
+    return _cases("ferris", rows)
+
+
+def _cases(name: str, rows: Sequence[CaseRow]) -> Table:
+    return worded(BENCH["statics"][name], rows, columns={"<case>": COLUMNS})
 
 
 def _rows(
@@ -197,16 +184,7 @@ def _agree(first: float | None, second: float | None) -> bool:
 
 
 def _arches(cases: Sequence[ArchCase]) -> Table:
-    return Table(
-        "Semicircular arches under their own weight: least thickness over mean radius",
-        ("voussoirs", "mu", "expected t/R", "t/R", "difference", "certificate gap", "verdict"),
-        tuple(_arch_row(case) for case in cases),
-        (
-            f"By bisection to {BISECTION:g}: the arch stands at t/R and falls so much below; "
-            f"sought up to {THICKEST:g}. Tolerance {ARCH_TOLERANCE:g}.",
-            "Whether there are forces that hold an arch up does not depend on the flow rule.",
-        ),
-    )
+    return worded(BENCH["statics"]["arches"], map(_arch_row, cases))
 
 
 def _arch_row(case: ArchCase) -> tuple[Cell, ...]:

@@ -4,21 +4,30 @@ from collections.abc import Mapping, Sequence
 from statistics import median
 
 from drystone.errors import UsageError
+from drystone.io.published import published_file
+from drystone.io.wall_image import read_wall_image
+from drystone.metrics.measure import measure_labels
+from drystone.metrics.reduce import reduce_labels
+from drystone.metrics.second import FINER, finer_labels, second_arrangement
+from drystone.model.wall import Labels
 from drystone.planner.settings import method_settings
-from drystone_lab.masons import masons_walls
 from drystone_lab.paired import median_difference
-from drystone_lab.planned_walls import missing_data
+from drystone_lab.planned_walls import SETS, missing_data
 from drystone_lab.runs.spec import Changes, nested, told
 from drystone_lab.search_runs import (
     FIGURES,
+    NO_COURSES,
+    RESTARTS,
+    SEARCH,
+    WAYS,
+    WEDGED,
     SearchResult,
     SearchRun,
     method_name,
     searched,
     searched_walls,
 )
-from drystone_lab.search_ways import NO_COURSES, RESTARTS, SEARCH, WAYS, WEDGED
-from drystone_lab.table import BenchSettings, Cell, Table
+from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 
 SECONDS, SEEDS = 20.0, 6
 QUICK_SECONDS, QUICK_SEEDS = 0.1, 2
@@ -70,37 +79,16 @@ def _check(changes: Changes) -> None:
 def _medians(
     rows: Sequence[tuple[Cell, ...]], seconds: float, seeds: int, settings: BenchSettings
 ) -> Table:
-    return Table(
-        f"Best walls after {seconds:g} s of CPU time, medians of {seeds} seeds",
-        ("wall", "method", "range", *FIGURES[:2], "possible F_SF", *FIGURES[2:], "walls", "s"),
-        tuple(rows),
-        (
-            "Restarts: single passes from seed to seed, the best by the merit that the search "
-            "goes by; with wedges: small ones are put into the gaps of the good ones, as in "
-            "the search. Without courses: ruin and recreate alone.",
-            "CPU time of one process, from the stones on; the last wall is begun in time and "
-            "finished, where a longer time follows what is finished counts. No F_SF can be above "
-            "the possible one: the area of all stones over that of the wall.",
-            "2nd: by a definition that no search goes by (drystone.metrics.second).",
-            *([f"With {told(settings.changes)}."] if settings.changes else []),
-            *missing_data(settings),
-        ),
-    )
+    with_settings = [f"With {told(settings.changes)}."] if settings.changes else []
+    return worded(
+        BENCH["search"]["medians"], rows, more=(*with_settings, *missing_data(settings)),
+        seconds=seconds, seeds=seeds,
+    )  # fmt: skip
 
 
 def _paired(rows: Sequence[tuple[Cell, ...]], seconds: float) -> Table:
-    return Table(
-        f"What the search has more after {seconds:g} s, medians of the pairs of one seed "
-        "(95 % intervals)",
-        ("wall", "more than", "merit higher", *FIGURES),
-        tuple(rows),
-        (
-            "Percentile bootstrap over the seeds with fixed random numbers. It cannot be wider "
-            "than the differences that were seen. They hold the median of all with "
-            "1 - 0.5^(n - 1) where there are n.",
-            "Fewer is better for F_AH, T_LEVEL and E_FLUSH.",
-        ),
-    )
+    figures = {"<figures>": FIGURES}
+    return worded(BENCH["search"]["paired"], rows, columns=figures, seconds=seconds)
 
 
 def _effort(settings: BenchSettings) -> tuple[tuple[float, ...], range]:
@@ -162,3 +150,26 @@ def _values(results: Sequence[SearchResult], figure: str) -> list[float | None]:
 def _median(values: Sequence[float | None]) -> float | None:
     found = [value for value in values if value is not None]
     return median(found) if found else None
+
+
+def masons_walls(settings: BenchSettings) -> Table:
+    """Measure the walls of Almeida et al. (2021) as they were traced, at the working scales."""
+    rows = []
+    for wall in SETS:
+        if settings.data is not None and wall.source.is_there(settings.data):
+            labels = read_wall_image(published_file(settings.data, wall.source.name))
+            rows.append(masons_row(wall.name, labels, wall.scale))
+    return worded(BENCH["search"]["masons"], rows)
+
+
+def masons_row(name: str, labels: Labels, scale: float) -> tuple[Cell, ...]:
+    """Measure one of them."""
+    reduced = reduce_labels(labels, scale)
+    first = measure_labels(reduced)
+    repeated = second_arrangement(finer_labels(reduced))
+    sampled = second_arrangement(reduce_labels(labels, FINER * scale))
+    height, width = reduced.shape
+    return (
+        name, f"{width}x{height}", first.stones, first.F_SF, first.F_AV, first.F_AH,
+        repeated.F_AV, repeated.F_AH, sampled.F_AV, sampled.F_AH,
+    )  # fmt: skip

@@ -1,19 +1,133 @@
 """Suite "shear": real shear tests of dry-joint walls, predicted over measured.
 
 Not a pass or a fail: rigid blocks cannot crush, and how the beam on the walls was held is not
-fully known.  Nothing is fitted; what is not known is varied, and what it does is shown.
+fully known.  Nothing is fitted; what is not known is varied, and what it does is shown.  The tests
+are those of ``shear_tests.toml``; lengths in m, forces in kN.
 """
 
-from collections.abc import Callable, Sequence
+import tomllib
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 from statistics import fmean, stdev
 
+import numpy as np
+
+from drystone.contacts.given import model_from_json
 from drystone.statics.flow.nonassociative import nonassociative_load
 from drystone.statics.limit import lateral_resistance
-from drystone_lab.shear_walls import SERIES, ShearSeries, shear_wall
-from drystone_lab.table import BenchSettings, Cell, Table
+from drystone.statics.loads import Loads, point_load, weight
+from drystone.statics.model import RigidBlockModel
+from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
+
+GRAVITY = 9.81
+"""m/s2."""
+
+COURSE_TOLERANCE = 1e-9
+"""m; by how much joints at the end of a wall may miss it."""
+
+
+@dataclass(frozen=True)
+class ShearTest:
+    """One wall."""
+
+    name: str
+    vertical_kn: float  # N
+    # Largest V; towards either side for cyclic tests, the first side first
+    peaks_kn: tuple[float, ...]
+
+    @property
+    def measured_kn(self) -> float:
+        """Mean of the peaks: models do not tell the sides apart."""
+        return fmean(self.peaks_kn)
+
+
+@dataclass(frozen=True)
+class ShearSeries:
+    """Walls of one kind."""
+
+    name: str  # Source, stone, way of loading
+    length: float  # length, height, thickness: Of the wall without the beam
+    height: float
+    thickness: float
+    # Height of V above the ground; the beam is modelled from the top of the wall to as far above V
+    load_height: float
+    block_length: float
+    block_height: float
+    density_kg_m3: float  # Of the stone; assumed, not measured
+    tests: tuple[ShearTest, ...]  # All of the series
+
+    @property
+    def course_count(self) -> int:
+        """Courses: the height of the wall over that of its blocks."""
+        return round(self.height / self.block_height)
+
+
+def _series() -> Iterator[ShearSeries]:
+    text = Path(__file__).with_name("shear_tests.toml").read_text("utf-8")
+    for series in tomllib.loads(text)["series"]:
+        tests = (ShearTest(name, vertical, tuple(v)) for name, vertical, *v in series.pop("tests"))
+        yield ShearSeries(**series, tests=tuple(tests))
+
+
+SERIES = tuple(_series())
+
+
+def shear_wall(
+    series: ShearSeries,
+    vertical_kn: float,
+    mu: float = 0.62,
+    *,
+    level: bool = False,
+    halves_first: bool = False,
+) -> tuple[RigidBlockModel, Loads]:
+    """Make a tested wall and its loads.
+
+    Courses of whole blocks alternate with courses that begin and end with half a block.  The beam
+    is the last block, as long as the wall, with the friction of the stones below it; its weight
+    counts as part of N, which acts down at its middle.
+
+    >>> from drystone.statics.limit import lateral_resistance
+    >>> model, loads = shear_wall(SERIES[0], 30.0, level=True)
+    >>> len(model.blocks), round(lateral_resistance(model, loads).right.alpha, 6)
+    (50, 18.6)
+    """
+    kn_m2 = series.density_kg_m3 * GRAVITY * series.thickness / 1e3
+    boxes = [*_stones(series, halves_first=halves_first)]
+    top = 2.0 * series.load_height - series.height
+    boxes.append((0.0, series.height, series.length, top))
+    beam = len(boxes)
+    blocks = [
+        {
+            "id": number,
+            "polygon": [[x0, y0], [x1, y0], [x1, y1], [x0, y1]],
+            "density": kn_m2,
+            "held": ["turn"] if level and number == beam else [],
+        }
+        for number, (x0, y0, x1, y1) in enumerate(boxes, start=1)
+    ]
+    model = model_from_json({"blocks": blocks, "mu": mu})
+    middle = (series.length / 2.0, series.load_height)
+    dead = weight(model)
+    dead[-1] = 0.0
+    dead += point_load(model, beam, middle, (0.0, -vertical_kn))
+    return model, Loads(dead, point_load(model, beam, middle, (1.0, 0.0)), "shear test")
+
+
+def _stones(
+    series: ShearSeries, *, halves_first: bool
+) -> Iterator[tuple[float, float, float, float]]:
+    """Yield left, bottom, right and top of the blocks, course by course."""
+    for course in range(series.course_count):
+        halves = (course % 2 == 0) == halves_first
+        first = series.block_length / 2.0 if halves else series.block_length
+        inner = np.arange(first, series.length - COURSE_TOLERANCE, series.block_length)
+        bottom = course * series.block_height
+        for left, right in pairwise([0.0, *inner.tolist(), series.length]):
+            yield left, bottom, right, bottom + series.block_height
+
 
 FRICTION = 0.62
 """Of sawn stone on stone, and of the beam on it; assumed for both stones."""
@@ -97,6 +211,10 @@ MODELS = tuple(
 )
 
 
+def _worded(name: str, rows: Iterable[tuple[Cell, ...]], notes: Iterable[str] = ()) -> Table:
+    return worded(BENCH["shear"][name], rows, columns={"<models>": MODELS}, more=notes)
+
+
 def _four(
     known: ShearModel, series: ShearSeries, vertical_kn: float, mu: float = FRICTION
 ) -> list[float | None]:
@@ -128,20 +246,14 @@ def _predicted(known: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
             measured = f"{min(peaks):g} to {max(peaks):g}" if len(peaks) > 1 else f"{peaks[0]:g}"
             values = [_rounded(v, 1) for v in _four(known, series, vertical)]
             rows.append((series.name, vertical, len(tests), measured, *values))
-    return Table(
-        f"Shear tests: largest V in kN, predicted with friction {FRICTION:g}",
-        ("series", "N kN", "tests", "measured", *MODELS),
-        tuple(rows),
-        (
-            *(
-                f"{series.name}: {series.course_count} courses of {series.block_length:g} x "
-                f"{series.block_height:g} m, wall {series.length:g} x {series.height:g} x "
-                f"{series.thickness:g} m, V at {series.load_height:g} m, "
-                f"{series.density_kg_m3:g} kg/m3 (assumed)."
-                for series in all_series
-            ),
-        ),
+    about = (
+        f"{series.name}: {series.course_count} courses of {series.block_length:g} x "
+        f"{series.block_height:g} m, wall {series.length:g} x {series.height:g} x "
+        f"{series.thickness:g} m, V at {series.load_height:g} m, "
+        f"{series.density_kg_m3:g} kg/m3 (assumed)."
+        for series in all_series
     )
+    return _worded("predicted", rows, about)
 
 
 def _by_test(known: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
@@ -151,12 +263,7 @@ def _by_test(known: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
             peaks = " / ".join(f"{peak:g}" for peak in test.peaks_kn)
             values = [_rounded(ratio, 2) for ratio in ratios]
             rows.append((test.name, test.vertical_kn, peaks, *values))
-    return Table(
-        f"Shear tests: predicted over measured, friction {FRICTION:g}",
-        ("test", "N kN", "measured kN", *MODELS),
-        tuple(rows),
-        ("Cyclic tests have a peak on either side; predictions are over the mean of both.",),
-    )
+    return _worded("by_test", rows)
 
 
 def _scatter(known: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
@@ -164,11 +271,7 @@ def _scatter(known: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
         (name, *_mean_and_deviation(_ratios(known, series)))
         for name, series in (*((one.name, (one,)) for one in all_series), ("all", all_series))
     ]
-    return Table(
-        f"Shear tests: predicted over measured, mean and standard deviation, friction {FRICTION:g}",
-        ("series", *MODELS),
-        tuple(rows),
-    )
+    return _worded("scatter", rows)
 
 
 def _friction(known: ShearModel) -> Table:
@@ -177,11 +280,7 @@ def _friction(known: ShearModel) -> Table:
         for one in SERIES
         for mu in FRICTION_BAND
     ]
-    return Table(
-        "Shear tests: what friction changes, predicted over measured, mean and standard deviation",
-        ("series", "mu", *MODELS),
-        tuple(rows),
-    )
+    return _worded("friction", rows)
 
 
 def _details(known: ShearModel) -> Table:
@@ -199,12 +298,7 @@ def _details(known: ShearModel) -> Table:
                 v = _v(known, varied, loading)
                 values = (_rounded(v.associative, 2), _rounded(v.without_dilatancy, 2))
                 rows.append((series.name, vertical, name, *values))
-    return Table(
-        f"Shear tests: what density and bond change, V in kN, friction {FRICTION:g}, beam turns",
-        ("series", "N kN", "wall", "associative", "without dilatancy"),
-        tuple(rows),
-        ("With the beam level V is mu N whatever the wall weighs: the beam slides on it.",),
-    )
+    return _worded("details", rows)
 
 
 def _mean_and_deviation(ratios: Sequence[Sequence[float | None]]) -> list[str]:

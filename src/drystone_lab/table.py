@@ -2,9 +2,12 @@
 
 import csv
 import io
-from collections.abc import Callable, Sequence
+import tomllib
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 from drystone_lab.runs.spec import Changes
 
@@ -64,6 +67,38 @@ class Table:
         writer.writerow(self.columns)
         writer.writerows([_exact(cell) for cell in row] for row in self.rows)
         return text.getvalue()
+
+
+def worded(
+    words: Mapping[str, Any],
+    rows: Iterable[tuple[Cell, ...]],
+    *found: object,
+    columns: Mapping[str, Sequence[str]] = MappingProxyType({}),
+    more: Iterable[str] = (),
+    **values: object,
+) -> Table:
+    """Return a table whose title, columns and notes are written elsewhere, as TOML.
+
+    Title and notes take what was found and values; `columns` are what names in angle brackets stand
+    for; `more` notes come after those that are always there.
+
+    >>> words = {"title": "{0} walls", "columns": ["wall", "<figures>"], "notes": ["{n} seeds."]}
+    >>> print(worded(words, [("R", 1)], "Two", columns={"<figures>": ["F_SF"]}, n=3).text())
+    Two walls
+    wall  F_SF
+    R        1
+    * 3 seeds.
+    """
+    names = [name for each in words["columns"] for name in columns.get(each, (each,))]
+    notes = (note.format(*found, **values) for note in words.get("notes", ()))
+    title = words["title"].format(*found, **values)
+    return Table(title, tuple(names), tuple(rows), (*notes, *more))
+
+
+BENCH: Mapping[str, Mapping[str, Any]] = MappingProxyType(
+    tomllib.loads(Path(__file__).with_name("tables.toml").read_text("utf-8"))
+)
+"""Words of the tables of the suites."""
 
 
 def _exact(cell: Cell) -> Cell:

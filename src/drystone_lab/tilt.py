@@ -6,7 +6,7 @@ from drystone.contacts.outlines import model_of_traced, outlines_of_labels
 from drystone.physics.scatter import TiltComparison, compare_with_tilt, usual_variations
 from drystone.physics.scene import EngineScene
 from drystone_lab.planned_walls import PlannedWall, missing_data, planned_walls
-from drystone_lab.table import BenchSettings, Cell, Table
+from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 
 SEEDS = 3
 """Walls of each stone set."""
@@ -24,19 +24,8 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
 def table_of(rows: list[tuple[Cell, ...]], settings: BenchSettings) -> Table:
     """Return the rows as a table, with how many predictions are inside."""
     agreeing = sum(row[5] in ("yes", BOTH_FALL) for row in rows)
-    counted = f"{agreeing} of {len(rows)} directions: "
-    return Table(
-        "Planned walls tilted in a rigid-body engine",
-        ("wall", "towards", "associative", "without dilatancy", "first motion", "inside",
-         "comes down", "settled by px"),
-        tuple(rows),
-        (f"{counted if rows else ''}the factor without dilatancy lies within the simulation's own"
-         " scatter of the first motion, or the wall falls at rest on both sides.",
-         "Both sides see the same sub-pixel outlines. Scatter: nine trials that differ in what"
-         " should not matter (order, iterations, time step, overlap, corners, tiny shifts)."
-         " First motion: a block moves by 0.02 mean block sizes; comes down: by half of one.",
-         *missing_data(settings)),
-    )  # fmt: skip
+    counted = f"{agreeing} of {len(rows)} directions: " if rows else ""
+    return worded(BENCH["tilt"]["directions"], rows, more=missing_data(settings), counted=counted)
 
 
 def _rows(wall: PlannedWall, settings: BenchSettings) -> list[tuple[Cell, ...]]:

@@ -1,6 +1,5 @@
 """How time grows; no time is asserted, only what is computed from times."""
 
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -10,20 +9,8 @@ from drystone.model.site import Site
 from drystone.planner.profile import StepTime
 from drystone.planner.settings import method_settings
 from drystone_lab import timed_walls
-from drystone_lab.pictures.growth import PowerLaw
-from drystone_lab.table import BenchSettings
-from drystone_lab.timed_walls import TimedWall, fitted, pixels_table, planned, rubble, steps_table
-from drystone_lab.walls import PR
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("growth")
-
-
-@pytest.fixture(scope="module")
-def tables(folder):
-    return growth.run(BenchSettings(quick=True, output=folder))
+from drystone_lab.reproduce.times import pixel_rows, step_rows
+from drystone_lab.timed_walls import PowerLaw, TimedWall, fitted, planned, rubble
 
 
 def step(stones, candidates=2, seconds=0.01, **parts):
@@ -34,31 +21,10 @@ def wall(width, height, *steps):
     return TimedWall(Site(width, height), 0.5, steps)
 
 
-def test_the_quick_suite_plans_every_wall(tables, folder):
-    pixels, steps, walls = tables
-    assert [row["wall, px"] for row in pixels.records()] == [
-        "70 x 20",
-        "140 x 40",
-        "exponent over pixels",
-    ]
-    assert {row["sampling"] for row in steps.records()} == {"variant", "full"}
-    assert [row["stones"] for row in walls.records()] == ["8", "16", "exponent"]
-    for table in tables:
-        measured = [row for row in table.records() if "exponent" not in str(list(row.values()))]
-        assert measured
-        assert all(row["all"] > 0 for row in measured)
-    assert (folder / growth.STEPS_PICTURE).is_file()
-    assert (folder / growth.PIXELS_PICTURE).is_file()
-
-
-def test_generated_stones_are_not_compared_with_the_paper(tables):
-    for row in tables[0].records():
-        assert row["paper: wall, s"] is row["paper: longest step below, s"] is None
-
-
-def test_a_full_batch_has_more_candidates_than_one_of_each_cluster(tables):
-    of = {row["sampling"]: row["candidates a step"] for row in reversed(tables[1].records())}
-    assert of["full"] > of["variant"]
+def test_every_wall_is_planned():
+    *rows, exponents = growth.larger_walls(0, (8, 16)).records()
+    assert [row["stones"] for row in (*rows, exponents)] == ["8", "16", "exponent"]
+    assert all(row["all"] > 0 for row in rows)
 
 
 def test_times_against_pixels_and_the_numbers_of_the_paper():
@@ -66,32 +32,34 @@ def test_times_against_pixels_and_the_numbers_of_the_paper():
         0.5: wall(140, 40, step(0, seconds=0.01), step(1, seconds=0.03)),
         2.0: wall(560, 160, step(0, seconds=0.32), step(1, seconds=0.32)),
     }
-    small, large, exponents = pixels_table("PR", walls).records()
-    assert (small["wall, s"], small["longest step, s"], small["all"]) == (0.54, 0.03, 20.0)
-    assert small["placement"] == 4.0
-    assert small["rest"] == 16.0
-    assert (small["paper: wall, s"], small["paper: longest step below, s"]) == (10.8, None)
-    assert (large["paper: wall, s"], large["paper: longest step below, s"]) == (None, 25.0)
+    small, large, exponents = pixel_rows("PR", walls)
+    assert small[:3] == ("140 x 40", 2, 2.0)
+    placement, *_, rest, every, whole, paper_whole, longest, paper_longest = small[3:]
+    assert (placement, rest, every) == (4.0, 16.0, 20.0)
+    assert (whole, paper_whole, longest, paper_longest) == (0.54, 10.8, 0.03, None)
+    assert (large[-3], large[-1]) == (None, 25.0)
     # 16 times the pixels take 16 times as long a step.
-    assert exponents["all"] == pytest.approx(1.0)
-    assert exponents["placement"] == pytest.approx(0.0, abs=1e-9)
+    assert exponents[9] == pytest.approx(1.0)
+    assert exponents[3] == pytest.approx(0.0, abs=1e-9)
     # What took no time has no exponent.
-    assert exponents["contacts"] is None
+    assert exponents[5] is None
+    # Generated stones are not compared with the paper.
+    assert [(row[-3], row[-1]) for row in pixel_rows("others", walls)] == [(None, None)] * 3
 
 
 def test_times_against_stones_are_those_of_eight_steps_and_grow_by_the_candidate():
     steps = [step(n, candidates=n or 1, seconds=0.001 * (n or 1) ** 3) for n in range(12)]
-    rows = steps_table("PR", {"variant": wall(280, 80, *steps)}).records()
-    assert [row["stones placed"] for row in rows] == ["0 to 7", "8 to 11", "exponent a candidate"]
-    assert rows[1]["candidates a step"] == 9.5
-    assert rows[1]["all"] == pytest.approx((512 + 729 + 1000 + 1331) / 4)
-    assert rows[1]["ms a candidate"] == pytest.approx(rows[1]["all"] / 9.5, abs=0.05)
-    assert rows[2]["all"] == pytest.approx(2.0)
+    rows = list(step_rows({"variant": wall(280, 80, *steps)}))
+    assert [row[1] for row in rows] == ["0 to 7", "8 to 11", "exponent a candidate"]
+    assert rows[1][2] == 9.5
+    assert rows[1][-2] == pytest.approx((512 + 729 + 1000 + 1331) / 4, abs=5)
+    assert rows[1][-1] == pytest.approx(rows[1][-2] / 9.5, abs=0.5)
+    assert rows[2][-2] == pytest.approx(2.0)
 
 
 def test_larger_walls_have_exponents_over_their_stones():
     walls = {32: wall(280, 80, step(0)), 128: wall(560, 160, step(0), step(1))}
-    *rows, exponents = growth._walls_table(walls).records()
+    *rows, exponents = growth.growth_table(walls).records()
     assert [row["preparation, ms a stone"] for row in rows] == [15.6, 3.91]
     assert exponents["preparation, ms a stone"] == pytest.approx(-1.0)
 
@@ -123,8 +91,3 @@ def test_the_median_repetition_of_every_step_counts(monkeypatch: pytest.MonkeyPa
     assert [s.seconds for s in found.steps] == [5.0, 3.0]
     assert found.seconds == 10.0
     assert found.longest == 5.0
-
-
-def test_the_published_stones_are_used_when_they_are_there(data_dir):
-    assert growth._wall(BenchSettings(data=data_dir), None) == PR
-    assert growth._wall(BenchSettings(), None).name == "32 generated stones"

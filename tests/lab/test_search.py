@@ -13,7 +13,7 @@ from drystone.metrics.second import finer_labels, second_arrangement
 from drystone.model.site import Site
 from drystone.model.wall import Wall
 from drystone_lab import search
-from drystone_lab.masons import masons_row, masons_walls
+from drystone_lab.search import masons_row, masons_walls
 from drystone_lab.search_runs import (
     FIGURES,
     SPENT,

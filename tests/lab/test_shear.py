@@ -7,8 +7,7 @@ from drystone.statics.flow.nonassociative import NonassociativeResult
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LimitStatus
 from drystone_lab import shear
-from drystone_lab.shear import ShearForces, run
-from drystone_lab.shear_walls import GRAVITY, SERIES, shear_wall
+from drystone_lab.shear import GRAVITY, SERIES, ShearForces, run, shear_wall
 from drystone_lab.table import BenchSettings
 
 WITHOUT = "without dilatancy"

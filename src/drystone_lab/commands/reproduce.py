@@ -14,7 +14,7 @@ from drystone_lab.reproduce.items import ALL, ITEMS, item_names
 if TYPE_CHECKING:  # loaded when something is made: --list does not wait for matplotlib
     from drystone_lab.reproduce.driver import MadeItem, Options
     from drystone_lab.reproduce.item import PaperItem
-    from drystone_lab.runs.runner import RunWorker
+    from drystone_lab.runs.outcome import RunWorker
 
 LISTED = 12
 """Columns for the names of the list."""
@@ -23,8 +23,8 @@ LISTED = 12
 def run(arguments: argparse.Namespace, items: "Mapping[str, PaperItem] | None" = None) -> ExitCode:
     """Make items, print their tables, and say where the report is."""
     if arguments.list:
-        for name, (text, _) in ITEMS.items():
-            print(f"{name:<{LISTED}}{text}")
+        for name, words in ITEMS.items():
+            print(f"{name:<{LISTED}}{words['listed']}")
         return ExitCode.DONE
     names = _names(arguments)
     folder = Path(arguments.output)

@@ -1,6 +1,8 @@
 """Where the stones of a test photograph lie."""
 
+import tomllib
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -49,28 +51,16 @@ class PhotoLevel:
     px_per_m: float = 1250.0  # About, in the middle of the photograph
 
 
-LEVELS: tuple[PhotoLevel, ...] = (
-    PhotoLevel(name="1 flat, even light", seed=1),
-    PhotoLevel(name="2 dark ground, turned", seed=2, ground="rubber",
-               rocks=("granite", "limestone"), turn_deg=8.0, orientation=6),
-    PhotoLevel(name="3 plywood, uneven light", seed=3, ground="plywood", uneven=0.3,
-               markers="single", marker_mm=100.0, rocks=("granite", "basalt", "schist")),
-    PhotoLevel(name="4 soft shadows", seed=4, shadow=0.3, sun_deg=60.0, tilt_deg=10.0),
-    PhotoLevel(name="5 many stones, blur", seed=5, count=45, gap_px=12, blur_px=1.6, noise=3.0,
-               ground="cloth", rocks=("sandstone", "basalt", "granite"), tilt_deg=12.0),
-    PhotoLevel(name="6 hard shadows", seed=6, ground="plywood", shadow=0.5, sun_deg=45.0,
-               tilt_deg=15.0, rocks=("granite", "basalt", "schist", "limestone"), orientation=8),
-    PhotoLevel(name="7 touching stones", seed=7, touching=6, cut=2, shadow=0.3, uneven=0.25,
-               tilt_deg=15.0, rocks=("granite", "sandstone", "basalt")),
-    PhotoLevel(name="8 gravel, strong perspective", seed=8, ground="gravel", uneven=0.2, shadow=0.3,
-               rocks=("basalt", "sandstone", "schist"), tilt_deg=28.0, noise=4.0, markers="single",
-               marker_mm=100.0),
-    PhotoLevel(name="9 grass, shadows, touching", seed=9, ground="grass", touching=4, shadow=0.45,
-               tilt_deg=22.0, uneven=0.3, noise=4.0, blur_px=1.2),
-    PhotoLevel(name="10 low contrast, everything", seed=10, ground="cloth", count=32, touching=5,
-               cut=2, rocks=("limestone", "granite", "sandstone"), shadow=0.5, sun_deg=40.0,
-               uneven=0.4, tilt_deg=30.0, blur_px=1.6, noise=6.0, quality=75),
-)  # fmt: skip
+def _levels() -> tuple[PhotoLevel, ...]:
+    text = Path(__file__).with_name("levels.toml").read_text("utf-8")
+    levels = tomllib.loads(text)["levels"]
+    return tuple(
+        PhotoLevel(**level | {"rocks": tuple(level.get("rocks", PhotoLevel.rocks))})
+        for level in levels
+    )
+
+
+LEVELS = _levels()
 """Test photographs, from easy to hard."""
 
 

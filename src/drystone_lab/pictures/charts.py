@@ -39,6 +39,13 @@ def name_axes(ax: Axes, across: str, up: str) -> None:
     ax.tick_params(labelsize=7)
 
 
+def figure_of(ax: Axes) -> Figure:
+    """Return the figure whose axes these are."""
+    figure = ax.get_figure(root=True)
+    assert figure is not None  # noqa: S101 - it was made for the axes
+    return figure
+
+
 def panel_sheet(
     count: int, columns: int, panel_in: tuple[float, float], title: str = ""
 ) -> tuple[Figure, list[Axes]]:
@@ -160,9 +167,6 @@ def _name_groups(ax: Axes, names: Sequence[str]) -> None:
     )  # fmt: skip
 
 
-NOISE_IN = (3.9, 2.8)
-NOISE_COLUMNS = 2
-
 FULL: dict[str, Any] = {"marker": "o", "color": CLUSTER_COLOURS[0]}
 POOR: dict[str, Any] = {"marker": "^", "color": CLUSTER_COLOURS[1]}
 """Walls above and below the threshold of filling: blue points and yellow triangles."""
@@ -193,20 +197,14 @@ class NoisePanel:
     baseline: Mapping[int, float]
 
 
-@dataclass(frozen=True)
-class NoiseNames:
-    """What the legend calls what is drawn."""
-
-    full: str
-    poor: str
-    reference: str
-    baseline: str
+NoiseNames = tuple[str, str, str, str]
+"""What the legend calls full and poor walls, the reference and the baseline."""
 
 
-def plot_noise(panel: NoisePanel, names: NoiseNames, ax: Axes | None = None) -> Axes:
+def plot_noise(ax: Axes, panel: NoisePanel, names: NoiseNames) -> None:
     """Draw a figure over the noise."""
-    ax = Figure(figsize=NOISE_IN).add_subplot() if ax is None else ax
-    for name, pairs, look in ((names.full, panel.full, FULL), (names.poor, panel.poor, POOR)):
+    full, poor, reference, baseline = names
+    for name, pairs, look in ((full, panel.full, FULL), (poor, panel.poor, POOR)):
         seen: Counter[int] = Counter()
         x = []
         for noise, _ in pairs:
@@ -216,42 +214,34 @@ def plot_noise(panel: NoisePanel, names: NoiseNames, ax: Axes | None = None) -> 
             x, [value for _, value in pairs], linestyle="", markersize=4, alpha=0.8,
             markeredgecolor=OUTLINE_COLOUR, markeredgewidth=0.3, label=name, gid=name, **look,
         )  # fmt: skip
-    lines = (
-        (names.reference, panel.reference, REFERENCE),
-        (names.baseline, panel.baseline, BASELINE),
-    )
-    for name, line, look in lines:
+    for name, line, look in (
+        (reference, panel.reference, REFERENCE),
+        (baseline, panel.baseline, BASELINE),
+    ):
         ax.plot(list(line), list(line.values()), label=name, gid=name, zorder=3, **look)
     name_axes(ax, "noise, %", panel.figure)
     ax.grid(axis="y", color=GREY, linewidth=0.3, alpha=0.5)
-    return ax
 
 
 def noise_panels(
     panels: Sequence[NoisePanel], names: NoiseNames, ticks: Mapping[int, str]
 ) -> Figure:
     """Draw several figures of the same walls, with one legend above."""
-    sheet, axes = panel_sheet(len(panels), NOISE_COLUMNS, NOISE_IN)
+    sheet, axes = panel_sheet(len(panels), 2, (3.9, 2.8))
     for ax, panel in zip(axes, panels, strict=True):
-        plot_noise(panel, names, ax)
+        plot_noise(ax, panel, names)
         ax.set_xticks(list(ticks), list(ticks.values()))
     handles, labels = axes[0].get_legend_handles_labels()
     sheet.legend(handles, labels, fontsize=7, frameon=False, loc="outside upper center", ncols=4)
     return sheet
 
 
-HISTORY_IN = (3.4, 2.4)
-ACROSS = 3
-
 VersionLines = Mapping[str, Sequence[float | None]]
 """By method: a value a version, None where there is none."""
 
 
-def plot_history(
-    versions: Sequence[str], lines: VersionLines, ax: Axes | None = None, *, figure: str = ""
-) -> Axes:
+def plot_history(ax: Axes, versions: Sequence[str], lines: VersionLines, figure: str) -> None:
     """Draw a figure over versions, a line a method; dashed where colours come round again."""
-    ax = Figure(figsize=HISTORY_IN).add_subplot() if ax is None else ax
     for number, (method, values) in enumerate(lines.items()):
         turn, place = divmod(number, len(LOOKS))
         colour, marker = LOOKS[place]
@@ -263,16 +253,15 @@ def plot_history(
     ax.set_xticks(range(len(versions)), versions)
     ax.set_xlim(-0.4, len(versions) - 0.6)
     name_axes(ax, "version", figure)
-    return ax
 
 
 def history_panels(
     versions: Sequence[str], figures: Mapping[str, VersionLines], title: str
 ) -> Figure:
     """Draw several figures over versions, with one legend."""
-    sheet, panels = panel_sheet(len(figures), ACROSS, HISTORY_IN, title)
+    sheet, panels = panel_sheet(len(figures), 3, (3.4, 2.4), title)
     for ax, (name, lines) in zip(panels, figures.items(), strict=True):
-        plot_history(versions, lines, ax, figure=name)
+        plot_history(ax, versions, lines, name)
     handles, labels = panels[0].get_legend_handles_labels()
     sheet.legend(
         handles, labels, fontsize=7, edgecolor="none", loc="outside lower center",

@@ -19,8 +19,7 @@ from drystone_lab.packing import load_packer
 from drystone_lab.public.store import NOT_SHAKEN, BenchStore, KeptRun, Stamp, kept_run
 from drystone_lab.public.suites import STRIP_SECONDS, method_named, walls_of
 from drystone_lab.public.tables import SHAKE, BenchResult, BenchResults, comparison, pair_tables
-from drystone_lab.runs.outcome import RunOutcome, RunStore
-from drystone_lab.runs.runner import Runner, absent_data
+from drystone_lab.runs.outcome import Runner, RunOutcome, RunStore, absent_data
 from drystone_lab.runs.spec import STRIPS, RunSpec
 from drystone_lab.runs.workers import work_of
 from drystone_lab.table import BenchSettings, Table

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from drystone_lab.pictures.charts import history_panels
 from drystone_lab.public.store import KeptRun
 from drystone_lab.runs.spec import STRIPS
-from drystone_lab.table import Cell, Table
+from drystone_lab.table import BENCH, Cell, Table, worded
 
 Value = float | None
 
@@ -55,9 +55,7 @@ def history_table(medians: Sequence[Medians]) -> Table:
          *(None if value is None else float(f"{value:.4g}") for value in one.values.values()))
         for one in medians
     ]  # fmt: skip
-    notes = [
-        "Medians over walls and seeds. Seconds are of the machines that the runs were done on."
-    ]
+    notes = []
     differing = sorted(
         {
             f"{one.suite} {one.method}"
@@ -72,10 +70,8 @@ def history_table(medians: Sequence[Medians]) -> Table:
             + ", ".join(differing)
             + "."
         )
-    return Table(
-        "Quality by version", ("suite", "method", "version", "runs", *FIGURES), tuple(rows),
-        tuple(notes),
-    )  # fmt: skip
+    words = BENCH["public"]["history"]
+    return worded(words, rows, columns={"<figures>": FIGURES}, more=notes)
 
 
 def drawn_history(medians: Sequence[Medians]) -> Figure:

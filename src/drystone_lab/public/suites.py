@@ -1,12 +1,13 @@
 """The walls and the methods of the public benchmark.
 
-Walls are fixed: sources, seeds, sizes and scales may not change without a new
-:data:`SUITE_VERSION`, or figures of different releases and people could not be compared.
+Walls are fixed (``suites.toml``): they may not change without a new :data:`SUITE_VERSION`.
 """
 
-from collections.abc import Mapping, Sequence
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import entry_points
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -26,80 +27,21 @@ _MASONS = tuple(
 _NOISE = tuple(replace(wall, suite="noise") for wall in NOISY)
 
 
-def _rounded(count: int, shape: str, width: float, height: float) -> Target:
-    elongation = {"round": 0.0, "long": 0.2}[shape]
-    source = generated("fourier", 1, count=count, D2=elongation)
-    return Target(f"fourier {count} {shape}", source, width, height, 0.5, suite="fourier")
+def _generated() -> Iterator[tuple[str, tuple[Target, ...]]]:
+    text = Path(__file__).with_name("suites.toml").read_text("utf-8")
+    for suite, about in tomllib.loads(text).items():
+        walls = []
+        for wall in about["walls"]:
+            source = generated(about["kind"], about["seed"], **wall["settings"])
+            width, height, scale = wall["size"]
+            walls.append(Target(wall["name"], source, width, height, scale, suite=suite))
+        yield suite, tuple(walls)
 
-
-_FOURIER = (
-    _rounded(20, "round", 408, 164),
-    _rounded(20, "long", 412, 164),
-    _rounded(60, "round", 708, 282),
-    _rounded(60, "long", 714, 286),
-    _rounded(120, "round", 1000, 400),
-    _rounded(120, "long", 1010, 404),
-)
-
-_POLYGONS = tuple(
-    Target(
-        f"polygons {percent} %", generated("polygon", 2, count=40, noise=percent / 100),
-        1172, 468, 0.25, suite="polygons",
-    )
-    for percent in (20, 50, 80)
-)  # fmt: skip
-
-
-def _rubble(count: int, courses: int, width: float, height: float) -> Target:
-    source = generated(
-        "rubble", 4, count=count, courses=courses, width_px=width, height_px=height, area_ratio=0.85
-    )
-    return Target(f"rubble {count}", source, width, height, 0.5, suite="rubble")
-
-
-_RUBBLE = (_rubble(30, 4, 560, 160), _rubble(60, 6, 784, 228), _rubble(120, 8, 1120, 320))
-
-
-def _bricks(name: str, count: int, aspect: float, halves: int, width: float) -> Target:
-    source = generated("brick", 5, count=count, aspect=aspect, halves=halves, height_px=12)
-    # Seven courses high, for bricks that fill six: 6 / 7 of the wall.
-    return Target(name, source, width, 84, 1.0, suite="bricks")
-
-
-_BRICKS = (
-    _bricks("bricks 2:1", 30, 2.0, 0, 120),
-    _bricks("bricks 3:1", 48, 3.0, 0, 288),
-    _bricks("bricks 3:1 and halves", 32, 3.0, 8, 216),
-)
-
-
-def _sized(count: int, width: float, height: float) -> Target:
-    source = generated("polygon", 3, count=count, noise=0.3, width_px=65, height_px=45)
-    return Target(f"sizes {count}", source, width, height, 0.5, suite="sizes")
-
-
-_SIZES = (
-    _sized(20, 414, 166),
-    _sized(50, 656, 262),
-    _sized(100, 928, 370),
-    _sized(200, 1312, 524),
-    # As high as that of 100 and five times as long: in a wall of the others' shape a stone after
-    # the 300th takes about twice as long to choose.
-    _sized(500, 4640, 370),
-)
 
 ALL = "all"
 
 _WALLS: Mapping[str, tuple[Target, ...]] = MappingProxyType(
-    {
-        "masons": _MASONS,
-        "fourier": _FOURIER,
-        "polygons": _POLYGONS,
-        "rubble": _RUBBLE,
-        "bricks": _BRICKS,
-        "sizes": _SIZES,
-        "noise": _NOISE,
-    }
+    {"masons": _MASONS, **dict(_generated()), "noise": _NOISE}
 )
 
 PUBLIC_SUITES: Mapping[str, str] = MappingProxyType(

@@ -12,7 +12,7 @@ from scipy.stats import rankdata, wilcoxon
 
 from drystone_lab.paired import COVERED, interval_of
 from drystone_lab.runs.outcome import RunOutcome
-from drystone_lab.table import Cell, Table
+from drystone_lab.table import BENCH, Cell, Table, worded
 from drystone_lab.walls import Target
 
 PLACED = "placed"
@@ -114,32 +114,25 @@ UNITS = {PLACED: "placed share", SHAKE: "PGA, g"}
 
 def comparison(results: BenchResults) -> tuple[Table, ...]:
     """Return the figures of every method on every wall, on all walls, and the times."""
-    walls = Table(
-        "Walls: mean over seeds, standard deviation (±), best",
-        ("wall", "method", "seeds", *_columns(results.figures)),
-        tuple(
+    figures, columns = results.figures, {"<figures>": _columns(results.figures)}
+    walls = worded(
+        BENCH["public"]["walls"],
+        (
             (wall.name, method, len(results.of(method, wall)),
-             *_cells(results.figures, [results.of(method, wall)]))
+             *_cells(figures, [results.of(method, wall)]))
             for wall in results.walls
             for method in results.methods
         ),
-        (
-            "Higher is better, for F_AH lower. Seconds are in a table of their own.",
-            *_undefined(results),
-        ),
+        columns=columns, more=_undefined(results),
     )  # fmt: skip
-    everything = Table(
-        "All walls",
-        ("method", "walls", *_columns(results.figures)),
-        tuple(
+    everything = worded(
+        BENCH["public"]["everything"],
+        (
             (method, len(results.of(method)),
-             *_cells(results.figures, [results.of(method, wall) for wall in results.walls]))
+             *_cells(figures, [results.of(method, wall) for wall in results.walls]))
             for method in results.methods
         ),
-        (
-            "Means over walls of their means and of their best; ±: the spread over seeds, root "
-            "mean square of the walls' standard deviations.",
-        ),
+        columns=columns,
     )  # fmt: skip
     return walls, everything, _times(results)
 
@@ -198,12 +191,7 @@ def _times(results: BenchResults) -> Table:
             rows.append(
                 (wall.name, method, _rounded(fmean(seconds), 3), spread, _rounded(min(seconds), 3))
             )
-    return Table(
-        "Seconds a wall, from the stones to the last step",
-        ("wall", "method", "s", "±s", "least s"),
-        tuple(rows),
-        ("They depend on the machine and on what else it did; all else here does not.",),
-    )
+    return worded(BENCH["public"]["times"], rows)
 
 
 def _mean(values: Sequence[float]) -> float | None:
@@ -314,22 +302,10 @@ def _pairs_table(
         rows.append((key[1], key[2], pair.pairs, *cells, float(f"{p[key]:.2g}"), shown))
     less = sum(pair.left_out for key, pair in known.items() if key[0] == figure)
     most = max((row[2] for row in rows if isinstance(row[2], int)), default=0)
-    return Table(
-        f"{figure}: what the first method has more, pairs of the same wall and seed",
-        ("first", "second", "pairs", "mean", "95 % low", "95 % high", "won", "p", "shows"),
-        tuple(rows),
-        (
-            "won: share of the pairs in which the first is better, of equal ones half. Intervals: "
-            "bootstrap of the mean. p: Wilcoxon's signed-rank test, by Holm for all "
-            f"{len(known)} tests of these tables.",
-            "shows: who is better, where the interval does not hold 0 and p is below "
-            f"{LEVEL:.2g}; a name with a question mark has the interval alone, which is not "
-            "a proof where so many are looked at.",
-            *(() if not less else (f"{less} pairs lack a value of one or both and are left out.",)),
-            *(() if not copies else (_COPIES,)),
-            *_too_few(most, len(known), copies=copies),
-        ),
-    )  # fmt: skip
+    more = [f"{less} pairs lack a value of one or both and are left out."] if less else []
+    more += [_COPIES] if copies else []
+    more += _too_few(most, len(known), copies=copies)
+    return worded(BENCH["public"]["pairs"], rows, more=more, figure=figure, tests=len(known))
 
 
 _COPIES = "Walls on which two methods do not depend on the seed count once for these two."
@@ -360,19 +336,8 @@ def _ranking(
          _not_told_apart(method, order, results.figures, shown))
         for place, method in enumerate(order, 1)
     )  # fmt: skip
-    return Table(
-        "Ranking: mean rank among the methods, 1 is best",
-        ("place", "method", "mean rank", *results.figures, "not told apart from the next in"),
-        rows,
-        (
-            "Methods are ranked for every wall and seed, equal ones share a rank, undefined values "
-            "come last; the mean weighs all figures alike, which is a convention: read the "
-            "figures one by one.",
-            "Last column: figures in which nothing is shown between it and the next method, or "
-            "only with a question mark. Where all are named the order of the two is not shown by "
-            "these walls.",
-        ),
-    )
+    columns = {"<figures>": results.figures}
+    return worded(BENCH["public"]["ranking"], rows, columns=columns)
 
 
 def _mean_ranks(results: BenchResults, figure: str) -> dict[str, float]:

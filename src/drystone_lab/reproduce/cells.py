@@ -1,4 +1,4 @@
-"""Figures of walls as cells of tables and as words: medians, pairs, trends, claims."""
+"""Figures of walls as cells of tables and as words: medians, pairs, trends."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ from statistics import median
 from scipy.stats import spearmanr
 
 from drystone_lab.runs.outcome import RunOutcome
-from drystone_lab.table import Cell, Table
+from drystone_lab.table import Cell
 
 FORMATS = {"placed": ".0f", "F_SF": ".3f", "F_AV": ".1f", "F_AH": ".2f", "F_LR": ".2f"}
 """Figures of a summary, and how the ends of their ranges are written."""
@@ -42,6 +42,11 @@ def figures_of(outcomes: Sequence[RunOutcome], name: str) -> list[float]:
     return [float(value) for value in values if value is not None]
 
 
+def placed_of(outcome: RunOutcome) -> tuple[Cell, Cell]:
+    """Return how many stones a wall has, and of how many."""
+    return outcome.figures["placed"], outcome.figures["stones"]
+
+
 def metric_cells(outcome: RunOutcome) -> tuple[Cell, ...]:
     """Return F_SF, F_AV, F_AH and F_LR of a wall as cells of a table."""
     return tuple(rounded(outcome.figures[name]) for name in METRICS)
@@ -68,40 +73,26 @@ SAME = 1e-9
 """Figures that differ by less are equal."""
 
 WINS = ("figure", "better", "equal", "worse", "median difference")
-"""Names of :meth:`Wins.cells`."""
+"""Names of the cells of :func:`wins`."""
 
 
-@dataclass(frozen=True)
-class Wins:
-    """How often walls of one way are better than those of another, pairs of one seed."""
+def wins(
+    first: Sequence[float | None], second: Sequence[float | None], figure: str
+) -> tuple[Cell, ...]:
+    """Return how often one way is better than another, by pairs of one seed.
 
-    better: int
-    equal: int
-    worse: int
-    median_difference: float | None
-
-    @property
-    def pairs(self) -> int:
-        """How many there are."""
-        return self.better + self.equal + self.worse
-
-    def cells(self, figure: str) -> tuple[Cell, ...]:
-        """Return the cells of :data:`WINS`."""
-        return figure, self.better, self.equal, self.worse, rounded(self.median_difference)
-
-
-def wins(first: Sequence[float | None], second: Sequence[float | None], figure: str) -> Wins:
-    """Compare figures in pairs; those with a None are left out.
+    Pairs with a None are left out.
 
     >>> wins([0.8, 0.7, None], [0.7, 0.7, 0.9], "F_SF")
-    Wins(better=1, equal=1, worse=0, median_difference=0.05)
+    ('F_SF', 1, 1, 0, 0.05)
     """
     pairs = zip(first, second, strict=True)
     more = [round(a - b, 12) for a, b in pairs if a is not None and b is not None]
     sign = -1 if figure in LOWER_IS_BETTER else 1
     better = sum(sign * each > SAME for each in more)
     worse = sum(sign * each < -SAME for each in more)
-    return Wins(better, len(more) - better - worse, worse, median(more) if more else None)
+    middle = rounded(median(more)) if more else None
+    return figure, better, len(more) - better - worse, worse, middle
 
 
 LEVEL = 0.05
@@ -139,37 +130,8 @@ def trend(pairs: Sequence[tuple[float, float | None]]) -> Trend | None:
     >>> trend([(1, 2.0), (2, 3.0), (3, 5.0), (4, 4.0), (5, None)])
     Trend(rho=0.8, p=0.2, count=4)
     """
-    x = [pair[0] for pair in pairs if pair[1] is not None]
-    y = [pair[1] for pair in pairs if pair[1] is not None]
-    if len(x) < FEWEST or len({*x}) < 2 or len({*y}) < 2:
+    known = [(x, y) for x, y in pairs if y is not None]
+    if len(known) < FEWEST or any(len({*column}) < 2 for column in zip(*known, strict=True)):
         return None
-    found = spearmanr(x, y)
-    return Trend(round(float(found.statistic), 6), float(f"{found.pvalue:.3g}"), len(x))
-
-
-@dataclass(frozen=True)
-class ClaimCheck:
-    """One claim of the paper, what our walls say of it, and whether that agrees (None: unknown)."""
-
-    claim: str
-    found: str
-    holds: bool | None
-
-
-def findings_table(title: str, findings: Sequence[ClaimCheck]) -> Table:
-    """Return claims and findings as a table."""
-    rows = tuple((each.claim, each.found, each.holds) for each in findings)
-    return Table(title, ("the paper", "here", "agrees"), rows)
-
-
-def sentences(findings: Sequence[ClaimCheck]) -> tuple[str, ...]:
-    """Return of how many claims the walls agree with the paper, and a paragraph each.
-
-    >>> sentences([ClaimCheck("Walls are low.", "2 px.", True)])[0]
-    'Of 1 claims of the paper that can be told, 1 agree.'
-    """
-    verdicts = {True: "Agrees", False: "Differs", None: "Cannot be told"}
-    told = [each.holds for each in findings if each.holds is not None]
-    count = f"Of {len(told)} claims of the paper that can be told, {sum(told)} agree."
-    each = (f"{verdicts[one.holds]}: {one.claim} Here: {one.found}" for one in findings)
-    return (count, *each)
+    found = spearmanr(known)
+    return Trend(round(float(found.statistic), 6), float(f"{found.pvalue:.3g}"), len(known))

@@ -13,22 +13,18 @@ from drystone.indices import (
     left_neighbour,
     local_filling_ratio_at,
     neighbour_height_ratio,
-    peak_columns,
     shape_factor,
-    swept_pixels,
 )
 from drystone.kernels.lowering import Positions
-from drystone.model.landscape import Box, Landscape, view_box
+from drystone.model.landscape import Landscape, view_box
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Wall
 from drystone.placement.best import best_spots
 from drystone.placement.feasible import feasible_positions
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
-from drystone.stabilise.stabilise import falls_to
 from drystone.stabilise.support import Pose
 from drystone.verify.replay import Stage, replay_plan
-from drystone_lab.pictures.action import ActionView, NeighbourBox
 from drystone_lab.reproduce.item import Context
 from drystone_lab.runs.spec import RunSpec
 
@@ -75,22 +71,15 @@ class Construction:
     @property
     def moments(self) -> Sequence[Moment]:
         """The states before each stone that was placed."""
-        return [self.moment(number) for number in range(1, len(self.stages) + 1)]
-
-    @property
-    def halfway(self) -> Moment:
-        """The state in which half of the stones that will be placed are there."""
-        return self.moment(len(self.stages) // 2 + 1)
+        return [
+            Moment(number, stage.before, self.workshop, self.settings)
+            for number, stage in enumerate(self.stages, 1)
+        ]
 
     @property
     def wall(self) -> Wall:
         """The finished wall."""
         return self.stages[-1].after
-
-    def moment(self, number: int) -> Moment:
-        """Return the state before a stone, counted from 1."""
-        wall = self.stages[number - 1].before
-        return Moment(number, wall, self.workshop, self.settings)
 
 
 def construction(context: Context, spec: RunSpec) -> Construction:
@@ -119,21 +108,6 @@ class RestingPlace:
         return -(self.row + self.posed.height_px), self.col, self.posed.stone.id
 
 
-def resting_places(moment: Moment) -> tuple[RestingPlace, ...]:
-    """Return every feasible position of every stone that is left at which it rests by itself."""
-    occupied, settings = moment.wall.occupied, moment.settings.stabilise
-    found = []
-    for stone_id in moment.remaining:
-        for posed in moment.workshop.poses(stone_id):
-            factor = shape_factor(posed)
-            found += [
-                place_of(moment, posed, row, col, factor)
-                for row, col in moment.positions(posed).tolist()
-                if falls_to(occupied, (posed, row, col), settings) == 0
-            ]
-    return tuple(found)
-
-
 def place_of(moment: Moment, posed: PosedStone, row: int, col: int, factor: float) -> RestingPlace:
     """Return a place with its indices."""
     landscape, end_px = moment.landscape, moment.workshop.stock.narrowest_px
@@ -153,53 +127,18 @@ def place_of(moment: Moment, posed: PosedStone, row: int, col: int, factor: floa
     return RestingPlace(posed, row, col, values)
 
 
-def extreme(places: Sequence[RestingPlace], name: str, *, best: bool) -> RestingPlace | None:
-    """Return the place where an index is best, or worst; None when it has a meaning nowhere.
-
-    Of equal ones the lowest, then that furthest to the left, then that of the smaller id.
-    """
-    meant = [place for place in places if name in place.values]
-    # NHR is best at 0, the others when they are large.
-    sign = 1.0 if (name == "NHR") == best else -1.0
-    return min(meant, key=lambda p: (sign * p.values[name], p.order), default=None)
-
-
 def amid_course(built: Construction) -> tuple[Moment, RestingPlace]:
     """Return a stone of a run that has a left neighbour and two joints below, and when it came.
 
     The first in the second half of the run, or else the stone that comes next halfway; where it
     was placed.
     """
-    halfway = built.halfway.number
-    steps = [(built.moment(n + 1), built.stages[n]) for n in range(halfway - 1, len(built.stages))]
+    half = len(built.stages) // 2
     found = []
-    for moment, stage in steps:
+    for moment, stage in zip(built.moments[half:], built.stages[half:], strict=True):
         at = stage.group.placement
         place = place_of(moment, at.posed, at.row, at.col, shape_factor(at.posed))
         if {"NHR", "IWR"} <= place.values.keys():
             return moment, place
         found.append((moment, place))
     return found[0]
-
-
-def action_at(moment: Moment, posed: PosedStone, row: int, col: int) -> ActionView:
-    """Return what the indices of a stone at a place measure, to be drawn."""
-    landscape, end_px = moment.landscape, moment.workshop.stock.narrowest_px
-    box = view_box(posed, row, col, landscape.height_px)
-    ids = [placement.stone_id for placement in moment.wall.placements]
-
-    def beside(found: Box | None) -> NeighbourBox | None:
-        return None if found is None else NeighbourBox(ids[landscape.boxes.index(found)], found)
-
-    below1, below2 = joints_below(landscape, box, end_px)
-    return ActionView(
-        labels=moment.wall.labels,
-        posed=posed,
-        row=row,
-        col=col,
-        swept=swept_pixels(landscape, posed, row, col),
-        built_height=landscape.built_height_px,
-        neighbour=beside(left_neighbour(landscape, box)),
-        below=(beside(below1), beside(below2)),
-        peaks=peak_columns(posed),
-    )

@@ -7,12 +7,11 @@ from datetime import timedelta
 from pathlib import Path
 from typing import Any, Literal
 
-from drystone.errors import DrystoneError, InputError
+from drystone.errors import DrystoneError
 from drystone_lab.reproduce.folder import ReportFolder, TimeOfDay, made_with, request_of, utc_now
 from drystone_lab.reproduce.item import Context, Output, PaperItem
 from drystone_lab.reproduce.items import ITEMS, item_named
-from drystone_lab.runs.outcome import RunStore
-from drystone_lab.runs.runner import Runner, RunWorker, absent_data, one_by_one
+from drystone_lab.runs.outcome import Runner, RunStore, RunWorker, absent_data, one_by_one
 from drystone_lab.runs.spec import published
 
 ItemStatus = Literal["made", "kept", "missing data", "failed"]
@@ -54,17 +53,44 @@ def reproduce(
 ) -> Iterator[MadeItem]:
     """Make items and yield what became of each; the report is written anew after every one."""
     items = {name: item_named(name) for name in ITEMS} if items is None else items
-    request = request_of(quick=options.quick, seed=options.seed, data=options.data)
     report = ReportFolder(folder)
     progress = ItemProgress(options.say, len(names))
     runner = Runner(report.runs, options.data, options.work, progress.walls)
-    maker = _Maker(report, options, request, runner)
     for name in names:
         progress.begin(name)
-        made = maker.made(name, items)
+        made = _made(name, items[name], report, options, runner)
         report.write_report(items)
         progress.end(made.status)
         yield made
+
+
+def _made(
+    name: str, item: PaperItem, report: ReportFolder, options: Options, runner: Runner
+) -> MadeItem:
+    """Return what becomes of an item: it is kept, made, or there is an error."""
+    page = report.page(name)
+    request = request_of(quick=options.quick, seed=options.seed, data=options.data)
+    kept = None if options.again else report.finished(name, request)
+    if kept is not None:
+        report.forget_miss(name)
+        return MadeItem(name, "kept", kept, None, page)
+    absent = [each for each in item.needs if not published(each).is_there(options.data)]
+    if absent:
+        error = absent_data(absent, known=options.data is not None)
+        report.miss(name, item, error)
+        return MadeItem(name, "missing data", None, error, page)
+    begun = time.perf_counter()
+    try:
+        output = item.make(Context(runner, options.quick, options.seed))
+    except DrystoneError as error:
+        report.miss(name, item, error)
+        return MadeItem(name, "failed", None, error, page)
+    about = {
+        "request": request,
+        "made": made_with(options.now),
+        "taken": taken(output, runner.store, time.perf_counter() - begun),
+    }
+    return MadeItem(name, "made", report.keep(name, item, output, about), None, page)
 
 
 class ItemProgress:
@@ -102,52 +128,6 @@ class ItemProgress:
         elapsed = timedelta(seconds=int(self._clock() - self._begun))
         what = f"{self._number} of {self._total}, {self._name}"
         self._say(f"[{elapsed}] {what}{': ' if text else ''}{text}")
-
-
-@dataclass(frozen=True)
-class _Maker:
-    """Makes one item after the other for a request."""
-
-    report: ReportFolder
-    options: Options
-    request: Mapping[str, Any]
-    runner: Runner
-
-    def made(self, name: str, items: Mapping[str, PaperItem]) -> MadeItem:
-        """Return what becomes of an item: it is kept, made, or there is an error."""
-        page = self.report.page(name)
-        kept = None if self.options.again else self.report.finished(name, self.request)
-        if kept is not None:
-            self.report.forget_miss(name)
-            return MadeItem(name, "kept", kept, None, page)
-        item = items[name]
-        if (absent := self._absent(item)) is not None:
-            self.report.miss(name, item, absent)
-            return MadeItem(name, "missing data", None, absent, page)
-        try:
-            return MadeItem(name, "made", self._make(name, item), None, page)
-        except DrystoneError as error:
-            self.report.miss(name, item, error)
-            return MadeItem(name, "failed", None, error, page)
-
-    def _make(self, name: str, item: PaperItem) -> dict[str, Any]:
-        begun = time.perf_counter()
-        context = Context(self.runner, self.options.quick, self.options.seed)
-        output = item.make(context)
-        about = {
-            "request": self.request,
-            "made": made_with(self.options.now),
-            "taken": taken(output, self.runner.store, time.perf_counter() - begun),
-        }
-        return self.report.keep(name, item, output, about)
-
-    def _absent(self, item: PaperItem) -> InputError | None:
-        """Return the error about published stones that an item needs and that are not there."""
-        data = self.options.data
-        absent = [name for name in item.needs if not published(name).is_there(data)]
-        if not absent:
-            return None
-        return absent_data(absent, known=data is not None)
 
 
 def taken(output: Output, store: RunStore, seconds: float) -> dict[str, float | int]:

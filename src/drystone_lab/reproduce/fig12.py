@@ -21,9 +21,8 @@ from drystone.drawing.pictures.stones import plot_labels
 from drystone.kernels.boundary import EMPTY, boundary_of
 from drystone.model.wall import Labels, Wall
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
-from drystone_lab.reproduce.cells import ClaimCheck
-from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
-from drystone_lab.table import Cell, Table
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
+from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.walls import PR, Target
 
 CENTRE = "#0072b2"
@@ -32,8 +31,8 @@ NORMAL_PX = 2.5
 
 
 def plot_boundary_edges(
-    labels: Labels, starts: NDArray[np.floating], ends: NDArray[np.floating], ax: Axes | None = None
-) -> Axes:
+    ax: Axes, labels: Labels, starts: NDArray[np.floating], ends: NDArray[np.floating]
+) -> None:
     """Draw the pixel edges on which blocks touch, each with its normal.
 
     `starts` and `ends` are (n, 2), px, y up from the ground; the normal is to the left of the way.
@@ -61,24 +60,10 @@ def plot_boundary_edges(
         "its normal": Lines("", [], NORMAL, 0.8),
     }
     draw_legend(ax, legend)
-    return ax
 
-
-def plot_blocks(labels: Labels, model: RigidBlockModel, ax: Axes | None = None) -> Axes:
-    """Draw rigid blocks: interfaces, their ends and normals, and the centres of mass."""
-    ax = plot_contacts(labels, model, ax)
-    for block in model.blocks:
-        ax.plot(*block.centroid, "^", color=CENTRE, markersize=7, gid=f"centre-{block.id}",
-                zorder=5)  # fmt: skip
-    return ax
-
-
-WAYS = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])
-"""(x, y) of the headings of :func:`drystone.kernels.boundary.touching_edges`."""
 
 MARGIN_PX = 2
 TILTED_DEG = 1.0
-PANEL_IN = (6.4, 2.5)
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,11 +80,15 @@ class Blocks:
         """Pixel edges between two of them or one and the ground: starts and ends."""
         return boundary_edges(self.labels)
 
+    @property
+    def edge_count(self) -> int:
+        """How many pixel edges."""
+        return len(self.edges[0])
+
 
 def blocks(context: Context, wall: Target = PR) -> Blocks:
     """Take three stones of a wall to rigid blocks."""
-    spec = wall.run(context.seed)
-    built = context.wall(spec)
+    built = context.wall(wall.run(context.seed))
     labels = three_stones(built)
     model, whole = (model_from_labels(each).model for each in (labels, built.labels))
     return Blocks(wall, labels, model, whole)
@@ -143,10 +132,8 @@ def boundary_edges(labels: Labels) -> tuple[NDArray[np.float64], NDArray[np.floa
 
 
 def _mean_normal(interface: Interface) -> NDArray[np.float64]:
-    """Return the mean of the normals of the pixel edges of a run.
-
-    Each is its edge turned by a quarter; so their sum is the way from end to end, turned.
-    """
+    # The mean over its pixel edges, each turned by a quarter: their sum is the way from end to
+    # end, turned.
     way = interface.points[-1] - interface.points[0]
     normal = np.array([-way[1], way[0]]) / np.hypot(*way)
     return np.asarray(normal if normal @ np.array(interface.normal) >= 0 else -normal)
@@ -157,72 +144,49 @@ def _apart_deg(interface: Interface) -> float:
     return float(np.degrees(np.arccos(min(1.0, cosine))))
 
 
-def _blocks(model: RigidBlockModel) -> Table:
-    return Table(
-        "Rigid blocks",
-        ("stone", "area px", "x", "y"),
-        tuple(
-            (block.id, block.area, *(round(value, 4) for value in block.centroid))
-            for block in model.blocks
-        ),
-        ("Working px, y up from the ground.",),
-    )
-
-
-def _interfaces(found: Blocks) -> Table:
-    rows: list[tuple[Cell, ...]] = []
+def _interfaces(found: Blocks) -> Rows:
     for interface in found.model.interfaces:
         long = len(interface.points) == 2
         ends = [*interface.points[0].tolist(), *interface.points[-1].tolist()]
-        rows.append(
-            (
-                interface.block, interface.other or "ground", *ends, round(interface.length, 4),
-                *(round(value, 4) for value in interface.normal),
-                round(_apart_deg(interface), 3) if long else None,
-            )
+        yield (
+            interface.block, interface.other or "ground", *ends, round(interface.length, 4),
+            *(round(value, 4) for value in interface.normal),
+            round(_apart_deg(interface), 3) if long else None,
         )  # fmt: skip
-    return Table(
-        f"Interfaces of {len(found.edges[0])} pixel edges; the normal points from the second "
-        "into the first",
-        ("stone", "other", "x0", "y0", "x1", "y1", "length px", "normal x", "normal y",
-         "from the mean of the edges' normals deg"),
-        tuple(rows),
-    )  # fmt: skip
 
 
-def _picture(found: Blocks) -> ItemPicture:
+def _picture(found: Blocks) -> ItemFigure:
     labels, model = found.labels, found.model
-    figure = Figure(figsize=(PANEL_IN[0], 3 * PANEL_IN[1]), layout="constrained")
+    figure = Figure(figsize=(6.4, 7.5), layout="constrained")
     first, second, third = figure.subplots(3, 1)
     plot_labels(labels, first, title="(a) labels")
-    plot_boundary_edges(labels, *found.edges, second)
+    plot_boundary_edges(second, labels, *found.edges)
     second.set_title("(b) edges between blocks, and their normals", fontsize=9, loc="left")
-    plot_blocks(labels, model, third)
+    plot_contacts(labels, model, third)
+    for block in model.blocks:
+        gid = f"centre-{block.id}"
+        third.plot(*block.centroid, "^", color=CENTRE, markersize=7, gid=gid, zorder=5)
     third.set_title("(c) rigid blocks", fontsize=9, loc="left")
-    return ItemPicture(
-        "fig12", figure,
-        f"Pic-to-Ri on three stones of {found.wall.name}: (a) label image; (b) pixel edges between "
-        "two stones or a stone and the ground with their normals; (c) interfaces with their end "
-        "points and normals; triangles are centres of mass.",
-    )  # fmt: skip
+    return ItemFigure("fig12", figure)
 
 
-def _claims(found: Blocks) -> Iterator[ClaimCheck]:
-    angles = sorted(_apart_deg(i) for i in found.whole.interfaces if len(i.points) == 2)
-    yield ClaimCheck(
-        "The normal of an interface is the mean of the normals of its pixels.",
-        "the planner takes that of the fitted line. In the finished wall it differs by more than "
-        f"{TILTED_DEG:g} degree in {sum(angle > TILTED_DEG for angle in angles)} of {len(angles)} "
-        f"interfaces, by {angles[-1]:.1f} degrees at most.",
-        None,
-    )
+def _claims(found: Blocks) -> Iterator[Claimed]:
+    angles = [_apart_deg(i) for i in found.whole.interfaces if len(i.points) == 2]
+    tilted = sum(angle > TILTED_DEG for angle in angles)
+    values = {"tilted": tilted, "count": len(angles), "most": max(angles)}
+    yield Claimed("normal", None, values)
 
 
 PIC_TO_RI = PaperItem(
-    **paper("fig12"),
+    words=ITEMS["fig12"],
     study=blocks,
     claims=_claims,
-    tables={"blocks": lambda found: _blocks(found.model), "interfaces": _interfaces},
-    pictures=lambda found: (_picture(found),),
-    needs=(PR.source.name,),
+    tables={
+        "blocks": lambda found: [
+            (block.id, block.area, *(round(value, 4) for value in block.centroid))
+            for block in found.model.blocks
+        ],
+        "interfaces": _interfaces,
+    },
+    pictures=lambda found: [_picture(found)],
 )

@@ -20,14 +20,13 @@ from drystone.metrics.paths import (
 )
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
-from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
-from drystone_lab.table import Cell, Table
+from drystone_lab.reproduce.cells import rounded
+from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
+from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.walls import PR, Target
 
 ACROSS, UPRIGHT = 3, 7
 """How many paths Fig. 17 draws."""
-
-PANEL_IN = (6.4, 2.2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,17 +52,17 @@ class Paths:
         return cls(name, framed, horizontal_paths(joint), vertical_paths(joint), cols - 1, rows - 1)
 
     @property
-    def figures(self) -> tuple[float | None, float | None]:
-        """F_AH and F_AV, in percent; None where there is no path."""
-        across = [path.length_px for path in self.across[:SHORTEST]]
-        upright = [path.length_px for path in self.upright[:SHORTEST]]
-        return mean_excess(across, self.width), mean_excess(upright, self.height)
+    def ways(self) -> tuple[tuple[str, tuple[JointPath, ...], int, int], ...]:
+        """Name, paths, length of a straight one, and how many are drawn, of either way."""
+        return (
+            ("horizontal", self.across, self.width, ACROSS),
+            ("vertical", self.upright, self.height, UPRIGHT),
+        )
 
 
 def walls(context: Context, wall: Target = PR) -> tuple[Paths, ...]:
     """Find the shortest paths; of published stones the image is the masons' wall."""
-    spec = wall.run(context.seed)
-    built = context.wall(spec)
+    built = context.wall(wall.run(context.seed))
     found = [Paths.of(f"planned {wall.name}", built.labels, built.site.width_px)]
     if context.data is not None and wall.source.kind == "published":
         traced = read_wall_image(published_file(context.data, wall.source.name))
@@ -71,63 +70,39 @@ def walls(context: Context, wall: Target = PR) -> tuple[Paths, ...]:
     return tuple(found)
 
 
-def _figures(walls: Sequence[Paths]) -> Table:
-    rows = []
+def _figures(walls: Sequence[Paths]) -> Rows:
     for paths in walls:
-        figures = (None if value is None else round(value, 4) for value in paths.figures)
-        rows.append((paths.name, paths.width, paths.height, *figures))
-    return Table(
-        "Alignment factors",
-        ("wall", "straight across px", "straight upright px", "F_AH %", "F_AV %"),
-        tuple(rows),
-        (f"Mean over the {SHORTEST} shortest paths.",),
-    )
+        factors = (
+            rounded(mean_excess([path.length_px for path in found[:SHORTEST]], straight))
+            for _, found, straight, _ in paths.ways
+        )
+        yield paths.name, paths.width, paths.height, *factors
 
 
-def _paths(walls: Sequence[Paths]) -> Table:
-    rows: list[tuple[Cell, ...]] = []
+def _paths(walls: Sequence[Paths]) -> Rows:
     for paths in walls:
-        for way, found, straight in (
-            ("horizontal", paths.across, paths.width),
-            ("vertical", paths.upright, paths.height),
-        ):
+        for way, found, straight, _ in paths.ways:
             for rank, path in enumerate(found, 1):
                 start = path.pixels[0] - (PAD_TOP, PAD_LEFT)
                 at = int(start[0] if way == "horizontal" else start[1])
-                excess = mean_excess([path.length_px], straight)
-                cell = None if excess is None else round(excess, 4)
-                rows.append((paths.name, way, rank, at, round(path.length_px, 4), cell))
-    return Table(
-        "Paths along the joints, the shortest first",
-        ("wall", "way", "rank", "start row or col", "length px", "longer than straight %"),
-        tuple(rows),
-        ("Rows from the top of the stones, columns from the left end of the wall.",),
-    )
+                excess = rounded(mean_excess([path.length_px], straight))
+                yield paths.name, way, rank, at, round(path.length_px, 4), excess
 
 
-def _picture(paths: Paths, number: int) -> ItemPicture:
-    figure = Figure(figsize=(PANEL_IN[0], 2 * PANEL_IN[1]), layout="constrained")
-    pad = np.array([PAD_TOP, PAD_LEFT])
-    for ax, found, count, way in zip(
-        figure.subplots(2, 1), (paths.across, paths.upright), (ACROSS, UPRIGHT),
-        ("horizontal", "vertical"), strict=True,
-    ):  # fmt: skip
-        shown = found[:count]
-        plot_joint_paths(paths.labels, [path.pixels - pad for path in shown], ax)
-        lengths = ", ".join(f"{path.length_px:.0f}" for path in shown)
+def _picture(paths: Paths, number: int) -> ItemFigure:
+    figure = Figure(figsize=(6.4, 4.4), layout="constrained")
+    for ax, (way, found, _, count) in zip(figure.subplots(2, 1), paths.ways, strict=True):
+        pad = np.array([PAD_TOP, PAD_LEFT])
+        plot_joint_paths(paths.labels, [path.pixels - pad for path in found[:count]], ax)
+        lengths = ", ".join(f"{path.length_px:.0f}" for path in found[:count])
         ax.set_title(f"{paths.name}: {way} paths of {lengths} px", fontsize=8, loc="left")
-    return ItemPicture(
-        "fig17" if number == 0 else "fig17-masons", figure,
-        f"The shortest paths along the joints, {paths.name}: {len(paths.across[:ACROSS])} "
-        f"horizontal and {len(paths.upright[:UPRIGHT])} vertical ones. F_AH and F_AV come from the "
-        f"{SHORTEST} shortest of each.",
-    )  # fmt: skip
+    counts = {"across": len(paths.across[:ACROSS]), "upright": len(paths.upright[:UPRIGHT])}
+    return ItemFigure("fig17-masons" if number else "fig17", figure, {"name": paths.name, **counts})
 
 
 PATHS = PaperItem(
-    **paper("fig17"),
+    words=ITEMS["fig17"],
     study=walls,
     tables={"figures": _figures, "paths": _paths},
     pictures=lambda found: [_picture(paths, number) for number, paths in enumerate(found)],
-    needs=(PR.source.name,),
 )

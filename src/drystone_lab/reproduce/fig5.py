@@ -15,47 +15,34 @@ from drystone.drawing.pictures.stones import plot_stones
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
 from drystone_lab.pictures.charts import name_axes
-from drystone_lab.reproduce.cells import ClaimCheck
-from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
-from drystone_lab.table import Cell, Table
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
+from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.walls import MASONS, PR, Target
 
-SQUARE_IN = (4.6, 4.0)
 MARKERS = ("o", "s", "D", "^", "v", "P", "X", "p")
 """By cluster, then round again: colour alone need not tell them apart."""
 
-MARKER_PT = 6.0
 LABEL_PT = 8.0
-"""Size of a point, and how far from it its id is written."""
+"""How far from its point an id is written."""
 
 
 def plot_features(
-    features: NDArray[np.floating],
-    stone_ids: Sequence[int],
-    clusters: Mapping[int, int],
-    ax: Axes | None = None,
-) -> Axes:
+    ax: Axes, features: NDArray[np.floating], stone_ids: Sequence[int], clusters: Mapping[int, int]
+) -> None:
     """Draw stones by eccentricity and size, coloured by cluster and numbered by id.
 
     `features` is (n, 2), from :func:`drystone.clusters.stone_features`; clusters are by id, from 1.
     """
-    ax = Figure(figsize=SQUARE_IN, layout="constrained").add_subplot() if ax is None else ax
     for stone_id, (across, up) in zip(stone_ids, features.tolist(), strict=True):
         cluster = clusters[stone_id]
-        fill = cluster_colour(cluster)
         ax.plot(
-            [across], [up], MARKERS[(cluster - 1) % len(MARKERS)], color=fill,
-            markersize=MARKER_PT, markeredgecolor=OUTLINE_COLOUR, markeredgewidth=0.5,
+            [across], [up], MARKERS[(cluster - 1) % len(MARKERS)], color=cluster_colour(cluster),
+            markersize=6.0, markeredgecolor=OUTLINE_COLOUR, markeredgewidth=0.5,
             gid=f"stone-{stone_id}",
         )  # fmt: skip
     name_axes(ax, "eccentricity", "area of the bounding box / largest")
     ax.margins(0.08)
-    _write_ids(ax, features, stone_ids)
-    return ax
-
-
-def _write_ids(ax: Axes, features: NDArray[np.floating], stone_ids: Sequence[int]) -> None:
-    """Write an id beside each point, where it is farthest from the other points and ids."""
+    # An id is written beside its point, where it is farthest from the other points and ids.
     points = ax.transData.transform(features)
     turns = np.arange(8) * np.pi / 4
     ways = LABEL_PT * np.column_stack([1.2 * np.cos(turns), np.sin(turns)])
@@ -117,6 +104,10 @@ class ClusteredStones:
         return float(self.merges[-count]), float(self.merges[1 - count])
 
 
+Clustered = Sequence[ClusteredStones]
+"""Sets of stones, of which the first is drawn."""
+
+
 def grouped(
     context: Context, wall: Target = PR, others: Sequence[Target] = MASONS
 ) -> list[ClusteredStones]:
@@ -125,81 +116,51 @@ def grouped(
     return [ClusteredStones.of(name, stones) for name, stones in sets.items() if stones is not None]
 
 
-def _clusters(drawn: ClusteredStones) -> Table:
+def _clusters(sets: Clustered) -> Rows:
+    drawn = sets[0]
     ids = np.array([stone.id for stone in drawn.stones])
     place = np.array([drawn.clusters[i] for i in ids.tolist()])
-    rows: list[tuple[Cell, ...]] = []
     for cluster in sorted({*drawn.clusters.values()}):
         among = place == cluster
         eccentricity, size = drawn.features[among].mean(axis=0).tolist()
         names = " ".join(map(str, ids[among].tolist()))
-        rows.append((cluster, int(among.sum()), round(eccentricity, 4), round(size, 4), names))
-    return Table(
-        f"Clusters of the stones {drawn.name} at a distance of {DISTANCE:g}",
-        ("cluster", "stones", "mean eccentricity", "mean size", "ids"),
-        tuple(rows),
-        ("Size: area of the bounding box over the largest in the set; clusters by falling size.",),
-    )
+        yield cluster, int(among.sum()), round(eccentricity, 4), round(size, 4), names
 
 
-def _stones(drawn: ClusteredStones) -> Table:
-    return Table(
-        f"Features of the stones {drawn.name}",
-        ("stone", "cluster", "eccentricity", "size"),
-        tuple(
-            (stone.id, drawn.clusters[stone.id], round(eccentricity, 4), round(size, 4))
-            for stone, (eccentricity, size) in zip(
-                drawn.stones, drawn.features.tolist(), strict=True
-            )
-        ),
-    )
+def _stones(sets: Clustered) -> Rows:
+    for stone, features in zip(sets[0].stones, sets[0].features.tolist(), strict=True):
+        yield stone.id, sets[0].clusters[stone.id], *(round(each, 4) for each in features)
 
 
-def _thresholds(counted: Sequence[ClusteredStones]) -> Table:
-    return Table(
-        "Clusters over the distance threshold",
-        ("stones", "count", *(f"{distance:g}" for distance in DISTANCES)),
-        tuple(
-            (one.name, len(one.stones), *(one.counts[distance] for distance in DISTANCES))
-            for one in counted
-        ),
-        (f"The paper: {PAPER_CLUSTERS} of PR at 0.2 (§3.4).",),
-    )
-
-
-def _picture(drawn: ClusteredStones) -> ItemPicture:
+def _picture(sets: Clustered) -> ItemFigure:
+    drawn = sets[0]
     figure = Figure(figsize=(7.2, 6.4), layout="constrained")
     parts = figure.subfigures(2, 1, squeeze=False, height_ratios=(1.5, 1.0))
     above, below = parts[:, 0]
     ids = [stone.id for stone in drawn.stones]
-    plot_features(drawn.features, ids, drawn.clusters, above.add_subplot())
+    plot_features(above.add_subplot(), drawn.features, ids, drawn.clusters)
     plot_stones(drawn.stones, drawn.clusters, below.add_subplot())
-    return ItemPicture(
-        "fig5", figure,
-        f"The {len(ids)} stones {drawn.name} in {drawn.number} clusters: by eccentricity and size, "
-        "and as they lie in the source image. Numbers are ids.",
-    )  # fmt: skip
+    about = {"count": len(ids), "name": drawn.name, "number": drawn.number}
+    return ItemFigure("fig5", figure, about)
 
 
-def _claims(counted: Sequence[ClusteredStones]) -> Iterator[ClaimCheck]:
-    drawn = counted[0]
-    low, high = drawn.between(PAPER_CLUSTERS)
-    yield ClaimCheck(
-        f"The stones PR fall into {PAPER_CLUSTERS} clusters at a distance of {DISTANCE:g}.",
-        f"{drawn.number}; {PAPER_CLUSTERS} for every threshold from {low:.3f} to {high:.3f}.",
-        drawn.number == PAPER_CLUSTERS,
-    )
+def _claims(sets: Clustered) -> Iterator[Claimed]:
+    number, (low, high) = sets[0].number, sets[0].between(PAPER_CLUSTERS)
+    values = {"number": number, "low": low, "high": high}
+    yield Claimed("seven", number == PAPER_CLUSTERS, values)
 
 
 CLUSTERS = PaperItem(
-    **paper("fig5"),
+    words=ITEMS["fig5"],
     study=grouped,
     claims=_claims,
     tables={
-        "clusters": lambda sets: _clusters(sets[0]),
-        "stones": lambda sets: _stones(sets[0]),
-        "thresholds": _thresholds,
+        "clusters": _clusters,
+        "stones": _stones,
+        "thresholds": lambda sets: [
+            (one.name, len(one.stones), *(one.counts[distance] for distance in DISTANCES))
+            for one in sets
+        ],
     },
-    pictures=lambda sets: (_picture(sets[0]),),
-    needs=(PR.source.name,),
+    pictures=lambda sets: [_picture(sets)],
 )

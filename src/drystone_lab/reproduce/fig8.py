@@ -20,10 +20,10 @@ from drystone.kernels.raster import Mask
 from drystone.kernels.spots import eq12_merits
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Labels
-from drystone_lab.reproduce.cells import ClaimCheck
 from drystone_lab.reproduce.construction import Moment, amid_course, construction
-from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
-from drystone_lab.table import Cell, Table
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
+from drystone_lab.reproduce.items import ITEMS
+from drystone_lab.table import Cell
 from drystone_lab.walls import PR, Target
 
 BUILT = "#dedad2"
@@ -31,50 +31,43 @@ OPACITY = 0.85
 VALUES = "cividis"
 """Colour map of values: even in lightness, the same for colour-blind readers."""
 
-
-@dataclass(frozen=True, eq=False)
-class Layer:
-    """A set of positions of a mask."""
-
-    positions: Mask  # By row and column of the mask's top-left corner
-    colour: str
-    label: str
+Layers = Sequence[tuple[str, str, Mask]]
+"""Label, colour, and positions by row and column of the mask's top-left corner."""
 
 
-def plot_position_layers(
-    labels: Labels, posed: PosedStone, layers: Sequence[Layer], ax: Axes | None = None
-) -> Axes:
+def plot_position_layers(ax: Axes, labels: Labels, posed: PosedStone, layers: Layers) -> None:
     """Draw sets of positions of a stone as areas; a position is where its centroid is."""
-    ax = _landscape(labels, ax)
+    _draw_landscape(ax, labels)
     height = labels.shape[0]
     x, y = posed.anchor
-    for layer in layers:
-        rows, cols = layer.positions.shape
+    for label, colour, positions in layers:
+        rows, cols = positions.shape
         image = np.zeros((rows, cols, 4))
-        image[layer.positions] = to_rgba(layer.colour, OPACITY)
+        image[positions] = to_rgba(colour, OPACITY)
         top = height - posed.height_px + y + 0.5
         ax.imshow(image, extent=(x - 0.5, x + cols - 0.5, top - rows, top), zorder=3,
-                  interpolation="nearest", gid=f"layer-{layer.label}")  # fmt: skip
+                  interpolation="nearest", gid=f"layer-{label}")  # fmt: skip
     _show_all(ax, labels)
-    handles = [Patch(facecolor=to_rgba(one.colour, OPACITY), label=one.label) for one in layers]
+    handles = [
+        Patch(facecolor=to_rgba(colour, OPACITY), label=label) for label, colour, _ in layers
+    ]
     ax.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=len(layers),
               fontsize=7, frameon=False, borderaxespad=0.1, handlelength=1.0)  # fmt: skip
-    return ax
 
 
 def plot_position_values(
+    ax: Axes,
     labels: Labels,
     posed: PosedStone,
     positions: Positions,
     values: NDArray[np.floating],
     chosen: tuple[int, int],
-    ax: Axes | None = None,
-) -> Axes:
+) -> None:
     """Draw what positions of a stone are worth, and the stone where it was put.
 
     `positions` (n, 2) and `chosen` are rows and columns of the mask's top-left corner.
     """
-    ax = _landscape(labels, ax)
+    _draw_landscape(ax, labels)
     height = labels.shape[0]
     stone = np.zeros(labels.shape, np.uint32)
     row, col = chosen
@@ -86,15 +79,14 @@ def plot_position_values(
     drawn = ax.scatter(x, y, c=values, cmap=VALUES, s=4, marker="s", linewidths=0, zorder=3,
                        gid="values")  # fmt: skip
     at = (col + posed.anchor[0], height - row - posed.height_px + posed.anchor[1])
-    ax.plot(*at, "x", color="#d55e00", markersize=7, markeredgewidth=2, zorder=4, gid="best")
+    ax.plot(*at, "x", color=FREE, markersize=7, markeredgewidth=2, zorder=4, gid="best")
     bar = ax.figure.colorbar(drawn, ax=ax, fraction=0.02, pad=0.01)
     bar.set_label("LFR + H(GDS) - $x_c$/w", size=7)
     bar.ax.tick_params(labelsize=6, length=2)
     _show_all(ax, labels)
-    return ax
 
 
-def _landscape(labels: Labels, ax: Axes | None) -> Axes:
+def _draw_landscape(ax: Axes, labels: Labels) -> None:
     height, width = labels.shape
     depth = _depth(labels)
     ax = fit_axes(ax, (-2.0, -depth, width + 2.0, height + 2.0))
@@ -105,7 +97,6 @@ def _landscape(labels: Labels, ax: Axes | None) -> Axes:
         draw_block(ax, region.loops, f"block-{region.id}", fill=BUILT, edgecolor=OUTLINE_COLOUR,
                    linewidth=0.3)  # fmt: skip
     ax.set_xlabel("working px", fontsize=7, labelpad=1)
-    return ax
 
 
 def _depth(labels: Labels) -> float:
@@ -123,8 +114,6 @@ def _show_all(ax: Axes, labels: Labels) -> None:
 
 FREE, FLOATING, TOUCHING = "#d55e00", "#0072b2", "#cc79a7"
 """The paper's red, blue and pink in Okabe and Ito's colours, apart for colour-blind readers."""
-
-PANEL_IN = (7.2, 2.35)
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,7 +148,7 @@ def _overlap(picture: Mask, mask: Mask) -> NDArray[np.int64]:
 
 @dataclass(frozen=True, eq=False)
 class PositionTrial:
-    """A stone of a run on what was built before it: its positions, and the one that is tried."""
+    """A stone on a landscape, and where the rule of placement puts it."""
 
     wall: Target
     moment: Moment
@@ -176,6 +165,11 @@ class PositionTrial:
         """Where it rests on something from below."""
         return self.moment.positions(self.posed)
 
+    @cached_property
+    def touching(self) -> Positions:
+        """Where it touches something."""
+        return np.argwhere(self.maps.touching).astype(np.int64)
+
     def values(self, positions: Positions) -> NDArray[np.float64]:
         """Return Eq. 12 at some positions."""
         landscape, posed = self.moment.landscape, self.posed
@@ -184,93 +178,73 @@ class PositionTrial:
             positions, posed.silhouette, landscape.rays, built, posed.anchor[0], beta
         )
 
-    @cached_property
-    def touching(self) -> Positions:
-        """Where it touches something."""
-        return np.argwhere(self.maps.touching).astype(np.int64)
-
 
 def trial(context: Context, wall: Target = PR) -> PositionTrial:
     """Find the positions of a stone of the run on what was built before it."""
-    spec = wall.run(context.seed)
-    moment, place = amid_course(construction(context, spec))
+    moment, place = amid_course(construction(context, wall.run(context.seed)))
     found = moment.trial(place.posed.stone.id)
     if found is None:
         raise RuntimeError("a stone of the run fits nowhere where it was placed")
     return PositionTrial(wall, moment, found[0], found[1:])
 
 
-def _table(found: PositionTrial) -> Table:
-    posed, maps, height = found.posed, found.maps, found.moment.landscape.height_px
-    value = float(found.values(np.array([found.chosen], np.int64))[0])
-    sets: list[tuple[str, int, tuple[int, int, float] | None]] = [
-        ("all inside the wall", maps.free.size, None),
-        ("no overlap (red)", int(maps.free.sum()), None),
-        ("floating (blue)", int(maps.floating.sum()), None),
-        ("touching: the difference (pink)", len(found.touching), _best(found, found.touching)),
-        ("resting on something from below", len(found.resting), _best(found, found.resting)),
-        ("chosen", 1, (*found.chosen, value)),
-    ]
-    rows: list[tuple[Cell, ...]] = []
-    for name, count, at in sets:
-        told: tuple[Cell, ...] = (None, None, None)
-        if at is not None:
-            told = (at[1], height - at[0] - posed.height_px, round(at[2], 4))
-        rows.append((name, count, *told))
-    return Table(
-        f"Positions of stone {posed.stone.id}, {posed.width_px} x {posed.height_px} working px",
-        ("positions", "count", "best: left px", "best: bottom px", "best: Eq. 12"),
-        tuple(rows),
-    )
+def _positions(found: PositionTrial) -> Rows:
+    maps = found.maps
+    yield "all inside the wall", maps.free.size, None, None, None
+    yield "no overlap (red)", int(maps.free.sum()), None, None, None
+    yield "floating (blue)", int(maps.floating.sum()), None, None, None
+    for name, positions in (
+        ("touching: the difference (pink)", found.touching),
+        ("resting on something from below", found.resting),
+        ("chosen", np.array([found.chosen], np.int64)),
+    ):
+        yield name, len(positions), *_best(found, positions)
 
 
-def _best(found: PositionTrial, positions: Positions) -> tuple[int, int, float]:
-    """Return the position of the largest value; of equal ones the lower, then the left one."""
+def _best(found: PositionTrial, positions: Positions) -> tuple[Cell, ...]:
+    """Return the place of the largest value, and it; of equal ones the lower, then the left one."""
     values = found.values(positions)
-    order = np.lexsort((positions[:, 1], -positions[:, 0], -np.round(values, 12)))
-    row, col = positions[order[0]].tolist()
-    return row, col, float(values[order[0]])
+    best = np.lexsort((positions[:, 1], -positions[:, 0], -np.round(values, 12)))[0]
+    row, col = positions[best].tolist()
+    bottom = found.moment.landscape.height_px - row - found.posed.height_px
+    return col, bottom, round(float(values[best]), 4)
 
 
-def _drawn(found: PositionTrial) -> ItemPicture:
+def _drawn(found: PositionTrial) -> ItemFigure:
     moment, posed, maps, resting = found.moment, found.posed, found.maps, found.resting
-    figure = Figure(figsize=(PANEL_IN[0], 3 * PANEL_IN[1]), layout="constrained")
+    figure = Figure(figsize=(7.2, 7.05), layout="constrained")
     first, second, third = figure.subplots(3, 1)
     labels = moment.wall.labels
     bearing = np.zeros_like(maps.free)
     bearing[resting[:, 0], resting[:, 1]] = True
-    free = Layer(maps.free, FREE, "no overlap")
-    floating = Layer(maps.floating, FLOATING, "floating: no overlap when dilated")
-    plot_position_layers(labels, posed, (free, floating), first)
-    touching = Layer(maps.touching, TOUCHING, "touching: the difference")
-    rests = Layer(bearing, "#000000", "resting on something from below")
-    plot_position_layers(labels, posed, (touching, rests), second)
-    plot_position_values(labels, posed, resting, found.values(resting), found.chosen, third)
-    return ItemPicture(
-        "fig8", figure,
-        f"Positions of stone {posed.stone.id} on {len(moment.wall.placements)} stones of "
-        f"{found.wall.name}, each drawn where the stone's centroid would be. Top: no overlap, and "
-        "of these floating. Middle: the difference, and of it resting on something from below. "
-        "Bottom: Eq. 12 at the resting positions, and the stone at the best (cross).",
-    )  # fmt: skip
-
-
-def _claims(found: PositionTrial) -> Iterator[ClaimCheck]:
-    resting = found.resting
-    inside = int(np.count_nonzero(found.maps.touching[resting[:, 0], resting[:, 1]]))
-    yield ClaimCheck(
-        "The difference of both convolutions gives the feasible positions.",
-        f"it holds {inside} of the {len(resting)} at which the stone rests on something, and "
-        f"{len(found.touching) - inside} more.",
-        inside == len(resting) == len(found.touching),
+    apart: Layers = (
+        ("no overlap", FREE, maps.free),
+        ("floating: no overlap when dilated", FLOATING, maps.floating),
+    )
+    plot_position_layers(first, labels, posed, apart)
+    near: Layers = (
+        ("touching: the difference", TOUCHING, maps.touching),
+        ("resting on something from below", "#000000", bearing),
+    )
+    plot_position_layers(second, labels, posed, near)
+    plot_position_values(third, labels, posed, resting, found.values(resting), found.chosen)
+    built = len(moment.wall.placements)
+    return ItemFigure(
+        "fig8", figure, {"stone": posed.stone.id, "built": built, "wall": found.wall.name}
     )
 
 
+def _claims(found: PositionTrial) -> Iterator[Claimed]:
+    resting, touching = found.resting, len(found.touching)
+    inside = int(np.count_nonzero(found.maps.touching[resting[:, 0], resting[:, 1]]))
+    values = {"inside": inside, "resting": len(resting), "more": touching - inside}
+    yield Claimed("difference", inside == len(resting) == touching, values)
+
+
 POSITIONS = PaperItem(
-    **paper("fig8"),
+    words=ITEMS["fig8"],
     study=trial,
     claims=_claims,
-    tables={"positions": _table},
-    pictures=lambda found: (_drawn(found),),
-    needs=(PR.source.name,),
+    tables={"positions": _positions},
+    pictures=lambda found: [_drawn(found)],
 )

@@ -1,20 +1,169 @@
 """Fig. 9: stones that fall where they are tried, turned and wedged (§3.7)."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import FancyArrowPatch, Rectangle
+from matplotlib.patheffects import withStroke
 
+from drystone.drawing.canvas import draw_block, fit_axes
+from drystone.drawing.outlines import Loop, label_regions
+from drystone.drawing.palette import GREY, OUTLINE_COLOUR, WEDGE_COLOUR
 from drystone.model.placement import Wedge
+from drystone.model.wall import Labels
 from drystone.stabilise.rotate import rotate_to_rest
 from drystone.stabilise.stabilise import WedgeStock, make_stable
-from drystone.stabilise.support import Pose, falling_side, support_polyline
-from drystone_lab.pictures.support import SupportedStone, plot_standing, window_around
+from drystone.stabilise.support import Pose, Support, falling_side, support_polyline
 from drystone_lab.reproduce.construction import Construction, Moment, construction
-from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
-from drystone_lab.table import Cell, Table
+from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
+from drystone_lab.reproduce.items import ITEMS
+from drystone_lab.table import Cell
 from drystone_lab.walls import PR, Target
+
+BUILT, STONE, GHOST = "#e4e0d8", "#9ecae1", "#0072b2"
+LINE, MASS = "#d55e00", "#000000"
+
+PointXY = tuple[float, float]
+Window = tuple[float, float, float, float]
+"""x0, y0, x1, y1, working px, y up from the ground."""
+
+
+@dataclass(frozen=True, eq=False)
+class SupportedStone:
+    """A stone where it is."""
+
+    pose: Pose  # The stone and the row and column of its mask
+    support: Support  # Its support, over wedges as well
+    falls: int  # Side to which it falls: -1 left, +1 right, 0 stable
+    wedges: tuple[Wedge, ...]  # Under it
+    height_px: int
+
+    @property
+    def mass(self) -> PointXY:
+        """Centre of mass C."""
+        posed, row, col = self.pose
+        return col + posed.anchor[0], self.height_px - row - posed.height_px + posed.anchor[1]
+
+    @property
+    def ends(self) -> tuple[PointXY, PointXY]:
+        """A, the end of the support that is nearer to the centre of mass, and B."""
+        left = float(self.support.left_x), float(self.height_px - self.support.left_row)
+        right = float(self.support.right_x), float(self.height_px - self.support.right_row)
+        x = self.mass[0]
+        return (left, right) if abs(x - left[0]) < abs(x - right[0]) else (right, left)
+
+    @property
+    def cross(self) -> float:
+        """AB x AC: positive turns counter-clockwise (§3.7)."""
+        (x_a, y_a), (x_b, y_b) = self.ends
+        x_c, y_c = self.mass
+        return (x_b - x_a) * (y_c - y_a) - (y_b - y_a) * (x_c - x_a)
+
+    @property
+    def loops(self) -> tuple[Loop, ...]:
+        """Boundary of the stone."""
+        posed, row, col = self.pose
+        (region,) = label_regions(posed.mask.astype(np.uint32))
+        low = self.height_px - row - posed.height_px
+        return tuple(loop + np.array([col, low]) for loop in region.loops)
+
+
+def plot_standing(
+    ax: Axes,
+    labels: Labels,
+    standing: SupportedStone,
+    window: Window,
+    *,
+    before: SupportedStone | None = None,
+    title: str = "",
+) -> None:
+    """Draw a stone on its support with the points of Fig. 9.
+
+    `labels` is the landscape without the stone; `before` is where it was at first, dashed.
+    """
+    ax = fit_axes(ax, window)
+    for region in label_regions(labels):
+        draw_block(ax, region.loops, f"block-{region.id}", fill=BUILT, edgecolor=GREY,
+                   linewidth=0.5)  # fmt: skip
+    if window[1] <= 0:
+        ax.plot([window[0], window[2]], [0, 0], color=OUTLINE_COLOUR, linewidth=1.4, gid="ground")
+    if standing.wedges:
+        _draw_supported(ax, before or standing)
+    draw_block(ax, standing.loops, "stone", fill=STONE, zorder=2)
+    if before is not None and not standing.wedges:
+        draw_block(ax, before.loops, "before", edgecolor=GHOST, linestyle=(0, (3, 2)), zorder=3)
+    for wedge in standing.wedges:
+        (region,) = label_regions(wedge.mask.astype(np.uint32))
+        tall, wide = wedge.mask.shape
+        low = standing.height_px - wedge.row - tall
+        loops = [loop + np.array([wedge.col, low]) for loop in region.loops]
+        draw_block(ax, loops, f"wedge-{wedge.id}", fill=WEDGE_COLOUR, zorder=4)
+        _write(ax, f"h {tall}, w {wide}", (wedge.col + wide / 2, float(low)), (0.0, -8.0))
+    _draw_points(ax, standing)
+    if standing.falls:
+        _draw_turn(ax, standing)
+    ax.set_xlabel("working px", fontsize=7, labelpad=1)
+    if title:
+        ax.set_title(title, fontsize=7, loc="left", pad=3)
+
+
+def window_around(standings: Sequence[SupportedStone], margin_px: float = 6.0) -> Window:
+    """Return a window that shows some stones and what is around them."""
+    points = np.concatenate([loop for one in standings for loop in one.loops])
+    low, high = points.min(axis=0) - 2 * margin_px, points.max(axis=0) + margin_px
+    return float(low[0]), float(max(low[1], -2.0)), float(high[0] + margin_px), float(high[1])
+
+
+def _draw_points(ax: Axes, standing: SupportedStone) -> None:
+    """Draw A, B and the line between them, C and its projection C'."""
+    a, b = standing.ends
+    x_c, y_c = standing.mass
+    share = 0.0 if a[0] == b[0] else (x_c - a[0]) / (b[0] - a[0])
+    y_on = a[1] + share * (b[1] - a[1]) if 0 <= share <= 1 else a[1]
+    ax.plot([a[0], b[0]], [a[1], b[1]], "-o", color=LINE, linewidth=1.8, markersize=4, gid="AB",
+            zorder=5)  # fmt: skip
+    ax.plot([x_c, x_c], [y_c, y_on], color=MASS, linewidth=0.9, linestyle=(0, (2, 2)),
+            gid="projection", zorder=5)  # fmt: skip
+    ax.plot([x_c], [y_c], "+", color=MASS, markersize=9, markeredgewidth=1.5, gid="C", zorder=6)
+    ax.plot([x_c], [y_on], "x", color=MASS, markersize=5, gid="C'", zorder=6)
+    side = 1 if a[0] >= b[0] else -1
+    _write(ax, "A", a, (5.0 * side, -7.0))
+    _write(ax, "B", b, (-5.0 * side, -7.0))
+    _write(ax, "C", (x_c, y_c), (7.0 * side, 4.0))
+    _write(ax, "C'", (x_c, y_on), (7.0 * side, 5.0))
+
+
+def _write(ax: Axes, text: str, at: PointXY, offset: PointXY) -> None:
+    ax.annotate(text, at, offset, textcoords="offset points", size=7.5, ha="center", va="center",
+                zorder=7, path_effects=[withStroke(linewidth=1.8, foreground="white")])  # fmt: skip
+
+
+def _draw_turn(ax: Axes, standing: SupportedStone) -> None:
+    """Draw to which side the stone turns, above it."""
+    points = np.concatenate(standing.loops)
+    (left, _), (right, top) = points.min(axis=0), points.max(axis=0)
+    middle, reach = (left + right) / 2, 0.25 * (right - left)
+    side = standing.falls
+    ax.add_patch(
+        FancyArrowPatch(
+            (middle - side * reach, top + 1.5), (middle + side * reach, top + 1.5),
+            connectionstyle=f"arc3,rad={-0.35 * side}", arrowstyle="-|>", mutation_scale=9,
+            linewidth=1.3, color=LINE, gid="turn", zorder=6,
+        )
+    )  # fmt: skip
+
+
+def _draw_supported(ax: Axes, before: SupportedStone) -> None:
+    """Draw the supported side, which wedging leaves alone (grey in Fig. 9c)."""
+    points = np.concatenate(before.loops)
+    (left, bottom), (right, top) = points.min(axis=0), points.max(axis=0)
+    x_a = before.ends[0][0]
+    ends = (left, x_a) if before.falls > 0 else (x_a, right)
+    ax.add_patch(Rectangle((ends[0], bottom), ends[1] - ends[0], top - bottom, facecolor=GREY,
+                           alpha=0.45, gid="supported", zorder=3))  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,13 +172,11 @@ class Unstable:
 
     moment: Moment
     trial: SupportedStone  # The stone there
-    turned: (
-        SupportedStone | None
-    )  # Where it rests after turning; None when it meets the landscape before
+    # Where it rests after turning; None when it meets the landscape before
+    turned: SupportedStone | None
     pivots: int  # About how many points it was turned
-    wedged: (
-        SupportedStone | None
-    )  # In its place on wedges; None when no wedge within the limits holds it
+    # In its place on wedges; None when no wedge within the limits holds it
+    wedged: SupportedStone | None
 
     @property
     def stone_id(self) -> int:
@@ -99,8 +246,6 @@ def _standing(moment: Moment, pose: Pose, wedges: tuple[Wedge, ...] = ()) -> Sup
     return SupportedStone(pose, support, falls, wedges, len(scene))
 
 
-PANEL_IN = (3.1, 2.3)
-
 WIDE = 0.1
 """Cases that are drawn have a support at least this wide, in widths of the stone, so that AB is
 seen, unless there is none."""
@@ -116,121 +261,86 @@ class Falls:
 
     @property
     def shown(self) -> tuple[Unstable, ...]:
-        """One that is turned, and one that has to be wedged."""
-        return _shown(self.unstable)
+        """The case that is turned most, and that of the largest wedge where turning fails."""
+        wedged = [one for one in self.unstable if one.wedged is not None]
+        turned = [one for one in wedged if one.turned is not None]
+        stuck = [one for one in wedged if one.turned is None]
+        found = _largest(turned, lambda one: abs(one.turn_deg or 0.0)), _largest(stuck, _wedge_area)
+        return tuple(one for one in found if one is not None)
 
 
 def falls(context: Context, wall: Target = PR) -> Falls:
     """Try all stones that are left before each step of a run, and treat those that fall."""
-    spec = wall.run(context.seed)
-    return Falls(wall, *unstable_trials(construction(context, spec)))
+    return Falls(wall, *unstable_trials(construction(context, wall.run(context.seed))))
 
 
-def _shown(unstable: Sequence[Unstable]) -> tuple[Unstable, ...]:
-    """Return the case that is turned most, and that of the largest wedge where turning fails."""
-    turned = [one for one in unstable if one.turned is not None and one.wedged is not None]
-    stuck = [one for one in unstable if one.turned is None and one.wedged is not None]
-    most = max(_wide(turned), key=lambda one: abs(one.turn_deg or 0.0), default=None)
-    largest = max(_wide(stuck), key=_wedge_area, default=None)
-    return tuple(one for one in (most, largest) if one is not None)
-
-
-def _wide(cases: Sequence[Unstable]) -> Sequence[Unstable]:
+def _largest(cases: Sequence[Unstable], size: Callable[[Unstable], float]) -> Unstable | None:
     wide = [
         one for one in cases
         if one.trial.support.right_x - one.trial.support.left_x
         >= WIDE * one.trial.pose[0].width_px
     ]  # fmt: skip
-    return wide or cases
+    return max(wide or cases, key=size, default=None)
 
 
 def _wedge_area(case: Unstable) -> int:
     return sum(wedge.area_px for wedge in case.wedged.wedges) if case.wedged is not None else 0
 
 
-def _counts(found: Falls) -> Table:
+def _counts(found: Falls) -> Rows:
     unstable = found.unstable
     turned = [one for one in unstable if one.turned is not None]
     stuck = [one for one in unstable if one.turned is None]
-    rows: tuple[tuple[Cell, ...], ...] = (
-        ("tried", found.trials),
-        ("not stable", len(unstable)),
-        ("stable after turning", len(turned)),
-        ("of these, a wedge would do as well", sum(one.wedged is not None for one in turned)),
-        ("turning fails, a wedge does", sum(one.wedged is not None for one in stuck)),
-        ("neither", sum(one.wedged is None for one in stuck)),
-        ("sign of AB x AC is wrong", sum(not one.sign_agrees for one in unstable)),
-        ("of these, C is below A", sum(not one.sign_agrees and one.hangs for one in unstable)),
-    )
-    return Table("Trial placements of a run, every stone that is left before each step",
-                 ("what", "count"), rows)  # fmt: skip
+    wrong = [one for one in unstable if not one.sign_agrees]
+    yield "tried", found.trials
+    yield "not stable", len(unstable)
+    yield "stable after turning", len(turned)
+    yield "of these, a wedge would do as well", sum(one.wedged is not None for one in turned)
+    yield "turning fails, a wedge does", sum(one.wedged is not None for one in stuck)
+    yield "neither", sum(one.wedged is None for one in stuck)
+    yield "sign of AB x AC is wrong", len(wrong)
+    yield "of these, C is below A", sum(one.hangs for one in wrong)
 
 
-def _cases(shown: Sequence[Unstable]) -> Table:
-    columns = (
-        "stone", "before step", "pose", "A", "B", "C", "AB x AC", "turned deg", "pivots",
-        "wedge height px", "wedge width px",
-    )  # fmt: skip
-    rows = []
-    for case in shown:
-        rows.append(_row(case, "tried", case.trial))
-        if case.turned is not None:
-            rows.append(_row(case, "turned", case.turned))
-        if case.wedged is not None:
-            rows.append(_row(case, "wedged", case.wedged))
-    return Table(
-        "The stones that are drawn", columns, tuple(rows),
-        ("Points in working px of the wall, y up from the ground; angles counter-clockwise.",),
-    )  # fmt: skip
+def _cases(found: Falls) -> Rows:
+    for case in found.shown:
+        for pose, standing in (
+            ("tried", case.trial), ("turned", case.turned), ("wedged", case.wedged),
+        ):  # fmt: skip
+            if standing is None:
+                continue
+            points = [f"{x:.4g}, {y:.4g}" for x, y in (*standing.ends, standing.mass)]
+            turn: tuple[Cell, Cell] = (None, None)
+            if pose == "turned":
+                turn = case.turn_deg, case.pivots
+            size = standing.wedges[0].mask.shape if standing.wedges else (None, None)
+            cross = round(standing.cross, 2)
+            yield case.stone_id, case.moment.number, pose, *points, cross, *turn, *size
 
 
-def _row(case: Unstable, pose: str, standing: SupportedStone) -> tuple[Cell, ...]:
-    a, b = standing.ends
-    points = [f"{x:.4g}, {y:.4g}" for x, y in (a, b, standing.mass)]
-    turn: Cell = case.turn_deg if pose == "turned" else None
-    pivots: Cell = case.pivots if pose == "turned" else None
-    size: tuple[Cell, Cell] = (None, None)
-    if standing.wedges:
-        size = (standing.wedges[0].mask.shape[0], standing.wedges[0].mask.shape[1])
-    cross = round(standing.cross, 2)
-    return (case.stone_id, case.moment.number, pose, *points, cross, turn, pivots, *size)
-
-
-def _picture(shown: Sequence[Unstable], name: str) -> ItemPicture:
-    size = (3 * PANEL_IN[0], len(shown) * PANEL_IN[1])
-    figure = Figure(figsize=size, layout="constrained")
-    panels = figure.subplots(len(shown), 3, squeeze=False)
-    for axes, case in zip(panels.tolist(), shown, strict=True):
-        _draw_case(axes, case)
-    return ItemPicture(
-        "fig9", figure,
-        f"Stones that fall where they are tried, in a run of {name}: A and B are the ends of the "
-        "support, A the one nearer to the centre of mass C, C' its projection; the arrow is the "
-        "sense of turning. Turned: dashed where it was. Wedged: the wedge (dark red) with its "
-        "height and width in working px; grey is the supported side, which wedging leaves alone.",
-    )  # fmt: skip
-
-
-def _draw_case(axes: Sequence[Axes], case: Unstable) -> None:
-    stands = [one for one in (case.trial, case.turned, case.wedged) if one is not None]
-    window, labels = window_around(stands), case.moment.wall.labels
-    title = f"stone {case.stone_id} before step {case.moment.number}: falls"
-    plot_standing(labels, case.trial, window, axes[0], title=title)
-    turned = "" if case.turn_deg is None else f"turned by {case.turn_deg:g}°"
-    for ax, standing, text in ((axes[1], case.turned, turned), (axes[2], case.wedged, "wedged")):
-        if standing is not None:
-            plot_standing(labels, standing, window, ax, before=case.trial, title=text)
-        else:
-            ax.set_axis_off()
-            ax.text(0.5, 0.5, "fails: it meets what is there,\nor a limit, before it rests",
-                    ha="center", va="center",
-                    size=8, transform=ax.transAxes)  # fmt: skip
+def _picture(found: Falls) -> ItemFigure:
+    figure = Figure(figsize=(9.3, len(found.shown) * 2.3), layout="constrained")
+    panels = figure.subplots(len(found.shown), 3, squeeze=False)
+    for axes, case in zip(panels.tolist(), found.shown, strict=True):
+        stands = [one for one in (case.trial, case.turned, case.wedged) if one is not None]
+        window, labels = window_around(stands), case.moment.wall.labels
+        title = f"stone {case.stone_id} before step {case.moment.number}: falls"
+        plot_standing(axes[0], labels, case.trial, window, title=title)
+        turned = "" if case.turn_deg is None else f"turned by {case.turn_deg:g}°"
+        others = (axes[1], case.turned, turned), (axes[2], case.wedged, "wedged")
+        for ax, standing, text in others:
+            if standing is not None:
+                plot_standing(ax, labels, standing, window, before=case.trial, title=text)
+            else:
+                ax.set_axis_off()
+                ax.text(0.5, 0.5, "fails: it meets what is there,\nor a limit, before it rests",
+                        ha="center", va="center", size=8, transform=ax.transAxes)  # fmt: skip
+    return ItemFigure("fig9", figure)
 
 
 STABILISING = PaperItem(
-    **paper("fig9"),
+    words=ITEMS["fig9"],
     study=falls,
-    tables={"counts": _counts, "cases": lambda found: _cases(found.shown)},
-    pictures=lambda found: (_picture(found.shown, found.wall.name),) if found.shown else (),
-    needs=(PR.source.name,),
+    tables={"counts": _counts, "cases": _cases},
+    pictures=lambda found: [_picture(found)] if found.shown else [],
 )

@@ -181,8 +181,8 @@ class ReportFolder:
         record = {
             "schema": ITEM_SCHEMA,
             "name": name,
-            "title": item.title,
-            "section": item.section,
+            "title": item.words["title"],
+            "section": item.words["section"],
             **about,
             "paper": list(output.paper),
             "ours": list(output.ours),
@@ -199,7 +199,7 @@ class ReportFolder:
 
     def miss(self, name: str, item: PaperItem, error: DrystoneError) -> None:
         """Note why an item cannot be made."""
-        text = {"title": item.title, "section": item.section, "error": str(error)}
+        text = {name: item.words[name] for name in ("title", "section")} | {"error": str(error)}
         self._write_misses({**self.misses, name: text})
 
     def forget_miss(self, name: str) -> None:

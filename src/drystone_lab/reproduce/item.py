@@ -1,25 +1,30 @@
 """A table or figure of the paper that can be made again."""
 
-import tomllib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 from matplotlib.figure import Figure
 
 from drystone.model.wall import Wall
-from drystone_lab.reproduce.cells import ClaimCheck, findings_table, sentences
-from drystone_lab.runs.outcome import RunOutcome
-from drystone_lab.runs.runner import Runner
+from drystone.selection.policies.table1 import MARKS
+from drystone_lab import timed_walls
+from drystone_lab.reproduce.cells import COLUMNS, METRICS, WINS
+from drystone_lab.runs.outcome import Runner, RunOutcome
 from drystone_lab.runs.spec import RunSpec
-from drystone_lab.table import Table
+from drystone_lab.table import Cell, Table, worded
 
+COLUMN_SETS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "<metrics>": METRICS, "<summary>": COLUMNS, "<wins>": WINS, "<policies>": tuple(MARKS),
+        "<parts>": timed_walls.COLUMNS,
+    }
+)  # fmt: skip
+"""Columns that several tables have, by their name in ``paper.toml``."""
 
-def paper(name: str) -> dict[str, Any]:
-    """Return the words of an item of the paper: its title, section, paper and notes."""
-    words = tomllib.loads(Path(__file__).with_name("paper.toml").read_text("utf-8"))[name]
-    return {key: value if isinstance(value, str) else tuple(value) for key, value in words.items()}
+VERDICTS = MappingProxyType({True: "Agrees", False: "Differs", None: "Cannot be told"})
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,40 +79,100 @@ class Output:
     runs: tuple[RunSpec, ...] = ()  # That the item is made of, for its JSON
 
 
+Rows = Iterable[tuple[Cell, ...]]
+
+
+class Claimed(NamedTuple):
+    """A claim of the paper, and what our walls say of it."""
+
+    key: str  # In ``paper.toml``, where claim and finding are written
+    holds: bool | None  # Whether they agree; None where that cannot be told
+    values: Mapping[str, object]  # What both are formatted with
+
+
+class ItemFigure(NamedTuple):
+    """A picture; its caption is that of the longest key with which its name begins."""
+
+    name: str
+    figure: Figure
+    about: Any = None  # What the caption is formatted with; None for what the study found
+
+
 @dataclass(frozen=True, kw_only=True)
 class PaperItem:
     """A table or figure of the paper: data, and what is read off it."""
 
-    title: str
-    section: str
-    # What the paper shows and reports there, its numbers among it; a paragraph each
-    paper: tuple[str, ...]
+    words: Mapping[str, Any]  # Of ``paper.toml``
     # Does what the item is about: builds walls (:class:`~drystone_lab.reproduce.study.Study`) or
     # times them.  All others take what it returns
     study: Callable[[Context], Any]
-    notes: tuple[str, ...] = ()  # What a reader of the results must know; a paragraph each
     # Compares what was found with claims of the paper; they are a table too
-    claims: Callable[[Any], Iterable[ClaimCheck]] = lambda _: ()
+    claims: Callable[[Any], Iterable[Claimed]] = lambda _: ()
     # tables, times: By the name of the CSV file; times differ from machine to machine
-    tables: Mapping[str, Callable[[Any], Table]] = field(default_factory=dict)
-    times: Mapping[str, Callable[[Any], Table]] = field(default_factory=dict)
-    pictures: Callable[[Any], Sequence[ItemPicture]] = lambda _: ()  # Draws
-    # Published stones without which it cannot be made, as paths in their folder
-    needs: tuple[str, ...] = ()
+    tables: Mapping[str, Callable[[Any], Rows]] = field(default_factory=dict)
+    times: Mapping[str, Callable[[Any], Rows]] = field(default_factory=dict)
+    # Where times are what is claimed: the table of claims is one of times, and no paragraph
+    timed_claims: bool = False
+    pictures: Callable[[Any], Iterable[ItemFigure]] = lambda _: ()  # Draws
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """Published stones without which it cannot be made, as paths in their folder."""
+        return tuple(self.words.get("needs", ()))
 
     def make(self, context: Context) -> Output:
         """Do the study, and read everything off it."""
         context = replace(context, asked=[])
         found = self.study(context)
-        claims = tuple(self.claims(found))
-        tables = [(name, table(found)) for name, table in self.tables.items()]
-        if claims:
-            tables.append(("claims", findings_table("The paper's claims", claims)))
+        tables, times = (
+            [(name, self._table(kind, name, found, rows(found))) for name, rows in of.items()]
+            for kind, of in (("tables", self.tables), ("times", self.times))
+        )
+        checked = self.checked(found)
+        if self.timed_claims:
+            title = self.words["times"]["claims"]["title"]
+            times.insert(0, ("claims", claims_table(title, checked)))
+        elif checked:
+            tables.append(("claims", claims_table("The paper's claims", checked)))
+        said = () if self.timed_claims or not checked else sentences(checked)
         return Output(
-            paper=self.paper,
-            ours=(*self.notes, *(sentences(claims) if claims else ())),
+            paper=tuple(self.words["paper"]),
+            ours=(*self.words.get("notes", ()), *said),
             tables=tuple(tables),
-            times=tuple((name, table(found)) for name, table in self.times.items()),
-            pictures=tuple(self.pictures(found)),
+            times=tuple(times),
+            pictures=tuple(self._pictures(found)),
             runs=tuple(dict.fromkeys(context.asked)),
         )
+
+    def checked(self, found: Any) -> Sequence[tuple[str, str, bool | None]]:
+        """Return claim, finding and verdict of every claim, as rows of a table."""
+        words = self.words.get("claims", {})
+        return [
+            (*(text.format(**one.values) for text in words[one.key]), one.holds)
+            for one in self.claims(found)
+        ]
+
+    def _table(self, kind: str, name: str, found: Any, rows: Rows) -> Table:
+        return worded(self.words[kind][name], rows, found, columns=COLUMN_SETS)
+
+    def _pictures(self, found: Any) -> Iterator[ItemPicture]:
+        for name, figure, about in self.pictures(found):
+            key = max((k for k in self.words["captions"] if name.startswith(k)), key=len)
+            caption = self.words["captions"][key].format(found if about is None else about)
+            yield ItemPicture(name, figure, caption)
+
+
+def claims_table(title: str, checked: Sequence[tuple[str, str, bool | None]]) -> Table:
+    """Return claims and findings as a table."""
+    return Table(title, ("the paper", "here", "agrees"), tuple(checked))
+
+
+def sentences(checked: Sequence[tuple[str, str, bool | None]]) -> tuple[str, ...]:
+    """Return of how many claims the walls agree with the paper, and a paragraph each.
+
+    >>> sentences([("Walls are low.", "2 px.", True)])[0]
+    'Of 1 claims of the paper that can be told, 1 agree.'
+    """
+    told = [holds for *_, holds in checked if holds is not None]
+    count = f"Of {len(told)} claims of the paper that can be told, {sum(told)} agree."
+    return (count, *(f"{VERDICTS[holds]}: {claim} Here: {here}" for claim, here, holds in checked))

@@ -1,8 +1,9 @@
-"""Fig. 13: the masons' walls, and with their gaps closed (§5.1)."""
+"""The masons' walls: Fig. 13, with their gaps closed (§5.1); Table 2 and Fig. 18, beside ours."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
+from math import floor
 from pathlib import Path
 
 import numpy as np
@@ -12,17 +13,29 @@ from scipy import ndimage
 from drystone.clusters import cluster_stones
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.gaps import model_with_closed_gaps, settle_gaps
+from drystone.drawing.pictures.stones import plot_stones
 from drystone.metrics.measure import WallMetrics, measure_labels
 from drystone.metrics.reduce import reduce_labels
+from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
 from drystone.poses import PoseBook
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import RigidBlockModel
-from drystone_lab.pictures.walls import masonry_panel, sheet_of
+from drystone_lab.pictures.walls import (
+    EMPTY,
+    Panel,
+    masonry_panel,
+    sheet_of,
+    wall_aspect,
+    wall_panel,
+)
+from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, rounded
-from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
-from drystone_lab.table import Cell, Table
-from drystone_lab.walls import MASONS, Target
+from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
+from drystone_lab.reproduce.items import ITEMS
+from drystone_lab.reproduce.study import Study, StudyWalls, Trials
+from drystone_lab.runs.outcome import RunOutcome
+from drystone_lab.table import Cell
+from drystone_lab.walls import FIVE, MASONS, Target
 
 MOVES = ((1, -1), (1, 0), (0, -1), (1, 1), (-1, -1), (-1, 0), (0, 1), (-1, 1))
 """Steps of a stone, px down and to the right; the first of equally good ones is taken."""
@@ -41,11 +54,11 @@ def drawn_together(labels: Labels) -> Labels:
     [[0, 2, 0, 0], [1, 2, 0, 0]]
     """
     moved = labels.copy()
-    ids = [int(each) for each in np.unique(labels) if each]
-    for block in sorted(ids, key=lambda each: (_distance(*_centre(labels, each), labels), each)):
-        pixels = np.argwhere(moved == block)
-        moved[tuple(pixels.T)] = 0
-        moved[tuple(_nearest(pixels, moved).T)] = block
+    stones = {int(each): np.argwhere(labels == each) for each in np.unique(labels) if each}
+    nearest = sorted((_distance(pixels.mean(axis=0), labels), i) for i, pixels in stones.items())
+    for _, block in nearest:
+        moved[tuple(stones[block].T)] = 0
+        moved[tuple(_nearest(stones[block], moved).T)] = block
     return moved
 
 
@@ -66,31 +79,22 @@ def dilated(labels: Labels) -> Labels:
 
 def _nearest(pixels: NDArray[np.intp], others: Labels) -> NDArray[np.intp]:
     """Return where the pixels of a stone end."""
-    row, col = pixels.mean(axis=0)
+    middle = pixels.mean(axis=0)
     while True:
-        here = _distance(row, col, others)
-        ways = sorted(
-            (_distance(row + down, col + aside, others), order)
-            for order, (down, aside) in enumerate(MOVES)
-        )
+        here = _distance(middle, others)
+        ways = sorted((_distance(middle + move, others), order) for order, move in enumerate(MOVES))
         for distance, order in ways:
             step = np.array(MOVES[order])
             if distance < here and _is_free(pixels + step, others):
-                pixels = pixels + step
-                row, col = row + step[0], col + step[1]
+                pixels, middle = pixels + step, middle + step
                 break
         else:
             return pixels
 
 
-def _centre(labels: Labels, block: int) -> tuple[float, float]:
-    row, col = np.argwhere(labels == block).mean(axis=0)
-    return float(row), float(col)
-
-
-def _distance(row: float, col: float, labels: Labels) -> float:
-    """Return how far a place is from the bottom left corner."""
-    return float(np.hypot(labels.shape[0] - 0.5 - row, col + 0.5))
+def _distance(place: NDArray[np.floating], labels: Labels) -> float:
+    """Return how far a row and column is from the bottom left corner."""
+    return float(np.hypot(labels.shape[0] - 0.5 - place[0], place[1] + 0.5))
 
 
 def _is_free(pixels: NDArray[np.intp], others: Labels) -> bool:
@@ -111,6 +115,13 @@ REFERENCES: Mapping[int, Printed] = {
     5: (0.753, 15.783, 6.767, 0.05),
 }  # fmt: skip
 """Reference walls of Table 2 by number: masons' (1 to 3), of a model-free algorithm (4, 5)."""
+
+CONSTRUCTED: Mapping[int, Printed] = {
+    1: (0.974, 39.084, 1.573, 0.83), 2: (0.883, 36.598, 1.348, 0.83),
+    3: (0.839, 21.347, 4.163, 0.52), 4: (0.839, 22.674, 2.207, 0.66),
+    5: (0.725, 55.851, 3.033, 0.59),
+}  # fmt: skip
+"""Walls that the paper's algorithm built, the best of 20 trials."""
 
 PAPERS_WAY = "drawn together and dilated (the paper's way)"
 
@@ -142,9 +153,8 @@ def masons_wall(wall: Target, data: Path | None) -> TracedWall:
     """Read a published wall and bring it to the working scale."""
     if data is None:
         raise FileNotFoundError(wall.source.name)
-    stones = wall.source.stones(data)
     labels = reduce_labels(wall.source.labels(data), wall.scale)
-    return TracedWall(wall, labels, cluster_stones(stones, PoseBook(wall.scale)))
+    return TracedWall(wall, labels, cluster_stones(wall.source.stones(data), PoseBook(wall.scale)))
 
 
 def treatments(wall: TracedWall) -> tuple[Treatment, ...]:
@@ -161,19 +171,18 @@ def treatments(wall: TracedWall) -> tuple[Treatment, ...]:
         "lowered and pushed right": model_from_labels(settle_gaps(labels, "right")[0]).model,
         PAPERS_WAY: model_from_labels(wall.papers_way).model,
     }
-    return tuple(_treated(name, model) for name, model in models.items())
+    found = []
+    for name, model in models.items():
+        both = lateral_resistance(model)
+        told = next((end for end in (both.left, both.right) if end.alpha is None), both.left)
+        found.append(Treatment(name, both.value, str(told.status)))
+    return tuple(found)
 
 
 def measured(labels: Labels) -> WallMetrics:
     """Return the metrics of a wall by our definition (DESIGN 5), F_LR of its pixels among them."""
     resistance = lateral_resistance(model_from_labels(labels).model)
     return measure_labels(labels, lateral_resistance=resistance.value)
-
-
-def _treated(name: str, model: RigidBlockModel) -> Treatment:
-    both = lateral_resistance(model)
-    told = next((end for end in (both.left, both.right) if end.alpha is None), both.left)
-    return Treatment(name, both.value, str(told.status))
 
 
 TreatedWalls = Sequence[tuple[TracedWall, tuple[Treatment, ...]]]
@@ -185,45 +194,17 @@ def treated_walls(context: Context, walls: Sequence[Target] = MASONS) -> Treated
     return [(wall, treatments(wall)) for wall in found]
 
 
-def _metrics(walls: TreatedWalls) -> Table:
-    rows: list[tuple[Cell, ...]] = []
+def _metrics(walls: TreatedWalls) -> Rows:
     for each, _ in walls:
         for name, labels in (("as traced", each.labels), (PAPERS_WAY, each.papers_way)):
             ours = measured(labels)
             size = f"{ours.width:.0f} x {ours.height:.0f}"
             found = [rounded(getattr(ours, metric)) for metric in METRICS]
-            rows.append((each.wall.name, name, size, ours.stones, *found))
-        rows.append((each.wall.name, "paper, Table 2", None, None, *REFERENCES[each.wall.number]))
-    return Table(
-        "The masons' walls by our definition of the metrics",
-        ("wall", "gaps", "px", "stones", *METRICS),
-        tuple(rows),
-        (
-            "F_SF is over the bounding box of the stones; dilation enlarges the stones, so F_SF "
-            "after it is not that of the wall. Table 2 refers to the walls of Fig. 18, which are "
-            "the treated ones, so that its other figures may be of these too; §5.1 says so of the "
-            "load multiplier alone.",
-        ),
-    )
+            yield each.wall.name, name, size, ours.stones, *found
+        yield each.wall.name, "paper, Table 2", None, None, *REFERENCES[each.wall.number]
 
 
-def _resistance(walls: TreatedWalls) -> Table:
-    return Table(
-        "F_LR of the masons' walls by the treatment of their gaps",
-        ("wall", "gaps", "F_LR", "status"),
-        tuple(
-            (wall.wall.name, way.name, rounded(way.F_LR), way.status)
-            for wall, ways in walls
-            for way in ways
-        ),
-        (
-            "Widths of gaps in working px. `drystone analyse --close-gaps PX` and `--close-gaps "
-            "settle` do the same, but for the paper's way.",
-        ),
-    )
-
-
-def _picture(walls: TreatedWalls) -> ItemPicture:
+def _gaps_picture(walls: TreatedWalls) -> ItemFigure:
     panels = [
         masonry_panel(f"{each.wall.name}, {name}", labels, each.clusters, 1 / each.wall.scale)
         for each, _ in walls
@@ -232,18 +213,172 @@ def _picture(walls: TreatedWalls) -> ItemPicture:
             ("drawn together, dilated", each.papers_way),
         )
     ]
-    return ItemPicture(
-        "fig13",
-        sheet_of(panels, 2),
-        "Left as traced, right with the stones drawn to the bottom left corner and dilated by one "
-        "working px; stones of a colour are of one cluster of their set.",
-    )
+    return ItemFigure("fig13", sheet_of(panels, 2))
 
 
 FIG13 = PaperItem(
-    **paper("fig13"),
+    words=ITEMS["fig13"],
     study=treated_walls,
-    tables={"fig13": _metrics, "fig13_resistance": _resistance},
-    pictures=lambda walls: (_picture(walls),),
-    needs=tuple(wall.source.name for wall in MASONS),
+    tables={
+        "fig13": _metrics,
+        "fig13_resistance": lambda walls: [
+            (wall.wall.name, way.name, rounded(way.F_LR), way.status)
+            for wall, ways in walls
+            for way in ways
+        ],
+    },
+    pictures=lambda walls: [_gaps_picture(walls)],
+)
+
+NONE: tuple[Cell, ...] = (None,) * len(METRICS)
+
+EXACT = 6
+"""Decimals of a load multiplier that every solver agrees on; halves are rounded up after that."""
+
+
+def best_trial(outcomes: Sequence[RunOutcome]) -> int:
+    """Return the place of the wall with the highest filling and multiplier, to one decimal.
+
+    The paper chooses "the wall with the highest filling ratio and kinematics multiplier (rounded
+    to one decimal place)".  Taken here in the order in which they are named, both to one decimal,
+    or the second would never count; between walls that are equal then the full figures decide, in
+    the same order, and then the earlier trial.  Multipliers are over mu, as those that the paper
+    prints seem to be (Fig. 14: .79, above any mu that it names): F_LR.
+    """
+    return max(range(len(outcomes)), key=lambda place: (*_merit(outcomes[place]), -place))
+
+
+def _merit(outcome: RunOutcome) -> tuple[float, float, float, float]:
+    resistance, filled = outcome.figures["F_LR"], float(outcome.figures["F_SF"] or 0.0)
+    if resistance is None:
+        return tenths(filled), -1.0, filled, 0.0
+    return tenths(filled), tenths(resistance), filled, round(resistance, EXACT)
+
+
+def tenths(value: float) -> int:
+    """Round to one decimal, halves up; in tenths.
+
+    >>> tenths(0.45), tenths(0.4499999999), tenths(0.44)
+    (5, 5, 4)
+    """
+    return floor(10 * round(value, EXACT) + 0.5)
+
+
+@dataclass(frozen=True, eq=False)
+class FiveWall:
+    """One of the five walls: its trials, its stones, and what masons built from them, if any did.
+
+    The first trial is that of the fixed seed.
+    """
+
+    trials: Trials
+    stones: StoneSet
+    masons: TracedWall | None
+
+    @property
+    def name(self) -> tuple[int, str]:
+        """Number in Table 2, and name of the stones."""
+        return self.trials.wall.number, self.trials.wall.name
+
+    @property
+    def best(self) -> int:
+        """Place of the best trial by the paper's rule."""
+        return best_trial(self.trials.outcomes)
+
+    @property
+    def fullest(self) -> int:
+        """Place of the trial with the highest F_SF, the earlier one of equals."""
+        filled = [value or 0.0 for value in self.trials.values("F_SF")]
+        return filled.index(max(filled))
+
+
+Five = tuple[StudyWalls, Sequence[FiveWall]]
+
+
+def five_walls(context: Context, study: Study) -> Five:
+    """Build the walls, and read the masons'."""
+    found = study(context)
+    return found, [
+        FiveWall(
+            each,
+            each.wall.source.stones(context.data),
+            None if each.wall.stand_in else masons_wall(each.wall, context.data),
+        )
+        for each in found
+    ]
+
+
+def _references(wall: FiveWall) -> Iterator[tuple[Cell, ...]]:
+    number, papers = wall.name[0], REFERENCES.get(wall.name[0], NONE)
+    if wall.masons is None:
+        yield number, "the paper's", "reference", None, None, *NONE, *papers
+        return
+    treated = (("as traced", wall.masons.labels), (PAPERS_WAY, wall.masons.papers_way))
+    metrics = [(what, measured(labels)) for what, labels in treated]
+    count = metrics[0][1].stones
+    for what, ours in metrics:
+        figures = (rounded(getattr(ours, name)) for name in METRICS)
+        yield *wall.name, f"masons, {what}", count, count, *figures, *papers
+
+
+def _ours(wall: FiveWall) -> Iterator[tuple[Cell, ...]]:
+    trials, count = wall.trials, len(wall.stones)
+    seeds, papers = len(trials.outcomes), CONSTRUCTED.get(wall.name[0], NONE)
+    stand_in = trials.wall.stand_in
+
+    def one(what: str, place: int) -> tuple[Cell, ...]:
+        outcome = trials.outcomes[place]
+        named = f"{what}, seed {trials.specs[place].seed}"
+        return (*wall.name, named, *cells.placed_of(outcome), *cells.metric_cells(outcome))
+
+    yield *one("fixed seed", 0), *NONE
+    middle = (rounded(trials.median(name)) for name in METRICS)
+    yield *wall.name, f"median of {seeds}", trials.median("placed"), count, *middle, *NONE
+    yield *one(f"best of {seeds}", wall.best), *(NONE if stand_in else papers)
+    if stand_in:
+        yield wall.name[0], "the paper's", "best of 20", None, None, *NONE, *papers
+    yield *one(f"fullest of {seeds}", wall.fullest), *NONE
+    most = rounded(float(wall.stones.total_area_px) / (trials.wall.width * trials.wall.height))
+    yield *wall.name, "all stones", count, count, most, None, None, None, *NONE
+
+
+def _five_panels(built: StudyWalls, wall: FiveWall) -> list[Panel]:
+    trials, stones = wall.trials, wall.stones
+    seeds = [spec.seed for spec in trials.specs]
+    clusters = cluster_stones(stones, PoseBook(trials.wall.scale))
+    title = f"Wall {trials.wall.number}, {trials.wall.name}\n"
+    title += f"{len(stones)} stones in {len(set(clusters.values()))} clusters"
+    best = f"best of {len(seeds)}, seed {seeds[wall.best]}"
+    masons = EMPTY
+    if wall.masons is not None:
+        unit = 1 / trials.wall.scale
+        labels = wall.masons.papers_way
+        masons = masonry_panel("masons, gaps closed", labels, wall.masons.clusters, unit)
+    return [
+        Panel(title, wall_aspect(stones.source.height_px / stones.source.width_px),
+              lambda ax: plot_stones(stones, clusters, ax)),
+        wall_panel(*built.titled(trials, f"fixed seed {seeds[0]}")),
+        wall_panel(*built.titled(trials, best, wall.best)),
+        masons,
+    ]  # fmt: skip
+
+
+TABLE2 = PaperItem(
+    words=ITEMS["table2"],
+    study=partial(five_walls, study=Study(walls=FIVE, quick_seeds=2)),
+    tables={
+        # Rows of each wall, our figures and the paper's beside each other
+        "table2": lambda found: [
+            row for wall in found[1] for row in (*_references(wall), *_ours(wall))
+        ],
+        "table2_seeds": lambda found: [
+            (*wall.name, *cells.summary(wall.trials.outcomes)) for wall in found[1]
+        ],
+    },
+    pictures=lambda found: [
+        ItemFigure(
+            "fig18",
+            sheet_of([panel for wall in found[1] for panel in _five_panels(found[0], wall)], 4),
+        )
+    ],
 )

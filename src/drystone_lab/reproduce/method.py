@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import islice
+from types import SimpleNamespace
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -24,10 +25,10 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
 from drystone_lab.pictures.walls import Panel, plot_walls, sheet_of, wall_aspect, wall_panel
-from drystone_lab.reproduce.cells import ClaimCheck, rounded
+from drystone_lab.reproduce.cells import rounded
 from drystone_lab.reproduce.construction import Construction, construction
-from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
-from drystone_lab.table import Cell, Table
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
+from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.walls import PR, Target
 
 ROWS: Mapping[str, tuple[str, int, tuple[str, ...]]] = {
@@ -43,23 +44,18 @@ ROWS: Mapping[str, tuple[str, int, tuple[str, ...]]] = {
 """Rows of Table 1: name, number of marks, and whose they are as far as the text says it."""
 
 
-def _table1(context: Context) -> Table:  # noqa: ARG001 - an item reads its study
+def _table1(_: object) -> Rows:
     def cell(policy: str, part: str) -> str:
         said, ours = policy in ROWS[part][2], part in MARKS[policy]
         return {(1, 1): "paper and ours", (1, 0): "paper", (0, 1): "ours", (0, 0): ""}[said, ours]
 
-    return Table(
-        "Table 1: components of each system, and of our policy of that name",
-        ("component", "marks in the paper", *MARKS),
-        tuple((name, count, *(cell(policy, part) for policy in MARKS))
-              for part, (name, count, _who) in ROWS.items()),
-        (f"An engine looks at what {' and '.join(ENGINE)} choose. All weights are 1.",),
-    )  # fmt: skip
+    for part, (name, count, _who) in ROWS.items():
+        yield name, count, *(cell(policy, part) for policy in MARKS)
 
 
 TABLE1 = PaperItem(
-    **paper("table1"),
-    study=lambda context: context,
+    words=ITEMS["table1"],
+    study=lambda _: SimpleNamespace(engine=" and ".join(ENGINE)),
     tables={"table1": _table1},
 )
 
@@ -69,53 +65,38 @@ def followed(context: Context, wall: Target = PR) -> Construction:
     return construction(context, wall.run(context.seed))
 
 
-def _steps(run: Construction) -> Table:
-    rows: list[tuple[Cell, ...]] = []
+def _steps(run: Construction) -> Rows:
     area = float(run.wall.site.width_px * run.wall.site.height_px)
     filled = 0.0
     for number, stage in enumerate(run.stages, 1):
         placement = stage.group.placement
         filled += placement.posed.area_px / area
-        rows.append(
-            (number, placement.stone_id, run.workshop.clusters[placement.stone_id],
-             placement.posed.angle_deg, placement.rotation_moves, len(stage.group.wedges),
-             rounded(filled))
+        yield (
+            number, placement.stone_id, run.workshop.clusters[placement.stone_id],
+            placement.posed.angle_deg, placement.rotation_moves, len(stage.group.wedges),
+            rounded(filled),
         )  # fmt: skip
-    columns = ("step", "stone", "cluster", "angle, degrees", "turns", "wedges", "filled")
-    return Table("Algorithm 1, step by step", columns, tuple(rows))
 
 
-def _workflow(run: Construction) -> tuple[ItemPicture, ...]:
+def _workflow(run: Construction) -> Iterator[ItemFigure]:
     stones, count = run.workshop.stones, len(run.stages)
-    size = stones.source
     shown = sorted({1, max(1, count // 3), max(1, 2 * count // 3), count})
     walls = [
         (f"after {number} stones", run.stages[number - 1].after, run.workshop.clusters)
         for number in shown
     ]
+    yield ItemFigure("fig3", plot_walls(walls, 2), {"placed": count, "count": len(stones)})
     empty = Wall.empty(run.wall.site)
     panels = [
-        Panel("the stones", wall_aspect(size.height_px / size.width_px),
+        Panel("the stones", wall_aspect(stones.source.height_px / stones.source.width_px),
               lambda ax: plot_stones(stones, run.workshop.clusters, ax)),
         wall_panel("the landscape before the first stone: free between its bounds", empty, {}),
     ]  # fmt: skip
-    return (
-        ItemPicture(
-            "fig3",
-            plot_walls(walls, 2),
-            f"The run of Algorithm 1 in four moments; it places {count} of {len(stones)} stones. "
-            "Numbers are steps of the plan, in which a wedge (dark red) is one too.",
-        ),
-        ItemPicture("fig4", sheet_of(panels, 2), "What a run begins with."),
-    )
+    yield ItemFigure("fig4", sheet_of(panels, 2))
 
 
 WORKFLOW = PaperItem(
-    **paper("fig3-4"),
-    study=followed,
-    tables={"steps": _steps},
-    pictures=_workflow,
-    needs=(PR.source.name,),
+    words=ITEMS["fig3-4"], study=followed, tables={"steps": _steps}, pictures=_workflow
 )
 
 FILTERS = ("LLC > 0", "LLC", "NHR", "IWR or IS", "GDS", "LFR")
@@ -156,31 +137,18 @@ def selection_step(context: Context, wall: Target = PR) -> Selection:
     return Selection(attempt.candidates, standing, selected)
 
 
-def _filters(step: Selection) -> Table:
-    rows: list[tuple[Cell, ...]] = []
+def _filters(step: Selection) -> Rows:
     settings = PR.run(0).settings().selection
     for k, (candidate, passed) in enumerate(zip(step.candidates, step.passed, strict=True)):
         action = action_of(candidate, settings)
-        indices = candidate.indices
-        rows.append(
-            (candidate.stone_id, candidate.proposal.trial_angle_deg,
-             *(rounded(term) for term in action.terms), "IS" if indices.boundary else "IWR",
-             rounded(weighted_sum(action, settings)), FILTERS[passed - 1],
-             k == step.selected.position)
+        yield (
+            candidate.stone_id, candidate.proposal.trial_angle_deg, *map(rounded, action.terms),
+            "IS" if candidate.indices.boundary else "IWR", rounded(weighted_sum(action, settings)),
+            FILTERS[passed - 1], k == step.selected.position,
         )  # fmt: skip
-    return Table(
-        "The candidates of a step of Algorithm 2",
-        ("stone", "angle, degrees", "LLC", "-NHR", "third", "GDS", "LFR", "third is", "sum",
-         "last filter passed", "chosen"),
-        tuple(rows),
-        (
-            f"{step.tried} candidates were tried; those after which the wall does not stand are "
-            "left out: the filter LLC > 0.",
-        ),
-    )  # fmt: skip
 
 
-def _selection_pictures(step: Selection) -> Iterator[ItemPicture]:
+def _selection_picture(step: Selection) -> ItemFigure:
     figure = Figure(figsize=(6.4, 0.4 + 0.22 * len(step.candidates)), layout="constrained")
     ax = figure.add_subplot()
     for k, passed in enumerate(step.passed):
@@ -191,18 +159,14 @@ def _selection_pictures(step: Selection) -> Iterator[ItemPicture]:
     ax.set_xticks(range(1, len(FILTERS) + 1), FILTERS, fontsize=7)
     ax.set_ylabel("stone, angle in degrees")
     counts = " > ".join(str(len(survivors)) for survivors in step.selected.survivors)
-    yield ItemPicture(
-        "fig10", figure,
-        f"How far each candidate came through the filters ({counts}); yellow: the action taken.",
-    )  # fmt: skip
+    return ItemFigure("fig10", figure, counts)
 
 
 SELECTION = PaperItem(
-    **paper("fig10"),
+    words=ITEMS["fig10"],
     study=selection_step,
     tables={"candidates": _filters},
-    pictures=lambda step: tuple(_selection_pictures(step)),
-    needs=(PR.source.name,),
+    pictures=lambda step: [_selection_picture(step)],
 )
 
 
@@ -223,8 +187,7 @@ def two_stones(_: Context) -> TwoStones:
     return TwoStones(labels, model, lateral_resistance(model, mechanism=True))
 
 
-def _contact_forces(found: TwoStones) -> Table:
-    rows: list[tuple[Cell, ...]] = []
+def _contact_forces(found: TwoStones) -> Rows:
     forces = found.both.right.forces
     each = iter(() if forces is None else forces.tolist())
     for face in found.model.interfaces:
@@ -232,35 +195,27 @@ def _contact_forces(found: TwoStones) -> Table:
             n, t = next(each)
             share = rounded(abs(t) / (found.model.mu * n)) if n else None
             under = "the ground" if not face.other else f"stone {face.other}"
-            rows.append((f"stone {face.block}", under, x, y, rounded(n), rounded(t), share))
-    return Table(
-        f"Contact points at the load multiplier {found.both.right.alpha:.3f} to the right",
-        ("block", "on", "x, px", "y, px", "normal force", "tangential force", "|t| / (mu n)"),
-        tuple(rows),
-    )
+            yield f"stone {face.block}", under, x, y, rounded(n), rounded(t), share
 
 
-def _two_claims(found: TwoStones) -> Iterator[ClaimCheck]:
+def _two_claims(found: TwoStones) -> Iterator[Claimed]:
     alpha, mu = found.both.right.alpha, found.model.mu
-    yield ClaimCheck(
-        "Eq. 23 bounds the load by sliding and by opening.",
-        f"alpha {alpha:.6f}; by hand the upper stone slides at mu = {mu:g}, before any tips.",
-        alpha is not None and abs(alpha - mu) < 1e-9,
-    )
+    holds = alpha is not None and abs(alpha - mu) < 1e-9
+    yield Claimed("sliding", holds, {"alpha": alpha, "mu": mu})
 
 
-def _two_picture(found: TwoStones) -> tuple[ItemPicture, ...]:
+def _two_picture(found: TwoStones) -> ItemFigure:
     figure = Figure(figsize=(5.0, 3.6), layout="constrained")
     forces = found.both.right.forces
     if forces is not None:
         plot_forces(found.labels, found.model, forces, figure.add_subplot())
-    return (ItemPicture("fig11", figure, "Two stones and their forces at the load multiplier."),)
+    return ItemFigure("fig11", figure)
 
 
 RIGID = PaperItem(
-    **paper("fig11"),
+    words=ITEMS["fig11"],
     study=two_stones,
     claims=_two_claims,
     tables={"forces": _contact_forces},
-    pictures=_two_picture,
+    pictures=lambda found: [_two_picture(found)],
 )

@@ -1,43 +1,82 @@
 """Figs. 22 to 24: polygons of eight noise levels; Fig. 25: orientations in steps (§5.3)."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import cycle
+from pathlib import Path
 from statistics import median
 
 from matplotlib.figure import Figure
 from scipy.stats import binomtest
 
+from drystone.contacts.gaps import model_with_closed_gaps
+from drystone.metrics.measure import measure_labels
+from drystone.metrics.reduce import reduce_labels
+from drystone.model.wall import Labels
+from drystone.statics.limit import lateral_resistance
 from drystone_lab.pictures.charts import (
     TWO_IN,
-    NoiseNames,
     NoisePanel,
     group_panels,
     noise_panels,
     plot_two_figures,
 )
 from drystone_lab.pictures.walls import plot_walls
-from drystone_lab.reproduce.cells import (
-    LEVEL,
-    METRICS,
-    ClaimCheck,
-    Trend,
-    figures_of,
-    metric_cells,
-    rounded,
-    trend,
-)
-from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
-from drystone_lab.reproduce.noise_sets import (
-    GAP_RANGE,
-    ReferenceWall,
-    reference_of,
-)
-from drystone_lab.reproduce.study import Study, StudyWalls, Trials, walls_table, ways_table
+from drystone_lab.reproduce import cells
+from drystone_lab.reproduce.cells import LEVEL, Trend, figures_of, metric_cells, rounded, trend
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
+from drystone_lab.reproduce.items import ITEMS
+from drystone_lab.reproduce.study import Study, StudyWalls, Trials, each_wall, medians
 from drystone_lab.runs.outcome import RunOutcome
-from drystone_lab.table import Table
-from drystone_lab.walls import NOISES, NOISY, TWO_SIDED, coarser, generated_noise
+from drystone_lab.walls import NOISES, NOISY, TWO_SIDED, Target, coarser, generated_noise
+
+GAP_SOURCE_PX = 20 / 3
+"""Widest gap of a published wall that counts as a contact: 2 px at the working scale."""
+
+GAP_RANGE = (0.5, 1.0, 1.5)
+"""The resistance is also told for gaps of as many times this width."""
+
+
+@dataclass(frozen=True)
+class ReferenceWall:
+    """A published wall of Thangavelu et al. (2018), measured as a label image."""
+
+    stones: int
+    F_SF: float  # Of the whole image, which is also the wall that our method is to fill
+    F_AV: float | None
+    F_AH: float | None
+    # With no gap closed, then with those of :data:`GAP_RANGE`; None where it does not stand
+    resistances: tuple[float | None, ...]
+
+    @property
+    def F_LR(self) -> float | None:  # noqa: N802 - as its other figures
+        """With gaps of :data:`GAP_SOURCE_PX` closed."""
+        return self.resistances[1 + GAP_RANGE.index(1.0)]
+
+
+def reference_of(wall: Target, data: Path | None) -> ReferenceWall | None:
+    """Measure the published wall of some stones; None of generated ones, which were never built."""
+    if wall.stand_in or data is None:
+        return None
+    return measured(wall.source.labels(data), wall.scale)
+
+
+def measured(labels: Labels, scale: float) -> ReferenceWall:
+    """Measure a label image as a wall that fills all of it, reduced by a scale."""
+    reduced = reduce_labels(labels, scale)
+    height, width = reduced.shape
+    # As in plans: stones have their area at the resolution of the source.
+    share = (labels > 0).mean()
+    metrics = measure_labels(
+        reduced, wall_px=(width, height), stone_area_px=float(share * width * height)
+    )
+    reaches = (0.0, *(factor * GAP_SOURCE_PX * scale for factor in GAP_RANGE))
+    resistances = tuple(
+        lateral_resistance(model_with_closed_gaps(reduced, reach).model).value for reach in reaches
+    )
+    return ReferenceWall(metrics.stones, metrics.F_SF, metrics.F_AV, metrics.F_AH, resistances)
+
 
 RULES = {"paper": TWO_SIDED, "random": (*TWO_SIDED, ("selection_rule", "random"))}
 """The paper's method, from both ends; or any candidate, all with one chance."""
@@ -73,14 +112,10 @@ class NoiseLevel:
         """Walls of the paper's method."""
         return self.built.all[0]
 
-    def rule(self, rule: str) -> Trials:
-        """Return the walls of a rule."""
-        (trials,) = self.built.of(rule)
-        return trials
-
     def least(self, name: str, rule: str = "paper") -> float:
         """Return the median of a figure, 0 when no wall has it: one that falls has none."""
-        return self.rule(rule).median(name) or 0.0
+        (trials,) = self.built.of(rule)
+        return trials.median(name) or 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +129,11 @@ class NoiseLevels:
     def low(self) -> list[NoiseLevel]:
         """Levels below :data:`MIXED`."""
         return [level for level in self.all if level.noise < MIXED]
+
+    @property
+    def published(self) -> list[tuple[NoiseLevel, ReferenceWall]]:
+        """Levels whose published walls are there, and these."""
+        return [(level, level.reference) for level in self.all if level.reference is not None]
 
 
 def noise_levels(context: Context, study: Study) -> NoiseLevels:
@@ -110,35 +150,26 @@ def is_full(outcome: RunOutcome) -> bool:
     return filling is not None and filling > FILLED
 
 
-def trends(levels: NoiseLevels, name: str, rule: str = "paper") -> dict[str, Trend | None]:
+def trends(levels: NoiseLevels, name: str) -> dict[str, Trend | None]:
     """Correlate a figure with the noise: over walls; over sets, which alone are independent."""
     walls = [(level.noise, value) for level in levels.all
-             for value in figures_of(level.rule(rule).outcomes, name)]  # fmt: skip
-    sets = [(level.noise, level.rule(rule).median(name)) for level in levels.all]
-    return {
-        "walls": trend(walls),
-        "sets": trend(sets),
-    }
-
-
-def reference_trend(levels: NoiseLevels, name: str) -> Trend | None:
-    """Correlate a figure of the published walls with the noise."""
-    known = [level for level in levels.all if level.reference is not None]
-    return trend([(one.noise, one.reference.metric(name)) for one in known if one.reference])
+             for value in figures_of(level.ours.outcomes, name)]  # fmt: skip
+    sets = [(level.noise, level.ours.median(name)) for level in levels.all]
+    return {"walls": trend(walls), "sets": trend(sets)}
 
 
 def residuals(levels: NoiseLevels) -> dict[int, float]:
     """Return by how much the median filling of each level is above that of its neighbours."""
-    medians = [level.least("F_SF") for level in levels.all]
+    filled = [level.least("F_SF") for level in levels.all]
     found = {}
     for place, level in enumerate(levels.all):
-        beside = medians[max(0, place - 1) : place] + medians[place + 1 : place + 2]
+        beside = filled[max(0, place - 1) : place] + filled[place + 1 : place + 2]
         if beside:
-            found[level.noise] = medians[place] - median(beside)
+            found[level.noise] = filled[place] - median(beside)
     return found
 
 
-def noise_findings(levels: NoiseLevels) -> tuple[ClaimCheck, ...]:
+def noise_findings(levels: NoiseLevels) -> Iterator[Claimed]:
     """Compare the levels with what §5.3 says of them."""
     low = [outcome for level in levels.low for outcome in level.ours.outcomes]
     full = sum(map(is_full, low))
@@ -147,133 +178,89 @@ def noise_findings(levels: NoiseLevels) -> tuple[ClaimCheck, ...]:
         for name in ("F_SF", "F_LR")
     }
     told = ", ".join(f"{name} in {count}" for name, count in against.items())
-    reference = reference_trend(levels, "F_AV")
+    reference = trend([(level.noise, wall.F_AV) for level, wall in levels.published])
     # Few walls are published: a correlation that is not clear is not yet against the claim.
     clear = reference is not None and (reference.clear or reference.rho <= 0)
-    return (
-        _trending(levels, "F_SF", -1, "Filling falls as the noise rises (Fig. 24a)."),
-        ClaimCheck(
-            f"Below {MIXED} % noise F_SF is always above {FILLED:g}.",
-            f"{full} of {len(low)} walls below {MIXED} % are above {FILLED:g}.",
-            full == len(low) if low else None,
-        ),
-        *_between(levels),
-        ClaimCheck(
-            f"Below {MIXED} % noise the walls are better filled than by the random strategy.",
-            f"against a random choice among the same candidates the median is higher by {told} of "
-            f"{len(levels.low)} sets. The random strategy of that study is another one.",
-            against["F_SF"] == len(levels.low) if levels.low else None,
-        ),
-        _trending(levels, "F_LR", 0, "Lateral resistance has no clear trend."),
-        _trending(levels, "F_AV", 1, "Interlocking F_AV rises with the noise."),
-        ClaimCheck(
-            "F_AV of the reference walls rises with the noise.",
-            "too few published walls." if reference is None else f"{reference.words()}.",
-            reference.rho > 0 if reference is not None and clear else None,
-        ),
-        _trending(levels, "F_AH", 0, "Horizontality has no obvious trend."),
-        _against_reference(levels, "F_SF", "The wall is filled as much as the reference."),
-        _against_reference(
-            levels, "F_AV", "Head joints are better staggered than the reference's."
-        ),
-    )
+    yield _trending("falls", levels, "F_SF", -1)
+    agrees = full == len(low) if low else None
+    yield Claimed("always", agrees, {"full": full, "count": len(low)})
+    yield from _between(levels)
+    agrees = against["F_SF"] == len(levels.low) if levels.low else None
+    yield Claimed("random", agrees, {"told": told, "count": len(levels.low)})
+    yield _trending("resistance", levels, "F_LR", 0)
+    yield _trending("interlocking", levels, "F_AV", 1)
+    words = "too few published walls" if reference is None else reference.words()
+    agrees = reference.rho > 0 if reference is not None and clear else None
+    yield Claimed("reference", agrees, {"words": words})
+    yield _trending("horizontality", levels, "F_AH", 0)
+    yield _against_reference("as_full", levels, "F_SF")
+    yield _against_reference("staggered", levels, "F_AV")
 
 
-def _trending(levels: NoiseLevels, name: str, sign: int, claim: str) -> ClaimCheck:
+def _trending(key: str, levels: NoiseLevels, name: str, sign: int) -> Claimed:
     """Compare a trend over the medians of the sets with a claimed one; 0 for none."""
     each = trends(levels, name)
     words = [f"over {over}: {found.words()}" for over, found in each.items() if found is not None]
-    said, sets = "; ".join(words) + "." if words else "too few levels.", each["sets"]
+    values, sets = {"words": "; ".join(words) + "." if words else "too few levels."}, each["sets"]
     if sets is None:
-        return ClaimCheck(claim, said, None)
+        return Claimed(key, None, values)
     if sign:
-        return ClaimCheck(claim, said, sets.rho * sign > 0 and sets.clear)
+        return Claimed(key, sets.rho * sign > 0 and sets.clear, values)
     # Eight medians may miss a trend that the walls do show.
     others = any(found.clear for found in each.values() if found is not None)
-    return ClaimCheck(claim, said, False if sets.clear else None if others else True)
+    return Claimed(key, False if sets.clear else None if others else True, values)
 
 
-def _between(levels: NoiseLevels) -> Iterator[ClaimCheck]:
+def _between(levels: NoiseLevels) -> Iterator[Claimed]:
     if len(levels.all) < 2:
         return
-    worst = {
-        name: min(levels.all, key=lambda one, name=name: one.least(name))  # type: ignore[misc]
-        for name in ("F_SF", "F_LR")
-    }
+    worst: dict[str, NoiseLevel] = {}
+    for name in ("F_SF", "F_LR"):
+        figures = [level.least(name) for level in levels.all]
+        worst[name] = levels.all[figures.index(min(figures))]
     words = "; ".join(
         f"the lowest median {name} is that of {level.noise} % noise, {level.least(name):.3f}"
         for name, level in worst.items()
     )
     there = levels.all[-1].noise == NOISES[-1]
     hardest = all(level.noise == NOISES[-1] for level in worst.values())
-    claim = f"The set of {NOISES[-1]} % is the most difficult: walls unfilled and weak."
-    yield ClaimCheck(claim, f"{words}.", hardest if there else None)
+    yield Claimed("hardest", hardest if there else None, {"words": words})
     # The first and the last have a neighbour on one side only: a mere trend sets them apart.
     inner = [level.noise for level in levels.all[1:-1]]
     if inner:
         above = residuals(levels)
         best = max(inner, key=lambda noise: above[noise])
-        yield ClaimCheck(
-            "One noisy level is filled surprisingly well.",
-            f"the median F_SF of {best} % less that of the levels beside it is {above[best]:+.3f}, "
-            "the most of all that have one on either side.",
-            None,
-        )
+        yield Claimed("surprising", None, {"best": best, "above": above[best]})
 
 
-def _against_reference(levels: NoiseLevels, name: str, claim: str) -> ClaimCheck:
-    known = [(level, level.reference) for level in levels.all if level.reference is not None]
+def _against_reference(key: str, levels: NoiseLevels, name: str) -> Claimed:
+    pairs = [
+        (level.noise, level.least(name), getattr(wall, name) or 0.0)
+        for level, wall in levels.published
+    ]
     # Sizes of walls are rounded to px, so that walls of all stones differ in later digits.
-    better = sum(
-        round(level.least(name), 3) >= round(wall.metric(name) or 0.0, 3) for level, wall in known
-    )
-    each = "; ".join(
-        f"{level.noise} %: {level.least(name):.3g} against {wall.metric(name) or 0.0:.3g}"
-        for level, wall in known
-    )
-    words = f"the median is at least the published wall's in {better} of {len(known)} sets"
-    return ClaimCheck(claim, f"{words} ({each}).", better == len(known) if known else None)
+    better = sum(round(ours, 3) >= round(theirs, 3) for _, ours, theirs in pairs)
+    each = "; ".join(f"{noise} %: {ours:.3g} against {theirs:.3g}" for noise, ours, theirs in pairs)
+    values = {"better": better, "count": len(pairs), "each": each}
+    return Claimed(key, better == len(pairs) if pairs else None, values)
 
 
-def _reference_table(levels: NoiseLevels) -> Table:
-    closed = (f"F_LR, gaps closed x{factor:g}" for factor in GAP_RANGE)
-    rows = []
-    for level in levels.all:
-        if (wall := level.reference) is not None:
-            figures = map(rounded, (wall.F_SF, wall.F_AV, wall.F_AH, *wall.F_LR))
-            rows.append((level.noise, wall.stones, *figures))
-    return Table(
-        "The published walls of Thangavelu et al. (2018) as label images",
-        ("noise, %", "stones", "F_SF", "F_AV", "F_AH", "F_LR, no gap closed", *closed),
-        tuple(rows),
-        (
-            "F_SF is of the whole image, which is also the size of our walls, and so the most that "
-            "its stones can fill. Gaps: x1 closes those of up to 6.7 px of the source (2 px at the "
-            "working scale 0.3); - does not stand.",
-        ),
-    )
+def _references(levels: NoiseLevels) -> Rows:
+    for level, wall in levels.published:
+        figures = map(rounded, (wall.F_SF, wall.F_AV, wall.F_AH, *wall.resistances))
+        yield level.noise, wall.stones, *figures
 
 
-_levels_table = ways_table(
-    "Medians and ranges by noise level, from two sides",
-    ("noise, %", "set", "rule"),
-    lambda one: (one.wall.number, one.wall.said, one.way),
-)
-_walls_table = walls_table(
-    "Walls of polygons of several noise levels, from two sides",
-    ("noise, %", "stones", "rule", "seed", "placed", "of", *METRICS, f"F_SF above {FILLED:g}"),
+_level_rows = medians(lambda one: (one.wall.number, one.wall.said, one.way))
+_wall_rows = each_wall(
     lambda one, spec, outcome: (
-        one.wall.number, one.wall.said, one.way, spec.seed, outcome.figures["placed"],
-        outcome.figures["stones"], *metric_cells(outcome), is_full(outcome),
-    ),
-    (
-        "Rule paper: Algorithm 2. Rule random: any of the candidates that stand, all with the same "
-        "chance.",
-    ),
+        one.wall.number, one.wall.said, one.way, spec.seed, *cells.placed_of(outcome),
+        *metric_cells(outcome), is_full(outcome),
+    )
 )  # fmt: skip
 
 
-def _noise_pictures(levels: NoiseLevels) -> Iterator[ItemPicture]:
+def _noise_pictures(levels: NoiseLevels) -> Iterator[ItemFigure]:
     walls = []
     for level in levels.all:
         place = level.ours.middle
@@ -281,26 +268,17 @@ def _noise_pictures(levels: NoiseLevels) -> Iterator[ItemPicture]:
         resistance = "-" if figures["F_LR"] is None else f"{figures['F_LR']:.2f}"
         title = f"{level.ours.wall.name}\nF_SF {figures['F_SF'] or 0.0:.2f}, F_LR {resistance}"
         walls.append(level.built.drawn(level.ours, f"{title}, seed {seed}", place))
-    yield ItemPicture(
-        "fig22", plot_walls(walls, 2),
-        "A wall of each noise level, the one in the middle by filling. Numbers are the order of "
-        "placement, colours the clusters, wedges are dark red.",
-    )  # fmt: skip
+    yield ItemFigure("fig22", plot_walls(walls, 2))
     yield _scatter(levels)
-    names = NoiseNames(f"F_SF > {FILLED:g}", f"F_SF <= {FILLED:g}", "published walls",
-                       "random choice, median")  # fmt: skip
+    names = (f"F_SF > {FILLED:g}", f"F_SF <= {FILLED:g}", "published walls",
+             "random choice, median")  # fmt: skip
     ticks = {level.noise: f"{level.noise}{'*' if level.generated else ''}" for level in levels.all}
     axes = {"F_SF": "F_SF", "F_LR": "F_LR", "F_AV": "F_AV, %", "F_AH": "F_AH, %"}
     panels = [_panel(levels, name, words) for name, words in axes.items()]
-    yield ItemPicture(
-        "fig24", noise_panels(panels, names, ticks),
-        "The four figures over the noise; * generated stones. Dashed: the walls that Thangavelu et "
-        "al. (2018) built of the same stones, measured in the same way; their F_LR with gaps of up "
-        "to 6.7 px of the source closed.",
-    )  # fmt: skip
+    yield ItemFigure("fig24", noise_panels(panels, names, ticks))
 
 
-def _scatter(levels: NoiseLevels) -> ItemPicture:
+def _scatter(levels: NoiseLevels) -> ItemFigure:
     groups = {
         f"{level.noise} %{' gen.' if level.generated else ''}": list(
             zip(level.ours.values("F_LR"), level.ours.values("F_SF"), strict=True)
@@ -319,11 +297,7 @@ def _scatter(levels: NoiseLevels) -> ItemPicture:
                 fontsize=6.5, arrowprops={"arrowstyle": "-|>", "linewidth": 0.7, "shrinkB": 1.5},
                 gid=f"example-{level.noise}",
             )  # fmt: skip
-    return ItemPicture(
-        "fig23", figure,
-        "Filling over lateral resistance of all walls. Large marks: medians of a set; arrows: the "
-        "walls drawn in fig22; gen.: generated stones.",
-    )  # fmt: skip
+    return ItemFigure("fig23", figure)
 
 
 def _panel(levels: NoiseLevels, name: str, words: str) -> NoisePanel:
@@ -334,18 +308,17 @@ def _panel(levels: NoiseLevels, name: str, words: str) -> NoisePanel:
             for value in figures_of([o for o in level.ours.outcomes if is_full(o) is full], name)
         )
 
-    reference = {
-        level.noise: value
-        for level in levels.all
-        if level.reference is not None and (value := level.reference.metric(name)) is not None
-    }
-    random = {level.noise: level.rule("random").median(name) for level in levels.all}
-    baseline = {noise: value for noise, value in random.items() if value is not None}
-    return NoisePanel(words, pairs(True), pairs(False), reference, baseline)
+    def line(figure: Callable[[NoiseLevel], float | None]) -> dict[int, float]:
+        found = ((level.noise, figure(level)) for level in levels.all)
+        return {noise: value for noise, value in found if value is not None}
+
+    published = line(lambda level: getattr(level.reference, name, None))
+    random = line(lambda level: level.built.of("random")[0].median(name))
+    return NoisePanel(words, pairs(True), pairs(False), published, random)
 
 
 NOISE = PaperItem(
-    **paper("fig22-24"),
+    words=ITEMS["fig22-24"],
     study=partial(
         noise_levels,
         study=Study(
@@ -358,39 +331,29 @@ NOISE = PaperItem(
     ),
     claims=noise_findings,
     tables={
-        "levels": lambda levels: _levels_table(levels.built),
-        "reference": _reference_table,
-        "walls": lambda levels: _walls_table(levels.built),
+        "levels": lambda levels: _level_rows(levels.built),
+        "reference": _references,
+        "walls": lambda levels: _wall_rows(levels.built),
     },
-    pictures=lambda levels: tuple(_noise_pictures(levels)),
+    pictures=_noise_pictures,
 )
 
 ORIENTATIONS = ("quarter", "10deg")
 """Setting of each: the four of largest shape factor, and 36."""
 
 
-def _gains(found: StudyWalls, name: str) -> list[float]:
-    """Return by how much a figure is larger with more orientations, for each set and seed."""
-    few, many = (
-        [value for one in found.of(way) for value in one.values(name)] for way in ORIENTATIONS
-    )
-    return [b - a for a, b in zip(few, many, strict=True) if a is not None and b is not None]
-
-
-def turned_findings(found: StudyWalls) -> tuple[ClaimCheck, ...]:
+def turned_findings(found: StudyWalls) -> Iterator[Claimed]:
     """Compare the figures of equal seeds."""
-    return (
-        _gain(_gains(found, "F_SF"), "Filling increases significantly with 10-degree steps."),
-        _gain(
-            _gains(found, "F_LR"),
-            "Lateral resistance increases significantly with 10-degree steps.",
-        ),
-    )
+    for key, figure in (("filling", "F_SF"), ("resistance", "F_LR")):
+        few, many = (found.values(way, figure) for way in ORIENTATIONS)
+        both = zip(few, many, strict=True)
+        yield gain_of(key, [b - a for a, b in both if a is not None and b is not None])
 
 
-def _gain(gains: Sequence[float], claim: str) -> ClaimCheck:
+def gain_of(key: str, gains: Sequence[float]) -> Claimed:
+    """Say by how much a figure is larger with more orientations, by pairs of a set and seed."""
     if not gains:
-        return ClaimCheck(claim, "no wall of either has it.", None)
+        return Claimed(key, None, {"words": "no wall of either has it."})
     higher, lower = sum(gain > 0 for gain in gains), sum(gain < 0 for gain in gains)
     # Most pairs share their stones with others, so the test is lenient with a gain.
     changed = higher + lower
@@ -401,19 +364,15 @@ def _gain(gains: Sequence[float], claim: str) -> ClaimCheck:
     )
     # Four pairs cannot pass a test at this level even if all of them agree.
     enough = 0.5 ** len(gains) < LEVEL
-    return ClaimCheck(claim, words, median(gains) > 0 and p < LEVEL if enough else None)
+    return Claimed(key, median(gains) > 0 and p < LEVEL if enough else None, {"words": words})
 
 
-def _turned_pictures(found: StudyWalls) -> Iterator[ItemPicture]:
+def _turned_pictures(found: StudyWalls) -> Iterator[ItemFigure]:
     walls = [
         found.titled(one, f"{one.wall.name}, orientations {one.way}, seed {found.seeds[0]}")
         for one in found
     ]
-    yield ItemPicture(
-        "fig25", plot_walls(walls, 2),
-        "Left: each stone in its four orientations of largest shape factor. Right: in steps of 10 "
-        "degrees, the same seed.",
-    )  # fmt: skip
+    yield ItemFigure("fig25", plot_walls(walls, 2))
     panels = {
         figure: {
             f"{one.wall.number} %{' gen.' * one.wall.stand_in}, {one.way}": one.values(figure)
@@ -421,14 +380,11 @@ def _turned_pictures(found: StudyWalls) -> Iterator[ItemPicture]:
         }
         for figure in ("F_SF", "F_LR")
     }
-    yield ItemPicture(
-        "fig25-figures", group_panels(panels),
-        "Filling and lateral resistance by noise and orientations: a point a wall, a line the "
-        "median; gen.: generated stones.",
-    )  # fmt: skip
+    yield ItemFigure("fig25-figures", group_panels(panels))
 
 
-TURNED = PaperItem(**paper("fig25"),
+TURNED = PaperItem(
+    words=ITEMS["fig25"],
     study=Study(
         walls=NOISY,
         ways={name: (*TWO_SIDED, ("orientations", name)) for name in ORIENTATIONS},
@@ -439,19 +395,13 @@ TURNED = PaperItem(**paper("fig25"),
     ),
     claims=turned_findings,
     tables={
-        "sets": ways_table(
-            "Medians and ranges with few and with many orientations, from two sides",
-            ("set", "orientations"),
-            lambda one: (one.wall.name, one.way),
-        ),
-        "walls": walls_table(
-            "Walls with few and with many orientations",
-            ("set", "orientations", "seed", "placed", *METRICS),
+        "sets": medians(lambda one: (one.wall.name, one.way)),
+        "walls": each_wall(
             lambda one, spec, outcome: (
                 one.wall.name, one.way, spec.seed, outcome.figures["placed"],
                 *metric_cells(outcome),
-            ),
+            )
         ),
     },
-    pictures=lambda found: tuple(_turned_pictures(found)),
+    pictures=_turned_pictures,
 )  # fmt: skip

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -40,16 +40,6 @@ def part(text: str) -> str:
     """
     number = text.removeprefix("§").strip()
     return f"Appendix {number}" if number.startswith("B") else f"§{number}"
-
-
-def about(record: Record) -> str:
-    """Say in a line how an item was made."""
-    request, taken = record["request"], record["taken"]
-    words = [f"seed {request['seed']}", f"drystone {request['version']}", record["made"]["date"]]
-    if taken["walls"]:
-        walls = counted(taken["walls"], "wall")
-        words.append(f"{walls} planned in {duration(taken['wall_seconds'])}")
-    return ", ".join(words)
 
 
 def lead(records: Sequence[Record], total: int) -> str:
@@ -130,13 +120,14 @@ def write_page(
 
     A miss may have a record of an earlier time all the same; `order` has the names of all items.
     """
-    sections = {
-        miss.name: _section({"name": miss.name, "title": miss.title, "section": miss.section})
-        for miss in misses
-    }
-    sections |= {record["name"]: _made_section(record, f"{record['name']}/") for record in records}
-    for miss in misses:
-        sections[miss.name]["error"] = miss.error
+    sections: dict[str, dict[str, Any]] = {miss.name: asdict(miss) for miss in misses}
+    for record in records:
+        name = record["name"]
+        sections[name] = {
+            **record,
+            "prefix": f"{name}/",
+            "error": sections.get(name, {}).get("error"),
+        }
     return _write(
         path,
         title="The paper's tables and figures, made again",
@@ -153,56 +144,16 @@ def write_item_page(path: Path, record: Record) -> Path:
         path,
         title=heading(record["name"], record["title"]),
         lead="",
-        sections=[_made_section(record, "")],
+        sections=[{**record, "prefix": "", "error": None}],
         made=made_rows([record]),
         up=f"../{PAGE}#{record['name']}",
     )
 
 
-def _section(record: Record) -> dict[str, Any]:
-    """Return an item as the page shows it when it was not made."""
-    head = heading(record["name"], record["title"])
-    shown = {"name": record["name"], "heading": head, "part": part(record["section"])}
-    return shown | {"error": "", "json": "", "version": ""}
-
-
-def _made_section(record: Record, prefix: str) -> dict[str, Any]:
-    """Return an item as the page shows it; `prefix` is the path from the page to its files."""
-    made = _section(record)
-    pictures = [
-        {
-            "png": prefix + picture["png"], "svg": prefix + picture["svg"],
-            "width": picture["width_px"], "height": picture["height_px"],
-            "shown_px": round(picture["width_px"] * SHOWN),
-            "alt": f"{made['heading']}. {picture['caption']}", "caption": picture["caption"],
-        }
-        for picture in record["pictures"]
-    ]  # fmt: skip
-    return made | {
-        "about": about(record),
-        "version": "quick version" if record["request"]["quick"] else "full version",
-        "paper": record["paper"],
-        "ours": record["ours"],
-        "tables": [_table(table, prefix) for table in record["tables"]],
-        "times": [_table(table, prefix) for table in record["times"]],
-        "pictures": pictures,
-        "json": f"{prefix}{record['name']}.json",
-    }
-
-
-def _table(table: Mapping[str, Any], prefix: str) -> dict[str, Any]:
-    """Return a table as the page shows it: `words` says which columns are not numbers."""
-    rows, columns = table["rows"], table["columns"]
-    return {
-        "title": table["title"],
-        "file": prefix + table["file"],
-        "columns": columns,
-        "words": [any(isinstance(row[k], str) for row in rows) for k in range(len(columns))],
-        # Five digits and, as the report of a plan has it, a dash; the CSV has all digits.
-        "rows": [["–" if cell is None else written(cell) for cell in row] for row in rows],  # noqa: RUF001
-        "notes": table["notes"],
-        "long": len(rows) > LONG,
-    }
+def _words(table: Mapping[str, Any]) -> list[bool]:
+    """Return which columns are not numbers."""
+    columns = range(len(table["columns"]))
+    return [any(isinstance(row[k], str) for row in table["rows"]) for k in columns]
 
 
 def _write(path: Path, **content: object) -> Path:
@@ -213,6 +164,10 @@ def _write(path: Path, **content: object) -> Path:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.globals |= {
+        "heading": heading, "part": part, "counted": counted, "duration": duration,
+        "written": written, "words": _words, "LONG": LONG, "SHOWN": SHOWN,
+    }  # fmt: skip
     text = environment.get_template(TEMPLATE).render(**content)
     write_whole(path, text.encode("utf-8", "replace"))
     return path

@@ -8,10 +8,10 @@ from drystone.model.wall import Wall
 from drystone_lab.pictures.charts import group_panels
 from drystone_lab.pictures.walls import TitledWall, plot_walls
 from drystone_lab.reproduce import cells
-from drystone_lab.reproduce.item import Context, ItemPicture
+from drystone_lab.reproduce.item import Context, ItemFigure, Rows
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.spec import Changes, RunSpec
-from drystone_lab.table import Cell, Table
+from drystone_lab.table import Cell
 from drystone_lab.walls import Target
 
 ONE_WAY: Mapping[str, Changes] = {"variant": ()}
@@ -94,17 +94,18 @@ class StudyWalls:
         """Of the first set."""
         return self.all[0].wall.name
 
+    @property
+    def names(self) -> str:
+        """Of all sets."""
+        return ", ".join(dict.fromkeys(one.wall.name for one in self.all))
+
     def of(self, way: str) -> list[Trials]:
         """Return the trials of one way, in the order of the sets."""
         return [each for each in self.all if each.way == way]
 
-    def wins(self, way: str, other: str, figure: str) -> cells.Wins:
-        """Compare the walls of two ways, pairs of one set and seed."""
-        ours, others = (
-            [value for trials in self.of(each) for value in trials.values(figure)]
-            for each in (way, other)
-        )
-        return cells.wins(ours, others, figure)
+    def values(self, way: str, figure: str) -> list[float | None]:
+        """Return a figure of all walls of one way, in the order of sets and seeds."""
+        return [value for trials in self.of(way) for value in trials.values(figure)]
 
     def wall(self, trials: Trials, which: int = 0) -> Wall:
         """Return one of the walls, built again."""
@@ -138,75 +139,37 @@ def built(
 TrialCells = Callable[[Trials], tuple[Cell, ...]]
 
 
-def ways_table(
-    title: str,
-    heads: Sequence[str],
-    key: TrialCells,
-    more: Sequence[str] = (),
-    extra: TrialCells = lambda _: (),
-    notes: Sequence[str] = (),
-) -> Callable[[StudyWalls], Table]:
-    """Return a table of medians and ranges, a row a set and way, between `key` and `extra`."""
-
-    def table(found: StudyWalls) -> Table:
-        rows = tuple((*key(one), *cells.summary(one.outcomes), *extra(one)) for one in found)
-        return Table(_named(title, found), (*heads, *cells.COLUMNS, *more), rows, tuple(notes))
-
-    return table
+def medians(key: TrialCells, extra: TrialCells = lambda _: ()) -> Callable[[StudyWalls], Rows]:
+    """Return rows of medians and ranges, one a set and way, between `key` and `extra`."""
+    return lambda found: [(*key(one), *cells.summary(one.outcomes), *extra(one)) for one in found]
 
 
-def walls_table(
-    title: str,
-    heads: Sequence[str],
+def each_wall(
     row: Callable[[Trials, RunSpec, RunOutcome], tuple[Cell, ...]],
-    notes: Sequence[str] = (),
-) -> Callable[[StudyWalls], Table]:
-    """Return a table with a row a wall."""
-
-    def table(found: StudyWalls) -> Table:
-        rows = tuple(
-            row(one, spec, outcome)
-            for one in found
-            for spec, outcome in zip(one.specs, one.outcomes, strict=True)
-        )
-        return Table(_named(title, found), tuple(heads), rows, tuple(notes))
-
-    return table
+) -> Callable[[StudyWalls], Rows]:
+    """Return a row a wall."""
+    return lambda found: [
+        row(one, *run) for one in found for run in zip(one.specs, one.outcomes, strict=True)
+    ]
 
 
-def pairs_table(
-    title: str, way: str, others: Sequence[str], head: str
-) -> Callable[[StudyWalls], Table]:
-    """Return a table of one way against others, pairs of one set and seed, by figure."""
-
-    def table(found: StudyWalls) -> Table:
-        rows = tuple(
-            (other, *found.wins(way, other, figure).cells(figure))
-            for other in others
-            for figure in cells.METRICS
-        )
-        return Table(_named(title, found), (head, *cells.WINS), rows)
-
-    return table
+def pairs(way: str, others: Sequence[str]) -> Callable[[StudyWalls], Rows]:
+    """Return rows of one way against others, pairs of one set and seed, by figure."""
+    return lambda found: [
+        (other, *cells.wins(found.values(way, figure), found.values(other, figure), figure))
+        for other in others
+        for figure in cells.METRICS
+    ]
 
 
 def strips(
     found: StudyWalls, name: str, figures: Sequence[str], label: Callable[[Trials], str]
-) -> ItemPicture:
+) -> ItemFigure:
     """Draw a point a wall: a panel a figure, a group a set and way."""
     panels = {figure: {label(one): one.values(figure) for one in found} for figure in figures}
-    names = ", ".join(dict.fromkeys(one.wall.name for one in found))
-    return ItemPicture(name, group_panels(panels), f"{names}: a point a wall; lines are medians.")
+    return ItemFigure(name, group_panels(panels), found)
 
 
-def sheet(
-    found: StudyWalls, name: str, columns: int, label: Callable[[Trials], str], caption: str
-) -> ItemPicture:
+def sheet(found: StudyWalls, name: str, columns: int, label: Callable[[Trials], str]) -> ItemFigure:
     """Draw the wall of the first seed of every set and way."""
-    walls = [found.titled(one, label(one)) for one in found]
-    caption += " Numbers are steps of the plan, colours clusters of stones, wedges are dark red."
-    return ItemPicture(name, plot_walls(walls, columns), caption)
-
-
-def _named(title: str, found: StudyWalls) -> str:
-    return title.format(wall=found.name) if found.all else title
+    return ItemFigure(name, plot_walls([found.titled(one, label(one)) for one in found], columns))

@@ -1,6 +1,6 @@
 """Items that are timed: Fig. 28, a step by part; Fig. 29, resolution; §6.2, stones and clusters."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import fmean
@@ -14,25 +14,21 @@ from drystone.planner.profile import Part, StepTime
 from drystone.planner.settings import method_settings
 from drystone.poses import PoseBook
 from drystone.selection.sampling import Sampling
-from drystone_lab.pictures.growth import GROWTH_IN
+from drystone_lab.pictures.growth import plot_growth, step_time_panels
 from drystone_lab.pictures.walls import plot_walls
-from drystone_lab.reproduce.cells import METRICS, ClaimCheck, findings_table, metric_cells, trend
-from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
+from drystone_lab.reproduce.cells import metric_cells, placed_of, trend
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
+from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.reproduce.study import ONE_WAY, StudyWalls, built
-from drystone_lab.table import Cell, Table
+from drystone_lab.table import Cell
 from drystone_lab.timed_walls import (
-    PAPER_STEP_S,
-    PAPER_WALL_S,
     SAMPLINGS,
     TimedWall,
-    exponent,
-    pixels_table,
+    exponents,
+    fitted,
+    parts_ms,
     planned,
-    plot_pixels,
     rubble,
-    size_of,
-    steps_figure,
-    steps_table,
     three_digits,
 )
 from drystone_lab.walls import PR, Target
@@ -52,10 +48,16 @@ BySampling = Mapping[Sampling, TimedWall]
 
 
 class StepWalls(NamedTuple):
-    """Walls by sampling, and the folder that may have the times of the paper's authors."""
+    """Walls by sampling, their name, and the folder that may have the times of the authors."""
 
     walls: BySampling
+    name: str
     data: Path | None
+
+    @property
+    def size(self) -> str:
+        """Of the wall, px."""
+        return self.walls["variant"].size
 
 
 PROCEDURES: Mapping[str, tuple[Part, ...]] = {
@@ -75,7 +77,7 @@ STABLE = 1.5
 def by_sampling(context: Context, wall: Target = PR) -> StepWalls:
     """Time a wall with either sampling."""
     walls = {sampling: timed(context, wall, {"sampling": sampling}) for sampling in SAMPLINGS}
-    return StepWalls(walls, context.data)
+    return StepWalls(walls, wall.name, context.data)
 
 
 RELEASED: Mapping[str, str] = {
@@ -102,41 +104,31 @@ def released(data: Path | None, name: str) -> Times | None:
     return len(np.unique(rows[:, 0])), len(rows), seconds, int(rows[rows[:, 0] == 1, 1].max())
 
 
-def _released_table(data: Path | None, ours: Mapping[str, TimedWall]) -> Table:
+def released_rows(data: Path | None, ours: Mapping[str, TimedWall]) -> Rows:
     """Return the times of the authors beside ours."""
-    rows: list[tuple[Cell, ...]] = []
     for name, wall in ours.items():
-        candidates = sum(step.candidates for step in wall.steps)
-        seconds = {
-            what: sum(step.parts.get(part, 0.0) for step in wall.steps for part in parts)
-            for what, parts in PROCEDURES.items()
-        }
-        ours_too = len(wall.steps), candidates, seconds, None
-        found: dict[str, Times | None] = {"authors": released(data, name), "ours": ours_too}
+        mine = len(wall.steps), wall.candidates, procedure_seconds(wall.steps), None
+        found: dict[str, Times | None] = {"authors": released(data, name), "ours": mine}
         for who, times in found.items():
             if times is None:
-                rows.append((name, f"{who}: not in the data folder", *[None] * 7))
+                yield name, f"{who}: not in the data folder", *[None] * 7
                 continue
             whole = sum(times[2].values())
             shares_of = (float(times[2][what] / whole) for what in PROCEDURES)
-            rows.append((name, who, *times[:2], whole, *shares_of, times[3]))
-    return Table(
-        "The authors' released times beside ours",
-        ("wall", "whose", "steps", "candidates", "worker seconds",
-         *(f"{what}, share" for what in PROCEDURES), "most places in step 1"),
-        three_digits(rows),
-        ("Sums over all candidates: of several processes of an i7-10700, and of one here.",
-         "A stone has one place on the empty ground for every px that the wall is wider than it, "
-         "and one more. The narrowest pose of PR is 12 px wide: 287 places are a wall of 298 px."),
-    )  # fmt: skip
+            yield three_digits((name, who, *times[:2], whole, *shares_of, times[3]))
+
+
+def procedure_seconds(steps: Sequence[StepTime]) -> dict[str, float]:
+    """Return the seconds of each of the paper's procedures."""
+    return {
+        name: sum(step.parts.get(part, 0.0) for step in steps for part in parts)
+        for name, parts in PROCEDURES.items()
+    }
 
 
 def shares(steps: Sequence[StepTime]) -> dict[str, float]:
     """Return the share of each of the paper's procedures in the time of all three."""
-    seconds = {
-        name: sum(step.parts.get(part, 0.0) for step in steps for part in parts)
-        for name, parts in PROCEDURES.items()
-    }
+    seconds = procedure_seconds(steps)
     whole = sum(seconds.values()) or 1.0
     return {name: value / whole for name, value in seconds.items()}
 
@@ -147,92 +139,97 @@ def late_over_early(seconds: Sequence[float]) -> float:
     return fmean(seconds[-quarter:]) / fmean(seconds[:quarter])
 
 
-def step_findings(walls: BySampling) -> tuple[ClaimCheck, ...]:
+def step_findings(walls: BySampling) -> Iterator[Claimed]:
     """Compare measured steps with what §6.1 says of them."""
     variant, full = walls["variant"].steps, walls["full"].steps
-    each = [shares(wall.steps) for wall in walls.values()]
-    selection = [sum(s.parts.get(part, 0.0) for part in PROCEDURES["selection"]) for s in variant]
-    stable = late_over_early([step.seconds for step in variant])
-    grows = late_over_early(selection) if min(selection) > 0 else None
-    falls = late_over_early([step.seconds for step in full])
-    over = {
-        "a candidate": trend([(s.stones, t / s.candidates) for s, t in zip(variant, selection,
-                                                                           strict=True)]),
-        "a step": trend([(step.stones, step.seconds) for step in full]),
-    }  # fmt: skip
-    words = {what: "" if found is None else f", {found.words()}" for what, found in over.items()}
+    each = {SAMPLINGS[name]: shares(wall.steps) for name, wall in walls.items()}
     told = "; ".join(
-        f"{SAMPLINGS[name]}: "
-        + ", ".join(f"{procedure} {100 * share:.0f} %" for procedure, share in one.items())
-        for name, one in zip(walls, each, strict=True)
+        f"{name}: " + ", ".join(f"{what} {100 * share:.0f} %" for what, share in one.items())
+        for name, one in each.items()
     )
-    return (
-        ClaimCheck(
-            "Placement takes most of the time, selection is second.",
-            f"{told} of the three procedures.",
-            all(o["placement"] > 0.5 and o["selection"] > o["stabilisation"] for o in each),
-        ),
-        ClaimCheck(
-            "The time of stabilisation is negligible.",
-            f"{max(one['stabilisation'] for one in each):.1%} of the three procedures at most.",
-            all(one["stabilisation"] < NEGLIGIBLE for one in each),
-        ),
-        ClaimCheck(
-            "A step of variant sampling is almost stable.",
-            f"a step of the last quarter takes {stable:.2f} times as long as one of the first.",
-            1 / STABLE < stable < STABLE,
-        ),
-        ClaimCheck(
-            "Selection grows slightly as stones are placed (variant sampling).",
-            f"in the last quarter it takes {grows or 0.0:.2f} times as long as in the first; of a "
-            f"candidate over the stones placed{words['a candidate']}.",
-            None if grows is None else grows > 1,
-        ),
-        ClaimCheck(
-            "A step of the full batch gets shorter as the candidates get fewer.",
-            f"a step of the last quarter takes {falls:.2f} times as long as one of the first, with "
-            f"{late_over_early([float(step.candidates) for step in full]):.2f} times the "
-            f"candidates{words['a step']}.",
-            falls < 1,
-        ),
+    most = all(o["placement"] > 0.5 and o["selection"] > o["stabilisation"] for o in each.values())
+    yield Claimed("placement", most, {"told": told})
+    stabilisation = max(one["stabilisation"] for one in each.values())
+    yield Claimed("stabilisation", stabilisation < NEGLIGIBLE, {"most": stabilisation})
+    stable = late_over_early([step.seconds for step in variant])
+    yield Claimed("stable", 1 / STABLE < stable < STABLE, {"stable": stable})
+    selection = [procedure_seconds([step])["selection"] for step in variant]
+    grows = late_over_early(selection) if min(selection) > 0 else None
+    words = _trend_words([(s.stones, t / s.candidates)
+                          for s, t in zip(variant, selection, strict=True)])  # fmt: skip
+    yield Claimed(
+        "grows", None if grows is None else grows > 1, {"grows": grows or 0.0, "words": words}
     )
+    falls = late_over_early([step.seconds for step in full])
+    candidates = late_over_early([float(step.candidates) for step in full])
+    words = _trend_words([(step.stones, step.seconds) for step in full])
+    yield Claimed("falls", falls < 1, {"falls": falls, "candidates": candidates, "words": words})
 
 
-def _candidates(walls: BySampling) -> Table:
-    rows: list[tuple[Cell, ...]] = [
-        (sampling, number, step.stones, step.candidates)
-        for sampling, wall in walls.items()
-        for number, step in enumerate(wall.steps, 1)
-    ]
-    columns = ("sampling", "step", "stones placed", "candidates")
-    return Table("Candidates of every step", columns, tuple(rows))
+def _trend_words(pairs: Sequence[tuple[float, float | None]]) -> str:
+    found = trend(pairs)
+    return "" if found is None else f", {found.words()}"
 
 
-STEPS = PaperItem(**paper("fig28"),
+FIRST_STONES = 4
+"""Growth with the stones placed is fitted from so many on."""
+
+BIN = 8
+"""Stones in a row of the table."""
+
+
+def step_rows(walls: BySampling) -> Rows:
+    """Return the times of steps by stones placed, and how those of a candidate grow."""
+    for sampling, wall in walls.items():
+        for first in range(0, len(wall.steps), BIN):
+            steps = wall.steps[first : first + BIN]
+            candidates = fmean(step.candidates for step in steps)
+            parts = parts_ms(steps)
+            stones = f"{first} to {first + len(steps) - 1}"
+            yield three_digits((sampling, stones, candidates, *parts, parts[-1] / candidates))
+        late = [step for step in wall.steps if step.stones >= FIRST_STONES]
+        each = [[ms / step.candidates for ms in parts_ms([step])] for step in late]
+        growth = exponents([float(step.stones) for step in late], each)
+        yield three_digits((sampling, "exponent a candidate", None, *growth, None))
+
+
+def _candidates(found: StepWalls) -> Rows:
+    for sampling, wall in found.walls.items():
+        for number, step in enumerate(wall.steps, 1):
+            yield sampling, number, step.stones, step.candidates
+
+
+STEPS = PaperItem(
+    words=ITEMS["fig28"],
     study=by_sampling,
-    tables={"candidates": lambda found: _candidates(found.walls)},
+    claims=lambda found: step_findings(found.walls),
+    timed_claims=True,
+    tables={"candidates": _candidates},
     times={
-        "claims": lambda found: findings_table(
-            "The paper's claims about steps", step_findings(found.walls)
-        ),
-        "released": lambda found: _released_table(found.data, found.walls),
-        "steps": lambda found: steps_table(PR.name, found.walls),
+        "released": lambda found: released_rows(found.data, found.walls),
+        "steps": lambda found: step_rows(found.walls),
     },
-    pictures=lambda found: (
-        ItemPicture(
-            "fig28", steps_figure(found.walls),
-            "The time of every step by part. Contacts, limit analysis and indices are the paper's "
-            "selection; the rest is sampling and keeping books.",
-        ),
-    ),
-    needs=(PR.source.name,),
-)  # fmt: skip
+    pictures=lambda found: [
+        ItemFigure(
+            "fig28", step_time_panels({SAMPLINGS[k]: w.steps for k, w in found.walls.items()})
+        )
+    ],
+)
 
 SCALES = (0.5, 1.0, 1.5, 2.0)
 """Of the paper's size, 280 x 80 px."""
 
 QUADRATIC, TOLERANCE = 2.0, 0.5
 """Exponent over the scale that the paper finds, and how far another one is from it at most."""
+
+PUBLISHED = "PR"
+"""Name of the stones of the paper."""
+
+PAPER_WALL_S = {140 * 40: 0.18 * 60}
+"""By pixels.  §6.3: 32 stones in .18 minutes at 140 x 40 px."""
+
+PAPER_STEP_S = {560 * 160: 25.0}
+"""By pixels.  §6.3: at the highest resolution no step takes longer."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -250,78 +247,88 @@ def by_scale(context: Context, wall: Target = PR, scales: Sequence[float] = SCAL
     return ScaledWalls(found, {scale: timed(context, one, {}) for scale, one in walls.items()})
 
 
-def scale_findings(walls: Mapping[float, TimedWall]) -> Iterator[ClaimCheck]:
+def scale_findings(walls: Mapping[float, TimedWall]) -> Iterator[Claimed]:
     """Compare times with what §6.3 says of them."""
-    measures: tuple[tuple[str, Callable[[TimedWall], float], Mapping[int, float]], ...] = (
-        ("whole wall", lambda wall: wall.seconds, PAPER_WALL_S),
-        ("longest step", lambda wall: wall.longest, PAPER_STEP_S),
+    measures = (
+        ("whole wall", {scale: wall.seconds for scale, wall in walls.items()}, PAPER_WALL_S),
+        ("longest step", {scale: wall.longest for scale, wall in walls.items()}, PAPER_STEP_S),
     )
     for what, seconds, _ in measures:
-        claim = f"The time of the {what} is quadratic in the scale."
-        power = exponent([(scale, seconds(wall)) for scale, wall in walls.items()])
-        words = "too few scales." if power is None else f"exponent over the scale {power:.2f}."
-        near = None if power is None else abs(power - QUADRATIC) <= TOLERANCE
-        yield ClaimCheck(claim, words, near)
-    for wall in walls.values():
+        law = fitted(list(seconds.items()))
+        if law is None:
+            yield Claimed("few", None, {"what": what})
+        else:
+            near = abs(law.exponent - QUADRATIC) <= TOLERANCE
+            yield Claimed("quadratic", near, {"what": what, "power": law.exponent})
+    for scale, wall in walls.items():
         for what, seconds, papers in measures:
             if (said := papers.get(wall.pixels)) is not None:
-                claim = f"At {size_of(wall.site)} px the {what} takes {said:.3g} s or less."
-                words = f"{seconds(wall):.3g} s in one process."
-                yield ClaimCheck(claim, words, seconds(wall) <= said)
+                took = seconds[scale]
+                values = {"size": wall.size, "what": what, "said": said, "seconds": took}
+                yield Claimed("seconds", took <= said, values)
 
 
-def _scales_table(found: ScaledWalls) -> Table:
-    rows: list[tuple[Cell, ...]] = []
+def pixel_rows(name: str, by_scale: Mapping[float, TimedWall]) -> Rows:
+    """Return the times of walls of several resolutions, and their exponents.
+
+    The stones :data:`PUBLISHED` have the paper's times beside.
+    """
+    walls = by_scale.values()
+    for wall in walls:
+        said: tuple[Cell, Cell] = (None, None)
+        if name == PUBLISHED:
+            said = PAPER_WALL_S.get(wall.pixels), PAPER_STEP_S.get(wall.pixels)
+        candidates = fmean(step.candidates for step in wall.steps)
+        yield three_digits(
+            (wall.size, len(wall.steps), candidates, *parts_ms(wall.steps), wall.seconds, said[0],
+             wall.longest, said[1])
+        )  # fmt: skip
+    measured = [(*parts_ms(wall.steps), wall.seconds, wall.longest) for wall in walls]
+    *steps, whole, longest = exponents([float(wall.pixels) for wall in walls], measured)
+    yield three_digits(("exponent over pixels", None, None, *steps, whole, None, longest, None))
+
+
+def _scales(found: ScaledWalls) -> Rows:
     for (scale, wall), one in zip(found.timed.items(), found.built, strict=True):
-        outcome = one.outcomes[0]
-        placed, stones = outcome.figures["placed"], outcome.figures["stones"]
-        rows.append((scale, size_of(wall.site), placed, stones, *metric_cells(outcome)))
-    return Table(
-        "The wall at several resolutions",
-        ("scale", "wall, px", "placed", "of", *METRICS),
-        tuple(rows),
-        ("F_AV and F_AH are measured at the resolution of the wall.",),
-    )
+        yield scale, wall.size, *placed_of(one.outcomes[0]), *metric_cells(one.outcomes[0])
 
 
-def _scales_pictures(found: ScaledWalls) -> Iterator[ItemPicture]:
+def _scales_pictures(found: ScaledWalls) -> Iterator[ItemFigure]:
     ids = sorted({i for one in found.built for i in one.outcomes[0].clusters})
     colours = {stone_id: number for number, stone_id in enumerate(ids, 1)}
     walls = []
     for (scale, wall), one in zip(found.timed.items(), found.built, strict=True):
         figures = one.outcomes[0].figures
-        title = f"scale {scale:g}: {size_of(wall.site)} px, {figures['placed']} stones, "
+        title = f"scale {scale:g}: {wall.size} px, {figures['placed']} stones, "
         title += f"F_SF {figures['F_SF']:.2f}"
         walls.append((title, found.built.wall(one), colours))
-    yield ItemPicture(
-        "fig29", plot_walls(walls, 2),
-        "The wall at several resolutions, in px of the source; the same stone has the same colour. "
-        "Numbers are the order of placement, wedges are dark red.",
-    )  # fmt: skip
-    figure = Figure(figsize=GROWTH_IN)
-    plot_pixels(found.built.name, found.timed, figure.add_subplot())
-    yield ItemPicture(
-        "fig29-time", figure,
-        "Time of the whole wall and of its longest step over the pixels of the wall, with "
-        "the power laws fitted to them; exponents over the scale are twice as large.",
-    )  # fmt: skip
+    yield ItemFigure("fig29", plot_walls(walls, 2))
+    figure = Figure(figsize=(6.4, 4.0))
+    series = {
+        "whole wall": [(float(wall.pixels), wall.seconds) for wall in found.timed.values()],
+        "longest step": [(float(wall.pixels), wall.longest) for wall in found.timed.values()],
+    }
+    claims = []
+    if found.built.name == PUBLISHED:
+        claims += [("paper: whole wall", "x", px, s) for px, s in PAPER_WALL_S.items()]
+        claims += [("paper: longest step, below", "v", px, s) for px, s in PAPER_STEP_S.items()]
+    plot_growth(figure.add_subplot(), series, claims)
+    yield ItemFigure("fig29-time", figure)
 
 
 RESOLUTION = PaperItem(
-    **paper("fig29"),
+    words=ITEMS["fig29"],
     study=by_scale,
-    tables={"walls": _scales_table},
+    claims=lambda found: scale_findings(found.timed),
+    timed_claims=True,
+    tables={"walls": _scales},
     times={
-        "claims": lambda found: findings_table(
-            "The paper's claims about resolution", tuple(scale_findings(found.timed))
-        ),
-        "released": lambda found: _released_table(
+        "released": lambda found: released_rows(
             found.built.context.data, {str(scale): wall for scale, wall in found.timed.items()}
         ),
-        "pixels": lambda found: pixels_table(found.built.name, found.timed),
+        "pixels": lambda found: pixel_rows(found.built.name, found.timed),
     },
-    pictures=lambda found: tuple(_scales_pictures(found)),
-    needs=(PR.source.name,),
+    pictures=_scales_pictures,
 )
 
 WALL_PX = (420, 120)
@@ -352,11 +359,6 @@ class GrowthWall:
     K: int
     planned: TimedWall
 
-    @property
-    def candidates(self) -> int:
-        """Evaluated in all steps."""
-        return sum(step.candidates for step in self.planned.steps)
-
 
 Grew = Sequence[GrowthWall]
 
@@ -375,55 +377,35 @@ def by_stones(context: Context, sizes: Sizes | None = None) -> tuple[GrowthWall,
 def _grown(context: Context, sampling: Sampling, distance: float, count: int) -> GrowthWall:
     wall = rubble(count, context.seed, WALL_PX)
     changes = {"sampling": sampling, "clusters": {"distance": distance}}
-    settings = method_settings("paper").updated(changes).clusters
-    clusters = cluster_stones(wall.source.stones(None), PoseBook(), settings)
-    found = planned(wall, None, method_settings("paper").updated(changes), seed=context.seed,
-                    repeats=1)  # fmt: skip
+    settings = method_settings("paper").updated(changes)
+    clusters = cluster_stones(wall.source.stones(None), PoseBook(), settings.clusters)
+    found = planned(wall, None, settings, seed=context.seed, repeats=1)
     return GrowthWall(sampling, distance, count, len({*clusters.values()}), found)
 
 
-def _of(walls: Grew, sampling: Sampling) -> list[GrowthWall]:
-    return [wall for wall in walls if wall.sampling == sampling]
-
-
-def counts(walls: Grew) -> tuple[ClaimCheck, ...]:
+def counts(walls: Grew) -> Iterator[Claimed]:
     """Compare numbers of candidates with §6.2."""
-    variant, full = _of(walls, "variant"), _of(walls, "full")
-    return (
-        _power("Variant sampling is O(Q K).", "candidates of all walls over Q K",
-               [(w.Q * w.K, w.candidates) for w in variant], 1.0),
-        _power("Full batch sampling is O(Q^2).", "candidates over Q",
-               [(w.Q, w.candidates) for w in full], 2.0),
-    )  # fmt: skip
-
-
-def _power(
-    claim: str, what: str, points: Sequence[tuple[float, float]], expected: float
-) -> ClaimCheck:
-    """Compare an exponent with an expected one."""
-    power = exponent(points)
-    if power is None:
-        return ClaimCheck(claim, f"{what}: too few sizes.", None)
-    words = f"exponent of the {what}: {power:.2f}, of {len(points)} walls (expected {expected:g})."
-    return ClaimCheck(claim, words, abs(power - expected) <= LIMIT)
-
-
-def _counted(walls: Grew) -> Table:
-    rows: list[tuple[Cell, ...]] = [
-        (w.sampling, w.distance, w.Q, w.K, len(w.planned.steps), w.candidates,
-         round(w.candidates / len(w.planned.steps), 2))
-        for w in walls
-    ]  # fmt: skip
-    return Table(
-        "Stones Q, clusters K and candidates",
-        ("sampling", "cluster distance", "Q", "K", "placed", "candidates", "candidates a step"),
-        tuple(rows),
-    )
+    points = {
+        "variant": [(w.Q * w.K, w.planned.candidates) for w in walls if w.sampling == "variant"],
+        "full": [(w.Q, w.planned.candidates) for w in walls if w.sampling == "full"],
+    }
+    for (sampling, each), expected in zip(points.items(), (1.0, 2.0), strict=True):
+        law = fitted(each)
+        if law is None:
+            raise ValueError("too few sizes")
+        values = {"power": law.exponent, "count": len(each)}
+        yield Claimed(sampling, abs(law.exponent - expected) <= LIMIT, values)
 
 
 GROWTH = PaperItem(
-    **paper("growth"),
+    words=ITEMS["growth"],
     study=by_stones,
     claims=counts,
-    tables={"walls": _counted},
-)
+    tables={
+        "walls": lambda walls: [
+            (w.sampling, w.distance, w.Q, w.K, len(w.planned.steps), w.planned.candidates,
+             round(w.planned.candidates / len(w.planned.steps), 2))
+            for w in walls
+        ]
+    },
+)  # fmt: skip

@@ -4,20 +4,21 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from statistics import median
 
-from drystone_lab.pictures.charts import group_panels, plot_two_figures
+from drystone_lab.pictures.charts import figure_of, group_panels, plot_two_figures
 from drystone_lab.reproduce import cells
-from drystone_lab.reproduce.cells import METRICS, ClaimCheck, rounded
-from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem, paper
+from drystone_lab.reproduce.cells import METRICS, rounded
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem
+from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.reproduce.study import (
     Study,
     StudyWalls,
     Trials,
     built,
-    pairs_table,
+    each_wall,
+    medians,
+    pairs,
     sheet,
     strips,
-    walls_table,
-    ways_table,
 )
 from drystone_lab.runs.spec import Changes
 from drystone_lab.walls import (
@@ -33,8 +34,6 @@ from drystone_lab.walls import (
     coarser,
 )
 
-MASONS_STONES = tuple(wall.source.name for wall in MASONS)
-
 COARSE = (coarser(R, 0.1), coarser(PR, 0.25))
 """For quick versions: the many stones of IR take longest."""
 
@@ -43,75 +42,52 @@ PAPERS = "0.7"
 """The threshold that the paper found best."""
 
 
-def _beta_picture(found: StudyWalls) -> ItemPicture:
+def _named(one: Trials) -> tuple[str, str]:
+    return one.wall.name, one.way
+
+
+def _beta_picture(found: StudyWalls) -> ItemFigure:
     panels = {
         f"{group.name}, {figure}": {one.way: one.values(figure) for one in group}
         for group in found.by_wall
         for figure in METRICS
     }
     title = "Walls by the threshold beta of GDS; lines are medians"
-    caption = (
-        "A point a wall, a row a set of stones. F_AH is better when lower, the others when higher; "
-        "F_AV and F_AH in percent."
-    )
-    return ItemPicture("beta", group_panels(panels, title=title), caption)
+    return ItemFigure("beta", group_panels(panels, title=title))
 
 
 BETA = PaperItem(
-    **paper("beta"),
+    words=ITEMS["beta"],
     study=Study(
         walls=MASONS,
         ways={beta: (("placement.beta", float(beta)),) for beta in BETAS},
         quick_walls=COARSE,
     ),
     tables={
-        "beta": ways_table(
-            "Walls by the threshold of GDS",
-            ("wall", "beta"),
-            lambda one: (one.wall.name, one.way),
-            notes=("One-sided, variant sampling.",),
-        ),
-        "beta_pairs": pairs_table(
-            f"Walls with beta = {PAPERS} against those with others, pairs of one seed",
-            PAPERS,
-            [beta for beta in BETAS if beta != PAPERS],
-            "other beta",
-        ),
+        "beta": medians(_named),
+        "beta_pairs": pairs(PAPERS, [beta for beta in BETAS if beta != PAPERS]),
     },
-    pictures=lambda found: (_beta_picture(found),),
-    needs=MASONS_STONES,
+    pictures=lambda found: [_beta_picture(found)],
 )
 
 SAMPLINGS = ("variant", "uniform", "twofold", "full")
 SAMPLED: dict[str, Changes] = {name: (("sampling", name),) for name in SAMPLINGS}
 
 
-def _sampling_claims(found: StudyWalls) -> Iterator[ClaimCheck]:
+def _sampling_claims(found: StudyWalls) -> Iterator[Claimed]:
     counts = {one.way: one.median("candidates") or 0.0 for one in found}
-    times = {way: count / counts["variant"] for way, count in counts.items()}
-    yield ClaimCheck(
-        "Two-fold sampling is twice as expensive as variant sampling.",
-        "candidates of a wall over those of variant sampling, medians: "
-        f"{', '.join(f'{way} {ratio:.2f}' for way, ratio in times.items())}.",
-        None,  # the paper counts sub-iterations
-    )
-    whole = {one.way: _whole(one) for one in found}
+    ratios = (f"{way} {count / counts['variant']:.2f}" for way, count in counts.items())
+    # The paper counts sub-iterations: whether that agrees cannot be told.
+    yield Claimed("twice", None, {"ratios": ", ".join(ratios)})
+    whole = ", ".join(f"{one.way} {_whole(one)}" for one in found)
     ends = Counter(outcome.plan["stopped"] for one in found for outcome in one.outcomes)
     stopped = ", ".join(f"'{reason}' {count} times" for reason, count in ends.most_common())
-    yield ClaimCheck(
-        "All methods stack stones to fill the wall.",
-        f"all stones are placed by {', '.join(f'{way} {n}' for way, n in whole.items())} of "
-        f"{len(found.seeds)} walls each; construction ended with {stopped}.",
-        None,
-    )
+    values = {"whole": whole, "seeds": len(found.seeds), "stopped": stopped}
+    yield Claimed("filled", None, values)
     (full,) = found.of("full")
     plans = [outcome.plan["steps"] for outcome in full.outcomes]
     kinds = sum(plan not in plans[:place] for place, plan in enumerate(plans))
-    yield ClaimCheck(
-        "Full batch has nothing to choose at random.",
-        f"its seeds give {kinds} different walls.",
-        kinds == 1,
-    )
+    yield Claimed("chance", kinds == 1, {"kinds": kinds})
 
 
 def _whole(trials: Trials) -> int:
@@ -119,23 +95,16 @@ def _whole(trials: Trials) -> int:
 
 
 SAMPLING = PaperItem(
-    **paper("fig16"),
+    words=ITEMS["fig16"],
     study=Study(walls=(PR,), ways=SAMPLED),
     claims=_sampling_claims,
     tables={
-        "fig16": ways_table(
-            "{wall} by the sampling of candidates, one-sided",
-            ("sampling",),
-            lambda one: (one.way,),
-            ("candidates median",),
-            lambda one: (rounded(one.median("candidates")),),
-        )
+        "fig16": medians(lambda one: (one.way,), lambda one: (rounded(one.median("candidates")),))
     },
     pictures=lambda found: (
-        sheet(found, "fig16", 2, lambda one: one.way, f"Walls of seed {found.seeds[0]}."),
+        sheet(found, "fig16", 2, lambda one: one.way),
         strips(found, "fig16_seeds", (*METRICS, "placed", "candidates"), lambda one: one.way),
     ),
-    needs=(PR.source.name,),
 )
 
 STABILISED = ("both", "rotation", "wedge", "none")
@@ -149,26 +118,21 @@ def _wedge_share(trials: Trials) -> tuple[float | None, ...]:
     )
 
 
-def _stabilised_claims(found: StudyWalls) -> Iterator[ClaimCheck]:
+def _stabilised_claims(found: StudyWalls) -> Iterator[Claimed]:
     for group in found.by_wall:
-        medians = {one.way: one.median("F_SF") or 0.0 for one in group}
-        best = max(medians, key=lambda way: medians[way])
-        yield ClaimCheck(
-            f"Rotation and wedging together fill a wall best ({group.name}).",
-            f"the median filling is largest with {best}.",
-            best == "both",
-        )
+        filled = {one.way: one.median("F_SF") or 0.0 for one in group}
+        best = max(filled, key=lambda way: filled[way])
+        yield Claimed("together", best == "both", {"name": group.name, "best": best})
 
 
-def _wedges_picture(group: StudyWalls, number: int) -> ItemPicture:
+def _wedges_picture(group: StudyWalls, number: int) -> ItemFigure:
     points = {
         one.way: tuple(zip(_wedge_share(one), one.values("F_SF"), strict=True)) for one in group
     }
     # The set is named in the picture itself, as one of them stands in for the paper's.
     across = f"{group.name}: area of wedges, % of the wall"
-    figure = plot_two_figures(points, across=across, up="F_SF").get_figure(root=True)
-    assert figure is not None  # noqa: S101 - it was made for the axes
-    return ItemPicture(f"fig20_{number}", figure, f"{group.name}: a point a wall, medians large.")
+    figure = figure_of(plot_two_figures(points, across=across, up="F_SF"))
+    return ItemFigure(f"fig20_{number}", figure, group)
 
 
 def _wedge_cells(one: Trials) -> tuple[float | None, ...]:
@@ -177,7 +141,7 @@ def _wedge_cells(one: Trials) -> tuple[float | None, ...]:
 
 
 STABILISATION = PaperItem(
-    **paper("fig20"),
+    words=ITEMS["fig20"],
     study=Study(
         walls=(LIU_5, IR),
         ways={method: (("stabilise.method", method),) for method in STABILISED},
@@ -185,20 +149,10 @@ STABILISATION = PaperItem(
         quick_walls=(coarser(LIU_5, 0.15), coarser(IR, 0.15)),
     ),
     claims=_stabilised_claims,
-    tables={
-        "fig20": ways_table(
-            "Walls by the way to stabilise",
-            ("wall", "stabilise"),
-            lambda one: (one.wall.name, one.way),
-            ("wedges median", "wedges % of wall median"),
-            _wedge_cells,
-            ("Variant sampling, one-sided. F_SF is without wedges.",),
-        ),
-    },
+    tables={"fig20": medians(_named, _wedge_cells)},
     pictures=lambda found: [
         _wedges_picture(group, number) for number, group in enumerate(found.by_wall, 1)
     ],
-    needs=(IR.source.name,),
 )
 
 NAMED: dict[str, Changes] = {
@@ -247,20 +201,17 @@ def named_variants(
     return StudyWalls(context, tuple(one for found in walls for one in found))
 
 
+def _working_px(one: Trials) -> str:
+    width, height = (side * one.wall.scale for side in (one.specs[0].width, one.specs[0].height))
+    return f"{width:.0f} x {height:.0f}"
+
+
 VARIANTS = PaperItem(
-    **paper("variants"),
+    words=ITEMS["variants"],
     study=named_variants,
     tables={
-        "variants": ways_table(
-            "Walls by the variant of the paper's method",
-            ("wall", "variant", "working px"),
-            lambda one: (
-                one.wall.name, one.way,
-                f"{one.specs[0].width * one.wall.scale:.0f} x "
-                f"{one.specs[0].height * one.wall.scale:.0f}",
-            ),
-            ("all stones placed in",),
-            lambda one: (_whole(one),),
+        "variants": medians(
+            lambda one: (*_named(one), _working_px(one)), lambda one: (_whole(one),)
         ),
     },
     pictures=lambda found: [
@@ -268,52 +219,37 @@ VARIANTS = PaperItem(
         for number, group in enumerate(found.by_wall, 1)
         if len(group.all) > 1
     ],
-    needs=MASONS_STONES,
-)  # fmt: skip
+)
 
 ONE, TWO = "one-sided", "two-sided"
 SIDES: dict[str, Changes] = {ONE: (), TWO: TWO_SIDED}
 FLUSH = (*METRICS, "E_FLUSH")
 
 
-BOTH_ENDS = PaperItem(**paper("fig21"),
+BOTH_ENDS = PaperItem(
+    words=ITEMS["fig21"],
     study=Study(walls=MASONS, ways=SIDES, quick_walls=COARSE),
     tables={
-        "fig21": ways_table(
-            "Walls built from one end and from both",
-            ("wall", "built"),
-            lambda one: (one.wall.name, one.way),
-            ("E_FLUSH median",),
-            lambda one: (rounded(one.median("E_FLUSH")),),
-            (
-                "E_FLUSH: mean gap of the ends to the wall's end lines over the mean width of a "
-                "stone; our measure of the paper's alignment with both ends.",
-            ),
-        ),
-        "fig21_pairs": pairs_table(
-            "Two-sided against one-sided, pairs of one set and seed", TWO, (ONE,), "other"
-        ),
+        "fig21": medians(_named, lambda one: (rounded(one.median("E_FLUSH")),)),
+        "fig21_pairs": pairs(TWO, (ONE,)),
     },
     pictures=lambda found: (
-        sheet(
-            found, "fig21", 2, lambda one: f"{one.wall.name}, {one.way}",
-            f"Walls of seed {found.seeds[0]}, left from one end, right from both.",
-        ),
+        sheet(found, "fig21", 2, lambda one: f"{one.wall.name}, {one.way}"),
         strips(found, "fig21_seeds", FLUSH, lambda one: f"{one.wall.name} {one.way[:3]}"),
     ),
-    needs=MASONS_STONES,
-)  # fmt: skip
+)
 
 NUMBERS = {"R": "B.30", "PR": "B.31", "IR": "B.32"}
 
 
-def _methods_picture(group: StudyWalls) -> ItemPicture:
+def _methods_picture(group: StudyWalls) -> ItemFigure:
     number = NUMBERS.get(group.name, "B.1")
-    caption = f"Fig. {number}, stones {group.name}: left from one end, right from both."
-    return sheet(group, f"fig{number.replace('.', '')}", len(SIDES), lambda one: one.way, caption)
+    drawn = sheet(group, f"fig{number.replace('.', '')}", len(SIDES), lambda one: one.way)
+    return drawn._replace(about=(number, group.name))
 
 
-ALL_METHODS = PaperItem(**paper("figB30-32"),
+ALL_METHODS = PaperItem(
+    words=ITEMS["figB30-32"],
     study=Study(
         walls=MASONS,
         ways={
@@ -326,16 +262,12 @@ ALL_METHODS = PaperItem(**paper("figB30-32"),
         quick_walls=COARSE,
     ),
     tables={
-        "figB30_32": walls_table(
-            "Walls of one seed by all methods of construction",
-            ("wall", "method", "placed", "stones", *METRICS, "wedges", "candidates"),
+        "figB30_32": each_wall(
             lambda one, _, outcome: (
-                one.wall.name, one.way, outcome.figures["placed"], outcome.figures["stones"],
-                *cells.metric_cells(outcome), outcome.figures["wedges"],
-                outcome.figures["candidates"],
-            ),
+                *_named(one), *cells.placed_of(outcome), *cells.metric_cells(outcome),
+                outcome.figures["wedges"], outcome.figures["candidates"],
+            )
         )
     },
     pictures=lambda found: [_methods_picture(group) for group in found.by_wall],
-    needs=MASONS_STONES,
 )  # fmt: skip

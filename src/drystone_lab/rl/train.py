@@ -3,7 +3,7 @@
 Monte-Carlo policy iteration: walls are built up to a random stone and finished from each of its
 places by the policy so far, which at first takes the lowest; the value of a place is fitted to the
 merits of all these walls; the place of the largest value is what the next policy takes
-(:mod:`drystone_lab.rl.rollouts`).
+(:mod:`drystone_lab.rl.train`).
 """
 
 import argparse
@@ -15,23 +15,104 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.random import Generator
+from numpy.typing import NDArray
 
 from drystone.errors import DrystoneError, ExitCode, UsageError
 from drystone.planner.workshop import Workshop
 from drystone.selection.policies.choices import LOWEST
-from drystone.selection.policies.learned import FEATURES, ValueModel, learned
+from drystone.selection.policies.learned import FEATURES, ValueModel, features, learned
+from drystone.selection.policy import Offer
 from drystone.whole_files import refuse_existing
 from drystone_lab.rl.draw import DrawSettings, draw_wall
 from drystone_lab.rl.episode import Episode, prepared
-from drystone_lab.rl.rollouts import (
-    Branching,
-    Choose,
-    at_random,
-    branching,
-    finished,
-    fitted,
-    spread_of,
-)
+
+Floats = NDArray[np.float64]
+
+Choose = Callable[[Sequence[Offer], Generator], int]
+"""Chooses among offers."""
+
+EXPLORED = 0.3
+"""Share of the stones before a branching that are placed at random: later states than those of
+the policy itself are seen so."""
+
+BRANCHED = 2 / 3
+"""Branchings are among this share of the stones that arrive first; the last of them mostly find no
+place."""
+
+
+def at_random(offers: Sequence[Offer], rng: Generator) -> int:
+    """Choose any of some offers, all with the same chance."""
+    return int(rng.integers(len(offers)))
+
+
+@dataclass(frozen=True, eq=False)
+class Branching:
+    """The places of one stone, and the walls that were finished from each."""
+
+    features: Floats
+    merits: Floats
+
+    @property
+    def centred(self) -> tuple[Floats, Floats]:
+        """Features and merits less their means: what the choice of the place makes of them."""
+        return self.features - self.features.mean(axis=0), self.merits - self.merits.mean()
+
+
+def finished(episode: Episode, choose: Choose, rng: Generator) -> float:
+    """Build on by a policy until the wall is finished; return its merit."""
+    while not episode.over:
+        episode.take(choose(episode.offers, rng))
+    return episode.merit
+
+
+def branching(workshop: Workshop, choose: Choose, seed: Sequence[int]) -> Branching | None:
+    """Build a wall up to a random stone, and finish it from each of the places of that stone.
+
+    The walls that are finished have the same random numbers for all places.  None when no stone has
+    a choice of places.
+    """
+    rng = np.random.default_rng([*seed, 0])
+    episode = Episode(workshop)
+    step = int(rng.integers(max(1, int(BRANCHED * len(workshop.fitting)))))
+    found: Episode | None = None
+    while not episode.over and step >= 0:
+        if len(episode.offers) > 1:
+            found = episode.copy()
+        explores = rng.random() < EXPLORED
+        episode.take((at_random if explores else choose)(episode.offers, rng))
+        step -= 1
+    if found is None:
+        return None
+    merits = []
+    for position in range(len(found.offers)):
+        branch = found.copy()
+        branch.take(position)
+        merits.append(finished(branch, choose, np.random.default_rng([*seed, 1])))
+    return Branching(features(found.offers), np.array(merits))
+
+
+def fitted(branchings: Sequence[Branching], scale: Floats, strength: float) -> Floats:
+    """Return the weights that say best which places lead to better walls.
+
+    Least squares on the differences within each branching, drawn towards 0 (ridge regression).
+    """
+    pairs = [one.centred for one in branchings]
+    x = np.concatenate([rows for rows, _ in pairs]) / scale
+    y = np.concatenate([merits for _, merits in pairs])
+    held = strength * np.eye(x.shape[1])
+    return np.asarray(np.linalg.solve(x.T @ x + held, x.T @ y), np.float64)
+
+
+def spread_of(branchings: Sequence[Branching]) -> Floats:
+    """Return by how much each feature differs between the places of one stone, (f,).
+
+    The root of its mean variance within a branching; 1 for one that never differs.
+    """
+    squares = np.concatenate([one.centred[0] for one in branchings]) ** 2
+    scale = np.sqrt(squares.mean(axis=0))
+    return np.where(scale > 1e-6, scale, 1.0)
+
 
 TRAINED_ON = ("brick", "fourier", "polygon")
 """Kinds of stones; rubble is held out."""
@@ -53,7 +134,7 @@ class TrainSettings:
     rounds: int = 2  # How many times the value is fitted, and the policy with it
     # Of a round, of the kinds in turn; each is finished from all places of one stone
     walls: int = 100
-    strength: float = 50.0  # Of the ridge of the fit (:func:`drystone_lab.rl.rollouts.fitted`)
+    strength: float = 50.0  # Of the ridge of the fit (:func:`drystone_lab.rl.train.fitted`)
     validation: int = 24  # Walls on which start and result are compared
     draw: DrawSettings = field(default_factory=lambda: DrawSettings(kinds=TRAINED_ON))
 

@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from drystone.errors import DrystoneError, UsageError
-from drystone_lab.runs.outcome import RunOutcome, execute
-from drystone_lab.runs.runner import RunWorker, died
+from drystone_lab.runs.outcome import RunOutcome, RunWorker, died, execute
 from drystone_lab.runs.spec import RunSpec
 
 PATIENCE_S = 5.0

@@ -12,8 +12,7 @@ from typing import Any, TypeVar
 from drystone.errors import UsageError
 from drystone.search.processes import MUCH_MEMORY, process_pool
 from drystone_lab.runs.cluster import cluster_at_work
-from drystone_lab.runs.outcome import RunOutcome, execute
-from drystone_lab.runs.runner import RunWorker, died, one_by_one
+from drystone_lab.runs.outcome import RunOutcome, RunWorker, died, execute, one_by_one
 from drystone_lab.runs.spec import RunSpec
 
 ONE_THREAD = (

@@ -9,8 +9,7 @@ from drystone.physics.shake import ShakeTrial
 from drystone_lab.public import bench
 from drystone_lab.public.store import BenchStore, Stamp
 from drystone_lab.runs import workers
-from drystone_lab.runs.outcome import execute
-from drystone_lab.runs.runner import one_by_one
+from drystone_lab.runs.outcome import execute, one_by_one
 from drystone_lab.runs.spec import RunSpec, generated
 from drystone_lab.table import BenchSettings
 

@@ -6,10 +6,9 @@ from dataclasses import dataclass, replace
 from matplotlib.figure import Figure
 
 from drystone.errors import InputError
-from drystone_lab.reproduce.item import Context, ItemPicture, PaperItem
+from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.spec import RunSpec, generated
-from drystone_lab.table import Table
 
 BRICKS = generated("brick", 1, count=4, height_px=10, aspect=2)
 
@@ -30,23 +29,21 @@ def walls(context: Context) -> Walls:
     return Walls(runs, outcomes)
 
 
-def _table(found: Walls) -> Table:
-    pairs = zip(found.runs, found.outcomes, strict=True)
-    rows = tuple((run.seed, outcome.figures["F_SF"], None) for run, outcome in pairs)
-    return Table("Filling", ("seed", "F_SF", "F_AV"), rows, ("Of bricks.",))
+def _rows(found: Walls) -> Rows:
+    for run, outcome in zip(found.runs, found.outcomes, strict=True):
+        yield run.seed, outcome.figures["F_SF"], None
 
 
-def _times(found: Walls) -> Table:
-    pairs = zip(found.runs, found.outcomes, strict=True)
-    rows = tuple((run.seed, outcome.times["wall"]) for run, outcome in pairs)
-    return Table("Seconds", ("seed", "s"), rows)
+def _times(found: Walls) -> Rows:
+    for run, outcome in zip(found.runs, found.outcomes, strict=True):
+        yield run.seed, outcome.times["wall"]
 
 
-def _picture(found: Walls) -> ItemPicture:
+def _picture(found: Walls) -> ItemFigure:
     figure = Figure(figsize=(2, 1))
     filled = [outcome.figures["F_SF"] for outcome in found.outcomes]
     figure.add_subplot().plot([run.seed for run in found.runs], filled, marker="o")
-    return ItemPicture("filling", figure, "Filling over the seed.")
+    return ItemFigure("filling", figure)
 
 
 def broken(context: Context) -> Walls:
@@ -62,26 +59,35 @@ def interrupted(context: Context) -> Walls:
 
 
 FILLING = PaperItem(
-    title="filling of bricks",
-    section="§3.4",
-    paper=("Walls & <joints>.",),
+    words={
+        "title": "filling of bricks", "section": "§3.4", "paper": ["Walls & <joints>."],
+        "notes": ["Walls of bricks."],
+        "tables": {
+            "walls": {"title": "Filling", "columns": ["seed", "F_SF", "F_AV"],
+                      "notes": ["Of {0.runs[0].source.kind}s."]},
+        },
+        "times": {"walls": {"title": "Seconds", "columns": ["seed", "s"]}},
+        "captions": {"fill": "Of others.", "filling": "Filling over {0.runs[0].seed}."},
+    },
     study=walls,
-    notes=("Walls of bricks.",),
-    tables={"walls": _table},
+    tables={"walls": _rows},
     times={"walls": _times},
-    pictures=lambda found: (_picture(found),),
-)
+    pictures=lambda found: [_picture(found)],
+)  # fmt: skip
 WORDS = PaperItem(
-    title="words",
-    section="5.1",
-    paper=("Words.",),
+    words={"title": "words", "section": "5.1", "paper": ["Words."], "notes": ["Only words."]},
     study=lambda context: context,
-    notes=("Only words.",),
 )
-NEEDY = replace(WORDS, title="published stones", section="§5.1",
-                needs=("almeida/PR.png", "ferris/x.json"))  # fmt: skip
-BROKEN = replace(FILLING, title="no stones", section="B.1", study=broken)
-INTERRUPTED = replace(FILLING, title="interrupted", section="§5.2", study=interrupted)
+
+
+def _said(item: PaperItem, **words: object) -> PaperItem:
+    return replace(item, words={**item.words, **words})
+
+
+NEEDY = _said(WORDS, title="published stones", section="§5.1",
+              needs=["almeida/PR.png", "ferris/x.json"])  # fmt: skip
+BROKEN = replace(_said(FILLING, title="no stones", section="B.1"), study=broken)
+INTERRUPTED = replace(_said(FILLING, title="interrupted", section="§5.2"), study=interrupted)
 
 ITEMS: Mapping[str, PaperItem] = {
     "fig5": FILLING, "fig13": NEEDY, "beta": WORDS, "fig17": INTERRUPTED, "figB33": BROKEN,

@@ -7,8 +7,7 @@ from typing import Any
 
 from drystone_lab.reproduce.construction import Construction, construction
 from drystone_lab.reproduce.item import Context, Output, PaperItem
-from drystone_lab.runs.outcome import RunStore
-from drystone_lab.runs.runner import Runner
+from drystone_lab.runs.outcome import Runner, RunStore
 from drystone_lab.runs.spec import generated
 from drystone_lab.walls import Target
 

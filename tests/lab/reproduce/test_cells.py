@@ -5,15 +5,12 @@ import pytest
 
 from drystone_lab.reproduce.cells import (
     COLUMNS,
-    ClaimCheck,
-    Wins,
     figures_of,
-    findings_table,
-    sentences,
     summary,
     trend,
     wins,
 )
+from drystone_lab.reproduce.item import claims_table, sentences
 from tests.lab.reproduce.made_outcomes import outcome
 
 
@@ -44,14 +41,13 @@ def test_counts_are_those_of_all_pairs(figure: str) -> None:
     first, second = rng.integers(0, 4, (2, 40)).astype(float)
     more, less = int((first > second).sum()), int((first < second).sum())
     found = wins(list(first), list(second), figure)
-    assert (found.better, found.worse) == ((less, more) if figure == "F_AH" else (more, less))
-    assert found.pairs == 40
-    assert found.median_difference == np.median(first - second)
+    better, worse = (less, more) if figure == "F_AH" else (more, less)
+    assert found == (figure, better, 40 - better - worse, worse, np.median(first - second))
 
 
 def test_what_is_missing_makes_no_pair() -> None:
-    assert wins([None, 1.0], [2.0, None], "F_LR") == Wins(0, 0, 0, None)
-    assert wins([0.5, 0.5], [0.5 + 1e-12, None], "F_LR").equal == 1
+    assert wins([None, 1.0], [2.0, None], "F_LR") == ("F_LR", 0, 0, 0, None)
+    assert wins([0.5, 0.5], [0.5 + 1e-12, None], "F_LR")[2] == 1
 
 
 def test_a_trend_is_the_correlation_of_the_ranks() -> None:
@@ -76,14 +72,10 @@ def test_there_is_no_trend_of_few_or_equal_values() -> None:
 
 
 def test_claims_that_cannot_be_told_do_not_count() -> None:
-    found = [
-        ClaimCheck("A.", "one", True),
-        ClaimCheck("B.", "two", False),
-        ClaimCheck("C.", "three", None),
-    ]
+    found = [("A.", "one", True), ("B.", "two", False), ("C.", "three", None)]
     told = sentences(found)
     assert told[0] == "Of 2 claims of the paper that can be told, 1 agree."
     assert [one.split(":")[0] for one in told[1:]] == ["Agrees", "Differs", "Cannot be told"]
-    assert [row["agrees"] for row in findings_table("Claims", found).records()] == [
+    assert [row["agrees"] for row in claims_table("Claims", found).records()] == [
         True, False, None
     ]  # fmt: skip

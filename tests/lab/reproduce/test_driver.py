@@ -13,7 +13,7 @@ from drystone.errors import InputError, UsageError
 from drystone_lab.reproduce.driver import EVERY_S, ItemProgress, MadeItem, Options, reproduce
 from drystone_lab.reproduce.folder import write_tables
 from drystone_lab.reproduce.item import Output, PaperItem
-from drystone_lab.runs.runner import one_by_one
+from drystone_lab.runs.outcome import one_by_one
 from drystone_lab.table import Table
 from tests.lab.reproduce import fakes
 
@@ -67,6 +67,9 @@ def test_the_json_says_what_was_run_with_what(tmp_path: Path) -> None:
     assert (table["file"], times["file"]) == ("walls.csv", "walls_times.csv")
     assert table["rows"][0][0] == 7
     assert table["rows"][0][2] is None
+    # Words take what was found; a caption is that of the longest name.
+    assert table["notes"] == ["Of bricks."]
+    assert [picture["caption"] for picture in found["pictures"]] == ["Filling over 7."]
 
 
 def test_equal_seeds_give_equal_tables_and_pictures(tmp_path: Path) -> None:

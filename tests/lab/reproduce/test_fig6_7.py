@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from drystone_lab.reproduce import fig6_7
-from drystone_lab.reproduce.construction import action_at, amid_course, resting_places
-from drystone_lab.reproduce.fig6_7 import recounted
+from drystone_lab.reproduce.construction import amid_course
+from drystone_lab.reproduce.fig6_7 import action_at, recounted, resting_places
 from tests.lab.reproduce.small_walls import RUBBLE, built, gids, of, rows
 from tests.naive.support import rests_stably
 

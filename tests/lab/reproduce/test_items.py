@@ -17,10 +17,13 @@ PUBLISHED = {file.name for published in SETS.values() for file in published.file
 def test_an_item_says_what_it_is(name: str) -> None:
     item = item_named(name)
     assert isinstance(item, PaperItem)
-    assert item.title.strip() == item.title != ""
-    assert item.section.removeprefix("§")[0] in "23456B"
-    assert item.paper
+    assert item.words is ITEMS[name]
+    assert item.words["title"].strip() == item.words["title"] != ""
+    assert item.words["section"].removeprefix("§")[0] in "23456B"
+    assert item.words["paper"]
     assert {*item.needs} <= PUBLISHED
+    assert {*item.tables} == {*item.words.get("tables", {})}
+    assert {*item.times} == {*item.words.get("times", {})} - {"claims"}
 
 
 def test_names() -> None:

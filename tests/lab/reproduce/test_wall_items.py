@@ -13,7 +13,7 @@ from drystone.model.placement import Wedge
 from drystone.model.site import Site
 from drystone.model.wall import Group, Wall
 from drystone.planner.profile import StepTime
-from drystone_lab.reproduce import base_case, noise, rounded, times, ways
+from drystone_lab.reproduce import base_case, noise, other_stones, times, ways
 from drystone_lab.reproduce.item import Context, Output
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.spec import generated
@@ -177,16 +177,16 @@ def test_orientations(here: Context) -> None:
 
 @pytest.mark.parametrize(("more", "agrees"), [(0.1, True), (0.0, False), (-0.1, False)])
 def test_a_gain_is_told_from_chance(more: float, agrees: bool) -> None:
-    assert noise._gain([more] * 6, "more").holds is agrees
-    assert noise._gain([more] * 4, "more").holds is None
-    assert noise._gain([], "more").holds is None
+    assert noise.gain_of("filling", [more] * 6).holds is agrees
+    assert noise.gain_of("filling", [more] * 4).holds is None
+    assert noise.gain_of("filling", []).holds is None
 
 
 def test_rounded_stones(here: Context) -> None:
-    assert [len(wall.here(None).source.stones(None)) for wall in rounded.KINDS] == [100] * 4
+    assert [len(wall.here(None).source.stones(None)) for wall in other_stones.KINDS] == [100] * 4
     kinds = [replace(RUBBLE, name=f"{kind} px") for kind in ("round, 1", "round, 1 to 2")]
     few = [replace(wall, name=wall.name.replace("round", "elliptic")) for wall in kinds]
-    output = on(rounded.ROUNDED, *kinds, *few).make(here)
+    output = on(other_stones.ROUNDED, *kinds, *few).make(here)
     assert [row["kind"] for row in rows(output, "kinds")] == [w.name for w in (*kinds, *few)]
     assert [row["agrees"] for row in rows(output, "claims")] == [None] * 4  # too few walls
     assert [picture.name for picture in output.pictures] == ["fig26", "fig27"]
@@ -200,10 +200,10 @@ def test_more_walls_tell_a_difference() -> None:
                 outcomes=[SimpleNamespace(figures=dict.fromkeys(("F_SF", "F_AV"), first + k / 100))
                           for k in range(count)],
             )
-            for shape in rounded.SHAPES
+            for shape in other_stones.SHAPES
             for first in firsts
         ]  # fmt: skip
-        return next(rounded.rounded_findings(walls)).holds
+        return next(other_stones.rounded_findings(SimpleNamespace(all=walls))).holds  # type: ignore[arg-type]
 
     assert [holds(0.5, 0.6), holds(0.6, 0.5), holds(0.5, 0.6, count=3)] == [True, False, None]
 
@@ -258,6 +258,6 @@ def test_the_times_of_the_authors(data_dir: Path, tmp_path: Path) -> None:
         assert found[:2] == (32, count)
     steps = tuple(StepTime(n, 4, 0.01, {"placement": 0.005, "indices": 0.005}) for n in range(9))
     wall = TimedWall(Site(280, 80), 0.5, steps)
-    theirs, ours = times._released_table(data_dir, {"variant": wall}).rows
+    theirs, ours = times.released_rows(data_dir, {"variant": wall})
     assert (*theirs[:4], theirs[-1]) == ("variant", "authors", 32, 812, 286)
     assert ours == ("variant", "ours", 9, 36, 0.09, 0.5, 0.0, 0.5, None)

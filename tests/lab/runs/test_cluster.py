@@ -11,8 +11,7 @@ import pytest
 
 from drystone.errors import DrystoneError, UsageError
 from drystone_lab.runs.cluster import check_versions, cluster_at_work, execute_there
-from drystone_lab.runs.outcome import RunStore
-from drystone_lab.runs.runner import Runner, RunWorker, one_by_one
+from drystone_lab.runs.outcome import Runner, RunStore, RunWorker, one_by_one
 from drystone_lab.runs.spec import RunSpec, published
 from drystone_lab.runs.workers import processes_at_work
 from tests.lab.runs.bricks import NOT_SIX, SOURCE, deadly, kept, picture, run

@@ -1,13 +1,19 @@
-from collections.abc import Iterator
+"""Tests."""
+
+import json
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from drystone.errors import DrystoneError
 from drystone.planner.planner import Planner
 from drystone.search.plan_wall import plan_wall
-from drystone_lab.runs.outcome import FIGURES, execute
-from tests.lab.runs.bricks import SOURCE, run
+from drystone_lab.runs.outcome import FIGURES, Runner, RunOutcome, RunStore, execute, one_by_one
+from drystone_lab.runs.spec import RunSpec
+from tests.lab.runs.bricks import SOURCE, kept, run
 
 
 def test_it_is_what_plan_wall_gives() -> None:
@@ -48,3 +54,110 @@ def test_an_interrupted_wall_is_no_outcome(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr(Planner, "steps", interrupted)
     with pytest.raises(KeyboardInterrupt):
         execute(run(1), None)
+
+
+class Book:
+    """Does runs one by one, and writes down which."""
+
+    def __init__(self, interrupt_after: int | None = None) -> None:
+        self.done: list[int] = []
+        self.interrupt_after = interrupt_after
+
+    def __call__(self, specs: Sequence[RunSpec], data: Path | None) -> Iterator[RunOutcome]:
+        for spec in specs:
+            if len(self.done) == self.interrupt_after:
+                raise KeyboardInterrupt
+            yield from one_by_one([spec], data)
+            self.done.append(spec.seed)
+
+
+def test_outcomes_are_in_the_order_of_the_runs(tmp_path: Path) -> None:
+    def backwards(specs: Sequence[RunSpec], data: Path | None) -> Iterator[RunOutcome]:
+        yield from one_by_one(specs[::-1], data)
+
+    specs = [run(3), run(1), run(2)]
+    said: list[str] = []
+    outcomes = Runner(RunStore(tmp_path), work=backwards, say=said.append).run(specs)
+    assert [outcome.key for outcome in outcomes] == [spec.key for spec in specs]
+    assert [line.split(",")[0] for line in said] == [f"{k} of 3 walls" for k in (1, 2, 3)]
+
+
+def test_a_second_time_nothing_is_done(tmp_path: Path) -> None:
+    book = Book()
+    runner = Runner(RunStore(tmp_path), work=book)
+    first = runner.run([run(1), run(2)])
+    again = runner.run([run(2), run(1)])
+    assert book.done == [1, 2]
+    assert [one.plan for one in again] == [one.plan for one in reversed(first)]
+    assert [one.times for one in again] == [one.times for one in reversed(first)]
+
+
+def test_equal_runs_are_done_once(tmp_path: Path) -> None:
+    book = Book()
+    outcomes = Runner(RunStore(tmp_path), work=book).run([run(1), run(2), run(1)])
+    assert book.done == [1, 2]
+    assert outcomes[0] is outcomes[2]
+
+
+def test_what_ended_before_an_interrupt_is_kept(tmp_path: Path) -> None:
+    specs, store = [run(1), run(2), run(3)], RunStore(tmp_path)
+    with pytest.raises(KeyboardInterrupt):
+        Runner(store, work=Book(interrupt_after=2)).run(specs)
+    assert [kept(store, spec) for spec in specs] == [True, True, False]
+    later = Book()
+    assert len(Runner(store, work=later).run(specs)) == 3
+    assert later.done == [3]
+
+
+def test_runs_that_nobody_did_are_missed(tmp_path: Path) -> None:
+    with pytest.raises(RuntimeError, match="lost"):
+        Runner(RunStore(tmp_path), work=lambda _specs, _data: iter(())).run([run(1)])
+
+
+@pytest.fixture(scope="module")
+def outcome() -> RunOutcome:
+    return execute(run(1), None)
+
+
+def test_what_was_kept_is_found(tmp_path: Path, outcome: RunOutcome) -> None:
+    store = RunStore(tmp_path / "new" / "folder")
+    assert store.get(outcome.key) is None
+    store.put(outcome)
+    found = RunStore(store.folder).get(outcome.key)
+    assert found is not None
+    assert found.key == outcome.key
+    assert (found.figures, found.times) == (outcome.figures, outcome.times)
+    assert found.plan == outcome.plan
+    assert store.get(run(2).key) is None
+
+
+def without(text: str, *names: str) -> str:
+    data = json.loads(text)
+    part = data
+    for name in names[:-1]:
+        part = part[name]
+    del part[names[-1]]
+    return json.dumps(data)
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda text: text[: len(text) // 2],
+        lambda _: "null",
+        lambda _: '{"figures": 1, "plan": 2, "times": 3}',
+        lambda text: "\udcff" + text,
+        lambda text: without(text, "plan", "steps"),
+        lambda text: without(text, "times", "wall"),
+        lambda text: without(text, "figures", "F_LR"),
+    ],
+)
+def test_a_damaged_file_is_named_with_the_cure(tmp_path: Path, outcome: RunOutcome, damage) -> None:
+    store = RunStore(tmp_path)
+    store.put(outcome)
+    (path,) = tmp_path.iterdir()
+    path.write_text(damage(path.read_text("utf-8")), "utf-8", errors="surrogateescape")
+    with pytest.raises(DrystoneError) as caught:
+        store.get(outcome.key)
+    assert (caught.value.code, caught.value.where) == ("E401", str(path))
+    assert "Delete the file" in caught.value.cure

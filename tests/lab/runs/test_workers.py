@@ -1,11 +1,22 @@
-from collections.abc import Iterator
+"""Tests."""
+
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future
 from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
 
 import pytest
 
-from drystone.errors import UsageError
+from drystone.errors import DrystoneError, UsageError
 from drystone_lab.runs import workers
-from drystone_lab.runs.workers import work_of
+from drystone_lab.runs import workers as module
+from drystone_lab.runs.outcome import Runner, RunStore
+from drystone_lab.runs.workers import ONE_THREAD, crew, processes_at_work, work_of
+from tests.lab.runs.bricks import NOT_SIX, deadly, endless, kept, run
 
 
 @contextmanager
@@ -27,3 +38,80 @@ def test_options_that_make_no_sense(jobs: int, address: str | None) -> None:
     with pytest.raises(UsageError) as caught, work_of(jobs, address):
         pass
     assert caught.value.code == "E138"
+
+
+class AtOnce(Executor):
+    """Does what it is given when it is given."""
+
+    def submit(self, do: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        try:
+            future.set_result(do(*args, **kwargs))
+        except DrystoneError as error:
+            future.set_exception(error)
+        return future
+
+    def shutdown(self, wait: bool = True, *, kill_workers: bool = False) -> None:
+        assert wait
+        assert kill_workers
+
+
+def interrupt_soon(_: str) -> None:
+    threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
+
+
+@pytest.mark.usefixtures("interruptible")
+def test_deaths_and_interrupts_lose_nothing_that_ended(tmp_path: Path) -> None:
+    store = RunStore(tmp_path)
+    with processes_at_work(2) as work:
+        runner = Runner(store, work=work)
+        with pytest.raises(DrystoneError) as caught:
+            runner.run([run(1), deadly(2)])
+        assert (caught.value.code, caught.value.where) == ("E402", str(deadly(2)))
+        assert [kept(store, spec) for spec in (run(1), deadly(2))] == [True, False]
+        # Another process is in the place of the dead one.
+        assert len(runner.run([run(1), run(3), run(4), run(5)])) == 4
+        with pytest.raises(KeyboardInterrupt):
+            Runner(store, work=work, say=interrupt_soon).run([run(6), endless()])
+        assert kept(store, run(6))
+
+
+def test_a_run_that_fails_does_not_stop_those_that_have_begun(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "_process", AtOnce)
+    specs = [run(1), run(2, NOT_SIX), run(3), run(4), run(5)]
+    store = RunStore(tmp_path)
+    with processes_at_work(3) as work, pytest.raises(DrystoneError) as caught:
+        Runner(store, work=work).run(specs)
+    assert caught.value.code == "E130"
+    assert kept(store, run(1))
+    assert kept(store, run(3))
+    assert not kept(store, run(5))
+
+
+@pytest.mark.parametrize("fresh", [False, True])
+def test_processes_have_one_thread_and_are_used_again_or_not(
+    monkeypatch: pytest.MonkeyPatch, fresh: bool
+) -> None:
+    monkeypatch.setenv(ONE_THREAD[0], "2")
+    with crew(2, fresh=fresh) as processes:
+        assert list(processes.work(os.getenv, ONE_THREAD)) == ["1"] * 4
+        ids = set(processes.work(pid, range(4)))
+    assert os.getpid() not in ids
+    assert len(ids) == (4 if fresh else 2)
+    assert not [one for one in ids if alive(one)]
+
+
+def pid(_: int) -> int:
+    """Return the number of this process."""
+    return os.getpid()
+
+
+def alive(process: int) -> bool:
+    """Return True when there is a process of this number."""
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    return True

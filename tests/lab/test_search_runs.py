@@ -1,34 +1,191 @@
-"""Runs of searches: none is done twice, however many processes there are; their table."""
+"""Ways to look for a wall stop when the time is used up, and give the best wall until then."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from itertools import chain, count, repeat
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from drystone.errors import DrystoneError, UsageError
+from drystone.generate.brick import BrickSettings, brick_stones
 from drystone.planner.settings import method_settings
+from drystone.search.plan_wall import plan_wall
 from drystone_lab import search_runs
+from drystone_lab.runs.spec import generated
 from drystone_lab.search_runs import (
+    BETWEEN_SEEDS,
     COLUMNS,
     FIGURES,
     SPENT,
+    WAYS,
     SearchResult,
     SearchRun,
     SearchTask,
+    SearchWay,
+    WayState,
     append_results,
     chosen_ways,
     in_words,
+    looked_at_times,
     read_results,
     searched,
+    tries,
 )
-from drystone_lab.search_ways import WAYS, SearchWay
 from drystone_lab.table import BenchSettings
-from drystone_lab.walls import BRICKS
+from drystone_lab.walls import BRICKS, Target
 
-TARGET = BRICKS
-STONES = BRICKS.stones(None)
+STONES = brick_stones(BrickSettings(count=4), np.random.default_rng(1))
+WALL = Target("bricks", generated("brick", 1, count=4), 72, 24, 1.0)
+BY_NAME = {way.name: way for way in WAYS}
+
+
+def ticking() -> search_runs.Clock:
+    """A clock that goes on by a second whenever it is looked at."""
+    ticks = count()
+    return lambda: next(ticks)
+
+
+def looked_for(way, stones, target, seconds, seed, clock):
+    return looked_at_times(way, stones, target, (seconds,), seed, clock)[0]
+
+
+def clock_of(*times: float) -> search_runs.Clock:
+    values = chain(times, repeat(times[-1]))
+    return lambda: next(values)
+
+
+@pytest.mark.parametrize(
+    ("name", "seconds", "walls"),
+    [
+        ("restarts", 3, (4, 4)),
+        ("restarts with wedges", 3, (4, 4)),
+        # A search looks at the clock inside every wall.
+        ("search", 150, (3, 10)),
+        ("without courses", 150, (3, 10)),
+    ],
+)
+def test_what_is_begun_in_time_counts(name, seconds, walls):
+    looked = looked_for(BY_NAME[name], STONES, WALL, seconds, 1, ticking())
+    assert walls[0] <= looked.walls <= walls[1]
+    assert looked.possible == 1.0
+    assert looked.found.figures.stones == 4
+    assert looked.found.build.wall.filling == pytest.approx(1.0)
+
+
+def test_the_search_is_that_of_a_plan_with_the_same_budget():
+    looked = looked_for(BY_NAME["search"], STONES, WALL, 50, 1, ticking())
+    plan = plan_wall(STONES, 72, 24, seed=1, settings=tries(looked.walls), scale=1.0)
+    np.testing.assert_array_equal(looked.found.build.wall.labels, plan.wall.labels)
+    assert looked.found.figures.F_LR == pytest.approx(plan.metrics.F_LR, abs=1e-12)
+
+
+def test_without_courses_there_are_none():
+    assert (
+        looked_for(BY_NAME["without courses"], STONES, WALL, 1, 1, ticking()).found.courses is None
+    )
+
+
+def test_the_first_wall_counts_however_long_it_takes():
+    looked = looked_for(BY_NAME["search"], STONES, WALL, 1, 1, clock_of(0, 100))
+    assert looked.walls == 1
+
+
+def test_the_time_is_counted_from_the_start():
+    asked: list[int] = []
+
+    def states(*_: object) -> Iterator[WayState]:
+        for number in count(1):
+            asked.append(number)
+            yield WayState(number, lambda number=number: number)  # type: ignore[misc, return-value]
+
+    way = SearchWay("by hand", states)
+    looked = looked_for(way, STONES, WALL, 5, 1, clock_of(10, 14.9, 15, 15.1))
+    assert (looked.found, looked.walls) == (3, 3)
+    assert asked == [1, 2, 3]  # the third was begun in time, and finished after it
+    assert looked.seconds == pytest.approx(5.1)
+
+
+class Fake:
+    """In place of a planner: builds nothing, and its wall is worth what is said."""
+
+    merits: Iterator[float]
+    seeds: list[int]
+
+    def __init__(self, *_: object, seed: int, **__: object) -> None:
+        self.seeds.append(seed)
+
+    @staticmethod
+    def steps() -> tuple[()]:
+        return ()
+
+
+@pytest.fixture
+def worth(monkeypatch):
+    """Walls that are worth what is said, in place of built ones."""
+
+    def of(*merits: float) -> SimpleNamespace:
+        values = iter(merits)
+        Fake.seeds = []
+        found = SimpleNamespace(of=lambda _: SimpleNamespace(merit=next(values)))
+        monkeypatch.setattr(search_runs, "FoundWall", found)
+        monkeypatch.setattr(search_runs, "Planner", Fake)
+        return SimpleNamespace(
+            seed=3,
+            workshop=SimpleNamespace(stones=None, site=None),
+            settings=SimpleNamespace(search=SimpleNamespace(wedge_below=0.25)),
+        )
+
+    return of
+
+
+def test_restarts_keep_the_best_of_different_seeds(worth):
+    states = search_runs._restarts(worth(1.0, 3.0, 2.0, 4.0), 0.0, ticking())
+    found = [next(states) for _ in range(4)]
+    assert [state.walls for state in found] == [1, 2, 3, 4]
+    assert [state.best().merit for state in found] == [1.0, 3.0, 3.0, 4.0]
+    assert Fake.seeds == [3 + BETWEEN_SEEDS * k for k in (1, 2, 3)]
+
+
+def test_wedges_go_into_walls_that_are_nearly_the_best(worth, monkeypatch):
+    tried = []
+
+    def wedged(found, *_):
+        tried.append(found.merit)
+        return SimpleNamespace(merit=found.merit + 0.2)
+
+    monkeypatch.setattr(search_runs, "wedged", wedged)
+    states = search_runs._restarts_with_wedges(worth(1.0, 0.9, 0.96, 1.1), 0.0, ticking())
+    assert [next(states).best().merit for _ in range(4)] == pytest.approx([1.2, 1.2, 1.2, 1.3])
+    assert tried == [1.0, 0.96, 1.1]
+
+
+def test_of_earlier_times_what_was_finished_by_then_counts():
+    walls = [WayState(n, lambda n=n: n) for n in range(1, 6)]
+    way = SearchWay("five walls", lambda *_: iter(walls))
+    # Started at 10; the walls are finished at 14, 15, 17, 17.5 and 21.
+    clock = clock_of(10, 14, 15, 17, 17.5, 21)
+    found = looked_at_times(way, STONES, WALL, (2, 6, 7, 10), 1, clock)
+    # Nothing was there after 2 s, so it is the first wall, when it is finished.
+    assert [(one.found, one.walls, one.seconds) for one in found] == [
+        (1, 1, 4), (2, 2, 5), (3, 3, 7), (5, 5, 11)
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "times"), [("restarts", (2, 4, 9)), ("search", (40, 80, 150))])
+def test_what_is_asked_on_the_way_changes_nothing(name, times):
+    asked = looked_at_times(BY_NAME[name], STONES, WALL, times, 1, ticking())
+    alone = looked_for(BY_NAME[name], STONES, WALL, times[-1], 1, ticking())
+    assert [one.walls for one in asked] == sorted(one.walls for one in asked)
+    assert (asked[-1].walls, asked[-1].seconds) == (alone.walls, alone.seconds)
+    assert asked[-1].found.merit == alone.found.merit
+    assert asked[0].walls < alone.walls
+
+
+TARGET, NINE = BRICKS, BRICKS.stones(None)
 ONE_WAY = BenchSettings(quick=True, policies=("restarts",))
 
 
@@ -49,7 +206,7 @@ def done(monkeypatch: pytest.MonkeyPatch) -> list[SearchTask]:
 def test_what_the_table_holds_is_not_done_again(done: list[SearchTask], tmp_path: Path) -> None:
     said: list[str] = []
     kept = replace(ONE_WAY, runs=tmp_path / "runs.csv", say=said.append)
-    walls = [(TARGET, STONES)]
+    walls = [(TARGET, NINE)]
     first = searched(walls, [1, 2], (1.0, 3.0), kept)
     assert [(task.seed, task.times) for task in done] == [(1, (1.0, 3.0)), (2, (1.0, 3.0))]
     assert first.keys() == {
@@ -69,7 +226,7 @@ def test_what_the_table_holds_is_not_done_again(done: list[SearchTask], tmp_path
 
 def test_seeds_are_outermost_and_ways_take_turns(done: list[SearchTask]) -> None:
     both = replace(ONE_WAY, policies=("restarts", "search"))
-    searched([(TARGET, STONES)], [5, 6], (1.0,), both)
+    searched([(TARGET, NINE)], [5, 6], (1.0,), both)
     assert [(task.seed, task.way) for task in done] == [
         (5, "restarts"), (5, "search"), (6, "restarts"), (6, "search")
     ]  # fmt: skip
@@ -78,7 +235,7 @@ def test_seeds_are_outermost_and_ways_take_turns(done: list[SearchTask]) -> None
 def test_runs_with_other_settings_are_others(done: list[SearchTask], tmp_path: Path) -> None:
     plain = replace(ONE_WAY, runs=tmp_path / "runs.csv")
     aimed = replace(plain, changes=(("goal.F_AH", 1.5), ("goal.F_AV", 40)))
-    walls = [(TARGET, STONES)]
+    walls = [(TARGET, NINE)]
     searched(walls, [1], (1.0,), plain)
     (run,) = searched(walls, [1], (1.0,), aimed)
     assert run == SearchRun(TARGET.name, "restarts, goal.F_AH = 1.5, goal.F_AV = 40", 1, 1.0)
@@ -98,7 +255,10 @@ def test_settings_are_what_a_way_goes_by() -> None:
 
 
 def test_processes_do_what_one_does(tmp_path: Path) -> None:
-    walls, settings = [(TARGET, STONES)], replace(ONE_WAY, runs=tmp_path / "runs.csv", jobs=2)
+    walls, settings = (
+        [(TARGET, NINE)],
+        replace(ONE_WAY, runs=tmp_path / "runs.csv", jobs=2),
+    )
     # The first wall is always finished, and here none is begun after it.
     two = searched(walls, [1, 2], (1e-6,), settings)
     one = searched(walls, [1, 2], (1e-6,), ONE_WAY)
@@ -127,7 +287,7 @@ def test_what_ended_is_kept_when_a_task_fails(
     settings = replace(ONE_WAY, runs=tmp_path / "runs.csv", jobs=2)
     error, words = (DrystoneError, "E402") if death else (ValueError, "unpack")
     with pytest.raises(error, match=words) as caught:
-        searched([(TARGET, STONES)], [1], (1e-6,), settings)
+        searched([(TARGET, NINE)], [1], (1e-6,), settings)
     if death:
         assert caught.value.where == "bricks, unknown, seed 1"
     assert {run.way for run in read_results(tmp_path / "runs.csv")} == {"restarts"}

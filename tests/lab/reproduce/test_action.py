@@ -5,8 +5,8 @@ from matplotlib.colors import to_hex
 from drystone.model.landscape import Box
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
-from drystone_lab.pictures import action as drawing
-from drystone_lab.pictures.action import ActionView, NeighbourBox, plot_action
+from drystone_lab.reproduce import fig6_7 as drawing
+from drystone_lab.reproduce.fig6_7 import ActionView, plot_action
 
 LABELS = np.zeros((10, 20), np.uint32)
 LABELS[6:, :6] = 1
@@ -21,8 +21,8 @@ SWEPT[3:6, :5] = SWEPT[6:, 5:9] = True
 @pytest.fixture
 def action():
     return ActionView(
-        LABELS, POSED, 3, 5, SWEPT, 8, NeighbourBox(3, Box(0, 5, 4, 8)),
-        (NeighbourBox(1, Box(0, 6, 0, 4)), NeighbourBox(2, Box(6, 12, 0, 4))), (0, 3),
+        LABELS, POSED, 3, 5, SWEPT, 8, (3, Box(0, 5, 4, 8)),
+        ((1, Box(0, 6, 0, 4)), (2, Box(6, 12, 0, 4))), (0, 3),
     )  # fmt: skip
 
 

@@ -1,0 +1,298 @@
+"""Walls of other stones: rounded ones (§5.3), 91 irregular ones, and bricks (B.2)."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise, product
+from statistics import median
+
+from matplotlib.figure import Figure
+from scipy.stats import mannwhitneyu
+
+from drystone.model.wall import Wall
+from drystone_lab.pictures.charts import TWO_IN, plot_two_figures
+from drystone_lab.pictures.walls import plot_walls
+from drystone_lab.reproduce.cells import LEVEL, figures_of, metric_cells, placed_of
+from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
+from drystone_lab.reproduce.items import ITEMS
+from drystone_lab.reproduce.study import Study, StudyWalls, Trials, built, each_wall, medians
+from drystone_lab.runs.spec import Changes, generated, published
+from drystone_lab.walls import TWO_SIDED, Target, coarser
+
+WALL_PX, COUNT, SCALE = 420, 100, 0.5
+"""Width and height of every wall in px of the stones, stones of a set, and working resolution: the
+paper's 210 px are working px."""
+
+SHAPES = {"round": 0.0, "elliptic": 0.2}
+RADII_PX = {"30": (30.0, 30.0), "10 to 50": (10.0, 50.0)}
+
+
+def _kind(shape: str, radius: str) -> Target:
+    smallest, largest = RADII_PX[radius]
+    made = generated(
+        "fourier", 1, count=COUNT, D2=SHAPES[shape], smallest_radius_px=smallest,
+        largest_radius_px=largest,
+    )  # fmt: skip
+    name, size = f"{shape}, radius {radius} px", (WALL_PX, WALL_PX, SCALE)
+    if (shape, radius) != ("round", "30"):
+        return Target(name, made, *size)
+    instead = partial(Target, name, made, *size, stand_in=True)
+    return Target(name, published("fourier/D2_0"), *size, instead=instead)
+
+
+KINDS = tuple(_kind(*kind) for kind in product(SHAPES, RADII_PX))
+"""The paper's four sets, each fixed size before the varied one of its shape."""
+
+
+def rounded_findings(found: StudyWalls) -> Iterator[Claimed]:
+    """Compare fixed with varied sizes, for each shape."""
+    for name, shape in product(("F_SF", "F_AV"), SHAPES):
+        fixed, varied = (
+            figures_of(one.outcomes, name) for one in found.all if one.wall.name.startswith(shape)
+        )
+        words = (
+            f"median {name} {median(fixed):.3g} for a fixed size and {median(varied):.3g} for "
+            f"varied ones, {len(fixed)} and {len(varied)} walls"
+        )
+        if min(len(fixed), len(varied)) < 4:
+            values = {"shape": shape, "words": f"{words}: too few for a test."}
+            yield Claimed(name, None, values)
+            continue
+        p = float(mannwhitneyu(varied, fixed, alternative="greater", method="asymptotic").pvalue)
+        words = f"{words} (rank-sum test, one-sided: p {p:.2g})."
+        yield Claimed(name, p < LEVEL, {"shape": shape, "words": words})
+
+
+def _rounded_pictures(found: StudyWalls) -> Iterator[ItemFigure]:
+    walls = []
+    for one in found:
+        filling, interlocking, *_ = metric_cells(one.outcomes[one.middle])
+        title = f"{one.wall.name}\nF_SF {filling}, F_AV {interlocking} %"
+        title += f", seed {one.specs[one.middle].seed}"
+        walls.append(found.drawn(one, title, one.middle))
+    yield ItemFigure("fig26", plot_walls(walls, 2))
+    groups = {
+        one.wall.name: list(zip(one.values("F_SF"), one.values("F_AV"), strict=True))
+        for one in found
+    }
+    figure = Figure(figsize=TWO_IN)
+    ax = plot_two_figures(groups, figure.add_subplot(), across="F_SF", up="F_AV, %")
+    ax.legend(fontsize=7, frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
+    yield ItemFigure("fig27", figure)
+
+
+ROUNDED = PaperItem(
+    words=ITEMS["fig26-27"],
+    study=Study(
+        walls=KINDS,
+        ways={"two sides": TWO_SIDED},
+        quick_seeds=1,
+        quick_walls=tuple(coarser(wall, 0.1) for wall in KINDS),
+    ),
+    claims=rounded_findings,
+    tables={
+        "kinds": medians(lambda one: (one.wall.name, one.wall.said)),
+        "walls": each_wall(
+            lambda one, spec, outcome: (
+                one.wall.name, one.wall.said, spec.seed, *placed_of(outcome),
+                *metric_cells(outcome),
+            )
+        ),
+    },
+    pictures=_rounded_pictures,
+)  # fmt: skip
+
+SIDES: Mapping[str, Changes] = {"one side": (), "two sides": TWO_SIDED}
+
+PAPER_PLACED = (90, 91)
+"""Of 91, in the left and in the right wall."""
+
+# Rubble as irregular as ours can be, of sizes that differ by a factor.  It has about as many
+# pixels a stone as the paper's PR has, and as much wall as its best walls fill.
+_IRREGULAR = generated(
+    "rubble", 2024, count=91, width_px=480.0, height_px=200.0, area_ratio=0.75, courses=8,
+    spread=0.6, roughness=0.3, pentagons=0.5, rounding=0.2, tilt_deg=45.0,
+)  # fmt: skip
+
+RUBBLE = Target(
+    "91 irregular stones", published("rubble/rubble.png", mask=True, min_area_px=20), 0, 0, 0.5,
+    instead=partial(
+        Target, "91 generated stones", _IRREGULAR, 480, 200, 1.0, stand_in=True
+    ),
+)  # fmt: skip
+"""The paper does not tell the size of the wall: it is that of the picture of the stones, which
+also shows an opening and wide joints."""
+
+
+def irregular_walls(context: Context) -> StudyWalls:
+    """Build walls from one end and from both; in the full version at two working resolutions."""
+    wall = RUBBLE.here(context.data)
+    walls = (coarser(wall, 0.25), *(() if context.quick else (wall,)))
+    return built(context, walls, SIDES, (context.seed,))
+
+
+def _irregular(found: StudyWalls) -> Rows:
+    for one in found:
+        outcome = one.outcomes[0]
+        yield (
+            found.name, one.wall.said, one.wall.scale, one.way, *placed_of(outcome),
+            len({*outcome.clusters.values()}), *metric_cells(outcome), outcome.figures["wedges"],
+        )  # fmt: skip
+    for number, placed in enumerate(PAPER_PLACED, 1):
+        yield "the paper's", "published", None, f"wall {number}", placed, 91, *[None] * 6
+
+
+def _irregular_picture(found: StudyWalls) -> ItemFigure:
+    walls = [
+        found.titled(one, f"{found.name} at {one.wall.scale:g}, from {one.way}") for one in found
+    ]
+    return ItemFigure("figB33", plot_walls(walls, 2))
+
+
+IRREGULAR = PaperItem(
+    words=ITEMS["figB33"],
+    study=irregular_walls,
+    tables={"walls": _irregular},
+    pictures=lambda found: [_irregular_picture(found)],
+)
+
+OVERLAP = 0.25
+"""Of the brick's length, by which head joints of neighbouring courses are apart at least: the
+usual rule of a bond."""
+
+
+@dataclass(frozen=True)
+class Brick:
+    """The box of a placed brick, px; full when it fills it, so that it is not turned."""
+
+    left: int
+    right: int
+    bottom: int
+    top: int
+    full: bool
+
+
+@dataclass(frozen=True)
+class BrickCourses:
+    """What the courses of a wall are like."""
+
+    bricks: int
+    lying: int  # With their long side level
+    in_course: int  # Lying, with their foot at a whole number of brick heights
+    courses: int
+    joints: int  # Head joints within courses that have a course next to them
+    # Those that are apart from all head joints of the courses beside them by :data:`OVERLAP`
+    crossed: int
+
+
+def bricks_of(wall: Wall) -> tuple[Brick, ...]:
+    """Return the boxes of the stones of a wall of pixels."""
+    bricks = []
+    for placement in wall.placements:
+        rows, cols = placement.window
+        height = wall.site.height_px
+        bricks.append(
+            Brick(cols.start, cols.stop, height - rows.stop, height - rows.start,
+                  bool(placement.posed.mask.all()))
+        )  # fmt: skip
+    return tuple(bricks)
+
+
+def courses_of(bricks: Sequence[Brick], height_px: int, width_px: int) -> BrickCourses:
+    """Look at the courses of equal bricks, of the size of one that lies.
+
+    >>> low = [Brick(0, 20, 0, 10, True), Brick(20, 40, 0, 10, True)]
+    >>> courses_of([*low, Brick(10, 30, 10, 20, True), Brick(30, 50, 10, 20, True)], 10, 20)
+    BrickCourses(bricks=4, lying=4, in_course=4, courses=2, joints=2, crossed=2)
+    """
+    lying = [b for b in bricks if b.full and b.right - b.left == width_px]
+    level = [b for b in lying if b.bottom % height_px == 0]
+    by_course: dict[int, list[Brick]] = {}
+    for brick in level:
+        by_course.setdefault(brick.bottom // height_px, []).append(brick)
+    joints = {course: head_joints(found) for course, found in by_course.items()}
+    count = crossed = 0
+    for course, places in joints.items():
+        if not {course - 1, course + 1} & set(joints):
+            continue
+        beside = joints.get(course - 1, []) + joints.get(course + 1, [])
+        count += len(places)
+        crossed += sum(
+            all(abs(place - other) >= OVERLAP * width_px for other in beside) for place in places
+        )
+    return BrickCourses(len(bricks), len(lying), len(level), len(by_course), count, crossed)
+
+
+def head_joints(course: Sequence[Brick]) -> list[float]:
+    """Return the middles of the joints between the bricks of a course that are next to each other.
+
+    A joint may be open, by less than the length of a brick: a wider one is a hole.
+    """
+    row = sorted(course, key=lambda brick: brick.left)
+    return [
+        (one.right + other.left) / 2
+        for one, other in pairwise(row)
+        if other.left - one.right < one.right - one.left
+    ]
+
+
+ASPECTS = (2.0, 3.0)
+HEIGHT_PX = 12
+
+FULL_SIZE, QUICK_SIZE = (216, 17), (72, 4)
+"""Width of the wall in px, which is a whole number of either brick, and courses."""
+
+
+Bricks = Sequence[tuple[float, Trials, Wall]]
+"""Aspect, run and wall; all aspects from one side, then from both."""
+
+
+def brick_walls(context: Context, size: tuple[int, int] | None = None) -> Bricks:
+    """Build walls of bricks of both aspects; bricks are enough for all courses."""
+    width, courses = size or (QUICK_SIZE if context.quick else FULL_SIZE)
+    walls = [_brick_wall(aspect, width, courses).here(context.data) for aspect in ASPECTS]
+    found = built(context, walls, SIDES, (context.seed,))
+    return [
+        (aspect, one, found.wall(one))
+        for side in SIDES
+        for aspect, one in zip(ASPECTS, found.of(side), strict=True)
+    ]
+
+
+def _brick_wall(aspect: float, width: int, courses: int) -> Target:
+    long = round(HEIGHT_PX * aspect)
+    count, size = courses * width // long, (width, courses * HEIGHT_PX, 1.0)
+    made = generated("brick", 1, count=count, height_px=HEIGHT_PX, aspect=aspect)
+    source = published(f"bricks/brick_{long}_{HEIGHT_PX}.png", copies=count)
+    name = f"aspect {aspect:g}"
+    return Target(name, source, *size, instead=partial(Target, name, made, *size, stand_in=True))
+
+
+def _bricks(found: Bricks) -> Rows:
+    for aspect, one, wall in found:
+        outcome, spec = one.outcomes[0], one.specs[0]
+        courses = courses_of(bricks_of(wall), HEIGHT_PX, round(HEIGHT_PX * aspect))
+        yield (
+            aspect, one.wall.said, one.way, f"{spec.width:g} x {spec.height:g}",
+            *placed_of(outcome), *metric_cells(outcome), courses.lying, courses.in_course,
+            courses.courses, courses.joints, courses.crossed,
+        )  # fmt: skip
+
+
+def _bricks_picture(found: Bricks) -> ItemFigure:
+    walls = []
+    for aspect, one, wall in found:
+        outcome = one.outcomes[0]
+        # Bricks are one cluster: a colour each tells them apart, as in the paper.
+        colours = {brick: number for number, brick in enumerate(sorted(outcome.clusters), 1)}
+        title = f"aspect {aspect:g}, from {one.way}: F_SF {outcome.figures['F_SF']:.2f}"
+        walls.append((title, wall, colours))
+    return ItemFigure("figB34", plot_walls(walls, len(ASPECTS)))
+
+
+BRICKS = PaperItem(
+    words=ITEMS["figB34"],
+    study=brick_walls,
+    tables={"walls": _bricks},
+    pictures=lambda found: [_bricks_picture(found)],
+)
