@@ -10,7 +10,7 @@ from drystone.craft.bond import bond_faults
 from drystone.craft.masonry import Masonry
 from drystone.craft.settings import CraftSettings
 from drystone.metrics.measure import measure_labels
-from drystone.model.builder import BETWEEN, BuilderErrors
+from drystone.model.builder import HAND, BuilderErrors
 from drystone.planner.build import Build
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import GoalSettings
@@ -217,7 +217,7 @@ def _rehearsals(build: Build, yard: Yard, runs: int) -> Iterator[RehearsalRun]:
     groups, settings = groups_of(build.wall), yard.settings
     if not groups:
         return
-    errors = BuilderErrors.of_precision(BETWEEN, mean_size(groups))
+    errors = BuilderErrors.of_precision(HAND, mean_size(groups))
     for run in range(runs):
         yard.until.look()
         rng = np.random.default_rng(run)
