@@ -41,8 +41,8 @@ Key = tuple[int, float, Side, int]
 TASKS = 16
 """Into how many tasks the candidates of a step are divided for an executor."""
 
-SHORTLISTS = 6
-"""Where stones fell in trials, no more shortlists are tried: 95 of 100 sure places are among these,
+SHORTLISTS = 8
+"""Where stones fell in trials, no more shortlists are tried: 96 of 100 sure places are among these,
 and at the end of a wall, where nothing is sure, all others would be tried in vain."""
 
 

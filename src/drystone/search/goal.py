@@ -1,6 +1,7 @@
 """Finished walls, and how good they are: figures of merit, weighed into one number."""
 
 import math
+from collections import Counter
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
 
@@ -207,10 +208,10 @@ def rehearsed(build: Build, yard: Yard, runs: int) -> float:
     return falls / (runs * len(build.actions))
 
 
-def first_falls(build: Build, yard: Yard, runs: int) -> frozenset[int]:
-    """Return the stones with which falls begin in some rehearsals of a wall of outlines."""
+def first_falls(build: Build, yard: Yard, runs: int) -> Counter[int]:
+    """Count with which stones falls begin in some rehearsals of a wall of outlines."""
     firsts = (run.first_fall for run in _rehearsals(build, yard, runs))
-    return frozenset(first for first in firsts if first is not None)
+    return Counter(first for first in firsts if first is not None)
 
 
 def _rehearsals(build: Build, yard: Yard, runs: int) -> Iterator[RehearsalRun]:

@@ -80,7 +80,7 @@ class SettleSettings(Ranged):
     apart: float = ranged(0.2, least=0)
     shortlist: int = ranged(24, least=1)
     per_stone: int = ranged(4, least=1)
-    trials: int = ranged(10, least=0)
+    trials: int = ranged(20, least=0)
 
     def __post_init__(self) -> None:
         super().__post_init__()
