@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from drystone.model.builder import BuilderErrors
+from drystone.model.builder import HAND, BuilderErrors
 from drystone.model.wall import outlined
 from drystone.planner.planner import Planner
-from drystone.planner.seats import NEAR, PRECISION, Seats
+from drystone.planner.seats import NEAR, Seats
 from tests.naive import seats as naive
 from tests.planner.scenes import ROUNDED, ROUNDED_SITE, finish, greedy
 
@@ -42,7 +42,7 @@ def test_trials_are_those_of_walls_that_are_built_anew(careless):
     for group in wall.groups:
         (stone, corners), *wedges = outlined(group.placement, group.wedges)
         steps.append((stone, corners, [cut for _, cut in wedges]))
-    errors = BuilderErrors.of_precision(PRECISION, seats.mean_size)
+    errors = BuilderErrors.of_precision(HAND, seats.mean_size)
     fallen = np.zeros(len(steps))
     for trial in range(settings.settle.trials):
         fallen += naive.falls(steps, errors, trial, settings.mu, settings.settle, NEAR)

@@ -18,7 +18,7 @@ def box(x, y, width=40.0, height=20.0):
 
 def brick(x, y, angle_deg=0.0, width=40.0):
     """A brick with its centroid at a place."""
-    return Built(box(-width / 2, -10.0, width), x, y, angle_deg)
+    return Built(box(-width / 2, -10.0, width), x, y, angle_deg, (20.0 * width) ** 0.5)
 
 
 def put(built, *around, mu=0.58):

@@ -343,3 +343,23 @@ def test_a_stone_that_is_laid_into_another_is_brought_apart() -> None:
 def test_a_stone_that_falls_where_it_is_laid_is_lost() -> None:
     scene = scene_of([BRICK + np.array([50.0, 5.01])])
     assert lay(turned(BRICK), scene, (61.0, 15.02), SettleSettings()) is None
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_a_stone_keeps_a_joint_to_its_neighbour_where_it_rests_so(side):
+    open_, closed = SettleSettings(joint=0.05), SettleSettings()
+    scene = scene_of([BRICK + np.array((30.0, 5.0))], side)
+    stone = Turned.of(BRICK, 0.0, side, math.sqrt(200.0))
+    ends = []
+    for settings in (closed, open_):
+        rest = come_to_rest(stone, scene, (52.0, 6.0), settings)
+        assert rest is not None
+        x = rest.settled.x_px if side == "left" else scene.width_px - rest.settled.x_px
+        ends.append(x - 50.0)
+        assert rest.settled.y_px == pytest.approx(5.0, abs=0.05)
+    assert ends == pytest.approx([0.0, 0.05 * math.sqrt(200.0)], abs=0.1)
+    # The end of the wall is not a neighbour.
+    alone = [come_to_rest(stone, scene_of([], side), (10.0, 6.0), one) for one in (closed, open_)]
+    assert alone[0] is not None
+    assert alone[1] is not None
+    assert alone[0].settled.x_px == alone[1].settled.x_px

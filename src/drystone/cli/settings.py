@@ -17,14 +17,11 @@ from drystone.io.foreign import foreign
 from drystone.model.stone import StoneSet
 from drystone.planner.search_settings import AIMS, UNLIMITED
 from drystone.planner.settings import METHODS, PlannerSettings, method_settings
-from drystone.search.plan_wall import working_scale
+from drystone.search.plan_wall import usual_budget, working_scale
 from drystone.selection.policies.registry import rule_of
 
 MOST_TOML_BYTES = 1_000_000
 """Larger settings are refused; all that there are have 3 kB."""
-
-MOST_WALLS, LEAST_WALLS, WORK = 32, 8, 1280
-"""So many walls are tried when nothing is said: at most, at least, and times stones in between."""
 
 GUARD_S_A_STONE, GUARD_S = 10.0, 600.0
 """The clock ends such a search only after so long, and so long at least: machines are busy."""
@@ -238,8 +235,8 @@ def limited(
         return settings, float(arguments.time)
     if settings.search.budget != UNLIMITED:
         return settings, None
-    budget = min(MOST_WALLS, max(LEAST_WALLS, WORK // max(1, stones)))
-    return settings.updated({"search": {"budget": budget}}), max(GUARD_S, stones * GUARD_S_A_STONE)
+    budget = {"budget": usual_budget(stones)}
+    return settings.updated({"search": budget}), max(GUARD_S, stones * GUARD_S_A_STONE)
 
 
 def _has_budget(arguments: argparse.Namespace) -> bool:

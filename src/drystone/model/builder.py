@@ -8,16 +8,20 @@ import numpy as np
 import shapely
 
 from drystone.kernels.polygons import Points, area_and_centroid
+from drystone.kernels.profiles import Floats
 from drystone.kernels.raster import turn
 
-ROBOT, BETWEEN, HAND = 0.015, 0.02, 0.03
-"""Precision p of a good robot, of what walls of a search are rehearsed with, and of a hand."""
+ROBOT, HAND = 0.015, 0.03
+"""Precision p of a good robot, and of a hand."""
 
 WEDGE_SHARE = 1 / 3
 """Errors of a wedge over those of a stone: it is small, and cut to its place."""
 
 MODES = np.arange(2, 7)
 """Waves around an outline; 0 would change its size, 1 only shift it."""
+
+NUMBERS = 2 * len(MODES) + 2
+"""What is drawn for a block: cosines and sines of its waves, its shift and its turn."""
 
 LONGEST_EDGE = 0.12
 """Edges are cut into pieces no longer than this, over the size, so that errors bend them too."""
@@ -64,10 +68,26 @@ class BuilderErrors:
 
         The same numbers are drawn whatever the errors, so twice the errors move it twice as far.
         """
-        _, x, y = area_and_centroid(corners)
-        outline = misjudged(corners - (x, y), self.outline, rng)
-        shift, angle = rng.standard_normal(2).tolist()
-        return Built(outline, x + self.placement * shift, y, self.angle_deg * angle)
+        return self.all_built(corners, rng.standard_normal((1, NUMBERS)))[0]
+
+    def all_built(self, corners: Points, numbers: Floats) -> list["Built"]:
+        """Return the same block for several errors: (n, :data:`NUMBERS`), of standard deviation 1.
+
+        Errors are those of the block as it lies in the wall, however its photograph was turned.
+        """
+        area, x, y = area_and_centroid(corners)
+        waves = numbers[:, :-2].reshape(-1, 2, len(MODES))
+        outlines = misjudged(corners - (x, y), self.outline, waves)
+        return [
+            Built(
+                outline,
+                x + self.placement * shift,
+                y,
+                self.angle_deg * angle,
+                math.sqrt(area),
+            )
+            for outline, (shift, angle) in zip(outlines, numbers[:, -2:].tolist(), strict=True)
+        ]
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,39 +98,39 @@ class Built:
     x: float  # of the centroid, wall frame
     y: float
     angle_deg: float  # by which it is turned from the plan
+    size: float  # root of its area, as it was seen
 
     @cached_property
     def corners(self) -> Points:
         """Corners in the wall frame, (n, 2)."""
         return np.asarray(turn(self.outline, self.angle_deg) + (self.x, self.y))  # noqa: RUF005
 
-    @cached_property
-    def size(self) -> float:
-        """Root of its area."""
-        return math.sqrt(area_and_centroid(self.outline)[0])
 
-
-def misjudged(outline: Points, sigma: float, rng: np.random.Generator) -> Points:
-    """Return an outline about its centroid as it really is: a smooth error of what was seen.
+def misjudged(outline: Points, sigma: float, waves: Floats) -> list[Points]:
+    """Return an outline about its centroid as it may really be: smooth errors of what was seen.
 
     The error is along the way from the centroid, of Fourier modes 2 to 6 over the polar angle with
-    equal weights; `sigma` is its standard deviation at any angle.
+    equal weights; `sigma` is its standard deviation at any angle.  `waves` (n, 2, modes) are the
+    cosines and sines of n errors, of standard deviation 1.
     """
-    waves = rng.standard_normal((2, len(MODES))) * sigma / math.sqrt(len(MODES))
     if not sigma:
-        return outline
+        return [outline] * len(waves)
     fine = _refined(outline, LONGEST_EDGE * math.sqrt(area_and_centroid(outline)[0]))
     radius = np.hypot(*fine.T)
     angle = np.arctan2(fine[:, 1], fine[:, 0])[:, None] * MODES
-    error = (np.cos(angle) * waves[0] + np.sin(angle) * waves[1]).sum(axis=1)
-    error = np.maximum(error / np.maximum(radius, 1e-9), -DEEPEST)
+    size = sigma / math.sqrt(len(MODES))
+    errors = (np.cos(angle) * waves[:, :1] + np.sin(angle) * waves[:, 1:]).sum(axis=2) * size
+    errors = np.maximum(errors / np.maximum(radius, 1e-9), -DEEPEST)
+    found = [outline] * len(waves)
+    left = np.arange(len(waves))
     for share in (1.0, 0.5, 0.25):
-        moved = fine * (1.0 + share * error)[:, None]
+        moved = fine * (1.0 + share * errors[left])[:, :, None]
         # Only an outline that is not seen whole from its centroid may come to cross itself.
-        if shapely.is_valid(shapely.Polygon(moved)):
-            _, x, y = area_and_centroid(moved)
-            return np.asarray(moved - (x, y))
-    return outline
+        simple = shapely.is_valid(shapely.polygons(moved))
+        for k, corners in zip(left[simple].tolist(), moved[simple], strict=True):
+            found[k] = corners - area_and_centroid(corners)[1:]
+        left = left[~simple]
+    return found
 
 
 def _refined(outline: Points, longest: float) -> Points:

@@ -71,6 +71,8 @@ class SearchSettings(Ranged):
     polish : float
         Share of the walls of a chain of planned walls that are made by taking down a part of its
         best wall, before anything is known of what helps.
+    joint : float
+        Every other wall is built with open joints (`settle.joint`), of so much over the size.
     wedges : int
         How many wedges may be added in the gaps of a wall each time.
     wedge_below : float
@@ -91,6 +93,7 @@ class SearchSettings(Ranged):
     largest: float = ranged(0.3, above=0, most=1)
     spread: float = ranged(0.5, least=0)
     polish: float = ranged(0.2, least=0, most=1)
+    joint: float = ranged(0.03, least=0, most=0.1)
     wedges: int = ranged(6, least=0)
     wedge_below: float = ranged(0.12, least=0)
     warm: float = ranged(0.15, above=0)

@@ -5,13 +5,15 @@ turned, and of another shape than it was seen.  A place is tried in all of them,
 falls there is laid elsewhere; what fell all the same is put where it was planned.
 """
 
+from collections import Counter, defaultdict
 from collections.abc import Collection
 from typing import NamedTuple
 
 import numpy as np
 
 from drystone.kernels.polygons import Points, Polygons, area_and_centroid, no_polygons
-from drystone.model.builder import BuilderErrors
+from drystone.kernels.profiles import Floats
+from drystone.model.builder import HAND, NUMBERS, BuilderErrors, Built
 from drystone.model.stone import Stone
 from drystone.model.wall import Group, Wall, outlined
 from drystone.planner.vary import TRIAL_DRAWS
@@ -19,9 +21,6 @@ from drystone.poses import RecentlyUsed
 from drystone.settle.putting import fallen_share, moved, put_down
 from drystone.settle.settings import SettleSettings
 from drystone.settle.wedge import in_order
-
-PRECISION = 0.03
-"""Of the errors: those of a hand."""
 
 NEAR = 1.0
 """What is farther from a stone than this, over its size, takes no part when it is put down."""
@@ -58,8 +57,11 @@ class Seats:
         self.mean_size = mean_size
         self._settle, self._mu = settle, mu
         self._pinned = pinned
-        self._errors = BuilderErrors.of_precision(PRECISION, mean_size)
+        self._errors = BuilderErrors.of_precision(HAND, mean_size)
         self._known = RecentlyUsed[tuple[object, ...], SeatTrial](KNOWN_BYTES)
+        self._numbers: dict[int, Floats] = {}  # what is drawn for each stone
+        self._falls = defaultdict[int, Counter[int]](Counter)  # of each stone: in which trials
+        self._put: tuple[Group | None, list[Built]] = None, []
         self._last: tuple[tuple[Group, ...], list[Polygons]] = (), []
 
     def bearable(self, stone: Stone) -> float:
@@ -78,23 +80,24 @@ class Seats:
         """
         most = self.bearable(group.placement.posed.stone)
         fallen, trials = 0, self._settle.trials
-        for k, built in enumerate(self._built(wall.groups)):
-            fallen += self._trial(group, k, built, self._near(group, built)).fell
+        walls, falls = self._built(wall.groups), self._falls[group.placement.stone_id]
+        # Where it fell elsewhere it may fall here: the sooner it is known that it falls too often.
+        for k in sorted(range(trials), key=falls.__getitem__, reverse=True):
+            if self._trial(group, k, walls[k], self._near(group, walls[k])).fell:
+                fallen += 1
+                falls[k] += 1
             if fallen > most * trials:
                 return None
         return fallen / trials if trials else 0.0
 
     def known_to_fall(self, group: Group, wall: Wall) -> bool:
         """Say whether `falls` is None by what is known of the same place, without a trial."""
-        most, fallen = self.bearable(group.placement.posed.stone), 0
-        for k, built in enumerate(self._built(wall.groups)):
-            known = self._known.get(_key(group, k, built, self._near(group, built)))
-            if known is None:
-                return False
-            fallen += known.fell
-            if fallen > most * self._settle.trials:
-                return True
-        return False
+        near = [
+            (k, built, self._near(group, built)) for k, built in enumerate(self._built(wall.groups))
+        ]
+        known = (self._known.get(_key(group, *one)) for one in near)
+        fallen = sum(one.fell for one in known if one is not None)
+        return fallen > self.bearable(group.placement.posed.stone) * self._settle.trials
 
     def _built(self, groups: tuple[Group, ...]) -> list[Polygons]:
         """Return the walls of all trials after some steps, the wedges of each before its stone."""
@@ -127,13 +130,14 @@ class Seats:
         if known is not None:
             return known
         placement = group.placement
-        stone, planned = placement.posed.stone, placement.exact.corners
+        planned = placement.exact.corners
         wedges = [corners for _, corners in outlined(placement, group.wedges)[1:]]
         around = in_order(built, near)
-        # Drawn as it lies in the wall, so that it does not matter how its photograph was turned.
-        put = self._errors.built(planned, np.random.default_rng([TRIAL_DRAWS, k, stone.id]))
         rest, pushed = put_down(
-            put, around.added(wedges) if wedges else around, self._mu, self._settle
+            self._as_built(group)[k],
+            around.added(wedges) if wedges else around,
+            self._mu,
+            self._settle,
         )
         trial = SeatTrial(True, planned, {})
         if rest is not None:
@@ -141,6 +145,20 @@ class Seats:
             if fallen_share(rest.x - x, rest.y - y, rest.angle_deg, rest.size) <= 1.0:
                 trial = SeatTrial(False, rest.corners, pushed)
         return self._known.keep(key, trial, 600 + trial.corners.nbytes + 40 * len(near))
+
+    def _as_built(self, group: Group) -> list[Built]:
+        """Return how a stone is put down in all trials, with the same errors wherever it is."""
+        if self._put[0] is not group:
+            stone = group.placement.stone_id
+            if stone not in self._numbers:
+                rngs = [
+                    np.random.default_rng([TRIAL_DRAWS, k, stone])
+                    for k in range(self._settle.trials)
+                ]
+                self._numbers[stone] = np.array([rng.standard_normal(NUMBERS) for rng in rngs])
+            corners = group.placement.exact.corners
+            self._put = group, self._errors.all_built(corners, self._numbers[stone])
+        return self._put[1]
 
 
 def _key(group: Group, k: int, built: Polygons, near: list[int]) -> tuple[object, ...]:

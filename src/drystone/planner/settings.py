@@ -13,7 +13,7 @@ from drystone.model.wedge_shape import WedgeSettings
 from drystone.placement.settings import PlacementSettings
 from drystone.planner.course_settings import CourseSettings
 from drystone.planner.laying_settings import LayingSettings
-from drystone.planner.search_settings import GoalSettings, SearchSettings
+from drystone.planner.search_settings import UNLIMITED, GoalSettings, SearchSettings
 from drystone.poses import orientation_step_deg
 from drystone.selection.algorithm2 import SelectionSettings
 from drystone.selection.policies.registry import PAPER, RULES
@@ -189,7 +189,7 @@ METHODS: Mapping[str, PlannerSettings] = types.MappingProxyType(
             placement=PlacementSettings(rule="snug", reach="above", tries=4, compare=True),
             stabilise=StabiliseSettings(margin=0.1, min_wedge_px=1),
             score=ScoreSettings(thickness=1.5, llc=4.0),
-            search=SearchSettings(budget=16),
+            search=SearchSettings(budget=UNLIMITED),
         ),
     }
 )

@@ -67,6 +67,7 @@ def one_pass(job: Job, number: int, planned_share: float) -> PackedWall | None:
         yard = job.yard
         job.until.look()
         rng = np.random.default_rng([job.seed, FIRST_DRAWS + number])
+        yard = yard.jointed(number)
         found = None
         if planned_first(yard.settings) and rng.random() < planned_share:
             found = newly_planned(yard, rng)
@@ -108,7 +109,7 @@ def _lengthened(link: Link, now: FoundWall, seed: int, yard: Yard) -> tuple[Link
 
     What is drawn for a wall depends on the seed, on the chain and on the number of the wall.
     """
-    search = yard.settings.search
+    yard, search = yard.jointed(link.done), yard.settings.search
     position, length = in_cycle(link.done, search.cycle)
     if position == 0 and link.best.courses is not None:
         now = found_again(link.best, yard)

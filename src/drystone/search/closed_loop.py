@@ -17,7 +17,7 @@ import numpy as np
 
 from drystone.kernels.polygons import Polygons, area_and_centroid, no_polygons
 from drystone.kernels.profiles import HeightProfile, bare, hanging, raised
-from drystone.model.builder import BuilderErrors, Built
+from drystone.model.builder import NUMBERS, BuilderErrors, Built
 from drystone.model.outlines import Outlined
 from drystone.physics.building import build_up, tilt_of
 from drystone.physics.scatter import Variation
@@ -115,7 +115,7 @@ class _Stone:
         self.seen, *wedges = [nothing.built(corners, rng) for _, corners in group]
         self.wedges = [(i, one) for (i, _), one in zip(group[1:], wedges, strict=True)]
         # How it may be put down, the same wherever that is.
-        self.trials = [errors.built(group[0][1], rng) for _ in range(TRIALS)]
+        self.trials = errors.all_built(group[0][1], rng.standard_normal((TRIALS, NUMBERS)))
 
     def pieces(
         self, start: Built, put: Sequence[tuple[int, Built]] | None = None
@@ -130,7 +130,7 @@ class _Stone:
     def missed(self, start: Built, real: Built) -> Built:
         """Return where it is put instead of at a place: as far off as from the planned one."""
         aside, turn = real.x - self.seen.x, real.angle_deg
-        return Built(real.outline, start.x + aside, start.y, start.angle_deg + turn)
+        return replace(real, x=start.x + aside, y=start.y, angle_deg=start.angle_deg + turn)
 
     def aim(self, wall: _AsBuilt, start: Built, least: float) -> _Aim | None:
         """Let it go at a place, and try that; None where it rests less surely than `least`."""

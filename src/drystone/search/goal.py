@@ -1,6 +1,7 @@
 """Finished walls, and how good they are: figures of merit, weighed into one number."""
 
 import math
+from collections import Counter
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
 
@@ -10,7 +11,7 @@ from drystone.craft.bond import bond_faults
 from drystone.craft.masonry import Masonry
 from drystone.craft.settings import CraftSettings
 from drystone.metrics.measure import measure_labels
-from drystone.model.builder import BETWEEN, BuilderErrors
+from drystone.model.builder import HAND, BuilderErrors
 from drystone.planner.build import Build
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import GoalSettings
@@ -207,17 +208,17 @@ def rehearsed(build: Build, yard: Yard, runs: int) -> float:
     return falls / (runs * len(build.actions))
 
 
-def first_falls(build: Build, yard: Yard, runs: int) -> frozenset[int]:
-    """Return the stones with which falls begin in some rehearsals of a wall of outlines."""
+def first_falls(build: Build, yard: Yard, runs: int) -> Counter[int]:
+    """Count with which stones falls begin in some rehearsals of a wall of outlines."""
     firsts = (run.first_fall for run in _rehearsals(build, yard, runs))
-    return frozenset(first for first in firsts if first is not None)
+    return Counter(first for first in firsts if first is not None)
 
 
 def _rehearsals(build: Build, yard: Yard, runs: int) -> Iterator[RehearsalRun]:
     groups, settings = groups_of(build.wall), yard.settings
     if not groups:
         return
-    errors = BuilderErrors.of_precision(BETWEEN, mean_size(groups))
+    errors = BuilderErrors.of_precision(HAND, mean_size(groups))
     for run in range(runs):
         yard.until.look()
         rng = np.random.default_rng(run)

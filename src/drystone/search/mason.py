@@ -7,9 +7,9 @@ plan, keeps the course's width, and leaves a wall that stands.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain
-from operator import attrgetter
+from operator import attrgetter, itemgetter
 from typing import Literal
 
 from drystone.model.landscape import Landscape
@@ -167,6 +167,7 @@ class Mason:
         highest_px = site.extent_px[1] + self.yard.settings.settle.beyond_px
         stone = workshop.stones.by_id(planned.stone_id)
         reasons: list[Status] = []
+        unsure: list[tuple[float, StoneLaying]] = []
         solves = Solves()
         for status, half_deg in HALVES:
             angle_deg = wrap_deg(planned.angle_deg + half_deg)
@@ -174,19 +175,28 @@ class Mason:
             aim = Aim(left, planned.top_px, angle_deg, highest_px, unit_px)
             starts = self.hand.starts(turned, view, aim)
             resting = self.hand.resting(turned, view, aim, starts)
-            action, trouble = self._best(build, stone, angle_deg, side, resting)
+            falls, action, trouble = self._surest(build, stone, angle_deg, side, resting)
             solves += trouble
             if action is not None:
-                return StoneLaying(planned, status, action, solves)
+                unsure.append((falls, StoneLaying(planned, status, action, solves)))
+                if not falls:
+                    break
             reasons.append("falls" if resting else "no rest" if starts else "no place")
+        if unsure:
+            return replace(min(unsure, key=itemgetter(0))[1], solves=solves)
         # Why not: how far the pose came that came furthest.
         order: tuple[Status, ...] = ("falls", "no rest", "no place")
         return StoneLaying(planned, min(reasons, key=order.index), None, solves)
 
-    def _best(
+    def _surest(
         self, build: Build, stone: Stone, angle_deg: float, side: Side, resting: Sequence[Resting]
-    ) -> tuple[Candidate | None, Solves]:
-        """Compare the cheapest places, and return the best after which the wall stands."""
+    ) -> tuple[float, Candidate | None, Solves]:
+        """Compare the cheapest places after which the wall stands.
+
+        Return the best in which the stone falls in no trial, or the one in which it falls least,
+        and in which share of the trials.
+        """
+        surest: tuple[float, Candidate | None] = math.inf, None
         places, seats = list(enumerate(resting[: self.laying.judged])), self.yard.workshop.seats
         solves = Solves()
         while places:
@@ -212,9 +222,12 @@ class Mason:
                 proposal = Proposal(stabilised, angle_deg, cost=place.cost, spot=one.spot)
                 landscape = Landscape.of(build.wall, side)
                 action = self.evaluator.candidate(landscape, proposal, one.loaded, sturdy)
-                if action.sturdy and seats.falls(stabilised, build.wall) is not None:
-                    return action, solves
-        return None, solves
+                falls = seats.falls(stabilised, build.wall) if action.sturdy else None
+                if falls is not None and falls < surest[0]:
+                    surest = falls, action
+                if not surest[0]:
+                    return *surest, solves
+        return *surest, solves
 
     def _rated(
         self, build: Build, stone: Stone, places: Sequence[tuple[int, Resting]]

@@ -38,6 +38,10 @@ SOON_S = 2.0
 """After an interrupt the last figures of merit may take so long: who interrupts waits."""
 
 
+MOST_WALLS, LEAST_WALLS, WORK = 32, 8, 1280
+"""So many walls are tried when nothing is said: at most, at least, and times stones in between."""
+
+
 @dataclass(frozen=True, eq=False)
 class SoFar:
     """What a plan has come to while it is made.
@@ -121,8 +125,8 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         Source px in a metre; the plan is then in metres.
     budget : int, optional
         How many walls are built, the best of which is the plan; 1 is a single pass.  Without it
-        and without `seconds` that of the settings: 16 for ``"best"``, some eight seconds for 30
-        stones.
+        and without `seconds` that of the settings; for ``"best"`` 32 of up to 40 stones, fewer of
+        more, 8 at least.
     seconds : float
         Time after which the search ends with the best of the walls that are whole, as many as
         there are by then, whatever the budget of the settings; with `budget` it ends with the
@@ -193,10 +197,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
             cure="Give the one that is built, or the one to begin with.",
         )
     method = method or ("custom" if settings else "best")
-    settings = settings or method_settings(method)
-    one_wall = settings.by_policy or settings.geometry == "raster"
-    if budget is not None or (math.isfinite(seconds) and not one_wall):
-        settings = settings.updated({"search": {"budget": UNLIMITED if budget is None else budget}})
+    settings = _searched(settings or method_settings(method), budget, seconds, len(stones))
     scale = working_scale(stones) if scale is None else float(scale)
     if not 0 < scale <= 1:
         raise UsageError(
@@ -289,6 +290,26 @@ class _PlanOrigin:
             solves=first.solves,
             choice=tuple(plans) if to_choose else (),
         )
+
+
+def usual_budget(stones: int) -> int:
+    """Return how many walls are built when nothing is said, from so many stones."""
+    return min(MOST_WALLS, max(LEAST_WALLS, WORK // max(1, stones)))
+
+
+def _searched(
+    settings: PlannerSettings, budget: int | None, seconds: float, stones: int
+) -> PlannerSettings:
+    """Return the settings with the budget that is asked for, by number or by time."""
+    single = settings.by_policy or settings.geometry == "raster"
+    if budget is None:
+        if math.isfinite(seconds) and not single:
+            budget = UNLIMITED
+        elif settings.search.budget == UNLIMITED:
+            budget = usual_budget(stones)
+        else:
+            return settings
+    return settings.updated({"search": {"budget": budget}})
 
 
 def _notices(

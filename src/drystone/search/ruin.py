@@ -9,7 +9,7 @@ from numpy.random import Generator
 from drystone.metrics.frame import frame_wall
 from drystone.metrics.joints import joint_mask
 from drystone.metrics.paths import vertical_paths
-from drystone.model.builder import BETWEEN, BuilderErrors
+from drystone.model.builder import HAND, BuilderErrors
 from drystone.planner.build import Build
 from drystone.planner.search_settings import SearchSettings
 from drystone.search.rehearsal import groups_of, mean_size, rehearse
@@ -142,7 +142,7 @@ def mechanism(build: Build, count: int, rng: Generator) -> Ids:
 def unsure(build: Build, count: int, rng: Generator) -> Ids:
     """Take the stones around the first one that falls in a rehearsal."""
     groups = groups_of(build.wall)
-    errors = BuilderErrors.of_precision(BETWEEN, mean_size(groups))
+    errors = BuilderErrors.of_precision(HAND, mean_size(groups))
     first = rehearse(groups, errors, rng, mu=build.model.mu).first_fall
     if first is None:
         return disc(build, count, rng)

@@ -22,7 +22,6 @@ from drystone.search.chain import forget, without
 from drystone.search.goal import LAST_RUNS, FoundWall, WallFigures, first_falls
 from drystone.search.interrupts import held
 from drystone.search.packed import PackedWall, archived, found_again
-from drystone.search.ruin import with_all_above
 from drystone.search.state import Progress, SearchState
 from drystone.search.yard import Yard
 from drystone.statics.flow.flow_search import NonassociativeSettings
@@ -34,7 +33,7 @@ _FOUND = Stopped("search", "kept as the search found it")
 THOROUGH = NonassociativeSettings()
 """How the load without dilatancy is looked for at the end."""
 
-REPAIRS = 4
+REPAIRS = 8
 """So often the best wall is repaired at most, where its stones fall in rehearsals."""
 
 JUDGED_AGAIN = 4
@@ -213,10 +212,10 @@ def surest(
 
 
 def repaired(planner: Planner, best: PackedWall, until: Deadline = NEVER) -> PackedWall:
-    """Return a wall without the stones that fall first in its rehearsals, where that is better.
+    """Return a wall without stones that fall first in its rehearsals, where that is better.
 
-    They are taken out, alone or with all that rests on them, and what they leave is built up again
-    or stays open; so the best of four walls goes on, at most :data:`REPAIRS` times.
+    The one that does most often is taken out, or all are, and what they leave is built up again or
+    stays open; so the best of four walls goes on, at most :data:`REPAIRS` times.
     """
     yard = Yard.of(planner, until)
     now, found = best, found_again(best, yard)
@@ -225,7 +224,7 @@ def repaired(planner: Planner, best: PackedWall, until: Deadline = NEVER) -> Pac
         if not gone:
             break
         walls, rng = [], np.random.default_rng([planner.seed, REPAIR_DRAWS, turn])
-        for chosen in (gone, with_all_above(found.build, gone)):
+        for chosen in {frozenset([gone.most_common(1)[0][0]]): None, frozenset(gone): None}:
             build, _, solves = without(found.build, chosen, yard)
             walls += [FoundWall.measured(build, yard, solves)]
             walls += [FoundWall.of(yard.built_up(build, rng), before=solves)]

@@ -1,7 +1,7 @@
 """What every wall of a search is built with."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from numpy.random import Generator
 
@@ -37,6 +37,12 @@ class Yard:
     def limits(self) -> WedgeLimits:
         """What wedges may be, source px."""
         return wedge_limits(self.settings, self.workshop.stock, self.workshop.site)
+
+    def jointed(self, number: int) -> "Yard":
+        """Return that of a wall of a search: every other one has open joints."""
+        joint = self.settings.search.joint if number % 2 else self.settings.settle.joint
+        settle = replace(self.settings.settle, joint=joint)
+        return replace(self, settings=replace(self.settings, settle=settle))
 
     def planner(self, seed: int = 0, settings: PlannerSettings | None = None) -> Planner:
         """Return a planner that has built nothing."""

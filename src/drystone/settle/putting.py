@@ -6,19 +6,19 @@ slides only where it does not come to rest so.
 """
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from drystone.kernels.gaps import crosses_any
-from drystone.kernels.polygons import Points, Polygons, no_polygons
+from drystone.kernels.polygons import Points, Polygons
 from drystone.kernels.profiles import extremes
 from drystone.kernels.settling import SettlingRules, Status
 from drystone.model.builder import Built
 from drystone.poses import wrap_deg
 from drystone.settle.rest import SettlingScene, Turned, let_go, repose, straight_down
 from drystone.settle.settings import SettleSettings
-from drystone.settle.wedge import in_order
 
 FALLEN_SHARE, FALLEN_DEG = 0.25, 12.0
 """A stone has fallen when it ends farther from the plan, over its size, or turned by more."""
@@ -50,22 +50,24 @@ def put_down(
 
     None, and the others stay, where it rests nowhere near.
     """
-    near = nearby(built, around)
     pushed: dict[int, float] = {}
-    if crosses_any(built.corners, near):
+    if crosses_any(built.corners, around):
         built, pushed = _squeezed_in(built, around, 2.0 * settle.clearance_px)
         around = moved(around, pushed)
-        near = nearby(built, around)
     turned = Turned.of(built.outline, built.angle_deg, "left", built.size)
-    scene = SettlingScene(near, 0.0, "left", mu)
+    scene = SettlingScene(around, 0.0, "left", mu)
     for sticks in (True, False):
         rules = _rules(turned, scene, settle)._replace(sticks=sticks)
+        steps = 0
         for lift in LIFTS:
             found = let_go(turned, scene, (built.x, built.y + lift * built.size), rules)
+            steps += found.steps
             if found.status is Status.RESTS:
                 rest = repose(turned, scene, found)
                 at = rest.settled
-                return Built(built.outline, at.x_px, at.y_px, rest.angle_deg), pushed
+                return replace(built, x=at.x_px, y=at.y_px, angle_deg=rest.angle_deg), pushed
+        if not steps:
+            break  # it overlaps wherever it is let go
     return None, {}
 
 
@@ -83,18 +85,6 @@ def _rules(turned: Turned, scene: SettlingScene, settle: SettleSettings) -> Sett
         turn=math.radians(FALLEN_DEG),
         steps=STEPS,
     )
-
-
-def nearby(built: Built, around: Polygons, reach: float = ASIDE) -> Polygons:
-    """Return those of some polygons that are near a block, `reach` over its size."""
-    far = reach * built.size
-    low, high = built.corners.min(axis=0) - far, built.corners.max(axis=0) + far
-    (left, bottom), (right, top), boxes = low.tolist(), high.tolist(), around.boxes
-    meets = (boxes[:, 0] <= right) & (boxes[:, 2] >= left)
-    meets &= (boxes[:, 1] <= top) & (boxes[:, 3] >= bottom)
-    if meets.all():
-        return around
-    return in_order(around, np.flatnonzero(meets).tolist())
 
 
 def moved(around: Polygons, pushed: dict[int, float]) -> Polygons:
@@ -152,7 +142,7 @@ def _squeezed_in(built: Built, around: Polygons, gap: float) -> tuple[Built, dic
                     others[i] = other.shifted(sign * over)
                     pushed[i] = pushed.get(i, 0.0) + sign * over
                     todo.append(others[i])
-    return Built(built.outline, built.x + shift, built.y, built.angle_deg), pushed
+    return replace(built, x=built.x + shift), pushed
 
 
 def _most_into(block: _Block, others: dict[int, _Block], gap: float, sign: float) -> float:
@@ -170,7 +160,8 @@ def _into(one: _Block, other: _Block, gap: float, sign: float) -> float:
     low, high = max(y0, v0), min(y1, v1)
     if high - low < BESIDE * min(y1 - y0, v1 - v0):
         return 0.0
-    if not crosses_any(one.corners, no_polygons().added([other.corners])):
+    alone = np.array([0, len(other.corners)], np.int32), np.array([other.box])
+    if not crosses_any(one.corners, Polygons(other.corners, *alone, other.corners)):
         return 0.0
     across = _depth(one.corners[:, ::-1], other.corners[:, ::-1], low, high, sign)
     above = math.copysign(1.0, v0 + v1 - y0 - y1)

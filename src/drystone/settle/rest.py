@@ -30,6 +30,13 @@ GAIN = 4e-6
 OVERLAP_PX = 0.5
 """So deep, source px, a stone may overlap where it is let go; it is brought apart first."""
 
+CLEAR_PX = 1.0
+"""A stone that is no farther from the end of the wall, source px, has no neighbour there."""
+
+LIFT, LEVEL, OPEN = 0.02, 0.06, 0.3
+"""To open a joint a stone is let go so much higher, over its size; it may rest higher than before
+by so much at most, and so much of the joint stays open at least."""
+
 
 @dataclass(frozen=True, eq=False)
 class SettlingScene:
@@ -101,7 +108,33 @@ def rests(
     *,
     turns: bool = True,
 ) -> Iterator[Settling]:
-    """List where a stone rests that is let go in all ways (:func:`ways`), in their order."""
+    """List where a stone rests that is let go in all ways (:func:`ways`), in their order.
+
+    It keeps a joint to its neighbour where it also rests so.
+    """
+    aside = settings.joint * stone.size_px
+    for found in _touching(stone, scene, start, settings, turns=turns):
+        rest = found
+        if aside and found.x + stone.corners[:, 0].min() > CLEAR_PX:
+            beside = found.x + aside, found.y + LIFT * stone.size_px
+            # It may slide back, but then it is held where it is put.
+            for rules in ways(stone, scene, settings, turns=turns)[1:]:
+                apart = let_go(stone, scene, beside, rules)
+                level = apart.y - found.y <= LEVEL * stone.size_px
+                if _rests(apart, settings) and level and apart.x - found.x >= OPEN * aside:
+                    rest = apart
+                    break
+        yield rest
+
+
+def _touching(
+    stone: Turned,
+    scene: SettlingScene,
+    start: tuple[float, float],
+    settings: SettleSettings,
+    *,
+    turns: bool,
+) -> Iterator[Settling]:
     *earlier, last = ways(stone, scene, settings, turns=turns)
     stopped = None
     for rules in earlier:

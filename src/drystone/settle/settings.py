@@ -31,6 +31,9 @@ class SettleSettings(Ranged):
         of the smaller stone (DESIGN 4.8).
     lean : float
         Gravity to the building side over gravity downwards, for ``"energy"``.
+    joint : float
+        Gap to the neighbour on the building side, over the size, that a stone keeps where it rests
+        with it too: in closed joints the errors of a builder add up along a course.
     margin : float
         How far gravity may lean at least until the settled stone moves on rigid neighbours, over
         mu.
@@ -66,6 +69,7 @@ class SettleSettings(Ranged):
     contact_px: float = ranged(0.1, least=0, most=0.5)
     setback: float = ranged(0.01, least=0, most=0.1)
     lean: float = ranged(0.3, least=0)
+    joint: float = ranged(0.0, least=0, most=0.1)
     margin: float = ranged(0.2, least=0)
     steep: float = ranged(0.3, least=0, below=1)
     beyond_px: float = ranged(0.25, least=0, most=1)
@@ -76,7 +80,7 @@ class SettleSettings(Ranged):
     apart: float = ranged(0.2, least=0)
     shortlist: int = ranged(24, least=1)
     per_stone: int = ranged(4, least=1)
-    trials: int = ranged(10, least=0)
+    trials: int = ranged(20, least=0)
 
     def __post_init__(self) -> None:
         super().__post_init__()
