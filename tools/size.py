@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-LIMITS = {"src/drystone": 60_400, "src/drystone_lab": 12_500, "tests": 57_900}
+LIMITS = {"src/drystone": 58_500, "src/drystone_lab": 12_500, "tests": 56_300}
 """Most lines of each; lower them when the code shrinks, never raise them without a reason."""
 
 
