@@ -107,7 +107,8 @@ def outline_scene(stones: Stock) -> OutlineScene:
         pass
     workshop, build = planner.workshop, planner.build
     proposer = ExactProposer(workshop, settings, build, planner.profile)
-    scene, profile = proposer.view("left")
+    view = proposer.view("left")
+    scene, profile = view.scene, view.profile
     landscape = Landscape.of(build.wall)
     trials = [
         StoneTrial((posed,), landscape)

@@ -44,7 +44,7 @@ def test_best_plans_on_outlines_and_writes_them(settled):
     beyond = plan.settings["settle"]["beyond_px"]
     assert everything.min(axis=0) == pytest.approx([0, 0.01], abs=beyond)
     assert (everything[:, 1] > 0).all()
-    assert (everything.max(axis=0) <= [100 + beyond, 36]).all()
+    assert (everything.max(axis=0) <= [100 + beyond, 36 + beyond]).all()
     shapes = [shapely.Polygon(corners) for corners in placed.values()]
     assert shapely.union_all(shapes).area == pytest.approx(sum(shape.area for shape in shapes))
     report = (settled / "report.html").read_text(encoding="utf-8")

@@ -36,7 +36,7 @@ def drawn(form, folder, blocks=BLOCKS):
     """Blocks as a form has them; "y up" is that of a map."""
     sign = -1.0 if form == "y up" else 1.0
     shapes = [(str(i), [(x, sign * y) for x, y in line]) for i, line in blocks.items()]
-    return labelled.FORMS["qupath" if form == "y up" else form](folder, shapes)
+    return labelled.written(folder, "qupath" if form == "y up" else form, shapes)
 
 
 OUTLINES = [*labelled.CLASSES, "y up"]
