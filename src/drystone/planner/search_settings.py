@@ -55,7 +55,8 @@ class SearchSettings(Ranged):
     Parameters
     ----------
     budget : int
-        How many walls are built, the first one among them; 1 in the paper.
+        How many walls are built, the first one among them; 1 in the paper.  1000000 leaves it to
+        the time limit, or without one to the number of stones: 32 walls of up to 40, 8 at least.
     passes : int
         How many of them at most are first walls, from seed to seed; then the search goes on from
         the best.
