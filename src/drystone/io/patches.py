@@ -216,7 +216,8 @@ def _without_specks(
         return kept, []
     places = (f"{s} of {s.area_px} px at column {s.col}, row {s.row}" for s in specks)
     total = sum(speck.area_px for speck in specks)
-    message = f"{len(specks)} specks < {limit_px:g} px left out ({total} px in all)"
+    what = "1 speck" if len(specks) == 1 else f"{len(specks)} specks"
+    message = f"{what} < {limit_px:g} px left out ({total} px in all)"
     cure = "Use --min-area PX (min_area_px in Python) to keep smaller stones."
     return kept, [Notice("W113", f"{message}: {listed(places, most=MANY)}.", cure)]
 

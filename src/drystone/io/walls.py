@@ -367,7 +367,9 @@ def _read_json(
     try:
         data = file_bytes(path)
     except OSError as error:
-        raise refused(f"cannot be read ({error.strerror}).") from error
+        missing = isinstance(error, FileNotFoundError)
+        why = "there is no such file." if missing else f"cannot be read ({error.strerror})."
+        raise refused(why) from error
     with foreign(lambda why: refused(f"is not valid JSON ({why}).")):
         return json_of(data.decode("utf-8-sig"))
 
