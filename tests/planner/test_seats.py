@@ -63,14 +63,6 @@ def test_what_was_asked_before_changes_nothing(careless):
         assert seats_of(careless.workshop, settings).falls(wall.groups[k], before[k]) == asked[k]
 
 
-def test_a_refused_place_is_known_and_a_sure_one_is_not(careless):
-    seats, wall = seats_of(careless.workshop, greedy()), careless.build.wall
-    for group, state in zip(wall.groups, walls_of(careless), strict=True):
-        assert not seats.known_to_fall(group, state)
-        refused = seats.falls(group, state) is None
-        assert seats.known_to_fall(group, state) == refused
-
-
 def test_no_stone_is_laid_where_it_falls_more_often_than_is_bearable(careless):
     assert None in shares(
         seats_of(careless.workshop, greedy()), careless.build.wall, walls_of(careless)

@@ -161,11 +161,6 @@ class Attempt:
                 settings=settings, rng=rng,
             )  # fmt: skip
         if self._settings.selection_rule == "score":
-            if (wall := self.build.wall).outlines is not None:
-                fall = self._workshop.seats.known_to_fall
-                sure = [p for p in proposals if not fall(p.stabilised, wall)]
-                self._refused |= len(sure) < len(proposals)
-                proposals = sure
             return choose_by_score(proposals, self._judge, self._settings.score, self._sure)
         return choose_by_algorithm2(proposals, self._judge, self._settings.selection)
 

@@ -90,15 +90,6 @@ class Seats:
                 return None
         return fallen / trials if trials else 0.0
 
-    def known_to_fall(self, group: Group, wall: Wall) -> bool:
-        """Say whether `falls` is None by what is known of the same place, without a trial."""
-        near = [
-            (k, built, self._near(group, built)) for k, built in enumerate(self._built(wall.groups))
-        ]
-        known = (self._known.get(_key(group, *one)) for one in near)
-        fallen = sum(one.fell for one in known if one is not None)
-        return fallen > self.bearable(group.placement.posed.stone) * self._settle.trials
-
     def _built(self, groups: tuple[Group, ...]) -> list[Polygons]:
         """Return the walls of all trials after some steps, the wedges of each before its stone."""
         done, walls = self._last
