@@ -138,6 +138,12 @@ def test_the_first_wall_is_wedged_as_the_others_are() -> None:
     assert found[1].best.merit == better.merit
 
 
+def test_every_other_wall_of_a_search_keeps_open_joints() -> None:
+    yard = Yard.of(first(2))
+    joints = [yard.jointed(number).settings.settle.joint for number in range(4)]
+    assert joints == [0.0, 0.03, 0.0, 0.03]
+
+
 def test_after_many_walls_in_vain_other_first_walls_begin_another_round(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -224,7 +224,8 @@ def repaired(planner: Planner, best: PackedWall, until: Deadline = NEVER) -> Pac
         if not gone:
             break
         walls, rng = [], np.random.default_rng([planner.seed, REPAIR_DRAWS, turn])
-        for chosen in {frozenset([gone.most_common(1)[0][0]]): None, frozenset(gone): None}:
+        often = frozenset([gone.most_common(1)[0][0]])
+        for chosen in dict.fromkeys((often, frozenset(gone))):
             build, _, solves = without(found.build, chosen, yard)
             walls += [FoundWall.measured(build, yard, solves)]
             walls += [FoundWall.of(yard.built_up(build, rng), before=solves)]
