@@ -94,7 +94,7 @@ def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere() -> Non
     found = found_again(better, yard)
     assert found.judged(yard, THOROUGH).merit == pytest.approx(better.merit)
     assert repaired(planner, wall).groups == better.groups
-    assert first_falls(planner.build, yard, LAST_RUNS)
+    assert first_falls(planner.build.wall.groups, yard, LAST_RUNS)
     # Where nothing falls, and where nothing is better without it, the wall stays.
     still = repaired(planner, replace(wall, merit=math.inf))
     assert still.groups == wall.groups

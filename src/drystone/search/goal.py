@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -12,6 +12,7 @@ from drystone.craft.masonry import Masonry
 from drystone.craft.settings import CraftSettings
 from drystone.metrics.measure import measure_labels
 from drystone.model.builder import HAND, BuilderErrors
+from drystone.model.wall import Group
 from drystone.planner.build import Build
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import GoalSettings
@@ -38,7 +39,7 @@ QUICK = NonassociativeSettings(starts=STARTS[:1], random_starts=0, let_go=False)
 STOPPED = 3
 """A builder who has to mend a wall loses as much as with so many stones."""
 
-RUNS, LAST_RUNS = 4, 24
+RUNS, LAST_RUNS = 8, 24
 """So often a wall of a search is rehearsed, and the best ones at the end."""
 
 
@@ -190,36 +191,37 @@ class FoundWall:
         fallen = figures.fallen
         if yard.settings.goal.fallen:
             runs = RUNS if flow is None else LAST_RUNS
-            fallen = rehearsed(self.build, yard, runs)
+            fallen = falls_of(self.build.wall.groups, yard, runs)
         figures = replace(figures, F_LR_coulomb=least, fallen=fallen)
         merit = merit_of(figures, possible_filling(yard.workshop), yard.settings.goal)
         return replace(self, figures=figures, merit=merit)
 
 
-def rehearsed(build: Build, yard: Yard, runs: int) -> float:
+def falls_of(groups: Sequence[Group], yard: Yard, runs: int) -> float:
     """Return what falls in some rehearsals of a wall of outlines, over all its stones.
 
-    A run that is not whole counts as :data:`STOPPED` more stones that fall.
+    Groups are in the order of laying.  A run that is not whole counts as :data:`STOPPED` more
+    stones that fall.
     """
     falls = 0
-    for run in _rehearsals(build, yard, runs):
+    for run in _rehearsals(groups, yard, runs):
         falls += sum(end.fallen for end in run.stones)
         falls += STOPPED * (run.first_fall is not None)
-    return falls / (runs * len(build.actions))
+    return falls / (runs * len(groups))
 
 
-def first_falls(build: Build, yard: Yard, runs: int) -> Counter[int]:
+def first_falls(groups: Sequence[Group], yard: Yard, runs: int) -> Counter[int]:
     """Count with which stones falls begin in some rehearsals of a wall of outlines."""
-    firsts = (run.first_fall for run in _rehearsals(build, yard, runs))
+    firsts = (run.first_fall for run in _rehearsals(groups, yard, runs))
     return Counter(first for first in firsts if first is not None)
 
 
-def _rehearsals(build: Build, yard: Yard, runs: int) -> Iterator[RehearsalRun]:
-    groups, settings = groups_of(build.wall), yard.settings
-    if not groups:
+def _rehearsals(groups: Sequence[Group], yard: Yard, runs: int) -> Iterator[RehearsalRun]:
+    blocks = groups_of(groups)
+    if not blocks:
         return
-    errors = BuilderErrors.of_precision(HAND, mean_size(groups))
+    errors = BuilderErrors.of_precision(HAND, mean_size(blocks))
     for run in range(runs):
         yard.until.look()
         rng = np.random.default_rng(run)
-        yield rehearse(groups, errors, rng, mu=settings.mu, settle=settings.settle)
+        yield rehearse(blocks, errors, rng, mu=yard.settings.mu, settle=yard.settings.settle)
