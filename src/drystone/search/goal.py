@@ -197,17 +197,19 @@ class FoundWall:
         return replace(self, figures=figures, merit=merit)
 
 
-def falls_of(groups: Sequence[Group], yard: Yard, runs: int) -> float:
+def falls_of(groups: Sequence[Group], yard: Yard, runs: int, most: float = math.inf) -> float:
     """Return what falls in some rehearsals of a wall of outlines, over all its stones.
 
     Groups are in the order of laying.  A run that is not whole counts as :data:`STOPPED` more
-    stones that fall.
+    stones that fall.  Infinite as soon as it is known to be above `most`.
     """
-    falls = 0
+    falls, all_stones = 0, runs * len(groups)
     for run in _rehearsals(groups, yard, runs):
         falls += sum(end.fallen for end in run.stones)
         falls += STOPPED * (run.first_fall is not None)
-    return falls / (runs * len(groups))
+        if falls > most * all_stones:
+            return math.inf
+    return falls / all_stones
 
 
 def first_falls(groups: Sequence[Group], yard: Yard, runs: int) -> Counter[int]:

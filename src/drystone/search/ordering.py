@@ -30,22 +30,17 @@ def reordered(found: FoundWall, yard: Yard, often: Sequence[int]) -> FoundWall |
     figures, groups = found.figures, found.build.wall.groups
     if figures is None or not groups:
         return None
-    orders = dict.fromkeys(_orders(groups, 1.0 / yard.workshop.site.scale, often))
-    rated = [
-        (falls_of([groups[i] for i in order], yard, LAST_RUNS), k, order)
-        for k, order in enumerate(orders)
-    ]
-    heights = found.build.course_heights_px()
-    for fallen, _, order in sorted(rated):
-        if fallen >= figures.fallen:
-            break
-        start = yard.planner().build
-        build, left_out, solves = yard.replayed(start, [groups[i] for i in order], heights)
-        if not left_out:
-            now = replace(figures, fallen=fallen)
-            merit = merit_of(now, possible_filling(yard.workshop), yard.settings.goal)
-            return FoundWall(build, now, merit, found.solves + solves)
-    return None
+    heights, best = found.build.course_heights_px(), None
+    for order in dict.fromkeys(_orders(groups, 1.0 / yard.workshop.site.scale, often)):
+        again = [groups[i] for i in order]
+        fallen = falls_of(again, yard, LAST_RUNS, figures.fallen)
+        if fallen < figures.fallen:
+            build, left_out, solves = yard.replayed(yard.planner().build, again, heights)
+            if not left_out:
+                figures = replace(figures, fallen=fallen)
+                merit = merit_of(figures, possible_filling(yard.workshop), yard.settings.goal)
+                best = FoundWall(build, figures, merit, found.solves + solves)
+    return best
 
 
 def _orders(

@@ -37,7 +37,7 @@ THOROUGH = NonassociativeSettings()
 REPAIRS = 12
 """So often the best wall is repaired at most, where its stones fall in rehearsals."""
 
-JUDGED_AGAIN = 8
+JUDGED_AGAIN = 6
 """So many of the best walls of a search are looked at thoroughly at most."""
 
 
