@@ -18,7 +18,7 @@ from drystone.planner.search_settings import GoalSettings
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.courses import CoursePlan
-from drystone.search.rehearsal import RehearsalRun, groups_of, mean_size, rehearse
+from drystone.search.rehearsal import RehearsalRun, errors_of, groups_of, mean_size, put_up
 from drystone.search.yard import Yard
 from drystone.statics.flow.flow_search import STARTS, NonassociativeSettings
 from drystone.statics.flow.nonassociative import nonassociative_resistance
@@ -219,7 +219,6 @@ def _rehearsals(build: Build, yard: Yard, runs: int) -> Iterator[RehearsalRun]:
     if not groups:
         return
     errors = BuilderErrors.of_precision(HAND, mean_size(groups))
-    for run in range(runs):
+    for put in errors_of(groups, errors, [np.random.default_rng(run) for run in range(runs)]):
         yard.until.look()
-        rng = np.random.default_rng(run)
-        yield rehearse(groups, errors, rng, mu=settings.mu, settle=settings.settle)
+        yield put_up(groups, put, settings.mu, settings.settle)
