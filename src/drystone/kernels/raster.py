@@ -34,7 +34,7 @@ def rotation(angle_deg: float) -> Pair:
 def turn(points: Floats, angle_deg: float) -> Floats:
     """Turn points (n, 2), y up, counter-clockwise about the origin."""
     cos, sin = rotation(angle_deg)
-    return np.asarray(points * cos + points[:, ::-1] * (-sin, sin))
+    return np.ascontiguousarray(points * cos + points[:, ::-1] * (-sin, sin))
 
 
 def turned_boxes(points: Floats, turns: Floats) -> Floats:
