@@ -81,9 +81,13 @@ def no_polygons() -> Polygons:
 
 def polygon_edges(corners: Points) -> Points:
     """Return the edges of a polygon as rows (unit vector x, y, length), from each corner on."""
-    along = np.roll(corners, -1, axis=0) - corners
-    length = np.sqrt(along[:, 0] * along[:, 0] + along[:, 1] * along[:, 1])
-    return np.column_stack([along[:, 0] / length, along[:, 1] / length, length])
+    edges = np.empty((len(corners), 3))
+    x, y, length = edges.T
+    x[:-1], y[:-1] = (corners[1:] - corners[:-1]).T
+    x[-1], y[-1] = corners[0] - corners[-1]
+    np.sqrt(x * x + y * y, out=length)
+    edges[:, :2] /= edges[:, 2:]
+    return edges
 
 
 def mirrored_polygon(corners: Points, width: float) -> Points:

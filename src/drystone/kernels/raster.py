@@ -34,8 +34,7 @@ def rotation(angle_deg: float) -> Pair:
 def turn(points: Floats, angle_deg: float) -> Floats:
     """Turn points (n, 2), y up, counter-clockwise about the origin."""
     cos, sin = rotation(angle_deg)
-    x, y = points[:, 0], points[:, 1]
-    return np.column_stack([x * cos - y * sin, x * sin + y * cos])
+    return np.ascontiguousarray(points * cos + points[:, ::-1] * (-sin, sin))
 
 
 def turned_boxes(points: Floats, turns: Floats) -> Floats:

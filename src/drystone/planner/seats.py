@@ -40,6 +40,40 @@ class SeatTrial(NamedTuple):
     pushed: dict[int, float]  # by how much which polygons of those near it are pushed along x
 
 
+class _Place(NamedTuple):
+    """A place of a stone: what is the same in all trials."""
+
+    group: Group
+    key: tuple[object, ...]  # what tells it from others
+    low: Points  # lower left and upper right corner of the box of what is near
+    high: Points
+    x: float  # of the centroid
+    y: float
+    wedges: list[Points]
+
+    @classmethod
+    def of(cls, group: Group) -> "_Place":
+        """Return where a group is planned."""
+        placement = group.placement
+        stone, at = placement.posed.stone, placement.exact
+        far = NEAR * stone.area_px**0.5
+        wedges = [corners for _, corners in outlined(placement, group.wedges)[1:]]
+        return cls(
+            group,
+            (stone.id, placement.posed.angle_deg, at.x_px, at.y_px, *(w.tobytes() for w in wedges)),
+            at.corners.min(axis=0) - far,
+            at.corners.max(axis=0) + far,
+            *area_and_centroid(at.corners)[1:],
+            wedges,
+        )
+
+    def near(self, built: Polygons) -> list[int]:
+        """List the polygons that take part when the stone is put down."""
+        left, bottom, right, top = built.boxes.T
+        across = (left <= self.high[0]) & (right >= self.low[0])
+        return np.flatnonzero(across & (bottom <= self.high[1]) & (top >= self.low[1])).tolist()
+
+
 class Seats:
     """Tries places; every stone has errors of its own, the same wherever it is laid.
 
@@ -81,9 +115,10 @@ class Seats:
         most = self.bearable(group.placement.posed.stone)
         fallen, trials = 0, self._settle.trials
         walls, falls = self._built(wall.groups), self._falls[group.placement.stone_id]
+        place = _Place.of(group)
         # Where it fell elsewhere it may fall here: the sooner it is known that it falls too often.
         for k in sorted(range(trials), key=falls.__getitem__, reverse=True):
-            if self._trial(group, k, walls[k], self._near(group, walls[k])).fell:
+            if self._trial(place, k, walls[k], place.near(walls[k])).fell:
                 fallen += 1
                 falls[k] += 1
             if fallen > most * trials:
@@ -98,42 +133,32 @@ class Seats:
             done, walls = (), [no_polygons()] * self._settle.trials
         walls = list(walls)
         for group in groups[len(done) :]:
-            wedges = [corners for _, corners in outlined(group.placement, group.wedges)[1:]]
+            place = _Place.of(group)
             for k, built in enumerate(walls):
-                near = self._near(group, built)
-                trial = self._trial(group, k, built, near)
+                near = place.near(built)
+                trial = self._trial(place, k, built, near)
                 pushed = {near[i]: x for i, x in trial.pushed.items() if i < len(near)}
-                walls[k] = moved(built, pushed).added([*wedges, trial.corners])
+                walls[k] = moved(built, pushed).added([*place.wedges, trial.corners])
         self._last = groups, walls
         return walls
 
-    def _near(self, group: Group, built: Polygons) -> list[int]:
-        placement = group.placement
-        far, corners = NEAR * placement.posed.stone.area_px**0.5, placement.exact.corners
-        low, high, boxes = corners.min(axis=0) - far, corners.max(axis=0) + far, built.boxes
-        near = (boxes[:, :2] <= high).all(axis=1) & (boxes[:, 2:] >= low).all(axis=1)
-        return np.flatnonzero(near).tolist()
-
-    def _trial(self, group: Group, k: int, built: Polygons, near: list[int]) -> SeatTrial:
+    def _trial(self, place: _Place, k: int, built: Polygons, near: list[int]) -> SeatTrial:
         """Put a stone down with its errors of a trial, in the wall of that trial."""
-        key = _key(group, k, built, near)
+        key = k, built.boxes[near].tobytes(), place.key
         known = self._known.get(key)
         if known is not None:
             return known
-        placement = group.placement
-        planned = placement.exact.corners
-        wedges = [corners for _, corners in outlined(placement, group.wedges)[1:]]
         around = in_order(built, near)
         rest, pushed = put_down(
-            self._as_built(group)[k],
-            around.added(wedges) if wedges else around,
+            self._as_built(place.group)[k],
+            around.added(place.wedges) if place.wedges else around,
             self._mu,
             self._settle,
         )
-        trial = SeatTrial(True, planned, {})
+        trial = SeatTrial(True, place.group.placement.exact.corners, {})
         if rest is not None:
-            _, x, y = area_and_centroid(planned)
-            if fallen_share(rest.x - x, rest.y - y, rest.angle_deg, rest.size) <= 1.0:
+            way = rest.x - place.x, rest.y - place.y
+            if fallen_share(*way, rest.angle_deg, rest.size) <= 1.0:
                 trial = SeatTrial(False, rest.corners, pushed)
         return self._known.keep(key, trial, 600 + trial.corners.nbytes + 40 * len(near))
 
@@ -150,11 +175,3 @@ class Seats:
             corners = group.placement.exact.corners
             self._put = group, self._errors.all_built(corners, self._numbers[stone])
         return self._put[1]
-
-
-def _key(group: Group, k: int, built: Polygons, near: list[int]) -> tuple[object, ...]:
-    """Return what tells a trial: its errors, the place, and what is near."""
-    posed, at = group.placement.posed, group.placement.exact
-    wedges = (corners.tobytes() for _, corners in outlined(group.placement, group.wedges)[1:])
-    boxes = built.boxes[near].tobytes()
-    return k, posed.stone.id, posed.angle_deg, at.x_px, at.y_px, boxes, *wedges

@@ -19,7 +19,7 @@ from drystone.planner.search_settings import GoalSettings
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.courses import CoursePlan
-from drystone.search.rehearsal import RehearsalRun, groups_of, mean_size, rehearse
+from drystone.search.rehearsal import RehearsalRun, errors_of, groups_of, mean_size, put_up
 from drystone.search.yard import Yard
 from drystone.statics.flow.flow_search import STARTS, NonassociativeSettings
 from drystone.statics.flow.nonassociative import nonassociative_resistance
@@ -223,7 +223,6 @@ def _rehearsals(groups: Sequence[Group], yard: Yard, runs: int) -> Iterator[Rehe
     if not blocks:
         return
     errors = BuilderErrors.of_precision(HAND, mean_size(blocks))
-    for run in range(runs):
+    for put in errors_of(blocks, errors, [np.random.default_rng(run) for run in range(runs)]):
         yard.until.look()
-        rng = np.random.default_rng(run)
-        yield rehearse(blocks, errors, rng, mu=yard.settings.mu, settle=yard.settings.settle)
+        yield put_up(blocks, put, yard.settings.mu, yard.settings.settle)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from drystone.kernels.polygons import area_and_centroid, no_polygons
-from drystone.model.builder import WEDGE_SHARE, BuilderErrors, Built
+from drystone.model.builder import NUMBERS, WEDGE_SHARE, BuilderErrors, Built
 from drystone.model.outlines import Outlined
 from drystone.model.wall import Group, outlined
 from drystone.physics.building import BuildSettings, build_up, tilt_of
@@ -25,6 +25,9 @@ Groups = Sequence[Sequence[Outlined]]
 
 Corners, (n, 2), are in the wall frame, source px.
 """
+
+Put = list[list[tuple[int, Built]]]
+"""The same blocks as they are and where they are put in a run, the stone of each first."""
 
 IN_ENGINE = BuildSettings(
     engine=EngineSettings(iterations=30, slop=3e-3, corner_radius=3e-3),
@@ -72,13 +75,24 @@ def mean_size(groups: Groups) -> float:
 
 
 def errors_of(
-    groups: Groups, errors: BuilderErrors, rng: np.random.Generator
-) -> list[list[tuple[int, Built]]]:
-    """Return the blocks of a plan as they are and where they are put, the stone of each first."""
+    groups: Groups, errors: BuilderErrors, rngs: Sequence[np.random.Generator]
+) -> list[Put]:
+    """Return the blocks of a plan as they are and where they are put, in several runs."""
     wedge = errors.times(WEDGE_SHARE)
-    return [
-        [(i, (wedge if k else errors).built(corners, rng)) for k, (i, corners) in enumerate(group)]
+    blocks = [
+        (i, corners, wedge if k else errors)
         for group in groups
+        for k, (i, corners) in enumerate(group)
+    ]
+    drawn = np.stack([rng.standard_normal((len(blocks), NUMBERS)) for rng in rngs], axis=1)
+    put = [
+        [(i, built) for built in missed.all_built(corners, numbers)]
+        for (i, corners, missed), numbers in zip(blocks, drawn, strict=True)
+    ]
+    ends = np.cumsum([len(group) for group in groups]).tolist()
+    return [
+        [list(run[end - len(group) : end]) for group, end in zip(groups, ends, strict=True)]
+        for run in zip(*put, strict=True)
     ]
 
 
@@ -94,10 +108,14 @@ def rehearse(
 
     Stones may stand out over the ends of the wall.
     """
-    settle = settle or SettleSettings()
+    return put_up(groups, errors_of(groups, errors, [rng])[0], mu, settle or SettleSettings())
+
+
+def put_up(groups: Groups, put: Put, mu: float, settle: SettleSettings) -> RehearsalRun:
+    """Build a wall once of blocks with their errors."""
     laid: dict[int, Built] = {}
     polygons = no_polygons()
-    for group in errors_of(groups, errors, rng):
+    for group in put:
         for block, built in (*group[1:], group[0]):
             rest, pushed = put_down(built, polygons, mu, settle)
             if rest is not None:
@@ -126,7 +144,7 @@ def rehearse_in_engine(
     groups: Groups, errors: BuilderErrors, rng: np.random.Generator, *, mu: float = 0.58
 ) -> RehearsalRun:
     """Build a wall once with the same errors in a rigid-body engine (extra `physics`)."""
-    put = [[(i, one.corners) for i, one in group] for group in errors_of(groups, errors, rng)]
+    put = [[(i, one.corners) for i, one in group] for group in errors_of(groups, errors, [rng])[0]]
     found = build_up(put, mu, IN_ENGINE)
     moves = {move.id: move for move in found.moves}
     stones = (moves[group[0][0]] for group in groups)

@@ -7,17 +7,17 @@ slides only where it does not come to rest so.
 
 import math
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
-from drystone.kernels.gaps import crosses_any
-from drystone.kernels.polygons import Points, Polygons
-from drystone.kernels.profiles import extremes
+from drystone.kernels.asides import asides
+from drystone.kernels.polygons import Points, Polygons, on_grid, polygon_edges
+from drystone.kernels.raster import turn
 from drystone.kernels.settling import SettlingRules, Status
+from drystone.kernels.settling import settle as let_go
 from drystone.model.builder import Built
 from drystone.poses import wrap_deg
-from drystone.settle.rest import SettlingScene, Turned, let_go, repose, straight_down
+from drystone.settle.rest import CORNER, GAIN
 from drystone.settle.settings import SettleSettings
 
 FALLEN_SHARE, FALLEN_DEG = 0.25, 12.0
@@ -25,12 +25,6 @@ FALLEN_SHARE, FALLEN_DEG = 0.25, 12.0
 
 ASIDE = 0.3
 """So far, over its size, a block is moved aside or pushed at most."""
-
-BESIDE = 0.3
-"""Two blocks lie beside each other when they share so much of the height of the lower one."""
-
-LINES = 32
-"""Along so many lines it is looked how far two blocks overlap."""
 
 LIFTS = (0.0, 0.01, 0.02, 0.04, 0.06, 0.08, 0.1, 0.13, 0.16, 0.2)
 """So much higher, over its size, a block is let go where it overlaps others."""
@@ -50,39 +44,44 @@ def put_down(
 
     None, and the others stay, where it rests nowhere near.
     """
-    pushed: dict[int, float] = {}
-    if crosses_any(built.corners, around):
-        built, pushed = _squeezed_in(built, around, 2.0 * settle.clearance_px)
-        around = moved(around, pushed)
-    turned = Turned.of(built.outline, built.angle_deg, "left", built.size)
-    scene = SettlingScene(around, 0.0, "left", mu)
+    built, pushed = _squeezed_in(built, around, 2.0 * settle.clearance_px)
+    around = moved(around, pushed)
+    size, corners = built.size, turn(built.outline, built.angle_deg)
+    edges = polygon_edges(corners)
     for sticks in (True, False):
-        rules = _rules(turned, scene, settle)._replace(sticks=sticks)
+        rules = _rules(size, mu, settle, sticks=sticks)
         steps = 0
         for lift in LIFTS:
-            found = let_go(turned, scene, (built.x, built.y + lift * built.size), rules)
+            start = built.x, built.y + lift * size, 0.0
+            found = let_go(corners, edges, start, around, 0.0, rules)
             steps += found.steps
             if found.status is Status.RESTS:
-                rest = repose(turned, scene, found)
-                at = rest.settled
-                return replace(built, x=at.x_px, y=at.y_px, angle_deg=rest.angle_deg), pushed
+                x, y = on_grid(np.array([found.x, found.y])).tolist()
+                angle_deg = wrap_deg(built.angle_deg + math.degrees(found.angle))
+                return Built(built.outline, x, y, angle_deg, size), pushed
         if not steps:
             break  # it overlaps wherever it is let go
     return None, {}
 
 
-def _rules(turned: Turned, scene: SettlingScene, settle: SettleSettings) -> SettlingRules:
-    size = turned.size_px
-    return straight_down(turned, scene, settle)._replace(
+def _rules(size: float, mu: float, settle: SettleSettings, *, sticks: bool) -> SettlingRules:
+    return SettlingRules(
+        lean=0.0,
         stop=0.0,
+        mu=mu,
+        clearance=settle.clearance_px,
+        tolerance=max(TOUCHING * size, 2.0 * settle.clearance_px),
+        corner=CORNER * settle.clearance_px,
         near=STEP * size,
         far=2.0 * STEP * size,
-        tolerance=max(TOUCHING * size, 2.0 * settle.clearance_px),
+        turn=math.radians(FALLEN_DEG),
+        shift=FALLEN_SHARE * size,
+        gain=GAIN * size,
         overlap=OVERLAP * size,
         steep=-1.0,  # what is pressed in is held by upright faces too
         beyond=math.inf,  # the ends of a wall are lines on the ground
-        shift=FALLEN_SHARE * size,
-        turn=math.radians(FALLEN_DEG),
+        sticks=sticks,
+        turns=True,
         steps=STEPS,
     )
 
@@ -98,83 +97,44 @@ def moved(around: Polygons, pushed: dict[int, float]) -> Polygons:
     return Polygons(corners, around.first, boxes, around.edges)
 
 
-class _Block(NamedTuple):
-    """A polygon and its box: left, bottom, right, top."""
-
-    corners: Points
-    box: tuple[float, float, float, float]
-
-    def shifted(self, x: float) -> "_Block":
-        """Return it moved along x."""
-        left, bottom, right, top = self.box
-        return _Block(self.corners + np.array((x, 0.0)), (left + x, bottom, right + x, top))
-
-
 def _squeezed_in(built: Built, around: Polygons, gap: float) -> tuple[Built, dict[int, float]]:
     """Move a block aside to where it has room between its neighbours, or push these apart.
 
     What did overlap keeps a gap.
     """
-    (left, bottom), (right, top) = built.corners.min(axis=0), built.corners.max(axis=0)
-    block = _Block(built.corners, (float(left), float(bottom), float(right), float(top)))
-    others = {
-        i: _Block(around.polygon(i), (x0, y0, x1, y1))
-        for i, (x0, y0, x1, y1) in enumerate(around.boxes.tolist())
-        if y0 < top and y1 > bottom
-    }
-    left, right = (_most_into(block, others, gap, sign) for sign in (-1.0, 1.0))
+    bottom, top = built.corners[:, 1].min(), built.corners[:, 1].max()
+
+    def neighbours(corners: Points, sign: float) -> list[tuple[int, float]]:
+        """List who overlaps it on one side, and by how much; the gap is part of it."""
+        boxes = around.boxes
+        found = asides(corners, around, gap, sign)
+        return [(i, way) for i, way in found if boxes[i, 1] < top and boxes[i, 3] > bottom]
+
+    def aside(shift: float) -> Points:
+        return built.corners + np.array((shift, 0.0))
+
+    def most(shift: float, sign: float) -> float:
+        ways = neighbours(aside(shift), sign)
+        return max((way for _, way in ways), default=0.0)
+
+    left, right = most(0.0, -1.0), most(0.0, 1.0)
     shift = 0.5 * (left - right)
     if bool(left) != bool(right):
         # All the way where there is room, else half of what is missing.
         sign = math.copysign(1.0, shift)
-        missing = _most_into(block.shifted(2.0 * shift), others, gap, sign)
-        shift = 2.0 * shift - 0.5 * sign * missing
+        shift = 2.0 * shift - 0.5 * sign * most(2.0 * shift, sign)
     if not left + right or abs(shift) > ASIDE * built.size:
         return built, {}
     pushed: dict[int, float] = {}
     for sign in (-1.0, 1.0):
-        todo = [block.shifted(shift)]
+        todo = [aside(shift)]
         while todo:
-            by = todo.pop()
-            for i, other in others.items():
-                over = _into(by, other, gap, sign)
-                if 0.0 < over < ASIDE * built.size:
-                    others[i] = other.shifted(sign * over)
+            for i, over in neighbours(todo.pop(), sign):
+                if over < ASIDE * built.size:
+                    around = moved(around, {i: sign * over})
                     pushed[i] = pushed.get(i, 0.0) + sign * over
-                    todo.append(others[i])
+                    todo.append(around.polygon(i))
     return replace(built, x=built.x + shift), pushed
-
-
-def _most_into(block: _Block, others: dict[int, _Block], gap: float, sign: float) -> float:
-    return max((_into(block, other, gap, sign) for other in others.values()), default=0.0)
-
-
-def _into(one: _Block, other: _Block, gap: float, sign: float) -> float:
-    """Return how far along x another block beside this one must go, to a side, to clear it.
-
-    0 where it does not overlap, or where less is needed upwards: then one lies on the other.
-    """
-    (x0, y0, x1, y1), (u0, v0, u1, v1) = one.box, other.box
-    if u0 >= x1 or x0 >= u1 or sign * (u0 + u1 - x0 - x1) <= 0.0:
-        return 0.0
-    low, high = max(y0, v0), min(y1, v1)
-    if high - low < BESIDE * min(y1 - y0, v1 - v0):
-        return 0.0
-    alone = np.array([0, len(other.corners)], np.int32), np.array([other.box])
-    if not crosses_any(one.corners, Polygons(other.corners, *alone, other.corners)):
-        return 0.0
-    across = _depth(one.corners[:, ::-1], other.corners[:, ::-1], low, high, sign)
-    above = math.copysign(1.0, v0 + v1 - y0 - y1)
-    up = _depth(one.corners, other.corners, max(x0, u0), min(x1, u1), above)
-    return across + gap if across < up else 0.0
-
-
-def _depth(one: Points, other: Points, low: float, high: float, sign: float) -> float:
-    """Return how far up (sign 1) or down another polygon must go to clear one, between two x."""
-    cell = (high - low) / LINES
-    bottom, top = extremes(one, low, cell, LINES)
-    other_bottom, other_top = extremes(other, low, cell, LINES)
-    return float((top - other_bottom if sign > 0 else other_top - bottom).max())
 
 
 def fallen_share(x: float, y: float, turn_deg: float, size: float) -> float:
