@@ -45,15 +45,14 @@ def weight(model: RigidBlockModel, angle_deg: float = 0.0) -> Floats:
     return np.column_stack((sin(angle) * weights, -cos(angle) * weights, np.zeros(len(weights))))
 
 
-def tilting_table(model: RigidBlockModel, angle_deg: float = 0.0) -> Loads:
-    """Weight, and alpha times every weight towards +x (§4.1); the base tilted already by an angle.
+def tilting_table(model: RigidBlockModel) -> Loads:
+    """Weight, and alpha times every weight towards +x (§4.1).
 
     On a table tilted by an angle the horizontal share of weight is its tangent, so the blocks
-    come down at atan(alpha_right).  With an angle, alpha is what they carry on top of it.
+    come down at atan(alpha_right).
     """
     live = weight(model)[:, [1, 0, 2]] * np.array([-1.0, 1.0, 1.0])
-    name = f"tilting table at {angle_deg:g} degrees" if angle_deg else "tilting table"
-    return Loads(weight(model, angle_deg), live, name)
+    return Loads(weight(model), live, "tilting table")
 
 
 def growing_with_height(model: RigidBlockModel) -> Loads:
