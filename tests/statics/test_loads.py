@@ -12,7 +12,6 @@ from drystone.statics.limit import lateral_resistance, load_range
 from drystone.statics.loads import (
     LoadCase,
     Loads,
-    gravity_factor,
     growing_with_height,
     load_case,
     point_load,
@@ -93,7 +92,7 @@ def test_a_live_point_load_overturns_at_its_lever():
 
 def test_the_gravity_factor_says_how_light_a_wall_may_be():
     block = model_from_json({"blocks_xywh": [[0, 0, 1, 4]]})
-    loads = gravity_factor(block, point_load(block, 1, (0, 3), (0.5, 0)))
+    _, loads = load_case(LoadCase("gravity", 0.0, ("1@0,3:0.5,0",), (), None), block)
     carried = load_range(block, loads, mechanism=True)
     assert carried.least.alpha == pytest.approx(0.5 * 3 / (4 * 0.5))
     assert carried.least.certificate.holds

@@ -93,13 +93,13 @@ def point_load(
     return forces
 
 
-def gravity_factor(model: RigidBlockModel, others: Floats) -> Loads:
-    """Other loads as dead load, and alpha times the weight.
+def gravity_factor(model: RigidBlockModel) -> Loads:
+    """Alpha times the weight; the dead loads are whatever else acts, nothing as yet.
 
     The least alpha is the share of its weight with which the wall still carries the other loads:
     1 / alpha is the safety against being too light.  The greatest one is mostly unbounded.
     """
-    return Loads(others, weight(model), "gravity factor")
+    return Loads(weight(model) * 0.0, weight(model), "gravity factor")
 
 
 def support_settlement(model: RigidBlockModel, block: int) -> tuple[RigidBlockModel, Loads]:
@@ -200,7 +200,7 @@ def load_case(case: LoadCase, model: RigidBlockModel) -> tuple[RigidBlockModel, 
     elif case.load == "height":
         loads = growing_with_height(model)
     elif case.load == "gravity":
-        loads = gravity_factor(model, weight(model) * 0.0)
+        loads = gravity_factor(model)
     elif case.load == "points":
         loads = _points(model, case)
     else:
