@@ -252,6 +252,16 @@ def test_of_equal_costs_the_lower_place_comes_first_then_the_one_further_left() 
     ]
 
 
+def test_equal_costs_of_different_kinds_are_in_order_too() -> None:
+    """At 0 all of the cost is void, at 12, where the stone lies higher, all of it is gap."""
+    profile = wall_of([box(0, 0, 4, 8), box(12, 0, 8, 10)], 20, 2.0)
+    terms = terms_of(void=1.0, gap=1.0)
+    found = drops(profile, hanging(box(-4, -3, 8, 6), 2.0), terms, 0.0, 20, 0.0)
+    rows = {row[0]: row[1:3] for row in found.tolist()}
+    assert (rows[0.0], rows[12.0]) == ([11.0, 1.0], [13.0, 1.0])
+    assert list(rows).index(0.0) < list(rows).index(12.0)
+
+
 @pytest.mark.parametrize(
     ("width", "expected"), [(38.0, [0.0, 2.0]), (40.0, [0.0]), (40.0 + 1e-10, [0.0]), (40.1, [])]
 )

@@ -55,7 +55,7 @@ def begin(name, monkeypatch):
     return beginning(name, monkeypatch)
 
 
-@pytest.mark.parametrize("labels", [coursed(1, 4, 80, 2), irregular(3, 18, 100, 70)])
+@pytest.mark.parametrize("labels", [coursed(1, 5, 110, 2), irregular(3, 18, 100, 70)])
 def test_walls_grown_stone_by_stone_are_as_strong_as_walls_analysed_whole(labels, begin, name):
     whole, blocks = upwards(labels)
     analysis = begin(empty(), PX)

@@ -168,6 +168,20 @@ def test_a_wall_near_a_stone_may_fall_with_it():
     assert found.right.solver == LOCAL
 
 
+def test_a_stone_that_goes_along_leaves_alpha_as_it_is():
+    """The lower block slides; the upper one, on a rougher joint, slides with it."""
+    model = model_from_labels(stacked((60, 20, 0), (40, 10, 10))).model
+    first = RigidBlockModel(model.blocks[:1], model.interfaces[:1], model.mu)
+    analysis = LocalAnalysis.of(first, PX)
+    rough = tuple(replace(i, mu=0.8) for i in model.interfaces[1:])
+    added = analysis.program.columns_of(Addition(first, model.blocks[1:], rough), model.mu)
+    for end, opposite in both(analysis):
+        guess = local_update(analysis.program, end, opposite, added)
+        assert guess.alpha == end.alpha == pytest.approx(end.sign * 0.58)
+        assert guess.velocity[3:] == pytest.approx(end.velocity)
+        assert bound(analysis, added, guess).alpha == end.alpha
+
+
 def test_columns_may_begin_at_either_body():
     """Ids decide which body of an interface comes first; a stone may have a smaller one."""
     analysis, candidates = wall_at_once(coursed(1, 7, 150), 40)
