@@ -28,6 +28,12 @@ def random_polygon(rng: np.random.Generator, corners: int, size: float) -> Point
     return centred(np.column_stack([radius * np.cos(angle), radius * np.sin(angle)]))
 
 
+def box(left: float, bottom: float, width: float, height: float) -> Points:
+    """An upright box, counter-clockwise from its lower left corner."""
+    right, top = left + width, bottom + height
+    return np.array([[left, bottom], [right, bottom], [right, top], [left, top]], np.float64)
+
+
 def centred(corners: Points) -> Points:
     """The same polygon with its centroid at the origin."""
     _, x, y = area_and_centroid(corners)

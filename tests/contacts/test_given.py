@@ -106,8 +106,7 @@ def two_and_a_far_one(gap, far, size=1.0, above=1.0):
     return {"blocks_xywh": [[0, 0, size, size], second, [far, 0, size, size]], "mu": 0.58}
 
 
-@pytest.mark.parametrize("far", [5.0, 1e3, 2e6, 1e8])
-@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize(("far", "size"), [(5.0, 1.0), (2e6, 1e-3), (1e8, 1e3)])
 def test_a_far_block_changes_no_answer_nearby(far, size):
     for gap, stands in ((0.0, True), (1e-6 * size, True), (1e-3 * size, False)):
         model = model_from_json(two_and_a_far_one(gap, far * size, size, size))
@@ -193,14 +192,6 @@ def test_a_closing_corner_but_for_rounding_is_read(last):
     model = model_from_json({"blocks": [{"id": 1, "polygon": polygon}]})
     assert model.blocks[0].area == pytest.approx(4.0)
     assert lateral_resistance(model).value == pytest.approx(1.0)
-
-
-@pytest.mark.parametrize("angle_deg", range(1, 90, 4))
-def test_a_turned_square_that_is_closed_by_its_angle_is_whole(angle_deg):
-    angles = math.radians(angle_deg) + np.pi / 2 * np.arange(5)
-    corners = np.column_stack((np.cos(angles), 2.0 + np.sin(angles)))
-    model = model_from_json({"blocks": [{"id": 1, "polygon": corners.tolist()}]})
-    assert model.blocks[0].area == pytest.approx(2.0)
 
 
 def test_blocks_far_from_the_origin_lose_no_digits():
@@ -315,7 +306,7 @@ def test_any_unit_that_arithmetic_carries(unit):
 def test_blocks_with_a_common_line_do_not_overlap():
     """In floats GEOS finds three of a hundred such pairs to overlap by up to their whole area."""
     rng = np.random.default_rng(3)
-    for _ in range(300):
+    for _ in range(100):
         pair = outlines_along_a_line(rng)
         blocks = [{"id": i, "polygon": p.tolist()} for i, p in enumerate(pair, 1)]
         assert {i.other for i in model_from_json({"blocks": blocks}).interfaces} == {1}
@@ -334,10 +325,10 @@ def sectors(count):
 
 
 def test_not_all_of_many_blocks_may_meet_at_one_point(monkeypatch):
-    assert len(model_from_json(sectors(40)).blocks) == 40
-    monkeypatch.setattr("drystone.contacts.given.MOST_TOUCHING", (100, 8))
-    with pytest.raises(InputError, match=r"E303 .*more than 420 pairs of its 40 blocks touch"):
-        model_from_json(sectors(40))
+    assert len(model_from_json(sectors(20)).blocks) == 20
+    monkeypatch.setattr("drystone.contacts.given.MOST_TOUCHING", (20, 8))
+    with pytest.raises(InputError, match=r"E303 .*more than 180 pairs of its 20 blocks touch"):
+        model_from_json(sectors(20))
 
 
 def test_rectangles_among_polygons_are_told_where_they_belong() -> None:

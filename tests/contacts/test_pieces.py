@@ -7,7 +7,7 @@ from tests.strategies import dust_labels, label_images, repeatable
 
 
 @given(labels=label_images() | dust_labels())
-@repeatable(150)
+@repeatable(80)
 def test_pieces_apart_are_those_of_every_stone_alone(labels):
     assert pieces_apart(labels) == tuple(sorted(naive.pieces_apart(labels).items()))
 

@@ -16,13 +16,9 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitStatus
 from drystone_lab.pixels import tilted_wall
+from tests.polygons import box
 
 MU = 0.58
-
-
-def box(left, bottom, width, height):
-    corners = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]]
-    return np.array(corners) + np.array([left, bottom])
 
 
 def model_of(*polygons, mu=MU, tolerance=0.1, setback=0.0):

@@ -23,7 +23,7 @@ def resting(occupied: Mask, mask: Mask) -> Positions:
     return bit_landscape(occupied, skyline(occupied)).resting(silhouette(mask))
 
 
-@repeatable(200)
+@repeatable(80)
 @given(occupied=landscapes(16), mask=masks(8))
 def test_masks_rest_where_two_loops_say(occupied: Mask, mask: Mask) -> None:
     found = resting(occupied, mask)
@@ -48,7 +48,7 @@ def test_long_masks_between_thin_posts_under_a_roof() -> None:
     columns = st.integers(0, 299)
     posts = st.lists(st.tuples(columns, st.integers(1, 9)), max_size=4)
 
-    @repeatable(150)
+    @repeatable(60)
     @given(
         posts=posts, length=st.integers(1, 300), heel=st.integers(0, 99), foot=st.integers(1, 99)
     )

@@ -5,8 +5,6 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from drystone.kernels.boundary import EMPTY, boundary_of
-from tests.naive import contacts as naive
-from tests.naive.statics import diagonal_touches
 from tests.strategies import label_images, repeatable
 
 pictures = arrays(
@@ -26,20 +24,6 @@ def chains_of(cells, fresh=None):
     boundary = boundary_of(cells, fresh)
     nodes = np.split(boundary.nodes, boundary.begins[1:-1])
     return [(*pair, mine) for pair, mine in zip(boundary.labels.tolist(), nodes, strict=False)]
-
-
-@given(labels=pictures)
-@repeatable(150)
-def test_crossing_corners_equal_their_twin(labels):
-    cells = cells_of(labels)
-    height = labels.shape[0]
-    found = boundary_of(cells, cells > 0).corners.tolist()
-    assert {
-        (max(a, b), min(a, b), col - 1, height + 1 - row) for a, b, row, col in found
-    } == diagonal_touches(labels)
-    for above, below, row, col in found:
-        assert above in cells[row - 1, col - 1 : col + 1]
-        assert below in cells[row, col - 1 : col + 1]
 
 
 def test_an_enclosed_label_has_one_closed_chain_from_its_lowest_left_corner():
@@ -67,23 +51,6 @@ def test_chains_and_corners_of_what_is_fresh_are_those_of_all_that_have_it(label
     mine = [(*pair, nodes.tolist()) for *pair, nodes in chains_of(cells, np.isin(cells, ids))]
     assert mine == kept
     assert found.corners.tolist() == [c for c in every.corners.tolist() if {*c[:2]} & {*ids}]
-
-
-@given(labels=pictures | label_images())
-@repeatable(100)
-def test_chains_equal_their_naive_twin(labels):
-    boundary = boundary_of(cells_of(labels))
-    found = {}
-    for pair, begin, end in zip(
-        boundary.labels.tolist(), boundary.begins[:-1], boundary.begins[1:], strict=True
-    ):
-        row, col = boundary.nodes[begin:end].T
-        nodes = zip((col - 1).tolist(), (labels.shape[0] + 1 - row).tolist(), strict=True)
-        found.setdefault(tuple(pair), []).append(list(nodes))
-    assert list(found) == sorted(found)
-    assert found == {
-        pair: naive.chains(edges) for pair, edges in naive.directed_edges(labels).items()
-    }
 
 
 def test_labels_of_64_bits_survive():

@@ -27,18 +27,17 @@ def test_runs_paint_the_image_and_are_as_long_as_they_can_be(labels):
     assert order == sorted(order)
 
 
-@pytest.mark.parametrize("corners", [True, False])
 @given(labels=label_images())
 @repeatable(150)
-def test_pieces_are_those_of_every_label_alone(corners, labels):
+def test_pieces_are_those_of_every_label_alone(labels):
     runs = label_runs(labels)
-    numbers = runs_in_pieces(runs, corners=corners)
+    numbers = runs_in_pieces(runs)
     assert sorted(set(numbers.tolist())) == list(range(numbers.max(initial=-1) + 1))
     found = np.zeros(labels.shape, int)
     for number, row, begin, end in zip(numbers, runs.rows, runs.begins, runs.ends, strict=True):
         found[row, begin:end] = number + 1
     for label in np.unique(labels[labels > 0]):
-        pieces, count = ndimage.label(labels == label, np.ones((3, 3)) if corners else None)
+        pieces, count = ndimage.label(labels == label, np.ones((3, 3)))
         pairs = {tuple(pair) for pair in zip(pieces.ravel(), found.ravel(), strict=True)}
         pairs = {pair for pair in pairs if pair[0]}
         assert len(pairs) == count == len({pair[1] for pair in pairs})

@@ -19,7 +19,6 @@ from tests.kernels.simplex_walls import (
     grown,
     identical,
     needs_kernel,
-    some_columns,
     variants,
     with_columns,
 )
@@ -45,16 +44,15 @@ SQUARE = ((1.0, 1, 0), (-1, 1, -1), (1, 1, 1), (-1, 1, 0))
 """A square stone of side 1 on the ground with a friction of 1; edges at its two lower corners."""
 
 
-@pytest.mark.parametrize("labels", [coursed(3, 4, 110, 2), irregular(5, 26, 110, 80)])
-def test_candidates_are_as_strong_as_walls_solved_whole(labels):
+def test_candidates_are_as_strong_as_walls_solved_whole():
     seen = {OPTIMAL: 0, UNSTABLE: 0}
-    for step, (optima, choices) in enumerate(grown(labels, candidates=4)):
+    for step, (optima, choices) in enumerate(grown(irregular(5, 26, 110, 80), candidates=4)):
         for number, added in enumerate(choices):
             for sign in SIGNS:
                 answer = optima[sign].solved_with(added)
                 assert_right(optima[sign], added, answer, anew=(step + number) % 9 == 0)
                 seen[answer.status] += 1
-    assert seen[OPTIMAL] > 120
+    assert seen[OPTIMAL] > 80
     assert len(optima[1].weights) > 15
 
 
@@ -73,15 +71,14 @@ def test_candidates_that_fall_are_proved_to():
     assert falls > 8
 
 
-@pytest.mark.parametrize("at_once", [2, 3])
-def test_several_bodies_at_once(at_once):
+def test_several_bodies_at_once():
     """A stone and its wedges."""
     bodies = 0
-    for optima, choices in grown(coursed(8, 4, 100), at_once=at_once):
+    for optima, choices in grown(coursed(8, 4, 100), at_once=3):
         for sign in SIGNS:
             assert_right(optima[sign], choices[0], optima[sign].solved_with(choices[0]))
             assert len(optima[sign].velocity) == 3 * bodies
-        bodies += at_once
+        bodies += 3
     assert bodies >= 15
 
 
@@ -120,7 +117,7 @@ def programs(draw):
 
 
 @given(programs(), st.sampled_from(SIGNS))
-@repeatable(400)
+@repeatable(250)
 def test_programs_of_small_numbers_are_solved_exactly(added, sign):
     """All that can happen: optimal, infeasible, unbounded, with every kind of tie."""
     nothing = Optimum.of_nothing(sign)
@@ -133,28 +130,6 @@ def test_programs_of_small_numbers_are_solved_exactly(added, sign):
     assert max(naive.errors(nothing, added, answer).values()) <= 1e-9
     if status == naive.OPTIMAL:
         assert answer.alpha == pytest.approx(float(exact), abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("edges", "alpha"),
-    [
-        (SQUARE, 1),
-        (((0.5, 1, -0.25), (-0.5, 1, -0.75), (0.5, 1, 0.75), (-0.5, 1, 0.25)), 0.5),
-        (((1, 1, 0.5), (-1, 1, -0.5)), 0),
-        (((2, 2, 0), (-1, 1, -1), (3, 3, 3)), 0),
-    ],
-)
-def test_first_stones_are_solved_exactly(edges, alpha):
-    """Against fractions: sliding, tipping, a point below the centroid, edges of any length."""
-    for sign in SIGNS:
-        added = stone(*edges)
-        answer = Optimum.of_nothing(sign).solved_with(added)
-        assert_right(Optimum.of_nothing(sign), added, answer)
-        status, exact = naive.exactly_solved(naive.whole(Optimum.of_nothing(sign), added), sign)
-        assert status == answer.status == OPTIMAL
-        assert answer.alpha == pytest.approx(float(exact), abs=1e-15)
-        if sign == 1:
-            assert exact == alpha
 
 
 def test_a_stone_on_its_edge_stands_and_carries_nothing():
@@ -240,27 +215,6 @@ def test_large_candidates_may_follow_small_ones():
         answer = optimum.solved_with(Added(np.ones(1), edges, NOTHING))
         assert answer.alpha == pytest.approx(0.0, abs=1e-15)
         assert len(answer.forces) == 4 + count
-
-
-def test_an_optimum_says_what_its_answer_said():
-    optima, choices = list(grown(coursed(13, 3, 80)))[8]
-    for sign in SIGNS:
-        base = optima[sign]
-        closing = replace(choices[0], closed=np.array([0, 3], np.int32))
-        answer = base.solved_with(closing)
-        optimum = base.extended(closing, answer)
-        assert optimum.sign == sign
-        assert optimum.alpha == answer.alpha
-        assert optimum.forces is answer.forces
-        assert optimum.velocity is answer.velocity
-        assert optimum.weights.tolist() == [*base.weights, *closing.weights]
-        left = np.delete(np.arange(len(base.cones.first)), [0, 3])
-        kept = some_columns(base.cones, left)
-        assert optimum.cones.first.tolist() == [*kept.first, *closing.cones.first]
-        assert optimum.cones.second.tolist() == [*kept.second, *closing.cones.second]
-        entries = np.concatenate((kept.entries, closing.cones.entries), axis=1)
-        assert np.array_equal(optimum.cones.entries, entries)
-        assert len(optimum.forces) == len(optimum.cones.first)
 
 
 def test_nothing_that_was_asked_changes_a_bit():

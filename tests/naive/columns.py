@@ -3,24 +3,6 @@
 import numpy as np
 
 
-def cone_edges(bodies, normals, frictions, points, length):
-    """A column (first, second, six entries) for each edge, in a list."""
-    columns = []
-    for (one, two), normal, mu, ends in zip(bodies, normals, frictions, points, strict=True):
-        tangent = (normal[1], -normal[0])
-        for point in ends:
-            for slope in (mu, -mu):
-                force = np.array(normal) + slope * np.array(tangent)
-                entries = []
-                for (place, *centroid), way in ((one, 1.0), (two, -1.0)):
-                    arm = (point - np.array(centroid)) / length
-                    moment = arm[0] * force[1] - arm[1] * force[0]
-                    wrench = np.array([*force, moment]) * (way if place >= 0 else 0.0)
-                    entries += wrench.tolist()
-                columns.append((one[0], two[0], entries))
-    return columns
-
-
 def dense(cones, bodies):
     """The columns as a full matrix, three rows a body."""
     matrix = np.zeros((3 * bodies, len(cones.first)))

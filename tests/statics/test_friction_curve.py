@@ -15,4 +15,4 @@ def test_a_block_slides_and_then_rocks() -> None:
 
 def test_a_wall_that_does_not_stand_has_no_number() -> None:
     leaning = model_from_json({"blocks_xywh": [[0, 0, 1, 1], [0.8, 1, 1, 1]]})
-    assert friction_curve(leaning, mus=(0.5,))[0].alpha_left is None
+    assert {at.alpha_left for at in friction_curve(leaning)} == {None}

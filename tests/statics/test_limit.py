@@ -259,10 +259,10 @@ def test_a_wall_stands_where_nothing_limits_the_load():
     assert lateral_resistance(RigidBlockModel((), ())).stable
 
 
-@pytest.mark.parametrize("mu", [1e5, 1e300])
-def test_friction_at_which_nothing_slides_has_one_answer(mu):
+def test_friction_at_which_nothing_slides_has_one_answer():
     """That of the greatest friction which counts; whole walls, and walls that grow."""
-    for labels in (irregular(3, 40, 160, 120), coursed(3, 8, 200, 2)):
+    mu = 1e300
+    for labels in (irregular(3, 30, 120, 100), coursed(3, 5, 120, 2)):
         model = model_from_labels(labels, mu).model
         both = lateral_resistance(model)
         counted = lateral_resistance(replace(model, mu=NO_SLIP))

@@ -10,9 +10,10 @@ from drystone.errors import InputError
 from drystone.statics.failing.mechanism import describe_mechanism
 from drystone.statics.limit import lateral_resistance, load_range
 from drystone.statics.loads import (
+    LoadCase,
     Loads,
-    gravity_factor,
     growing_with_height,
+    load_case,
     point_load,
     support_settlement,
     tilting_table,
@@ -37,11 +38,13 @@ def test_the_tilting_table_is_the_default():
 def test_what_a_tilted_base_leaves_is_the_rest_of_the_angle(angle_deg):
     """Block 1 x 4: it falls at tan = .25; gravity has the share cos of it left downwards."""
     block = model_from_json({"blocks_xywh": [[0, 0, 1, 4]]})
-    left, right = (limit_load(block, d, tilting_table(block, angle_deg)) for d in ("left", "right"))
+    _, loads = load_case(LoadCase("tilting", angle_deg, (), (), None), block)
+    left, right = (limit_load(block, d, loads) for d in ("left", "right"))
     angle = math.radians(angle_deg)
     assert right.alpha == pytest.approx(0.25 * math.cos(angle) - math.sin(angle))
     assert left.alpha == pytest.approx(0.25 * math.cos(angle) + math.sin(angle))
-    beyond = limit_load(block, "right", tilting_table(block, 14.1))
+    _, loads = load_case(LoadCase("tilting", 14.1, (), (), None), block)
+    beyond = limit_load(block, "right", loads)
     assert beyond.status is LimitStatus.UNSTABLE  # atan .25 = 14.04 degrees
 
 
@@ -89,7 +92,7 @@ def test_a_live_point_load_overturns_at_its_lever():
 
 def test_the_gravity_factor_says_how_light_a_wall_may_be():
     block = model_from_json({"blocks_xywh": [[0, 0, 1, 4]]})
-    loads = gravity_factor(block, point_load(block, 1, (0, 3), (0.5, 0)))
+    _, loads = load_case(LoadCase("gravity", 0.0, ("1@0,3:0.5,0",), (), None), block)
     carried = load_range(block, loads, mechanism=True)
     assert carried.least.alpha == pytest.approx(0.5 * 3 / (4 * 0.5))
     assert carried.least.certificate.holds

@@ -72,22 +72,6 @@ def test_a_stone_that_nothing_holds_falls_alone():
             assert bound(analysis, falling, guess).fall.holds
 
 
-def test_a_slender_stone_on_a_broad_wall_decides_alone():
-    """Twice as high as wide: alpha is .5, below that of the block under it, and forces mix."""
-    model = model_from_labels(stacked((60, 20, 0), (10, 20, 25))).model
-    first = RigidBlockModel(model.blocks[:1], model.interfaces[:1], model.mu)
-    analysis = LocalAnalysis.of(first, PX)
-    whole = with_block(analysis.model, model.blocks[1], whole=model)
-    added = analysis.program.columns_of(whole.added, model.mu)
-    for end, opposite in both(analysis):
-        assert abs(end.alpha) == pytest.approx(0.58)
-        guess = local_update(analysis.program, end, opposite, added)
-        assert guess.alpha == pytest.approx(end.sign * 0.5)
-        assert not guess.velocity[:3].any()
-        found = bound(analysis, added, guess)
-        assert (found.alpha, found.fall) == (guess.alpha, None)
-
-
 def slender_stone():
     """A stone five times as high as wide on a stone of the middle of the wall."""
     whole = model_from_labels(coursed(1, 3, 160)).model

@@ -130,29 +130,25 @@ def assert_proved(labels, mu):
     return both
 
 
-@pytest.mark.parametrize(
-    "labels", [brick_labels, stacked_labels, dust_labels, holed_labels, hanging_labels]
+@given(
+    st.one_of(
+        brick_labels(),
+        stacked_labels(),
+        dust_labels(),
+        holed_labels(),
+        hanging_labels(),
+        floating_labels(),
+    ),
+    FRICTIONS,
 )
-def test_answers_are_proved(labels):
-    """Bricks, stacks, single pixels and ids in pieces, holes, stones that hang between pillars."""
-
-    @given(labels(), FRICTIONS)
-    @repeatable(100)
-    def check(labels, mu):
-        assert_proved(labels, mu)
-
-    check()
-
-
-@given(floating_labels(), FRICTIONS)
-@repeatable(100)
-def test_a_floating_stone_is_never_optimal(labels, mu):
-    assert hangs_in_the_air(labels)
-    assert assert_proved(labels, mu).right.status is LimitStatus.UNSTABLE
+@repeatable(200)
+def test_answers_are_proved(labels, mu):
+    """Bricks, stacks, single pixels, ids in pieces, holes, stones that hang or float."""
+    assert_proved(labels, mu)
 
 
 @given(label_images(), st.sampled_from([0.58, 0.3, 0.9]))
-@repeatable(100)
+@repeatable(50)
 def test_random_walls_equal_their_twin(labels, mu):
     model = model_from_labels(labels, mu).model
     both = lateral_resistance(model)
@@ -163,7 +159,7 @@ def test_random_walls_equal_their_twin(labels, mu):
 
 
 @given(label_images(), FRICTIONS)
-@repeatable(50)
+@repeatable(20)
 def test_without_dilatancy_random_walls_carry_no_more(labels, mu):
     model = model_from_labels(labels, mu).model
     associative, both = lateral_resistance(model), nonassociative_resistance(model)

@@ -70,7 +70,7 @@ def test_the_joint_that_slides_is_named():
     mu=st.sampled_from([0.3, 0.47, 0.61]),
     tilted=st.booleans(),
 )
-@repeatable(30)
+@repeatable(12)
 def test_it_is_the_slope_of_alpha(seed, direction, mu, tilted):
     labels = irregular(seed, 9, 90, 50) if tilted else coursed(seed, 3, 70)
     model = model_from_labels(labels, mu).model

@@ -9,7 +9,7 @@ import shapely
 from scipy import ndimage
 
 from drystone.contacts.settled import PlacedPolygons, model_of_outlines
-from drystone.kernels.boundary import boundary_of
+from drystone.kernels.outline import pixel_rings
 from drystone.kernels.polygons import Points
 from drystone.kernels.segments import REACH_PX, Line, fitted_lines, meeting_point, with_area
 from drystone.model.overlap import common_parts
@@ -29,19 +29,18 @@ at its ends.  Smaller tolerances follow the steps of the grid: their slopes do n
 resolution grows, nor does what they do to the load multiplier.
 """
 
+CONTACT_TOLERANCE = 0.1
+"""Gaps and overlaps of outlines up to this are contacts."""
 
 SAME_SHARE = 0.88
 """An outline covers at least this share of its pixels; small stones keep their pixel edges else."""
 
 
-def outlines_of_labels(
-    labels: Labels, *, tolerance_px: float = OUTLINE_TOLERANCE_PX
-) -> dict[int, Points]:
+def outlines_of_labels(labels: Labels) -> dict[int, Points]:
     """Find the outlines of all stones of a label image, (n, 2) by id.
 
     Corners are in the wall frame, px, counter-clockwise and closed: the first one is repeated at
-    the end.  The ground, y = 0, is the image's lower edge.  The contour may stay away from the line
-    that is fitted to it by `tolerance_px`.
+    the end.  The ground, y = 0, is the image's lower edge.
 
     The contour (the midpoints of pixel edges) is cut where three or more stones, ground and nothing
     meet, and every piece is simplified once, for both its sides, into fitted lines. Then its
@@ -53,14 +52,12 @@ def outlines_of_labels(
     junctions = _junctions(labels)
     pieces = {block: _pieces(ring, junctions) for block, ring in rings.items()}
     fits = {
-        piece: fitted_lines(np.array(piece, float), tolerance_px)
+        piece: fitted_lines(np.array(piece, float), OUTLINE_TOLERANCE_PX)
         for piece in dict.fromkeys(_key(piece) for mine in pieces.values() for piece in mine)
     }
     while True:
         outlines = _assembled(rings, pieces, fits)
-        unsound = [
-            block for block in rings if not _is_sound(outlines[block], rings[block], tolerance_px)
-        ]
+        unsound = [block for block in rings if not _is_sound(outlines[block], rings[block])]
         # The shortest piece first: two junctions close together are most often the reason.
         keys = [sorted((_key(p) for p in pieces[block]), key=len) for block in unsound]
         blocky = {next((key for key in mine if key in fits), None) for mine in keys} - {None}
@@ -70,20 +67,16 @@ def outlines_of_labels(
 
 
 def model_of_traced(
-    outlines: Mapping[int, Points],
-    mu: float = 0.58,
-    *,
-    contact_tolerance_px: float = 0.1,
-    setback: float = 0.0,
+    outlines: Mapping[int, Points], mu: float = 0.58, *, setback: float = 0.0
 ) -> RigidBlockModel:
     """Make the rigid block model of stones with given outlines, (n, 2), closed, counter-clockwise.
 
     Blocks and interfaces are sorted by ids; of two the larger id is `block`.  Edges and corners
-    touch up to a gap or overlap of `contact_tolerance_px`, in the unit of the outlines.  Overlaps
-    are not looked for: whoever makes outlines checks them.
+    touch up to a gap or overlap of `CONTACT_TOLERANCE`, in the unit of the outlines.  Overlaps are
+    not looked for: whoever makes outlines checks them.
     """
     blocks = ((block, outlines[block][:-1]) for block in sorted(outlines))
-    return model_of_outlines(PlacedPolygons.of(blocks), mu, contact_tolerance_px, setback)
+    return model_of_outlines(PlacedPolygons.of(blocks), mu, CONTACT_TOLERANCE, setback)
 
 
 def _rings(labels: Labels) -> dict[int, RingPiece]:
@@ -94,13 +87,9 @@ def _rings(labels: Labels) -> dict[int, RingPiece]:
     rings = {}
     windows = ndimage.find_objects(place.reshape(labels.shape))
     for block, window in zip(ids[1:].tolist(), windows, strict=True):
-        cells = np.pad(labels[window] == block, 1).astype(np.int64)
-        boundary = boundary_of(cells)
-        chains = np.split(boundary.nodes, boundary.begins[1:-1])
-        nodes = max(chains, key=lambda chain: _area(np.column_stack([chain[:, 1], -chain[:, 0]])))
-        x = nodes[:, 1] - 1 + window[1].start
-        y = labels.shape[0] - (nodes[:, 0] - 1 + window[0].start)
-        rings[block] = tuple(zip(x.tolist(), y.tolist(), strict=True))
+        largest = max(pixel_rings(labels[window] == block), key=_area)
+        corner = window[1].start, labels.shape[0] - window[0].stop
+        rings[block] = tuple(map(tuple, (largest + corner).astype(int).tolist()))
     return rings
 
 
@@ -189,7 +178,7 @@ def _joined(lines: list[Points]) -> Points:
     return np.asarray(corners[np.concatenate([apart, [True]])])
 
 
-def _is_sound(outline: Points, ring: RingPiece, tolerance_px: float) -> bool:
+def _is_sound(outline: Points, ring: RingPiece) -> bool:
     """Tell whether an outline does not cross itself and follows its pixel edges everywhere."""
     if len(outline) < 4:
         return False
@@ -199,7 +188,7 @@ def _is_sound(outline: Points, ring: RingPiece, tolerance_px: float) -> bool:
     away = shapely.hausdorff_distance(pixels.exterior, shape.exterior)
     # Pixel edges that pass one corner twice make no valid area; a hair's breadth inside is one.
     common = sum(part.area for part in common_parts(pixels.buffer(-1e-6), shape))
-    return bool(away <= tolerance_px + REACH_PX and common >= SAME_SHARE * pixels.area)
+    return bool(away <= OUTLINE_TOLERANCE_PX + REACH_PX and common >= SAME_SHARE * pixels.area)
 
 
 def _bends(nodes: Points) -> Points:

@@ -1,4 +1,4 @@
-from drystone.kernels.memory cimport doubles_out, kept_doubles, kept_ints, longs, longs_out
+from drystone.kernels.memory cimport doubles_out, kept_ints, longs, longs_out
 from libc.math cimport sqrt
 
 cdef int split_chain(

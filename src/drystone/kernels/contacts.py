@@ -23,13 +23,12 @@ except ImportError:
 if not cython.compiled:
     from math import sqrt
 
-    from drystone.kernels.lists import doubles_out, kept_doubles, kept_ints, longs, longs_out
+    from drystone.kernels.lists import doubles_out, kept_ints, longs, longs_out
 
 # A run may leave its chord by the square root of this before it is split.  The pixel corners of a
 # straight joint lie in a strip narrower than |cos| + |sin| <= sqrt 2, so a straight joint is never
 # split, and a leg of two pixels at the end of a long run is.
-SQUARED_TOLERANCE_PX = 2
-TOLERANCE = cython.declare(cython.longlong, SQUARED_TOLERANCE_PX)
+TOLERANCE = cython.declare(cython.longlong, 2)
 
 # An end edge square to a straight piece of at least this length is a hook of the grid.
 HOOK_NEEDS = cython.declare(cython.int, 3)
@@ -103,40 +102,6 @@ def contacts_in(patch: Patch) -> Contacts:
             points[4 * k + 1] = points[4 * k + 3] = y0 - corners[c + 2]
             write_normal_at_point(cells, height, width, corners, c, vectors, 2 * k)
     return Contacts(high, low, ends, normals, found)
-
-
-def straight_runs(nodes: NDArray[np.int64]) -> list[tuple[int, int, tuple[float, float]]]:
-    """Return the first and last node of each straight run of a chain, without hooks; its normal.
-
-    Parameters
-    ----------
-    nodes : (n, 2) int64 array
-        Row and col of pixel corners along the chain.
-
-    Notes
-    -----
-    A chain is cut at its corners (Douglas and Peucker 1973).  The line of a run is fitted to the
-    midpoints of its edges by total least squares: on a regular staircase they lie along its slope,
-    and one odd edge hardly turns it.  The scatter of twice the midpoints is found from sums of
-    integers, exact up to some thousand edges.
-
-    Examples
-    --------
-    >>> straight_runs(np.array([[0, 0], [0, 1], [0, 2], [0, 3], [0, 4], [-1, 4]]))
-    [(0, 4, (0.0, 1.0))]
-    """
-    room: list = []
-    size: cython.int = len(nodes)
-    at: cython.p_longlong = longs(nodes)
-    runs: cython.p_int = kept_ints(room, 3 * size)
-    normal: cython.p_double = kept_doubles(room, 2)
-    pieces: cython.p_int = kept_ints(room, 2 * size + 2)
-    count: cython.int = split_chain(at, 0, size, 0, runs, 0, pieces, kept_ints(room, size))
-    found = []
-    for k in range(count):
-        write_normal(at, runs[3 * k + 1], runs[3 * k + 2], normal, 0)
-        found.append((runs[3 * k + 1], runs[3 * k + 2], (normal[0], normal[1])))
-    return found
 
 
 def split_chain(nodes, begin, end, chain, runs, count, pieces, is_cut):

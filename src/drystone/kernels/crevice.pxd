@@ -1,5 +1,5 @@
 from drystone.kernels.memory cimport (
-    doubles, doubles_out, ints, new_doubles, new_ints, release, sort_doubles
+    doubles, doubles_out, ints, kept_doubles, kept_ints, sort_doubles
 )
 from libc.math cimport sqrt
 
@@ -8,17 +8,20 @@ ctypedef int *p_int
 
 
 cdef class Segments:
+    cdef list room
     cdef p_double at
     cdef Py_ssize_t count
 
 
 cdef class Slabs:
+    cdef list room
     cdef p_double x, middle, ceiling, best
     cdef p_int which
     cdef Py_ssize_t count
 
 
 cdef class Corners:
+    cdef list room
     cdef p_double at
     cdef Py_ssize_t count
 

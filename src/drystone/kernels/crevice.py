@@ -25,9 +25,8 @@ if not cython.compiled:
         doubles,
         doubles_out,
         ints,
-        new_doubles,
-        new_ints,
-        release,
+        kept_doubles,
+        kept_ints,
         sort_doubles,
     )
 
@@ -142,10 +141,8 @@ class Segments:
     """Segments from left to right, x0, y0, x1, y1, one after the other."""
 
     def __init__(self, room: int) -> None:
-        self.at, self.count = new_doubles(4 * room), 0
-
-    def __dealloc__(self) -> None:
-        release(self.at)
+        self.room, self.count = [], 0
+        self.at = kept_doubles(self.room, 4 * room)
 
 
 @cython.cclass
@@ -153,16 +150,10 @@ class Slabs:
     """Strips between upright lines, and which segment is taken in each: -1 for none."""
 
     def __init__(self, room: int) -> None:
-        self.x, self.middle = new_doubles(room), new_doubles(room)
-        self.ceiling, self.best = new_doubles(room), new_doubles(room)
-        self.which, self.count = new_ints(room), 0
-
-    def __dealloc__(self) -> None:
-        release(self.x)
-        release(self.middle)
-        release(self.ceiling)
-        release(self.best)
-        release(self.which)
+        self.room, self.count = [], 0
+        self.x, self.middle = kept_doubles(self.room, room), kept_doubles(self.room, room)
+        self.ceiling, self.best = kept_doubles(self.room, room), kept_doubles(self.room, room)
+        self.which = kept_ints(self.room, room)
 
 
 @cython.cclass
@@ -170,10 +161,8 @@ class Corners:
     """A chain: corners from left to right."""
 
     def __init__(self, room: int) -> None:
-        self.at, self.count = new_doubles(2 * room), 0
-
-    def __dealloc__(self) -> None:
-        release(self.at)
+        self.room, self.count = [], 0
+        self.at = kept_doubles(self.room, 2 * room)
 
 
 def as_array(chain):
@@ -217,7 +206,7 @@ def boundaries(stone, around, reach):
     room: cython.Py_ssize_t = len(around.corners) + 1
     lids: Segments = Segments(size + 2)
     edges: Segments = Segments(room)
-    bottom: cython.p_int = new_ints(room)
+    bottom: cython.p_int = kept_ints(edges.room, room)
     left: cython.double = corners[0]
     right: cython.double = corners[0]
     top: cython.double = corners[1]
@@ -269,7 +258,7 @@ def boundaries(stone, around, reach):
         pick(picked, lids, cuts.which[i] if cuts.which[i] >= 0 else lids.count - 1)
         cuts.ceiling[i] = line(picked.at, 4 * i, cuts.middle[i])
     lid = chained(picked, cuts)
-    was: cython.p_int = new_ints(cuts.count)
+    was: cython.p_int = kept_ints(cuts.room, cuts.count)
     for i in range(cuts.count):
         was[i] = cuts.which[i]
     highest(edges, cuts)
@@ -280,10 +269,7 @@ def boundaries(stone, around, reach):
         else:
             picked.count = i
             pick(picked, edges, cuts.which[i])
-    floor = chained(picked, cuts)
-    release(bottom)
-    release(was)
-    return lid, floor
+    return lid, chained(picked, cuts)
 
 
 def put(out, x0, y0, x1, y1):

@@ -1,7 +1,6 @@
 """Runs of one label along the rows of an image: what is counted on runs need not see pixels."""
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +8,6 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 Ints = NDArray[np.intp]
-_Side = Literal["left", "right"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,10 +40,10 @@ def label_runs(labels: NDArray[np.integer]) -> LabelRuns:
     return LabelRuns(width, flat[first[taken]], rows, begins, beyond[taken] - rows * width)
 
 
-def runs_in_pieces(runs: LabelRuns, *, corners: bool = True) -> Ints:
+def runs_in_pieces(runs: LabelRuns) -> Ints:
     """Return for each run the number of the connected piece of its label, from 0 on without gaps.
 
-    With `corners` pixels that meet at a corner connect, too.
+    Pixels that meet at a corner connect, too.
     """
     count = len(runs.rows)
     if not count:
@@ -53,10 +51,8 @@ def runs_in_pieces(runs: LabelRuns, *, corners: bool = True) -> Ints:
     # In the row below, the runs that a run touches follow one another; runs are in order.
     stride = runs.width + 1
     below = (runs.rows + 1) * stride
-    near: _Side = "left" if corners else "right"
-    far: _Side = "right" if corners else "left"
-    first = np.searchsorted(runs.rows * stride + runs.ends, below + runs.begins, side=near)
-    last = np.searchsorted(runs.rows * stride + runs.begins, below + runs.ends, side=far)
+    first = np.searchsorted(runs.rows * stride + runs.ends, below + runs.begins)
+    last = np.searchsorted(runs.rows * stride + runs.begins, below + runs.ends, side="right")
     touched = np.maximum(last - first, 0)
     upper = np.repeat(np.arange(count), touched)
     lower = np.arange(touched.sum()) + np.repeat(first - np.cumsum(touched) + touched, touched)

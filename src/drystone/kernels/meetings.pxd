@@ -1,5 +1,5 @@
 from drystone.kernels.memory cimport (
-    doubles, doubles_out, ints, ints_out, more_doubles, new_doubles, new_ints, release
+    doubles, doubles_out, ints, ints_out, kept_doubles, kept_ints, more_doubles, new_doubles, release
 )
 from libc.math cimport sqrt
 
@@ -8,6 +8,7 @@ ctypedef int *p_int
 
 
 cdef class Sides:
+    cdef list room
     cdef Py_ssize_t count
     cdef p_double x, y, along_x, along_y, length, left, bottom, right, top
     cdef p_int convex

@@ -27,9 +27,10 @@ if not cython.compiled:
         doubles_out,
         ints,
         ints_out,
+        kept_doubles,
+        kept_ints,
         more_doubles,
         new_doubles,
-        new_ints,
         release,
     )
 
@@ -168,25 +169,12 @@ class Sides:
     """The edges of a polygon and the corners at their starts: unit vectors, lengths, boxes."""
 
     def __init__(self, room: int) -> None:
-        self.count = 0
-        self.x, self.y = new_doubles(room), new_doubles(room)
-        self.along_x, self.along_y = new_doubles(room), new_doubles(room)
-        self.length = new_doubles(room)
-        self.left, self.bottom = new_doubles(room), new_doubles(room)
-        self.right, self.top = new_doubles(room), new_doubles(room)
-        self.convex = new_ints(room)
-
-    def __dealloc__(self) -> None:
-        release(self.x)
-        release(self.y)
-        release(self.along_x)
-        release(self.along_y)
-        release(self.length)
-        release(self.left)
-        release(self.bottom)
-        release(self.right)
-        release(self.top)
-        release(self.convex)
+        self.count, self.room = 0, []
+        self.x, self.y = kept_doubles(self.room, room), kept_doubles(self.room, room)
+        self.along_x, self.along_y = kept_doubles(self.room, room), kept_doubles(self.room, room)
+        self.left, self.bottom = kept_doubles(self.room, room), kept_doubles(self.room, room)
+        self.right, self.top = kept_doubles(self.room, room), kept_doubles(self.room, room)
+        self.length, self.convex = kept_doubles(self.room, room), kept_ints(self.room, room)
 
 
 @cython.cclass

@@ -3,55 +3,38 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from drystone.kernels.boundary import boundary_of
 from drystone.kernels.raster import Mask
 
 Polygon = NDArray[np.float64]
 
-_Corner = tuple[int, int]
+
+def pixel_rings(mask: Mask) -> list[Polygon]:
+    """Return the closed lines along the pixel edges of a mask (n, 2), one corner a pixel edge.
+
+    They are counter-clockwise around pieces and clockwise around holes; x to the right and y up, px
+    from the mask's bottom-left corner.  Where two pixels touch only at a corner, lines may pass it
+    twice and do not cross.
+    """
+    boundary = boundary_of(np.pad(mask, 1).astype(np.int64))
+    x, y = boundary.nodes[:, 1] - 1.0, mask.shape[0] + 1.0 - boundary.nodes[:, 0]
+    return np.split(np.column_stack([x, y]), boundary.begins[1:-1])
 
 
 def pixel_polygon(mask: Mask) -> Polygon:
     """Return the polygon along the pixel edges of a mask: one 4-connected piece without holes.
 
     Counter-clockwise from the leftmost corner of the lowest edge, no three corners in a row on one
-    line; x to the right and y up, px from the mask's bottom-left corner.  Where two pixels touch
-    only at a corner the polygon passes that corner twice and does not cross itself.
+    line, as :func:`pixel_rings` has them.
     """
-    outgoing = _boundary(mask)
-    if not outgoing:
+    if not mask.any():
         raise ValueError("the mask has no pixel")
-    start = min(outgoing, key=lambda corner: (corner[1], corner[0]))
-    corners = [start]
-    here, heading = start, (1, 0)
-    while here != start or len(corners) == 1:
-        # At a corner where two pixels touch, turning left stays with the pixel on the left.
-        ends = outgoing.pop(here)
-        end = max(ends, key=lambda e: heading[0] * (e[1] - here[1]) - heading[1] * (e[0] - here[0]))
-        if len(ends) > 1:
-            outgoing[here] = [e for e in ends if e != end]
-        heading, here = (end[0] - here[0], end[1] - here[1]), end
-        corners.append(here)
-    if outgoing:
+    ring, *others = pixel_rings(mask)
+    if others:
         raise ValueError("the mask has several pieces or a hole")
-    points = np.array(corners[:-1], float)
+    points = np.roll(ring[:-1], -np.lexsort(ring[:-1].T)[0], axis=0)
     ahead, behind = np.roll(points, -1, axis=0) - points, points - np.roll(points, 1, axis=0)
     return np.asarray(points[(ahead != behind).any(axis=1)])
-
-
-def _boundary(mask: Mask) -> dict[_Corner, list[_Corner]]:
-    """Return the ends of the unit edges that start at each corner, the mask on their left."""
-    inside = np.pad(mask[::-1], 1)
-    core = inside[1:-1, 1:-1]
-    outgoing: dict[_Corner, list[_Corner]] = {}
-    for beyond, (x0, y0), (x1, y1) in (
-        (inside[:-2, 1:-1], (0, 0), (1, 0)),
-        (inside[1:-1, 2:], (1, 0), (1, 1)),
-        (inside[2:, 1:-1], (1, 1), (0, 1)),
-        (inside[1:-1, :-2], (0, 1), (0, 0)),
-    ):
-        for y, x in np.argwhere(core & ~beyond).tolist():
-            outgoing.setdefault((x + x0, y + y0), []).append((x + x1, y + y1))
-    return outgoing
 
 
 def rasterise_polygon(polygon: Polygon) -> tuple[Mask, int, int]:

@@ -360,19 +360,11 @@ class HighsAnalysis(IncrementalAnalysis):
         cls, model: RigidBlockModel, units: Units, program: EquilibriumProgram, starts: WarmBases
     ) -> "HighsAnalysis":
         model = model.forgetting()  # or every model would keep all those before it
-        if not program.block_ids:
-            return cls(model, IncrementalResult(lateral_resistance(model)), units, starts)
-        least, greatest, lower, upper = _both_extremes(program, starts)
-        bases = WarmBases(lower or starts.least, upper or starts.greatest)
-        result = _highs_result(model, program, least, greatest)
-        return cls(model, result, units, bases, (least, greatest))
+        result, bases, extremes = _solved_from(model, program, starts)
+        return cls(model, result, units, bases, extremes)
 
     def _result_with(self, model: RigidBlockModel) -> IncrementalResult:
-        program, starts = self.prepared(model)
-        if not program.block_ids:
-            return IncrementalResult(lateral_resistance(model))
-        least, greatest, _, _ = _both_extremes(program, starts)
-        return _highs_result(model, program, least, greatest)
+        return _solved_from(model, *self.prepared(model))[0]
 
     def _extended_to(self, model: RigidBlockModel) -> "HighsAnalysis":
         return self._of(model, self.units, *self.prepared(model))
@@ -409,17 +401,24 @@ def highs_bound(program: EquilibriumProgram, starts: WarmBases, sign: int) -> "B
     return Bound(extreme.alpha, certificate, fall, solution.solver)
 
 
-def _both_extremes(
-    program: EquilibriumProgram, starts: WarmBases
-) -> tuple[Extreme, Extreme, WarmBasis | None, WarmBasis | None]:
-    """Find the least and the greatest alpha, each from its basis, and the bases they ended with."""
+def _solved_from(
+    model: RigidBlockModel, program: EquilibriumProgram, starts: WarmBases
+) -> tuple[IncrementalResult, WarmBases, tuple[Extreme, Extreme] | None]:
+    """Solve both ends from their bases; return those they end with, and the least and greatest."""
+    if not program.block_ids:
+        return IncrementalResult(lateral_resistance(model)), starts, None
     session = WarmSession(program)
-    greatest = _warm_extreme(program, session, starts.greatest, 1)
-    upper = session.basis()
-    if greatest.status is LimitStatus.UNSTABLE:  # no alpha holds the blocks up
-        return greatest, greatest, upper, upper
-    least = _warm_extreme(program, session, starts.least, -1)
-    return least, greatest, session.basis(), upper
+    least = greatest = _warm_extreme(program, session, starts.greatest, 1)
+    lower = upper = session.basis()
+    if greatest.status is not LimitStatus.UNSTABLE:  # or no alpha holds the blocks up
+        least = _warm_extreme(program, session, starts.least, -1)
+        lower = session.basis()
+    bases = WarmBases(lower or starts.least, upper or starts.greatest)
+    both = resistance_between(program, least, greatest, model.mu)
+    result = IncrementalResult(both)
+    if both.failed:
+        result = IncrementalResult(lateral_resistance(model), solved_cold=True)
+    return result, bases, (least, greatest)
 
 
 def _warm_extreme(
@@ -440,15 +439,6 @@ def _warm_extreme(
         return extreme
     session.start_from(last)
     return certified_extreme(program, session, float(sign))
-
-
-def _highs_result(
-    model: RigidBlockModel, program: EquilibriumProgram, least: Extreme, greatest: Extreme
-) -> IncrementalResult:
-    both = resistance_between(program, least, greatest, model.mu)
-    if both.failed:
-        return IncrementalResult(lateral_resistance(model), solved_cold=True)
-    return IncrementalResult(both)
 
 
 def _by_interior_point(program: EquilibriumProgram, otherwise: WarmBases) -> WarmBases:

@@ -45,15 +45,14 @@ def weight(model: RigidBlockModel, angle_deg: float = 0.0) -> Floats:
     return np.column_stack((sin(angle) * weights, -cos(angle) * weights, np.zeros(len(weights))))
 
 
-def tilting_table(model: RigidBlockModel, angle_deg: float = 0.0) -> Loads:
-    """Weight, and alpha times every weight towards +x (§4.1); the base tilted already by an angle.
+def tilting_table(model: RigidBlockModel) -> Loads:
+    """Weight, and alpha times every weight towards +x (§4.1).
 
     On a table tilted by an angle the horizontal share of weight is its tangent, so the blocks
-    come down at atan(alpha_right).  With an angle, alpha is what they carry on top of it.
+    come down at atan(alpha_right).
     """
     live = weight(model)[:, [1, 0, 2]] * np.array([-1.0, 1.0, 1.0])
-    name = f"tilting table at {angle_deg:g} degrees" if angle_deg else "tilting table"
-    return Loads(weight(model, angle_deg), live, name)
+    return Loads(weight(model), live, "tilting table")
 
 
 def growing_with_height(model: RigidBlockModel) -> Loads:
@@ -94,13 +93,13 @@ def point_load(
     return forces
 
 
-def gravity_factor(model: RigidBlockModel, others: Floats) -> Loads:
-    """Other loads as dead load, and alpha times the weight.
+def gravity_factor(model: RigidBlockModel) -> Loads:
+    """Alpha times the weight; the dead loads are whatever else acts, nothing as yet.
 
     The least alpha is the share of its weight with which the wall still carries the other loads:
     1 / alpha is the safety against being too light.  The greatest one is mostly unbounded.
     """
-    return Loads(others, weight(model), "gravity factor")
+    return Loads(weight(model) * 0.0, weight(model), "gravity factor")
 
 
 def support_settlement(model: RigidBlockModel, block: int) -> tuple[RigidBlockModel, Loads]:
@@ -201,7 +200,7 @@ def load_case(case: LoadCase, model: RigidBlockModel) -> tuple[RigidBlockModel, 
     elif case.load == "height":
         loads = growing_with_height(model)
     elif case.load == "gravity":
-        loads = gravity_factor(model, weight(model) * 0.0)
+        loads = gravity_factor(model)
     elif case.load == "points":
         loads = _points(model, case)
     else:

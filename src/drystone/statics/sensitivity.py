@@ -1,6 +1,5 @@
 """How the load multiplier changes with friction, which nobody knows exactly."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -78,12 +77,10 @@ class AtFriction:
     alpha_right: float | None
 
 
-def friction_curve(
-    model: RigidBlockModel, loads: Loads | None = None, mus: Sequence[float] = USUAL
-) -> tuple[AtFriction, ...]:
-    """Analyse a wall at several coefficients of friction; interfaces with their own keep it."""
+def friction_curve(model: RigidBlockModel, loads: Loads | None = None) -> tuple[AtFriction, ...]:
+    """Analyse a wall at usual coefficients of friction; interfaces with their own keep it."""
     found = []
-    for mu in mus:
+    for mu in USUAL:
         both = lateral_resistance(replace(model, mu=mu), loads)
         found.append(AtFriction(mu, both.left.alpha, both.right.alpha))
     return tuple(found)

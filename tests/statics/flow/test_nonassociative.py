@@ -29,12 +29,10 @@ def block(width: float, height: float, mu: float):
     return model_from_json({"blocks_xywh": [[0, 0, width, height]], "mu": mu})
 
 
-@pytest.mark.parametrize(
-    ("width", "height", "mu"), [(1, 1, 0.3), (1, 2, 0.7), (1, 4, 0.65), (2, 1, 0.65)]
-)
+@pytest.mark.parametrize(("width", "height", "mu"), [(1, 4, 0.65), (2, 1, 0.65)])
 @pytest.mark.parametrize("direction", DIRECTIONS)
 def test_single_blocks_slide_or_rock(width, height, mu, direction):
-    result = nonassociative_load(block(width, height, mu), direction)
+    result = nonassociative_load(block(width, height, mu), direction, settings=FEW)
     assert result.success
     assert result.check.holds
     assert result.alpha == pytest.approx(min(mu, width / height), abs=1e-9)
@@ -49,7 +47,7 @@ def test_a_stack_rocks_where_its_lines_of_thrust_leave_it():
 
 @pytest.mark.parametrize(
     ("seed", "count", "mu"),
-    [(4, 2, 0.7), (7, 2, 0.7), (8, 2, 0.4), (13, 2, 0.7), (0, 3, 0.7), (3, 3, 0.7)],
+    [(7, 2, 0.7), (8, 2, 0.4), (3, 3, 0.7)],
 )
 @pytest.mark.parametrize("direction", DIRECTIONS)
 def test_the_least_of_all_sets_of_contact_states(seed, count, mu, direction):
@@ -68,8 +66,7 @@ def test_the_twin_knows_walls_below_their_associative_load():
     assert least < lateral_resistance(model).right.alpha - 0.05
 
 
-@pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize("mu", [0.58, 0.9])
+@pytest.mark.parametrize(("seed", "mu"), [(0, 0.58), (1, 0.9), (2, 0.58)])
 def test_irregular_walls_are_answered_with_a_check_that_holds(seed, mu):
     model = model_from_labels(irregular(seed, 12, 80, 60), mu).model
     associative = lateral_resistance(model)

@@ -31,11 +31,10 @@ def figures(found):
     return [*found.status], [array.tolist() for array in arrays]
 
 
-@pytest.mark.parametrize("pool", [ThreadPoolExecutor, ProcessPoolExecutor])
-def test_workers_do_not_change_the_result(pool):
+def test_workers_do_not_change_the_result():
     model = model_from_labels(coursed(3, 3, 60)).model
     expected = scatter(model, NOISY, seed=5)
-    with pool(2) as executor:
+    with ProcessPoolExecutor(2) as executor:
         assert figures(scatter(model, NOISY, seed=5, executor=executor)) == figures(expected)
     assert figures(scatter(model, NOISY, seed=6)) != figures(expected)
 
