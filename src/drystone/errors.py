@@ -5,6 +5,8 @@ import os
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import IntEnum
+from importlib import import_module
+from typing import Any
 
 
 class ExitCode(IntEnum):
@@ -127,6 +129,16 @@ def meant(word: str, known: Iterable[str], before: str = "") -> str:
     names = {(name if "." in word else name.rpartition(".")[2]).lower(): name for name in known}
     near = get_close_matches(word.lower(), names, 1)
     return f"Did you mean `{before}{names[near[0]]}`? " if near else ""
+
+
+def extra(package: str, does: str, where: str, name: str, title: str = "") -> Any:
+    """Return a package that is an extra, so it is loaded only when it is needed (E305)."""
+    try:
+        return import_module(package)
+    except ImportError as error:
+        what = f"{title or package} is not installed, and it {does}."
+        cure = f"Install it with `pip install drystone[{name}]`."
+        raise UsageError("E305", what, where=where, cure=cure) from error
 
 
 def not_written(error: OSError) -> PlanError:

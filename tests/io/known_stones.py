@@ -75,12 +75,18 @@ def placed(stone, width, height):
     return whole
 
 
+@functools.cache
+def true_stones(settings):
+    """The label image as it is read."""
+    return read_stones(label_image(), settings=settings)
+
+
 def compare(stones, settings=PIECES, ids=None):
     """Return the least IoU, the largest relative error of an area, and of a centroid in px.
 
     The picture may be cut to the box of the stones; then it is compared with the cut truth.
     """
-    truth = read_stones(label_image(), settings=settings)
+    truth = true_stones(settings)
     assert len(stones) == len(truth)
     ids = ids or {stone.id: stone.id for stone in truth}
     left = min(stone.left_px for stone in truth) - min(stone.left_px for stone in stones)

@@ -37,6 +37,11 @@ def codes(stones):
     return [notice.code for notice in stones.notices]
 
 
+def said(given):
+    """All that is said of stones or of a wall."""
+    return " ".join(map(str, given.notices))
+
+
 def areas(stones):
     return {stone.id: stone.area_px for stone in stones}
 

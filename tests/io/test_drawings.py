@@ -23,8 +23,7 @@ def saved(document, tmp_path, name="stones.dxf", **options):
     return tmp_path / name
 
 
-@pytest.mark.parametrize("version", ["R2000", "R2018"])
-@pytest.mark.parametrize("kind", ["asc", "bin"])
+@pytest.mark.parametrize(("version", "kind"), [("R2000", "bin"), ("R2018", "asc")])
 def test_dxf_versions_and_binary(tmp_path, version, kind):
     path = saved(drawn(version=version), tmp_path, "drawing", fmt=kind)
     stones = read_stones(path, settings=METRIC)
@@ -151,9 +150,9 @@ def test_dxf_splines_that_say_they_are_closed(tmp_path):
         curves(tmp_path, lambda space: fit(space, closed=False))
 
 
-@pytest.mark.parametrize("version", ["R12", "R2010"])
-@pytest.mark.parametrize("in_space", [False, True])
-@pytest.mark.parametrize("frame_first", [False, True])
+@pytest.mark.parametrize(
+    ("version", "in_space", "frame_first"), [("R12", False, True), ("R2010", True, False)]
+)
 def test_dxf_points_that_shape_a_polyline_are_not_drawn(tmp_path, version, in_space, frame_first):
     document = ezdxf.new(version)
     space = document.modelspace()

@@ -44,8 +44,7 @@ PICTURES = [
     *((255, lambda a, k=kind: pillow(a.astype(np.uint8), k, optimize=False))
       for kind in ("PNG", "TIFF", "BMP", "GIF")),
     *((65535, write) for write in (lambda a: pillow(a.astype(np.uint16), "PNG"), tiff)),
-    *((top, lambda a, o=options: tiff(a, **o)) for top in (70000, 2**32 - 1) for options in (
-        {}, {"compression": "zlib"}, {"predictor": 2, "compression": 8}, {"byteorder": ">"})),
+    *((top, tiff) for top in (70000, 2**32 - 1)),
 ]  # fmt: skip
 
 
@@ -130,7 +129,7 @@ def test_pose_in_the_source_frame():
 
 
 @pytest.mark.parametrize("kind", ["PNG", "BMP", "GIF", "TIFF"])
-@pytest.mark.parametrize("kept", [0.3, 0.6, 0.9])
+@pytest.mark.parametrize("kept", [0.3, 0.9])
 def test_truncated_files(tmp_path, kind, kept):
     rng = np.random.default_rng(0)
     data = pillow(rng.integers(0, 9, (60, 60)).astype(np.uint8), kind)

@@ -121,8 +121,7 @@ def test_mask_is_forced():
     assert read_stones(labels, settings=ReadSettings(mask=True)).total_area_px == 6 * 576
 
 
-@pytest.mark.parametrize("count", [3, 4, 30])
-@pytest.mark.parametrize("lossy", [False, True])
+@pytest.mark.parametrize(("count", "lossy"), [(3, False), (30, False), (4, True)])
 def test_ids_are_not_forced_into_a_mask(tmp_path, count, lossy):
     labels = many_stones(1, count, first=1, step=1)
     path = tmp_path / ("ids.jpg" if lossy else "ids.png")
@@ -139,8 +138,7 @@ def test_low_ids_beside_a_high_one_are_not_forced_into_the_background():
         read_stones(labels, settings=ReadSettings(mask=True))
 
 
-@pytest.mark.parametrize("quality", [10, 50, 75, 95])
-@pytest.mark.parametrize("value", [128, 200, 255])
+@pytest.mark.parametrize(("value", "quality"), [(128, 10), (200, 50), (255, 95)])
 def test_a_mask_of_any_grey_can_be_forced_in_a_lossy_file(tmp_path, value, quality):
     # Edges overshoot: the brightest pixel is brighter than the stones.
     labels = np.minimum(many_stones(3, 4), 1) * value

@@ -85,23 +85,18 @@ FILES = {
 
 
 @pytest.mark.parametrize("name", [*FILES, "masks.npz"])
-@pytest.mark.parametrize(
-    ("given", "cure"),
-    [
-        ({"background": 255}, r"Leave --background \(background in Python\) out"),
-        ({"mask": True}, r"Leave --mask \(mask in Python\) out"),
-        ({"mask": False}, r"Leave --no-mask \(mask in Python\) out"),
-    ],
-)
-def test_outlines_say_themselves_what_is_stone(tmp_path, name, given, cure):
+def test_outlines_say_themselves_what_is_stone(tmp_path, name):
     path = tmp_path / name
     if name in FILES:
         path.write_text(FILES[name])
     else:
         np.savez(path, a=np.eye(20) > 0, b=np.tri(20) > 0)
     plain = ReadSettings(pieces="keep-largest")
-    with pytest.raises(UsageError, match=rf"E118 {name}: this file says itself.*{cure}"):
-        read_stones(path, settings=replace(plain, **given))
+    for option, given in (("background", 255), ("mask", True), ("no-mask", False)):
+        key = option.removeprefix("no-")
+        cure = rf"Leave --{option} \({key} in Python\) out"
+        with pytest.raises(UsageError, match=rf"E118 {name}: this file says itself.*{cure}"):
+            read_stones(path, settings=replace(plain, **{key: given}))
     # What is left of the options is for both.
     also = replace(plain, holes="keep", min_area_px=1, skip=(99,))
     assert len(read_stones(path, settings=also)) >= 1

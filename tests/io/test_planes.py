@@ -9,6 +9,7 @@ import shapely
 import trimesh
 
 from drystone.errors import InputError, UsageError
+from drystone.io.outlines_in.dxf import read_dxf
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.known_stones import HEIGHT, METRIC, PX_PER_M, STONES, close
 
@@ -76,31 +77,30 @@ def drawn(place="top", kind="LWPOLYLINE", code=6, unit=1.0, version="R2010"):
     return document
 
 
-def dxf(tmp_path, *place, **options):
-    drawn(*place, **options).saveas(tmp_path / "s.dxf")
-    return tmp_path / "s.dxf"
+def dxf(tmp_path, place="top", kind="LWPOLYLINE", **options):
+    drawn(place, kind, **options).saveas(tmp_path / f"{kind}.dxf")
+    return tmp_path / f"{kind}.dxf"
 
 
-@pytest.mark.parametrize("kind", ["LWPOLYLINE", "POLYLINE"])
 @pytest.mark.parametrize("place", PLACES)
-def test_dxf_in_every_plane(tmp_path, place, kind):
-    path = dxf(tmp_path, place, kind)
-    stones = read_stones(path, settings=replace(METRIC, up=PLACES[place][2]))
+def test_dxf_in_every_plane(tmp_path, place):
+    """Where nobody asks for a side, it is the one that the outlines face."""
+    flat, lines = (dxf(tmp_path, place, kind) for kind in ("LWPOLYLINE", "POLYLINE"))
+    close(read_stones(flat, settings=replace(METRIC, up=PLACES[place][2])))
+    stones = read_stones(lines, settings=replace(METRIC, up=PLACES[place][2]))
     close(stones)
     assert "the drawing is seen along" in " ".join(notice.message for notice in stones.notices)
+    if place in FACING_ALONE:
+        stones = read_stones(flat, settings=METRIC)
+        close(stones)
+        said = [notice for notice in stones.notices if "is seen along" in notice.message]
+        assert bool(said) == (place != "top")
+        assert all("--up" in notice.cure for notice in said)
 
 
-@pytest.mark.parametrize("place", FACING_ALONE)
-def test_dxf_is_seen_from_the_side_that_it_faces(tmp_path, place):
-    stones = read_stones(dxf(tmp_path, place), settings=METRIC)
-    close(stones)
-    said = [notice for notice in stones.notices if "is seen along" in notice.message]
-    assert bool(said) == (place != "top")
-    assert all("--up" in notice.cure for notice in said)
-
-
-@pytest.mark.parametrize("in_block", [False, True])
-@pytest.mark.parametrize("place", FACING_ALONE)
+@pytest.mark.parametrize(
+    ("place", "in_block"), [(place, i % 2 == 0) for i, place in enumerate(FACING_ALONE)]
+)
 def test_dxf_of_all_kinds_in_a_plane(tmp_path, place, in_block):
     document = ezdxf.new("R2010", units=6)
     space = document.modelspace()
@@ -132,7 +132,7 @@ def test_dxf_of_all_kinds_in_a_plane(tmp_path, place, in_block):
 
 
 def test_dxf_plans_are_seen_from_the_top_though_mirrored_copies_face_down(tmp_path):
-    document = ezdxf.readfile(dxf(tmp_path, "top"))
+    document = ezdxf.readfile(dxf(tmp_path))
     for line in document.modelspace():
         line.dxf.extrusion = (0, 0, -1)
         if line.dxftype() == "LWPOLYLINE":
@@ -146,7 +146,7 @@ def test_dxf_plans_are_seen_from_the_top_though_mirrored_copies_face_down(tmp_pa
 
 
 def test_dxf_outlines_out_of_the_plane_are_named(tmp_path):
-    document = ezdxf.readfile(dxf(tmp_path, "top"))
+    document = ezdxf.readfile(dxf(tmp_path))
     space = document.modelspace()
     edge = space.add_polyline3d(
         [(2, 0, 0), (2.1, 0, 0), (2.1, 0.03, 0.095), (2, 0.03, 0.095)], close=True
@@ -163,34 +163,29 @@ def test_dxf_outlines_out_of_the_plane_are_named(tmp_path):
     assert len(stones) == len(STONES) + 1
 
 
-@pytest.mark.parametrize("code", UNITS_M)
-def test_dxf_units(tmp_path, code):
-    path = dxf(tmp_path, "top", code=code, unit=UNITS_M[code])
-    if UNITS_M[code] > 1e-9:  # of smaller ones coordinates are beyond 1e9
-        close(read_stones(path, settings=METRIC))
-        return
+def test_dxf_units(tmp_path):
+    for code, unit_m in UNITS_M.items():
+        path = dxf(tmp_path, code=code)
+        assert read_dxf(path.read_bytes(), ReadSettings()).unit_m == pytest.approx(unit_m)
+    close(read_stones(dxf(tmp_path, code=4, unit=1e-3), settings=METRIC))
     with pytest.raises(InputError, match=r"E114 .*is beyond 1e9"):
-        read_stones(dxf(tmp_path, "top", code=code, unit=1e-12), settings=METRIC)
+        read_stones(dxf(tmp_path, code=6, unit=1e-12), settings=METRIC)
+    for code in (-1, 25, 999):
+        with pytest.raises(InputError, match=r"E116 .*\$INSUNITS is .*--unit mm"):
+            read_stones(dxf(tmp_path, code=code))
 
 
-@pytest.mark.parametrize("unit", ["mm", "cm", "m", "in", "ft"])
-@pytest.mark.parametrize("code", [0, 2, 6, 19, 21])
-def test_dxf_with_a_wrong_unit(tmp_path, code, unit):
-    metres = {"mm": 1e-3, "cm": 1e-2, "m": 1, "in": 0.0254, "ft": 0.3048}[unit]
+@pytest.mark.parametrize(
+    ("code", "own", "unit", "metres"),
+    [(0, "", "mm", 1e-3), (2, "ft", "ft", 0.3048), (6, "m", "cm", 1e-2), (19, "ly", "in", 0.0254)],
+)
+def test_dxf_with_a_wrong_unit(tmp_path, code, own, unit, metres):
     path = dxf(tmp_path, "front", code=code, unit=metres)
     stones = read_stones(path, settings=replace(METRIC, unit=unit))
     close(stones)
-    own = {0: unit, 2: "ft", 6: "m"}.get(code)
     said = [notice.message for notice in stones.notices if "gives another unit" in notice.message]
-    assert [f"$INSUNITS {code}" in text and f"--unit {unit}" in text for text in said] == [True] * (
-        own != unit
-    )
-
-
-@pytest.mark.parametrize("code", [-1, 25, 999])
-def test_dxf_in_a_unit_that_there_is_not(tmp_path, code):
-    with pytest.raises(InputError, match=r"E116 .*\$INSUNITS is .*--unit mm"):
-        read_stones(dxf(tmp_path, "top", code=code))
+    assert len(said) == (own not in ("", unit))
+    assert all(f"$INSUNITS {code}" in text and f"--unit {unit}" in text for text in said)
 
 
 def solid(polygons, place, hand=1):
@@ -222,7 +217,9 @@ def scene(place, hand=1):
     return found
 
 
-@pytest.mark.parametrize("place", [place for place in PLACES if place != "slanting"])
+@pytest.mark.parametrize(
+    "place", ["top", "below", "front", "right", "y, top", "y, back", "y, left"]
+)
 def test_meshes_in_every_plane(tmp_path, place):
     path = scanned(tmp_path, scene(place))
     close(read_stones(path, settings=replace(METRIC, up=PLACES[place][2])))
@@ -234,12 +231,17 @@ def test_meshes_in_every_plane(tmp_path, place):
 
 
 @pytest.mark.parametrize(
-    ("place", "asks"),
-    [("top", False), ("front", True), ("right", False), ("y, top", True), ("y, front", False)],
+    ("place", "asks", "kind"),
+    [
+        ("top", False, "stl"),
+        ("front", True, "stl_ascii"),
+        ("right", False, "ply"),
+        ("y, top", True, "obj"),
+        ("y, front", False, "obj"),
+    ],
 )
-@pytest.mark.parametrize(("kind", "options"), KINDS)
-def test_meshes_that_may_be_mirrored_are_asked_about(tmp_path, place, asks, kind, options):
-    path = scanned(tmp_path, solid(STONES[5], place), kind, options)
+def test_meshes_that_may_be_mirrored_are_asked_about(tmp_path, place, asks, kind):
+    path = scanned(tmp_path, solid(STONES[5], place), kind)
     if not asks:
         notice = read_stones(path, settings=METRIC).notices[0]
         assert "seen along" in notice.message
@@ -281,14 +283,21 @@ def torn(mesh, way):
     return found
 
 
-@pytest.mark.parametrize("way", ["normals", "texture", "noise"])
-@pytest.mark.parametrize("shift", [0.0, 40.0])
-@pytest.mark.parametrize(("kind", "options"), KINDS)
-def test_corners_in_one_place_are_one(tmp_path, way, shift, kind, options):
+@pytest.mark.parametrize(
+    ("way", "shift", "kind"),
+    [
+        ("normals", 0.0, "obj"),
+        ("texture", 40.0, "obj"),
+        ("noise", 0.0, "stl"),
+        ("noise", 40.0, "ply"),
+        ("noise", 40.0, "stl_ascii"),
+    ],
+)
+def test_corners_in_one_place_are_one(tmp_path, way, shift, kind):
     names = [stone for stone in APART if stone != 34]
     whole = trimesh.util.concatenate([solid(STONES[stone], "top") for stone in names])
     whole.vertices += (shift, shift, 0)
-    path = scanned(tmp_path, torn(whole, way), kind, options)
+    path = scanned(tmp_path, torn(whole, way), kind)
     stones = read_stones(path, settings=METRIC)
     areas = [stone.area_px for stone in stones]
     want = [shapely.Polygon(STONES[stone][0][0], STONES[stone][0][1:]).area for stone in names]

@@ -12,24 +12,20 @@ from drystone.io.checks import _given
 from drystone.io.labels import Census
 from drystone.io.read_stones import ReadSettings, read_stones
 from drystone.io.walls import read_wall
-from tests.io.pictures import areas, codes, discs, many_stones, two_stones
+from tests.io.pictures import areas, codes, discs, many_stones, said, two_stones
 
 IDS = ReadSettings(mask=False)
-
-
-def said(given):
-    return " ".join(map(str, given.notices))
 
 
 # -- NaN, -1 and other grounds -----------------------------------------------------------------
 
 
-@pytest.mark.parametrize("dtype", ["f2", "f4", "f8", "i1", "i2", "i4", "i8"])
-@pytest.mark.parametrize("ground", [np.nan, -1])
+@pytest.mark.parametrize(
+    ("dtype", "ground"),
+    [("f2", np.nan), ("f8", np.nan), ("f4", -1), ("i1", -1), ("i4", -1), ("i8", -1)],
+)
 @pytest.mark.parametrize("background", [0, -1])
 def test_what_is_no_number_of_a_stone_is_ground(tmp_path, dtype, ground, background):
-    if np.isnan(ground) and dtype[0] != "f":
-        return
     labels = np.where(two_stones() == 0, ground, two_stones(7, 9, float)).astype(dtype)
     np.save(tmp_path / "a.npy", labels)
     stones = read_stones(tmp_path / "a.npy", settings=ReadSettings(background=background))
@@ -85,8 +81,7 @@ def netted(labels, width=3, value=255):
     return np.where((labels == 0) & near, value, labels)
 
 
-@pytest.mark.parametrize("value", [2, 255, 65535, 2**32 - 1])
-@pytest.mark.parametrize("gap", [3, 8])
+@pytest.mark.parametrize(("value", "gap"), [(2, 8), (255, 3), (65535, 8), (2**32 - 1, 3)])
 def test_a_net_of_edges_is_no_stone(tmp_path, value, gap):
     labels = np.pad(many_stones(4, 5, first=10, gap=gap), 4)
     np.save(tmp_path / "a.npy", netted(labels, value=value))
@@ -159,8 +154,7 @@ def blended(share, first=20, step=4, seed=1):
     return labels, np.where(chosen, (labels * rng.random(labels.shape)).astype(int) | 1, labels)
 
 
-@pytest.mark.parametrize("step", [1, 4])
-@pytest.mark.parametrize("share", [0.01, 0.03])
+@pytest.mark.parametrize(("step", "share"), [(1, 0.03), (4, 0.01)])
 def test_few_blended_pixels_are_given_to_what_they_touch_most(tmp_path, step, share):
     labels, values = blended(share, first=4, step=step)
     stones = read_stones(values)

@@ -1,6 +1,6 @@
 """Pieces that become stones have numbers that do not depend on what is skipped."""
 
-from itertools import chain, combinations
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -25,14 +25,15 @@ def in_pieces():
 
 
 ALL = {1: 400, 2: 324, 3: 256, 4: 225, 5: 144, 6: 121}
-SETS = list(chain.from_iterable(combinations(ALL, n) for n in range(len(ALL))))
 
 
 def split(labels, skip, **more):
     return read_stones(labels, settings=ReadSettings(pieces="split", skip=tuple(skip), **more))
 
 
-@pytest.mark.parametrize("skip", SETS)
+@pytest.mark.parametrize(
+    "skip", [(), *combinations(ALL, 1), (1, 4), (2, 6), (1, 3, 5), (1, 2, 3, 4, 6)]
+)
 def test_each_is_left_out_under_the_number_that_was_announced(skip):
     stones = split(in_pieces(), skip)
     assert areas(stones) == {i: area for i, area in ALL.items() if i not in skip}

@@ -1,7 +1,9 @@
 """A wall is read from all that stones are read from, as blocks where the file has outlines."""
 
+import ezdxf
 import numpy as np
 import pytest
+from ezdxf import units
 from PIL import Image
 
 from drystone.contacts.given import model_from_json
@@ -89,9 +91,33 @@ def test_what_reaches_beyond_its_image_is_whole_and_may_not_fill_the_memory(tmp_
     wall = read_wall(reaching(12.0))
     assert wall.outlines[9][:, 0].min() == 0.0
     assert not any("cut off" in notice.message for notice in wall.notices)
-    with pytest.raises(DrystoneError) as caught:
+    with pytest.raises(DrystoneError, match="E110"):
         read_wall(reaching(4.5e6))
-    assert caught.value.code == "E110"
+
+
+def test_a_wall_in_units_that_dwarf_its_stones_is_that_in_px(tmp_path):
+    """Corners of a stone in astronomical units are nearer to each other than 1e-9."""
+    small = {i: np.array(line) / 149_597_870_700_000 for i, line in BLOCKS.items()}
+    found = []
+    for blocks, unit in ((BLOCKS, units.MM), (small, 18)):
+        document = ezdxf.new(units=unit)
+        for line in blocks.values():
+            document.modelspace().add_lwpolyline(line, close=True)
+        document.saveas(tmp_path / "wall.dxf")
+        found.append(read_wall(tmp_path / "wall.dxf").outlines)
+    for one, other in zip(*(wall.values() for wall in found), strict=True):
+        np.testing.assert_allclose(one, other, atol=1e-6)
+
+
+@pytest.mark.parametrize("thickness", [1e-10, 1e-13])
+def test_a_line_that_fills_pixels_is_known_by_them(tmp_path, thickness):
+    low, high = 10.5, 10.5 + thickness
+    line = [(1.0, low), (30.0, low), (30.0, high), (1.0, high)]
+    path = drawn("labelme", tmp_path, {**BLOCKS, 9: line})
+    assert read_stones(path).by_id(9).drawn is None
+    wall = read_wall(path)
+    assert wall.outlines is None
+    assert (wall.labels == 9).sum() == 29
 
 
 def image():

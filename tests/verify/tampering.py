@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from drystone.model.plan import WedgeStep
-from tests.verify.examples import SLAB, WEDGE
+from tests.verify.examples import WEDGE
 
 
 def codes(report):
@@ -41,12 +41,6 @@ def without(plan, piece):
     """One step less."""
     steps = [s for s in plan.steps if s is not step_of(plan, piece)]
     return replace(plan, steps=tuple(replace(s, step=n) for n, s in enumerate(steps, 1)))
-
-
-def with_index(plan, name, by):
-    """Another index of the slab."""
-    step = step_of(plan, SLAB)
-    return changed(plan, SLAB, indices={**step.indices, name: step.indices[name] + by})
 
 
 def with_setting(plan, group, **values):

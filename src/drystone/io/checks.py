@@ -189,7 +189,7 @@ def _check_no_values_of_edges(image: IdImage) -> None:
     few = 0.1 * np.count_nonzero(~census.solid & image.stones)
     if 2 * thin.sum() <= plain.sum() or census.counts[thin].sum() <= few:
         return
-    if blended(census, census.pixels(thin)).mean() >= _BLENDED_SHARE:
+    if blended(census, census.of(thin)).mean() >= _BLENDED_SHARE:
         raise LabelImageError(
             "E101",
             f"the ids were blended at the edges of stones: {len(census.values)} values, "
@@ -298,7 +298,7 @@ def _net(census: Census, background: int) -> int | None:
     for net in np.flatnonzero(narrow & around & ~ground & (areas > 0)).tolist():
         stones = ~ground
         stones[net] = False
-        found, _ = ndimage.label(census.pixels(stones))
+        found, _ = ndimage.label(census.of(stones))
         count = int((np.bincount(found.ravel())[1:] >= RARE_PX).sum())
         if count >= (1 if int(census.values[net]) in _VOID else 3):
             return int(net)
@@ -346,8 +346,8 @@ def _stray(
     core = np.zeros(len(census.values) + 1, bool)
     core[census.index[census.solid]] = True
     ground = census.values == background
-    thin, stones = ~core[1:] & ~ground, ~census.pixels(ground)
-    lone = census.pixels(thin) | (astray_px(census) & stones)
+    thin, stones = ~core[1:] & ~ground, ~census.of(ground)
+    lone = census.of(thin) | (astray_px(census) & stones)
     if not core.any() or not lone.any():
         return None
     runs = label_runs(census.index)

@@ -5,10 +5,8 @@ import os
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from importlib import import_module
-from typing import Any
 
-from drystone.errors import DrystoneError, InputError, UsageError
+from drystone.errors import DrystoneError, InputError
 
 _LONGEST = 200
 
@@ -38,16 +36,6 @@ def foreign(failed: Callable[[str], DrystoneError]) -> Iterator[None]:
     except Exception as error:
         reason = " ".join(str(error).split())[:_LONGEST] or type(error).__name__
         raise failed(reason) from error
-
-
-def extra(package: str, does: str, where: str, name: str) -> Any:
-    """Return a package that is an extra, so it is loaded only when it is needed (E305)."""
-    try:
-        return import_module(package)
-    except ImportError as error:
-        what = f"{package} is not installed, and it {does}."
-        cure = f"Install it with `pip install drystone[{name}]`."
-        raise UsageError("E305", what, where=where, cure=cure) from error
 
 
 @contextmanager

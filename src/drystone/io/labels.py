@@ -55,10 +55,6 @@ class Census:
             solid[top:bottom, 1:-1] = same[:-2] & same[1:-1] & same[2:] & down[:-1] & down[1:]
         return solid
 
-    def pixels(self, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Return the (h, w) mask of the pixels whose value is chosen; `chosen` is (n,) bool."""
-        return self.of(chosen)
-
     def of(self, told: NDArray[Any], out: NDArray[Any] | None = None) -> NDArray[Any]:
         """Return pixel by pixel, (h, w), what is told of each value; `told` is (n,)."""
         return looked_up(np.concatenate((told[:1], told)), self.index, out)
@@ -89,7 +85,7 @@ class IdImage:
     @property
     def stones(self) -> NDArray[np.bool_]:
         """True where the id is not that of the background, (h, w)."""
-        return self.census.pixels(self.census.values != self.background)
+        return self.census.of(self.census.values != self.background)
 
 
 def to_ids(picture: Picture, background: int) -> IdImage:

@@ -61,8 +61,7 @@ def find_mask(image: IdImage, wanted: bool | None, *, lossy: bool = False) -> Bi
         share = np.abs(grey.values - binary.background) / abs(binary.stone - binary.background)
         off = share > (_NOISE if lossy else 0.0)
         plain, between = (
-            np.count_nonzero(grey.pixels(some) & grey.solid)
-            for some in (off, off & (2 * share < 1))
+            np.count_nonzero(grey.of(some) & grey.solid) for some in (off, off & (2 * share < 1))
         )
         if between > _LOST * plain:
             raise unfit(
@@ -90,7 +89,7 @@ def _split(census: Census, background: int) -> BinaryMask:
         low, high = high, low
     stone = 2 * np.abs(census.values - low) >= abs(high - low)
     ends = census.counts[0] + census.counts[-1]
-    return BinaryMask(census.pixels(stone), low, high, int(census.index.size - ends))
+    return BinaryMask(census.of(stone), low, high, int(census.index.size - ends))
 
 
 def _is_one_id(binary: BinaryMask) -> bool:
@@ -111,7 +110,7 @@ def _is_antialiased(census: Census, background: int) -> bool:
     most = set(np.argsort(census.counts)[-2:].tolist())
     if most != {0, len(ends) - 1} or background not in census.values[ends]:
         return False
-    between: NDArray[Any] = census.pixels(~ends)
+    between: NDArray[Any] = census.of(~ends)
     at_edge = blended(census, between)
     plain = census.solid[between]
     return bool(at_edge.mean() >= 0.8 and at_edge[plain].all())

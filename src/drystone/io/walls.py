@@ -21,7 +21,7 @@ from drystone.io.json_text import json_of
 from drystone.io.outlines_in.fill import filled_area
 from drystone.io.outlines_in.model import Area, OutlineFile
 from drystone.io.outlines_in.npz import is_npz
-from drystone.io.outlines_in.silhouettes import outer_edge
+from drystone.io.outlines_in.silhouettes import outer_edge, tidy_edge
 from drystone.io.photo_beside import read_sidecar, scale_beside
 from drystone.io.pictures import check_size
 from drystone.io.plan_folder import BLOCKS
@@ -393,7 +393,8 @@ def wall_outlines(file: OutlineFile, stones: StoneSet) -> dict[int, Points] | No
     scale = 1.0 if file.unit_m is None else file.unit_m * (stones.source.px_per_m or 1.0)
     sign = 1.0 if file.y_up else -1.0
     try:
-        edges = {i: outer_edge(known[i].rings) for i in ids}
+        # A px is the measure of what is near, whatever the unit of the file.
+        edges = {i: outer_edge(known[i].rings, near=1e-9 / scale) for i in ids}
     except ValueError:  # crossings without end
         return None
     found = {i: edge * (scale, sign * scale) for i, edge in edges.items() if edge is not None}
@@ -406,14 +407,9 @@ def wall_outlines(file: OutlineFile, stones: StoneSet) -> dict[int, Points] | No
     left = corners[:, 0].min()
     left = left if file.unit_m or file.y_up else min(0.0, np.floor(left))
     origin = np.array([left, corners[:, 1].min()])
-    # Counter-clockwise, without corners twice in a row.
-    shapes = {i: shapely.Polygon(outline - origin) for i, outline in found.items()}
-    return {
-        i: shapely.get_coordinates(
-            shapely.orient_polygons(shapely.remove_repeated_points(shape, 1e-9)).exterior
-        )
-        for i, shape in shapes.items()
-    }
+    tidy = {i: tidy_edge(shapely.Polygon(outline - origin)) for i, outline in found.items()}
+    outlines = {i: outline for i, outline in tidy.items() if outline is not None}
+    return outlines if len(outlines) == len(found) else None
 
 
 def outlines_painted(outlines: Mapping[int, Points]) -> Labels:

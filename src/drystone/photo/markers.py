@@ -7,13 +7,12 @@ it.  Edges are not moved by blur.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib import import_module
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.errors import UsageError
+from drystone.errors import UsageError, extra
 
 Points = NDArray[np.float64]
 
@@ -39,36 +38,26 @@ FEW_SQUARES = 6
 """Squares along the edge of a marker, its black border too, of which a chance find is likely."""
 
 
-DICTIONARIES = {"aruco": "DICT_4X4_50", "apriltag": "DICT_APRILTAG_36h11"}
-"""Name of a family that is printed, here and in OpenCV."""
+DICTIONARIES = ("aruco", "apriltag")
+"""Families that are printed; they come first."""
 
-OTHERS = {
-    "aruco5x5": "DICT_5X5_1000",
-    "aruco6x6": "DICT_6X6_1000",
-    "aruco7x7": "DICT_7X7_1000",
-    "original": "DICT_ARUCO_ORIGINAL",
-    "mip36h12": "DICT_ARUCO_MIP_36h12",
-    "apriltag25h9": "DICT_APRILTAG_25h9",
-    "apriltag36h10": "DICT_APRILTAG_36h10",
-    "aruco4x4": "DICT_4X4_1000",
-    "apriltag16h5": "DICT_APRILTAG_16h5",
+_FAMILIES = {
+    "aruco": ("ArUco 4x4_50", "DICT_4X4_50"),
+    "apriltag": ("AprilTag 36h11", "DICT_APRILTAG_36h11"),
+    "aruco5x5": ("ArUco 5x5", "DICT_5X5_1000"),
+    "aruco6x6": ("ArUco 6x6", "DICT_6X6_1000"),
+    "aruco7x7": ("ArUco 7x7", "DICT_7X7_1000"),
+    "original": ("ArUco Original", "DICT_ARUCO_ORIGINAL"),
+    "mip36h12": ("ArUco MIP 36h12", "DICT_ARUCO_MIP_36h12"),
+    "apriltag25h9": ("AprilTag 25h9", "DICT_APRILTAG_25h9"),
+    "apriltag36h10": ("AprilTag 36h10", "DICT_APRILTAG_36h10"),
+    "aruco4x4": ("ArUco 4x4", "DICT_4X4_1000"),
+    "apriltag16h5": ("AprilTag 16h5", "DICT_APRILTAG_16h5"),
 }
-"""Families that are read where there is none of the printed ones; the smaller dictionaries of
-OpenCV are the first ids of these."""
+"""Names of families for people, and in OpenCV; the smaller dictionaries of OpenCV are the first ids
+of these."""
 
-FAMILIES = {
-    "aruco": "ArUco 4x4_50",
-    "apriltag": "AprilTag 36h11",
-    "aruco5x5": "ArUco 5x5",
-    "aruco6x6": "ArUco 6x6",
-    "aruco7x7": "ArUco 7x7",
-    "original": "ArUco Original",
-    "mip36h12": "ArUco MIP 36h12",
-    "apriltag25h9": "AprilTag 25h9",
-    "apriltag36h10": "AprilTag 36h10",
-    "aruco4x4": "ArUco 4x4",
-    "apriltag16h5": "AprilTag 16h5",
-}
+FAMILIES = {name: title for name, (title, _) in _FAMILIES.items()}
 """Name of a family for people."""
 
 
@@ -83,7 +72,7 @@ class FoundMarker:
 
     id: int
     corners_px: NDArray[np.float64]
-    dictionary: str  # its family, a key of `dictionaries.FAMILIES`
+    dictionary: str  # its family, a key of `FAMILIES`
 
     @property
     def side_px(self) -> float:
@@ -106,8 +95,9 @@ def find_markers(image: NDArray[np.uint8]) -> tuple[FoundMarker, ...]:
     best = max((_find(grey, name) for name in reversed(DICTIONARIES)), key=len)
     if len(best) > 1:
         return best
-    counts = {name: len(_quads(grey, name, SEARCHES[:1])) for name in OTHERS}
-    most = max(counts, key=lambda name: counts[name])
+    others = [name for name in FAMILIES if name not in DICTIONARIES]
+    counts = {name: len(_quads(grey, name, SEARCHES[:1])) for name in others}
+    most = max(others, key=lambda name: counts[name])
     # Among quadrangles of stones one in twenty reads as a pattern of so few squares.
     least = 1 if modules_across(most) > FEW_SQUARES else 2
     return best if counts[most] < max(least, len(best) + 1) else _find(grey, most)
@@ -247,26 +237,17 @@ def _meeting(one: tuple[Points, Points], other: tuple[Points, Points]) -> Points
 
 
 def load_cv2() -> Any:
-    """Return OpenCV; it is an extra, so it is loaded only when it is needed (E305 without it)."""
-    try:
-        return import_module("cv2")
-    except ImportError as error:
-        raise UsageError(
-            "E305",
-            "OpenCV (cv2) is not installed, and it knows the markers and turns pictures.",
-            where="photo",
-            cure="Install it with `pip install drystone[photo]`.",
-        ) from error
+    """Return OpenCV (E305 without it)."""
+    return extra("cv2", "knows the markers and turns pictures", "photo", "photo", "OpenCV (cv2)")
 
 
 def opencv_dictionary(name: str) -> Any:
     """Return OpenCV's dictionary of a family; E174 for a name that is none."""
-    known = DICTIONARIES | OTHERS
-    if name not in known:
+    if name not in _FAMILIES:
         what, cure = f"{name!r} is not a family of markers.", f"Known: {', '.join(DICTIONARIES)}."
         raise UsageError("E174", what, where="--dictionary", cure=cure)
     aruco = load_cv2().aruco
-    return aruco.getPredefinedDictionary(getattr(aruco, known[name]))
+    return aruco.getPredefinedDictionary(getattr(aruco, _FAMILIES[name][1]))
 
 
 def modules_across(name: str) -> int:

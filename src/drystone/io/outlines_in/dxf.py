@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.interpolate import BSpline, CubicSpline
 
-from drystone.errors import InputError, Notice
+from drystone.errors import InputError, Notice, extra
 from drystone.io.file_errors import damaged, listed, too_large, unusable
-from drystone.io.foreign import extra, foreign
+from drystone.io.foreign import foreign
 from drystone.io.outlines_in.classes import layer
 from drystone.io.outlines_in.model import (
     METRES,

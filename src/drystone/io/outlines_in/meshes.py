@@ -13,9 +13,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
-from drystone.errors import InputError, Notice
+from drystone.errors import InputError, Notice, extra
 from drystone.io.file_errors import damaged, listed, short, unusable
-from drystone.io.foreign import extra, foreign
+from drystone.io.foreign import foreign
 from drystone.io.outlines_in.model import (
     METRES,
     OutlinedStone,

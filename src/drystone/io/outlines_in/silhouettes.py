@@ -94,19 +94,32 @@ def shadow(polygons: Sequence[Points]) -> tuple[Area, ...]:
     return areas_of(shapely.union_all(_valid(shapes[shapely.area(shapes) > 0.0])))
 
 
-def outer_edge(rings: Sequence[Points], within: Any = None) -> Points | None:
+def outer_edge(rings: Sequence[Points], within: Any = None, near: float = 1e-9) -> Points | None:
     """Return the edge, (n, 2), counter-clockwise and not closed, of what rings enclose.
 
-    Holes are filled, and of pieces the largest counts; None without an area.  ValueError for too
-    many crossings.
+    Holes are filled, and of pieces the largest counts; None without an area, or where no three
+    corners are farther apart than `near`.  ValueError for too many crossings.
     """
     filled = shapely.union_all([shapely.Polygon(part.rings[0]) for part in shadow(rings)])
     parts = [area.rings[0] for area in areas_of(filled if within is None else filled & within)]
     if not parts:
         return None
     largest = max(map(shapely.Polygon, parts), key=shapely.area)
-    shape = shapely.orient_polygons(shapely.remove_repeated_points(largest, 1e-9))
-    return np.asarray(shapely.get_coordinates(shape.exterior)[:-1])
+    edge = tidy_edge(largest, near)
+    return None if edge is None else edge[:-1]
+
+
+def tidy_edge(shape: shapely.Polygon, near: float = 1e-9) -> Points | None:
+    """Return the outer edge of a shape, closed, counter-clockwise, no corner twice in a row.
+
+    None where no three corners are farther apart than `near`.
+    """
+    try:
+        tidy = shapely.orient_polygons(shapely.remove_repeated_points(shape, near))
+    except shapely.GEOSException:
+        return None
+    edge = shapely.get_coordinates(tidy.exterior)
+    return np.asarray(edge) if len(edge) > 3 else None
 
 
 def _valid(shapes: NDArray[Any]) -> NDArray[Any]:
