@@ -48,7 +48,7 @@ def test_a_store_has_a_history(run: Run, tmp_path: Path) -> None:
     assert "E138" in run("bench", "--history").err
     assert "no runs" in run("bench", "--history", "--store", store).err
     assert run(*BRICKS, "--store", store).code == 0
-    assert {path.name for path in store.iterdir()} >= {"bench.sqlite", "runs.csv", "runs"}
+    assert {path.name for path in store.iterdir()} >= {"runs.csv", "runs"}
     ran = run("bench", "--history", "--store", store, "--json", "-o", tmp_path / "pictures")
     (rows,) = ran.json().values()
     assert [(row["suite"], row["method"], row["runs"]) for row in rows] == [
