@@ -61,31 +61,6 @@ def test_a_store_has_a_history(run: Run, tmp_path: Path) -> None:
     assert "no runs of 'masons'" in run("bench", "masons", "--history", "--store", store).err
 
 
-@pytest.mark.parametrize(
-    ("options", "named"),
-    [
-        (("statics", "--policy", "random"), "--policy"),
-        (("statics", "--store", "x"), "--store"),
-        (("engine", "--jobs", "2"), "--jobs"),
-        (("walls", "--shake"), "--shake"),
-        (("bricks", "--seconds", "2"), "--seconds"),
-        (("bricks", "--again"), "--again"),
-        (("bricks", "-o", "x"), "-o"),
-        (("bricks", "--suite", "masons"), "two suites"),
-        (("bricks", "--only", "R"), "--only"),
-        (("statics", "--history", "--store", "x"), "no suite 'statics'"),
-        (("--history", "--store", "x", "--policy", "paper"), "--policy"),
-        (("--history", "--store", "x", "--only", "R"), "--only"),
-        (("bricks", "--jobs", "2", "--dask", "tcp://localhost:1"), "--dask"),
-    ],
-)
-def test_options_that_make_no_sense(options: tuple[str, ...], named: str, run: Run) -> None:
-    ran = run("bench", *options)
-    assert ran.code == 2
-    assert "E138" in ran.err
-    assert named in ran.err
-
-
 @pytest.mark.parametrize("suite", ["masons", "walls"])
 def test_other_stones_in_the_place_of_the_masons(suite: str, run: Run, tmp_path: Path) -> None:
     data, store = tmp_path / "data", tmp_path / "store"

@@ -74,16 +74,6 @@ def history(folder: Path) -> list[dict[str, Any]]:
     return history_table(medians_of(kept_runs(folder))).records()
 
 
-def test_it_packs_real_strips() -> None:
-    pytest.importorskip("spyrrow", reason="the extra `bench`")
-    spec = method_named("spyrrow").run(WALL, 0)
-    quick = type(spec)(**{**vars(spec), "changes": (("seconds", 1),)})
-    filled = execute(quick, None).figures["F_SF"]
-    assert filled is not None
-    # 30 bricks of 20 x 10 px leave .15 of the wall; a packer finds the rows of them.
-    assert 0.8 < filled <= WALL.source.stones(None).total_area_px / (WALL.width * WALL.height)
-
-
 def test_what_is_missing_is_said_before_anything_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
     def absent(name: str) -> None:
         raise ImportError(name)
