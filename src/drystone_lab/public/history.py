@@ -3,10 +3,10 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from statistics import median
 
 from matplotlib.figure import Figure
 
+from drystone_lab.paired import median_of
 from drystone_lab.pictures.charts import history_panels
 from drystone_lab.public.store import PLACED, SHAKE, KeptRun
 from drystone_lab.table import BENCH, Cell, Table, worded
@@ -36,7 +36,7 @@ def medians_of(runs: Sequence[KeptRun]) -> tuple[Medians, ...]:
         Medians(
             *key,
             tuple(sorted((run.wall, run.seed) for run in group)),
-            {name: _median([run.figure(of) for run in group]) for name, of in FIGURES.items()},
+            {name: median_of([run.figure(of) for run in group]) for name, of in FIGURES.items()},
         )
         for key, group in groups.items()
     ]
@@ -112,8 +112,3 @@ def version_order(version: str) -> tuple[tuple[int, int, str], ...]:
 
 _LETTERS = {"post": 2}
 """A post-release comes after its release; every other word before it."""
-
-
-def _median(values: Sequence[Value]) -> Value:
-    found = [value for value in values if value is not None]
-    return median(found) if found else None

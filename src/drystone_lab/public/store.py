@@ -1,10 +1,10 @@
 """Runs of the public benchmark, one type for a run, and the table that keeps them by version."""
 
-import csv
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import astuple, dataclass, fields
 from pathlib import Path
+from typing import Any
 
 from drystone.errors import InputError
 from drystone.io.folder_lock import locked
@@ -12,7 +12,7 @@ from drystone.whole_files import write_whole
 from drystone_lab.public.suites import SUITE_VERSION
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.spec import STRIPS, Changes
-from drystone_lab.table import Table
+from drystone_lab.table import Table, read_rows
 from drystone_lab.walls import Target
 
 CSV = "runs.csv"
@@ -95,21 +95,16 @@ COLUMNS = tuple(field.name for field in fields(KeptRun))
 def kept_runs(folder: Path) -> tuple[KeptRun, ...]:
     """Return the runs of a store, none where there is none; E401 for another table."""
     path = folder / CSV
-    if not path.is_file():
-        return ()
-    with path.open(newline="", encoding="utf-8") as file:
-        rows = csv.DictReader(file)
-        try:
-            if tuple(rows.fieldnames or ()) != COLUMNS:
-                raise ValueError(COLUMNS)
-            return tuple(_read(row) for row in rows)
-        except (TypeError, ValueError, csv.Error) as error:
-            raise InputError(
-                "E401",
-                "this is not a table of runs that can be used.",
-                where=f"{path}:{rows.line_num}",
-                cure="Move it away; runs whose plans are kept beside it are not done again.",
-            ) from error
+    return tuple(read_rows(path, COLUMNS, _read, _refused)) if path.is_file() else ()
+
+
+def _refused(where: str) -> InputError:
+    return InputError(
+        "E401",
+        "this is not a table of runs that can be used.",
+        where=where,
+        cure="Move it away; runs whose plans are kept beside it are not done again.",
+    )
 
 
 def keep(folder: Path, runs: Iterable[KeptRun]) -> None:
@@ -122,17 +117,16 @@ def keep(folder: Path, runs: Iterable[KeptRun]) -> None:
         write_whole(folder / CSV, table.csv().encode())
 
 
-def _order(run: KeptRun) -> Sequence[object]:
+def _order(run: KeptRun) -> tuple[Any, ...]:
     return run.suite, run.suite_version, run.wall, run.method, run.settings, run.seed, run.version
 
 
 def _read(row: dict[str, str]) -> KeptRun:
-    if None in row.values():
-        raise ValueError(row)  # fewer cells than columns
-    kinds = {int: int, str: str, float: float}
-    values = {}
+    values: dict[str, Any] = {}
     for field in fields(KeptRun):
-        kind = kinds.get(field.type)  # type: ignore[call-overload]
-        text = row[field.name]
-        values[field.name] = kind(text) if kind else float(text) if text else None
+        text, kind = row[field.name], field.type
+        if isinstance(kind, type):
+            values[field.name] = kind(text)
+        else:
+            values[field.name] = float(text) if text else None
     return KeptRun(**values)

@@ -1,27 +1,21 @@
 """What methods came to on walls, and the tables that compare them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations, compress, groupby
 from math import fsum, sqrt
 from statistics import fmean, stdev
-from types import MappingProxyType
 
 import numpy as np
 from scipy.stats import rankdata, wilcoxon
 
-from drystone_lab.paired import COVERED, interval_of
+from drystone_lab.paired import COVERED, LOWER_IS_BETTER, interval_of
 from drystone_lab.public.store import NOT_SHAKEN, PLACED, SHAKE, KeptRun
 from drystone_lab.table import BENCH, Cell, Table, worded
 
-HIGHER_IS_BETTER: Mapping[str, bool] = MappingProxyType(
-    {PLACED: True, "F_SF": True, "F_AV": True, "F_AH": False, "F_LR": True, SHAKE: True}
-)
-"""The figures that are compared: share of the stones that is placed, the paper's four, and the
-amplitude that a wall stands on a shaking table, in g, where it was shaken."""
-
-FIGURES = tuple(name for name in HIGHER_IS_BETTER if name != SHAKE)
-"""Of walls that were not shaken."""
+FIGURES = (PLACED, "F_SF", "F_AV", "F_AH", "F_LR")
+"""The figures that are compared: share of the stones that is placed, and the paper's four; where
+walls were shaken the amplitude that they stand on a shaking table too."""
 
 DECIMALS = 9
 """Values that agree so far are equal: they differ by rounding errors of sums."""
@@ -76,7 +70,7 @@ class BenchResults:
 
 def _comparable(result: KeptRun) -> tuple[float | None, ...]:
     """Return the figures without the rounding errors of sums."""
-    figures = (result.figure(name) for name in HIGHER_IS_BETTER)
+    figures = (result.figure(name) for name in (*FIGURES, SHAKE))
     return tuple(None if value is None else round(value, DECIMALS) for value in figures)
 
 
@@ -127,7 +121,7 @@ def _cells(figures: Sequence[str], walls: Sequence[Sequence[KeptRun]]) -> tuple[
         cells += [
             _mean([fmean(values) for values in found]),
             _rounded(sqrt(fsum(s * s for s in spreads) / len(spreads))) if spreads else None,
-            _mean([(max if HIGHER_IS_BETTER[figure] else min)(values) for values in found]),
+            _mean([(min if figure in LOWER_IS_BETTER else max)(values) for values in found]),
         ]
     return tuple(cells)
 
@@ -259,7 +253,7 @@ def _compared(
     results: BenchResults, figure: str, pair: tuple[str, str], counting: Sequence[bool]
 ) -> MethodPair | None:
     first, second = (list(compress(results.values(name, figure), counting)) for name in pair)
-    return compared(first, second, higher=HIGHER_IS_BETTER[figure])
+    return compared(first, second, higher=figure not in LOWER_IS_BETTER)
 
 
 def _pairs_table(
@@ -313,7 +307,7 @@ def _ranking(
 
 
 def _mean_ranks(results: BenchResults, figure: str) -> dict[str, float]:
-    sign = -1.0 if HIGHER_IS_BETTER[figure] else 1.0
+    sign = 1.0 if figure in LOWER_IS_BETTER else -1.0
     columns = [results.values(method, figure) for method in results.methods]
     ranks = [
         rankdata([np.inf if value is None else sign * round(value, DECIMALS) for value in row])
@@ -345,8 +339,8 @@ def _shown(key: PairKey, pair: MethodPair, p: float) -> str:
 
 
 def _better(key: PairKey, pair: MethodPair) -> str:
-    first_is_higher = pair.mean > 0
-    return key[1] if first_is_higher == HIGHER_IS_BETTER[key[0]] else key[2]
+    lower_is_better = key[0] in LOWER_IS_BETTER
+    return key[2] if (pair.mean > 0) == lower_is_better else key[1]
 
 
 def _signed_rank(differences: np.ndarray) -> float:
