@@ -50,6 +50,8 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     ]
     results = searched(walls, seeds, times, settings)
     tables = []
+    with_settings = [f"With {told(settings.changes)}."] if settings.changes else []
+    notes = (*with_settings, *missing_data(settings))
     for seconds in times:
         compared = [
             (target.name, len(stones), _by_way(target.name, seeds, seconds, settings, results))
@@ -57,8 +59,10 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
         ]
         medians = [row for one in compared for row in _rows(*one)]
         differences = [row for name, _, found in compared for row in _differences(name, found)]
-        tables.append(_medians(medians, seconds, len(seeds), settings))
-        tables.append(_paired(differences, seconds))
+        of = BENCH["search"]
+        tables.append(worded(of["medians"], medians, more=notes, seconds=seconds, seeds=len(seeds)))
+        columns = {"<figures>": FIGURES}
+        tables.append(worded(of["paired"], differences, columns=columns, seconds=seconds))
     return (*tables, masons_walls(settings))
 
 
@@ -73,21 +77,6 @@ def _check(changes: Changes) -> None:
             cure="Leave it out; see --only and --seconds.",
         )
     method_settings("best").updated(nested(changes))
-
-
-def _medians(
-    rows: Sequence[tuple[Cell, ...]], seconds: float, seeds: int, settings: BenchSettings
-) -> Table:
-    with_settings = [f"With {told(settings.changes)}."] if settings.changes else []
-    return worded(
-        BENCH["search"]["medians"], rows, more=(*with_settings, *missing_data(settings)),
-        seconds=seconds, seeds=seeds,
-    )  # fmt: skip
-
-
-def _paired(rows: Sequence[tuple[Cell, ...]], seconds: float) -> Table:
-    figures = {"<figures>": FIGURES}
-    return worded(BENCH["search"]["paired"], rows, columns=figures, seconds=seconds)
 
 
 def _effort(settings: BenchSettings) -> tuple[tuple[float, ...], range]:
