@@ -109,6 +109,7 @@ def test_shaken_walls_are_shaken_once(tmp_path, monkeypatch):
 
     monkeypatch.setattr(bench, "pga_of", pga_of)
     settings = replace(SETTINGS, policies=("paper",), store=tmp_path, shake=True)
+    run_public(replace(settings, shake=False, seeds=1))  # of the two, one is kept already
     first = run_public(settings)[0]
     assert first.records()[0]["PGA, g"] == 0.25
     assert run_public(settings)[0] == first
