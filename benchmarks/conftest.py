@@ -64,43 +64,20 @@ def scene(request: pytest.FixtureRequest, stones: Stock) -> Scene:
 
 @dataclass(frozen=True)
 class Row:
-    """What a measurement is of.
+    """What a measurement is of."""
 
-    Parameters
-    ----------
-    what : str
-        The function; twins have the same.
-    size : str
-        In words.
-    grows : float
-        The same as a number, over which growth is fitted.
-    twin : str or None
-        What the slow twin does; None for the function of the package.
-    count : int
-        How many times a call does it; times are told for one.
-    items : float
-        What one cannot do without touching, so many of them; 0 when that is not told.
-    item : str
-        What these are.
-    """
-
-    what: str
-    size: str
-    grows: float
-    twin: str | None = None
-    count: int = 1
+    what: str  # The function; twins have the same
+    size: str  # In words
+    grows: float  # The same as a number, over which growth is fitted
+    twin: str | None = None  # What the slow twin does; None for the function of the package
+    count: int = 1  # How many times a call does it; times are told for one
+    # What one cannot do without touching, so many of them; 0 when that is not told
     items: float = 0.0
-    item: str = ""
+    item: str = ""  # What these are
 
 
 class Timer:
-    """Measures a function and keeps what it is with the times.
-
-    Parameters
-    ----------
-    benchmark : BenchmarkFixture
-        Of the test.
-    """
+    """Measures a function and keeps what it is with the times."""
 
     def __init__(self, benchmark: BenchmarkFixture) -> None:
         self._benchmark = benchmark

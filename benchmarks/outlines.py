@@ -27,49 +27,23 @@ CELL = 2.0
 
 @dataclass(frozen=True, eq=False)
 class LetGo:
-    """A stone that is let go.
+    """A stone that is let go."""
 
-    Parameters
-    ----------
-    hung : Hung
-        The stone.
-    start : (float, float, float)
-        Its pose.
-    rules : SettlingRules
-        How it settles.
-    """
-
-    hung: Hung
-    start: tuple[float, float, float]
-    rules: SettlingRules
+    hung: Hung  # The stone
+    start: tuple[float, float, float]  # Its pose
+    rules: SettlingRules  # How it settles
 
 
 @dataclass(frozen=True, eq=False)
 class OutlineScene:
-    """A wall half built, seen from the left, and what is asked about it.
+    """A wall half built, seen from the left, and what is asked about it."""
 
-    Parameters
-    ----------
-    name : str
-        In words.
-    scene : SettlingScene
-        What is built.
-    profile : HeightProfile
-        How high it is.
-    terms : DropTerms
-        What drops cost.
-    settings : SettleSettings
-        How stones settle.
-    let_go : tuple of LetGo
-        Stones that the planner would let go next.
-    """
-
-    name: str
-    scene: SettlingScene
-    profile: HeightProfile
-    terms: DropTerms
-    settings: SettleSettings
-    let_go: tuple[LetGo, ...]
+    name: str  # In words
+    scene: SettlingScene  # What is built
+    profile: HeightProfile  # How high it is
+    terms: DropTerms  # What drops cost
+    settings: SettleSettings  # How stones settle
+    let_go: tuple[LetGo, ...]  # Stones that the planner would let go next
 
     @property
     def polygons(self) -> Polygons:

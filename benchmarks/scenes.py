@@ -39,21 +39,11 @@ LARGE_FACTOR = 4
 
 @dataclass(frozen=True)
 class Stock:
-    """Stones for a wall.
+    """Stones for a wall."""
 
-    Parameters
-    ----------
-    name : str
-        Where they come from.
-    stones : StoneSet
-        The stones.
-    wall_px : (int, int)
-        Width and height of the wall, px of the source image.
-    """
-
-    name: str
-    stones: StoneSet
-    wall_px: tuple[int, int]
+    name: str  # Where they come from
+    stones: StoneSet  # The stones
+    wall_px: tuple[int, int]  # Width and height of the wall, px of the source image
 
     def site(self, scale: float) -> Site:
         """Return the site at a working resolution."""
@@ -62,21 +52,11 @@ class Stock:
 
 @dataclass(frozen=True)
 class Scene:
-    """A wall half built, and stones with the places where they would go.
+    """A wall half built, and stones with the places where they would go."""
 
-    Parameters
-    ----------
-    name : str
-        Size of the image.
-    wall : Wall
-        What is built.
-    posed : tuple of PosedStone
-        Stones that are left.
-    """
-
-    name: str
-    wall: Wall
-    posed: tuple[PosedStone, ...]
+    name: str  # Size of the image
+    wall: Wall  # What is built
+    posed: tuple[PosedStone, ...]  # Stones that are left
 
     @property
     def pixels(self) -> int:
@@ -159,18 +139,10 @@ def places(scene: Scene) -> list[tuple[PosedStone, int, int]]:
 
 @dataclass(frozen=True, eq=False)
 class Standing:
-    """A wall that stands, and models of it with one more stone.
+    """A wall that stands, and models of it with one more stone."""
 
-    Parameters
-    ----------
-    analysis : IncrementalAnalysis
-        Of the wall.
-    candidates : tuple of RigidBlockModel
-        Models with one more stone each; all stand.
-    """
-
-    analysis: IncrementalAnalysis
-    candidates: tuple[RigidBlockModel, ...]
+    analysis: IncrementalAnalysis  # Of the wall
+    candidates: tuple[RigidBlockModel, ...]  # Models with one more stone each; all stand
 
 
 @cache

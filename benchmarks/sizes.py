@@ -10,33 +10,15 @@ SCALES = {"medium": 1.0, "small": 0.5}
 
 @dataclass(frozen=True)
 class Sizes:
-    """How much is timed.
+    """How much is timed."""
 
-    Parameters
-    ----------
-    scenes : tuple of str
-        Images.
-    counts : tuple of int
-        Stones of the walls in the limit analysis.
-    generated : int or None
-        Number of generated stones instead of published ones.
-    steps : int or None
-        Steps that are taken by the slow planner too; None for a whole wall.
-    walls : int
-        Budget of the search, in method best.
-    repeats : int
-        Of whole walls.
-    traced : tuple of str
-        Methods whose memory is looked at.
-    """
-
-    scenes: tuple[str, ...]
-    counts: tuple[int, ...]
-    generated: int | None = None
-    steps: int | None = None
-    walls: int = METHODS["best"].search.budget
-    repeats: int = 1
-    traced: tuple[str, ...] = ("paper",)
+    scenes: tuple[str, ...]  # Images
+    counts: tuple[int, ...]  # Stones of the walls in the limit analysis
+    generated: int | None = None  # Number of generated stones instead of published ones
+    steps: int | None = None  # Steps that are taken by the slow planner too; None for a whole wall
+    walls: int = METHODS["best"].search.budget  # Budget of the search, in method best
+    repeats: int = 1  # Of whole walls
+    traced: tuple[str, ...] = ("paper",)  # Methods whose memory is looked at
 
     def settings(self, method: str) -> PlannerSettings:
         """Return the settings of a method; "paper, full batch" tries all stones in every step."""

@@ -20,47 +20,23 @@ UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "us"), (1e-9, "ns"))
 
 @dataclass(frozen=True)
 class Measured:
-    """One measurement.
+    """One measurement."""
 
-    Parameters
-    ----------
-    what, size : str
-        The function and its input.
-    grows : float
-        Size as a number; 0 when growth is not asked for.
-    twin : str or None
-        What the slow twin does; None for the function of the package.
-    seconds : float
-        The least of all rounds, for one call of the function.
-    facts : dict
-        What else was kept.
-    """
-
-    what: str
+    what: str  # what, size: The function and its input
     size: str
-    grows: float
-    twin: str | None
-    seconds: float
-    facts: dict[str, Any]
+    grows: float  # Size as a number; 0 when growth is not asked for
+    twin: str | None  # What the slow twin does; None for the function of the package
+    seconds: float  # The least of all rounds, for one call of the function
+    facts: dict[str, Any]  # What else was kept
 
 
 @dataclass(frozen=True)
 class Session:
-    """All measurements of one process.
+    """All measurements of one process."""
 
-    Parameters
-    ----------
-    kernels : str
-        Which ran.
-    machine : str
-        Processor, Python and NumPy.
-    measured : tuple of Measured
-        In the order of the tests.
-    """
-
-    kernels: str
-    machine: str
-    measured: tuple[Measured, ...]
+    kernels: str  # Which ran
+    machine: str  # Processor, Python and NumPy
+    measured: tuple[Measured, ...]  # In the order of the tests
 
     def fast(self) -> dict[tuple[str, str], Measured]:
         """Return the functions of the package by name and size."""

@@ -1,16 +1,30 @@
-"""What two methods differ by, from pairs of results with the same seed."""
+"""Medians of results, and what two methods differ by, from pairs of results with the same seed."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from statistics import median
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+LOWER_IS_BETTER = ("F_AH", "T_LEVEL", "E_FLUSH")
+"""Figures of a wall; of all others more is better."""
 
 RESAMPLES = 10_000
 """Draws of the bootstrap."""
 
 COVERED = 0.95
 """Share of the draws between the ends of an interval."""
+
+
+def median_of(values: Iterable[float | None]) -> float | None:
+    """Return the median of the values that there are; None without any.
+
+    >>> median_of([3.0, None, 1.0]), median_of([None])
+    (2.0, None)
+    """
+    found = [value for value in values if value is not None]
+    return median(found) if found else None
 
 
 def interval_of(values: NDArray[np.float64], statistic: Callable[..., Any]) -> tuple[float, float]:

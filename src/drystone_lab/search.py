@@ -1,7 +1,6 @@
 """Suite "search": methods that look for good walls, compared at equal CPU time."""
 
 from collections.abc import Mapping, Sequence
-from statistics import median
 
 from drystone.errors import UsageError
 from drystone.io.published import published_file
@@ -11,7 +10,7 @@ from drystone.metrics.reduce import reduce_labels
 from drystone.metrics.second import FINER, finer_labels, second_arrangement
 from drystone.model.wall import Labels
 from drystone.planner.settings import method_settings
-from drystone_lab.paired import median_difference
+from drystone_lab.paired import median_difference, median_of
 from drystone_lab.planned_walls import SETS, missing_data
 from drystone_lab.runs.spec import Changes, nested, told
 from drystone_lab.search_runs import (
@@ -51,6 +50,8 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     ]
     results = searched(walls, seeds, times, settings)
     tables = []
+    with_settings = [f"With {told(settings.changes)}."] if settings.changes else []
+    notes = (*with_settings, *missing_data(settings))
     for seconds in times:
         compared = [
             (target.name, len(stones), _by_way(target.name, seeds, seconds, settings, results))
@@ -58,8 +59,10 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
         ]
         medians = [row for one in compared for row in _rows(*one)]
         differences = [row for name, _, found in compared for row in _differences(name, found)]
-        tables.append(_medians(medians, seconds, len(seeds), settings))
-        tables.append(_paired(differences, seconds))
+        of = BENCH["search"]
+        tables.append(worded(of["medians"], medians, more=notes, seconds=seconds, seeds=len(seeds)))
+        columns = {"<figures>": FIGURES}
+        tables.append(worded(of["paired"], differences, columns=columns, seconds=seconds))
     return (*tables, masons_walls(settings))
 
 
@@ -74,21 +77,6 @@ def _check(changes: Changes) -> None:
             cure="Leave it out; see --only and --seconds.",
         )
     method_settings("best").updated(nested(changes))
-
-
-def _medians(
-    rows: Sequence[tuple[Cell, ...]], seconds: float, seeds: int, settings: BenchSettings
-) -> Table:
-    with_settings = [f"With {told(settings.changes)}."] if settings.changes else []
-    return worded(
-        BENCH["search"]["medians"], rows, more=(*with_settings, *missing_data(settings)),
-        seconds=seconds, seeds=seeds,
-    )  # fmt: skip
-
-
-def _paired(rows: Sequence[tuple[Cell, ...]], seconds: float) -> Table:
-    figures = {"<figures>": FIGURES}
-    return worded(BENCH["search"]["paired"], rows, columns=figures, seconds=seconds)
 
 
 def _effort(settings: BenchSettings) -> tuple[tuple[float, ...], range]:
@@ -119,8 +107,8 @@ def _rows(wall: str, stones: int, by_way: ByWay) -> list[tuple[Cell, ...]]:
     rows: list[tuple[Cell, ...]] = []
     for way, results in by_way.items():
         placed = [count for count in _values(results, "placed") if count is not None]
-        medians = [_median(_values(results, figure)) for figure in FIGURES]
-        spent = [_median(_values(results, name)) for name in ("walls", "CPU s")]
+        medians = [median_of(_values(results, figure)) for figure in FIGURES]
+        spent = [median_of(_values(results, name)) for name in ("walls", "CPU s")]
         words = f"{min(placed)}-{max(placed)} of {stones}"
         possible = results[0]["possible F_SF"]
         rows.append((wall, way, words, *medians[:2], possible, *medians[2:], *spent))
@@ -145,11 +133,6 @@ def _differences(wall: str, by_way: ByWay) -> list[tuple[Cell, ...]]:
 
 def _values(results: Sequence[SearchResult], figure: str) -> list[float | None]:
     return [result[figure] for result in results]
-
-
-def _median(values: Sequence[float | None]) -> float | None:
-    found = [value for value in values if value is not None]
-    return median(found) if found else None
 
 
 def masons_walls(settings: BenchSettings) -> Table:

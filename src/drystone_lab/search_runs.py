@@ -27,7 +27,7 @@ from drystone.search.packed import found_again
 from drystone.search.yard import Yard
 from drystone_lab.runs.spec import Changes, nested, told
 from drystone_lab.runs.workers import crew
-from drystone_lab.table import BenchSettings
+from drystone_lab.table import BenchSettings, read_rows
 from drystone_lab.walls import BRICKS, SEARCHED, UNSEEN, Target, chosen
 
 Clock = Callable[[], float]
@@ -244,21 +244,14 @@ def read_results(path: Path) -> dict[SearchRun, SearchResult]:
     """Read the results that a table holds; none when there is no table; E148 for another file."""
     if not path.exists():
         return {}
-    with path.open(newline="", encoding="utf-8") as file:
-        rows = csv.DictReader(file)
-        if tuple(rows.fieldnames or ()) != COLUMNS:
-            raise _not_a_table(path, 1)
-        return dict(_row(row, path, rows.line_num) for row in rows)
+    return dict(read_rows(path, COLUMNS, _row, _not_a_table))
 
 
-def _row(row: dict[str, str], path: Path, line: int) -> tuple[SearchRun, SearchResult]:
-    try:
-        run = SearchRun(row["wall"], row["method"], int(row["seed"]), float(row["seconds"]))
-        result = {name: _number(row[name]) for name in (*FIGURES, *SPENT)}
-        if None in (result[name] for name in SPENT):
-            raise ValueError(line)
-    except (TypeError, ValueError) as error:
-        raise _not_a_table(path, line) from error
+def _row(row: dict[str, str]) -> tuple[SearchRun, SearchResult]:
+    run = SearchRun(row["wall"], row["method"], int(row["seed"]), float(row["seconds"]))
+    result = {name: _number(row[name]) for name in (*FIGURES, *SPENT)}
+    if None in (result[name] for name in SPENT):
+        raise ValueError(row)
     return run, result
 
 
@@ -269,11 +262,11 @@ def _number(cell: str) -> float | None:
     return int(cell) if str(cell).isdecimal() else float(cell)
 
 
-def _not_a_table(path: Path, line: int) -> UsageError:
+def _not_a_table(where: str) -> UsageError:
     return UsageError(
         "E148",
         "this is not a table of searches of this version.",
-        where=f"{path}:{line}",
+        where=where,
         cure="Name another file, which is begun anew, or take out the line if it was cut off.",
     )
 

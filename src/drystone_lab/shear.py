@@ -326,4 +326,4 @@ def _draw(known: ShearModel, path: Path) -> None:
                 if len(found) == len(band):
                     points.append(Prediction(series.name, restraint, test.measured_kn, *found))
     words = f"friction {FRICTION_BAND[0]:.2f} to {FRICTION_BAND[-1]:.2f}"
-    save(plot_predictions(points, band=words).figure, path, dpi=DPI)
+    save(plot_predictions(points, words).figure, path, dpi=DPI)

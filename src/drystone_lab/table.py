@@ -3,15 +3,17 @@
 import csv
 import io
 import tomllib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, TypeVar
 
+from drystone.errors import DrystoneError
 from drystone_lab.runs.spec import Changes
 
 Cell = str | int | float | bool | None
+Row = TypeVar("Row")
 
 
 @dataclass(frozen=True)
@@ -47,14 +49,9 @@ class Table:
 
     def markdown(self) -> str:
         """Return the table in Markdown, its title above."""
-        lines = [self.columns, ["---"] * len(self.columns)]
-        lines += [[written(cell) for cell in row] for row in self.rows]
-        return "\n".join(
-            [f"**{self.title}**", ""]
-            + ["| " + " | ".join(line) + " |" for line in lines]
-            + [""] * bool(self.notes)
-            + [f"* {note}" for note in self.notes]
-        )
+        rows = [[written(cell) for cell in row] for row in self.rows]
+        notes = [""] * bool(self.notes) + [f"* {note}" for note in self.notes]
+        return "\n".join([f"**{self.title}**", "", markdown_rows(self.columns, rows), *notes])
 
     def csv(self) -> str:
         r"""Return the table as CSV: numbers that read back as they were, nothing for None.
@@ -67,6 +64,32 @@ class Table:
         writer.writerow(self.columns)
         writer.writerows([_exact(cell) for cell in row] for row in self.rows)
         return text.getvalue()
+
+
+def markdown_rows(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Return a table in Markdown."""
+    lines = [columns, ["---"] * len(columns), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def read_rows(
+    path: Path,
+    columns: tuple[str, ...],
+    read: Callable[[dict[str, str]], Row],
+    refused: Callable[[str], DrystoneError],
+) -> Iterator[Row]:
+    """Read a CSV file of such a table; what is refused is another file, at a place in it."""
+    with path.open(newline="", encoding="utf-8") as file:
+        rows = csv.DictReader(file)
+        try:
+            if tuple(rows.fieldnames or ()) != columns:
+                raise ValueError(columns)
+            for row in rows:
+                if None in row.values():
+                    raise ValueError(row)  # fewer cells than columns
+                yield read(row)
+        except (TypeError, ValueError, csv.Error) as error:
+            raise refused(f"{path}:{max(1, rows.line_num)}") from error
 
 
 def worded(

@@ -8,7 +8,8 @@ import pytest
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LimitStatus
 from drystone_lab import agreement
-from drystone_lab.planned_walls import PlannedWall
+from drystone_lab.planned_walls import PlannedWall, planned_walls
+from drystone_lab.table import BenchSettings
 from tests.verify.exact_examples import exact_example
 from tests.verify.examples import example
 
@@ -24,6 +25,11 @@ def test_models_are_those_of_the_plan_after_every_stone(made):
         assert found.right.alpha == pytest.approx(step.alpha_right, abs=1e-7)
     np.testing.assert_array_equal(wall.stages[-1], made.wall.labels)
     assert wall.mu == 0.58
+
+
+def test_walls_are_planned_of_the_published_sets(data_dir):
+    (wall,) = planned_walls(BenchSettings(data=data_dir, quick=True, seed=2))
+    assert (wall.name, len(wall.stones), wall.plan.seed) == ("PR, paper, seed 2", 32, 2)
 
 
 def test_solvers_agree_on_outlines():

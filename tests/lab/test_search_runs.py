@@ -254,20 +254,6 @@ def test_settings_are_what_a_way_goes_by() -> None:
     assert halved["merit"] == pytest.approx(plain["merit"] - lost)
 
 
-def test_processes_do_what_one_does(tmp_path: Path) -> None:
-    walls, settings = (
-        [(TARGET, NINE)],
-        replace(ONE_WAY, runs=tmp_path / "runs.csv", jobs=2),
-    )
-    # The first wall is always finished, and here none is begun after it.
-    two = searched(walls, [1, 2], (1e-6,), settings)
-    one = searched(walls, [1, 2], (1e-6,), ONE_WAY)
-    assert [run.seed for run in two] == [1, 2]
-    timeless = [{run: {**r, "CPU s": 0} for run, r in found.items()} for found in (one, two)]
-    assert timeless[0] == timeless[1]
-    assert two == read_results(tmp_path / "runs.csv")
-
-
 class Deadly(str):
     """The name of a way at which its process dies, as soon as it hears of it."""
 
@@ -277,20 +263,21 @@ class Deadly(str):
         return os._exit, (1,)
 
 
-@pytest.mark.parametrize("death", [True, False])
-def test_what_ended_is_kept_when_a_task_fails(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, death: bool
+def test_processes_do_what_one_does_and_what_ended_is_kept_when_one_dies(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    # In another process the unknown way is nobody's.
-    last = SearchWay(Deadly("unknown") if death else "unknown", WAYS[0].states)
+    # The first wall is always finished, and here none is begun after it.
+    walls, times = [(TARGET, NINE)], (1e-6,)
+    one = searched(walls, [1], times, ONE_WAY)
+    last = SearchWay(Deadly("unknown"), WAYS[0].states)
     monkeypatch.setattr(search_runs, "chosen_ways", lambda _: (WAYS[0], last))
     settings = replace(ONE_WAY, runs=tmp_path / "runs.csv", jobs=2)
-    error, words = (DrystoneError, "E402") if death else (ValueError, "unpack")
-    with pytest.raises(error, match=words) as caught:
-        searched([(TARGET, NINE)], [1], (1e-6,), settings)
-    if death:
-        assert caught.value.where == "bricks, unknown, seed 1"
-    assert {run.way for run in read_results(tmp_path / "runs.csv")} == {"restarts"}
+    with pytest.raises(DrystoneError, match="E402") as caught:
+        searched(walls, [1], times, settings)
+    assert caught.value.where == "bricks, unknown, seed 1"
+    found = read_results(tmp_path / "runs.csv")
+    timeless = [{run: {**r, "CPU s": 0} for run, r in each.items()} for each in (one, found)]
+    assert timeless[0] == timeless[1]
 
 
 def test_ways_are_chosen_by_name() -> None:

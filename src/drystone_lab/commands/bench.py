@@ -12,20 +12,18 @@ from drystone.cli.progress import busy
 from drystone.cli.settings import read_toml
 from drystone.errors import ExitCode, UsageError
 from drystone.io.published import published_folder
-from drystone_lab.commands.options import PUBLIC_OPTIONS
 from drystone_lab.public.suites import PUBLIC_SUITES, flat_changes, known_methods
-from drystone_lab.suites import PICTURED, SEARCHES, SUITES, run_suite
+from drystone_lab.suites import GOES_BY, HISTORY, PUBLIC, SUITES, run_suite
 from drystone_lab.table import BenchSettings, Table
 
 # What draws or counts is loaded where it is run: --list and a misspelt suite do not wait for it.
 
 DEFAULT_METHODS = ("paper", "random")
 
-RUNS_ALONE = (
-    "policy", "settings", "jobs", "dask", "again", "shake", "quick", "seed", "seeds", "only",
-    "seconds",
-)  # fmt: skip
-"""Options that a history has no use for."""
+WHY = {
+    PUBLIC: "it would do nothing here.",
+    HISTORY: "a history shows all that a store holds, and runs nothing.",
+}
 
 DPI = 150
 
@@ -47,8 +45,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
 
 
 def _print_list() -> None:
-    for name, (text, _) in SUITES.items():
-        print(f"{name}: {text}")
+    for name, suite in SUITES.items():
+        print(f"{name}: {suite.about}")
     for name, text in PUBLIC_SUITES.items():
         print(f"{name}: public suite: {text}")
     by_text: dict[str, list[str]] = {}
@@ -81,7 +79,10 @@ def _suite(arguments: argparse.Namespace) -> str | None:
 def _tables(arguments: argparse.Namespace, suite: str) -> Sequence[Table]:
     data = _data(arguments.data)
     public = suite in PUBLIC_SUITES
-    (_refuse_of_public if public else _refuse_of_others)(arguments, suite)
+    _refuse(arguments, PUBLIC if public else suite)
+    if arguments.again and arguments.store is None:
+        cure = "Nothing is kept without --store, so all runs are done."
+        raise _useless("it would do nothing here.", "--again", cure)
     for folder in (arguments.output, arguments.store):
         if folder is not None:
             make_folder(Path(folder))
@@ -113,34 +114,16 @@ def _changes(name: str | None) -> tuple[tuple[str, bool | int | float | str], ..
     return () if name is None else flat_changes(read_toml(Path(name)), name)
 
 
-def _refuse_of_others(arguments: argparse.Namespace, suite: str) -> None:
-    """Refuse options that a suite of the lab does not go by (E138)."""
-    for name in ("seconds", "seeds", "only", "runs", *PUBLIC_OPTIONS):
-        if getattr(arguments, name) and name not in SEARCHES.get(suite, ()):
-            known = [other for other, names in SEARCHES.items() if name in names]
-            if name not in ("seconds", "runs"):
-                known.append("the public suites")
-            cure = f"Leave it out; it is for {' and '.join(known)}."
-            raise _useless(f"the suite {suite!r} does not go by it.", f"--{name}", cure)
-    if arguments.output is not None and suite not in PICTURED:
-        cure = f"Leave it out; it is for {' and '.join(PICTURED)}."
-        raise _useless(f"the suite {suite!r} draws no pictures.", "-o", cure)
-
-
-def _refuse_of_public(arguments: argparse.Namespace, _: str) -> None:
-    """Refuse options that a public suite does not go by (E138)."""
-    useless = {
-        "--seconds": (arguments.seconds, "Public suites build one wall a seed: use --seeds."),
-        "--runs": (arguments.runs, "Public suites keep their runs in a --store."),
-        "-o": (arguments.output, "Public suites draw nothing but a --history."),
-        "--again": (
-            arguments.again and arguments.store is None,
-            "Nothing is kept without --store, so all runs are done.",
-        ),
-    }
-    for name, (given, cure) in useless.items():
-        if given:
-            raise _useless("it would do nothing here.", name, cure)
+def _refuse(arguments: argparse.Namespace, who: str) -> None:
+    """Refuse options that a suite, the public ones or a history does not go by (E138)."""
+    for name in dict.fromkeys(name for names in GOES_BY.values() for name in names):
+        if getattr(arguments, name) and name not in GOES_BY[who]:
+            known = [other for other, names in GOES_BY.items() if name in names]
+            lacks = "draws no pictures" if name == "output" else "does not go by it"
+            what = WHY.get(who, f"the suite {who!r} {lacks}.")
+            instead = ", or --history" if who == HISTORY else f"; it is for {' and '.join(known)}"
+            cure = f"Leave it out{instead}."
+            raise _useless(what, "-o" if name == "output" else f"--{name}", cure)
 
 
 def _data(given: str | None) -> Path | None:
@@ -159,17 +142,12 @@ def _history(arguments: argparse.Namespace, suite: str | None) -> Sequence[Table
         history_table,
         medians_of,
     )
-    from drystone_lab.public.store import BenchStore  # noqa: PLC0415
+    from drystone_lab.public.store import kept_runs  # noqa: PLC0415
 
-    for name in RUNS_ALONE:
-        if getattr(arguments, name):
-            what = "a history shows all that a store holds, and runs nothing."
-            raise _useless(what, f"--{name}", "Leave it out, or --history.")
+    _refuse(arguments, HISTORY)
     if arguments.store is None:
         raise _useless("there is no store to show.", "--history", "Add --store DIR.")
-    runs = [
-        run for run in BenchStore(Path(arguments.store)).runs() if suite in (None, "all", run.suite)
-    ]
+    runs = [run for run in kept_runs(Path(arguments.store)) if suite in (None, "all", run.suite)]
     if not runs:
         what = "the store holds no runs" + (f" of {suite!r}." if suite else ".")
         cure = "`drystone bench --suite NAME --store DIR` adds some."

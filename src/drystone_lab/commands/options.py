@@ -5,9 +5,6 @@ import argparse
 from drystone.cli.numbers import positive, whole_from
 from drystone.cli.parser import Renamed
 
-PUBLIC_OPTIONS = ("policy", "settings", "jobs", "dask", "store", "again", "history", "shake")
-"""For public suites, and what other suites say that they go by."""
-
 
 def add_bench(command: argparse.ArgumentParser) -> None:
     """Add the options of ``bench``."""

@@ -70,16 +70,8 @@ COVERED = 0.24
 """Share of the photograph that stones cover, about."""
 
 
-@dataclass(frozen=True)
-class StoneLayout:
-    """Stones on the ground."""
-
-    labels: Labels  # Stones 1 ... n, 0 elsewhere
-    touching: tuple[tuple[int, int], ...]  # Stones that were pushed against each other
-
-
-def lay_stones(level: PhotoLevel, forbidden: Mask, seen: Mask, rng: Generator) -> StoneLayout:
-    """Lay stones down where there is room.
+def lay_stones(level: PhotoLevel, forbidden: Mask, seen: Mask, rng: Generator) -> Labels:
+    """Lay stones down where there is room; return them, 1 ... n, 0 elsewhere.
 
     `forbidden` (h, w) is where the markers are, `seen` (h, w) what the camera sees of the ground.
     """
@@ -90,16 +82,14 @@ def lay_stones(level: PhotoLevel, forbidden: Mask, seen: Mask, rng: Generator) -
     table = _Table(
         np.zeros(forbidden.shape, np.uint16), forbidden.copy(), ~inside | forbidden, level.gap_px
     )
-    touching = []
     for turn, mask in enumerate(masks):
         if turn >= len(masks) - level.touching and table.count:
-            beside = table.push(mask, rng)
-            touching += [(beside, table.count)] if beside else []
+            table.push(mask, rng)
         elif turn < level.cut:
             table.drop(mask, np.argwhere(edge), rng, table.taken)
         else:
             table.drop(mask, np.argwhere(inside), rng, table.taken | table.outside)
-    return StoneLayout(table.labels, tuple(touching))
+    return table.labels
 
 
 def _shapes(level: PhotoLevel, rng: Generator) -> list[Mask]:
@@ -142,16 +132,15 @@ class _Table:
                 self._lay(row, col, mask)
                 return
 
-    def push(self, mask: Mask, rng: Generator) -> int:
-        """Move a stone towards another until they touch; return the other one, 0 for none."""
+    def push(self, mask: Mask, rng: Generator) -> None:
+        """Move a stone towards another until they touch, if it can lie there."""
         for _ in range(TRIES // 10):
             beside = int(rng.integers(1, self.count + 1))
             angle = rng.uniform(0, 2 * np.pi)
             place = self._contact(beside, mask, np.array([np.sin(angle), np.cos(angle)]))
             if place is not None:
                 self._lay(*place, mask)
-                return beside
-        return 0
+                return
 
     def _contact(self, beside: int, mask: Mask, way: NDArray[np.float64]) -> tuple[int, int] | None:
         """Return where a stone that comes along a ray meets the other; None when it cannot lie."""

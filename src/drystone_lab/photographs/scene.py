@@ -318,7 +318,6 @@ class Photograph:
     truth: Labels  # Stones 1 ... n in the frame of the ground
     homography: Homography  # Ground px to px of the photograph as it is seen
     px_per_m: float  # Ground px in a metre
-    touching: tuple[tuple[int, int], ...]  # Stones that touch
     level: PhotoLevel
 
     def truth_in(self, to_photo: Homography, shape: tuple[int, int]) -> Labels:
@@ -341,17 +340,17 @@ def photograph(level: PhotoLevel) -> Photograph:
     seen = polygon2mask(shape, corners[:, ::-1])
     surface = ground_surface(level.ground, shape, rng)
     markers = place_markers(level, surface, seen)
-    layout = lay_stones(level, markers, seen, rng)
-    light = _light_on_ground(layout.labels, level, rng)
+    labels = lay_stones(level, markers, seen, rng)
+    light = _light_on_ground(labels, level, rng)
     lit = surface * light
-    for number, box in enumerate(ndimage.find_objects(layout.labels), start=1):
-        mask = layout.labels[box] == number
+    for number, box in enumerate(ndimage.find_objects(labels), start=1):
+        mask = labels[box] == number
         rock = level.rocks[number % len(level.rocks)]
         face = stone_face(rock, mask.shape, rng) * _shading(mask, level)[..., None]
         lit[box][mask] = face[mask]
     lit *= _lamp(shape, level, rng)[..., None]
     jpeg = exposed(lit, homography, level, rng)
-    return Photograph(jpeg, layout.labels, homography, level.px_per_m, layout.touching, level)
+    return Photograph(jpeg, labels, homography, level.px_per_m, level)
 
 
 def _light_on_ground(labels: Labels, level: PhotoLevel, rng: Generator) -> Light:

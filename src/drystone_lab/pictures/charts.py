@@ -68,7 +68,6 @@ def plot_groups(
     *,
     figure: str = "",
     claims: Mapping[str, float] | None = None,
-    claim: str = "the paper",
 ) -> Axes:
     """Draw the values of each group as a strip of points, and its median as a line.
 
@@ -93,7 +92,7 @@ def plot_groups(
     places = {name: place for place, name in enumerate(groups)}
     for number, (name, value) in enumerate((claims or {}).items()):
         ax.plot([places[name]], [value], "x", color=OUTLINE_COLOUR, markersize=7,
-                label=claim if number == 0 else "_again", gid=f"claim-{name}")  # fmt: skip
+                label="the paper" if number == 0 else "_again", gid=f"claim-{name}")  # fmt: skip
     _name_groups(ax, list(groups))
     ax.set_ylabel(figure, fontsize=8)
     ax.tick_params(axis="y", labelsize=7)

@@ -32,38 +32,26 @@ class Prediction:
     high: float
 
 
-def plot_predictions(
-    predictions: Sequence[Prediction],
-    ax: Axes | None = None,
-    *,
-    unit: str = "kN",
-    band: str = "band",
-) -> Axes:
-    """Draw predicted over measured values, bands as bars; at most three models, four series."""
-    ax = Figure(figsize=SIZE_IN).add_subplot() if ax is None else ax
+def plot_predictions(predictions: Sequence[Prediction], band: str) -> Axes:
+    """Draw predicted over measured forces, bands as bars; at most three models, four series."""
+    ax = Figure(figsize=SIZE_IN).add_subplot()
     models = list(dict.fromkeys(p.model for p in predictions))
     series = list(dict.fromkeys(p.series for p in predictions))
     colours = dict(zip(models, COLOURS, strict=False))
     markers = dict(zip(series, MARKERS, strict=False))
     for p in predictions:
         ax.errorbar(
-            p.measured,
-            p.predicted,
-            yerr=[[p.predicted - p.low], [p.high - p.predicted]],
-            color=colours[p.model],
-            marker=markers[p.series],
-            markersize=4.5,
-            markerfacecolor="white",
-            linewidth=0.9,
-            capsize=2,
-        )
+            p.measured, p.predicted, yerr=[[p.predicted - p.low], [p.high - p.predicted]],
+            color=colours[p.model], marker=markers[p.series], markersize=4.5,
+            markerfacecolor="white", linewidth=0.9, capsize=2,
+        )  # fmt: skip
     end = 1.05 * float(np.max([[p.measured, p.high] for p in predictions]))
     ax.plot([0, end], [0, end], color=OUTLINE_COLOUR, linewidth=0.8, gid="equal", zorder=0)
     for share in (0.8, 1.2):
         ax.plot([0, end], [0, share * end], color=GREY, linewidth=0.6, linestyle="--", zorder=0)
     ax.set_xlim(0, end)
     ax.set_ylim(0, end)
-    name_axes(ax, f"measured, {unit}", f"predicted, {unit}")
+    name_axes(ax, "measured, kN", "predicted, kN")
     _legend(ax, colours, markers, band)
     return ax
 

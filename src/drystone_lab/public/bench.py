@@ -1,6 +1,6 @@
 """Runs of the public benchmark: every method on every wall with every seed."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
@@ -16,9 +16,9 @@ from drystone.physics.scene import EngineScene
 from drystone.physics.shake import shake_once
 from drystone.physics.table import load_engine
 from drystone_lab.packing import load_packer
-from drystone_lab.public.store import NOT_SHAKEN, BenchStore, KeptRun, Stamp, kept_run
+from drystone_lab.public.store import CSV, NOT_SHAKEN, KeptRun, Stamp, keep, kept_runs
 from drystone_lab.public.suites import STRIP_SECONDS, method_named, walls_of
-from drystone_lab.public.tables import SHAKE, BenchResult, BenchResults, comparison, pair_tables
+from drystone_lab.public.tables import BenchResults, comparison, pair_tables
 from drystone_lab.runs.outcome import Runner, RunOutcome, RunStore, absent_data
 from drystone_lab.runs.spec import STRIPS, RunSpec
 from drystone_lab.runs.workers import work_of
@@ -50,7 +50,7 @@ SEEDS, QUICK_SEEDS = 5, 2
 RUNS = "runs"
 """Folder of the plans in a store."""
 
-BenchRun = tuple[RunSpec, RunOutcome, BenchResult]
+BenchRun = tuple[RunSpec, RunOutcome, KeptRun]
 
 
 def run_public(suite: str, settings: BenchSettings, stamp: Stamp) -> tuple[Table, ...]:
@@ -109,9 +109,9 @@ def _done(
         load_engine()  # what is missing is said before an hour of planning
     if any(spec.method == STRIPS for *_, spec in tasks):
         load_packer()
-    store = None if settings.store is None else BenchStore(settings.store)
-    kept = {} if store is None else {run.run_key: run for run in store.runs()}
-    place = None if settings.store is None else nullcontext(str(settings.store))
+    store = settings.store
+    kept = {} if store is None else {run.run_key: run for run in kept_runs(store)}
+    place = None if store is None else nullcontext(str(store))
     with (
         place or TemporaryDirectory(prefix="drystone-bench-") as folder,
         work_of(settings.jobs, settings.dask) as work,
@@ -120,38 +120,31 @@ def _done(
         runner = Runner(plans, settings.data, work, settings.say, again=settings.again)
         outcomes = runner.run([spec for *_, spec in tasks])
     runs = [
-        (spec, outcome, BenchResult.of(wall, method, spec.seed, outcome))
+        (spec, outcome, KeptRun.of(wall, method, spec.seed, outcome, settings.changes, stamp))
         for (wall, method, spec), outcome in zip(tasks, outcomes, strict=True)
     ]
-
-    def keep(new: Sequence[BenchRun]) -> None:
-        if store is not None:
-            store.put([kept_run(one, plan, settings.changes, stamp) for _, plan, one in new])
-
-    keep([run for run in runs if settings.again or run[1].key not in kept])
+    if store is not None:
+        keep(store, [run for *_, run in runs if settings.again or run.run_key not in kept])
     if settings.shake:
-        runs = _shaken(runs, {} if settings.again else kept, keep, settings)
-    for path in () if store is None else store.export():
-        settings.say(f"wrote {path}")
-    return BenchResults(tuple(result for *_, result in runs))
+        runs = list(_shaken(runs, {} if settings.again else kept, settings))
+    if store is not None:
+        settings.say(f"wrote {store / CSV}")
+    return BenchResults(tuple(run for *_, run in runs))
 
 
 def _shaken(
-    runs: Sequence[BenchRun],
-    kept: Mapping[str, KeptRun],
-    keep: Callable[[Sequence[BenchRun]], None],
-    settings: BenchSettings,
-) -> list[BenchRun]:
-    """Return the results with their amplitudes; each is kept at once, as it takes long."""
-    done = []
-    for number, (spec, outcome, result) in enumerate(runs, 1):
-        before = kept.get(outcome.key)
+    runs: Sequence[BenchRun], kept: Mapping[str, KeptRun], settings: BenchSettings
+) -> Iterator[BenchRun]:
+    """Give the runs with their amplitudes; each is kept at once, as it takes long."""
+    for number, (spec, outcome, run) in enumerate(runs, 1):
+        before = kept.get(run.run_key)
         shakes = spec.method != STRIPS and (before is None or before.shaken == NOT_SHAKEN)
-        pga_g = None if before is None or spec.method == STRIPS else before.pga_g
+        pga_g = None if before is None else before.pga_g
         if shakes:
             pga_g = pga_of(spec, outcome, settings.data)
-        done.append((spec, outcome, replace(result, figures={**result.figures, SHAKE: pga_g})))
+        shaken = replace(run, pga_g=pga_g, shaken="falls" if pga_g is None else "yes")
+        if shakes and settings.store is not None:
+            keep(settings.store, [shaken])
         if shakes:
-            keep(done[-1:])
             settings.say(f"{number} of {len(runs)} walls shaken")
-    return done
+        yield spec, outcome, shaken

@@ -3,13 +3,12 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from statistics import median
 
 from matplotlib.figure import Figure
 
+from drystone_lab.paired import median_of
 from drystone_lab.pictures.charts import history_panels
-from drystone_lab.public.store import KeptRun
-from drystone_lab.runs.spec import STRIPS
+from drystone_lab.public.store import PLACED, SHAKE, KeptRun
 from drystone_lab.table import BENCH, Cell, Table, worded
 
 Value = float | None
@@ -37,15 +36,18 @@ def medians_of(runs: Sequence[KeptRun]) -> tuple[Medians, ...]:
         Medians(
             *key,
             tuple(sorted((run.wall, run.seed) for run in group)),
-            {name: _median([_value(run, name) for run in group]) for name in FIGURES},
+            {name: median_of([run.figure(of) for run in group]) for name, of in FIGURES.items()},
         )
         for key, group in groups.items()
     ]
     return tuple(sorted(found, key=lambda m: (m.suite, m.method, version_order(m.version))))
 
 
-FIGURES = ("placed share", "F_SF", "F_AV", "F_AH", "F_LR", "PGA, g", "wall, s")
-"""Of a history."""
+FIGURES = {
+    "placed share": PLACED, "F_SF": "F_SF", "F_AV": "F_AV", "F_AH": "F_AH", "F_LR": "F_LR",
+    "PGA, g": SHAKE, "wall, s": "seconds",
+}  # fmt: skip
+"""Of a history: what each is called, and which it is."""
 
 
 def history_table(medians: Sequence[Medians]) -> Table:
@@ -71,7 +73,7 @@ def history_table(medians: Sequence[Medians]) -> Table:
             + "."
         )
     words = BENCH["public"]["history"]
-    return worded(words, rows, columns={"<figures>": FIGURES}, more=notes)
+    return worded(words, rows, columns={"<figures>": tuple(FIGURES)}, more=notes)
 
 
 def drawn_history(medians: Sequence[Medians]) -> Figure:
@@ -110,18 +112,3 @@ def version_order(version: str) -> tuple[tuple[int, int, str], ...]:
 
 _LETTERS = {"post": 2}
 """A post-release comes after its release; every other word before it."""
-
-
-def _value(run: KeptRun, name: str) -> Value:
-    if name == "placed share":
-        # The yardstick builds no wall: what is kept as 0 is no share.
-        return run.placed / run.stones if run.stones and run.method != STRIPS else None
-    return {
-        "F_SF": run.F_SF, "F_AV": run.F_AV, "F_AH": run.F_AH, "F_LR": run.F_LR,
-        "PGA, g": run.pga_g, "wall, s": run.seconds,
-    }[name]  # fmt: skip
-
-
-def _median(values: Sequence[Value]) -> Value:
-    found = [value for value in values if value is not None]
-    return median(found) if found else None

@@ -1,66 +1,34 @@
 """What methods came to on walls, and the tables that compare them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations, compress, groupby
 from math import fsum, sqrt
 from statistics import fmean, stdev
-from types import MappingProxyType
 
 import numpy as np
 from scipy.stats import rankdata, wilcoxon
 
-from drystone_lab.paired import COVERED, interval_of
-from drystone_lab.runs.outcome import RunOutcome
+from drystone_lab.paired import COVERED, LOWER_IS_BETTER, interval_of
+from drystone_lab.public.store import NOT_SHAKEN, PLACED, SHAKE, KeptRun
 from drystone_lab.table import BENCH, Cell, Table, worded
-from drystone_lab.walls import Target
 
-PLACED = "placed"
-SHAKE = "PGA"
-
-HIGHER_IS_BETTER: Mapping[str, bool] = MappingProxyType(
-    {PLACED: True, "F_SF": True, "F_AV": True, "F_AH": False, "F_LR": True, SHAKE: True}
-)
-"""The figures that are compared: share of the stones that is placed, the paper's four, and the
-amplitude that a wall stands on a shaking table, in g, where it was shaken."""
-
-FIGURES = tuple(name for name in HIGHER_IS_BETTER if name != SHAKE)
-"""Of walls that were not shaken."""
+FIGURES = (PLACED, "F_SF", "F_AV", "F_AH", "F_LR")
+"""The figures that are compared: share of the stones that is placed, and the paper's four; where
+walls were shaken the amplitude that they stand on a shaking table too."""
 
 DECIMALS = 9
 """Values that agree so far are equal: they differ by rounding errors of sums."""
 
 
 @dataclass(frozen=True, eq=False)
-class BenchResult:
-    """A wall that a method built."""
-
-    wall: Target
-    method: str
-    seed: int
-    # By the names of :data:`HIGHER_IS_BETTER`; None where a figure is not defined, such as F_LR of
-    # a wall that could not be analysed
-    figures: Mapping[str, float | None]
-    seconds: float  # From the stones to the last step
-
-    @classmethod
-    def of(cls, wall: Target, method: str, seed: int, outcome: RunOutcome) -> "BenchResult":
-        """Take the figures of an outcome."""
-        found = outcome.figures
-        figures: dict[str, float | None] = {name: found[name] for name in FIGURES[1:]}
-        placed, stones = found["placed"], found["stones"]
-        figures[PLACED] = None if placed is None or not stones else placed / stones
-        return cls(wall, method, seed, figures, outcome.times["wall"])
-
-
-@dataclass(frozen=True, eq=False)
 class BenchResults:
     """Results of every method on every wall with every seed."""
 
-    all: tuple[BenchResult, ...]  # Of each method on each wall for the same seeds
+    all: tuple[KeptRun, ...]  # Of each method on each wall for the same seeds
 
     @property
-    def walls(self) -> tuple[Target, ...]:
+    def walls(self) -> tuple[str, ...]:
         """Walls, in order."""
         return tuple(dict.fromkeys(result.wall for result in self.all))
 
@@ -72,20 +40,18 @@ class BenchResults:
     @property
     def figures(self) -> tuple[str, ...]:
         """Figures that walls have."""
-        shaken = any(SHAKE in result.figures for result in self.all)
+        shaken = any(result.shaken != NOT_SHAKEN for result in self.all)
         return (*FIGURES, SHAKE) if shaken else FIGURES
 
-    def of(self, method: str, wall: Target | None = None) -> tuple[BenchResult, ...]:
+    def of(self, method: str, wall: str | None = None) -> tuple[KeptRun, ...]:
         """Return the results of a method on a wall or on all, in one order for all methods."""
         found = [r for r in self.all if r.method == method and wall in (None, r.wall)]
         order = {known: number for number, known in enumerate(self.walls)}
         return tuple(sorted(found, key=lambda result: (order[result.wall], result.seed)))
 
-    def values(
-        self, method: str, figure: str, wall: Target | None = None
-    ) -> tuple[float | None, ...]:
+    def values(self, method: str, figure: str, wall: str | None = None) -> tuple[float | None, ...]:
         """Return a figure of the results of a method, as :meth:`of` orders them."""
-        return tuple(result.figures[figure] for result in self.of(method, wall))
+        return tuple(result.figure(figure) for result in self.of(method, wall))
 
     def counting(self, one: str, other: str) -> tuple[bool, ...]:
         """Say which results of two methods, as :meth:`of` orders them, count as pairs.
@@ -102,9 +68,9 @@ class BenchResults:
         return tuple(counts)
 
 
-def _comparable(result: BenchResult) -> tuple[float | None, ...]:
+def _comparable(result: KeptRun) -> tuple[float | None, ...]:
     """Return the figures without the rounding errors of sums."""
-    figures = (result.figures[name] for name in sorted(result.figures))
+    figures = (result.figure(name) for name in (*FIGURES, SHAKE))
     return tuple(None if value is None else round(value, DECIMALS) for value in figures)
 
 
@@ -118,7 +84,7 @@ def comparison(results: BenchResults) -> tuple[Table, ...]:
     walls = worded(
         BENCH["public"]["walls"],
         (
-            (wall.name, method, len(results.of(method, wall)),
+            (wall, method, len(results.of(method, wall)),
              *_cells(figures, [results.of(method, wall)]))
             for wall in results.walls
             for method in results.methods
@@ -142,12 +108,12 @@ def _columns(figures: Sequence[str]) -> tuple[str, ...]:
     return tuple(text for name, short in named for text in (name, f"±{short}", f"best {short}"))
 
 
-def _cells(figures: Sequence[str], walls: Sequence[Sequence[BenchResult]]) -> tuple[Cell, ...]:
+def _cells(figures: Sequence[str], walls: Sequence[Sequence[KeptRun]]) -> tuple[Cell, ...]:
     """Return mean, spread and best of every figure; None where no wall of the method has it."""
     cells: list[Cell] = []
     for figure in figures:
         defined = [
-            [value for result in each if (value := result.figures[figure]) is not None]
+            [value for result in each if (value := result.figure(figure)) is not None]
             for each in walls
         ]
         found = [values for values in defined if values]
@@ -155,7 +121,7 @@ def _cells(figures: Sequence[str], walls: Sequence[Sequence[BenchResult]]) -> tu
         cells += [
             _mean([fmean(values) for values in found]),
             _rounded(sqrt(fsum(s * s for s in spreads) / len(spreads))) if spreads else None,
-            _mean([(max if HIGHER_IS_BETTER[figure] else min)(values) for values in found]),
+            _mean([(min if figure in LOWER_IS_BETTER else max)(values) for values in found]),
         ]
     return tuple(cells)
 
@@ -189,7 +155,7 @@ def _times(results: BenchResults) -> Table:
             seconds = [result.seconds for result in found]
             spread = _rounded(stdev(seconds), 3) if len(seconds) > 1 else None
             rows.append(
-                (wall.name, method, _rounded(fmean(seconds), 3), spread, _rounded(min(seconds), 3))
+                (wall, method, _rounded(fmean(seconds), 3), spread, _rounded(min(seconds), 3))
             )
     return worded(BENCH["public"]["times"], rows)
 
@@ -287,7 +253,7 @@ def _compared(
     results: BenchResults, figure: str, pair: tuple[str, str], counting: Sequence[bool]
 ) -> MethodPair | None:
     first, second = (list(compress(results.values(name, figure), counting)) for name in pair)
-    return compared(first, second, higher=HIGHER_IS_BETTER[figure])
+    return compared(first, second, higher=figure not in LOWER_IS_BETTER)
 
 
 def _pairs_table(
@@ -341,7 +307,7 @@ def _ranking(
 
 
 def _mean_ranks(results: BenchResults, figure: str) -> dict[str, float]:
-    sign = -1.0 if HIGHER_IS_BETTER[figure] else 1.0
+    sign = 1.0 if figure in LOWER_IS_BETTER else -1.0
     columns = [results.values(method, figure) for method in results.methods]
     ranks = [
         rankdata([np.inf if value is None else sign * round(value, DECIMALS) for value in row])
@@ -373,8 +339,8 @@ def _shown(key: PairKey, pair: MethodPair, p: float) -> str:
 
 
 def _better(key: PairKey, pair: MethodPair) -> str:
-    first_is_higher = pair.mean > 0
-    return key[1] if first_is_higher == HIGHER_IS_BETTER[key[0]] else key[2]
+    lower_is_better = key[0] in LOWER_IS_BETTER
+    return key[2] if (pair.mean > 0) == lower_is_better else key[1]
 
 
 def _signed_rank(differences: np.ndarray) -> float:

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import accumulate
-from statistics import fmean, median
+from statistics import fmean
 
 from matplotlib.axes import Axes
 
@@ -19,6 +19,7 @@ from drystone.statics.flow.nonassociative import NonassociativeResult, nonassoci
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult, LimitStatus
+from drystone_lab.paired import median_of
 from drystone_lab.pictures.charts import figure_of, group_panels
 from drystone_lab.pictures.walls import Panel, sheet_of, wall_aspect
 from drystone_lab.reproduce import cells
@@ -73,7 +74,7 @@ def _summary(case: BaseCase) -> Rows:
     for side, papers in ALPHAS.items():
         found = case.over_mu(side)
         words = f"{min(found):.2f} to {max(found):.2f}" if found else None
-        row += [rounded(median(found)) if found else None, words, papers]
+        row += [rounded(median_of(found)), words, papers]
     yield tuple(row)
 
 

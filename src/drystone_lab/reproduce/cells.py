@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from statistics import median
 
 from scipy.stats import spearmanr
 
+from drystone_lab.paired import LOWER_IS_BETTER, median_of
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.table import Cell
 
@@ -20,8 +20,6 @@ COLUMNS = (
 
 METRICS = ("F_SF", "F_AV", "F_AH", "F_LR")
 
-LOWER_IS_BETTER = ("F_AH", "T_LEVEL", "E_FLUSH")
-
 DIGITS = 4
 """Decimals of a number in a table, which all machines agree on."""
 
@@ -31,7 +29,7 @@ def summary(outcomes: Sequence[RunOutcome]) -> tuple[Cell, ...]:
     found: list[Cell] = [len(outcomes), outcomes[0].figures["stones"]]
     for name, written in FORMATS.items():
         values = figures_of(outcomes, name)
-        found.append(rounded(median(values)) if values else None)
+        found.append(rounded(median_of(values)))
         found.append(f"{min(values):{written}} to {max(values):{written}}" if values else None)
     return tuple(found)
 
@@ -91,8 +89,7 @@ def wins(
     sign = -1 if figure in LOWER_IS_BETTER else 1
     better = sum(sign * each > SAME for each in more)
     worse = sum(sign * each < -SAME for each in more)
-    middle = rounded(median(more)) if more else None
-    return figure, better, len(more) - better - worse, worse, middle
+    return figure, better, len(more) - better - worse, worse, rounded(median_of(more))
 
 
 LEVEL = 0.05

@@ -60,7 +60,7 @@ def reproduce(
         progress.begin(name)
         made = _made(name, items[name], report, options, runner)
         report.write_report(items)
-        progress.end(made.status)
+        progress.line(made.status)
         yield made
 
 
@@ -104,27 +104,22 @@ class ItemProgress:
         self._total = total
         self._begun = clock()
         self._number = 0
-        self._name = ""
-        self._said = float("-inf")
 
     def begin(self, name: str) -> None:
         """Say that an item is begun."""
         self._number += 1
         self._name = name
         self._said = float("-inf")
-        self._line("")
+        self.line("")
 
     def walls(self, text: str) -> None:
         """Say how many of its walls are there, unless that was just done."""
         if self._clock() - self._said >= EVERY_S:
             self._said = self._clock()
-            self._line(text)
+            self.line(text)
 
-    def end(self, text: str) -> None:
-        """Say what became of it."""
-        self._line(text)
-
-    def _line(self, text: str) -> None:
+    def line(self, text: str) -> None:
+        """Say something of it."""
         elapsed = timedelta(seconds=int(self._clock() - self._begun))
         what = f"{self._number} of {self._total}, {self._name}"
         self._say(f"[{elapsed}] {what}{': ' if text else ''}{text}")

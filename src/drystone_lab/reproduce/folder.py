@@ -1,7 +1,6 @@
 """A folder of items that were made: their files, and what was asked for."""
 
 import json
-import math
 import os
 import platform
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -19,7 +18,7 @@ from drystone.io.published import SETS
 from drystone.kernels.backend import describe
 from drystone.whole_files import write_whole
 from drystone_lab.reproduce.item import ItemPicture, Output, PaperItem
-from drystone_lab.reproduce.page import PAGE, Miss, write_item_page, write_page
+from drystone_lab.reproduce.page import PAGE, write_item_page, write_page
 from drystone_lab.runs.outcome import RunStore
 from drystone_lab.table import Table
 
@@ -73,19 +72,11 @@ def made_with(now: TimeOfDay) -> dict[str, Any]:
     }
 
 
-TIMES = "_times"
-
-
 def write_tables(folder: Path, output: Output) -> dict[str, list[dict[str, Any]]]:
     """Write the tables of an item; those of times under names that end with ``_times.csv``."""
-    tables = [(name, table) for name, table in output.tables]
-    times = [(name.removesuffix(TIMES) + TIMES, table) for name, table in output.times]
-    names = [name for name, _ in (*tables, *times)]
-    if len({*names}) < len(names) or any(name.endswith(TIMES) for name, _ in tables):
-        raise ValueError(f"names of tables are not unique: {', '.join(names)}")
     return {
-        "tables": [_write_table(folder, name, table) for name, table in tables],
-        "times": [_write_table(folder, name, table) for name, table in times],
+        "tables": [_write_table(folder, name, table) for name, table in output.tables],
+        "times": [_write_table(folder, f"{name}_times", table) for name, table in output.times],
     }
 
 
@@ -112,9 +103,6 @@ def files_of(record: dict[str, Any]) -> Iterator[str]:
 
 
 def _write_table(folder: Path, name: str, table: Table) -> dict[str, Any]:
-    for row in table.rows:
-        if any(isinstance(cell, float) and not math.isfinite(cell) for cell in row):
-            raise ValueError(f"{name}: a number of {row} is not finite; None says there is none")
     file = f"{name}.csv"
     write_whole(folder / file, table.csv().encode())
     return {
@@ -210,8 +198,7 @@ class ReportFolder:
         """Write the page of everything that was made so far."""
         names = list(order)
         records = [record for name in names if (record := self.record(name)) is not None]
-        misses = [Miss(name, **self.misses[name]) for name in names if name in self.misses]
-        return write_page(self.path / PAGE, records, misses, names)
+        return write_page(self.path / PAGE, records, self.misses, names)
 
     def _remove(self, name: str) -> None:
         """Take away the files of an earlier version, its JSON first: without it none is there."""

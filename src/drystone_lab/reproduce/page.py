@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -103,31 +102,19 @@ SHOWN = 0.624
 """CSS px of a px of a picture: its text is then a little larger than drawn (200 px an inch)."""
 
 
-@dataclass(frozen=True)
-class Miss:
-    """An item that could not be made when it was last asked for."""
-
-    name: str
-    title: str
-    section: str
-    error: str  # Why, with the cure
-
-
 def write_page(
-    path: Path, records: Sequence[Record], misses: Sequence[Miss], order: Sequence[str]
+    path: Path, records: Sequence[Record], misses: Mapping[str, Record], order: Sequence[str]
 ) -> Path:
     """Write the report of everything that was made; pictures and tables are linked beside it.
 
-    A miss may have a record of an earlier time all the same; `order` has the names of all items.
+    `misses` are title, section and error of items that could not be made when they were last asked
+    for; they may have a record of an earlier time all the same.  `order` has the names of all.
     """
-    sections: dict[str, dict[str, Any]] = {miss.name: asdict(miss) for miss in misses}
+    sections = {name: {"name": name, **miss} for name, miss in misses.items()}
     for record in records:
         name = record["name"]
-        sections[name] = {
-            **record,
-            "prefix": f"{name}/",
-            "error": sections.get(name, {}).get("error"),
-        }
+        error = sections.get(name, {}).get("error")
+        sections[name] = {**record, "prefix": f"{name}/", "error": error}
     return _write(
         path,
         title="The paper's tables and figures, made again",

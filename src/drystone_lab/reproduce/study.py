@@ -2,9 +2,9 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from statistics import median
 
 from drystone.model.wall import Wall
+from drystone_lab.paired import median_of
 from drystone_lab.pictures.charts import group_panels
 from drystone_lab.pictures.walls import TitledWall, plot_walls
 from drystone_lab.reproduce import cells
@@ -53,8 +53,7 @@ class Trials:
 
     def median(self, figure: str) -> float | None:
         """Return the median of a figure over the walls that have it; None when none has."""
-        found = cells.figures_of(self.outcomes, figure)
-        return median(found) if found else None
+        return median_of(self.values(figure))
 
     @property
     def middle(self) -> int:

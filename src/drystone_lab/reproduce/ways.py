@@ -2,8 +2,8 @@
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from statistics import median
 
+from drystone_lab.paired import median_of
 from drystone_lab.pictures.charts import figure_of, group_panels, plot_two_figures
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, rounded
@@ -136,8 +136,7 @@ def _wedges_picture(group: StudyWalls, number: int) -> ItemFigure:
 
 
 def _wedge_cells(one: Trials) -> tuple[float | None, ...]:
-    shares = [share for share in _wedge_share(one) if share is not None]
-    return one.median("wedges"), rounded(median(shares))
+    return one.median("wedges"), rounded(median_of(_wedge_share(one)))
 
 
 STABILISATION = PaperItem(

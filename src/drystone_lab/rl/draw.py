@@ -15,29 +15,17 @@ from drystone.model.stone import Stone, StoneSet
 
 @dataclass(frozen=True, kw_only=True)
 class DrawSettings:
-    """What walls are drawn.
+    """What walls are drawn."""
 
-    Parameters
-    ----------
-    kinds : tuple of str
-        Generators, all with the same chance: ``"fourier"``, ``"polygon"``, ``"brick"``,
-        ``"rubble"``.
-    stones : int
-        How many stones arrive, at least 3.
-    size_px : float
-        Square root of the mean area of a stone, at least 8.  Images are not reduced: working and
-        source px are the same.
-    surplus : float
-        Area of all stones over the area of the wall, at least .2.
-    aspect : float
-        Width of the wall over its height, positive.
-    """
-
+    # Generators, all with the same chance: ``"fourier"``, ``"polygon"``, ``"brick"``,
+    # ``"rubble"``
     kinds: tuple[str, ...] = ("fourier", "polygon", "brick", "rubble")
-    stones: int = 20
+    stones: int = 20  # How many stones arrive, at least 3
+    # Square root of the mean area of a stone, at least 8.  Images are not reduced: working
+    # and source px are the same
     size_px: float = 18.0
-    surplus: float = 1.2
-    aspect: float = 2.5
+    surplus: float = 1.2  # Area of all stones over the area of the wall, at least .2
+    aspect: float = 2.5  # Width of the wall over its height, positive
 
     def __post_init__(self) -> None:
         unknown = sorted(set(self.kinds) - set(KINDS))

@@ -22,6 +22,7 @@ from drystone.selection.policies.registry import rule_of
 from drystone_lab.rl.draw import KINDS, DrawSettings, draw_wall
 from drystone_lab.rl.episode import ARRIVING, prepared
 from drystone_lab.rl.train import HELD_OUT
+from drystone_lab.table import markdown_rows
 
 FIGURES = ("merit", "F_SF", "F_AV", "F_AH", "F_LR")
 """What is compared."""
@@ -99,12 +100,6 @@ def differences(first: PolicyFigures, second: PolicyFigures) -> dict[str, Interv
     return {name: Interval.of(np.subtract(first[name], second[name]).tolist()) for name in FIGURES}
 
 
-def table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Return a table in Markdown."""
-    lines = [columns, ["---"] * len(columns), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
-
-
 def report(found: Mapping[str, PolicyFigures], title: str) -> str:
     """Return the means of each policy, and what the first has more than each of the others."""
     first, *others = found
@@ -119,9 +114,9 @@ def report(found: Mapping[str, PolicyFigures], title: str) -> str:
     return "\n\n".join(
         [
             f"{title}: means",
-            table(("policy", *FIGURES), means),
+            markdown_rows(("policy", *FIGURES), means),
             f"{title}: `{first}` less each other, with 95 % intervals (* without 0)",
-            table((f"{first} less", *FIGURES), paired),
+            markdown_rows((f"{first} less", *FIGURES), paired),
         ]
     )
 

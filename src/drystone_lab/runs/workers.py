@@ -163,10 +163,6 @@ def work_of(jobs: int | None, dask_address: str | None) -> Iterator[RunWorker]:
             where="--jobs, --dask",
             cure="Give one of the two; a cluster's workers are its own.",
         )
-    if jobs is not None and jobs < 1:
-        raise UsageError(
-            "E138", f"{jobs} processes can do nothing.", where="--jobs", cure="Give 1 or more."
-        )
     at_work = (
         processes_at_work(jobs or 1) if dask_address is None else cluster_at_work(dask_address)
     )

@@ -40,7 +40,7 @@ def test_points_are_the_values_and_lines_their_medians() -> None:
 
 
 def test_claims_stand_in_their_groups() -> None:
-    ax = plot_groups(VALUES, claims={"none": 0.6}, claim="the paper")
+    ax = plot_groups(VALUES, claims={"none": 0.6})
     cross = _line(ax, "claim-none")
     assert (list(cross.get_xdata()), list(cross.get_ydata())) == ([1], [0.6])
     legend = ax.get_legend()
@@ -124,7 +124,7 @@ POINTS = [
 
 
 def test_points_bands_looks_and_legend():
-    ax = plot_predictions(POINTS, band="friction")
+    ax = plot_predictions(POINTS, "friction")
     for bars, point in zip(ax.containers, POINTS, strict=True):
         line, _, (bar,) = bars
         assert line.get_xydata().tolist() == [[point.measured, point.predicted]]

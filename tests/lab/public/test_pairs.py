@@ -8,23 +8,20 @@ import numpy as np
 import pytest
 from scipy.stats import norm, rankdata, wilcoxon
 
-from drystone_lab.public.suites import walls_of
-from drystone_lab.public.tables import (
-    FIGURES,
-    SHAKE,
-    BenchResult,
-    BenchResults,
-    compared,
-    comparison,
-    pair_tables,
-)
+from drystone_lab.public.store import KeptRun
+from drystone_lab.public.tables import BenchResults, compared, comparison, pair_tables
 
-WALLS = walls_of("bricks")[:2]
+WALLS = ("bricks 2:1", "bricks 3:1")
 
 
 def result(wall, method, seed, **figures):
-    values = dict.fromkeys(FIGURES, 0.5) | figures
-    return BenchResult(wall, method, seed, values, 1.0)
+    values = dict.fromkeys(("F_SF", "F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH"), 0.5) | figures
+    kept = {"shaken": "no", "pga_g": None} | values
+    return KeptRun(
+        run_key="", suite="bricks", suite_version=1, wall=wall, method=method, settings="{}",
+        seed=seed, version="1.0", placed=5, stones=10, wedge_area=0.0, seconds=1.0, made_at="",
+        platform="", **kept,
+    )  # fmt: skip
 
 
 def results(values):
@@ -170,7 +167,7 @@ def test_undefined_values_rank_last():
 def made(**columns):
     return BenchResults(
         tuple(
-            result(wall, "one", seed, **{name: column[wall.name][seed]
+            result(wall, "one", seed, **{name: column[wall][seed]
                                          for name, column in columns.items()})
             for wall in WALLS
             for seed in range(3)
@@ -178,7 +175,7 @@ def made(**columns):
     )  # fmt: skip
 
 
-VALUES = {WALLS[0].name: [0.7, 0.8, 0.9], WALLS[1].name: [0.5, 0.5, 0.53]}
+VALUES = {WALLS[0]: [0.7, 0.8, 0.9], WALLS[1]: [0.5, 0.5, 0.53]}
 
 
 def test_mean_spread_and_best():
@@ -198,7 +195,7 @@ def test_mean_spread_and_best():
 
 
 def test_what_is_not_defined_is_counted_and_never_zero():
-    values = {WALLS[0].name: [None, 0.4, 0.6], WALLS[1].name: [None, None, None]}
+    values = {WALLS[0]: [None, 0.4, 0.6], WALLS[1]: [None, None, None]}
     walls, everything, _ = comparison(made(F_LR=values))
     first, second = walls.records()
     assert first["F_LR"] == pytest.approx(0.5)
@@ -210,8 +207,8 @@ def test_what_is_not_defined_is_counted_and_never_zero():
 
 
 def test_amplitudes_are_there_when_walls_were_shaken():
-    values = {WALLS[0].name: [0.2, None, 0.3], WALLS[1].name: [0.1, 0.1, 0.1]}
-    walls, _, _ = comparison(made(**{SHAKE: values}))
+    values = {WALLS[0]: [0.2, None, 0.3], WALLS[1]: [0.1, 0.1, 0.1]}
+    walls, _, _ = comparison(made(pga_g=values, shaken=dict.fromkeys(WALLS, ["yes"] * 3)))
     assert walls.records()[0]["PGA, g"] == pytest.approx(0.25)
     # Of the yardstick nothing was built, and so it is of walls in which no stone found a place.
     assert any(

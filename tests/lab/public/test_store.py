@@ -1,16 +1,14 @@
-"""Results by version in an SQLite file."""
+"""Results by version in a table."""
 
 import csv
-import sqlite3
-from contextlib import closing
-from dataclasses import replace
-from importlib.util import find_spec
+from dataclasses import astuple, replace
 
 import pytest
 
-from drystone.errors import PlanError, UsageError
+from drystone.errors import InputError, UsageError
+from drystone.io.folder_lock import locked
 from drystone_lab.public.history import drawn_history, history_table, medians_of
-from drystone_lab.public.store import COLUMNS, BenchStore, KeptRun
+from drystone_lab.public.store import COLUMNS, KeptRun, keep, kept_runs
 
 RUN = KeptRun(
     run_key="a", suite="bricks", suite_version=1, wall="bricks 2:1", method="paper", settings="{}",
@@ -20,69 +18,45 @@ RUN = KeptRun(
 )  # fmt: skip
 
 
-def test_runs_come_back_as_they_were(tmp_path):
-    store = BenchStore(tmp_path / "new")
-    assert store.runs() == ()
-    later = replace(RUN, run_key="b", version="0.10.0", F_LR=0.5, pga_g=0.25, shaken="yes")
-    store.put([later, RUN])
-    assert store.runs() == (later, RUN)
-    store.put([replace(RUN, seconds=9.0)])
-    assert [run.seconds for run in store.runs()] == [0.5, 9.0]
+def test_runs_come_back_as_they_were_in_order(tmp_path):
+    store = tmp_path / "new"
+    assert kept_runs(store) == ()
+    later = replace(RUN, run_key="b", version="0.10.0", F_LR=0.1 + 0.2, pga_g=0.25, shaken="yes")
+    keep(store, [RUN, later])
+    assert kept_runs(store) == (later, RUN)
+    keep(store, [replace(RUN, seconds=9.0)])
+    assert [run.seconds for run in kept_runs(store)] == [0.5, 9.0]
+    with (store / "runs.csv").open(newline="") as file:
+        columns, first, second = csv.reader(file)
+    assert tuple(columns) == COLUMNS
+    assert first == [str(value) for value in astuple(later)]
+    assert second[COLUMNS.index("F_LR")] == ""
 
 
-def test_exports_hold_all_runs(tmp_path):
-    store = BenchStore(tmp_path)
-    store.put([RUN, replace(RUN, run_key="b", seed=1, F_LR=0.1)])
-    written = store.export()
-    with (tmp_path / "runs.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert tuple(rows[0]) == COLUMNS
-    assert [(row["seed"], row["F_LR"], row["F_SF"]) for row in rows] == [
-        ("0", "", "0.8"),
-        ("1", "0.1", "0.8"),
-    ]
-    assert len(written) == (1 if find_spec("pyarrow") is None else 2)
+@pytest.mark.parametrize(
+    ("change", "line"),
+    [
+        (lambda text: text.replace("run_key,", "key,"), 1),
+        (lambda text: text.replace(",0.8,", ",much,"), 2),
+        (lambda text: text.replace(",0.5,", ",,"), 2),
+        (lambda text: text[:-40], 2),
+    ],
+)
+def test_other_files_are_not_taken_for_tables(tmp_path, change, line):
+    keep(tmp_path, [RUN])
+    path = tmp_path / "runs.csv"
+    path.write_text(change(path.read_text()))
+    for read in (kept_runs, lambda folder: keep(folder, [RUN])):
+        with pytest.raises(InputError, match="E401") as caught:
+            read(tmp_path)
+        assert caught.value.where == f"{path}:{line}"
 
 
-def test_parquet_has_types(tmp_path):
-    parquet = pytest.importorskip("pyarrow.parquet", reason="extra `bench` is not installed")
-    store = BenchStore(tmp_path)
-    store.put([RUN])
-    store.export()
-    table = parquet.read_table(tmp_path / "runs.parquet")
-    assert table.column_names == list(COLUMNS)
-    assert str(table.schema.field("F_LR").type) == "double"
-    assert table.to_pylist()[0]["F_LR"] is None
-    assert table.to_pylist()[0]["stones"] == 40
-
-
-def test_a_database_that_another_run_writes_to(tmp_path, monkeypatch):
-    store, connect = BenchStore(tmp_path), sqlite3.connect
-    store.put([RUN])
-    monkeypatch.setattr(sqlite3, "connect", lambda path: connect(path, timeout=0.0))
-    with closing(connect(tmp_path / "bench.sqlite")) as other:
-        other.execute("BEGIN EXCLUSIVE")
-        with pytest.raises(UsageError) as caught:
-            store.put([RUN])
-    assert caught.value.code == "E149"
-    assert store.runs() == (RUN,)
-
-
-def test_a_database_on_a_full_disk(tmp_path, monkeypatch):
-    store, connect = BenchStore(tmp_path), sqlite3.connect
-    store.put([RUN])
-
-    def full(path):
-        connection = connect(path)
-        connection.execute("PRAGMA max_page_count = 1")
-        return connection
-
-    monkeypatch.setattr(sqlite3, "connect", full)
-    with pytest.raises(PlanError) as caught:
-        store.put([replace(RUN, run_key=str(k), wall="w" * 1000) for k in range(100)])
-    assert caught.value.code == "E206"
-    assert caught.value.where == str(tmp_path / "bench.sqlite")
-    assert store.runs() == (RUN,)
+def test_a_table_that_another_run_writes_to(tmp_path):
+    keep(tmp_path, [RUN])
+    with locked(tmp_path), pytest.raises(UsageError, match="E149"):
+        keep(tmp_path, [replace(RUN, run_key="b")])
+    assert kept_runs(tmp_path) == (RUN,)
 
 
 HISTORY = [

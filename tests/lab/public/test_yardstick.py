@@ -10,7 +10,7 @@ from drystone_lab import packing
 from drystone_lab.public import bench
 from drystone_lab.public.bench import run_public
 from drystone_lab.public.history import history_table, medians_of
-from drystone_lab.public.store import BenchStore, Stamp
+from drystone_lab.public.store import Stamp, kept_runs
 from drystone_lab.public.suites import method_named, walls_of
 from drystone_lab.runs.outcome import FIGURES, execute
 from drystone_lab.table import BenchSettings
@@ -58,7 +58,7 @@ def test_it_is_in_tables_but_in_no_pairs(monkeypatch: pytest.MonkeyPatch, tmp_pa
     assert [cell for cell in row[3:] if cell is not None] == [row[6], row[8]]
     assert any(note.startswith("spyrrow is a yardstick") for note in walls.notes)
     assert not any("spyrrow" in row for table in others for row in table.rows)
-    kept = {run.method: run for run in BenchStore(tmp_path).runs()}
+    kept = {run.method: run for run in kept_runs(tmp_path)}
     assert (kept["spyrrow"].F_SF, kept["spyrrow"].F_LR) == (row[6] and kept["spyrrow"].F_SF, None)
     assert kept["spyrrow"].F_SF == pytest.approx(row[6], abs=1e-4)
     # It builds no wall, so a history of it has no share of the stones, not 0.
@@ -71,17 +71,7 @@ def test_it_is_in_tables_but_in_no_pairs(monkeypatch: pytest.MonkeyPatch, tmp_pa
 
 
 def history(folder: Path) -> list[dict[str, Any]]:
-    return history_table(medians_of(BenchStore(folder).runs())).records()
-
-
-def test_it_packs_real_strips() -> None:
-    pytest.importorskip("spyrrow", reason="the extra `bench`")
-    spec = method_named("spyrrow").run(WALL, 0)
-    quick = type(spec)(**{**vars(spec), "changes": (("seconds", 1),)})
-    filled = execute(quick, None).figures["F_SF"]
-    assert filled is not None
-    # 30 bricks of 20 x 10 px leave .15 of the wall; a packer finds the rows of them.
-    assert 0.8 < filled <= WALL.source.stones(None).total_area_px / (WALL.width * WALL.height)
+    return history_table(medians_of(kept_runs(folder))).records()
 
 
 def test_what_is_missing_is_said_before_anything_is_done(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,8 +11,7 @@ import pytest
 
 from drystone.errors import InputError, UsageError
 from drystone_lab.reproduce.driver import EVERY_S, ItemProgress, MadeItem, Options, reproduce
-from drystone_lab.reproduce.folder import write_tables
-from drystone_lab.reproduce.item import Output, PaperItem
+from drystone_lab.reproduce.item import PaperItem
 from drystone_lab.runs.outcome import one_by_one
 from drystone_lab.table import Table
 from tests.lab.reproduce import fakes
@@ -85,16 +84,6 @@ def test_cells_of_all_kinds() -> None:
     np_float = type("float64", (float,), {"__repr__": lambda _: "np.float64(1.5)"})
     table = Table("x", ("a", "b"), ((True, np_float(1.5)), ('say "a, b"', 0.1 + 0.2), (None, 3)))
     assert table.csv() == 'a,b\nyes,1.5\n"say ""a, b""",0.30000000000000004\n,3\n'
-
-
-def test_faulty_tables_are_refused(tmp_path: Path) -> None:
-    one, nan = Table("x", ("a",), ((1,),)), Table("x", ("a",), ((float("nan"),),))
-    with pytest.raises(ValueError, match="not finite"):
-        write_tables(tmp_path, Output((), (), (("t", nan),)))
-    with pytest.raises(ValueError, match="not unique"):
-        write_tables(tmp_path, Output((), (), (("t", one), ("t", one))))
-    with pytest.raises(ValueError, match="not unique"):
-        write_tables(tmp_path, Output((), (), (("t_times", one),)))
 
 
 def test_what_is_finished_is_not_made_again(tmp_path: Path) -> None:

@@ -1,6 +1,5 @@
 import math
 
-import numpy as np
 import pytest
 
 from drystone.io.wall_image import read_wall_image
@@ -9,7 +8,6 @@ from drystone.metrics.reduce import reduce_labels
 from drystone_lab.reproduce import fig17
 from drystone_lab.walls import PR
 from tests.lab.reproduce.small_walls import RUBBLE, context, gids, of, rows
-from tests.naive import metrics as naive
 
 MADE = of(fig17.PATHS, RUBBLE)
 
@@ -19,34 +17,22 @@ def where(folder):
     return context(folder)
 
 
-@pytest.fixture(scope="module")
-def joint(where):
-    labels = where.wall(RUBBLE.run(1)).labels
-    filled = np.flatnonzero((labels > 0).any(axis=1))
-    return naive.joint_mask(labels[filled[0] : filled[-1] + 1])
-
-
-def test_lengths_are_those_of_a_search_step_by_step(output, joint):
-    table = rows(output, "paths")
-    for way, expected in (
-        ("vertical", naive.vertical_lengths(joint)),
-        ("horizontal", naive.vertical_lengths(joint.T)),
-    ):
-        lengths = [row["length px"] for row in table if row["way"] == way]
-        assert lengths == pytest.approx(expected, abs=1e-4)
-        assert len(lengths) > 5
-
-
-def test_factors_are_those_of_the_run_and_of_the_table(where, output, joint):
+def test_factors_are_those_of_the_run_and_of_the_table(where, output):
     (row,) = rows(output, "figures")
     (outcome,) = where.run((RUBBLE.run(1),))
     assert row["F_AV %"] == pytest.approx(outcome.figures["F_AV"], abs=1e-4)
     assert row["F_AH %"] == pytest.approx(outcome.figures["F_AH"], abs=1e-4)
-    assert row["F_AV %"] == pytest.approx(naive.vertical_arrangement(joint), abs=1e-4)
-    for way, name in (("horizontal", "F_AH %"), ("vertical", "F_AV %")):
-        excess = [one["longer than straight %"] for one in rows(output, "paths")
-                  if one["way"] == way][:5]  # fmt: skip
-        assert math.fsum(excess) / 5 == pytest.approx(row[name], abs=1e-4)
+    for way, name, straight in (
+        ("horizontal", "F_AH %", row["straight across px"]),
+        ("vertical", "F_AV %", row["straight upright px"]),
+    ):
+        found = [one for one in rows(output, "paths") if one["way"] == way]
+        assert len(found) > 5
+        excess = [one["longer than straight %"] for one in found]
+        assert math.fsum(excess[:5]) / 5 == pytest.approx(row[name], abs=1e-4)
+        lengths = [one["length px"] for one in found]
+        assert lengths == sorted(lengths)
+        assert lengths == pytest.approx([straight * (1 + e / 100) for e in excess], rel=1e-5)
 
 
 def test_the_masons_wall_is_measured_beside_it(tmp_path, data_dir):

@@ -24,6 +24,8 @@ def test_an_item_says_what_it_is(name: str) -> None:
     assert {*item.needs} <= PUBLISHED
     assert {*item.tables} == {*item.words.get("tables", {})}
     assert {*item.times} == {*item.words.get("times", {})} - {"claims"}
+    # Times have files of their own, whose names no table has.
+    assert not any(table.endswith("_times") for table in (*item.tables, *item.times))
 
 
 def test_names() -> None:

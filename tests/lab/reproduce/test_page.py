@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from drystone_lab.reproduce.page import LONG, Miss, duration, heading, write_item_page, write_page
+from drystone_lab.reproduce.page import LONG, duration, heading, write_item_page, write_page
 from drystone_lab.table import written
 from tests.drawing.report.test_report import Page
 
@@ -41,7 +41,7 @@ def record(name: str, *, quick: bool = False, seed: int = 1) -> dict[str, Any]:
 @pytest.fixture
 def page(tmp_path: Path) -> Page:
     records = [record("table2", quick=True, seed=3), record("fig5")]
-    misses = [Miss("fig13", "masons", "§5.1", "E100 R.png: is not there.")]
+    misses = {"fig13": {"title": "masons", "section": "§5.1", "error": "E100 R.png: is not there."}}
     path = write_page(tmp_path / "index.html", records, misses, ORDER)
     return Page(path.read_text(encoding="utf-8"))
 
@@ -95,7 +95,12 @@ def test_a_page_of_one(tmp_path: Path) -> None:
 
 
 def test_a_page_of_nothing(tmp_path: Path) -> None:
-    path = write_page(tmp_path / "index.html", [], [Miss("fig5", "t", "s", "E100")], ORDER)
+    path = write_page(
+        tmp_path / "index.html",
+        [],
+        {"fig5": {"title": "t", "section": "s", "error": "E100"}},
+        ORDER,
+    )
     assert "None of 3 was made so far." in path.read_text(encoding="utf-8")
 
 

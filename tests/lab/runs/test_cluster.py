@@ -13,7 +13,6 @@ from drystone.errors import DrystoneError, UsageError
 from drystone_lab.runs.cluster import check_versions, cluster_at_work, execute_there
 from drystone_lab.runs.outcome import Runner, RunStore, RunWorker, one_by_one
 from drystone_lab.runs.spec import RunSpec, published
-from drystone_lab.runs.workers import processes_at_work
 from tests.lab.runs.bricks import NOT_SIX, SOURCE, deadly, kept, picture, run
 
 distributed = pytest.importorskip("distributed", reason="the extra `dask` is not installed")
@@ -61,8 +60,6 @@ def test_outcomes_are_the_same_bytes_whoever_works(work: RunWorker, tmp_path: Pa
 
     one = kept_by("one", one_by_one)
     assert set(one) == {f"{spec.key}.json" for spec in specs}
-    with processes_at_work(2) as two:
-        assert kept_by("two", two) == one
     assert kept_by("dask", work) == one
 
 
