@@ -111,7 +111,7 @@ def _squeezed_in(built: Built, around: Polygons, gap: float) -> tuple[Built, dic
         return [(i, way) for i, way in found if boxes[i, 1] < top and boxes[i, 3] > bottom]
 
     def aside(shift: float) -> Points:
-        return built.corners + np.array((shift, 0.0))
+        return np.asarray(built.corners + np.array((shift, 0.0)))
 
     def most(shift: float, sign: float) -> float:
         ways = neighbours(aside(shift), sign)
