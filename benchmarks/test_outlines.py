@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.naive import asides as naive_asides
 from tests.naive import coverage as naive_coverage
 from tests.naive import crevice as naive_crevice
 from tests.naive import drops as naive_drops
@@ -10,6 +11,7 @@ from tests.naive import meetings as naive_meetings
 from benchmarks.conftest import Row, Timer
 from benchmarks.outlines import CELL, OutlineScene, outline_scene
 from benchmarks.scenes import Stock
+from drystone.kernels.asides import asides
 from drystone.kernels.coverage import coverage
 from drystone.kernels.crevice import crevice
 from drystone.kernels.drops import Wanted, drops
@@ -23,6 +25,7 @@ DROPS = "a stone dropped onto every column"
 SETTLE = "settling of a dropped stone"
 MEETINGS = "where a stone touches the wall"
 CREVICE = "free space under a stone"
+ASIDES = "which stones a stone that is pressed in pushes how far"
 
 ROUNDS = 20
 
@@ -173,3 +176,24 @@ def test_crevice_slowly(timer: Timer, wall: OutlineScene, resting: list[Points])
                 naive_crevice.gap_at(corners, wall.polygons, x)
 
     timer.times(1, row(wall, CREVICE, len(resting), "an upright line each px"), call)
+
+
+def test_asides(timer: Timer, wall: OutlineScene, resting: list[Points]) -> None:
+    """Press stones in, a little aside."""
+    pressed = [corners + np.array((4.0 * CELL, 0.0)) for corners in resting]
+    timer.times(
+        ROUNDS,
+        row(wall, ASIDES, len(pressed)),
+        lambda: [asides(one, wall.polygons, 0.0, 1.0) for one in pressed],
+    )
+
+
+@pytest.mark.slow
+def test_asides_slowly(timer: Timer, wall: OutlineScene, resting: list[Points]) -> None:
+    """The same line by line."""
+    pressed = [corners + np.array((4.0 * CELL, 0.0)) for corners in resting]
+    timer.times(
+        1,
+        row(wall, ASIDES, len(pressed), "Shapely, line by line"),
+        lambda: [naive_asides.asides(one, wall.outlines, 0.0, 1.0) for one in pressed],
+    )
