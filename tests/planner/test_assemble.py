@@ -9,7 +9,7 @@ from drystone.model.placement import Placement, Wedge
 from drystone.model.site import Site
 from drystone.model.stone import Stone, StoneSet
 from drystone.model.wall import Group, Wall
-from drystone.planner.assemble import Frame, plan_metrics, plan_steps
+from drystone.planner.assemble import plan_metrics, plan_steps
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.evaluate import action_indices
 from drystone.planner.settings import method_settings
@@ -26,7 +26,7 @@ from tests.planner.scenes import blocks, rubble
 SCALE, PX_PER_M = 0.5, 200.0
 
 
-def wedged_build() -> tuple[Build, Frame]:
+def wedged_build() -> Build:
     """A slab of 40 x 8 source px on two wedges of 4 x 2 working px."""
     site = Site.from_source(60, 40, SCALE, PX_PER_M)
     posed = PoseBook(SCALE).pose(Stone(7, np.ones((8, 40), bool)), 0.0)
@@ -42,31 +42,31 @@ def wedged_build() -> tuple[Build, Frame]:
     indices, course = action_indices(Landscape.of(empty), stabilised, resistance, None, 4.0)
     proposal = Proposal(stabilised, 0.0)
     action = Candidate(proposal, indices, course, model, resistance)
-    return Build.empty(site, model.mu, 80.0).add(action), Frame(60.0, 40.0, site)
+    return Build.empty(site, model.mu, 80.0).add(action)
 
 
 def test_areas_are_in_square_metres_when_a_scale_is_known() -> None:
-    build, frame = wedged_build()
-    metrics = plan_metrics(build, frame, build.actions[-1].resistance)
+    build = wedged_build()
+    metrics = plan_metrics(build, build.actions[-1].resistance)
     # 16 working px of 2 source px each way, 200 source px in a metre
     assert metrics.wedge_area == pytest.approx(16 * (2 / 200) ** 2)
 
 
 def test_the_filling_counts_source_areas_not_pixels() -> None:
     """A stone of 5 x 3 source px is 3 x 2 or 2 x 2 px at half size, never 3.75."""
-    build, frame = wedged_build()
+    build = wedged_build()
     stone = Stone(1, np.ones((3, 5), bool))
     posed = PoseBook(SCALE).pose(stone, 0.0)
     assert posed.area_px != stone.area_px * SCALE**2
     result = plan_wall(StoneSet((stone,)), 10, 8, method="paper", scale=SCALE)
     assert result.metrics.F_SF == pytest.approx(15 / 80)
-    metrics = plan_metrics(build, frame, build.actions[-1].resistance)
+    metrics = plan_metrics(build, build.actions[-1].resistance)
     assert metrics.F_SF == pytest.approx(40 * 8 / (60 * 40))
 
 
 def test_the_multipliers_of_a_group_stand_at_its_last_step_only() -> None:
-    build, frame = wedged_build()
-    steps = plan_steps(build, frame, {7: 1})
+    build = wedged_build()
+    steps = plan_steps(build, {7: 1})
     assert [step.kind for step in steps] == ["stone", "wedge", "wedge"]
     assert [step.step for step in steps] == [1, 2, 3]
     assert [step.alpha_left is None for step in steps] == [True, True, False]
@@ -74,8 +74,8 @@ def test_the_multipliers_of_a_group_stand_at_its_last_step_only() -> None:
 
 
 def test_a_wedge_polygon_is_in_metres() -> None:
-    build, frame = wedged_build()
-    wedge = plan_steps(build, frame, {7: 1})[1]
+    build = wedged_build()
+    wedge = plan_steps(build, {7: 1})[1]
     corners = np.array(wedge.polygon) * 100  # type: ignore[union-attr]
     assert corners.min(axis=0) == pytest.approx([2.0, 0.0])
     assert corners.max(axis=0) == pytest.approx([6.0, 2.0])

@@ -15,7 +15,6 @@ from drystone.errors import InputError, UsageError
 from drystone.generate import RubbleSettings, rubble_stones
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
-from drystone.planner.assemble import Frame
 from drystone.planner.events import Step, Stopped
 from drystone.planner.measured import MeasuredPose, fitted
 from drystone.planner.observe import Measurement, Observation
@@ -131,7 +130,7 @@ def found_wrong(one: Planner) -> set[str]:
     """What the checker says of the wall, which it builds again from the poses alone."""
     provenance = {"version": "0", "method": "custom", "seed": 1, "settings": one.settings.as_dict()}
     stopped = one.stopped or Stopped("interrupted", "asked for")
-    plan = finish_plan(one, Frame(250.0, 95.0, SITE), stopped, provenance, 0.0).plan
+    plan = finish_plan(one, stopped, provenance, 0.0).plan
     return {problem.code for problem in check_plan(plan, one.workshop.stones).problems}
 
 

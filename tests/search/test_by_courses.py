@@ -11,7 +11,6 @@ import pytest
 from numpy.random import Generator
 
 from drystone.model.site import Site
-from drystone.planner.assemble import Frame
 from drystone.planner.build import Build
 from drystone.planner.evaluate import Evaluator, Loaded
 from drystone.planner.events import Stopped
@@ -87,12 +86,11 @@ def test_a_plan_is_laid_and_the_rest_goes_on_top(planned: FoundWall, yard: Yard)
     again, *others = (newly_planned(yard, rng(seed)) for seed in (14, 3, 4))
     assert poses(not_none(again)) == poses(planned)
     assert any(other is not None and poses(other) != poses(planned) for other in others)
-    site = yard.workshop.site
     begun = yard.planner()
     begun.build = planned.build
     provenance = {"version": "0", "method": "best", "seed": 0, "settings": yard.settings.as_dict()}
     stopped = Stopped("stones", "no stones are left")
-    result = finish(begun, Frame(*site.extent_px, site), stopped, provenance, 0.0)
+    result = finish(begun, stopped, provenance, 0.0)
     assert check_plan(result.plan, yard.workshop.stones).problems == ()
 
 

@@ -19,7 +19,6 @@ from drystone.model.placement import Settled, Wedge
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Group, outlined
-from drystone.planner.assemble import Frame
 from drystone.planner.build import Build
 from drystone.planner.deadline import Deadline, TimeIsUp
 from drystone.planner.events import Stopped
@@ -119,12 +118,11 @@ def value(build: Build) -> float:
 
 def check(made: Planner, build: Build, stones: StoneSet) -> None:
     """See that the plan of a wall, written and read again, is true, and that stones keep apart."""
-    settings, site = made.settings, made.workshop.site
+    settings = made.settings
     made.build = build
     provenance = {"version": "0", "method": "custom", "seed": 1, "settings": settings.as_dict()}
     stopped = Stopped("stones", "all stones placed")
-    frame = Frame(*site.extent_px, site)
-    result = finished(made, frame, stopped, provenance, 0.0)
+    result = finished(made, stopped, provenance, 0.0)
     plan = plan_from_json(json.loads(json.dumps(plan_to_json(result.plan))))
     report = check_plan(plan, stones, wall_labels=result.wall.labels)
     assert report.problems == ()
