@@ -2,7 +2,6 @@
 
 import signal
 from functools import partial
-from pathlib import Path
 
 import pytest
 
@@ -16,7 +15,7 @@ SMALL = "[search]\npasses = 3\nchains = 2\nshare_every = 2\n"
 
 
 @pytest.fixture(scope="module")
-def stones(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def stones(tmp_path_factory):
     return made_stones(tmp_path_factory.mktemp("stones") / "few.png", 8, 100, 36, 2)
 
 
@@ -28,9 +27,7 @@ def stones(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (("--budget", "13", "--jobs", "2"), "KILL", "wall 7", False),
     ],
 )
-def test_nothing_runs_on_and_nothing_is_lost(
-    options: tuple[str, ...], sent: str, pause: str, group: bool, stones: Path, tmp_path: Path
-) -> None:
+def test_nothing_runs_on_and_nothing_is_lost(options, sent, pause, group, stones, tmp_path):
     settings = tmp_path / "small.toml"
     settings.write_text(SMALL)
     plan = ("plan", str(stones), "--wall", "100x36", "--scale", "1", "-o", "{folder}", *options)

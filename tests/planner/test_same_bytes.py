@@ -5,7 +5,6 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -19,7 +18,7 @@ from tests.regression.test_same_plan import planned
 METHODS = ("paper",)
 """Beside the default method, with which `WALLS` are built."""
 
-WALLS: dict[str, dict[str, Any]] = {
+WALLS = {
     "energy": {"selection_rule": "score", "search": {"budget": 2}},
     "pivot": {"selection_rule": "algorithm2", "settle": {"method": "pivot"}, "mu": 0.4},
     "wedges": dict(WITH_WEDGES),
@@ -40,7 +39,7 @@ print(describe())
 """
 
 
-def exact(name: str, folder: Path, n_jobs: int = 1) -> tuple[bytes, bytes]:
+def exact(name, folder, n_jobs=1):
     """The bytes of plan.json and wall.png of a few stones on outlines; in metres, at half size."""
     stones, settings = few_stones(), greedy(WALLS[name])
     result = plan_wall(
@@ -58,7 +57,7 @@ LOADS = {"LLC", "F_LR", "F_LR_coulomb", "F_LR_no_setback", "alpha_left", "alpha_
 """What the linear programs say: without a compiler HiGHS solves them, to other last bits."""
 
 
-def parted(plan: Any) -> tuple[Any, list[float]]:
+def parted(plan):
     """A plan without its load factors, and the load factors."""
     if isinstance(plan, list):
         parts = [parted(value) for value in plan]
@@ -72,11 +71,11 @@ def parted(plan: Any) -> tuple[Any, list[float]]:
 
 
 @pytest.mark.parametrize("name", WALLS)
-def test_threads_do_not_shape_walls_of_outlines(name: str, tmp_path: Path) -> None:
+def test_threads_do_not_shape_walls_of_outlines(name, tmp_path):
     assert exact(name, tmp_path / "3", n_jobs=3) == exact(name, tmp_path / "1")
 
 
-def test_kernels_do_not_shape_the_plan(tmp_path: Path) -> None:
+def test_kernels_do_not_shape_the_plan(tmp_path):
     if describe() == "Python":
         pytest.skip("the kernels here run in Python already")
     there = tmp_path / "there"
