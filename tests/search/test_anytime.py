@@ -1,10 +1,10 @@
 """A search: the same budget gives the same wall, and a larger one none that is worse."""
 
-import math
 import sys
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +15,7 @@ from drystone.planner.events import Callbacks
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import UNLIMITED, SearchSettings
 from drystone.planner.solves import Solves
+from drystone.planner.workshop import Workshop
 from drystone.search import anytime, chain
 from drystone.search.anytime import (
     BATCH,
@@ -40,7 +41,7 @@ from drystone.search.processes import processes
 from drystone.search.whole_search import run_to_end
 from drystone.search.yard import Yard
 from drystone.verify.check import check_plan
-from tests.planner.scenes import RUBBLE_SITE, Ticks, after_looks, blocks, finish, greedy, rubble
+from tests.planner.scenes import RUBBLE_SITE, after_looks, blocks, finish, greedy, rubble
 
 SMALL = {"passes": 3, "chains": 2, "share_every": 2, "cycle": 3}
 """A search that does everything within ten walls."""
@@ -60,16 +61,21 @@ WALLS = {
 LOOPS = {name for names in WALLS.values() for name in names}
 
 
-def first(budget, seed=1, patience=12):
+WORKSHOP = Workshop.prepare(rubble(), RUBBLE_SITE, greedy())
+
+
+def planner_of(budget, seed=1, patience=12):
     search = {"budget": budget, "patience": patience, **SMALL}
     settings = greedy({"search": search})
-    return finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=settings))
+    return Planner(rubble(), RUBBLE_SITE, seed=seed, settings=settings, workshop=WORKSHOP)
 
 
-def searched(planner, jobs=1, until=NEVER):
-    yard = Yard.of(planner, until)
-    with processes(jobs) as executor:
-        return list(searching(FoundWall.of(planner), yard, planner.seed, executor))
+def first(*asked, **more):
+    return finish(planner_of(*asked, **more))
+
+
+def searched(planner, executor=None, until=NEVER):
+    return list(searching(FoundWall.of(planner), Yard.of(planner, until), planner.seed, executor))
 
 
 def judged(planner):
@@ -141,9 +147,10 @@ def test_every_other_wall_of_a_search_keeps_open_joints():
     assert joints == [0.0, 0.03, 0.0, 0.03]
 
 
-def test_after_many_walls_in_vain_other_first_walls_begin_another_round(monkeypatch):
-    begun = []
-    chained = []
+@pytest.fixture(scope="module")
+def rounds():
+    """A search of several rounds to its end, and where the clock was looked at in it."""
+    begun, chained, inside, found = [], [], set(), []
 
     def one_pass(job, number, share):
         begun.append(number)
@@ -153,15 +160,32 @@ def test_after_many_walls_in_vain_other_first_walls_begin_another_round(monkeypa
         chained.append((link.number, link.done))
         return chain.more_links(job, link, count)
 
-    monkeypatch.setattr(anytime, "one_pass", one_pass)
-    monkeypatch.setattr(anytime, "more_links", more_links)
-    whole = searched(first(25, seed=1, patience=1))
+    def look(_):
+        names, frame = set(), sys._getframe(1)
+        while frame is not None:
+            names.add(frame.f_code.co_name)
+            frame = frame.f_back
+        inside.update((inner, outer) for inner in LOOPS & names for outer in names & {*WALLS})
+
+    planner = planner_of(25, patience=1)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(anytime, "one_pass", one_pass)
+        patch.setattr(anytime, "more_links", more_links)
+        patch.setattr(Deadline, "look", look)
+        run_to_end(planner, told=found.append)
+    whole = [one for one in found if one is not None]
+    return SimpleNamespace(
+        planner=planner, begun=begun, chained=chained, inside=inside, whole=whole
+    )
+
+
+def test_after_many_walls_in_vain_other_first_walls_begin_another_round(rounds):
+    begun, whole = rounds.begun, rounds.whole
     assert len(begun) > 3
     assert begun == list(range(1, len(begun) + 1))
-    assert chained[:2] == [(0, 0), (1, 0)]
+    assert rounds.chained[:2] == [(0, 0), (1, 0)]
     # The chains of another round draw anew.
-    assert (2, 0) in chained
-    assert (3, 0) in chained
+    assert {(2, 0), (3, 0)} <= {*rounds.chained}
     assert all(a.walls < b.walls for a, b in pairwise(whole))
     assert whole[-1].walls == 25
     # What earlier rounds have found is not lost.
@@ -169,57 +193,37 @@ def test_after_many_walls_in_vain_other_first_walls_begin_another_round(monkeypa
     assert all(any(same(p.best, kept) for kept in p.kept) for p in whole)
 
 
-def test_a_part_of_several_rounds_is_a_search_with_a_smaller_budget():
-    """What the clock cut off, the budget that is recorded repeats."""
-    whole = searched(first(21, patience=1))
-    for part in (whole[3], whole[-3]):
-        assert alike(searched(first(part.walls, patience=1))[-1], part)
-
-
-def test_what_was_built_in_time_counts_even_where_a_wall_was_cut_off():
-    clock = Ticks()
-    assert searched(first(9), until=Deadline(math.inf, clock))[-1].walls == 9
-    reached = set()
-    for looks in range(0, clock.count, clock.count // 5):
-        timed = searched(first(1000), until=after_looks(looks))[-1]
-        again = searched(first(timed.walls))[-1]
-        assert again.walls == timed.walls
-        # There is no time to judge a first wall by both flow rules: its merit is then known less.
-        best = again.best if looks else replace(again.best, merit=timed.best.merit)
-        assert same(best, timed.best)
-        assert again.solves == timed.solves
-        reached.add(timed.walls)
-    assert len(reached) > 3
-    assert min(reached) == 1
-
-
-def test_the_clock_is_looked_at_inside_everything_that_takes_long(monkeypatch):
+def test_the_clock_is_looked_at_inside_everything_that_takes_long(rounds):
     """In first walls by policy and by courses, restarts, chains, wedging, and judging."""
-    inside = set()
-
-    def look(_):
-        names, frame = [], sys._getframe(1)
-        while frame is not None:
-            names.append(frame.f_code.co_name)
-            frame = frame.f_back
-        inside.update(
-            (inner, outer) for inner in LOOPS for outer in WALLS if {inner, outer} <= {*names}
-        )
-
-    monkeypatch.setattr(Deadline, "look", look)
-    run_to_end(first(24, seed=1, patience=1))
-    missing = {(inner, outer) for outer, inners in WALLS.items() for inner in inners} - inside
-    assert not missing
+    asked = {(inner, outer) for outer, inners in WALLS.items() for inner in inners}
+    assert not asked - rounds.inside
 
 
-def test_processes_change_nothing():
-    one, two = searched(first(16, patience=1)), searched(first(16, patience=1), jobs=2)
-    assert all(alike(a, b) for a, b in zip(one, two, strict=True))
-    # Every task has a copy of the clock as it is when it is handed over.
-    timed = searched(first(9), jobs=2, until=after_looks(500))[-1]
+def test_a_part_of_several_rounds_in_processes_is_a_search_with_a_smaller_budget(rounds):
+    """What the clock cut off, the budget that is recorded repeats."""
+    part = rounds.whole[:-2]
+    with processes(2) as workers:
+        again = searched(first(part[-1].walls, patience=1), workers)
+        # Every task has a copy of the clock as it is when it is handed over.
+        timed = searched(first(9), workers, until=after_looks(500))[-1]
+    assert all(alike(a, b) for a, b in zip(again, part, strict=True))
     again = searched(first(timed.walls))[-1]
     assert again.walls == timed.walls
     assert same(again.best, timed.best)
+
+
+def test_what_was_built_in_time_counts_even_where_a_wall_was_cut_off(rounds):
+    known, reached = {one.walls: one for one in rounds.whole}, set()
+    for looks in (0, 150, 300, 500):
+        timed = searched(first(1000, patience=1), until=after_looks(looks))[-1]
+        again = known.get(timed.walls) or searched(first(timed.walls, patience=1))[-1]
+        # There is no time to judge a first wall by both flow rules: its merit is then known less.
+        best = again.best if looks else replace(again.best, merit=timed.best.merit)
+        assert same(best, timed.best)
+        assert (again.walls, again.solves) == (timed.walls, timed.solves)
+        reached.add(timed.walls)
+    assert len(reached) > 2
+    assert min(reached) == 1
 
 
 def test_the_clock_ends_a_search_and_the_plan_says_after_how_many_walls(monkeypatch):
@@ -236,6 +240,7 @@ def test_the_clock_ends_a_search_and_the_plan_says_after_how_many_walls(monkeypa
         rubble(), 100, 36, scale=1.0, seed=2, settings=settings, budget=used, seconds=1e6
     )
     assert again.plan == timed.plan
+    assert again.choice == ()
     policy = greedy({"selection_rule": "lowest", "search": {"budget": 1}})
     result = plan_wall(rubble(), 100, 36, scale=1.0, settings=policy, seconds=100.0)
     assert result.plan.settings["search"]["budget"] == 1
@@ -264,30 +269,25 @@ def test_an_interrupt_keeps_the_best_wall_so_far():
     assert told[-1].stones == len(best.groups)
 
 
-def test_a_search_goes_on_from_where_it_stood_to_the_walls_that_it_would_have_found():
-    planner = first(25, seed=1, patience=1)
-    whole = searched(planner)
+def test_a_search_goes_on_from_where_it_stood_to_the_walls_that_it_would_have_found(rounds):
+    planner, whole = rounds.planner, rounds.whole
     stood = [k for k, one in enumerate(whole) if one.state is not None]
-    rounds = {state(whole[k]).number for k in stood}
-    assert len(rounds) > 1
-    assert {state(whole[k]).chains is None for k in stood} == {True, False}
+    assert len({whole[k].state.number for k in stood}) > 1
+    late = {whole[k].state.chains is None: k for k in stood}
+    assert late.keys() == {True, False}
     # Where there is but a first wall, and where the budget cut a chain short, there is nothing.
     assert set(range(len(whole))) - set(stood) <= {0, len(whole) - 1}
     yard = Yard.of(planner)
-    for k in stood[1::4]:
-        again = list(searching(state(whole[k]), yard, planner.seed))
-        assert state(whole[k]).walls == whole[k].walls
+    for k in late.values():
+        again = list(searching(whole[k].state, yard, planner.seed))
+        assert whole[k].state.walls == whole[k].walls
         assert all(alike(one, other) for one, other in zip(again, whole[k:], strict=True))
     # One that goes on with a smaller budget ends.
     last = whole[stood[-1]]
-    assert state(last).before is not None
+    assert last.state.before is not None
     less = planner.settings.updated({"search": {"budget": 1}})
-    (only,) = searching(state(last), Yard(planner.workshop, less), planner.seed)
+    (only,) = searching(last.state, Yard(planner.workshop, less), planner.seed)
     assert (only.walls, only.best) == (last.walls, last.best)
-
-
-def state(progress):
-    return progress.state
 
 
 def test_a_plan_that_is_kept_is_that_of_an_interrupt_and_leads_to_the_whole_one():
@@ -305,9 +305,9 @@ def test_a_plan_that_is_kept_is_that_of_an_interrupt_and_leads_to_the_whole_one(
     assert [step.stone for step in partial.plan.stone_steps] == [
         group.stone_id for group in one.progress.best.groups
     ]
-    for one in told[len(placed) + 1 :: 2]:
+    for one in told[len(placed) + 1 :: 3]:
         again = plan_wall(
-            stones, 100, 36, scale=1.0, seed=1, settings=settings, state=state(one.progress)
+            stones, 100, 36, scale=1.0, seed=1, settings=settings, state=one.progress.state
         )
         assert again.plan == whole.plan
 
@@ -419,23 +419,21 @@ def test_first_walls_end_when_they_beat_none_that_was_not_planned():
     assert not stale([packed(1.0 - PROMISE / 2, planned=True), *level])
 
 
-def test_the_best_is_among_them_and_none_beats_another():
-    found = searched(first(12, seed=4))
+def test_what_none_beats_is_kept_and_becomes_plans_that_hold():
+    settings, told = greedy({"search": {"budget": 12, **SMALL}}), []
+    result = plan_wall(
+        rubble(), 100, 36, scale=1.0, seed=4, settings=settings, choice=True, keep=told.append
+    )
+    found = [one.progress for one in told if one.progress]
     assert max(len(progress.kept) for progress in found) > 1
     for progress in found:
         assert same(progress.kept[0], progress.best)
         assert archived((), progress.kept) == progress.kept
-
-
-def test_what_is_kept_becomes_plans_that_hold():
-    settings = greedy({"search": {"budget": 12, **SMALL}})
-    result = plan_wall(rubble(), 100, 36, scale=1.0, seed=4, settings=settings, choice=True)
     assert len(result.choice) > 1
     assert result.choice[0].plan == result.plan
     for one in result.choice:
         report = check_plan(one.plan, rubble(), wall_labels=one.wall.labels)
         assert report.problems == ()
-    assert plan_wall(rubble(), 100, 36, scale=1.0, seed=4, settings=greedy()).choice == ()
 
 
 def ids(wall):
