@@ -60,15 +60,6 @@ def test_closed_forms(scene, direction, expected):
     assert trial.moved
 
 
-def test_density_weighs():
-    """A heavy foot and a light head: 5.5 b / (2 x 5 x .5 + ...) by moments about the toe."""
-    column = scene_of((0, 0, 1, 1), (0, 1, 1, 1), mu=0.9)
-    # Both topple about the toe of the lower one unless the upper one goes first, at 1.
-    heavy_head = EngineScene(column.outlines, 0.9, densities={2: 4.0})
-    expected = (1 + 4) * 0.5 / (1 * 0.5 + 4 * 1.5)
-    assert tilt_once(heavy_head, "right").alpha == pytest.approx(expected, rel=0.012)
-
-
 def test_concave_stones_keep_their_hollow():
     """A block in the hollow of a hook stands on its floor, and the hook weighs what it weighs."""
     block = np.array([[1.5, 1], [2.5, 1], [2.5, 2.5], [1.5, 2.5]])
@@ -153,7 +144,6 @@ def test_copies_go_their_own_way():
     [
         ({"outlines": {1: np.zeros((2, 2))}}, "E303"),
         ({"outlines": {1: np.array([[0, 0], [1, 1], [1, 0], [0, 1]])}}, "E303"),
-        ({"densities": {1: 0.0}}, "E303"),
         ({"fixed": frozenset({1})}, "E303"),
         ({"mu": -1.0}, "E302"),
     ],

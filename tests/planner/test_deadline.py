@@ -54,7 +54,7 @@ def test_what_is_built_by_then_is_a_part_of_the_wall_and_can_be_gone_on_with(way
     assert len(list(watched.steps(Deadline(math.inf, clock)))) == len(order(whole))
     assert same(watched, whole)
     assert clock.count > len(order(whole))  # inside of steps as well
-    for count in sorted({0, 1, *range(2, clock.count, max(1, clock.count // 3)), clock.count - 1}):
+    for count in (0, 1, clock.count // 2, clock.count - 1):
         part = planner(way)
         with pytest.raises(TimeIsUp):
             list(part.steps(after_looks(count)))
