@@ -102,6 +102,9 @@ def test_analysing_ends_when_enough_stand():
     chosen, judge = _by_score(dict.fromkeys((5, 6, 7, 8), 1.0), dict.fromkeys((5, 6, 7, 8), 0.5))
     assert judge.batches == [[5, 6]]
     assert chosen.stone_id == 5  # equal costs: the lower id
+    # Costs that differ by rounding alone are equal.
+    costs = {3: 0.1 + 0.2, 2: 0.3, 1: 0.4}
+    assert _by_score(costs, dict.fromkeys(costs, 0.5))[1].batches == [[2, 3]]
 
 
 @pytest.mark.parametrize(
