@@ -30,6 +30,8 @@ def test_an_overhanging_bar_turns_towards_its_fall_until_it_rests(side):
     if side == "left":
         occupied, trial = mirrored(occupied, trial, PoseBook())
     assert not rests(occupied, trial)
+    nowhere = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings(max_pivots=0))
+    assert nowhere.pose is None
     result = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings())
     assert result.pose is not None
     turned, row, col = result.pose
@@ -69,16 +71,6 @@ def test_the_centroid_goes_round_the_end_of_the_support(side):
     assert height == pytest.approx(y, abs=1.6)
 
 
-def test_mirrored_scenes_have_mirrored_results():
-    occupied = ledge()
-    trial = bar_on_the_ledge(occupied, PoseBook())
-    other_side, other = mirrored(occupied, trial, PoseBook())
-    one = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings())
-    two = rotate_to_rest(other_side, other, PoseBook(), StabiliseSettings())
-    assert one.pose[0].angle_deg == -two.pose[0].angle_deg
-    assert one.pose[1] == pytest.approx(two.pose[1], abs=1)
-
-
 def test_a_stable_stone_is_left_alone():
     occupied = ledge()
     trial = bar_on_the_ledge(occupied, PoseBook(), col=0, length=20)
@@ -97,6 +89,7 @@ def test_a_stable_stone_is_left_alone():
             StabiliseSettings(margin=0.1, max_turn_deg=70.0, step_deg=2.0),
             StabiliseSettings(max_turn_deg=40.0, max_pivots=2, new_pivot_px=0, max_shift_px=5),
             StabiliseSettings(new_pivot_px=60),
+            StabiliseSettings(max_turn_deg=5.0),
         ]
     ),
 )
@@ -107,18 +100,6 @@ def test_it_turns_as_a_walk_from_angle_to_angle_does(scene, settings):
     assert (result.pose and (result.pose, result.pivots)) == expected
 
 
-@pytest.mark.parametrize(
-    "limits", [{"max_turn_deg": 5.0}, {"max_pivots": 0}, {"max_turn_deg": 0.0}]
-)
-def test_limits_end_the_rotation(limits):
-    occupied = ledge()
-    trial = bar_on_the_ledge(occupied, PoseBook())
-    settings = StabiliseSettings(**limits)
-    result = rotate_to_rest(occupied, trial, PoseBook(), settings)
-    assert result.pose is None
-    assert result.pivots <= settings.max_pivots
-
-
 def test_meeting_the_landscape_before_resting_ends_the_rotation():
     occupied = ledge()
     posed, row, col = bar_on_the_ledge(occupied, PoseBook())
@@ -127,13 +108,6 @@ def test_meeting_the_landscape_before_resting_ends_the_rotation():
     occupied[row - 1, 0:16] = True
     trial = posed, row, col
     assert rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings()).pose is None
-
-
-def test_it_never_leaves_the_site():
-    occupied = ledge(height=8, site=(24, 26))
-    trial = bar_on_the_ledge(occupied, PoseBook(), col=2, length=24)
-    pose = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings(max_turn_deg=60)).pose
-    assert pose is None or pose[2] + pose[0].width_px <= 26
 
 
 def test_a_stone_in_the_air_does_not_rest():
