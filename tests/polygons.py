@@ -80,3 +80,8 @@ def simple_polygons(draw: Draw, max_corners: int = 12, max_size: float = 20.0) -
     if kind == "grid" and (moved := on_grid(star, 0.5)) is not None:
         return moved
     return star
+
+
+def box(left, low, right, high):
+    """The corners of a rectangle."""
+    return np.array([[left, low], [right, low], [right, high], [left, high]], float)

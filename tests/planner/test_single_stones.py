@@ -69,8 +69,6 @@ def test_ids_are_a_list_of_whole_numbers(value):
 def test_no_stone_is_pinned_and_banned():
     with pytest.raises(UsageError, match=r"E123.*: 3\."):
         PlannerSettings().updated({"pin": [1, 3], "ban": [3, 4]})
-    with pytest.raises(ValueError, match="order must be one of"):
-        PlannerSettings(order="wurst")
 
 
 def test_lists_of_settings_are_lists():

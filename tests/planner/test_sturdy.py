@@ -21,16 +21,13 @@ from drystone.statics.lp.program import assemble
 from drystone.statics.model import Block, Interface, RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble
+from tests.polygons import box
 
 GRIPPED = 0.75 * 0.58
 """Three quarters of the friction."""
 
 SITE = Site(100, 60)
 BOTH_RULES = pytest.mark.parametrize("rule", ["score", "algorithm2"])
-
-
-def box(left, low, right, high):
-    return np.array([[left, low], [right, low], [right, high], [left, high]], float)
 
 
 def models(*outlines, settings=None):

@@ -17,6 +17,7 @@ from drystone.search.course_task import HIGH, LEFT_OUT, PINNED, ground_of, task_
 from drystone.search.courses import CoursePlan, PlannedStone, placed, plan_courses, resumed
 from drystone.settle.rest import placed_outline
 from tests.planner.scenes import blocks
+from tests.polygons import box
 
 TOLERANCE_PX = 0.35
 QUICK = CourseSettings(evaluations=30)
@@ -174,11 +175,8 @@ def test_planning_again_without_upper_courses_starts_anew():
 
 
 def test_what_is_laid_has_joints_beds_and_ways():
-    def block(left, bottom, right, top):
-        return np.array([[left, bottom], [right, bottom], [right, top], [left, top]])
-
-    first = [block(50.0, 0.0, 100.0, 12.0), block(2.0, 0.0, 48.0, 10.0)]
-    second = [block(0.0, 10.0, 30.0, 20.0)]
+    first = [box(50.0, 0.0, 100.0, 12.0), box(2.0, 0.0, 48.0, 10.0)]
+    second = [box(0.0, 10.0, 30.0, 20.0)]
     ground = ground_of([first, second, []], (100.0, 60.0), 1.0)
     unit = 16
     assert ground.tops[[0, 40, 49, 70]].tolist() == [20 * unit, 10 * unit, 0, 12 * unit]

@@ -31,6 +31,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.verify import check_plan
 from tests.planner.scenes import Ticks, after_looks, greedy, stones_of_masks
+from tests.polygons import box
 from tests.search.wedge_walls import LARGE, all_places, limits_of, small_walls
 
 NOTHING = np.zeros((0, 0), bool)
@@ -94,10 +95,6 @@ def built(*places, wedges=None):
     made.build, left_out, _ = replayed(made.build, groups, {}, made.workshop, made.settings)
     assert left_out == ()
     return made
-
-
-def box(left, low, right, high):
-    return np.array([[left, low], [right, low], [right, high], [left, high]], float)
 
 
 def outlines_of(build):

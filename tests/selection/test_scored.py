@@ -14,8 +14,3 @@ def test_each_cost_has_its_own_weight_and_bulk_is_a_bonus(name):
     weights = ScoreSettings(**{name: 3.0})
     cost = craft_cost(dataclasses.replace(NOTHING, **{name: 2.0}), weights)
     assert cost == (-6.0 if name in ("area", "thickness") else 6.0)
-
-
-def test_at_least_one_action_is_analysed():
-    with pytest.raises(ValueError, match="analysed must be at least 1"):
-        ScoreSettings(analysed=0)

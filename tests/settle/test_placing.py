@@ -9,12 +9,9 @@ from drystone.model.site import Site
 from drystone.model.stone import Stone
 from drystone.model.wall import Wall
 from drystone.settle.placing import settled_placement, settled_wedge
+from tests.polygons import box
 
 STONE = Stone(5, np.ones((4, 6), bool))
-
-
-def box(left, low, right, high):
-    return np.array([[left, low], [right, low], [right, high], [left, high]], float)
 
 
 def placed(site, corners, outlines=None, moves=0):

@@ -29,6 +29,7 @@ from drystone.settle.wedge import (
 )
 from tests.naive.crevice import gap_at
 from tests.naive.wedge_shape import covered, objections
+from tests.polygons import box
 from tests.settle.piles import WIDTH, moved, piles
 from tests.strategies import repeatable
 
@@ -39,10 +40,6 @@ STRICT = WedgeLimits(
     room_px=20.0,
 )  # fmt: skip
 """Least thickness, greatest height, greatest area, friction; all of them matter in piles."""
-
-
-def box(left, low, right, high):
-    return np.array([[left, low], [right, low], [right, high], [left, high]], float)
 
 
 def centroid(polygon):

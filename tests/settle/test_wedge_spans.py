@@ -17,8 +17,9 @@ from drystone.settle.wedge import (
     wedges_below,
 )
 from tests.naive.wedge_shape import objections
+from tests.polygons import box
 from tests.settle.piles import WIDTH, piles
-from tests.settle.test_wedge import SIZES, STRICT, box
+from tests.settle.test_wedge import SIZES, STRICT
 from tests.strategies import repeatable
 
 POST, PLANK = box(13.0, 0.01, 16.0, 2.0), box(10.0, 2.01, 20.0, 4.0)
