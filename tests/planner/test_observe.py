@@ -146,8 +146,7 @@ def test_a_wall_that_is_built_off_its_plan_goes_on_from_where_it_is(settings):
         assert turns(angle, true[2]) < 4.0
 
 
-@BOTH
-@PICTURES
+@pytest.mark.parametrize(("settings", "scale"), [(EXACT, SCALE), (RASTER, 1.0)])
 def test_pictures_do_as_well(settings, scale):
     one, robot = planner(settings), Robot(0.7, np.random.default_rng(2))
     seen = list(live(one, robot, scale))
@@ -161,8 +160,9 @@ def test_pictures_do_as_well(settings, scale):
         assert turns(pose.angle_deg, angle) < 2.0
 
 
-@BOTH
-@pytest.mark.parametrize("scale", [None, 1.0, SCALE], ids=["poses", "source", "working"])
+@pytest.mark.parametrize(
+    ("settings", "scale"), [(EXACT, None), (EXACT, SCALE), (RASTER, 1.0), (RASTER, None)]
+)
 def test_a_wall_that_is_built_as_planned_changes_nothing(settings, scale):
     one = planner(settings)
     for _ in one.steps():

@@ -59,8 +59,7 @@ def installed(monkeypatch):
 
 @pytest.mark.parametrize(
     ("name", "geometry"),
-    [(name, "exact") for name in ("algorithm2", *BUILT_IN)]
-    + [("towers", "raster"), ("learned", "raster")],
+    [*((name, "exact") for name in ("algorithm2", *BUILT_IN)), ("towers", "raster")],
 )
 def test_walls_are_true_and_say_their_policy(name, geometry):
     settings = by(name, {"geometry": geometry})

@@ -29,7 +29,7 @@ def test_almeida(name, scale, width, height, count, data_dir):
     assert len(plan.stone_steps) > count / 2
 
 
-@pytest.mark.parametrize("noise", [10, 20, 40, 50, 70])
+@pytest.mark.parametrize("noise", [10, 70])
 def test_thangavelu(noise, data_dir):
     stones = read_stones(data_dir / "thangavelu" / f"noise_{noise}.png")
     plan = _planned(stones, 420, 420, 0.5).plan  # 210 x 210 working px
