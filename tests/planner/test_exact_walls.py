@@ -72,7 +72,7 @@ def whole_stone_sets(draw):
 def cases(draw):
     """Stones, a site in source px, its scale, and settings."""
     changes = {
-        "search": {"budget": draw(st.integers(1, 2))},
+        "search": {"budget": draw(st.sampled_from([1, 1, 2]))},
         "two_sided": draw(st.booleans()),
         "skip_too_large": True,
         "settle": {"method": draw(st.sampled_from(["energy", "pivot"]))},
@@ -120,7 +120,7 @@ def check_outlines(result, settings, site):
         assert high <= height + beyond
 
 
-@repeatable(12)
+@repeatable(10)
 @given(case=cases(), seed=st.integers(0, 1000))
 def test_every_plan_is_true(case, seed):
     stones, (width, height), scale, settings = case

@@ -20,7 +20,7 @@ def _planned(stones, width, height, scale):
 
 @pytest.mark.parametrize(
     ("name", "scale", "width", "height", "count"),
-    [("PR", 0.5, 560, 160, 32), ("R", 0.2, 1445, 395, 34), ("IR", 0.3, 1443, 383, 61)],
+    [("PR", 0.5, 560, 160, 32), ("R", 0.2, 1445, 395, 34), ("IR", 0.2, 1443, 383, 61)],
 )
 def test_almeida(name, scale, width, height, count, data_dir):
     stones = read_stones(data_dir / "almeida" / f"{name}.png")
