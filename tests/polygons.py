@@ -28,7 +28,7 @@ def random_polygon(rng: np.random.Generator, corners: int, size: float) -> Point
     return centred(np.column_stack([radius * np.cos(angle), radius * np.sin(angle)]))
 
 
-def box(left: float, bottom: float, width: float, height: float) -> Points:
+def box_of(left: float, bottom: float, width: float, height: float) -> Points:
     """An upright box, counter-clockwise from its lower left corner."""
     right, top = left + width, bottom + height
     return np.array([[left, bottom], [right, bottom], [right, top], [left, top]], np.float64)
@@ -86,3 +86,8 @@ def simple_polygons(draw: Draw, max_corners: int = 12, max_size: float = 20.0) -
     if kind == "grid" and (moved := on_grid(star, 0.5)) is not None:
         return moved
     return star
+
+
+def box(left, low, right, high):
+    """The corners of a rectangle."""
+    return np.array([[left, low], [right, low], [right, high], [left, high]], float)

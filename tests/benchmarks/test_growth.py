@@ -69,12 +69,11 @@ def test_a_power_law_needs_two_sizes_and_times_above_0():
     assert fitted([(2.0, 2.0), (2.0, 3.0)]) is None
     assert fitted([(1.0, 0.0), (2.0, 3.0)]) is None
     law = fitted([(1.0, 2.0), (10.0, 200.0)])
-    assert law is not None
     assert (law.factor, law.exponent) == (pytest.approx(2.0), pytest.approx(2.0))
     assert PowerLaw(2.0, 2.0)(3.0) == 18.0
 
 
-def test_the_median_repetition_of_every_step_counts(monkeypatch: pytest.MonkeyPatch):
+def test_the_median_repetition_of_every_step_counts(monkeypatch):
     runs = iter([(1.0, 5.0, 3.0), (2.0, 4.0, 6.0), (9.0, 9.0, 1.0)])
 
     def planner(*_args, **_options):

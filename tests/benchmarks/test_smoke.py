@@ -7,7 +7,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 
 
-def test_every_benchmark_runs_once() -> None:
+def test_every_benchmark_runs_once():
     ran = subprocess.run(  # noqa: S603 - our own code
         [
             *(sys.executable, "-m", "pytest", "benchmarks", "-q", "-p", "no:xdist"),

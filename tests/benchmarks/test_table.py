@@ -1,7 +1,6 @@
 """Tables from what pytest-benchmark writes."""
 
 import json
-from pathlib import Path
 
 import pytest
 
@@ -17,7 +16,7 @@ def entry(what, size, grows, seconds, twin=None, count=1, **facts):
     return {"stats": {"min": seconds, "mean": 9.9}, "extra_info": {**described, **facts}}
 
 
-def session(folder: Path, kernels, *entries):
+def session(folder, kernels, *entries):
     path = folder / f"{kernels}.json"
     about = {
         "kernels": kernels,

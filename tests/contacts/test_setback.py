@@ -12,7 +12,7 @@ from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.kernels.raster import turn
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
-from tests.polygons import box
+from tests.polygons import box_of
 from tests.strategies import repeatable
 
 MU, TOLERANCE, CLEARANCE = 0.58, 0.1, 0.01
@@ -34,7 +34,7 @@ def strength(polygons: list[Points], setback: float = 0.01) -> float:
 def bricks(width: float, height: float, count: int, courses: int, gap: float, lap: float):
     """Bricks whose courses are moved to and fro by half a lap; `gap` is that of all joints."""
     return [
-        box(
+        box_of(
             column * (width + gap) + (0.5 if course % 2 else -0.5) * lap,
             gap + course * (height + gap),
             width,
@@ -54,7 +54,7 @@ def lapped(width: float, height: float, count: int, courses: int, lap: float):
             edges[1:-1] += lap
         bottom = CLEARANCE + course * (height + CLEARANCE)
         wall += [
-            box(left + CLEARANCE / 2, bottom, right - left - CLEARANCE, height)
+            box_of(left + CLEARANCE / 2, bottom, right - left - CLEARANCE, height)
             for left, right in pairwise(edges)
         ]
     return wall
@@ -103,14 +103,14 @@ def test_a_longer_lap_carries_no_less(family):
 @repeatable(40)
 def test_a_corner_that_stands_on_a_face_stays_however_it_leans(angle_deg, gap, setback):
     """From the whole face to its corner nothing vanishes as a brick leans."""
-    base, brick = box(0, 0, 100, 20), turn(box(-15, 0, 30, 60), angle_deg)
+    base, brick = box_of(0, 0, 100, 20), turn(box_of(-15, 0, 30, 60), angle_deg)
     standing = brick + np.array([50.0, 20.0 + gap - brick[:, 1].min()])
     assert any(face.other == 1 for face in model_of([base, standing], setback).interfaces)
 
 
 @pytest.mark.parametrize("aside", [19.5, 19.9, 20.0, 20.05, 20.2])
 def test_a_brick_on_the_last_of_an_edge_has_nothing_below(aside):
-    wall = [box(0, 0.01, 40, 20), box(40 - aside / 100, 20.02, 40, 5)]
+    wall = [box_of(0, 0.01, 40, 20), box_of(40 - aside / 100, 20.02, 40, 5)]
     faces = [face for face in model_of(wall).interfaces if face.block == 2]
     assert faces == []
     assert len(model_of(wall, 0.0).interfaces) > 1
@@ -124,7 +124,7 @@ def bed_of(wall: list[Points], setback: float = 0.01) -> tuple[float, float]:
 
 
 def test_contacts_of_small_stones_are_set_back_by_the_tolerance_at_least():
-    wall = [box(0, 0.01, 4, 2), box(0, 2.02, 4, 2)]
+    wall = [box_of(0, 0.01, 4, 2), box_of(0, 2.02, 4, 2)]
     assert bed_of(wall) == pytest.approx((TOLERANCE, 4 - TOLERANCE))
     assert bed_of(wall, 0.1) == pytest.approx((0.1 * 8**0.5, 4 - 0.1 * 8**0.5))
 
@@ -133,7 +133,8 @@ def test_a_face_ends_where_the_outline_turns_away():
     """A brick with its corners cut off at 45 degrees bears on what is left of its bottom."""
     back = 0.01 * 799**0.5
     cut = np.array([[1.0, 0], [39, 0], [40, 1], [40, 20], [0, 20], [0, 1]]) + np.array([0, 20.02])
-    assert bed_of([box(-20, 0.01, 80, 20), cut]) == pytest.approx((1 + back, 39 - back), abs=2e-3)
+    bed = bed_of([box_of(-20, 0.01, 80, 20), cut])
+    assert bed == pytest.approx((1 + back, 39 - back), abs=2e-3)
 
 
 def test_a_tip_in_an_inner_corner_has_stone_enough_behind_it():
@@ -188,7 +189,7 @@ def test_walls_of_boxes_are_those_of_the_slow_twin(seed, setback):
         left, height = rng.choice([0.0, 1.0, 6.0]), rng.uniform(8.0, 20.0)
         while left < 90.0:
             width = rng.uniform(12.0, 40.0)
-            wall.append(box(left, bottom, width, height))
+            wall.append(box_of(left, bottom, width, height))
             left += width + rng.choice([CLEARANCE, 0.05, 0.5])
         bottom += height + CLEARANCE
     found, twin = lateral_resistance(model_of(wall, setback)), naive_model(wall, setback)

@@ -16,7 +16,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitStatus
 from drystone_lab.pixels import tilted_wall
-from tests.polygons import box
+from tests.polygons import box_of
 
 MU = 0.58
 
@@ -55,8 +55,8 @@ def settled_wall(seed, loose, lean):
 @pytest.mark.parametrize("gap", [0.0, 0.01, 0.099])
 def test_a_block_tilts_about_its_toe_whatever_the_gap(gap):
     """min(mu, b / h)."""
-    assert alphas(model_of(box(0, gap, 20, 40))) == pytest.approx((0.5, 0.5), abs=1e-8)
-    assert alphas(model_of(box(0, gap, 40, 20))) == pytest.approx((MU, MU), abs=1e-8)
+    assert alphas(model_of(box_of(0, gap, 20, 40))) == pytest.approx((0.5, 0.5), abs=1e-8)
+    assert alphas(model_of(box_of(0, gap, 40, 20))) == pytest.approx((MU, MU), abs=1e-8)
 
 
 WALLS = {
@@ -74,14 +74,14 @@ def test_walls_of_boxes_are_as_strong_as_without_gaps(name, mu):
     exact = alphas(model_from_json({"blocks_xywh": boxes, "mu": mu}))
     # Every box keeps .01 from the left, and what is below.
     level = {y: k + 1 for k, y in enumerate(sorted({y for _, y, _, _ in boxes}))}
-    placed = [box(x + 0.01 * (x // 20), y + 0.01 * level[y], w, h) for x, y, w, h in boxes]
+    placed = [box_of(x + 0.01 * (x // 20), y + 0.01 * level[y], w, h) for x, y, w, h in boxes]
     assert alphas(model_of(*placed, mu=mu)) == pytest.approx(exact, abs=2e-3)
 
 
 @pytest.mark.parametrize("gap", [0.0, 0.01, 0.09])
 def test_a_corbel_inside_and_outside_of_its_limit(gap):
-    base = box(0, 0.01, 40, 20)
-    inside, outside = box(19.99, 20.01 + gap, 40, 5), box(20.01, 20.01 + gap, 40, 5)
+    base = box_of(0, 0.01, 40, 20)
+    inside, outside = box_of(19.99, 20.01 + gap, 40, 5), box_of(20.01, 20.01 + gap, 40, 5)
     assert statuses(model_of(base, inside)) == (LimitStatus.OPTIMAL,) * 2
     assert statuses(model_of(base, outside)) == (LimitStatus.UNSTABLE,) * 2
 
@@ -89,7 +89,7 @@ def test_a_corbel_inside_and_outside_of_its_limit(gap):
 def test_a_square_in_a_notch_slides_out_over_a_face():
     """The faces lean by 45 degrees: alpha = tan(45 degrees + friction angle)."""
     notch = np.array([[-40.0, 0.0], [40.0, 0.0], [40.0, 80.0], [0.0, 40.0], [-40.0, 80.0]])
-    square = turn(box(0, 0, 20, 20), 45.0) + np.array([0.0, 40.0142])
+    square = turn(box_of(0, 0, 20, 20), 45.0) + np.array([0.0, 40.0142])
     model = model_of(notch, square)
     fixed = replace(model, blocks=(replace(model.blocks[0], fixed=True), model.blocks[1]))
     expected = (1 + MU) / (1 - MU)
@@ -126,7 +126,7 @@ def told(model):
 
 
 def test_ids_need_not_ascend():
-    placed = PlacedPolygons.of([(7, box(0, 0.01, 4, 2)), (3, box(2, 2.02, 4, 2))])
+    placed = PlacedPolygons.of([(7, box_of(0, 0.01, 4, 2)), (3, box_of(2, 2.02, 4, 2))])
     model = model_of_outlines(placed)
     assert [(i.block, i.other) for i in model.interfaces] == [(7, 0), (3, 7)]
     assert model.interfaces[1].normal == (0.0, 1.0)

@@ -24,61 +24,31 @@ from drystone.model.stone import Stone, StoneSet
 from tests.strategies import repeatable
 
 IMPOSSIBLE = {
-    BrickSettings: [
-        {"count": 0},
-        {"count": -1, "halves": 2},
-        {"height_px": 0},
-        {"aspect": 0.05},
-        {"aspect": 1.49 / 12},
-        {"aspect": -1e308},
-        {"aspect": math.nan},
-    ],
-    FourierSettings: [
-        {"count": 0},
-        {"smallest_radius_px": 31.0},
-        {"smallest_radius_px": 0.0},
-        {"D2": -0.1},
-        {"D3": 0.0},
-        {"D8": 0.0},
-        {"points": 4},
-        {"harmonics": 64},
-        {"harmonics": 2},
-        {"D2": 1e308},
-        {"D3": 1e308},
-        {"D8": 1e308},
-        {"D8": 2.1},
-        {"alpha": 1e308},
-        {"alpha": math.inf},
-        {"alpha": math.nan},
-        {"beta": 10**18},
-        {"beta": 1000.0},
-        {"points": 2**63 - 1},
-        {"points": 10**6},
-    ],
-    PolygonSettings: [{"count": 0}, {"height_px": 3.0}, {"noise": -0.1}, {"noise": 3}],
-    RubbleSettings: [
-        {"count": 3},
-        {"courses": 0},
-        {"height_px": 15.0},
-        {"width_px": 20.0},
-        {"area_ratio": 0.0},
-        {"area_ratio": 0.96},
-        {"spread": 1.5},
-        {"roughness": 0.4},
-        {"pentagons": 1.1},
-        {"rounding": 0.4},
-        {"tilt_deg": -1.0},
-        {"tilt_deg": 361.0},
-        {"tilt_deg": 1e308},
-    ],
-}
+    BrickSettings: {
+        "count": [0], "height_px": [0], "aspect": [0.05, 1.49 / 12, -1e308, math.nan],
+    },
+    FourierSettings: {
+        "count": [0], "smallest_radius_px": [31.0, 0.0], "D2": [-0.1, 1e308],
+        "D3": [0.0, 1e308], "D8": [0.0, 1e308, 2.1], "points": [4, 2**63 - 1, 10**6],
+        "harmonics": [64, 2], "alpha": [1e308, math.inf, math.nan], "beta": [10**18, 1000.0],
+    },
+    PolygonSettings: {"count": [0], "height_px": [3.0], "noise": [-0.1, 3]},
+    RubbleSettings: {
+        "count": [3], "courses": [0], "height_px": [15.0], "width_px": [20.0],
+        "area_ratio": [0.0, 0.96], "spread": [1.5], "roughness": [0.4], "pentagons": [1.1],
+        "rounding": [0.4], "tilt_deg": [-1.0, 361.0, 1e308],
+    },
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("kind", IMPOSSIBLE)
 def test_impossible_settings(kind):
-    for wrong in IMPOSSIBLE[kind]:
+    values = [(name, value) for name, some in IMPOSSIBLE[kind].items() for value in some]
+    for name, value in values:
         with pytest.raises(UsageError, match="E130 generate"):
-            kind(**wrong)
+            kind(**{name: value})
+    with pytest.raises(UsageError, match="E130 generate"):
+        BrickSettings(count=-1, halves=2)
 
 
 GENERATORS = {

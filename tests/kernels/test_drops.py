@@ -18,7 +18,7 @@ from drystone.kernels.profiles import (
     raised,
 )
 from tests.naive.drops import all_drops
-from tests.polygons import box, random_polygon
+from tests.polygons import box_of, random_polygon
 from tests.strategies import Draw, repeatable
 
 WEIGHTS = ("height", "void", "gap", "slot", "headroom", "step", "joint", "unbalanced")
@@ -124,7 +124,7 @@ def batches(draw: Draw, fewest: int = 0) -> Batch:
 def _stone(rng: np.random.Generator, cell: float, brick: bool) -> Points:
     if brick:
         width, height = rng.integers(1, 7, 2) * cell
-        return box(-width / 2, -height / 2, width, height)
+        return box_of(-width / 2, -height / 2, width, height)
     return random_polygon(rng, int(rng.integers(3, 12)), float(rng.uniform(1.5, 12.0)) * cell)
 
 
@@ -184,10 +184,10 @@ def test_the_cheapest_drops_are_all_there_up_to_the_limit(batch: Batch) -> None:
 
 
 def test_views_from_the_end_are_read_as_they_are() -> None:
-    profile = wall_of([box(0, 0, 6, 4), box(10, 0, 4, 3)], 20, 2.0)
+    profile = wall_of([box_of(0, 0, 6, 4), box_of(10, 0, 4, 3)], 20, 2.0)
     turned = HeightProfile(profile.tops[::-1], profile.owners[::-1], profile.boxes)
     copied = HeightProfile(*(part.copy() for part in turned))
-    stone = hanging(box(-4, -3, 8, 6), 2.0)
+    stone = hanging(box_of(-4, -3, 8, 6), 2.0)
     terms = terms_of(**dict.fromkeys(WEIGHTS, 1.0))
     found = drops(turned, stone, terms, 0.0, 20, 0.0)
     assert found.tolist() == drops(copied, stone, terms, 0.0, 20, 0.0).tolist()
@@ -198,16 +198,16 @@ def foot(end: float) -> list[Points]:
     return [np.array([[10.0, 0.0], [end, 0.0], [end, 2.0], [14.0, 2.0], [14.0, 9.0], [10.0, 9.0]])]
 
 
-LOW, HIGH, UNDER = box(0, 0, 10, 4), box(4, 4, 6, 3), box(14, 0, 20, 2)
-ONE, TWO, THREE = box(14, 0, 8, 2), box(22, 0, 4, 2), box(26, 0, 8, 2)
+LOW, HIGH, UNDER = box_of(0, 0, 10, 4), box_of(4, 4, 6, 3), box_of(14, 0, 20, 2)
+ONE, TWO, THREE = box_of(14, 0, 8, 2), box_of(22, 0, 4, 2), box_of(26, 0, 8, 2)
 
 
 @pytest.mark.parametrize(
     ("name", "x", "polygons", "cost"),
     [
         # The gap ends at what is as high as the middle of the stone.
-        ("gap", 6.0, [box(0, 0, 4, 3)], 6 * 2 / 32),
-        ("gap", 6.0, [box(0, 0, 4, 2.5)], (6 * 2 + 3.5 * 4) / 32),
+        ("gap", 6.0, [box_of(0, 0, 4, 3)], 6 * 2 / 32),
+        ("gap", 6.0, [box_of(0, 0, 4, 2.5)], (6 * 2 + 3.5 * 4) / 32),
         # A neighbour may end below the middle; of those that end at one place the highest counts.
         ("step", 16.0, foot(20.0), 1.0),
         ("step", 16.0, foot(20.1), 0.0),
@@ -215,29 +215,29 @@ ONE, TWO, THREE = box(14, 0, 8, 2), box(22, 0, 4, 2), box(26, 0, 8, 2)
         ("step", 10.0, [HIGH, LOW], 1.0),
         ("step", 10.0, [LOW], 2.0),
         # A stone less than half a pixel up stands on the ground.
-        ("joint", 16.0, [box(16, 0, 12, 0.9)], 0.5),
-        ("joint", 16.0, [box(16, 0, 12, 1)], 1 - (1.0 + 8 / 12) / 2),
+        ("joint", 16.0, [box_of(16, 0, 12, 0.9)], 0.5),
+        ("joint", 16.0, [box_of(16, 0, 12, 1)], 1 - (1.0 + 8 / 12) / 2),
         # Joints up to the middle of the stone count; of equally near ones that of the first stone.
-        ("joint", 16.0, [UNDER, box(8, 0, 6, 5)], 1 - (2 / 6 + 10 / 20) / 2),
-        ("joint", 16.0, [UNDER, box(8, 0, 6, 5.1)], 1 - (18 / 20 + 10 / 20) / 2),
+        ("joint", 16.0, [UNDER, box_of(8, 0, 6, 5)], 1 - (2 / 6 + 10 / 20) / 2),
+        ("joint", 16.0, [UNDER, box_of(8, 0, 6, 5.1)], 1 - (18 / 20 + 10 / 20) / 2),
         ("joint", 16.0, [ONE, TWO, THREE], 1 - (6 / 8 + 2 / 4) / 2),
         ("joint", 16.0, [ONE, THREE, TWO], 1 - (6 / 8 + 2 / 8) / 2),
         # What is a column and a half above something is not on it.
-        ("unbalanced", 12.0, [box(10, 0, 4, 3)], 2 / 8),
-        ("unbalanced", 12.0, [box(10, 0, 4, 2.9)], 0.0),
+        ("unbalanced", 12.0, [box_of(10, 0, 4, 3)], 2 / 8),
+        ("unbalanced", 12.0, [box_of(10, 0, 4, 2.9)], 0.0),
     ],
 )
 def test_costs_at_their_edges(name: str, x: float, polygons: list[Points], cost: float) -> None:
     """Of a block of 8 x 6 px that comes down with its left end at x."""
-    profile, stone = wall_of(polygons, 20, 2.0), hanging(box(-4, -3, 8, 6), 2.0)
+    profile, stone = wall_of(polygons, 20, 2.0), hanging(box_of(-4, -3, 8, 6), 2.0)
     terms = terms_of(**{name: 1.0}, mean_height_px=1.0, height_px=40.0)
     places = {row[0]: row[2] for row in drops(profile, stone, terms, 0.0, 20, 0.0).tolist()}
     assert places[x] == cost
 
 
 def test_of_equal_costs_the_lower_place_comes_first_then_the_one_further_left() -> None:
-    profile = wall_of([box(0, 0, 8, 3), box(20, 0, 4, 3)], 20, 2.0)
-    stone = hanging(box(-4, -3, 8, 6), 2.0)
+    profile = wall_of([box_of(0, 0, 8, 3), box_of(20, 0, 4, 3)], 20, 2.0)
+    stone = hanging(box_of(-4, -3, 8, 6), 2.0)
     found = drops(profile, stone, terms_of(clearance_px=0.02), 0.75, 20, 4.0)
     assert found.tolist() == [
         [8.0, 3.02, 0.75, 0.0],
@@ -254,9 +254,9 @@ def test_of_equal_costs_the_lower_place_comes_first_then_the_one_further_left() 
 
 def test_equal_costs_of_different_kinds_are_in_order_too() -> None:
     """At 0 all of the cost is void, at 12, where the stone lies higher, all of it is gap."""
-    profile = wall_of([box(0, 0, 4, 8), box(12, 0, 8, 10)], 20, 2.0)
+    profile = wall_of([box_of(0, 0, 4, 8), box_of(12, 0, 8, 10)], 20, 2.0)
     terms = terms_of(void=1.0, gap=1.0)
-    found = drops(profile, hanging(box(-4, -3, 8, 6), 2.0), terms, 0.0, 20, 0.0)
+    found = drops(profile, hanging(box_of(-4, -3, 8, 6), 2.0), terms, 0.0, 20, 0.0)
     rows = {row[0]: row[1:3] for row in found.tolist()}
     assert (rows[0.0], rows[12.0]) == ([11.0, 1.0], [13.0, 1.0])
     assert list(rows).index(0.0) < list(rows).index(12.0)
@@ -266,7 +266,7 @@ def test_equal_costs_of_different_kinds_are_in_order_too() -> None:
     ("width", "expected"), [(38.0, [0.0, 2.0]), (40.0, [0.0]), (40.0 + 1e-10, [0.0]), (40.1, [])]
 )
 def test_a_stone_fits_between_the_ends_of_the_wall(width: float, expected: list[float]) -> None:
-    stone = hanging(box(-width / 2, -3.0, width, 6.0), 2.0)
+    stone = hanging(box_of(-width / 2, -3.0, width, 6.0), 2.0)
     found = drops(bare(20), stone, terms_of(), 0.0, 9, 0.0)
     assert found.shape == (len(expected), 4)
     assert found[:, 0].tolist() == expected
@@ -275,22 +275,22 @@ def test_a_stone_fits_between_the_ends_of_the_wall(width: float, expected: list[
 
 @pytest.mark.parametrize(("height", "slack", "fits"), [(20, 0, 1), (21, 0, 0), (21, 1, 1)])
 def test_a_stone_ends_below_the_walls_height(height: float, slack: float, fits: int) -> None:
-    stone = hanging(box(-4, -3, 8, height), 2.0)
+    stone = hanging(box_of(-4, -3, 8, height), 2.0)
     # What stands out has no room over it.
     terms = terms_of(slack_px=slack, headroom=1.0)
     assert drops(bare(20), stone, terms, 0.0, 1, 0.0)[:, 2].tolist() == [0.0] * fits
 
 
 def test_a_stone_on_one_end_leans_to_the_other() -> None:
-    profile = wall_of([box(10, 0, 4, 10)], 20, 2.0)
+    profile = wall_of([box_of(10, 0, 4, 10)], 20, 2.0)
     terms = terms_of(height_px=40.0, unbalanced=2.0)
-    stone = hanging(box(-4.0, -3.0, 8.0, 6.0), 2.0)
+    stone = hanging(box_of(-4.0, -3.0, 8.0, 6.0), 2.0)
     found = {row[0]: row[2:] for row in drops(profile, stone, terms, 0.0, 20, 0.0).tolist()}
     assert found[12.0] == [2.0 * 2 / 8, 2 / 8]
     assert found[10.0] == [0.0, 0.0]
     assert found[4.0] == [2.0 * 2 / 8, -2 / 8]
     # Its own right end carries a stone that ends within a column.
-    short = hanging(box(-3.5, -3.0, 4.5, 6.0), 2.0)
+    short = hanging(box_of(-3.5, -3.0, 4.5, 6.0), 2.0)
     found = {row[0]: row[3] for row in drops(bare(20), short, terms, 0.0, 20, 0.0).tolist()}
     assert set(found.values()) == {0.0}
     beside = short._replace(left=-5.0, right=-0.5)
@@ -300,7 +300,7 @@ def test_a_stone_on_one_end_leans_to_the_other() -> None:
 
 
 def test_what_cannot_be_is_refused() -> None:
-    stone, terms = hanging(box(-4, -3, 8, 6), 2.0), terms_of(joint=1.0)
+    stone, terms = hanging(box_of(-4, -3, 8, 6), 2.0), terms_of(joint=1.0)
     one, two = np.zeros(1), np.zeros(2)
     none = np.zeros(1, np.int64)
     for constants, wanted, words in (

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import HeightProfile, bare, extremes, hanging, in_a_row, raised
 from tests.naive.drops import column_span, height_profile
-from tests.polygons import box, simple_polygons
+from tests.polygons import box_of, simple_polygons
 from tests.strategies import repeatable
 
 CELLS = st.sampled_from([0.5, 1.0, 2.0, 1 / 0.35, 40.0])
@@ -86,28 +86,28 @@ def test_stones_in_a_row_are_those_one_after_the_other(polygons: list[Points]) -
 
 
 def test_a_polygon_is_not_over_columns_into_which_it_reaches_by_little() -> None:
-    profile = raised(bare(6), box(2.0, 0.0, 4.0, 3.0), 0, 2.0)
+    profile = raised(bare(6), box_of(2.0, 0.0, 4.0, 3.0), 0, 2.0)
     assert profile.tops.tolist() == [0.0, 3.0, 3.0, 0.0, 0.0, 0.0]
-    tiny = raised(bare(6), box(2.0 - 1e-10, 0.0, 4.0 + 2e-10, 3.0), 0, 2.0)
+    tiny = raised(bare(6), box_of(2.0 - 1e-10, 0.0, 4.0 + 2e-10, 3.0), 0, 2.0)
     assert tiny.tops.tolist() == profile.tops.tolist()
-    little = raised(bare(6), box(2.0 - 0.49, 0.0, 4.0 + 0.98, 3.0), 0, 2.0)
+    little = raised(bare(6), box_of(2.0 - 0.49, 0.0, 4.0 + 0.98, 3.0), 0, 2.0)
     assert little.tops.tolist() == profile.tops.tolist()
-    over = raised(bare(6), box(2.0 - 0.51, 0.0, 4.0 + 1.02, 3.0), 0, 2.0)
+    over = raised(bare(6), box_of(2.0 - 0.51, 0.0, 4.0 + 1.02, 3.0), 0, 2.0)
     assert over.tops.tolist() == [3.0, 3.0, 3.0, 3.0, 0.0, 0.0]
 
 
 def test_of_equal_heights_the_first_owns_the_column() -> None:
-    profile = raised(bare(2), box(0.0, 0.0, 4.0, 3.0), 0, 2.0)
-    profile = raised(profile, box(2.0, 1.0, 2.0, 2.0), 1, 2.0)
+    profile = raised(bare(2), box_of(0.0, 0.0, 4.0, 3.0), 0, 2.0)
+    profile = raised(profile, box_of(2.0, 1.0, 2.0, 2.0), 1, 2.0)
     assert profile.owners.tolist() == [0, 0]
-    assert raised(bare(1), box(0.0, -1.0, 1.0, 1.0), 0, 2.0).owners.tolist() == [-1]
+    assert raised(bare(1), box_of(0.0, -1.0, 1.0, 1.0), 0, 2.0).owners.tolist() == [-1]
 
 
 def test_what_is_beside_the_columns_is_ignored() -> None:
     for left in (-1e300, -50.0, 50.0, 1e300):
-        profile = raised(bare(4), box(left, 0.0, 3.0, 3.0), 0, 2.0)
+        profile = raised(bare(4), box_of(left, 0.0, 3.0, 3.0), 0, 2.0)
         assert profile.tops.tolist() == [0.0] * 4
-    profile = raised(bare(4), box(-3.0, 0.0, 20.0, 3.0), 0, 2.0)
+    profile = raised(bare(4), box_of(-3.0, 0.0, 20.0, 3.0), 0, 2.0)
     assert profile.tops.tolist() == [3.0] * 4
     assert profile.boxes.tolist() == [[-3.0, 0.0, 17.0, 3.0]]
 
@@ -126,8 +126,8 @@ def test_a_polygon_needs_a_width_and_columns_too() -> None:
         hanging(np.array([[1.0, 0.0], [1.0, 2.0], [1.0, 3.0]]), 2.0)
     for cell in (0.0, -1.0, float("nan")):
         with pytest.raises(ValueError, match="columns"):
-            extremes(box(0.0, 0.0, 1.0, 1.0), 0.0, cell, 3)
+            extremes(box_of(0.0, 0.0, 1.0, 1.0), 0.0, cell, 3)
     with pytest.raises(ValueError, match="shape"):
         extremes(np.zeros((3, 3)), 0.0, 1.0, 3)
     with pytest.raises(ValueError, match="polygon -1"):
-        raised(bare(1), box(0.0, 0.0, 1.0, 1.0), -1, 1.0)
+        raised(bare(1), box_of(0.0, 0.0, 1.0, 1.0), -1, 1.0)

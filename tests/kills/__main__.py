@@ -9,7 +9,6 @@ import json
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
@@ -27,7 +26,7 @@ FAULTS = {
 """Columns of the table, and how the faults begin that are counted there."""
 
 
-def main(argv: Sequence[str] | None = None) -> int:
+def main(argv=None):
     """Kill, go on, and print; return 1 when anything was left, half or lost."""
     parser = argparse.ArgumentParser(prog="python -m tests.kills", description=__doc__)
     parser.add_argument("--kills", type=int, default=120, help="in all")
@@ -64,17 +63,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     return int(any(one.faults for one in done))
 
 
-def passed(end: float) -> bool:
+def passed(end):
     """Say whether it is later than that."""
     return time.monotonic() >= end
 
 
-def say(text: str) -> None:
+def say(text):
     """Say how far it is."""
     sys.stderr.write(f"{text}\n")
 
 
-def table(done: Sequence[Killed]) -> str:
+def table(done):
     """Return what became of the kills, by command and signal."""
     rows = [f"| command | signal | kills | {' | '.join(FAULTS)} |", "|" + " --- |" * 7]
     for case in dict.fromkeys(one.case for one in done):

@@ -2,7 +2,6 @@
 
 import signal
 from functools import partial
-from pathlib import Path
 
 import pytest
 
@@ -15,31 +14,38 @@ SMALL = "[search]\npasses = 3\nchains = 2\nshare_every = 2\n"
 """A search that soon comes to its chains."""
 
 
+WALL = ("plan", "{stones}", "--wall", "100x36", "--scale", "1", "-o", "{folder}")
+
+
 @pytest.fixture(scope="module")
-def stones(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return made_stones(tmp_path_factory.mktemp("stones") / "few.png", 8, 100, 36, 2)
+def place(tmp_path_factory):
+    """A folder with stones and settings, in which whole walls stay."""
+    place = tmp_path_factory.mktemp("kills")
+    made_stones(place / "few.png", 8, 100, 36, 2)
+    (place / "small.toml").write_text(SMALL)
+    return place
 
 
 @pytest.mark.parametrize(
-    ("options", "sent", "pause", "group"),
+    ("way", "jobs", "sent", "pause", "group"),
     [
-        (("--method", "paper"), "INT", "stone 3", True),
-        (("--budget", "13"), "TERM", "wall 2", False),
-        (("--budget", "13", "--jobs", "2"), "KILL", "wall 7", False),
+        (("--method", "paper"), (), "INT", "stone 3", True),
+        (("--budget", "9"), (), "TERM", "wall 2", False),
+        (("--budget", "9"), ("--jobs", "2"), "KILL", "wall 5", False),
     ],
 )
-def test_nothing_runs_on_and_nothing_is_lost(
-    options: tuple[str, ...], sent: str, pause: str, group: bool, stones: Path, tmp_path: Path
-) -> None:
-    settings = tmp_path / "small.toml"
-    settings.write_text(SMALL)
-    plan = ("plan", str(stones), "--wall", "100x36", "--scale", "1", "-o", "{folder}", *options)
-    small = ("--settings", str(settings)) if "paper" not in options else ()
-    case = Case(sent, (*plan, *small), ("--resume",), plan_bytes, stones, pause)
-    folder = tmp_path / "killed"
+def test_nothing_runs_on_and_nothing_is_lost(way, jobs, sent, pause, group, place):
+    small = ("--settings", str(place / "small.toml")) if "paper" not in way else ()
+    plan = tuple(word.format(stones=place / "few.png", folder="{folder}") for word in WALL)
+    case = Case(
+        sent, (*plan, *way, *small, *jobs), ("--jobs", "1", "--resume"), plan_bytes,
+        place / "few.png", pause,
+    )  # fmt: skip
+    folder, whole = place / sent, place / way[-1]
     one = killed(case, sent, folder, partial(case.waits, folder), group=group)
     assert one.faults == []
     assert one.code == {"INT": 130, "TERM": 143, "KILL": -9}[sent]
     assert (folder / "plan.json").exists()
-    assert called(case.told(tmp_path / "whole"))[0] in (0, 4)
-    assert list(lost(case, folder, plan_bytes(tmp_path / "whole"))) == []
+    if not whole.exists():  # the number of jobs does not shape it
+        assert called(case.told(whole, "--jobs", "1"))[0] in (0, 4)
+    assert list(lost(case, folder, plan_bytes(whole))) == []

@@ -1,5 +1,4 @@
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -88,6 +87,6 @@ def test_outlines_are_drawn_three_times_as_fine():
     ("name", "scale", "expected"),
     [("R", 0.2, (51.08, 2.05)), ("PR", 0.5, (39.73, 2.48)), ("IR", 0.3, (31.66, 5.09))],
 )
-def test_the_masons_walls(data_dir: Path, name, scale, expected):
+def test_the_masons_walls(data_dir, name, scale, expected):
     labels = reduce_labels(read_wall_image(data_dir / "almeida" / f"{name}.png"), scale)
     assert both(finer_labels(labels)) == pytest.approx(expected, abs=0.006)

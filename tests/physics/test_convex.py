@@ -1,7 +1,5 @@
 """Convex parts: they cover the boundary from inside, and no seam ends at a corner."""
 
-from collections.abc import Sequence
-
 import numpy as np
 import pytest
 import shapely
@@ -27,19 +25,19 @@ GRID = 2.0**-40
 """Without a grid areas in common come out wrong now and then (drystone.model.overlap)."""
 
 
-def star(reach: Sequence[float]) -> np.ndarray:
+def star(reach):
     angle = np.arange(len(reach)) * 2.0 * np.pi / len(reach)
     return np.array(reach)[:, None] * np.column_stack((np.cos(angle), np.sin(angle)))
 
 
 @st.composite
-def stars(draw: st.DrawFn) -> np.ndarray:
+def stars(draw):
     """Star-shaped outlines, most of them concave."""
     count = draw(st.integers(3, 24))
     return star(draw(st.lists(st.floats(0.3, 3.0), min_size=count, max_size=count)))
 
 
-def check(outline: np.ndarray) -> list[shapely.Polygon]:
+def check(outline):
     """Check the parts of an outline, and return them."""
     parts = [shapely.Polygon(part) for part in convex_parts(outline)]
     whole = shapely.Polygon(outline)
@@ -55,14 +53,14 @@ def check(outline: np.ndarray) -> list[shapely.Polygon]:
     return parts
 
 
-def directions(ring: np.ndarray, at: int) -> tuple[np.ndarray, np.ndarray]:
+def directions(ring, at):
     """Unit vectors of the edges that come to and leave a corner."""
     ahead = np.roll(ring, -1, axis=0)[at] - ring[at]
     behind = ring[at] - np.roll(ring, 1, axis=0)[at]
     return behind / np.hypot(*behind), ahead / np.hypot(*ahead)
 
 
-def check_seams(outline: np.ndarray) -> None:
+def check_seams(outline):
     """At a corner of the outline a part has both faces of it, or passes straight through."""
     for part in convex_parts(outline):
         for i, corner in enumerate(part):
@@ -78,7 +76,7 @@ def check_seams(outline: np.ndarray) -> None:
 @example(COMB)
 @example(NOSE)
 @example(star(FLAT_CORNER))
-def test_parts_cover_the_boundary_and_seams_end_away_from_corners(outline: np.ndarray) -> None:
+def test_parts_cover_the_boundary_and_seams_end_away_from_corners(outline):
     parts = check(outline)
     check_seams(outline)
     assert len(parts) <= 12 or outline is not COMB
@@ -86,14 +84,14 @@ def test_parts_cover_the_boundary_and_seams_end_away_from_corners(outline: np.nd
 
 @repeatable(30)
 @given(masks())
-def test_pixel_outlines(mask: np.ndarray) -> None:
+def test_pixel_outlines(mask):
     outline = pixel_polygon(whole(mask))
     if shapely.Polygon(outline).is_valid:
         check(outline)
 
 
 @pytest.mark.parametrize("outline", [COMB, NOSE], ids=["comb", "nose"])
-def test_no_part_has_a_corner_at_which_it_does_not_turn(outline: np.ndarray) -> None:
+def test_no_part_has_a_corner_at_which_it_does_not_turn(outline):
     between = (outline + np.roll(outline, -1, axis=0)) / 2
     split = np.stack([outline, between], axis=1).reshape(-1, 2)
     for part in (*convex_parts(split), *convex_parts(split[[0, 1, 2, -1]])):

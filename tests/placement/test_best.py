@@ -21,13 +21,13 @@ from tests.strategies import posed_on_walls, repeatable
 Scene = tuple[Wall, PosedStone, int, int]
 
 
-def block(height: int, width: int, stone_id: int = 1) -> PosedStone:
+def block(height, width, stone_id=1):
     return PoseBook().pose(Stone(stone_id, np.ones((height, width), bool)), 0.0)
 
 
 @repeatable(40)
 @given(scene=posed_on_walls())
-def test_eq12_takes_the_largest_value_then_the_lower_then_the_left(scene: Scene) -> None:
+def test_eq12_takes_the_largest_value_then_the_lower_then_the_left(scene):
     wall, posed, _, _ = scene
     settings = PlacementSettings(tries=5)
     value = {
@@ -41,7 +41,7 @@ def test_eq12_takes_the_largest_value_then_the_lower_then_the_left(scene: Scene)
 
 @repeatable(40)
 @given(scene=posed_on_walls(), tries=st.integers(1, 9))
-def test_eq12_chooses_among_the_poses_too(scene: Scene, tries: int) -> None:
+def test_eq12_chooses_among_the_poses_too(scene, tries):
     wall, posed, _, _ = scene
     poses = [posed, PoseBook().pose(posed.stone, 90.0), block(2, 5)]
     value = {
@@ -57,12 +57,12 @@ def test_eq12_chooses_among_the_poses_too(scene: Scene, tries: int) -> None:
 
 @repeatable(40)
 @given(scene=posed_on_walls())
-def test_snug_takes_the_least_weighted_cost(scene: Scene) -> None:
+def test_snug_takes_the_least_weighted_cost(scene):
     wall, posed, _, _ = scene
     settings = PlacementSettings(rule="snug", reach="above", tries=5)
     height, width = wall.occupied.shape
 
-    def cost(at: tuple[int, int]) -> float:
+    def cost(at):
         gap = naive.gap_beside(wall.occupied, posed.mask, at) / posed.area_px
         return (
             settings.height_weight * (height - at[0] - posed.height_px) / posed.height_px
@@ -78,17 +78,17 @@ def test_snug_takes_the_least_weighted_cost(scene: Scene) -> None:
 
 
 @pytest.mark.parametrize("rule", ["eq12", "lowest", "snug"])
-def test_every_rule_keeps_the_clearance(rule: str) -> None:
+def test_every_rule_keeps_the_clearance(rule):
     """Of all places that a rule may take, none is without the room asked for on the way down."""
     narrow = 0
 
     @repeatable(60)
     @given(scene=posed_on_walls(), clearance=st.integers(0, 3))
-    def check(scene: Scene, clearance: int) -> None:
+    def check(scene, clearance):
         nonlocal narrow
         wall, posed, _, _ = scene
         settings = PlacementSettings(
-            rule=rule,  # type: ignore[arg-type]
+            rule=rule,
             reach="above",
             clearance_px=clearance,
             tries=999,
@@ -104,7 +104,7 @@ def test_every_rule_keeps_the_clearance(rule: str) -> None:
 
 @repeatable(40)
 @given(scene=posed_on_walls())
-def test_lowest_takes_the_lowest_then_the_tightest_then_the_left(scene: Scene) -> None:
+def test_lowest_takes_the_lowest_then_the_tightest_then_the_left(scene):
     wall, posed, _, _ = scene
     places = naive.resting_positions(wall.occupied, posed.mask)
     filling = {p: rays.local_filling_ratio(wall.occupied, posed.mask, *p) for p in places}
@@ -113,7 +113,7 @@ def test_lowest_takes_the_lowest_then_the_tightest_then_the_left(scene: Scene) -
     assert (spot.row, spot.col) == expected
 
 
-def test_equal_merits_go_to_the_lower_place_then_to_the_building_side_then_to_the_first() -> None:
+def test_equal_merits_go_to_the_lower_place_then_to_the_building_side_then_to_the_first():
     wall = Wall.empty(Site(20, 9)).add(Placement(block(3, 4), 6, 8))
     settings = PlacementSettings(
         rule="snug", tries=99, height_weight=0, void_weight=0, gap_weight=0, end_weight=0
@@ -125,7 +125,7 @@ def test_equal_merits_go_to_the_lower_place_then_to_the_building_side_then_to_th
     assert rows == sorted(rows, reverse=True)
 
 
-def test_a_lower_place_is_one_with_a_lower_underside_whatever_the_pose() -> None:
+def test_a_lower_place_is_one_with_a_lower_underside_whatever_the_pose():
     settings = PlacementSettings(rule="lowest", tries=99)
     wall = Wall.empty(Site(10, 9)).add(Placement(block(2, 4), 7, 0))
     spots = best_spots(Landscape.of(wall), [block(2, 3, 2), block(6, 2, 2)], settings)
@@ -134,8 +134,8 @@ def test_a_lower_place_is_one_with_a_lower_underside_whatever_the_pose() -> None
 
 
 @pytest.mark.parametrize("rule", ["eq12", "lowest", "snug"])
-def test_no_room_is_an_empty_list(rule: str) -> None:
-    settings = PlacementSettings(rule=rule)  # type: ignore[arg-type]
+def test_no_room_is_an_empty_list(rule):
+    settings = PlacementSettings(rule=rule)
     assert (
         best_spots(Landscape.of(Wall.empty(Site(5, 5))), [block(6, 2), block(2, 6)], settings) == []
     )

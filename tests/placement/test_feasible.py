@@ -5,48 +5,45 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.raster import Mask
 from drystone.model.landscape import Landscape
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
-from drystone.placement.feasible import Reach, can_be_lowered, feasible_positions
+from drystone.placement.feasible import can_be_lowered, feasible_positions
 from drystone.poses import PoseBook
 from tests.naive import placement as naive
 from tests.strategies import landscapes, masks, repeatable
 
 
-def landscape_of(occupied: Mask) -> Landscape:
+def landscape_of(occupied):
     return Landscape(occupied, ())
 
 
-def pose_of(mask: Mask) -> PosedStone:
+def pose_of(mask):
     return PoseBook().pose(Stone(1, mask), 0.0)
 
 
-def found(occupied: Mask, mask: Mask, reach: Reach = "any", clearance: int = 0) -> list[list[int]]:
+def found(occupied, mask, reach="any", clearance=0):
     positions = feasible_positions(landscape_of(occupied), pose_of(mask), reach, clearance)
     return [list(at) for at in positions.tolist()]
 
 
 @repeatable(80)
 @given(occupied=landscapes(14), mask=masks())
-def test_any_position_that_is_free_and_one_pixel_lower_is_not(occupied: Mask, mask: Mask) -> None:
+def test_any_position_that_is_free_and_one_pixel_lower_is_not(occupied, mask):
     resting = [list(at) for at in naive.resting_positions(occupied, mask)]
     assert found(occupied, mask) == resting
 
 
 @repeatable(40)
 @given(occupied=landscapes(12), mask=masks(5))
-def test_resting_positions_are_feasible_in_the_sense_of_the_paper(
-    occupied: Mask, mask: Mask
-) -> None:
+def test_resting_positions_are_feasible_in_the_sense_of_the_paper(occupied, mask):
     touching = {tuple(at) for at in naive.touching_positions(occupied, mask)}
     assert {tuple(at) for at in found(occupied, mask)} <= touching
 
 
 @repeatable(80)
 @given(occupied=landscapes(14), mask=masks())
-def test_from_above_is_where_a_lowered_stone_comes_to_rest(occupied: Mask, mask: Mask) -> None:
+def test_from_above_is_where_a_lowered_stone_comes_to_rest(occupied, mask):
     lowered = [list(at) for at in naive.positions_from_above(occupied, mask)]
     assert found(occupied, mask, "above") == lowered
     everywhere = found(occupied, mask)
@@ -55,14 +52,12 @@ def test_from_above_is_where_a_lowered_stone_comes_to_rest(occupied: Mask, mask:
 
 @repeatable(80)
 @given(occupied=landscapes(14), mask=masks(), clearance=st.integers(1, 3))
-def test_clearance_is_free_on_both_sides_of_the_stone(
-    occupied: Mask, mask: Mask, clearance: int
-) -> None:
+def test_clearance_is_free_on_both_sides_of_the_stone(occupied, mask, clearance):
     wide = [list(at) for at in naive.positions_from_above(occupied, mask, clearance)]
     assert found(occupied, mask, "above", clearance) == wide
 
 
-def test_clearance_counts_at_every_height_of_the_stone() -> None:
+def test_clearance_counts_at_every_height_of_the_stone():
     stone = np.array([[1, 1], [0, 1], [0, 1]], bool)
     occupied = np.zeros((12, 6), bool)
     # A post beside the stone.  Three px above its place the stone's foot reaches down to row 8;
@@ -75,7 +70,7 @@ def test_clearance_counts_at_every_height_of_the_stone() -> None:
 
 
 @pytest.mark.parametrize("reach", ["any", "above"])
-def test_a_stone_larger_than_the_site_fits_nowhere(reach: Reach) -> None:
+def test_a_stone_larger_than_the_site_fits_nowhere(reach):
     occupied = np.zeros((4, 6), bool)
     assert found(occupied, np.ones((5, 2), bool), reach) == []
     assert found(occupied, np.ones((2, 7), bool), reach) == []
@@ -83,9 +78,7 @@ def test_a_stone_larger_than_the_site_fits_nowhere(reach: Reach) -> None:
 
 @repeatable()
 @given(landscapes(), masks(), st.integers(0, 3))
-def test_what_can_be_lowered_is_what_reach_above_finds(
-    occupied: Mask, mask: Mask, clearance: int
-) -> None:
+def test_what_can_be_lowered_is_what_reach_above_finds(occupied, mask, clearance):
     landscape = Landscape(occupied, ())
     posed = PosedStone(Stone(1, mask), 0.0, 1.0, mask.copy(), (0.5, 0.5))
     lowered = {tuple(p) for p in feasible_positions(landscape, posed, "above", clearance).tolist()}

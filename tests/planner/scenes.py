@@ -1,8 +1,5 @@
 """Small stone sets and planners."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
-
 import numpy as np
 
 from drystone.generate import (
@@ -13,13 +10,11 @@ from drystone.generate import (
     fourier_stones,
     rubble_stones,
 )
-from drystone.kernels.raster import Mask
 from drystone.model.site import Site
 from drystone.model.stone import Source, Stone, StoneSet
 from drystone.model.wall import outlined
 from drystone.planner.deadline import Deadline
-from drystone.planner.planner import Planner
-from drystone.planner.settings import PlannerSettings, method_settings
+from drystone.planner.settings import method_settings
 
 RUBBLE_SITE = Site(100, 36)
 """What :func:`rubble` is for."""
@@ -31,7 +26,7 @@ ROUNDED = fourier_stones(
 ROUNDED_SITE = Site.from_source(330, 130, 0.5)
 """Rounded stones, large and small, of which some fall where no trial is made of their places."""
 
-WITH_WEDGES: Mapping[str, Any] = {
+WITH_WEDGES = {
     "selection_rule": "algorithm2",
     "stabilise": {"method": "wedge", "min_wedge_px": 1, "margin": 0.3, "max_wedge_height": 0.9},
     "wedge": {"thickness": 0.02, "thickness_mm": 1.0, "height": 0.9, "area": 0.9},
@@ -40,25 +35,25 @@ WITH_WEDGES: Mapping[str, Any] = {
 """Changes with which many stones stand on wedges, of any size, on pixels and on outlines."""
 
 
-def rubble(seed: int = 0, count: int = 8) -> StoneSet:
+def rubble(seed=0, count=8):
     """Rubble of two courses."""
     settings = RubbleSettings(count=count, width_px=100, height_px=36, courses=2)
     return rubble_stones(settings, np.random.default_rng(seed))
 
 
-def few_stones() -> StoneSet:
+def few_stones():
     """Some of these get wedges with :data:`WITH_WEDGES`."""
     size = RubbleSettings(count=5, width_px=90, height_px=30, courses=2)
     return rubble_stones(size, np.random.default_rng(4))
 
 
-def bricks(count: int = 6, halves: int = 0) -> StoneSet:
+def bricks(count=6, halves=0):
     """Bricks of 20 x 10 px."""
     settings = BrickSettings(count=count, height_px=10, aspect=2, halves=halves)
     return brick_stones(settings, np.random.default_rng(0))
 
 
-def stones_of_masks(masks: Mapping[int, Mask]) -> StoneSet:
+def stones_of_masks(masks):
     """Stones with given ids, side by side in a source image."""
     stones, left = [], 1
     for stone_id, mask in masks.items():
@@ -67,17 +62,17 @@ def stones_of_masks(masks: Mapping[int, Mask]) -> StoneSet:
     return StoneSet(tuple(stones), Source("stones.png", "ab" * 32, left, 60))
 
 
-def blocks(sizes: Mapping[int, tuple[int, int]]) -> StoneSet:
+def blocks(sizes):
     """Rectangular stones: id to (width, height)."""
     return stones_of_masks({i: np.ones((h, w), bool) for i, (w, h) in sizes.items()})
 
 
-def greedy(changes: Mapping[str, object] | None = None) -> PlannerSettings:
+def greedy(changes=None):
     """The default method without a search."""
     return method_settings("best").updated({"search": {"budget": 1}, **(changes or {})})
 
 
-def order(planner: Planner) -> list[tuple[int, float, int, int, str]]:
+def order(planner):
     """Stone, angle, row, column and side of every action."""
     placements = [action.stabilised.placement for action in planner.build.actions]
     return [(p.stone_id, p.posed.angle_deg, p.row, p.col, p.side) for p in placements]
@@ -86,36 +81,36 @@ def order(planner: Planner) -> list[tuple[int, float, int, int, str]]:
 class Ticks:
     """A clock that goes on by one whenever it is looked at."""
 
-    def __init__(self) -> None:
+    def __init__(self):
         self.count = 0
 
-    def __call__(self) -> float:
+    def __call__(self):
         self.count += 1
         return float(self.count)
 
 
-def after_looks(count: int) -> Deadline:
+def after_looks(count):
     """A time limit that has not struck yet when it is looked at so many times."""
     return Deadline(float(count), Ticks())
 
 
-def finish(planner: Planner) -> Planner:
+def finish(planner):
     """Take all steps."""
     for _ in planner.steps():
         pass
     return planner
 
 
-def outlines(planner: Planner) -> list[tuple[int, bytes]]:
+def outlines(planner):
     """Ids and corners of stones and wedges that are outlines, in the order of placement."""
     groups = planner.build.wall.groups if planner.build.wall.outlines else ()
     blocks = (block for group in groups for block in outlined(group.placement, group.wedges))
     return [(block_id, corners.tobytes()) for block_id, corners in blocks]
 
 
-def same(one: Planner, other: Planner) -> bool:
+def same(one, other):
     """Say whether two planners did the same, with the same figures."""
-    figures: Sequence[list[object]] = [
+    figures = [
         [(a.indices, a.resistance.value, a.course_height_px) for a in planner.build.actions]
         for planner in (one, other)
     ]

@@ -9,13 +9,12 @@ from drystone.model.placement import Placement, Wedge
 from drystone.model.site import Site
 from drystone.model.stone import Stone, StoneSet
 from drystone.model.wall import Group, Wall
-from drystone.planner.assemble import Frame, plan_metrics, plan_steps
+from drystone.planner.assemble import plan_metrics, plan_steps
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.evaluate import action_indices
 from drystone.planner.settings import method_settings
 from drystone.planner.solves import Solves
 from drystone.poses import PoseBook
-from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
 from drystone.statics.incremental import IncrementalAnalysis, IncrementalResult
 from drystone.statics.limit import lateral_resistance
@@ -26,7 +25,7 @@ from tests.planner.scenes import blocks, rubble
 SCALE, PX_PER_M = 0.5, 200.0
 
 
-def wedged_build() -> tuple[Build, Frame]:
+def wedged_build():
     """A slab of 40 x 8 source px on two wedges of 4 x 2 working px."""
     site = Site.from_source(60, 40, SCALE, PX_PER_M)
     posed = PoseBook(SCALE).pose(Stone(7, np.ones((8, 40), bool)), 0.0)
@@ -42,46 +41,46 @@ def wedged_build() -> tuple[Build, Frame]:
     indices, course = action_indices(Landscape.of(empty), stabilised, resistance, None, 4.0)
     proposal = Proposal(stabilised, 0.0)
     action = Candidate(proposal, indices, course, model, resistance)
-    return Build.empty(site, model.mu, 80.0).add(action), Frame(60.0, 40.0, site)
+    return Build.empty(site, model.mu, 80.0).add(action)
 
 
-def test_areas_are_in_square_metres_when_a_scale_is_known() -> None:
-    build, frame = wedged_build()
-    metrics = plan_metrics(build, frame, build.actions[-1].resistance)
+def test_areas_are_in_square_metres_when_a_scale_is_known():
+    build = wedged_build()
+    metrics = plan_metrics(build, build.actions[-1].resistance)
     # 16 working px of 2 source px each way, 200 source px in a metre
     assert metrics.wedge_area == pytest.approx(16 * (2 / 200) ** 2)
 
 
-def test_the_filling_counts_source_areas_not_pixels() -> None:
+def test_the_filling_counts_source_areas_not_pixels():
     """A stone of 5 x 3 source px is 3 x 2 or 2 x 2 px at half size, never 3.75."""
-    build, frame = wedged_build()
+    build = wedged_build()
     stone = Stone(1, np.ones((3, 5), bool))
     posed = PoseBook(SCALE).pose(stone, 0.0)
     assert posed.area_px != stone.area_px * SCALE**2
     result = plan_wall(StoneSet((stone,)), 10, 8, method="paper", scale=SCALE)
     assert result.metrics.F_SF == pytest.approx(15 / 80)
-    metrics = plan_metrics(build, frame, build.actions[-1].resistance)
+    metrics = plan_metrics(build, build.actions[-1].resistance)
     assert metrics.F_SF == pytest.approx(40 * 8 / (60 * 40))
 
 
-def test_the_multipliers_of_a_group_stand_at_its_last_step_only() -> None:
-    build, frame = wedged_build()
-    steps = plan_steps(build, frame, {7: 1})
+def test_the_multipliers_of_a_group_stand_at_its_last_step_only():
+    build = wedged_build()
+    steps = plan_steps(build, {7: 1})
     assert [step.kind for step in steps] == ["stone", "wedge", "wedge"]
     assert [step.step for step in steps] == [1, 2, 3]
     assert [step.alpha_left is None for step in steps] == [True, True, False]
     assert steps[-1].alpha_right == build.actions[0].resistance.right.alpha
 
 
-def test_a_wedge_polygon_is_in_metres() -> None:
-    build, frame = wedged_build()
-    wedge = plan_steps(build, frame, {7: 1})[1]
-    corners = np.array(wedge.polygon) * 100  # type: ignore[union-attr]
+def test_a_wedge_polygon_is_in_metres():
+    build = wedged_build()
+    wedge = plan_steps(build, {7: 1})[1]
+    corners = np.array(wedge.polygon) * 100
     assert corners.min(axis=0) == pytest.approx([2.0, 0.0])
     assert corners.max(axis=0) == pytest.approx([6.0, 2.0])
 
 
-def test_a_plan_says_which_method_made_it() -> None:
+def test_a_plan_says_which_method_made_it():
     stones = blocks({1: (20, 10), 2: (20, 10)})
     assert plan_wall(stones, 40, 10, scale=1.0, method="paper").plan.method == "paper"
     own = method_settings("paper").updated({"sampling": "full"})
@@ -89,14 +88,12 @@ def test_a_plan_says_which_method_made_it() -> None:
     assert plan_wall(stones, 40, 10, scale=1.0, settings=own, method="paper").plan.method == "paper"
 
 
-def test_candidates_on_which_the_solver_gave_up_are_counted_and_said(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_candidates_on_which_the_solver_gave_up_are_counted_and_said(monkeypatch):
     stones = blocks({1: (20, 10), 2: (20, 10), 3: (20, 10)})
     assert plan_wall(stones, 60, 10, scale=1.0, method="paper").notices == ()
     calls = iter(range(1000))
 
-    def fails_first(analysis: IncrementalAnalysis, model: RigidBlockModel) -> IncrementalResult:
+    def fails_first(analysis, model):
         if next(calls) > 0:
             return analyse(analysis, model)
         gave_up = [LimitResult(LimitStatus.FAILED, side) for side in ("left", "right")]
@@ -113,21 +110,19 @@ def test_candidates_on_which_the_solver_gave_up_are_counted_and_said(
     assert result.solves == Solves(failed=1, cold=1)
 
 
-@pytest.mark.parametrize("rounds", [0, 2])
-def test_candidates_that_were_solved_again_are_counted_and_change_nothing(
-    rounds: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.parametrize("rounds", [0, 1])
+def test_candidates_that_were_solved_again_are_counted_and_change_nothing(rounds, monkeypatch):
     settings = method_settings("best").updated({"search": {"budget": rounds + 1}})
     stones = rubble(seed=1)
 
-    def planned() -> PlanResult:
+    def planned():
         return plan_wall(stones, 100, 36, scale=1.0, seed=1, settings=settings)
 
     plain = planned()
     assert (plain.notices, plain.solves) == ((), Solves())
-    asked: list[RigidBlockModel] = []
+    asked = []
 
-    def from_the_start(_: IncrementalAnalysis, model: RigidBlockModel) -> IncrementalResult:
+    def from_the_start(_, model):
         asked.append(model)
         return IncrementalResult(lateral_resistance(model), solved_cold=True)
 
@@ -143,7 +138,7 @@ def test_candidates_that_were_solved_again_are_counted_and_change_nothing(
     assert again.wall.labels.tobytes() == plain.wall.labels.tobytes()
 
 
-def test_a_wall_in_which_nothing_can_be_placed_is_an_incomplete_plan() -> None:
+def test_a_wall_in_which_nothing_can_be_placed_is_an_incomplete_plan():
     """A stone on its tip: neither rotation nor wedges allowed."""
     tip = np.triu(np.ones((12, 12), bool))
     result = plan_wall(

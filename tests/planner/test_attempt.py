@@ -8,37 +8,30 @@ import pytest
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Placement
 from drystone.model.site import Site
-from drystone.model.wall import Group, Wall
+from drystone.model.wall import Group
 from drystone.planner.attempt import Attempt
-from drystone.planner.build import Proposal
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
-from drystone.planner.proposing import RasterProposer, Spotted, StoneTrial
+from drystone.planner.proposing import RasterProposer
 from drystone.planner.settings import PlannerSettings
-from drystone.statics.incremental import IncrementalAnalysis
-from tests.narrow import not_none
 from tests.planner.scenes import RUBBLE_SITE, blocks, greedy, rubble
-
-Key = tuple[int, float, str]
 
 
 class _Calls:
     """How often the evaluator proposed and judged each candidate."""
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.proposed: Counter[Key] = Counter()
-        self.judged: Counter[Key] = Counter()
+    def __init__(self, monkeypatch):
+        self.proposed = Counter()
+        self.judged = Counter()
         spotted, judge = RasterProposer.spotted, Evaluator.judge
 
-        def spotted_once(this: RasterProposer, trial: StoneTrial) -> Spotted:
+        def spotted_once(this, trial):
             posed = trial.poses[0]
             self.proposed[posed.stone.id, posed.angle_deg, trial.landscape.side] += 1
             return spotted(this, trial)
 
-        def judge_once(
-            this: Evaluator, wall: Wall, analysis: IncrementalAnalysis, proposal: Proposal
-        ) -> object:
+        def judge_once(this, wall, analysis, proposal):
             self.judged[proposal.stone_id, proposal.trial_angle_deg, proposal.side] += 1
             return judge(this, wall, analysis, proposal)
 
@@ -46,7 +39,7 @@ class _Calls:
         monkeypatch.setattr(Evaluator, "judge", judge_once)
 
 
-def _attempt(settings: PlannerSettings, built: int = 2) -> Attempt:
+def _attempt(settings, built=2):
     planner = Planner(rubble(), RUBBLE_SITE, settings=settings)
     for step in planner.steps():
         if step.number == built:
@@ -63,9 +56,7 @@ def _attempt(settings: PlannerSettings, built: int = 2) -> Attempt:
     ],
     ids=["two-fold", "quarter", "best"],
 )
-def test_nothing_is_evaluated_twice(
-    settings: PlannerSettings, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_nothing_is_evaluated_twice(settings, monkeypatch):
     attempt = _attempt(settings)
     calls = _Calls(monkeypatch)
     for seed in range(4):
@@ -75,7 +66,7 @@ def test_nothing_is_evaluated_twice(
     assert attempt.candidates == len(calls.proposed)
 
 
-def test_a_repeated_attempt_chooses_what_a_new_one_does() -> None:
+def test_a_repeated_attempt_chooses_what_a_new_one_does():
     settings = PlannerSettings(sampling="twofold", two_sided=True)
     used = _attempt(settings)
     for seed in range(4):
@@ -88,7 +79,7 @@ def test_a_repeated_attempt_chooses_what_a_new_one_does() -> None:
             assert chosen.course_height_px == fresh.course_height_px
 
 
-def test_both_sides_are_tried_when_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_both_sides_are_tried_when_asked(monkeypatch):
     for two_sided, sides in ((True, {"left", "right"}), (False, {"left"})):
         attempt = _attempt(PlannerSettings(sampling="full", two_sided=two_sided))
         with monkeypatch.context() as patch:
@@ -97,34 +88,34 @@ def test_both_sides_are_tried_when_asked(monkeypatch: pytest.MonkeyPatch) -> Non
         assert {side for _, _, side in calls.proposed} == sides
 
 
-def test_the_second_fold_tries_the_cluster_of_the_winner(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_second_fold_tries_the_cluster_of_the_winner(monkeypatch):
     # Two clusters of three stones: one of each is drawn, then the rest of one of them.
     stones = blocks({1: (10, 10), 2: (10, 10), 3: (10, 10), 4: (30, 5), 5: (30, 5), 6: (30, 5)})
     settings = PlannerSettings(sampling="twofold")
     planner = Planner(stones, Site(60, 20), settings=settings)
     calls = _Calls(monkeypatch)
     attempt = Attempt(planner.workshop, settings, planner.build)
-    chosen = not_none(attempt.choose(np.random.default_rng(0)))
+    chosen = attempt.choose(np.random.default_rng(0))
     tried = {stone_id for stone_id, _, _ in calls.proposed}
     members = {1, 2, 3} if chosen.stone_id <= 3 else {4, 5, 6}
     assert members <= tried
     assert len(tried - members) == 1
 
 
-def test_the_height_of_a_course_is_the_mean_of_other_stones() -> None:
+def test_the_height_of_a_course_is_the_mean_of_other_stones():
     # Eq. 8: the first stone is compared with the mean height of the other candidates.
     stones = blocks({1: (20, 10), 2: (20, 10), 3: (20, 4)})
     settings = PlannerSettings(sampling="full", orientations="sf")
     planner = Planner(stones, Site(60, 20), settings=settings)
     attempt = Attempt(planner.workshop, settings, planner.build)
-    chosen = not_none(attempt.choose(np.random.default_rng(0)))
+    chosen = attempt.choose(np.random.default_rng(0))
     assert chosen.stone_id == 1
     assert chosen.proposal.course_height_px == 7.0
     assert chosen.course_height_px == 7.0
     assert chosen.indices.NHR == pytest.approx(0.3)
 
 
-def test_orientations_are_candidates_or_the_rule_picks_one(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_orientations_are_candidates_or_the_rule_picks_one(monkeypatch):
     stones = blocks({1: (20, 10), 2: (16, 8)})
     for choice, tried in (("candidates", 4), ("placement", 2)):
         settings = PlannerSettings(sampling="full", orientations="quarter").updated(
@@ -138,7 +129,7 @@ def test_orientations_are_candidates_or_the_rule_picks_one(monkeypatch: pytest.M
 
 
 @pytest.mark.parametrize(("clearance_px", "proposed"), [(0, True), (1, True), (2, False)])
-def test_a_stone_that_turns_keeps_its_clearance(clearance_px: int, proposed: bool) -> None:
+def test_a_stone_that_turns_keeps_its_clearance(clearance_px, proposed):
     """From where it is stabilised it moves into a slot with one px to spare on both sides."""
     placing = {"reach": "above", "clearance_px": clearance_px}
     settings = greedy({"geometry": "raster", "placement": placing})

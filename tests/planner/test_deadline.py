@@ -2,7 +2,6 @@
 
 import math
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
 
 import pytest
 
@@ -20,19 +19,19 @@ from tests.planner.scenes import (
     same,
 )
 
-WAYS: dict[str, dict[str, Any]] = {
+WAYS = {
     "best": {},
     "given order": {"order": "given"},
     "policy": {"selection_rule": "lowest"},
 }
 
 
-def planner(way: str, **options: Any) -> Planner:
+def planner(way, **options):
     settings = method_settings("paper") if way == "paper" else greedy(WAYS[way])
     return Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings, **options)
 
 
-def test_it_strikes_once_the_clock_is_past_it() -> None:
+def test_it_strikes_once_the_clock_is_past_it():
     clock = Ticks()
     until = Deadline.after(2.0, clock)  # looks at the clock: it is 1
     until.look()
@@ -41,21 +40,21 @@ def test_it_strikes_once_the_clock_is_past_it() -> None:
         until.look()
 
 
-def test_no_limit_never_strikes() -> None:
+def test_no_limit_never_strikes():
     assert NEVER.at == math.inf
     assert Deadline.after(math.inf).at == math.inf
     NEVER.look()
 
 
 @pytest.mark.parametrize("way", [*WAYS, "paper"])
-def test_what_is_built_by_then_is_a_part_of_the_wall_and_can_be_gone_on_with(way: str) -> None:
+def test_what_is_built_by_then_is_a_part_of_the_wall_and_can_be_gone_on_with(way):
     whole = finish(planner(way))
     clock = Ticks()
     watched = planner(way)
     assert len(list(watched.steps(Deadline(math.inf, clock)))) == len(order(whole))
     assert same(watched, whole)
     assert clock.count > len(order(whole))  # inside of steps as well
-    for count in sorted({0, 1, *range(2, clock.count, max(1, clock.count // 3)), clock.count - 1}):
+    for count in (0, 1, clock.count // 2, clock.count - 1):
         part = planner(way)
         with pytest.raises(TimeIsUp):
             list(part.steps(after_looks(count)))
@@ -65,7 +64,7 @@ def test_what_is_built_by_then_is_a_part_of_the_wall_and_can_be_gone_on_with(way
         assert part.stopped == whole.stopped
 
 
-def test_it_strikes_in_threads_too() -> None:
+def test_it_strikes_in_threads_too():
     whole = finish(planner("best"))
     with ThreadPoolExecutor(2) as threads:
         part = planner("best", executor=threads)

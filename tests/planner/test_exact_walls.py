@@ -21,11 +21,10 @@ from drystone.generate import (
 from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.model.outlines import Outlines
 from drystone.model.site import Site
-from drystone.model.stone import Stone, StoneSet
+from drystone.model.stone import StoneSet
 from drystone.model.wall import outlined
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
-from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
 from drystone.search.whole_search import run_to_end
 from drystone.settle.rest import placed_outline
@@ -37,7 +36,7 @@ Case = tuple[StoneSet, tuple[float, float], float, PlannerSettings]
 
 
 @st.composite
-def stone_sets(draw: st.DrawFn) -> StoneSet:
+def stone_sets(draw):
     """A few stones about 20 px wide, some with a hole that is kept."""
     found = draw(whole_stone_sets())
     if draw(st.booleans()):
@@ -46,7 +45,7 @@ def stone_sets(draw: st.DrawFn) -> StoneSet:
     return replace(found, stones=tuple(with_hole(stone, rng) for stone in found))
 
 
-def with_hole(stone: Stone, rng: np.random.Generator) -> Stone:
+def with_hole(stone, rng):
     """A round hole anywhere in a stone, up to two px from its rim."""
     depth = ndimage.distance_transform_edt(np.pad(stone.mask, 1))[1:-1, 1:-1]
     row, col = rng.choice(np.argwhere(depth >= depth.max() * rng.uniform(0.4, 1.0)))
@@ -55,10 +54,10 @@ def with_hole(stone: Stone, rng: np.random.Generator) -> Stone:
 
 
 @st.composite
-def whole_stone_sets(draw: st.DrawFn) -> StoneSet:
+def whole_stone_sets(draw):
     """A few stones about 20 px wide."""
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
-    count = draw(st.integers(2, 7))
+    count = draw(st.integers(2, 5))
     kind = draw(st.sampled_from(["polygon", "concave", "fourier", "rubble"]))
     if kind == "fourier":
         round_ones = FourierSettings(count=count, smallest_radius_px=8, largest_radius_px=13)
@@ -70,10 +69,10 @@ def whole_stone_sets(draw: st.DrawFn) -> StoneSet:
 
 
 @st.composite
-def cases(draw: st.DrawFn) -> Case:
+def cases(draw):
     """Stones, a site in source px, its scale, and settings."""
     changes = {
-        "search": {"budget": draw(st.integers(1, 2))},
+        "search": {"budget": draw(st.sampled_from([1, 1, 2]))},
         "two_sided": draw(st.booleans()),
         "skip_too_large": True,
         "settle": {"method": draw(st.sampled_from(["energy", "pivot"]))},
@@ -83,12 +82,12 @@ def cases(draw: st.DrawFn) -> Case:
         "orientations": draw(st.sampled_from(["quarter", "sf", "45deg"])),
         "mu": draw(st.sampled_from([0.58, 0.3])),
     }
-    size = draw(st.floats(45.0, 100.0)), draw(st.floats(28.0, 60.0))
+    size = draw(st.floats(45.0, 80.0)), draw(st.floats(28.0, 50.0))
     scale = draw(st.sampled_from([1.0, 0.5, 0.37]))
     return draw(stone_sets()), size, scale, greedy(changes)
 
 
-def check(result: PlanResult, stones: StoneSet) -> None:
+def check(result, stones):
     """See that a plan, written and read again, is true."""
     plan = plan_from_json(json.loads(json.dumps(plan_to_json(result.plan))))
     report = check_plan(plan, stones, wall_labels=result.wall.labels)
@@ -98,7 +97,7 @@ def check(result: PlanResult, stones: StoneSet) -> None:
     assert all(p.alpha_left and p.alpha_right for p in report.prefixes)
 
 
-def check_outlines(result: PlanResult, settings: PlannerSettings, site: Site) -> None:
+def check_outlines(result, settings, site):
     """See that stones keep apart, that they are the stones' own, and that they stay in the wall."""
     shapes, filled = [], 0
     for group in result.wall.groups:
@@ -121,9 +120,9 @@ def check_outlines(result: PlanResult, settings: PlannerSettings, site: Site) ->
         assert high <= height + beyond
 
 
-@repeatable(20)
+@repeatable(10)
 @given(case=cases(), seed=st.integers(0, 1000))
-def test_every_plan_is_true(case: Case, seed: int) -> None:
+def test_every_plan_is_true(case, seed):
     stones, (width, height), scale, settings = case
     result = plan_wall(stones, width, height, seed=seed, settings=settings, scale=scale)
     check(result, stones)
@@ -140,7 +139,7 @@ WALL_PX = (84.0, 34.0)
 SITE = Site.from_source(*WALL_PX, 0.5)
 
 
-def test_half_a_pixel_is_not_decided_by_the_unit() -> None:
+def test_half_a_pixel_is_not_decided_by_the_unit():
     """51 px are 25.5 working px; in metres and back they are a little less."""
     width, px_per_m = 51.0, 137.3
     assert width / px_per_m * px_per_m < width
@@ -150,7 +149,7 @@ def test_half_a_pixel_is_not_decided_by_the_unit() -> None:
     check(result, stones)
 
 
-def test_walls_with_wedges_are_restored_as_they_were() -> None:
+def test_walls_with_wedges_are_restored_as_they_were():
     first = finish(Planner(few_stones(), SITE, seed=3, settings=WEDGES))
     assert first.build.wall.wedges
     again = Planner(few_stones(), SITE, seed=3, settings=WEDGES)
@@ -160,8 +159,6 @@ def test_walls_with_wedges_are_restored_as_they_were() -> None:
     for state, other in zip(again.build.states(), first.build.states(), strict=True):
         assert isinstance(state.wall.outlines, Outlines)
         for made, sought in ((state.model, other.model), (state.sturdy_model, other.sturdy_model)):
-            assert made is not None
-            assert sought is not None
             assert made.blocks == sought.blocks
             assert [i.points.tobytes() for i in made.interfaces] == [
                 i.points.tobytes() for i in sought.interfaces
@@ -169,7 +166,7 @@ def test_walls_with_wedges_are_restored_as_they_were() -> None:
             assert [i.mu for i in made.interfaces] == [i.mu for i in sought.interfaces]
 
 
-def test_a_wall_that_goes_back_goes_on_as_it_did() -> None:
+def test_a_wall_that_goes_back_goes_on_as_it_did():
     whole = finish(Planner(few_stones(), SITE, seed=3, settings=WEDGES))
     states = whole.build.states()
     assert len(states) > 3
@@ -179,7 +176,7 @@ def test_a_wall_that_goes_back_goes_on_as_it_did() -> None:
     assert same(finish(again), whole)
 
 
-def test_walls_of_a_search_are_true() -> None:
+def test_walls_of_a_search_are_true():
     stones = few_stones()
     best, _, walls, *_ = run_to_end(Planner(stones, SITE, seed=3, settings=WEDGES))
     assert walls == 4
@@ -194,7 +191,7 @@ def test_walls_of_a_search_are_true() -> None:
     assert result.wall.wedges
 
 
-def test_walls_that_are_no_whole_number_of_columns_take_stones_from_both_ends() -> None:
+def test_walls_that_are_no_whole_number_of_columns_take_stones_from_both_ends():
     # The last .45 px of the wall have no column, and stones at its end fill half of one there.
     stones, site = rubble(2, 10), Site.from_source(100.45, 36.0)
     result = plan_wall(stones, 100.45, 36.0, seed=1, settings=greedy())

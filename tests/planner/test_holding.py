@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from drystone.model.placement import Placement
-from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.stone import Stone
 from drystone.model.wall import Group, Wall
@@ -15,12 +14,12 @@ pytest.importorskip("pymunk")
 BRICK = Stone(2, np.ones((10, 30), bool))
 
 
-def put(posed: PosedStone, row: int, col: int) -> Group:
+def put(posed, row, col):
     return Group(Placement(posed, row, col, "left"))
 
 
 @pytest.mark.parametrize(("col", "stays"), [(20, True), (8, True), (40, False)])
-def test_a_brick_stays_where_its_middle_is_borne(col: int, stays: bool) -> None:
+def test_a_brick_stays_where_its_middle_is_borne(col, stays):
     book = PoseBook()
     below = put(book.pose(Stone(1, np.ones((10, 30), bool)), 0.0), 30, 20)
     wall = Wall.empty(Site(100, 40)).add(below.placement)

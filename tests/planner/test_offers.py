@@ -6,18 +6,16 @@ import numpy as np
 import pytest
 
 from drystone.model.site import Site
-from drystone.planner.build import Build, Candidate
+from drystone.planner.build import Build
 from drystone.planner.choose import choose_by_policy
 from drystone.planner.offers import offer, support_px, turned_deg
 from drystone.planner.planner import Planner
-from drystone.planner.settings import PlannerSettings
 from drystone.selection.policies.settings import PolicySettings
-from drystone.selection.policy import Offer
 from drystone.statics.model import Block, Interface, RigidBlockModel
 from tests.planner.scenes import RUBBLE_SITE, blocks, finish, greedy, rubble
 
 
-def _candidates(settings: PlannerSettings, site: Site = RUBBLE_SITE) -> list[Candidate]:
+def _candidates(settings, site=RUBBLE_SITE):
     planner = finish(Planner(rubble(1), site, seed=2, settings=settings))
     return list(planner.build.actions)
 
@@ -27,7 +25,7 @@ RASTER = greedy({"geometry": "raster"})
 
 
 @pytest.mark.parametrize("settings", [EXACT, RASTER])
-def test_an_offer_is_where_the_stone_is(settings: PlannerSettings) -> None:
+def test_an_offer_is_where_the_stone_is(settings):
     for candidate in _candidates(settings):
         seen, placement = offer(candidate, RUBBLE_SITE), candidate.stabilised.placement
         assert (seen.stone_id, seen.side) == (candidate.stone_id, candidate.side)
@@ -50,13 +48,12 @@ def test_an_offer_is_where_the_stone_is(settings: PlannerSettings) -> None:
         assert min(low, high) >= seen.bottom_px - 0.2
 
 
-def test_offers_are_working_px_at_any_resolution() -> None:
+def test_offers_are_working_px_at_any_resolution():
     sites = Site(100, 36), Site.from_source(100, 36, 0.5)
     full, half = (offer(_candidates(EXACT, site)[0], site) for site in sites)
     for seen, site in ((full, sites[0]), (half, sites[1])):
         assert 0 <= seen.bottom_px < seen.top_px <= site.height_px + 1
         assert (seen.wall_width_px, seen.wall_height_px) == (site.width_px, site.height_px)
-        assert seen.support_px is not None
         assert seen.left_px - 0.1 <= seen.support_px[0][0]
         assert seen.support_px[1][0] <= seen.right_px + 0.1
         area = (seen.right_px - seen.left_px) * (seen.top_px - seen.bottom_px)
@@ -64,7 +61,7 @@ def test_offers_are_working_px_at_any_resolution() -> None:
 
 
 @pytest.mark.parametrize("geometry", ["raster", "exact"])
-def test_the_support_of_blocks(geometry: str) -> None:
+def test_the_support_of_blocks(geometry):
     """Two blocks and a third that bridges them: it bears on both, neighbours hold no one."""
     stones = blocks({1: (10, 6), 2: (10, 6), 3: (20, 6)})
     settings = greedy({"geometry": geometry, "order": "given", "two_sided": False, "vary": 0.0})
@@ -78,13 +75,11 @@ def test_the_support_of_blocks(geometry: str) -> None:
     assert supports[2] == pytest.approx(np.array([[0, 6], [20, 6]]), abs=0.4)
 
 
-def _interface(
-    block: int, other: int, points: list[list[float]], normal: tuple[float, float]
-) -> Interface:
+def _interface(block, other, points, normal):
     return Interface(block, other, np.array(points), normal)
 
 
-def test_only_what_bears_from_below_supports() -> None:
+def test_only_what_bears_from_below_supports():
     square = [Block(i, 4.0, (0.0, 0.0)) for i in (1, 2, 3)]
     beside = _interface(3, 1, [[0.0, 2.0], [0.0, 9.0]], (1.0, 0.05))
     above = _interface(3, 2, [[-9.0, 9.0], [9.0, 9.0]], (0.0, -1.0))
@@ -92,7 +87,7 @@ def test_only_what_bears_from_below_supports() -> None:
     below = _interface(3, 1, [[3.0, 1.0], [1.0, 2.0]], (0.0, 1.0))
     turned_round = _interface(1, 3, [[4.0, 3.0], [4.0, 1.0]], (0.6, -0.8))
 
-    def found(*interfaces: Interface) -> object:
+    def found(*interfaces):
         return support_px(RigidBlockModel(tuple(square), interfaces), 3, 0.5)
 
     assert found(beside, above, others) is None
@@ -105,20 +100,20 @@ def test_only_what_bears_from_below_supports() -> None:
     ("before", "after", "turn"),
     [(0, 0, 0), (-180, 179, 1), (179.5, -179.5, 1), (90, 85, 5), (-5, 5, 10), (0, -180, 180)],
 )
-def test_turns_are_the_short_way(before: float, after: float, turn: float) -> None:
+def test_turns_are_the_short_way(before, after, turn):
     assert turned_deg(before, after) == turn
 
 
 class _Last:
-    def __init__(self) -> None:
-        self.seen: list[list[int]] = []
+    def __init__(self):
+        self.seen = []
 
-    def choose(self, candidates: tuple[Offer, ...], rng: np.random.Generator) -> int:  # noqa: ARG002
+    def choose(self, candidates, rng):  # noqa: ARG002
         self.seen.append([one.stone_id for one in candidates])
         return len(candidates) - 1
 
 
-def test_only_walls_that_stand_are_offered() -> None:
+def test_only_walls_that_stand_are_offered():
     made = _candidates(RASTER)[:5]
     kept = [
         made[0],
@@ -129,7 +124,7 @@ def test_only_walls_that_stand_are_offered() -> None:
     ]
     policy, rng = _Last(), np.random.default_rng(0)
 
-    def choose(candidates: list[Candidate]) -> Candidate | None:
+    def choose(candidates):
         return choose_by_policy(
             [one.proposal for one in candidates],
             lambda _: candidates,

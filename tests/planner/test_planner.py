@@ -1,41 +1,39 @@
 """Algorithm 1: the loop, its ways to stop, and that it can be left and taken up again."""
 
-import numpy as np
 import pytest
 
 from drystone.errors import UsageError
 from drystone.model.site import Site
 from drystone.planner.attempt import Attempt
-from drystone.planner.events import Callbacks, Step, Stopped
+from drystone.planner.events import Callbacks, Stopped
 from drystone.planner.measured import MeasuredPose
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings, StopSettings
 from drystone.search.plan_result import result_of
-from tests.narrow import not_none
 from tests.planner.scenes import RUBBLE_SITE, blocks, bricks, finish, greedy, order, rubble, same
 
 
-def test_it_stops_when_the_wall_is_filled() -> None:
+def test_it_stops_when_the_wall_is_filled():
     planner = finish(Planner(bricks(8), Site(60, 20)))
-    assert not_none(planner.stopped).reason == "filled"
+    assert planner.stopped.reason == "filled"
     assert len(planner.build.actions) == 6
     assert planner.build.wall.filling == 1.0
 
 
-def test_the_filling_wanted_is_a_setting() -> None:
+def test_the_filling_wanted_is_a_setting():
     settings = PlannerSettings(stop=StopSettings(filling=0.6))
     planner = finish(Planner(bricks(8), Site(60, 20), settings=settings))
     assert planner.stopped == Stopped("filled", "filling above 0.6")
     assert len(planner.build.actions) == 4  # 4/6 is the first above .6
 
 
-def test_it_stops_when_no_stones_are_left() -> None:
+def test_it_stops_when_no_stones_are_left():
     planner = finish(Planner(bricks(3), Site(60, 20)))
     assert planner.stopped == Stopped("stones", "all stones placed")
     assert len(planner.build.actions) == 3
 
 
-def test_stones_that_do_not_fit_are_not_said_to_be_placed() -> None:
+def test_stones_that_do_not_fit_are_not_said_to_be_placed():
     stones = blocks({1: (20, 10), 2: (90, 10)})
     settings = PlannerSettings(skip_too_large=True)
     planner = finish(Planner(stones, Site(60, 20), settings=settings))
@@ -44,13 +42,13 @@ def test_stones_that_do_not_fit_are_not_said_to_be_placed() -> None:
 
 
 @pytest.fixture
-def attempts(monkeypatch: pytest.MonkeyPatch) -> list[int | None]:
+def attempts(monkeypatch):
     """What every attempt at a step chose."""
-    chosen: list[int | None] = []
+    chosen = []
     choose = Attempt.choose
 
-    def watched(self: Attempt, rng: object) -> object:
-        action = choose(self, rng)  # type: ignore[arg-type]
+    def watched(self, rng):
+        action = choose(self, rng)
         chosen.append(None if action is None else action.stone_id)
         return action
 
@@ -59,7 +57,7 @@ def attempts(monkeypatch: pytest.MonkeyPatch) -> list[int | None]:
 
 
 @pytest.mark.parametrize("failures", [1, 3, 5])
-def test_it_stops_after_failures_in_a_row(failures: int, attempts: list[int | None]) -> None:
+def test_it_stops_after_failures_in_a_row(failures, attempts):
     settings = PlannerSettings(stop=StopSettings(failures=failures))
     planner = finish(Planner(bricks(5), Site(30, 10), settings=settings))
     assert planner.stopped == Stopped("failures", "no stone that is left can be placed")
@@ -67,20 +65,18 @@ def test_it_stops_after_failures_in_a_row(failures: int, attempts: list[int | No
     assert attempts[1:] == [None] * failures
 
 
-def test_full_sampling_ends_at_the_first_failure(attempts: list[int | None]) -> None:
+def test_full_sampling_ends_at_the_first_failure(attempts):
     planner = finish(Planner(bricks(5), Site(30, 10), settings=PlannerSettings(sampling="full")))
-    assert not_none(planner.stopped).reason == "failures"
+    assert planner.stopped.reason == "failures"
     assert attempts[1:] == [None]
 
 
-def test_a_success_forgives_failures(
-    monkeypatch: pytest.MonkeyPatch, attempts: list[int | None]
-) -> None:
+def test_a_success_forgives_failures(monkeypatch, attempts):
     choose, count = Attempt.choose, iter(range(1000))
 
-    def moody(self: Attempt, rng: object) -> object:
+    def moody(self, rng):
         # Four failures before every success.
-        return choose(self, rng) if next(count) % 5 == 4 else None  # type: ignore[arg-type]
+        return choose(self, rng) if next(count) % 5 == 4 else None
 
     monkeypatch.setattr(Attempt, "choose", moody)
     planner = finish(Planner(bricks(4), Site(60, 20)))
@@ -88,11 +84,11 @@ def test_a_success_forgives_failures(
     assert len(attempts) == 4
 
 
-def test_every_attempt_draws_its_own_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_attempt_draws_its_own_numbers(monkeypatch):
     choose = Attempt.choose
-    drawn: list[int] = []
+    drawn = []
 
-    def watched(self: Attempt, rng: np.random.Generator) -> object:
+    def watched(self, rng):
         drawn.append(int(rng.integers(2**62)))
         return choose(self, rng)
 
@@ -103,7 +99,7 @@ def test_every_attempt_draws_its_own_numbers(monkeypatch: pytest.MonkeyPatch) ->
 
 
 @pytest.mark.parametrize("settings", [PlannerSettings(), greedy()], ids=["paper", "best"])
-def test_steps_can_be_left_and_taken_up_again(settings: PlannerSettings) -> None:
+def test_steps_can_be_left_and_taken_up_again(settings):
     whole = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
     parts = Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
     numbers = []
@@ -119,7 +115,7 @@ def test_steps_can_be_left_and_taken_up_again(settings: PlannerSettings) -> None
     assert len(numbers) > 4
 
 
-def test_steps_tell_what_was_done() -> None:
+def test_steps_tell_what_was_done():
     planner = Planner(rubble(), RUBBLE_SITE)
     for number, step in enumerate(planner.steps(), 1):
         assert step.number == number
@@ -129,11 +125,11 @@ def test_steps_tell_what_was_done() -> None:
         assert step.candidates >= 1
 
 
-def test_callbacks_come_in_order_before_the_step_is_yielded() -> None:
-    told: list[str] = []
+def test_callbacks_come_in_order_before_the_step_is_yielded():
+    told = []
 
     class Watch(Callbacks):
-        def on_step(self, step: Step) -> None:
+        def on_step(self, step):
             told.append(f"told {step.number}")
 
     planner = Planner(bricks(3), Site(60, 20), callbacks=Watch())
@@ -141,9 +137,9 @@ def test_callbacks_come_in_order_before_the_step_is_yielded() -> None:
     assert told == ["told 1", "got 1", "told 2", "got 2", "told 3", "got 3"]
 
 
-def test_an_interrupt_in_a_callback_keeps_the_step() -> None:
+def test_an_interrupt_in_a_callback_keeps_the_step():
     class Impatient(Callbacks):
-        def on_step(self, step: Step) -> None:
+        def on_step(self, step):
             if step.number == 2:
                 raise KeyboardInterrupt
 
@@ -157,9 +153,7 @@ def test_an_interrupt_in_a_callback_keeps_the_step() -> None:
 
 @pytest.mark.parametrize("settings", [PlannerSettings(), greedy()], ids=["paper", "best"])
 @pytest.mark.parametrize("built", [1, 3])
-def test_a_restored_wall_goes_on_as_if_never_interrupted(
-    built: int, settings: PlannerSettings
-) -> None:
+def test_a_restored_wall_goes_on_as_if_never_interrupted(built, settings):
     whole = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
     first = Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
     for step in first.steps():
@@ -175,7 +169,7 @@ def test_a_restored_wall_goes_on_as_if_never_interrupted(
     assert same(finish(again), whole)
 
 
-def test_why_it_stopped_is_of_the_wall_that_is_there() -> None:
+def test_why_it_stopped_is_of_the_wall_that_is_there():
     planner = finish(Planner(bricks(3), Site(60, 20)))
     whole = planner.build
     poses = {
@@ -193,15 +187,15 @@ def test_why_it_stopped_is_of_the_wall_that_is_there() -> None:
     assert planner.stopped is None
 
 
-def test_a_lost_stone_is_one_fewer_to_stop_for() -> None:
+def test_a_lost_stone_is_one_fewer_to_stop_for():
     planner = finish(Planner(bricks(8), Site(60, 20)))
     unused = planner.workshop.remaining(planner.build)
     planner.observe(planner.build.wall.labels, lost=unused[:1])
     assert planner.stopped is None
 
 
-def test_seeds_matter_only_for_random_samples() -> None:
-    def built(sampling: str, seed: int) -> list[tuple[int, float, int, int, str]]:
+def test_seeds_matter_only_for_random_samples():
+    def built(sampling, seed):
         settings = PlannerSettings().updated({"sampling": sampling})
         return order(finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=settings)))
 
@@ -209,7 +203,7 @@ def test_seeds_matter_only_for_random_samples() -> None:
     assert built("uniform", 1) != built("uniform", 2)
 
 
-def test_what_cannot_be_planned() -> None:
+def test_what_cannot_be_planned():
     with pytest.raises(UsageError, match="E126"):
         Planner(blocks({}), Site(10, 10))
     with pytest.raises(UsageError, match=r"E120 --wall: stones 2, 9 fit .*--skip-too-large"):
@@ -218,7 +212,7 @@ def test_what_cannot_be_planned() -> None:
         Planner(blocks({2**32 - 2: (5, 5)}), Site(10, 10))
 
 
-def test_a_stone_that_fits_only_when_turned_is_not_too_large() -> None:
+def test_a_stone_that_fits_only_when_turned_is_not_too_large():
     stones = blocks({1: (5, 10)})
     with pytest.raises(UsageError, match="E120"):
         Planner(stones, Site(20, 6), settings=PlannerSettings(orientations="sf"))

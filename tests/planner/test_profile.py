@@ -5,12 +5,12 @@ import pytest
 from drystone.planner.profile import Profile
 
 
-def clocked() -> tuple[Profile, list[float]]:
+def clocked():
     now = [0.0]
     return Profile(lambda: now[0]), now
 
 
-def test_parts_belong_to_the_step_in_which_they_end() -> None:
+def test_parts_belong_to_the_step_in_which_they_end():
     profile, clock = clocked()
     with profile.part("preparation"):
         clock[0] += 2.0
@@ -34,7 +34,7 @@ def test_parts_belong_to_the_step_in_which_they_end() -> None:
     assert profile.total("metrics") == 0.0
 
 
-def test_attempts_without_an_action_count_outside_of_steps() -> None:
+def test_attempts_without_an_action_count_outside_of_steps():
     profile, clock = clocked()
     profile.begin_step()
     with profile.part("indices"):
@@ -46,10 +46,10 @@ def test_attempts_without_an_action_count_outside_of_steps() -> None:
     assert profile.total("indices") == 1.0
 
 
-def test_what_fails_is_measured_too() -> None:
+def test_what_fails_is_measured_too():
     profile, clock = clocked()
 
-    def fails() -> None:
+    def fails():
         with profile.part("stabilisation"):
             clock[0] += 3.0
             raise ValueError

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from drystone.model.landscape import Landscape
-from drystone.planner.build import Proposal
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
-from drystone.planner.proposing import SPARE, Key, RasterProposer, Spotted, StoneTrial, one_by_one
+from drystone.planner.proposing import SPARE, RasterProposer, StoneTrial, one_by_one
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settling import ExactProposer
 from tests.planner.scenes import RUBBLE_SITE, greedy, rubble
@@ -18,9 +17,7 @@ from tests.planner.scenes import RUBBLE_SITE, greedy, rubble
 class _Watched:
     """Trials of a step on pixels, and which of them were placed and stabilised."""
 
-    def __init__(
-        self, monkeypatch: pytest.MonkeyPatch, rule: str, count: int = 8, built: int = 2
-    ) -> None:
+    def __init__(self, monkeypatch, rule, count=8, built=2):
         settings = greedy({"geometry": "raster", "selection_rule": rule})
         planner = Planner(rubble(count=count), RUBBLE_SITE, settings=settings)
         next(step for step in planner.steps() if step.number == built)
@@ -33,15 +30,15 @@ class _Watched:
             for stone_id in workshop.remaining(build)
             for posed in workshop.poses(stone_id)
         ]
-        self.placed: list[Key] = []
-        self.stable: list[Key] = []
+        self.placed = []
+        self.stable = []
         spotted, stabilised = RasterProposer.spotted, RasterProposer.stabilised
 
-        def watched_spotted(this: RasterProposer, trial: StoneTrial) -> Spotted:
+        def watched_spotted(this, trial):
             self.placed.append(trial.key)
             return spotted(this, trial)
 
-        def watched_stabilised(this: RasterProposer, one: Spotted) -> Proposal | None:
+        def watched_stabilised(this, one):
             self.stable.append(one.trial.key)
             return stabilised(this, one)
 
@@ -50,9 +47,7 @@ class _Watched:
 
 
 @pytest.mark.parametrize("built", [2, 9])
-def test_by_cost_the_cheapest_come_first_and_the_others_only_when_asked_for(
-    built: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_by_cost_the_cheapest_come_first_and_the_others_only_when_asked_for(built, monkeypatch):
     # Looked at often, so that it stops as soon as it may.
     monkeypatch.setattr("drystone.planner.proposing.TOGETHER", 2)
     step = _Watched(monkeypatch, "score", count=30, built=built)
@@ -76,9 +71,7 @@ def test_by_cost_the_cheapest_come_first_and_the_others_only_when_asked_for(
     assert [proposal for batch in rest for proposal in batch] == later
 
 
-def test_a_promise_is_the_least_that_a_stone_costs_where_it_stays(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_promise_is_the_least_that_a_stone_costs_where_it_stays(monkeypatch):
     step = _Watched(monkeypatch, "score", count=30, built=6)
     stays = 0
     for trial in step.trials:
@@ -95,9 +88,7 @@ def test_a_promise_is_the_least_that_a_stone_costs_where_it_stays(
 
 @pytest.mark.parametrize("geometry", ["raster", "exact"])
 @pytest.mark.parametrize("rule", ["score", "algorithm2"])
-def test_what_is_proposed_is_of_the_trials_and_none_of_it_is_in_the_way(
-    geometry: str, rule: str
-) -> None:
+def test_what_is_proposed_is_of_the_trials_and_none_of_it_is_in_the_way(geometry, rule):
     settings = greedy({"geometry": geometry, "selection_rule": rule})
     planner = Planner(rubble(2), RUBBLE_SITE, settings=settings)
     next(step for step in planner.steps() if step.number == 2)
@@ -118,7 +109,7 @@ def test_what_is_proposed_is_of_the_trials_and_none_of_it_is_in_the_way(
         assert np.count_nonzero(after.occupied) > np.count_nonzero(build.wall.occupied)
 
 
-def test_without_craft_there_is_no_cost() -> None:
+def test_without_craft_there_is_no_cost():
     for geometry, kind in (("raster", RasterProposer), ("exact", ExactProposer)):
         settings = PlannerSettings().updated({"geometry": geometry})
         planner = Planner(rubble(), RUBBLE_SITE, settings=settings)

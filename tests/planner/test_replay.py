@@ -11,14 +11,11 @@ from drystone.model.outlines import Outlines
 from drystone.model.placement import Placement, Settled, Wedge
 from drystone.model.site import Site
 from drystone.model.wall import Group
-from drystone.planner.build import Build, Candidate
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.planner import Planner
 from drystone.planner.replay import judged, replayed
-from drystone.planner.settings import PlannerSettings
 from drystone.settle.placing import settled_placement
 from drystone.settle.rest import placed_outline
-from tests.narrow import not_none
 from tests.planner.scenes import (
     RUBBLE_SITE,
     WITH_WEDGES,
@@ -35,20 +32,20 @@ PLAIN = pytest.mark.parametrize(
 )
 
 
-def wedged_wall() -> Planner:
+def wedged_wall():
     """A wall with wedges, and all states on the way."""
     settings = EXACT.updated({"search": {"budget": 2}})
     site = Site.from_source(84.0, 34.0, 0.5)
     return finish(Planner(few_stones(), site, seed=3, settings=settings))
 
 
-def heights(build: Build) -> dict[int, float]:
+def heights(build):
     return {a.stone_id: a.course_height_px for a in build.actions if a.course_height_px is not None}
 
 
-def figures(build: Build) -> list[tuple[object, ...]]:
+def figures(build):
     """What was placed in each action, in which pixels, and what was found of it."""
-    told: list[tuple[object, ...]] = []
+    told = []
     for action in build.actions:
         placement, wedges = action.stabilised.placement, action.stabilised.wedges
         told.append(
@@ -65,7 +62,7 @@ def figures(build: Build) -> list[tuple[object, ...]]:
 
 
 @pytest.mark.parametrize("kept", [0, 2])
-def test_what_is_taken_down_is_built_again_as_it_was(kept: int) -> None:
+def test_what_is_taken_down_is_built_again_as_it_was(kept):
     planner = wedged_wall()
     build = planner.build
     states = build.states()
@@ -84,9 +81,7 @@ def test_what_is_taken_down_is_built_again_as_it_was(kept: int) -> None:
 
 
 @PLAIN
-def test_turned_stones_of_both_sides_are_built_again_as_they_were(
-    settings: PlannerSettings,
-) -> None:
+def test_turned_stones_of_both_sides_are_built_again_as_they_were(settings):
     planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
     build, start = planner.build, Planner(rubble(), RUBBLE_SITE, settings=settings).build
     assert {action.side for action in build.actions} == {"left", "right"}
@@ -98,7 +93,7 @@ def test_turned_stones_of_both_sides_are_built_again_as_they_were(
     assert figures(again) == figures(build)
 
 
-def test_states_are_kept_when_they_are_asked_for() -> None:
+def test_states_are_kept_when_they_are_asked_for():
     planner = wedged_wall()
     groups = planner.build.wall.groups
     again, _, _ = replayed(
@@ -108,7 +103,7 @@ def test_states_are_kept_when_they_are_asked_for() -> None:
     assert again.states() == (again,)
 
 
-def test_wedges_are_numbered_in_the_order_in_which_they_come_now() -> None:
+def test_wedges_are_numbered_in_the_order_in_which_they_come_now():
     planner = wedged_wall()
     wall, empty = planner.build.wall, planner.build.states()[0]
     groups = [
@@ -125,7 +120,7 @@ def test_wedges_are_numbered_in_the_order_in_which_they_come_now() -> None:
 STONES = blocks({1: (20, 10), 2: (20, 10), 3: (20, 10), 4: (20, 10)})
 
 
-def laid(planner: Planner, stone_id: int, left: float, level: float) -> Group:
+def laid(planner, stone_id, left, level):
     """A block with its left end at some x, on a level of the wall, alone in it."""
     stone, site = STONES.by_id(stone_id), planner.workshop.site
     if planner.settings.geometry == "raster":
@@ -134,13 +129,11 @@ def laid(planner: Planner, stone_id: int, left: float, level: float) -> Group:
     x, y = left + 10.0, 5.0 + 10.01 * level + 0.01
     corners = placed_outline(planner.workshop.outlines.outline(stone), 0.0, x, y)
     outlines = Outlines.empty(site)
-    placement = not_none(
-        settled_placement(outlines, site, stone, 0.0, Settled(x, y, corners), "left", 0)
-    )
+    placement = settled_placement(outlines, site, stone, 0.0, Settled(x, y, corners), "left", 0)
     return Group(placement)
 
 
-def scene(settings: PlannerSettings) -> tuple[Planner, dict[str, Group]]:
+def scene(settings):
     """Blocks on the ground, on each other, over each other, and in the air."""
     planner = Planner(STONES, Site(80, 40), settings=settings)
     return planner, {
@@ -164,9 +157,7 @@ def scene(settings: PlannerSettings) -> tuple[Planner, dict[str, Group]]:
         (["ground", "far out", "beside"], [1, 4], (2,)),  # falls
     ],
 )
-def test_what_cannot_stand_is_left_out(
-    settings: PlannerSettings, steps: list[str], kept: list[int], out: tuple[int, ...]
-) -> None:
+def test_what_cannot_stand_is_left_out(settings, steps, kept, out):
     planner, groups = scene(settings)
     chosen = [groups[name] for name in steps]
     build, left_out, _ = replayed(
@@ -182,7 +173,7 @@ def test_what_cannot_stand_is_left_out(
 
 
 @PLAIN
-def test_wedges_must_have_room_as_well(settings: PlannerSettings) -> None:
+def test_wedges_must_have_room_as_well(settings):
     planner, groups = scene(settings)
     placement = groups["beside"].placement
     for left, room in ((56, True), (21, False)):
@@ -197,7 +188,7 @@ def test_wedges_must_have_room_as_well(settings: PlannerSettings) -> None:
         assert [w.id for w in build.wall.wedges] == ([5] if room else [])
 
 
-def test_a_wedge_that_nothing_would_be_beside_is_not_taken_again() -> None:
+def test_a_wedge_that_nothing_would_be_beside_is_not_taken_again():
     """The second block reaches over the end of the first, up to the end of the wall or not."""
     corners = np.array([[25.01, 0.01], [29.0, 0.01], [29.0, 10.01], [25.01, 10.01]])
     wedge = Wedge(9, 2, np.ones((10, 4), bool), 30, 25, on_grid(corners))
@@ -209,7 +200,7 @@ def test_a_wedge_that_nothing_would_be_beside_is_not_taken_again() -> None:
         assert left_out == (() if room else (2,))
 
 
-def test_what_needs_the_friction_of_upright_faces_is_left_out() -> None:
+def test_what_needs_the_friction_of_upright_faces_is_left_out():
     planner, _ = scene(greedy())
     steps = [laid(planner, 1, 0.0, 0), laid(planner, 2, 40.02, 0), laid(planner, 3, 20.01, 0.4)]
     evaluator = Evaluator(planner.settings, planner.workshop.stock)
@@ -218,7 +209,7 @@ def test_what_needs_the_friction_of_upright_faces_is_left_out() -> None:
     assert judged(piers, steps[2], {}, evaluator).resistance.stable
 
 
-def test_pixels_are_those_that_a_stone_fills_now() -> None:
+def test_pixels_are_those_that_a_stone_fills_now():
     """Of a pixel that two stones share the one that comes second makes it more than half full."""
     planner = Planner(STONES, Site.from_source(60, 40, 0.1), settings=greedy())
     one, other = laid(planner, 1, 4, 0), laid(planner, 2, 26, 0)
@@ -231,7 +222,7 @@ def test_pixels_are_those_that_a_stone_fills_now() -> None:
     assert areas[0] != areas[1]
 
 
-def test_what_fills_no_pixel_is_left_out() -> None:
+def test_what_fills_no_pixel_is_left_out():
     planner = Planner(STONES, Site.from_source(60, 40, 0.1), settings=greedy())
     one = laid(planner, 1, 5, 0)
     small = Planner(STONES, Site.from_source(60, 40, 0.02), settings=greedy())
@@ -241,7 +232,7 @@ def test_what_fills_no_pixel_is_left_out() -> None:
 
 
 @PLAIN
-def test_a_course_is_begun_with_the_height_it_was_begun_with(settings: PlannerSettings) -> None:
+def test_a_course_is_begun_with_the_height_it_was_begun_with(settings):
     planner, groups = scene(settings)
     steps = [groups["ground"], groups["upon"]]
     build, _, _ = replayed(planner.build, steps, {1: 8.0}, planner.workshop, planner.settings)
@@ -249,12 +240,12 @@ def test_a_course_is_begun_with_the_height_it_was_begun_with(settings: PlannerSe
     assert build.actions[0].indices.NHR == pytest.approx(0.2)
 
 
-def test_what_stands_stands_in_both_models_and_carries_a_load() -> None:
+def test_what_stands_stands_in_both_models_and_carries_a_load():
     planner, groups = scene(greedy())
     build, _, _ = replayed(
         planner.build, [groups["ground"]], {}, planner.workshop, planner.settings
     )
-    action: Candidate = build.actions[0]
+    action = build.actions[0]
     assert action.stands
     assert not replace(action, sturdy=False).stands
     for llc in (0.0, None):

@@ -2,24 +2,23 @@
 
 import json
 import tomllib
-from typing import Any
 
 import pytest
 import tomli_w
 
 from drystone.errors import UsageError
-from drystone.planner.settings import METHODS, PlannerSettings, StopSettings, method_settings
+from drystone.planner.settings import METHODS, PlannerSettings, method_settings
 
 
 @pytest.mark.parametrize("method", list(METHODS))
-def test_settings_survive_toml_and_json(method: str) -> None:
+def test_settings_survive_toml_and_json(method):
     settings = method_settings(method)
     written = settings.as_dict()
     assert PlannerSettings().updated(tomllib.loads(tomli_w.dumps(written))) == settings
     assert PlannerSettings().updated(json.loads(json.dumps(written))) == settings
 
 
-def test_missing_values_stay_as_they_are() -> None:
+def test_missing_values_stay_as_they_are():
     settings = method_settings("best").updated({"mu": 0.65, "placement": {"tries": 3}})
     assert settings.mu == 0.65
     assert settings.placement.tries == 3
@@ -27,7 +26,7 @@ def test_missing_values_stay_as_they_are() -> None:
     assert settings.updated({}) == settings
 
 
-def test_an_int_is_a_float_where_one_is_wanted() -> None:
+def test_an_int_is_a_float_where_one_is_wanted():
     settings = PlannerSettings().updated({"mu": 1, "stabilise": {"max_turn_deg": 20}})
     assert type(settings.mu) is float
     assert type(settings.stabilise.max_turn_deg) is float
@@ -49,7 +48,7 @@ def test_an_int_is_a_float_where_one_is_wanted() -> None:
         {"search": {"pin": [2**63]}},
     ],
 )
-def test_values_of_the_wrong_type_are_refused(changes: dict[str, Any]) -> None:
+def test_values_of_the_wrong_type_are_refused(changes):
     with pytest.raises(UsageError) as caught:
         PlannerSettings().updated(changes)
     assert caught.value.code == "E123"
@@ -66,9 +65,7 @@ def test_values_of_the_wrong_type_are_refused(changes: dict[str, Any]) -> None:
         ({"stabilise": {"method": "glue"}}, "stabilise.method = 'glue'", "wedge"),
     ],
 )
-def test_unknown_settings_are_refused_with_the_known_ones(
-    changes: dict[str, Any], named: str, cure: str
-) -> None:
+def test_unknown_settings_are_refused_with_the_known_ones(changes, named, cure):
     with pytest.raises(UsageError) as caught:
         PlannerSettings().updated(changes)
     assert caught.value.code == "E123"
@@ -76,39 +73,18 @@ def test_unknown_settings_are_refused_with_the_known_ones(
     assert cure in caught.value.cure
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"mu": 0.0},
-        {"mu": float("nan")},
-        {"stabilise": {"margin": 0.5}},
-        {"stabilise": {"step_deg": 0}},
-        {"stabilise": {"max_shift_px": -1}},
-        {"clusters": {"distance": -1}},
-        {"placement": {"tries": 0}},
-        {"stop": {"filling": 1.5}},
-    ],
-)
-def test_values_out_of_range_are_refused(changes: dict[str, Any]) -> None:
-    with pytest.raises(UsageError, match="E123 settings"):
-        PlannerSettings().updated(changes)
+def test_values_out_of_range_are_refused():
+    for changes in ({"mu": 0.0}, {"stabilise": {"margin": 0.5}}, {"clusters": {"distance": -1}}):
+        with pytest.raises(UsageError, match="E123 settings"):
+            PlannerSettings().updated(changes)
 
 
-def test_a_wrong_orientation_set_keeps_its_own_code() -> None:
+def test_a_wrong_orientation_set_keeps_its_own_code():
     with pytest.raises(UsageError, match="E122"):
         PlannerSettings().updated({"orientations": "north"})
 
 
-def test_constructors_check_too() -> None:
-    with pytest.raises(ValueError, match="sampling must be one of"):
-        PlannerSettings(sampling="some")  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="orientation_choice must be one of"):
-        PlannerSettings(orientation_choice="x")  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="failures must be at least 1"):
-        StopSettings(failures=0)
-
-
-def test_methods() -> None:
+def test_methods():
     paper = method_settings("paper")
     assert (paper.sampling, paper.two_sided, paper.orientations) == ("variant", False, "quarter")
     assert (paper.placement.rule, paper.placement.reach, paper.stabilise.margin) == (

@@ -2,7 +2,6 @@
 
 from collections import Counter
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -10,19 +9,15 @@ import shapely
 
 from drystone.kernels.profiles import StoneProfile, bare, raised
 from drystone.model.landscape import Landscape
-from drystone.model.placement import Side
 from drystone.model.site import Site
-from drystone.model.stone import StoneSet
 from drystone.planner.attempt import Attempt
-from drystone.planner.build import Build, Proposal
 from drystone.planner.dropping import Drop, Dropped, _rank, in_order, wedge_limits
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
-from drystone.planner.proposing import Key, StoneTrial, one_by_one
+from drystone.planner.proposing import StoneTrial, one_by_one
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settling import ExactProposer
 from drystone.planner.stock import Stock
-from tests.narrow import not_none
 from tests.planner.scenes import RUBBLE_SITE, blocks, bricks, finish, greedy, rubble
 
 BOTH_RULES = pytest.mark.parametrize("rule", ["score", "algorithm2"])
@@ -31,19 +26,17 @@ BOTH_RULES = pytest.mark.parametrize("rule", ["score", "algorithm2"])
 class _Step:
     """What is tried on the wall after some steps of the default method."""
 
-    def __init__(
-        self, stones: StoneSet, site: Site, built: int = 0, changes: dict[str, Any] | None = None
-    ) -> None:
+    def __init__(self, stones, site, built=0, changes=None):
         self.settings = greedy({"vary": 0.0, **(changes or {})})
         planner = Planner(stones, site, settings=self.settings)
         if built:
             next(step for step in planner.steps() if step.number == built)
         self.workshop, self.build = planner.workshop, planner.build
 
-    def proposer(self) -> ExactProposer:
+    def proposer(self):
         return ExactProposer(self.workshop, self.settings, self.build, Profile())
 
-    def trials(self, sides: tuple[Side, ...] = ("left", "right")) -> list[StoneTrial]:
+    def trials(self, sides=("left", "right")):
         return [
             StoneTrial((posed,), Landscape.of(self.build.wall, side))
             for side in sides
@@ -51,35 +44,35 @@ class _Step:
             for posed in self.workshop.poses(stone_id)
         ]
 
-    def all(self) -> list[list[Proposal]]:
+    def all(self):
         return list(self.proposer().proposals(self.trials(), one_by_one))
 
 
-def _key(proposal: Proposal) -> tuple[Key, int]:
+def _key(proposal):
     """What tells a proposal from others, as that of the drop from which it comes."""
     return (proposal.stone_id, proposal.trial_angle_deg, proposal.side), proposal.spot
 
 
-def test_a_first_batch_that_cannot_be_used_is_not_the_last(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_first_batch_that_cannot_be_used_is_not_the_last(monkeypatch):
     step = _Step(rubble(), RUBBLE_SITE, 2, {"settle": {"shortlist": 3}})
     first, second = step.all()[:2]
     unsound = {_key(p) for p in first}
     attempt = Attempt(step.workshop, step.settings, step.build)
     judge = Attempt._judge
 
-    def severe(this: Attempt, proposals: list[Proposal]) -> Any:
+    def severe(this, proposals):
         return [
             replace(c, sturdy=_key(p) not in unsound)
             for p, c in zip(proposals, judge(this, proposals), strict=True)
         ]
 
     monkeypatch.setattr(Attempt, "_judge", severe)
-    chosen = not_none(attempt.choose(np.random.default_rng(0)))
+    chosen = attempt.choose(np.random.default_rng(0))
     assert _key(chosen.proposal) in [_key(p) for p in second]
 
 
 @pytest.mark.parametrize("choice", ["candidates", "placement"])
-def test_algorithm_2_compares_each_trial_where_its_first_drop_rests(choice: str) -> None:
+def test_algorithm_2_compares_each_trial_where_its_first_drop_rests(choice):
     step = _Step(rubble(), RUBBLE_SITE, 2, {"selection_rule": "algorithm2"})
     trials = step.trials()
     if choice == "placement":
@@ -100,7 +93,7 @@ def test_algorithm_2_compares_each_trial_where_its_first_drop_rests(choice: str)
 
 @pytest.mark.parametrize("choice", ["candidates", "placement"])
 @pytest.mark.parametrize("shortlist_size", [2, 6])
-def test_batches_are_those_of_all_drops_in_order(shortlist_size: int, choice: str) -> None:
+def test_batches_are_those_of_all_drops_in_order(shortlist_size, choice):
     """At first a proposer knows those drops only that may be among the cheapest."""
     settle = {"shortlist": shortlist_size, "per_stone": 2}
     step = _Step(rubble(), RUBBLE_SITE, 2, {"settle": settle})
@@ -120,7 +113,7 @@ def test_batches_are_those_of_all_drops_in_order(shortlist_size: int, choice: st
             known = {trial.key: cautious._dropped[trial.key] for trial in trials}
             assert max(one.limit for one in known.values()) < np.inf
             assert sum(len(p) for one in known.values() for p in one.places) < len(left)
-        expected: list[Drop] = []
+        expected = []
         for drop in left:
             mine = sum(one.key[0][0] == drop.key[0][0] for one in expected)
             if len(expected) < shortlist_size and mine < 2:
@@ -131,7 +124,7 @@ def test_batches_are_those_of_all_drops_in_order(shortlist_size: int, choice: st
     assert left == []
 
 
-def test_drops_whose_costs_are_equal_but_for_rounding_are_in_the_order_of_their_keys() -> None:
+def test_drops_whose_costs_are_equal_but_for_rounding_are_in_the_order_of_their_keys():
     step = _Step(bricks(3), Site(60, 20))
     (trials, book) = step.trials(("left",)), step.workshop.outlines
     chosen = [next(t for t in trials if t.key[0] == stone_id) for stone_id in (1, 2, 3)]
@@ -150,7 +143,7 @@ def test_drops_whose_costs_are_equal_but_for_rounding_are_in_the_order_of_their_
     assert list(in_order([], book)) == []
 
 
-def test_drops_are_above_what_is_there_and_inside_the_wall() -> None:
+def test_drops_are_above_what_is_there_and_inside_the_wall():
     step = _Step(rubble(), RUBBLE_SITE, 3)
     proposer = step.proposer()
     found = proposer.drops(step.trials(), one_by_one)
@@ -174,7 +167,7 @@ def test_drops_are_above_what_is_there_and_inside_the_wall() -> None:
 TIPPING = blocks({1: (8, 12), 2: (30, 6), 3: (8, 14), 4: (12, 6)})
 
 
-def _one(method: str, start: tuple[float, float], post: float = 0.0) -> Proposal | None:
+def _one(method, start, post=0.0):
     """Let the slab go over the post, which stands on the ground somewhere."""
     changes = {
         "stabilise": {"method": method, "margin": 0.0}, "wedge": {"height": 1.5, "area": 2.0}
@@ -185,27 +178,27 @@ def _one(method: str, start: tuple[float, float], post: float = 0.0) -> Proposal
     return step.proposer()._settle(Drop(trial, 0, start, (0.0, (trial.key, 0))))
 
 
-def _upright(step: _Step, stone_id: int) -> StoneTrial:
+def _upright(step, stone_id):
     """The stone as it was photographed, or half turned, which is the same."""
     trials = step.trials(("left",))
     return next(t for t in trials if t.key[0] == stone_id and t.key[1] % 180.0 == 0.0)
 
 
-def _placed(step: _Step, stone_id: int, start: tuple[float, float]) -> Build:
+def _placed(step, stone_id, start):
     """The build with one stone settled from a place."""
     proposer = step.proposer()
     trial = _upright(step, stone_id)
-    proposal = not_none(proposer._settle(Drop(trial, 0, start, (0.0, (trial.key, 0)))))
+    proposal = proposer._settle(Drop(trial, 0, start, (0.0, (trial.key, 0))))
     attempt = Attempt(step.workshop, step.settings, step.build)
     (candidate,) = attempt._judge([proposal])
     assert candidate.sturdy
     return step.build.add(candidate)
 
 
-def test_methods_of_stabilisation() -> None:
+def test_methods_of_stabilisation():
     beside = (15.02, 15.5)  # both left ends at that of the wall
     for method in ("both", "wedge"):
-        found = not_none(_one(method, beside))
+        found = _one(method, beside)
         (wedge,) = found.stabilised.wedges
         assert (wedge.id, wedge.under) == (5, 2)
         assert wedge.corners is not None
@@ -215,11 +208,11 @@ def test_methods_of_stabilisation() -> None:
         assert _one(method, beside) is None
     # With its centroid over the post it rests, whatever may be done.
     for method in ("both", "wedge", "rotation", "none"):
-        found = not_none(_one(method, (28.0, 15.5), post=25.0))
+        found = _one(method, (28.0, 15.5), post=25.0)
         assert found.stabilised.wedges == ()
 
 
-def _tilted(method: str) -> Proposal | None:
+def _tilted(method):
     """A brick that is let go tilted by 8 degrees over bare ground."""
     changes = {"stabilise": {"method": method}, "orientations": "8deg"}
     step = _Step(blocks({1: (20, 10)}), Site(60, 30), changes=changes)
@@ -227,33 +220,33 @@ def _tilted(method: str) -> Proposal | None:
     return step.proposer()._settle(Drop(trial, 0, (30.0, 12.0), (0.0, (trial.key, 0))))
 
 
-def test_only_methods_that_rotate_turn_a_stone() -> None:
+def test_only_methods_that_rotate_turn_a_stone():
     for method in ("both", "rotation"):
-        found = not_none(_tilted(method))
+        found = _tilted(method)
         placement = found.stabilised.placement
         assert placement.rotation_moves == 1
         assert placement.posed.angle_deg == pytest.approx(0.0, abs=0.1)
         assert abs(found.trial_angle_deg) == 4.0
     assert _tilted("none") is None
-    wedged = not_none(_tilted("wedge"))
+    wedged = _tilted("wedge")
     assert wedged.stabilised.placement.posed.angle_deg == wedged.trial_angle_deg
     assert wedged.stabilised.placement.rotation_moves == 0
     assert len(wedged.stabilised.wedges) == 1
 
 
 @pytest.mark.parametrize(("height", "rests"), [(9.7, False), (9.8, True), (10.0, True)])
-def test_a_stone_that_would_stand_out_over_the_top_is_none(height: float, rests: bool) -> None:
+def test_a_stone_that_would_stand_out_over_the_top_is_none(height, rests):
     step = _Step(bricks(1), Site.from_source(60, height), changes={"orientations": "sf"})
     (trial,) = step.trials(("left",))
     found = step.proposer()._settle(Drop(trial, 0, (30.0, 5.1), (0.0, (trial.key, 0))))
     assert (found is not None) == rests
 
 
-def test_it_moves_beside_the_neighbour_that_it_would_overlap() -> None:
+def test_it_moves_beside_the_neighbour_that_it_would_overlap():
     step = _Step(bricks(2), Site(60, 20))
     stone = StoneProfile(np.zeros(20), np.zeros(20), -10.0, -5.0, 10.0, 5.0)
 
-    def beside(x: float, y: float, *boxes: tuple[float, float, float, float]) -> float:
+    def beside(x, y, *boxes):
         profile = bare(60)
         for k, (left, low, right, high) in enumerate(boxes):
             corners = np.array([[left, low], [right, low], [right, high], [left, high]])
@@ -275,7 +268,7 @@ def test_it_moves_beside_the_neighbour_that_it_would_overlap() -> None:
 
 @pytest.mark.parametrize("width", [60.0, 59.7])
 @pytest.mark.parametrize("changes", [{}, {"selection_rule": "algorithm2"}, {"two_sided": False}])
-def test_bricks_fill_a_wall_exactly(width: float, changes: dict[str, Any]) -> None:
+def test_bricks_fill_a_wall_exactly(width, changes):
     """With their clearances they are wider than the wall, but may stand out by a little."""
     settings = greedy({"orientations": "sf", **changes})
     planner = finish(Planner(bricks(6), Site.from_source(width, 20), settings=settings))
@@ -285,7 +278,7 @@ def test_bricks_fill_a_wall_exactly(width: float, changes: dict[str, Any]) -> No
 
 
 @BOTH_RULES
-def test_what_was_asked_before_does_not_matter(rule: str) -> None:
+def test_what_was_asked_before_does_not_matter(rule):
     """A proposer that was asked before for some of the trials gives the same."""
     step = _Step(rubble(1), RUBBLE_SITE, 2, {"selection_rule": rule})
     trials = step.trials()
@@ -293,7 +286,7 @@ def test_what_was_asked_before_does_not_matter(rule: str) -> None:
     for part in (trials[3:7], trials[5:]):
         list(warm.proposals(part, one_by_one))
 
-    def told(batches: list[list[Proposal]]) -> list[object]:
+    def told(batches):
         return [
             (p.stone_id, p.spot, p.cost, p.stabilised.placement.settled.corners.tobytes())
             for batch in batches
@@ -305,7 +298,7 @@ def test_what_was_asked_before_does_not_matter(rule: str) -> None:
     assert warm.tried == len(trials)
 
 
-def test_wedge_limits_are_in_source_px() -> None:
+def test_wedge_limits_are_in_source_px():
     settings = PlannerSettings().updated({"stabilise": {"margin": 0.1}, "wedge": {"area": 0.2}})
     stock = Stock(
         narrowest_px=4.0, mean_height_px=20.0, mean_area_px=400.0, median_area_px=400.0,

@@ -11,16 +11,15 @@ from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
 from drystone.selection.scored import PIN_BONUS, ScoreSettings
-from tests.narrow import not_none
 from tests.planner.scenes import RUBBLE_SITE, blocks, bricks, finish, greedy, order, rubble
 
 
-def stones_of(planner: Planner) -> list[int]:
+def stones_of(planner):
     return [action.stone_id for action in planner.build.actions]
 
 
 @pytest.mark.parametrize("changes", [{}, {"geometry": "raster"}, {"selection_rule": "algorithm2"}])
-def test_banned_stones_are_not_used(changes: dict[str, object]) -> None:
+def test_banned_stones_are_not_used(changes):
     free = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=greedy(changes)))
     ban = stones_of(free)[1:3]
     settings = greedy({**changes, "ban": ban})
@@ -29,11 +28,11 @@ def test_banned_stones_are_not_used(changes: dict[str, object]) -> None:
     assert not set(stones_of(planner)) & set(ban)
 
 
-def test_why_a_wall_ends_without_banned_stones() -> None:
-    def said(changes: dict[str, object], stones: int = 3) -> str:
+def test_why_a_wall_ends_without_banned_stones():
+    def said(changes, stones=3):
         settings = PlannerSettings().updated(changes)
         planner = finish(Planner(bricks(stones), Site(60, 10), settings=settings))
-        return not_none(planner.stopped).text
+        return planner.stopped.text
 
     ids = [stone.id for stone in bricks(4)]
     assert said({"ban": [ids[0]]}) == "all stones that are not banned placed"
@@ -42,7 +41,7 @@ def test_why_a_wall_ends_without_banned_stones() -> None:
     assert said({"ban": ids[:3]}) == "all stones that are not banned placed"
 
 
-def test_a_banned_stone_may_be_too_large() -> None:
+def test_a_banned_stone_may_be_too_large():
     stones, site = blocks({1: (20, 10), 2: (200, 100), 3: (20, 10)}), Site(60, 20)
     with pytest.raises(UsageError, match="E120"):
         Workshop.prepare(stones, site, PlannerSettings())
@@ -54,7 +53,7 @@ def test_a_banned_stone_may_be_too_large() -> None:
 
 
 @pytest.mark.parametrize("name", ["ban", "pin"])
-def test_unknown_stones_are_refused(name: str) -> None:
+def test_unknown_stones_are_refused(name):
     with pytest.raises(UsageError, match="E145") as caught:
         Planner(rubble(), RUBBLE_SITE, settings=greedy({name: [1, 77, 99]}))
     assert caught.value.where == f"--{name}"
@@ -62,19 +61,17 @@ def test_unknown_stones_are_refused(name: str) -> None:
 
 
 @pytest.mark.parametrize("value", [7, [1.5], [True], ["7"], {"a": 1}])
-def test_ids_are_a_list_of_whole_numbers(value: object) -> None:
+def test_ids_are_a_list_of_whole_numbers(value):
     with pytest.raises(UsageError, match="E123"):
         PlannerSettings().updated({"pin": value})
 
 
-def test_no_stone_is_pinned_and_banned() -> None:
+def test_no_stone_is_pinned_and_banned():
     with pytest.raises(UsageError, match=r"E123.*: 3\."):
         PlannerSettings().updated({"pin": [1, 3], "ban": [3, 4]})
-    with pytest.raises(ValueError, match="order must be one of"):
-        PlannerSettings(order="wurst")  # type: ignore[arg-type]
 
 
-def test_lists_of_settings_are_lists() -> None:
+def test_lists_of_settings_are_lists():
     settings = PlannerSettings().updated({"ban": [3], "pin": [1, 2]})
     assert (settings.ban, settings.pin) == ((3,), (1, 2))
     written = settings.as_dict()
@@ -82,7 +79,7 @@ def test_lists_of_settings_are_lists() -> None:
     assert PlannerSettings().updated(written) == settings
 
 
-def test_a_pinned_stone_costs_less_by_the_bonus() -> None:
+def test_a_pinned_stone_costs_less_by_the_bonus():
     workshop = Workshop.prepare(rubble(), RUBBLE_SITE, PlannerSettings())
     poses = [workshop.initial(stone_id) for stone_id in workshop.fitting]
     plain = PoseCosts(workshop.stock).of(poses, ScoreSettings())
@@ -95,7 +92,7 @@ def test_a_pinned_stone_costs_less_by_the_bonus() -> None:
 @pytest.mark.parametrize(
     "changes", [{}, {"geometry": "raster"}, {"selection_rule": "algorithm2", "sampling": "variant"}]
 )
-def test_a_pinned_stone_goes_in_earlier(changes: dict[str, object]) -> None:
+def test_a_pinned_stone_goes_in_earlier(changes):
     free = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=greedy(changes)))
     last = stones_of(free)[-1]
     settings = greedy({**changes, "pin": [last]})
@@ -103,7 +100,7 @@ def test_a_pinned_stone_goes_in_earlier(changes: dict[str, object]) -> None:
     assert stones_of(planner).index(last) < len(free.build.actions) - 2
 
 
-def test_a_pinned_stone_that_never_fits_does_not_stop_others() -> None:
+def test_a_pinned_stone_that_never_fits_does_not_stop_others():
     stones = blocks({1: (20, 10), 2: (200, 100), 3: (20, 10)})
     settings = PlannerSettings(pin=(2,), skip_too_large=True)
     planner = finish(Planner(stones, Site(60, 20), settings=settings))
@@ -111,7 +108,7 @@ def test_a_pinned_stone_that_never_fits_does_not_stop_others() -> None:
 
 
 @pytest.mark.parametrize("changes", [{}, {"geometry": "raster"}, {"selection_rule": "algorithm2"}])
-def test_in_a_given_order_ids_ascend(changes: dict[str, object]) -> None:
+def test_in_a_given_order_ids_ascend(changes):
     settings = greedy({**changes, "order": "given"})
     planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
     assert len(planner.build.actions) >= 5
@@ -124,13 +121,13 @@ def test_in_a_given_order_ids_ascend(changes: dict[str, object]) -> None:
     assert order(finish(again)) == order(planner)
 
 
-def test_what_finds_no_place_in_its_turn_is_set_aside() -> None:
+def test_what_finds_no_place_in_its_turn_is_set_aside():
     stones = blocks({1: (20, 10), 2: (70, 10), 3: (20, 10), 4: (20, 10), 5: (20, 10)})
     settings = greedy({"geometry": "raster", "order": "given", "orientations": "sf"})
     settings = replace(settings, skip_too_large=True)
     small = finish(Planner(stones, Site(60, 10), settings=settings))
     assert stones_of(small) == [1, 3, 4]
-    assert not_none(small.stopped).reason == "filled"
+    assert small.stopped.reason == "filled"
     narrow = finish(Planner(stones, Site(45, 10), settings=settings))
     assert stones_of(narrow) == [1, 3]
-    assert not_none(narrow.stopped).text == "no stone is left that was not tried in its turn"
+    assert narrow.stopped.text == "no stone is left that was not tried in its turn"

@@ -10,7 +10,7 @@ from drystone.planner.workshop import Workshop
 from tests.planner.scenes import blocks
 
 
-def test_stock() -> None:
+def test_stock():
     stones = blocks({7: (20, 10), 300: (8, 4), 12: (12, 6)})
     workshop = Workshop.prepare(stones, Site(40, 20), PlannerSettings())
     stock = workshop.stock
@@ -22,7 +22,7 @@ def test_stock() -> None:
     assert Stock.of(map(workshop.initial, (7, 12, 300))) == stock
 
 
-def test_rest_lays_stones_flat_on_each_other_and_any_way_beside() -> None:
+def test_rest_lays_stones_flat_on_each_other_and_any_way_beside():
     stones = blocks({1: (20, 10), 2: (8, 4)})
     workshop = Workshop.prepare(stones, Site(40, 20), PlannerSettings())
     rest = Rest.of(workshop.sides, workshop.site)
@@ -34,7 +34,7 @@ def test_rest_lays_stones_flat_on_each_other_and_any_way_beside() -> None:
     assert rest.width_px.shape == (41,)
 
 
-def test_sides_that_are_left() -> None:
+def test_sides_that_are_left():
     stones = blocks({1: (20, 10), 2: (8, 4), 3: (10, 20), 4: (8, 4)})
     workshop = Workshop.prepare(stones, Site(40, 20), PlannerSettings())
     poses = {i: workshop.initial(i) for i in (1, 2, 3, 4)}
@@ -49,7 +49,7 @@ def test_sides_that_are_left() -> None:
     assert rest.height_px.tolist() == Rest.of(left, workshop.site).height_px.tolist()
 
 
-def test_stones_of_one_height_and_different_widths_lie_on_each_other() -> None:
+def test_stones_of_one_height_and_different_widths_lie_on_each_other():
     stones = blocks({1: (20, 6), 2: (14, 6), 3: (6, 9)})
     workshop = Workshop.prepare(stones, Site(40, 20), PlannerSettings())
     rest = Rest.of(workshop.sides, workshop.site)

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from drystone.contacts.settled import PlacedPolygons, model_with_outlines
-from drystone.kernels.polygons import Points
 from drystone.model.outlines import Outlines
 from drystone.model.site import Site
 from drystone.model.wall import outlined
@@ -22,6 +21,7 @@ from drystone.statics.lp.program import assemble
 from drystone.statics.model import Block, Interface, RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble
+from tests.polygons import box
 
 GRIPPED = 0.75 * 0.58
 """Three quarters of the friction."""
@@ -30,13 +30,7 @@ SITE = Site(100, 60)
 BOTH_RULES = pytest.mark.parametrize("rule", ["score", "algorithm2"])
 
 
-def box(left: float, low: float, right: float, high: float) -> Points:
-    return np.array([[left, low], [right, low], [right, high], [left, high]], float)
-
-
-def models(
-    *outlines: Points, settings: SettleSettings | None = None
-) -> tuple[RigidBlockModel, RigidBlockModel]:
+def models(*outlines, settings=None):
     """The model of some stones with all contacts, and the sturdy one."""
     settings = settings or SettleSettings()
     placed = Outlines.empty(SITE)
@@ -49,14 +43,14 @@ def models(
     return full, sturdy
 
 
-def stands(model: RigidBlockModel) -> bool:
+def stands(model):
     return lateral_resistance(model).stable
 
 
 PIERS = box(10.0, 0.01, 40.0, 40.0), box(60.0, 0.01, 90.0, 40.0)
 
 
-def test_a_stone_held_between_upright_faces_does_not_stand() -> None:
+def test_a_stone_held_between_upright_faces_does_not_stand():
     between = box(40.01, 20.0, 59.99, 30.0)
     full, sturdy = models(*PIERS, between)
     assert stands(full)  # friction on both sides holds it
@@ -69,14 +63,14 @@ def test_a_stone_held_between_upright_faces_does_not_stand() -> None:
     assert stands(on_the_ground)
 
 
-def test_a_keystone_stands_as_steep_as_the_settings_say() -> None:
-    def keystone(aside: float) -> Points:
+def test_a_keystone_stands_as_steep_as_the_settings_say():
+    def keystone(aside):
         """Between faces that lean outwards by so much on 20 px."""
         return np.array(
             [[40.01 + aside, 20.0], [59.99 - aside, 20.0], [59.99, 40.0], [40.01, 40.0]]
         )
 
-    def piers(aside: float) -> tuple[Points, Points]:
+    def piers(aside):
         left = np.array([[10.0, 0.01], [40.0 + aside, 0.01], [40.0 + aside, 20.0], [40.0, 40.0],
                          [10.0, 40.0]])  # fmt: skip
         return left, left[::-1] * (-1.0, 1.0) + (100.0, 0.0)
@@ -92,7 +86,7 @@ def test_a_keystone_stands_as_steep_as_the_settings_say() -> None:
         assert all(abs(i.normal[1]) == pytest.approx(aside / np.hypot(aside, 20.0)) for i in faces)
 
 
-def test_what_lies_on_a_stone_from_above_grips_it() -> None:
+def test_what_lies_on_a_stone_from_above_grips_it():
     slab = box(10.0, 40.02, 90.0, 50.0)
     below = box(44.0, 0.01, 56.0, 40.0)
     _, sturdy = models(*PIERS, slab, below)
@@ -101,7 +95,7 @@ def test_what_lies_on_a_stone_from_above_grips_it() -> None:
     assert under.mu == GRIPPED
 
 
-def test_a_gap_beyond_half_the_tolerance_carries_nothing() -> None:
+def test_a_gap_beyond_half_the_tolerance_carries_nothing():
     below = box(10.0, 0.01, 40.0, 20.0)
     for gap, held in ((0.04, True), (0.06, False), (0.09, False)):
         full, sturdy = models(below, box(10.0, 20.0 + gap, 40.0, 30.0))
@@ -109,7 +103,7 @@ def test_a_gap_beyond_half_the_tolerance_carries_nothing() -> None:
         assert stands(sturdy) == held
 
 
-def test_wedges_are_part_of_it() -> None:
+def test_wedges_are_part_of_it():
     placed = Outlines.empty(SITE)
     empty = RigidBlockModel((), (), 0.58)
     stone, wedge = box(10.0, 10.0, 40.0, 20.0), box(20.0, 0.01, 30.0, 9.99)
@@ -120,7 +114,7 @@ def test_wedges_are_part_of_it() -> None:
     assert [block.id for block in wedged.blocks] == [1, 7]
 
 
-def seat(*points: tuple[float, float, float], centroid: tuple[float, float]) -> RigidBlockModel:
+def seat(*points, centroid):
     """A stone that touches the one below at points x, y, with normals at so many degrees."""
     below = RigidBlockModel(
         (Block(1, 9.0, (0.0, -9.0)),),
@@ -134,7 +128,7 @@ def seat(*points: tuple[float, float, float], centroid: tuple[float, float]) -> 
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
-def test_a_stone_that_only_its_own_squeeze_holds_falls(side: float) -> None:
+def test_a_stone_that_only_its_own_squeeze_holds_falls(side):
     # Its centroid is off both tips of a star, and one of them stands in a notch of the stone:
     # forces could balance it, but an engine lets it fall at any friction.
     points = [(2.1, 35.3, 118.3), (11.8, 51.0, 103.3), (11.8, 51.0, 58.3)]
@@ -146,7 +140,7 @@ def test_a_stone_that_only_its_own_squeeze_holds_falls(side: float) -> None:
     assert not falls_when_let_go(seat(*turned, centroid=(side * 4.0, 55.7)))
 
 
-def test_what_falls_is_found_with_few_arrays_as_with_all_of_them() -> None:
+def test_what_falls_is_found_with_few_arrays_as_with_all_of_them():
     rng, found, missed = np.random.default_rng(0), 0, 0
     for _ in range(100):
         around = rng.uniform(-180.0, 0.0, rng.integers(2, 5))
@@ -163,14 +157,12 @@ def test_what_falls_is_found_with_few_arrays_as_with_all_of_them() -> None:
     assert missed <= 2  # a stone may come to rest in the rounds and fall in an exact answer
 
 
-def test_a_stone_that_falls_when_it_is_let_go_is_not_sturdy(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_stone_that_falls_when_it_is_let_go_is_not_sturdy(monkeypatch):
     planner = Planner(rubble(), RUBBLE_SITE, settings=greedy({"vary": 0.0}))
     first = next(iter(planner.steps())).action
     asked = []
 
-    def falls(model: RigidBlockModel) -> bool:
+    def falls(model):
         asked.append(model)
         return True
 
@@ -182,7 +174,7 @@ def test_a_stone_that_falls_when_it_is_let_go_is_not_sturdy(
 
 
 @BOTH_RULES
-def test_every_state_is_sturdy_and_known_as_the_wall_grows(rule: str) -> None:
+def test_every_state_is_sturdy_and_known_as_the_wall_grows(rule):
     planner = finish(
         Planner(rubble(1), RUBBLE_SITE, seed=1, settings=greedy({"selection_rule": rule}))
     )
@@ -196,7 +188,6 @@ def test_every_state_is_sturdy_and_known_as_the_wall_grows(rule: str) -> None:
             (*placed.ids, *(i for i, _ in blocks)), placed.polygons.added(c for _, c in blocks)
         )
         assert action.sturdy
-        assert action.sturdy_model is not None
         assert action.sturdy_model.blocks == sturdy.blocks
         assert len(action.sturdy_model.interfaces) == len(sturdy.interfaces)
         assert stands(sturdy)
@@ -204,9 +195,7 @@ def test_every_state_is_sturdy_and_known_as_the_wall_grows(rule: str) -> None:
 
 
 @pytest.mark.parametrize("which", ["full", "sturdy"])
-def test_failures_of_the_solver_are_counted_in_either_model(
-    which: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_failures_of_the_solver_are_counted_in_either_model(which, monkeypatch):
     settings = greedy({"vary": 0.0})
     planner = Planner(rubble(), RUBBLE_SITE, settings=settings)
     next(step for step in planner.steps() if step.number == 2)
@@ -214,7 +203,7 @@ def test_failures_of_the_solver_are_counted_in_either_model(
     one = build.analysis if which == "full" else build.sturdy_analysis
     real = IncrementalAnalysis.resistance_with
 
-    def gives_up(analysis: IncrementalAnalysis, model: RigidBlockModel) -> IncrementalResult:
+    def gives_up(analysis, model):
         if analysis is not one:
             return real(analysis, model)
         failed = [LimitResult(LimitStatus.FAILED, side) for side in ("left", "right")]
@@ -231,7 +220,7 @@ def test_failures_of_the_solver_are_counted_in_either_model(
     assert attempt.solves == Solves(len(judged), len(judged))
 
 
-def test_walls_of_pixels_have_no_sturdy_model() -> None:
+def test_walls_of_pixels_have_no_sturdy_model():
     planner = finish(Planner(rubble(), RUBBLE_SITE, settings=greedy({"geometry": "raster"})))
     assert planner.build.sturdy_model is None
     assert planner.build.sturdy_analysis is None

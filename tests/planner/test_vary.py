@@ -15,7 +15,7 @@ from tests.planner.scenes import RUBBLE_SITE, finish, greedy, order, rubble, sam
 WEIGHTS = [field.name for field in fields(ScoreSettings) if field.name != "analysed"]
 
 
-def test_every_weight_gets_its_own_factor_and_nothing_else_changes() -> None:
+def test_every_weight_gets_its_own_factor_and_nothing_else_changes():
     settings = method_settings("best")
     new = varied(settings, 0.3, np.random.default_rng(5))
     rng = np.random.default_rng(5)
@@ -28,12 +28,12 @@ def test_every_weight_gets_its_own_factor_and_nothing_else_changes() -> None:
     assert new.updated(unvaried) == settings
 
 
-def built(seed: int, vary: float) -> Planner:
+def built(seed, vary):
     settings = greedy({"vary": vary})
     return finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=settings))
 
 
-def test_another_seed_gives_another_wall_and_the_same_seed_the_same() -> None:
+def test_another_seed_gives_another_wall_and_the_same_seed_the_same():
     walls = {seed: built(seed, 0.3) for seed in (1, 2, 3)}
     assert len({tuple(order(planner)) for planner in walls.values()}) > 1
     assert same(built(2, 0.3), walls[2])
@@ -43,7 +43,7 @@ def test_another_seed_gives_another_wall_and_the_same_seed_the_same() -> None:
 
 
 @pytest.mark.parametrize("seed", [1, 4])
-def test_a_restored_wall_goes_on_with_the_weights_of_its_seed(seed: int) -> None:
+def test_a_restored_wall_goes_on_with_the_weights_of_its_seed(seed):
     whole = built(seed, 0.5)
     part = Planner(rubble(), RUBBLE_SITE, seed=seed, settings=greedy({"vary": 0.5}))
     next(step for step in part.steps() if step.number == 3)

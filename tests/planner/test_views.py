@@ -4,9 +4,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.polygons import Points, Polygons, no_polygons
+from drystone.kernels.polygons import Polygons, no_polygons
 from drystone.kernels.profiles import bare, raised
-from drystone.model.placement import Side
 from drystone.model.site import Site
 from drystone.planner.views import SideView, Views
 from drystone.settle.rest import SettlingScene
@@ -16,17 +15,17 @@ from tests.strategies import repeatable
 SITE = Site.from_source(60.3, 30, 0.5)
 
 
-def heap(seed: int, count: int) -> list[Points]:
+def heap(seed, count):
     rng = np.random.default_rng(seed)
     at = rng.uniform([5.0, 8.0], [55.0, 20.0], (count, 2))
     return [random_polygon(rng, 7, 10.0) + at[k] for k in range(count)]
 
 
-def bits(view: SideView) -> list[bytes]:
+def bits(view):
     return [part.tobytes() for part in (*view.scene.polygons, *view.profile)]
 
 
-def at_once(built: Polygons, side: Side) -> SideView:
+def at_once(built, side):
     scene = SettlingScene.of(built, SITE.extent_px[0], side, 0.58)
     profile = bare(SITE.width_px)
     for index in range(len(scene.polygons)):
@@ -39,20 +38,18 @@ def at_once(built: Polygons, side: Side) -> SideView:
     seed=st.integers(0, 2**32 - 1),
     asked=st.lists(st.tuples(st.booleans(), st.integers(0, 5), st.booleans()), max_size=6),
 )
-def test_a_view_does_not_depend_on_what_was_asked_for_before(
-    seed: int, asked: list[tuple[bool, int, bool]]
-) -> None:
+def test_a_view_does_not_depend_on_what_was_asked_for_before(seed, asked):
     """Of two walls that differ from the third stone on."""
     one, other = heap(seed, 5), heap(seed + 1, 5)
     found = Views(SITE)
     for first, count, from_left in asked:
         polygons = one if first else [*one[:2], *other[2:]]
         built = no_polygons().added(polygons[:count])
-        side: Side = "left" if from_left else "right"
+        side = "left" if from_left else "right"
         assert bits(found.of(built, side, 0.58)) == bits(at_once(built, side))
 
 
-def test_a_wall_that_differs_in_the_last_bit_of_a_corner_is_another_one() -> None:
+def test_a_wall_that_differs_in_the_last_bit_of_a_corner_is_another_one():
     polygons = heap(5, 2)
     found = Views(SITE)
     found.of(no_polygons().added(polygons), "left", 0.58)
@@ -64,7 +61,7 @@ def test_a_wall_that_differs_in_the_last_bit_of_a_corner_is_another_one() -> Non
     assert found.of(split, "left", 0.58).scene.polygons.first.tolist() == [0, 4, 14]
 
 
-def test_the_view_of_the_same_wall_is_the_same_one_and_the_last_piece_has_a_column() -> None:
+def test_the_view_of_the_same_wall_is_the_same_one_and_the_last_piece_has_a_column():
     built = no_polygons().added(heap(5, 3))
     view = SideView.bare(100.0, "right", 0.58, 1.3).grown(built)
     assert view.grown(built) is view

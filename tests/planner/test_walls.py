@@ -3,17 +3,13 @@
 import numpy as np
 import pytest
 import shapely
-from numpy.typing import NDArray
 from shapely import affinity
 
 from drystone.generate import RubbleSettings, rubble_stones
 from drystone.kernels.outline import pixel_polygon
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Placement
-from drystone.model.plan import StoneStep
 from drystone.model.site import Site
-from drystone.model.stone import StoneSet
-from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
@@ -22,11 +18,10 @@ from drystone.planner.settings import PlannerSettings
 from drystone.search.plan_result import mean_top
 from drystone.search.plan_wall import plan_wall, working_scale
 from drystone.verify import check_plan
-from tests.narrow import not_none
 from tests.planner.scenes import blocks, bricks, greedy, rubble, stones_of_masks
 
 
-def _longest_run(free: NDArray[np.bool_]) -> int:
+def _longest_run(free):
     longest = run = 0
     for cell in free.tolist():
         run = run + 1 if cell else 0
@@ -34,7 +29,7 @@ def _longest_run(free: NDArray[np.bool_]) -> int:
     return longest
 
 
-def _small_rubble(seed: int) -> StoneSet:
+def _small_rubble(seed):
     settings = RubbleSettings(count=12, width_px=120, height_px=50, courses=2)
     return rubble_stones(settings, np.random.default_rng(seed))
 
@@ -48,9 +43,7 @@ def _small_rubble(seed: int) -> StoneSet:
     ],
     ids=["rubble 0", "rubble 1", "bricks"],
 )
-def test_the_default_finishes_the_first_course_before_the_second(
-    stones: StoneSet, site: Site
-) -> None:
+def test_the_default_finishes_the_first_course_before_the_second(stones, site):
     # DESIGN 4.4: when a stone is laid higher than the ground, no stone that is left would have
     # found room on the ground.
     planner = Planner(stones, site, settings=greedy())
@@ -68,12 +61,7 @@ def test_the_default_finishes_the_first_course_before_the_second(
     assert above >= 4
 
 
-def _scene(
-    sizes: dict[int, tuple[int, int]],
-    places: dict[int, tuple[int, int]],
-    settings: PlannerSettings,
-    height: int = 40,
-) -> tuple[Planner, Evaluator]:
+def _scene(sizes, places, settings, height=40):
     """A planner with some blocks placed by their left and bottom edges, 60 px wide."""
     planner = Planner(blocks(sizes), Site(60, height), settings=settings)
     workshop = planner.workshop
@@ -85,16 +73,16 @@ def _scene(
     return planner, Evaluator(settings, workshop.stock)
 
 
-def _proposed(planner: Planner, build: Build, stone_id: int) -> Proposal | None:
+def _proposed(planner, build, stone_id):
     proposer = RasterProposer(planner.workshop, planner.settings, build, Profile())
     return proposer.stabilised(proposer.spotted(_trial(planner, stone_id)))
 
 
-def _judged(evaluator: Evaluator, build: Build, proposal: Proposal) -> Candidate:
+def _judged(evaluator, build, proposal):
     return evaluator.judge(build, Landscape.of(build.wall, proposal.side), proposal)
 
 
-def _trial(planner: Planner, stone_id: int) -> StoneTrial:
+def _trial(planner, stone_id):
     workshop, build = planner.workshop, planner.build
     return StoneTrial(workshop.poses(stone_id), Landscape.of(build.wall))
 
@@ -102,30 +90,30 @@ def _trial(planner: Planner, stone_id: int) -> StoneTrial:
 @pytest.mark.parametrize(
     "settings", [PlannerSettings(), greedy({"geometry": "raster"})], ids=["paper", "best"]
 )
-def test_a_stone_bridges_two_pillars_without_a_wedge(settings: PlannerSettings) -> None:
+def test_a_stone_bridges_two_pillars_without_a_wedge(settings):
     sizes = {1: (20, 20), 2: (20, 20), 3: (60, 8)}
     planner, evaluator = _scene(sizes, {1: (0, 0), 2: (40, 0)}, settings)
-    proposal = not_none(_proposed(planner, planner.build, 3))
+    proposal = _proposed(planner, planner.build, 3)
     placement = proposal.stabilised.placement
     assert (placement.row, placement.col, placement.rotation_moves) == (12, 0, 0)
     assert proposal.stabilised.wedges == ()
     candidate = _judged(evaluator, planner.build, proposal)
     assert candidate.resistance.stable
-    assert not_none(candidate.resistance.value) > 0.3
+    assert candidate.resistance.value > 0.3
 
 
-def _half_supported(ids: tuple[int, int, int]) -> Build:
+def _half_supported(ids):
     """A slab that one pillar carries at its end, and a lower pillar does not reach."""
     high, low, slab = ids
     settings = PlannerSettings().updated({"stabilise": {"method": "wedge"}})
     sizes = {high: (20, 20), low: (20, 16), slab: (60, 8)}
     planner, evaluator = _scene(sizes, {high: (0, 0), low: (40, 0)}, settings)
-    proposal = not_none(_proposed(planner, planner.build, slab))
+    proposal = _proposed(planner, planner.build, slab)
     return planner.build.add(_judged(evaluator, planner.build, proposal))
 
 
 @pytest.mark.parametrize("ids", [(3, 5, 7), (7, 300, 5), (70_000, 300, 5), (300, 1, 70_000)])
-def test_wedges_are_numbered_after_the_largest_id(ids: tuple[int, int, int]) -> None:
+def test_wedges_are_numbered_after_the_largest_id(ids):
     build = _half_supported(ids)
     wedges = build.wall.wedges
     assert [wedge.id for wedge in wedges] == [max(ids) + 1]
@@ -134,7 +122,7 @@ def test_wedges_are_numbered_after_the_largest_id(ids: tuple[int, int, int]) -> 
     assert build.actions[-1].resistance.stable
 
 
-def test_two_wedges_get_two_ids() -> None:
+def test_two_wedges_get_two_ids():
     settings = PlannerSettings().updated({"stabilise": {"method": "wedge"}})
     sizes = {1: (12, 12), 2: (12, 8), 3: (28, 5), 4: (12, 12), 5: (12, 8), 6: (28, 5)}
     places = {1: (0, 0), 2: (16, 0), 4: (28, 0), 5: (44, 0)}
@@ -143,19 +131,19 @@ def test_two_wedges_get_two_ids() -> None:
     build = planner.build
     for slab in (3, 6):
         planner.build = build
-        proposal = not_none(_proposed(planner, build, slab))
+        proposal = _proposed(planner, build, slab)
         build = build.add(_judged(evaluator, build, proposal))
     assert [wedge.id for wedge in build.wall.wedges] == [7, 8]
 
 
-def _l_shape() -> NDArray[np.bool_]:
+def _l_shape():
     mask = np.ones((16, 24), bool)
     mask[:10, 8:] = False
     return mask
 
 
 @pytest.mark.parametrize(("scale", "orientations"), [(1.0, "quarter"), (0.5, "45deg")])
-def test_no_stone_is_mirrored(scale: float, orientations: str) -> None:
+def test_no_stone_is_mirrored(scale, orientations):
     # Shapes without symmetry: the plan's poses, applied to outlines, give the pixels of the wall.
     shape = _l_shape()
     stones = stones_of_masks({4: shape, 9: shape[:, ::-1], 300: shape, 12: shape[:, ::-1]})
@@ -173,7 +161,7 @@ def test_no_stone_is_mirrored(scale: float, orientations: str) -> None:
         assert _overlap(seen, mirror) < 0.8
 
 
-def _planned_polygon(step: StoneStep, stones: StoneSet) -> shapely.Polygon:
+def _planned_polygon(step, stones):
     """A stone where the contract puts it: R(angle_deg) (p - source_centroid) + centroid."""
     stone = stones.by_id(step.stone)
     in_source = stone.outline + np.array(stone.centroid)
@@ -183,18 +171,18 @@ def _planned_polygon(step: StoneStep, stones: StoneSet) -> shapely.Polygon:
     return shapely.Polygon(points)
 
 
-def _pixels_polygon(mask: NDArray[np.bool_], scale: float) -> shapely.Polygon:
+def _pixels_polygon(mask, scale):
     rows, cols = np.nonzero(mask)
     cropped = mask[rows.min() : rows.max() + 1, cols.min() : cols.max() + 1]
     corner = np.array([cols.min(), mask.shape[0] - 1 - rows.max()])
     return shapely.Polygon((pixel_polygon(cropped) + corner) / scale)
 
 
-def _overlap(one: shapely.Polygon, other: shapely.Polygon) -> float:
+def _overlap(one, other):
     return float(one.intersection(other).area / one.union(other).area)
 
 
-def test_the_result_in_one_call() -> None:
+def test_the_result_in_one_call():
     stones = rubble()
     result = plan_wall(stones, 100, 36, scale=1.0, method="paper", seed=3)
     assert result.message == result.plan.stopped
@@ -207,7 +195,7 @@ def test_the_result_in_one_call() -> None:
     assert check_plan(result.plan, stones, wall_labels=result.wall.labels).ok
 
 
-def test_what_is_incomplete() -> None:
+def test_what_is_incomplete():
     # Half of the wall's height with all stones: not filled, and its top is too low.
     result = plan_wall(bricks(3), 60, 20, scale=1.0, method="paper")
     assert (result.status, result.message) == ("incomplete", "all stones placed")
@@ -221,7 +209,7 @@ def test_what_is_incomplete() -> None:
     assert (tall.status, tall.success, tall.shortfall) == ("complete", True, "")
 
 
-def test_the_working_resolution() -> None:
+def test_the_working_resolution():
     assert working_scale(bricks()) == 1.0  # never finer than the source
     large = blocks({1: (160, 80), 2: (200, 80), 3: (240, 100)})
     assert working_scale(large) == 0.2  # 40 / 200

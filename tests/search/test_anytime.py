@@ -1,21 +1,21 @@
 """A search: the same budget gives the same wall, and a larger one none that is worse."""
 
-import math
 import sys
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from drystone.model.site import Site
-from drystone.model.wall import Wall
 from drystone.planner.deadline import NEVER, Deadline
-from drystone.planner.events import Callbacks, Incumbent
+from drystone.planner.events import Callbacks
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import UNLIMITED, SearchSettings
 from drystone.planner.solves import Solves
+from drystone.planner.workshop import Workshop
 from drystone.search import anytime, chain
 from drystone.search.anytime import (
     BATCH,
@@ -32,18 +32,16 @@ from drystone.search.anytime import (
     searching,
     stale,
 )
-from drystone.search.chain import Job, in_cycle, planned_first, recreated, wedged
+from drystone.search.chain import in_cycle, planned_first, recreated, wedged
 from drystone.search.courses import CoursePlan
 from drystone.search.goal import Courses, FoundWall
 from drystone.search.packed import PackedWall, archived, found_again
-from drystone.search.plan_wall import SoFar, plan_wall
+from drystone.search.plan_wall import plan_wall
 from drystone.search.processes import processes
-from drystone.search.state import Link, Progress, SearchState
 from drystone.search.whole_search import run_to_end
 from drystone.search.yard import Yard
 from drystone.verify.check import check_plan
-from tests.narrow import not_none
-from tests.planner.scenes import RUBBLE_SITE, Ticks, after_looks, blocks, finish, greedy, rubble
+from tests.planner.scenes import RUBBLE_SITE, after_looks, blocks, finish, greedy, rubble
 
 SMALL = {"passes": 3, "chains": 2, "share_every": 2, "cycle": 3}
 """A search that does everything within ten walls."""
@@ -63,28 +61,33 @@ WALLS = {
 LOOPS = {name for names in WALLS.values() for name in names}
 
 
-def first(budget: int, seed: int = 1, patience: int = 12) -> Planner:
+WORKSHOP = Workshop.prepare(rubble(), RUBBLE_SITE, greedy())
+
+
+def planner_of(budget, seed=1, patience=12):
     search = {"budget": budget, "patience": patience, **SMALL}
     settings = greedy({"search": search})
-    return finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=settings))
+    return Planner(rubble(), RUBBLE_SITE, seed=seed, settings=settings, workshop=WORKSHOP)
 
 
-def searched(planner: Planner, jobs: int = 1, until: Deadline = NEVER) -> list[Progress]:
-    yard = Yard.of(planner, until)
-    with processes(jobs) as executor:
-        return list(searching(FoundWall.of(planner), yard, planner.seed, executor))
+def first(*asked, **more):
+    return finish(planner_of(*asked, **more))
 
 
-def judged(planner: Planner) -> FoundWall:
+def searched(planner, executor=None, until=NEVER):
+    return list(searching(FoundWall.of(planner), Yard.of(planner, until), planner.seed, executor))
+
+
+def judged(planner):
     return FoundWall.of(planner).judged(Yard.of(planner))
 
 
-def same(one: PackedWall, other: PackedWall) -> bool:
+def same(one, other):
     """Whether two packed walls are one wall."""
     return (one.groups, one.merit) == (other.groups, other.merit)
 
 
-def alike(one: Progress, other: Progress) -> bool:
+def alike(one, other):
     """Whether two searches have come to the same."""
     return (
         (one.walls, one.solves) == (other.walls, other.solves)
@@ -94,7 +97,7 @@ def alike(one: Progress, other: Progress) -> bool:
     )
 
 
-def test_walls_get_better_and_are_complete() -> None:
+def test_walls_get_better_and_are_complete():
     planner = first(12, seed=2)
     found = searched(planner)
     assert found[0].walls == 1
@@ -112,7 +115,7 @@ def test_walls_get_better_and_are_complete() -> None:
     assert (again.figures, again.merit) == (best.figures, best.merit)
 
 
-def test_chains_go_on_from_planned_walls_that_promise_more_until_they_are_long() -> None:
+def test_chains_go_on_from_planned_walls_that_promise_more_until_they_are_long():
     alone, planned = packed(1.0, planned=False), packed(0.9, planned=True)
     links = _links([alone, planned, packed(0.2, planned=True)], 0, 2)
     assert [link.best for link in links] == [planned, alone]
@@ -126,7 +129,7 @@ def test_chains_go_on_from_planned_walls_that_promise_more_until_they_are_long()
     assert _shared(half[:1] * 2) == half[:1] * 2
 
 
-def test_the_first_wall_is_wedged_as_the_others_are() -> None:
+def test_the_first_wall_is_wedged_as_the_others_are():
     planner = first(2, seed=9)
     start = judged(planner)
     better = wedged(start, Yard.of(planner))
@@ -138,35 +141,51 @@ def test_the_first_wall_is_wedged_as_the_others_are() -> None:
     assert found[1].best.merit == better.merit
 
 
-def test_every_other_wall_of_a_search_keeps_open_joints() -> None:
+def test_every_other_wall_of_a_search_keeps_open_joints():
     yard = Yard.of(first(2))
     joints = [yard.jointed(number).settings.settle.joint for number in range(4)]
     assert joints == [0.0, 0.03, 0.0, 0.03]
 
 
-def test_after_many_walls_in_vain_other_first_walls_begin_another_round(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    begun: list[int] = []
-    chained: list[tuple[int, int]] = []
+@pytest.fixture(scope="module")
+def rounds():
+    """A search of several rounds to its end, and where the clock was looked at in it."""
+    begun, chained, inside, found = [], [], set(), []
 
-    def one_pass(job: Job, number: int, share: float) -> PackedWall | None:
+    def one_pass(job, number, share):
         begun.append(number)
         return chain.one_pass(job, number, share)
 
-    def more_links(job: Job, link: Link, count: int) -> Link | None:
+    def more_links(job, link, count):
         chained.append((link.number, link.done))
         return chain.more_links(job, link, count)
 
-    monkeypatch.setattr(anytime, "one_pass", one_pass)
-    monkeypatch.setattr(anytime, "more_links", more_links)
-    whole = searched(first(25, seed=1, patience=1))
+    def look(_):
+        names, frame = set(), sys._getframe(1)
+        while frame is not None:
+            names.add(frame.f_code.co_name)
+            frame = frame.f_back
+        inside.update((inner, outer) for inner in LOOPS & names for outer in names & {*WALLS})
+
+    planner = planner_of(25, patience=1)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(anytime, "one_pass", one_pass)
+        patch.setattr(anytime, "more_links", more_links)
+        patch.setattr(Deadline, "look", look)
+        run_to_end(planner, told=found.append)
+    whole = [one for one in found if one is not None]
+    return SimpleNamespace(
+        planner=planner, begun=begun, chained=chained, inside=inside, whole=whole
+    )
+
+
+def test_after_many_walls_in_vain_other_first_walls_begin_another_round(rounds):
+    begun, whole = rounds.begun, rounds.whole
     assert len(begun) > 3
     assert begun == list(range(1, len(begun) + 1))
-    assert chained[:2] == [(0, 0), (1, 0)]
+    assert rounds.chained[:2] == [(0, 0), (1, 0)]
     # The chains of another round draw anew.
-    assert (2, 0) in chained
-    assert (3, 0) in chained
+    assert {(2, 0), (3, 0)} <= {*rounds.chained}
     assert all(a.walls < b.walls for a, b in pairwise(whole))
     assert whole[-1].walls == 25
     # What earlier rounds have found is not lost.
@@ -174,64 +193,40 @@ def test_after_many_walls_in_vain_other_first_walls_begin_another_round(
     assert all(any(same(p.best, kept) for kept in p.kept) for p in whole)
 
 
-def test_a_part_of_several_rounds_is_a_search_with_a_smaller_budget() -> None:
-    """What the clock cut off, the budget that is recorded repeats."""
-    whole = searched(first(21, patience=1))
-    for part in (whole[3], whole[-3]):
-        assert alike(searched(first(part.walls, patience=1))[-1], part)
-
-
-def test_what_was_built_in_time_counts_even_where_a_wall_was_cut_off() -> None:
-    clock = Ticks()
-    assert searched(first(9), until=Deadline(math.inf, clock))[-1].walls == 9
-    reached = set()
-    for looks in range(0, clock.count, clock.count // 5):
-        timed = searched(first(1000), until=after_looks(looks))[-1]
-        again = searched(first(timed.walls))[-1]
-        assert again.walls == timed.walls
-        # There is no time to judge a first wall by both flow rules: its merit is then known less.
-        best = again.best if looks else replace(again.best, merit=timed.best.merit)
-        assert same(best, timed.best)
-        assert again.solves == timed.solves
-        reached.add(timed.walls)
-    assert len(reached) > 3
-    assert min(reached) == 1
-
-
-def test_the_clock_is_looked_at_inside_everything_that_takes_long(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_the_clock_is_looked_at_inside_everything_that_takes_long(rounds):
     """In first walls by policy and by courses, restarts, chains, wedging, and judging."""
-    inside: set[tuple[str, str]] = set()
-
-    def look(_: Deadline) -> None:
-        names, frame = [], sys._getframe(1)
-        while frame is not None:
-            names.append(frame.f_code.co_name)
-            frame = frame.f_back  # type: ignore[assignment]
-        inside.update(
-            (inner, outer) for inner in LOOPS for outer in WALLS if {inner, outer} <= {*names}
-        )
-
-    monkeypatch.setattr(Deadline, "look", look)
-    run_to_end(first(24, seed=1, patience=1))
-    missing = {(inner, outer) for outer, inners in WALLS.items() for inner in inners} - inside
-    assert not missing
+    asked = {(inner, outer) for outer, inners in WALLS.items() for inner in inners}
+    assert not asked - rounds.inside
 
 
-def test_processes_change_nothing() -> None:
-    one, two = searched(first(16, patience=1)), searched(first(16, patience=1), jobs=2)
-    assert all(alike(a, b) for a, b in zip(one, two, strict=True))
-    # Every task has a copy of the clock as it is when it is handed over.
-    timed = searched(first(9), jobs=2, until=after_looks(500))[-1]
+def test_a_part_of_several_rounds_in_processes_is_a_search_with_a_smaller_budget(rounds):
+    """What the clock cut off, the budget that is recorded repeats."""
+    part = rounds.whole[:-2]
+    with processes(2) as workers:
+        again = searched(first(part[-1].walls, patience=1), workers)
+        # Every task has a copy of the clock as it is when it is handed over.
+        timed = searched(first(9), workers, until=after_looks(500))[-1]
+    assert all(alike(a, b) for a, b in zip(again, part, strict=True))
     again = searched(first(timed.walls))[-1]
     assert again.walls == timed.walls
     assert same(again.best, timed.best)
 
 
-def test_the_clock_ends_a_search_and_the_plan_says_after_how_many_walls(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_what_was_built_in_time_counts_even_where_a_wall_was_cut_off(rounds):
+    known, reached = {one.walls: one for one in rounds.whole}, set()
+    for looks in (0, 150, 300, 500):
+        timed = searched(first(1000, patience=1), until=after_looks(looks))[-1]
+        again = known.get(timed.walls) or searched(first(timed.walls, patience=1))[-1]
+        # There is no time to judge a first wall by both flow rules: its merit is then known less.
+        best = again.best if looks else replace(again.best, merit=timed.best.merit)
+        assert same(best, timed.best)
+        assert (again.walls, again.solves) == (timed.walls, timed.solves)
+        reached.add(timed.walls)
+    assert len(reached) > 2
+    assert min(reached) == 1
+
+
+def test_the_clock_ends_a_search_and_the_plan_says_after_how_many_walls(monkeypatch):
     monkeypatch.setattr("drystone.search.plan_wall.GRACE", 1e6)
     settings = greedy({"search": {"budget": 1, **SMALL}})
     # On a busy machine that may be the first wall alone.
@@ -245,16 +240,17 @@ def test_the_clock_ends_a_search_and_the_plan_says_after_how_many_walls(
         rubble(), 100, 36, scale=1.0, seed=2, settings=settings, budget=used, seconds=1e6
     )
     assert again.plan == timed.plan
+    assert again.choice == ()
     policy = greedy({"selection_rule": "lowest", "search": {"budget": 1}})
     result = plan_wall(rubble(), 100, 36, scale=1.0, settings=policy, seconds=100.0)
     assert result.plan.settings["search"]["budget"] == 1
 
 
-def test_an_interrupt_keeps_the_best_wall_so_far() -> None:
-    told: list[Incumbent] = []
+def test_an_interrupt_keeps_the_best_wall_so_far():
+    told = []
 
     class Impatient(Callbacks):
-        def on_walls(self, incumbent: Incumbent) -> None:
+        def on_walls(self, incumbent):
             told.append(incumbent)
             if incumbent.walls >= 5:
                 raise KeyboardInterrupt
@@ -273,35 +269,30 @@ def test_an_interrupt_keeps_the_best_wall_so_far() -> None:
     assert told[-1].stones == len(best.groups)
 
 
-def test_a_search_goes_on_from_where_it_stood_to_the_walls_that_it_would_have_found() -> None:
-    planner = first(25, seed=1, patience=1)
-    whole = searched(planner)
+def test_a_search_goes_on_from_where_it_stood_to_the_walls_that_it_would_have_found(rounds):
+    planner, whole = rounds.planner, rounds.whole
     stood = [k for k, one in enumerate(whole) if one.state is not None]
-    rounds = {state(whole[k]).number for k in stood}
-    assert len(rounds) > 1
-    assert {state(whole[k]).chains is None for k in stood} == {True, False}
+    assert len({whole[k].state.number for k in stood}) > 1
+    late = {whole[k].state.chains is None: k for k in stood}
+    assert late.keys() == {True, False}
     # Where there is but a first wall, and where the budget cut a chain short, there is nothing.
     assert set(range(len(whole))) - set(stood) <= {0, len(whole) - 1}
     yard = Yard.of(planner)
-    for k in stood[1::4]:
-        again = list(searching(state(whole[k]), yard, planner.seed))
-        assert state(whole[k]).walls == whole[k].walls
+    for k in late.values():
+        again = list(searching(whole[k].state, yard, planner.seed))
+        assert whole[k].state.walls == whole[k].walls
         assert all(alike(one, other) for one, other in zip(again, whole[k:], strict=True))
     # One that goes on with a smaller budget ends.
     last = whole[stood[-1]]
-    assert state(last).before is not None
+    assert last.state.before is not None
     less = planner.settings.updated({"search": {"budget": 1}})
-    (only,) = searching(state(last), Yard(planner.workshop, less), planner.seed)
+    (only,) = searching(last.state, Yard(planner.workshop, less), planner.seed)
     assert (only.walls, only.best) == (last.walls, last.best)
 
 
-def state(progress: Progress) -> SearchState:
-    return not_none(progress.state)
-
-
-def test_a_plan_that_is_kept_is_that_of_an_interrupt_and_leads_to_the_whole_one() -> None:
+def test_a_plan_that_is_kept_is_that_of_an_interrupt_and_leads_to_the_whole_one():
     settings = greedy({"search": {"budget": 9, **SMALL}})
-    told: list[SoFar] = []
+    told = []
     stones = rubble()
     whole = plan_wall(stones, 100, 36, scale=1.0, seed=1, settings=settings, keep=told.append)
     placed = [one for one in told if one.progress is None]
@@ -311,18 +302,17 @@ def test_a_plan_that_is_kept_is_that_of_an_interrupt_and_leads_to_the_whole_one(
         partial = one.plan()
         assert partial.status == "interrupted"
         assert check_plan(partial.plan, stones, wall_labels=partial.wall.labels).problems == ()
-    assert one.progress is not None
     assert [step.stone for step in partial.plan.stone_steps] == [
         group.stone_id for group in one.progress.best.groups
     ]
-    for one in told[len(placed) + 1 :: 2]:
+    for one in told[len(placed) + 1 :: 3]:
         again = plan_wall(
-            stones, 100, 36, scale=1.0, seed=1, settings=settings, state=state(one.progress)
+            stones, 100, 36, scale=1.0, seed=1, settings=settings, state=one.progress.state
         )
         assert again.plan == whole.plan
 
 
-def test_nothing_to_build_is_no_trouble() -> None:
+def test_nothing_to_build_is_no_trouble():
     """No stone that is 100 px wide fits."""
     settings = greedy({"search": {"budget": 6, **SMALL}, "skip_too_large": True})
     planner = Planner(rubble(), Site(6, 6), settings=settings)
@@ -330,22 +320,22 @@ def test_nothing_to_build_is_no_trouble() -> None:
     assert (best.build.actions, stopped.reason, walls) == ((), "stones", 6)
 
 
-def test_cycles_double() -> None:
+def test_cycles_double():
     walked = [in_cycle(done, 3) for done in range(22)]
     assert [length for position, length in walked if position == 0] == [3, 6, 12, 24]
     assert all(b[0] in (a[0] + 1, 0) for a, b in pairwise(walked))
 
 
-def test_courses_are_planned_where_quarter_turns_and_both_ends_may_be_used() -> None:
+def test_courses_are_planned_where_quarter_turns_and_both_ends_may_be_used():
     others = [{"orientations": one} for one in ("45deg", "90deg", "sf", "40deg")]
     assert planned_first(greedy())
     for changes in (*others, {"two_sided": False}, {"order": "given"}):
         assert not planned_first(greedy(changes))
 
 
-def test_a_process_that_dies_ends_the_search_with_the_best_so_far() -> None:
+def test_a_process_that_dies_ends_the_search_with_the_best_so_far():
     class Dying(Callbacks):
-        def on_walls(self, incumbent: Incumbent) -> None:
+        def on_walls(self, incumbent):
             if incumbent.walls >= 3:
                 raise BrokenProcessPool
 
@@ -357,12 +347,12 @@ def test_a_process_that_dies_ends_the_search_with_the_best_so_far() -> None:
     assert check_plan(result.plan, stones, wall_labels=result.wall.labels).problems == ()
 
 
-def packed(merit: float, planned: bool) -> PackedWall:
+def packed(merit, planned):
     one = PackedWall((), None, merit, Solves(), None)
     return replace(one, courses=Courses(CoursePlan((), 0.0), (0,))) if planned else one
 
 
-def numbers(search: SearchSettings) -> list[list[int]]:
+def numbers(search):
     """Batches of a search each of whose walls is better than the one before it."""
     found, batches = [packed(0.0, planned=True)], []
     while (batch := next_batch(found, search)) is not None:
@@ -372,7 +362,7 @@ def numbers(search: SearchSettings) -> list[list[int]]:
 
 
 @pytest.mark.parametrize("count", [1, 2, 5, 13])
-def test_batches_number_every_wall_but_the_very_first(count: int) -> None:
+def test_batches_number_every_wall_but_the_very_first(count):
     listed = numbers(SearchSettings(budget=count, passes=24))
     assert [n for batch in listed for n in batch] == list(range(1, count))
     # A smaller budget cuts the last batch, and changes no other: it repeats a part of a search.
@@ -382,7 +372,7 @@ def test_batches_number_every_wall_but_the_very_first(count: int) -> None:
     assert numbers(SearchSettings(budget=60, passes=count)) == listed
 
 
-def test_a_batch_goes_on_as_it_began() -> None:
+def test_a_batch_goes_on_as_it_began():
     found = [packed(float(k % 3), planned=k % 2 > 0) for k in range(3 * BATCH)]
     search = SearchSettings(budget=60)
     for begun in range(0, len(found), BATCH):
@@ -392,7 +382,7 @@ def test_a_batch_goes_on_as_it_began() -> None:
             assert next_batch(found[:done], search) == (rest, share)
 
 
-def test_the_share_follows_the_better_half() -> None:
+def test_the_share_follows_the_better_half():
     planned_win = [packed(k, planned=k >= 4) for k in range(8)]
     greedy_win = [packed(k, planned=k < 4) for k in range(8)]
     usual = SHARE * WEIGHT
@@ -402,7 +392,7 @@ def test_the_share_follows_the_better_half() -> None:
     assert planned_share(planned_win[::-1]) == planned_share(planned_win)
 
 
-def test_planned_walls_are_worth_more_than_they_are_yet() -> None:
+def test_planned_walls_are_worth_more_than_they_are_yet():
     one, other = packed(1.0, planned=True), packed(1.0, planned=False)
     assert [promised(one), promised(one, 0.5), promised(one, 0.0)] == [
         1 + PROMISE, 1 + 0.5 * PROMISE, 1.0,
@@ -413,7 +403,7 @@ def test_planned_walls_are_worth_more_than_they_are_yet() -> None:
     assert planned_share(behind) > SHARE
 
 
-def test_first_walls_end_when_they_beat_none_that_was_not_planned() -> None:
+def test_first_walls_end_when_they_beat_none_that_was_not_planned():
     rising = [packed(float(k), planned=False) for k in range(20)]
     assert not any(stale(rising[: k + 1]) for k in range(20))
     level = [packed(1.0, planned=False), *(packed(0.3, planned=k % 2 > 0) for k in range(STALE))]
@@ -429,30 +419,28 @@ def test_first_walls_end_when_they_beat_none_that_was_not_planned() -> None:
     assert not stale([packed(1.0 - PROMISE / 2, planned=True), *level])
 
 
-def test_the_best_is_among_them_and_none_beats_another() -> None:
-    found = searched(first(12, seed=4))
+def test_what_none_beats_is_kept_and_becomes_plans_that_hold():
+    settings, told = greedy({"search": {"budget": 12, **SMALL}}), []
+    result = plan_wall(
+        rubble(), 100, 36, scale=1.0, seed=4, settings=settings, choice=True, keep=told.append
+    )
+    found = [one.progress for one in told if one.progress]
     assert max(len(progress.kept) for progress in found) > 1
     for progress in found:
         assert same(progress.kept[0], progress.best)
         assert archived((), progress.kept) == progress.kept
-
-
-def test_what_is_kept_becomes_plans_that_hold() -> None:
-    settings = greedy({"search": {"budget": 12, **SMALL}})
-    result = plan_wall(rubble(), 100, 36, scale=1.0, seed=4, settings=settings, choice=True)
     assert len(result.choice) > 1
     assert result.choice[0].plan == result.plan
     for one in result.choice:
         report = check_plan(one.plan, rubble(), wall_labels=one.wall.labels)
         assert report.problems == ()
-    assert plan_wall(rubble(), 100, 36, scale=1.0, seed=4, settings=greedy()).choice == ()
 
 
-def ids(wall: Wall) -> list[int]:
+def ids(wall):
     return [placement.stone_id for placement in wall.placements]
 
 
-def test_a_search_finds_a_wall_with_what_is_pinned() -> None:
+def test_a_search_finds_a_wall_with_what_is_pinned():
     free = plan_wall(rubble(), 60, 36, scale=1.0, seed=1, settings=greedy())
     pin = [stone.id for stone in rubble() if stone.id not in ids(free.wall)][:2]
     assert len(pin) == 2
@@ -462,7 +450,7 @@ def test_a_search_finds_a_wall_with_what_is_pinned() -> None:
     assert result.notices == ()
 
 
-def test_a_full_wall_is_incomplete_without_a_pinned_stone() -> None:
+def test_a_full_wall_is_incomplete_without_a_pinned_stone():
     settings = greedy({"geometry": "raster"})
     large = blocks({**dict.fromkeys(range(1, 7), (20, 10)), 7: (90, 90)})
     pinned = settings.updated({"pin": [7], "skip_too_large": True})
@@ -474,10 +462,10 @@ def test_a_full_wall_is_incomplete_without_a_pinned_stone() -> None:
     assert [notice.code for notice in result.notices] == ["W120"]
     planner = finish(Planner(large, Site(60, 20), settings=pinned))
     found = FoundWall.of(planner)
-    assert not_none(found.figures).missing == 1
+    assert found.figures.missing == 1
 
 
-def test_in_a_given_order_the_last_stones_are_built_again() -> None:
+def test_in_a_given_order_the_last_stones_are_built_again():
     settings = greedy({"order": "given", "search": {"budget": 2}})
     planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
     found, rng = FoundWall.of(planner), np.random.default_rng(0)
@@ -493,7 +481,7 @@ def test_in_a_given_order_the_last_stones_are_built_again() -> None:
     assert walls - {planner.build.wall.labels.tobytes()}
 
 
-def test_a_search_keeps_a_given_order() -> None:
+def test_a_search_keeps_a_given_order():
     settings = greedy({"order": "given", "search": {"budget": 12, **SMALL}})
     planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
     found = searched(planner)
@@ -504,7 +492,7 @@ def test_a_search_keeps_a_given_order() -> None:
         assert wall.courses is None
 
 
-def test_the_bound_is_the_area_of_what_may_be_used() -> None:
+def test_the_bound_is_the_area_of_what_may_be_used():
     stones = rubble()
     area = sum(stone.area_px for stone in stones) - stones.by_id(3).area_px
     settings = greedy({"ban": [3], "search": {"budget": 1}})

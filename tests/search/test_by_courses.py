@@ -4,69 +4,63 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial, partialmethod
-from typing import Any
 
 import numpy as np
 import pytest
 from numpy.random import Generator
 
 from drystone.model.site import Site
-from drystone.planner.assemble import Frame
-from drystone.planner.build import Build
-from drystone.planner.evaluate import Evaluator, Loaded
+from drystone.planner.evaluate import Evaluator
 from drystone.planner.events import Stopped
 from drystone.planner.search_settings import SearchSettings
 from drystone.planner.workshop import Workshop
 from drystone.search.by_courses import newly_planned, relaid, replanned
 from drystone.search.chain import recreated, without
-from drystone.search.courses import CoursePlan
 from drystone.search.goal import FoundWall
-from drystone.search.mason import CourseLaying, lay
+from drystone.search.mason import lay
 from drystone.search.operators import NEW, OPERATORS, RECREATED, RELAID, REPLANNED, Credits, shares
 from drystone.search.packed import PackedWall, found_again
 from drystone.search.plan_result import finish
-from drystone.search.ruin import RUINS, Ruin, joint, taken_down, with_all_above
+from drystone.search.ruin import RUINS, joint, taken_down, with_all_above
 from drystone.search.yard import Yard
 from drystone.statics.incremental import IncrementalResult
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.verify.check import check_plan
-from tests.narrow import not_none
 from tests.planner import scenes
 from tests.planner.scenes import RUBBLE_SITE, blocks, greedy, rubble
 
 Change = Callable[[FoundWall, Yard, Generator], FoundWall | None]
 
 
-def rng(seed: int) -> Generator:
+def rng(seed):
     return np.random.default_rng(seed)
 
 
-def yard_of(site: Site = RUBBLE_SITE, **changes: Any) -> Yard:
+def yard_of(site=RUBBLE_SITE, **changes):
     settings = greedy({"search": {"budget": 2}, **changes})
     return Yard(Workshop.prepare(rubble(), site, settings), settings)
 
 
 @pytest.fixture(scope="module")
-def yard() -> Yard:
+def yard():
     return yard_of()
 
 
 @pytest.fixture(scope="module")
-def planned(yard: Yard) -> FoundWall:
+def planned(yard):
     # Not the cheapest plan of all, which would only be found again.
-    return not_none(newly_planned(yard, rng(14)))
+    return newly_planned(yard, rng(14))
 
 
-def poses(found: FoundWall) -> list[tuple[int, float, bytes]]:
+def poses(found):
     """Stones, angles and corners in the order of placement."""
     placed = [(p, p.settled) for p in found.build.wall.placements if p.settled]
     return [(p.stone_id, p.posed.angle_deg, at.corners.tobytes()) for p, at in placed]
 
 
-def check(found: FoundWall, yard: Yard) -> None:
+def check(found, yard):
     """The wall stands at every step, and the ends of its courses are those of its steps."""
     courses, build = found.courses, found.build
-    assert courses is not None
     assert courses.ends[0] == 0
     assert list(courses.ends) == sorted(courses.ends)
     assert courses.ends[-1] <= len(build.actions)
@@ -81,35 +75,32 @@ def check(found: FoundWall, yard: Yard) -> None:
     assert (measured.figures, measured.merit) == (found.figures, found.merit)
 
 
-def test_a_plan_is_laid_and_the_rest_goes_on_top(planned: FoundWall, yard: Yard) -> None:
+def test_a_plan_is_laid_and_the_rest_goes_on_top(planned, yard):
     check(planned, yard)
-    assert not_none(planned.figures).stones >= 6
+    assert planned.figures.stones >= 6
     again, *others = (newly_planned(yard, rng(seed)) for seed in (14, 3, 4))
-    assert poses(not_none(again)) == poses(planned)
+    assert poses(again) == poses(planned)
     assert any(other is not None and poses(other) != poses(planned) for other in others)
-    site = yard.workshop.site
     begun = yard.planner()
     begun.build = planned.build
     provenance = {"version": "0", "method": "best", "seed": 0, "settings": yard.settings.as_dict()}
     stopped = Stopped("stones", "no stones are left")
-    result = finish(begun, Frame(*site.extent_px, site), stopped, provenance, 0.0)
+    result = finish(begun, stopped, provenance, 0.0)
     assert check_plan(result.plan, yard.workshop.stones).problems == ()
 
 
 @pytest.mark.parametrize("change", [replanned, relaid])
-def test_lower_courses_stay(
-    change: Change, planned: FoundWall, yard: Yard, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    begun: list[int] = []
+def test_lower_courses_stay(change, planned, yard, monkeypatch):
+    begun = []
 
-    def spied(plan: CoursePlan, start: Build, *rest: Any) -> CourseLaying:
+    def spied(plan, start, *rest):
         begun.append(len(start.actions))
         return lay(plan, start, *rest)
 
     monkeypatch.setattr("drystone.search.by_courses.lay", spied)
-    ends, changed = not_none(planned.courses).ends, set[int]()
+    ends, changed = planned.courses.ends, set[int]()
     for seed in range(8):
-        new = not_none(change(planned, yard, rng(seed)))
+        new = change(planned, yard, rng(seed))
         check(new, yard)
         same = [a == b for a, b in zip(poses(new), poses(planned), strict=False)]
         count = same.index(False) if False in same else len(same)
@@ -121,14 +112,14 @@ def test_lower_courses_stay(
     assert changed - {0}
 
 
-def test_changes_can_follow_each_other(planned: FoundWall, yard: Yard) -> None:
+def test_changes_can_follow_each_other(planned, yard):
     found, draws = planned, rng(0)
     for change in (replanned, relaid, replanned, replanned):
         found = change(found, yard, draws) or found
         check(found, yard)
 
 
-def test_it_goes_through_a_message(planned: FoundWall, yard: Yard) -> None:
+def test_it_goes_through_a_message(planned, yard):
     packed = PackedWall.of(planned)
     again = found_again(packed, yard)
     assert poses(again) == poses(planned)
@@ -138,24 +129,19 @@ def test_it_goes_through_a_message(planned: FoundWall, yard: Yard) -> None:
         found_again(packed, yard_of(mu=0.01))
 
 
-def test_nothing_can_be_planned_without_stones() -> None:
+def test_nothing_can_be_planned_without_stones():
     small = yard_of(Site(6, 6), skip_too_large=True)
     assert newly_planned(small, rng(0)) is None
     assert scenes.finish(small.planner()).build.actions == ()
 
 
 @pytest.mark.parametrize("change", [newly_planned, relaid, recreated])
-def test_every_solve_that_failed_is_counted(
-    change: Callable[..., FoundWall | None],
-    planned: FoundWall,
-    yard: Yard,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_every_solve_that_failed_is_counted(change, planned, yard, monkeypatch):
     """While a plan is laid, while steps are taken again, and while stones are added."""
-    solved: list[bool] = []
+    solved = []
     given_up = LimitResult(LimitStatus.FAILED, "left")
 
-    def gives_up(solve: Callable[..., Loaded], *arguments: Any) -> Loaded:
+    def gives_up(solve, *arguments):
         loaded = solve(*arguments)
         failed = len(solved) % 3 == 2
         solved.append(failed)
@@ -165,18 +151,18 @@ def test_every_solve_that_failed_is_counted(
     fails = partial(gives_up, Evaluator.loaded)
     monkeypatch.setattr(Evaluator, "loaded", partialmethod(fails))
     known = () if change is newly_planned else (planned,)
-    found = not_none(change(*known, yard, rng(5)))
+    found = change(*known, yard, rng(5))
     assert found.solves.failed == sum(solved) > 0
 
 
 @pytest.fixture(scope="module")
-def free(yard: Yard) -> Build:
+def free(yard):
     """A wall that was not planned."""
     return scenes.finish(yard.planner(1)).build
 
 
 @pytest.mark.parametrize("ruin", RUINS)
-def test_what_rests_on_what_is_taken_down_goes_too(ruin: Ruin, free: Build) -> None:
+def test_what_rests_on_what_is_taken_down_goes_too(ruin, free):
     settings, sizes = SearchSettings(largest=0.5), set()
     placed = {p.stone_id for p in free.wall.placements}
     resting = [
@@ -194,7 +180,7 @@ def test_what_rests_on_what_is_taken_down_goes_too(ruin: Ruin, free: Build) -> N
     assert len(sizes) > 1
 
 
-def test_joint_paths_are_those_of_the_wall_not_of_the_air_above_it() -> None:
+def test_joint_paths_are_those_of_the_wall_not_of_the_air_above_it():
     stones = blocks(dict.fromkeys(range(1, 6), (20, 10)))
     pile = scenes.finish(scenes.Planner(stones, Site(20, 300), settings=greedy())).build
     *lower, highest = (p.stone_id for p in pile.wall.placements)
@@ -207,7 +193,7 @@ def test_joint_paths_are_those_of_the_wall_not_of_the_air_above_it() -> None:
     assert with_all_above(low, frozenset({second})) == {second, third}
 
 
-def test_what_stays_is_where_it_was(free: Build, yard: Yard) -> None:
+def test_what_stays_is_where_it_was(free, yard):
     first = free.wall.placements[0].stone_id
     gone = with_all_above(free, frozenset({first}))
     left = without(free, gone, yard).build
@@ -224,19 +210,19 @@ def test_what_stays_is_where_it_was(free: Build, yard: Yard) -> None:
 OF_PLANNED, OF_OTHERS = shares(planned=True, polish=0.2), shares(planned=False, polish=0.2)
 
 
-def drawn(known: Credits, usual: tuple[float, ...], count: int = 2000) -> Counter[str]:
+def drawn(known, usual, count=2000):
     draws = rng(0)
     return Counter(known.drawn(usual, draws) for _ in range(count))
 
 
-def used(operator: str, times: int, helped: int) -> Credits:
+def used(operator, times, helped):
     known = Credits()
     for k in range(times):
         known = known.after(operator, helped=k < helped)
     return known
 
 
-def test_what_has_helped_is_drawn_more_often_and_nothing_is_given_up() -> None:
+def test_what_has_helped_is_drawn_more_often_and_nothing_is_given_up():
     known = used(RELAID, 30, 12) + used(RECREATED, 30, 0)
     assert dict(zip(OPERATORS, known.uses, strict=True)) == {
         RECREATED: 30, RELAID: 30, REPLANNED: 0, NEW: 0,

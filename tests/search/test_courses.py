@@ -1,9 +1,7 @@
 """Planning course by course: every stone once, inside the wall, courses that bond."""
 
-from collections.abc import Collection, Sequence
 from dataclasses import replace
 from itertools import chain, pairwise
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,15 +10,14 @@ from drystone.generate.brick import BrickSettings, brick_stones
 from drystone.generate.rubble import RubbleSettings, rubble_stones
 from drystone.kernels.backend import describe
 from drystone.kernels.courses import evaluate
-from drystone.kernels.polygons import Points
-from drystone.model.stone import Stone, StoneSet
+from drystone.model.stone import Stone
 from drystone.planner.course_settings import CourseSettings
 from drystone.poses import PoseBook
-from drystone.search.course_task import HIGH, LEFT_OUT, PINNED, CourseTask, ground_of, task_of
+from drystone.search.course_task import HIGH, LEFT_OUT, PINNED, ground_of, task_of
 from drystone.search.courses import CoursePlan, PlannedStone, placed, plan_courses, resumed
 from drystone.settle.rest import placed_outline
-from tests.narrow import not_none
 from tests.planner.scenes import blocks
+from tests.polygons import box
 
 TOLERANCE_PX = 0.35
 QUICK = CourseSettings(evaluations=30)
@@ -31,21 +28,18 @@ RUBBLE = rubble_stones(RubbleSettings(count=24), np.random.default_rng(3))
 needs_compiled = pytest.mark.skipif(describe() == "Python", reason="kernels are not compiled here")
 
 
-def bricks(count: int, halves: int = 0) -> StoneSet:
+def bricks(count, halves=0):
     """Bricks of 24 x 8 px."""
     return brick_stones(
         BrickSettings(count=count, halves=halves, height_px=8), np.random.default_rng(1)
     )
 
 
-def task(
-    stones: Collection[Stone], size: tuple[float, float], cell_px: float = 1.0,
-    settings: CourseSettings = QUICK, **options: Any,
-) -> CourseTask:  # fmt: skip
-    return not_none(task_of(stones, size, cell_px, TOLERANCE_PX, settings, **options))
+def task(stones, size, cell_px=1.0, settings=QUICK, **options):
+    return task_of(stones, size, cell_px, TOLERANCE_PX, settings, **options)
 
 
-def outlines(plan: CoursePlan, stones: StoneSet) -> list[list[Points]]:
+def outlines(plan, stones):
     """Where a plan's stones are."""
     return [
         [
@@ -61,7 +55,7 @@ def outlines(plan: CoursePlan, stones: StoneSet) -> list[list[Points]]:
     ]
 
 
-def wall_for(stones: StoneSet, share: float) -> tuple[float, float]:
+def wall_for(stones, share):
     """A wall of a share of the stones' area, twice as wide as high."""
     side = (0.5 * share * stones.total_area_px) ** 0.5
     return 2.0 * side, side
@@ -70,7 +64,7 @@ def wall_for(stones: StoneSet, share: float) -> tuple[float, float]:
 SIZE = wall_for(RUBBLE, 1.024)
 
 
-def test_a_plan_has_every_stone_at_most_once_inside_the_wall() -> None:
+def test_a_plan_has_every_stone_at_most_once_inside_the_wall():
     book = PoseBook()
     plan = plan_courses(task(RUBBLE.stones, SIZE, 4.0, book=book), 1)
     stones = [stone for course in plan.courses for stone in course]
@@ -96,18 +90,18 @@ def test_a_plan_has_every_stone_at_most_once_inside_the_wall() -> None:
     assert means == sorted(means)
 
 
-def test_equal_seeds_give_equal_plans_and_the_cost_is_that_of_the_plan() -> None:
+def test_equal_seeds_give_equal_plans_and_the_cost_is_that_of_the_plan():
     one = task(RUBBLE.stones, SIZE, 4.0)
     plan = plan_courses(one, 5)
     assert plan_courses(one, 5) == plan != plan_courses(one, 6)
-    again = not_none(resumed(one, plan.courses))
+    again = resumed(one, plan.courses)
     layout = evaluate(one.poses, again, one.ground, one.rules)
     assert placed(one, again, layout) == plan
     assert layout.cost == plan.cost
 
 
 @needs_compiled
-def test_bricks_come_out_as_running_bond_and_again_on_what_was_laid() -> None:
+def test_bricks_come_out_as_running_bond_and_again_on_what_was_laid():
     stones = bricks(14, halves=4)
     wall, settings = (96.0, 32.0), CourseSettings(evaluations=3000)
     first = plan_courses(task(stones.stones, wall, settings=settings), 1)
@@ -133,7 +127,7 @@ def test_bricks_come_out_as_running_bond_and_again_on_what_was_laid() -> None:
 
 @needs_compiled
 @pytest.mark.parametrize("bricks_wide", [4, 4.5, 7.5])
-def test_whole_bricks_are_bonded_whether_they_fit_or_not(bricks_wide: float) -> None:
+def test_whole_bricks_are_bonded_whether_they_fit_or_not(bricks_wide):
     """No head joint above another, though there are no halves; no end brick beside its bed."""
     size = (24.0 * bricks_wide, 40.0)
     plan = plan_courses(task(bricks(40).stones, size, settings=CourseSettings(evaluations=1500)), 1)
@@ -154,7 +148,7 @@ def test_whole_bricks_are_bonded_whether_they_fit_or_not(bricks_wide: float) -> 
     assert np.mean(np.array(near) >= 4.0) > 0.8
 
 
-def test_stones_and_poses_that_do_not_fit_are_left_out() -> None:
+def test_stones_and_poses_that_do_not_fit_are_left_out():
     large = Stone(7, np.ones((30, 90), bool))
     # Upright all are too high for this wall, and the large one is in any pose.
     plan = plan_courses(task((*bricks(6), large), (80.0, 15.0)), 1)
@@ -170,7 +164,7 @@ def test_stones_and_poses_that_do_not_fit_are_left_out() -> None:
     assert task_of((), (100.0, 100.0), 1.0, TOLERANCE_PX, QUICK) is None
 
 
-def test_planning_again_without_upper_courses_starts_anew() -> None:
+def test_planning_again_without_upper_courses_starts_anew():
     plan = plan_courses(task(RUBBLE.stones, SIZE, 4.0), 1)
     there = {stone.stone_id for stone in plan.courses[0]}
     left = [stone for stone in RUBBLE if stone.id not in there]
@@ -180,12 +174,9 @@ def test_planning_again_without_upper_courses_starts_anew() -> None:
     assert len(again.courses) > 1
 
 
-def test_what_is_laid_has_joints_beds_and_ways() -> None:
-    def block(left: float, bottom: float, right: float, top: float) -> Points:
-        return np.array([[left, bottom], [right, bottom], [right, top], [left, top]])
-
-    first = [block(50.0, 0.0, 100.0, 12.0), block(2.0, 0.0, 48.0, 10.0)]
-    second = [block(0.0, 10.0, 30.0, 20.0)]
+def test_what_is_laid_has_joints_beds_and_ways():
+    first = [box(50.0, 0.0, 100.0, 12.0), box(2.0, 0.0, 48.0, 10.0)]
+    second = [box(0.0, 10.0, 30.0, 20.0)]
     ground = ground_of([first, second, []], (100.0, 60.0), 1.0)
     unit = 16
     assert ground.tops[[0, 40, 49, 70]].tolist() == [20 * unit, 10 * unit, 0, 12 * unit]
@@ -197,7 +188,7 @@ def test_what_is_laid_has_joints_beds_and_ways() -> None:
     assert (ground.width, ground.height) == (100 * unit, 60 * unit)
 
 
-def test_no_plan_has_more_courses_than_it_may() -> None:
+def test_no_plan_has_more_courses_than_it_may():
     """Half of the stones are slabs: the median stone is high, and few courses are allowed."""
     slabs = blocks({k: (390, 4) if k <= 40 else (36, 36) for k in range(1, 82)})
     many = task(list(slabs), (400.0, 700.0), 2.0, CourseSettings(evaluations=20))
@@ -208,17 +199,17 @@ def test_no_plan_has_more_courses_than_it_may() -> None:
     single = [
         (PlannedStone(i, angles[i][0], "left", 18.0, 18.0, 0.0, 36.0, 36.0),) for i in range(1, 21)
     ]
-    start = not_none(resumed(one, single))
+    start = resumed(one, single)
     assert start.sizes.tolist() == [1] * one.rules.courses
     assert one.rules.courses < 20
     assert sorted(start.order.tolist()) == list(range(20))
 
 
-def chosen(share: float) -> CourseTask:
+def chosen(share):
     return task(RUBBLE.stones, wall_for(RUBBLE, share), 4.0, CourseSettings())
 
 
-def test_a_stock_that_is_about_enough_changes_nothing_until_a_part_is_laid() -> None:
+def test_a_stock_that_is_about_enough_changes_nothing_until_a_part_is_laid():
     for share in (0.7, 1.0, 1.5):
         one = chosen(share)
         assert one.choosing(()).rules == one.rules
@@ -229,7 +220,7 @@ def test_a_stock_that_is_about_enough_changes_nothing_until_a_part_is_laid() -> 
     assert later.choosing(()).rules != later.rules
 
 
-def test_with_plenty_standing_out_is_worse_than_being_left_out() -> None:
+def test_with_plenty_standing_out_is_worse_than_being_left_out():
     one = chosen(0.25)
     weights, changed = one.rules.weights, one.choosing(()).rules.weights
     assert one.taken == pytest.approx(0.25 * 24, abs=2)
@@ -242,13 +233,13 @@ def test_with_plenty_standing_out_is_worse_than_being_left_out() -> None:
     assert changed.high > 2.0 * changed.left_out * float(one.poses.area.mean())
 
 
-def test_pinned_stones_are_left_out_last() -> None:
+def test_pinned_stones_are_left_out_last():
     one = chosen(1.0)
     pinned = one.choosing([one.stones[5].id]).poses.area
     assert pinned.tolist() == [PINNED * a if k == 5 else a for k, a in enumerate(one.poses.area)]
     few = task(RUBBLE.stones, wall_for(RUBBLE, 0.3), 4.0)
 
-    def ids(pinned: Sequence[int]) -> set[int]:
+    def ids(pinned):
         plan = plan_courses(few, 1, pinned=pinned)
         return {stone.stone_id for course in plan.courses for stone in course}
 

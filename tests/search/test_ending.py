@@ -17,7 +17,6 @@ from drystone.planner.solves import Solves
 from drystone.search.chain import _opened
 from drystone.search.goal import LAST_RUNS, FoundWall, first_falls
 from drystone.search.packed import PackedWall, found_again
-from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
 from drystone.search.whole_search import (
     THOROUGH,
@@ -29,8 +28,6 @@ from drystone.search.whole_search import (
     with_the_rest,
 )
 from drystone.search.yard import Yard
-from drystone.statics.model import RigidBlockModel
-from tests.narrow import not_none
 from tests.planner.scenes import (
     ROUNDED,
     ROUNDED_SITE,
@@ -46,12 +43,12 @@ from tests.planner.scenes import (
 FEW = {"search": {"budget": 4, "passes": 4, "chains": 2, "share_every": 2}}
 
 
-def small_search() -> PlanResult:
+def small_search():
     return plan_wall(rubble(), 100, 36, scale=1.0, seed=1, settings=greedy(FEW), choice=True)
 
 
 @pytest.fixture
-def planner() -> Planner:
+def planner():
     """One that has built a whole wall."""
     planner = Planner(rubble(), RUBBLE_SITE, seed=1, settings=greedy({"search": {"budget": 2}}))
     for _ in planner.steps():
@@ -59,18 +56,18 @@ def planner() -> Planner:
     return planner
 
 
-def half_of(planner: Planner) -> PackedWall:
+def half_of(planner):
     """A wall on which there is room."""
     half = Planner(rubble(), RUBBLE_SITE, settings=planner.settings)
     half.build = planner.build.states()[len(planner.build.actions) // 2]
     return PackedWall.of(FoundWall.of(half))
 
 
-def ids(planner: Planner) -> list[int]:
+def ids(planner):
     return [action.stone_id for action in planner.build.actions]
 
 
-def test_stones_that_find_a_place_stay_where_that_is_better(planner: Planner) -> None:
+def test_stones_that_find_a_place_stay_where_that_is_better(planner):
     half = half_of(planner)
     before = [group.stone_id for group in half.groups]
     whole, stopped, _ = with_the_rest(planner, half)
@@ -83,14 +80,14 @@ def test_stones_that_find_a_place_stay_where_that_is_better(planner: Planner) ->
     assert why == Stopped("search", "the stones that are left do not make the wall better")
 
 
-def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere() -> None:
+def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere():
     careless = greedy({"search": {"budget": 2}, "settle": {"trials": 0}})
     planner = finish(Planner(ROUNDED, ROUNDED_SITE, seed=1, settings=careless))
     yard = Yard.of(planner)
     wall = PackedWall.of(FoundWall.of(planner).judged(yard, THOROUGH))
     better = repaired(planner, wall)
     assert better.merit > wall.merit
-    assert not_none(better.figures).fallen < not_none(wall.figures).fallen
+    assert better.figures.fallen < wall.figures.fallen
     found = found_again(better, yard)
     assert found.judged(yard, THOROUGH).merit == pytest.approx(better.merit)
     assert repaired(planner, wall).groups == better.groups
@@ -105,7 +102,7 @@ def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere() -> Non
     assert repaired(flat, nothing) is nothing
 
 
-def test_a_wall_to_choose_is_as_it_was_found(planner: Planner) -> None:
+def test_a_wall_to_choose_is_as_it_was_found(planner):
     half = half_of(planner)
     found, why = as_found(planner, half)
     assert ids(found) == [group.stone_id for group in half.groups]
@@ -116,12 +113,10 @@ def test_a_wall_to_choose_is_as_it_was_found(planner: Planner) -> None:
 
 
 @pytest.mark.parametrize("place", ["surest", "repaired", "with_the_rest"])
-def test_an_interrupt_at_the_end_keeps_the_best_as_it_was_found(
-    place: str, planner: Planner, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_interrupt_at_the_end_keeps_the_best_as_it_was_found(place, planner, monkeypatch):
     found = run_to_end(planner)
 
-    def interrupt(*_: object) -> None:
+    def interrupt(*_):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(f"drystone.search.whole_search.{place}", interrupt)
@@ -131,19 +126,17 @@ def test_an_interrupt_at_the_end_keeps_the_best_as_it_was_found(
     assert ids(cut.planner) == [group.stone_id for group in best.groups]
 
 
-def test_a_repair_that_time_cuts_off_is_said(
-    planner: Planner, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_repair_that_time_cuts_off_is_said(planner, monkeypatch):
     assert not run_to_end(planner).cut
 
-    def up(*_: object) -> None:
+    def up(*_):
         raise TimeIsUp
 
     monkeypatch.setattr("drystone.search.whole_search.repaired", up)
     assert run_to_end(planner).cut
 
 
-def test_time_that_is_up_at_the_end_loses_nothing(planner: Planner) -> None:
+def test_time_that_is_up_at_the_end_loses_nothing(planner):
     half, clock = half_of(planner), Ticks()
     before = [group.stone_id for group in half.groups]
     whole, _, interrupted = with_the_rest(planner, half, Deadline(math.inf, clock))
@@ -165,7 +158,7 @@ def test_time_that_is_up_at_the_end_loses_nothing(planner: Planner) -> None:
         as_found(planner, half, after_looks(0))
 
 
-def test_of_walls_that_there_is_no_time_to_judge_the_first_is_taken(planner: Planner) -> None:
+def test_of_walls_that_there_is_no_time_to_judge_the_first_is_taken(planner):
     half, clock = half_of(planner), Ticks()
     # Nobody knows yet that it carries less than it seems to.
     whole = PackedWall.of(FoundWall.of(planner))
@@ -179,9 +172,7 @@ def test_of_walls_that_there_is_no_time_to_judge_the_first_is_taken(planner: Pla
     assert judged.merit < walls[0].merit
 
 
-def test_walls_to_choose_that_there_is_no_time_for_are_left_out(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_walls_to_choose_that_there_is_no_time_for_are_left_out(monkeypatch):
     limits = iter([Deadline(), Deadline(), after_looks(0)])
     monkeypatch.setattr(Deadline, "after", lambda *_: next(limits))
     result = small_search()
@@ -191,14 +182,12 @@ def test_walls_to_choose_that_there_is_no_time_for_are_left_out(
     assert result.metrics.F_LR_coulomb is None
 
 
-def test_an_interrupt_while_others_are_finished_keeps_the_best(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_an_interrupt_while_others_are_finished_keeps_the_best(monkeypatch):
     whole = small_search()
     assert len(whole.choice) > 1
     assert _opened.cache_info().currsize == 0  # nothing is kept in memory
 
-    def interrupted(*_: object) -> None:
+    def interrupted(*_):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("drystone.search.plan_wall.as_found", interrupted)
@@ -208,11 +197,9 @@ def test_an_interrupt_while_others_are_finished_keeps_the_best(
     assert result.choice == ()
 
 
-def test_what_the_solver_gave_up_on_at_the_end_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_the_solver_gave_up_on_at_the_end_is_counted(monkeypatch):
 
-    def with_trouble(
-        first: Planner, best: PackedWall, until: Deadline
-    ) -> tuple[Planner, Stopped, bool]:
+    def with_trouble(first, best, until):
         last, stopped, cut = with_the_rest(first, best, until)
         last.solves += Solves(failed=5)
         return last, stopped, cut
@@ -223,12 +210,12 @@ def test_what_the_solver_gave_up_on_at_the_end_is_counted(monkeypatch: pytest.Mo
     assert "W303" in [notice.code for notice in result.notices]
 
 
-def score(result: PlanResult) -> tuple[float, ...]:
+def score(result):
     m = result.metrics
     return (m.F_SF, m.F_AV or 0.0, -(m.F_AH or 0.0), m.F_LR or 0.0)
 
 
-def test_none_of_the_walls_to_choose_is_better_than_another() -> None:
+def test_none_of_the_walls_to_choose_is_better_than_another():
     """With the weights of the settings stones find a place that had none by those of a pass."""
     settings = generate.RubbleSettings(count=12)
     stones = generate.rubble_stones(settings, np.random.default_rng(14))
@@ -245,22 +232,19 @@ def test_none_of_the_walls_to_choose_is_better_than_another() -> None:
         assert not all(a >= b for a, b in zip(score(one), score(other), strict=True))
 
 
-def test_a_wall_that_falls_when_it_is_let_go_gives_way_to_one_that_stays(
-    planner: Planner, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_wall_that_falls_when_it_is_let_go_gives_way_to_one_that_stays(planner, monkeypatch):
     whole, half = PackedWall.of(FoundWall.of(planner)), half_of(planner)
     walls = sorted((whole, half), key=lambda wall: -wall.merit)
     best, _ = surest(planner, walls)
-    assert best is not None
     assert stays_at_every_step(planner.build)
     lost = len(best.groups)
 
-    def fall(model: RigidBlockModel, *_: object) -> bool | None:
+    def fall(model, *_):
         return len(model.blocks) == lost or None
 
     monkeypatch.setattr("drystone.search.whole_search.fall_of", fall)
     other, _ = surest(planner, walls)
-    assert len(not_none(other).groups) != lost
+    assert len(other.groups) != lost
     monkeypatch.setattr("drystone.search.whole_search.fall_of", lambda *_: True)
     again, _ = surest(planner, walls)
-    assert not_none(again).merit == best.merit  # all fall
+    assert again.merit == best.merit  # all fall

@@ -1,7 +1,6 @@
 """What a wall is worth, and which walls of a search are kept."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +16,6 @@ from drystone.planner.solves import Solves
 from drystone.search.goal import FoundWall, WallFigures, figures_of, merit_of, possible_filling
 from drystone.search.packed import MOST, STEPS, PackedWall, archived, score_of
 from drystone.search.yard import Yard
-from tests.narrow import not_none
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble
 from tests.strategies import repeatable
 
@@ -43,15 +41,13 @@ GOAL = GoalSettings()
         ({"fallen": 0.1}, -0.1 * GOAL.fallen),
     ],
 )
-def test_merit_rises_with_what_is_good_and_falls_with_what_is_bad(
-    changes: dict[str, float], gain: float
-) -> None:
-    changed = replace(WALL, **changes)  # type: ignore[arg-type]
+def test_merit_rises_with_what_is_good_and_falls_with_what_is_bad(changes, gain):
+    changed = replace(WALL, **changes)
     assert merit_of(changed, 0.9, GOAL) - merit_of(WALL, 0.9, GOAL) == pytest.approx(gain)
     assert merit_of(None, 0.9, GOAL) == -math.inf
 
 
-def test_a_stack_bond_costs_more_than_the_bricks_that_a_bond_leaves_out() -> None:
+def test_a_stack_bond_costs_more_than_the_bricks_that_a_bond_leaves_out():
     """Thirty bricks in stack bond, or two less in a bond: a mason leaves two out."""
     brick = np.array([[0.0, 0.0], [40.0, 0.0], [40.0, 20.0], [0.0, 20.0]])
     stack = {6 * y + x: brick + np.array([40 * x, 20 * y]) for x in range(6) for y in range(5)}
@@ -61,14 +57,13 @@ def test_a_stack_bond_costs_more_than_the_bricks_that_a_bond_leaves_out() -> Non
 
 
 @pytest.mark.parametrize("seed", [0, 3])
-def test_what_is_judged_carries_no_more(seed: int) -> None:
+def test_what_is_judged_carries_no_more(seed):
     """Without dilatancy a wall carries at most what it carries with it, and it is asked once."""
     planner = finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=greedy()))
     found = FoundWall.of(planner)
     judged = found.judged(Yard.of(planner))
-    assert judged.figures is not None
-    assert not_none(found.figures).F_LR_coulomb is None
-    assert 0.0 <= not_none(judged.figures.F_LR_coulomb) <= judged.figures.F_LR
+    assert found.figures.F_LR_coulomb is None
+    assert 0.0 <= judged.figures.F_LR_coulomb <= judged.figures.F_LR
     assert judged.merit <= found.merit
     assert judged.judged(Yard.of(planner)) is judged
 
@@ -82,22 +77,19 @@ def test_what_is_judged_carries_no_more(seed: int) -> None:
         ("F_AH", 2.0, 1.5, 1.0, -GOAL.horizontal),
     ],
 )
-def test_nothing_is_gained_beyond_an_aim(
-    figure: str, short: float, aim: float, beyond: float, weight: float
-) -> None:
+def test_nothing_is_gained_beyond_an_aim(figure, short, aim, beyond, weight):
     goal = replace(GOAL, **{figure: aim})
     merits = [
-        merit_of(replace(WALL, **{figure: value}), 1.0, goal)  # type: ignore[arg-type]
-        for value in (short, aim, beyond)
+        merit_of(replace(WALL, **{figure: value}), 1.0, goal) for value in (short, aim, beyond)
     ]
     assert merits[0] < merits[1] == merits[2]
     assert merits[1] - merits[0] == pytest.approx(goal.urgent * weight * (aim - short))
 
 
-def test_figures_are_those_of_the_wall() -> None:
+def test_figures_are_those_of_the_wall():
     planner = finish(Planner(rubble(), RUBBLE_SITE, settings=greedy()))
     placed = [action.stone_id for action in planner.build.actions]
-    figures = not_none(figures_of(planner.build, [*placed[:2], 98, 99]))
+    figures = figures_of(planner.build, [*placed[:2], 98, 99])
     assert (figures.stones, figures.missing) == (len(placed), 2)
     assert figures.F_SF == planner.build.wall.filling
     assert figures.F_LR == planner.build.actions[-1].resistance.value
@@ -111,18 +103,18 @@ def test_figures_are_those_of_the_wall() -> None:
 
 
 @pytest.mark.parametrize("missing", [1, 2])
-def test_nothing_else_makes_up_for_a_pinned_stone(missing: int) -> None:
+def test_nothing_else_makes_up_for_a_pinned_stone(missing):
     """A tenth more in the wall for each, and all that the masons' walls have, is still worse."""
     best = {"F_LR": 1.0, "F_AV": 60.0, "F_AH": 0.5, "T_LEVEL": 0.0, "E_FLUSH": 0.0}
     lacking = replace(WALL, F_SF=WALL.F_SF + 0.1 * missing, **best, missing=missing)
     assert merit_of(lacking, 1.0, GOAL) < merit_of(WALL, 1.0, GOAL)
 
 
-def wall(merit: float = 1.0, **changes: float) -> PackedWall:
-    return PackedWall((), replace(WALL, **changes), merit, Solves(), None)  # type: ignore[arg-type]
+def wall(merit=1.0, **changes):
+    return PackedWall((), replace(WALL, **changes), merit, Solves(), None)
 
 
-def test_a_wall_that_is_beaten_in_every_figure_goes() -> None:
+def test_a_wall_that_is_beaten_in_every_figure_goes():
     good, bad = wall(), wall(F_SF=0.7, F_LR=0.4, F_AV=10.0, F_AH=3.0)
     assert archived((), [good, bad]) == archived((bad,), [good]) == (good,)
     assert archived((), [PackedWall((), None, 1.0, Solves(), None)]) == ()  # it is empty
@@ -137,7 +129,7 @@ def test_a_wall_that_is_beaten_in_every_figure_goes() -> None:
 
 
 @pytest.mark.parametrize("figure", STEPS)
-def test_one_better_figure_keeps_a_wall_as_far_as_it_counts(figure: str) -> None:
+def test_one_better_figure_keeps_a_wall_as_far_as_it_counts(figure):
     name, step = "F_LR" if figure == "carried" else figure, STEPS[figure]
     better, alike, worse = (
         wall(0.5, **{name: getattr(WALL, name) + share * step}) for share in (1.0, 0.3, -1.0)
@@ -157,16 +149,16 @@ some_walls = st.lists(
 )  # fmt: skip
 
 
-def rank(wall: PackedWall) -> tuple[float, tuple[int, ...]]:
-    return wall.merit, score_of(not_none(wall.figures))
+def rank(wall):
+    return wall.merit, score_of(wall.figures)
 
 
-def beaten(one: PackedWall, by: PackedWall) -> bool:
+def beaten(one, by):
     (mine, scores), (yours, others) = rank(one), rank(by)
     return yours >= mine and all(a >= b for a, b in zip(others, scores, strict=True))
 
 
-def naive(walls: Sequence[PackedWall]) -> list[PackedWall]:
+def naive(walls):
     """Those that none beats; of those that beat each other the first."""
     kept = [
         wall
@@ -181,7 +173,7 @@ def naive(walls: Sequence[PackedWall]) -> list[PackedWall]:
 
 @repeatable(60)
 @given(some_walls)
-def test_those_that_none_beats_are_kept_and_no_others(walls: list[PackedWall]) -> None:
+def test_those_that_none_beats_are_kept_and_no_others(walls):
     kept = archived((), walls)
     assert list(kept) == naive(walls)
     assert archived(kept, []) == kept

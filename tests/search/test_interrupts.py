@@ -10,11 +10,11 @@ from drystone.search.interrupts import SIGNALS, Terminated, held, terminable
 pytestmark = pytest.mark.usefixtures("interruptible")
 
 
-def handlers() -> list[object]:
+def handlers():
     return [signal.getsignal(one) for one in SIGNALS]
 
 
-def test_termination_is_an_interrupt_and_leaves_no_handler_behind() -> None:
+def test_termination_is_an_interrupt_and_leaves_no_handler_behind():
     before = handlers()
     with terminable() as came:
         assert came() is None
@@ -29,7 +29,7 @@ def test_termination_is_an_interrupt_and_leaves_no_handler_behind() -> None:
     assert handlers() == before
 
 
-def test_an_interrupt_that_is_ignored_stays_ignored() -> None:
+def test_an_interrupt_that_is_ignored_stays_ignored():
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         with terminable() as came:
@@ -40,10 +40,10 @@ def test_an_interrupt_that_is_ignored_stays_ignored() -> None:
 
 
 @pytest.mark.parametrize("first", SIGNALS)
-def test_what_comes_while_they_are_held_comes_after_it_once(first: signal.Signals) -> None:
-    done: list[int] = []
+def test_what_comes_while_they_are_held_comes_after_it_once(first):
+    done = []
 
-    def raise_all() -> None:
+    def raise_all():
         for one in (first, *SIGNALS):
             signal.raise_signal(one)
             done.append(one)
@@ -58,7 +58,7 @@ def test_what_comes_while_they_are_held_comes_after_it_once(first: signal.Signal
         assert handlers() == before
 
 
-def test_nothing_comes_where_nothing_came_and_errors_pass() -> None:
+def test_nothing_comes_where_nothing_came_and_errors_pass():
     before = handlers()
     with held():
         pass
@@ -67,10 +67,10 @@ def test_nothing_comes_where_nothing_came_and_errors_pass() -> None:
     assert handlers() == before
 
 
-def test_other_threads_set_no_handlers() -> None:
-    seen: list[list[object]] = []
+def test_other_threads_set_no_handlers():
+    seen = []
 
-    def look() -> None:
+    def look():
         with terminable() as came, held():
             seen.append([*handlers(), came()])
 

@@ -7,15 +7,10 @@ import numpy as np
 import pytest
 import shapely
 
-from drystone.kernels.polygons import Points
 from drystone.model.landscape import Landscape
-from drystone.model.outlines import Outlined
-from drystone.model.placement import Side
 from drystone.model.site import Site
-from drystone.planner.build import Build
 from drystone.planner.evaluate import Evaluator, Loaded
 from drystone.planner.laying_settings import LayingSettings
-from drystone.search.mason import CourseLaying
 from drystone.statics.incremental import IncrementalResult
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import Block, RigidBlockModel
@@ -23,15 +18,15 @@ from tests.planner.scenes import RUBBLE_SITE, blocks, rubble, stones_of_masks
 from tests.search.yards import Plot
 
 
-def statuses(laid: CourseLaying) -> list[list[str]]:
+def statuses(laid):
     return [[one.status for one in course] for course in laid.courses]
 
 
-def corners_of(laid: CourseLaying) -> dict[int, Points]:
+def corners_of(laid):
     return dict(laid.build.wall.exact.blocks)
 
 
-def boxes(laid: CourseLaying) -> dict[int, list[float]]:
+def boxes(laid):
     return {
         block: [*corners.min(axis=0).tolist(), *corners.max(axis=0).tolist()]
         for block, corners in corners_of(laid).items()
@@ -42,11 +37,11 @@ BRICKS = {1: (20, 10), 2: (20, 10), 3: (20, 10), 4: (10, 10), 5: (20, 10), 6: (2
 """A course of three stones, and one of two with a half at each end."""
 
 
-def bricks(width: int = 60, height: int = 20) -> Plot:
+def bricks(width=60, height=20):
     return Plot(blocks(BRICKS), Site(width, height))
 
 
-def lay_bond(plot: Plot) -> CourseLaying:
+def lay_bond(plot):
     place = plot.planned
     return plot.lay(
         [place(1, 0, 0), place(2, 20, 0), place(3, 40, 0, "right")],
@@ -54,7 +49,7 @@ def lay_bond(plot: Plot) -> CourseLaying:
     )
 
 
-def test_bricks_lie_as_planned() -> None:
+def test_bricks_lie_as_planned():
     laid = lay_bond(bricks())
     assert statuses(laid) == [["as planned"] * 3, ["as planned"] * 4]
     stones = [one.stone for one in chain(*laid.courses)]
@@ -73,11 +68,11 @@ def test_bricks_lie_as_planned() -> None:
     assert statuses(lay_bond(bricks(height=19))) == [["as planned"] * 3, ["no rest"] * 4]
 
 
-def test_a_stone_is_pushed_to_its_neighbour_from_either_side() -> None:
+def test_a_stone_is_pushed_to_its_neighbour_from_either_side():
     # One stone less, or which stones are pushed against each other depends on the side.
     plot = bricks(64)
     # The plan leaves 2 px between them; the stone comes to rest against the first.
-    sides: dict[Side, tuple[int, int]] = {"left": (0, 22), "right": (44, 22)}
+    sides = {"left": (0, 22), "right": (44, 22)}
     left, right = (
         boxes(plot.lay([plot.planned(k, x, 0, side) for k, x in enumerate(lefts, 1)]))
         for side, lefts in sides.items()
@@ -88,7 +83,7 @@ def test_a_stone_is_pushed_to_its_neighbour_from_either_side() -> None:
         assert right[stone_id] == pytest.approx(mirrored, abs=1e-5)
 
 
-def test_a_course_closes_up_where_a_stone_is_left_out() -> None:
+def test_a_course_closes_up_where_a_stone_is_left_out():
     plot = bricks()
     low = plot.planned(1, 0, 0, top=2)
     laid = plot.lay([low, plot.planned(2, 20, 0), plot.planned(3, 40, 0)])
@@ -101,7 +96,7 @@ OVERHANG = {1: (22, 10), 2: (40, 10), 3: (50, 20), 4: (28, 20), 5: (10, 10)}
 """A support, a stone that stands out over it, stones that would tip it over, a narrow support."""
 
 
-def test_what_cannot_be_laid_is_told() -> None:
+def test_what_cannot_be_laid_is_told():
     plot = Plot(blocks(OVERHANG), Site(50, 40))
     place = plot.planned
     walls = {
@@ -119,7 +114,7 @@ def test_what_cannot_be_laid_is_told() -> None:
     assert statuses(used) == [["as planned"], ["used"]]
 
 
-def test_what_cannot_be_laid_in_its_turn_is_laid_elsewhere_in_its_course() -> None:
+def test_what_cannot_be_laid_in_its_turn_is_laid_elsewhere_in_its_course():
     plot = Plot(blocks(OVERHANG), Site(50, 40))
     laid = plot.lay(
         [plot.planned(1, 0, 0)], [plot.planned(2, 0, 10)], [plot.planned(4, 22, 20)],
@@ -146,12 +141,10 @@ FALLING = RigidBlockModel((), (), 0.0).with_added((Block(9, 1.0, (0.0, 5.0)),), 
 FALLEN = Loaded(FALLING, IncrementalResult(lateral_resistance(FALLING)))
 
 
-def test_of_places_that_do_not_stand_sturdily_the_next_best_is_taken(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_of_places_that_do_not_stand_sturdily_the_next_best_is_taken(monkeypatch):
     sturdily, asked = Evaluator.sturdily, []
 
-    def not_at_once(this: Evaluator, build: Build, blocks: list[Outlined]) -> Loaded | None:
+    def not_at_once(this, build, blocks):
         asked.append(float(blocks[0][1][:, 0].min()))
         return FALLEN if len(asked) == 1 else sturdily(this, build, blocks)
 
@@ -170,7 +163,7 @@ def test_of_places_that_do_not_stand_sturdily_the_next_best_is_taken(
         assert statuses(tips.lay(course)) == [["falls", "falls"]]
 
 
-def test_a_stone_on_its_tip_is_turned_by_half() -> None:
+def test_a_stone_on_its_tip_is_turned_by_half():
     plot = Plot(stones_of_masks({1: np.ones((12, 24), bool), 2: TIP}), Site(60, 30))
     laid = plot.lay([plot.planned(1, 0, 0), plot.planned(2, 24, 0)])
     assert statuses(laid) == [["as planned", "half turn"]]
@@ -180,7 +173,7 @@ def test_a_stone_on_its_tip_is_turned_by_half() -> None:
     assert statuses(half) == [["as planned", "as planned"]]
 
 
-def test_a_stone_that_does_not_rest_is_wedged() -> None:
+def test_a_stone_that_does_not_rest_is_wedged():
     stones, site = blocks({1: (10, 10), 2: (10, 8), 3: (30, 10)}), Site(38, 30)
     for method, status, wedges in (("wedge", "as planned", [(3, 4)]), ("none", "no rest", [])):
         plot = Plot(stones, site, {"stabilise": {"method": method}})
@@ -190,7 +183,7 @@ def test_a_stone_that_does_not_rest_is_wedged() -> None:
 
 
 @pytest.mark.parametrize("seed", [0, 1])
-def test_every_state_stands_and_nothing_overlaps(seed: int) -> None:
+def test_every_state_stands_and_nothing_overlaps(seed):
     plot = Plot(rubble(seed, 14), RUBBLE_SITE)
     laid, again = (plot.lay(*plot.rows(3)) for _ in range(2))
     assert statuses(laid) == statuses(again)
@@ -213,7 +206,7 @@ def test_every_state_stands_and_nothing_overlaps(seed: int) -> None:
     assert (points.max(axis=0) <= np.array(plot.site.extent_px) + beyond_px).all()
 
 
-def test_an_action_is_what_is_judged_of_its_place() -> None:
+def test_an_action_is_what_is_judged_of_its_place():
     plot = Plot(rubble(1, 14), RUBBLE_SITE)
     laid = plot.lay(*plot.rows(3))
     evaluator = Evaluator(plot.yard.settings, plot.yard.workshop.stock)
@@ -234,7 +227,7 @@ def test_an_action_is_what_is_judged_of_its_place() -> None:
             ]
 
 
-def test_a_stone_goes_where_the_wall_resists_more() -> None:
+def test_a_stone_goes_where_the_wall_resists_more():
     plot = Plot(blocks({1: (22, 10), 2: (40, 10), 3: (12, 10)}), Site(50, 40))
     free = LayingSettings(
         starts=30, enough=99, reach=3.0, width=0.0, top=0.0, turn=0.0, rest=0.0, judged=30

@@ -7,13 +7,11 @@ import pytest
 import shapely
 
 from drystone.kernels.profiles import hanging
-from drystone.model.placement import Side
 from drystone.planner.laying_settings import LayingSettings
 from drystone.planner.views import SideView
-from drystone.search.letting_go import Aim, Hand, Resting
+from drystone.search.letting_go import Aim, Hand
 from drystone.settle.rest import Turned
 from drystone.settle.wedged import wedged
-from tests.narrow import not_none
 from tests.planner.scenes import RUBBLE_SITE, rubble
 from tests.search.yards import Plot
 
@@ -23,9 +21,9 @@ Place = tuple[float, float]
 class Drop:
     """A stone of some rubble over two others."""
 
-    def __init__(self, side: Side, settings: LayingSettings) -> None:
+    def __init__(self, side, settings):
         plot = Plot(rubble(2, 8), RUBBLE_SITE)
-        outlines = not_none(plot.lay(*plot.rows(1)).build.wall.outlines)
+        outlines = plot.lay(*plot.rows(1)).build.wall.outlines
         self.view = SideView.bare(100.0, side, 0.58, 1.0).grown(outlines.polygons)
         stone = next(s for s in plot.stones if s.id not in dict(outlines.blocks))
         outline = plot.yard.workshop.outlines.outline(stone)
@@ -34,29 +32,29 @@ class Drop:
         self.unit_px = plot.yard.workshop.stock.mean_height_px
         self.hand = Hand(settings, plot.yard.settings.settle, plot.yard.limits, "both")
 
-    def lifts(self) -> list[float]:
+    def lifts(self):
         """Where the stone first touches, column by column."""
         tops, bottoms = self.view.profile.tops.tolist(), self.hung.bottoms.tolist()
         places = range(len(tops) - len(bottoms) + 1)
         return [max(tops[at + k] - b for k, b in enumerate(bottoms)) for at in places]
 
-    def lost(self, at: int) -> float:
+    def lost(self, at):
         """How far a left end in column `at` is from one at 30: a quarter of a height is free."""
         return max(0.0, at - 30.0, 30.0 - 0.25 * self.unit_px - at)
 
-    def aim(self, left: float | None, top: float) -> Aim:
+    def aim(self, left, top):
         return Aim(left, top, 0.0, 1e9, self.unit_px)
 
-    def starts(self, aim: Aim) -> list[Place]:
+    def starts(self, aim):
         return self.hand.starts(self.stone, self.view, aim)
 
-    def resting(self, aim: Aim, starts: list[Place] | None = None) -> list[Resting]:
+    def resting(self, aim, starts=None):
         starts = self.starts(aim) if starts is None else starts
         return self.hand.resting(self.stone, self.view, aim, starts)
 
 
 @pytest.mark.parametrize("side", ["left", "right"])
-def test_stones_are_let_go_where_they_first_touch_the_cheapest_place_first(side: Side) -> None:
+def test_stones_are_let_go_where_they_first_touch_the_cheapest_place_first(side):
     settings = LayingSettings(starts=4, apart=0.1, reach=0.4, astray=2.0)
     drop = Drop(side, settings)
     hung, lifts, size = drop.hung, drop.lifts(), drop.stone.size_px
@@ -78,7 +76,7 @@ def test_stones_are_let_go_where_they_first_touch_the_cheapest_place_first(side:
 
 
 @pytest.mark.parametrize("side", ["left", "right"])
-def test_stones_are_let_go_within_reach_not_too_high_and_inside(side: Side) -> None:
+def test_stones_are_let_go_within_reach_not_too_high_and_inside(side):
     drop = Drop(side, LayingSettings(starts=100, apart=0.0, reach=0.5, astray=9.0))
     columns = sorted(round(x + drop.hung.left) for x, _ in drop.starts(drop.aim(30.0, 20.0)))
     reach = 0.5 * drop.stone.size_px
@@ -93,7 +91,7 @@ def test_stones_are_let_go_within_reach_not_too_high_and_inside(side: Side) -> N
     assert drop.starts(drop.aim(None, highest - 0.4 * drop.unit_px)) == []
 
 
-def test_starts_along_the_whole_wall_are_further_from_each_other() -> None:
+def test_starts_along_the_whole_wall_are_further_from_each_other():
     drop = Drop("left", LayingSettings(starts=3, apart=0.0, spread=0.4, astray=9.0))
     near, far = (sorted(x for x, _ in drop.starts(drop.aim(left, 20.0))) for left in (30.0, None))
     assert len(near) == len(far) == 3
@@ -102,7 +100,7 @@ def test_starts_along_the_whole_wall_are_further_from_each_other() -> None:
 
 
 @pytest.mark.parametrize("name", ["top", "width", "turn", "rest"])
-def test_where_a_stone_rests_costs_what_the_settings_say(name: str) -> None:
+def test_where_a_stone_rests_costs_what_the_settings_say(name):
     plain = LayingSettings(top=0.0, width=0.0, turn=0.0, rest=0.0, astray=5.0, enough=99)
     drop = Drop("right", replace(plain, **{name: 1.0}))
     resting = drop.resting(drop.aim(20.0, 25.0))
@@ -124,12 +122,12 @@ def test_where_a_stone_rests_costs_what_the_settings_say(name: str) -> None:
     assert len(alike) == len(resting)
 
 
-def test_a_stone_is_let_go_until_it_rests_in_enough_places() -> None:
+def test_a_stone_is_let_go_until_it_rests_in_enough_places():
     drop = Drop("left", LayingSettings(astray=5.0, apart=0.2, enough=99))
     aim = drop.aim(None, 25.0)
     starts = drop.starts(aim)
 
-    def places(enough: int, starts: list[Place]) -> set[Place]:
+    def places(enough, starts):
         drop.hand = replace(drop.hand, settings=replace(drop.hand.settings, enough=enough))
         found = drop.resting(aim, starts)
         return {(one.repose.settled.x_px, one.repose.settled.y_px) for one in found}
@@ -141,7 +139,7 @@ def test_a_stone_is_let_go_until_it_rests_in_enough_places() -> None:
         assert places(enough, starts) == first
 
 
-def test_a_stone_is_wedged_at_the_cheapest_place_first() -> None:
+def test_a_stone_is_wedged_at_the_cheapest_place_first():
     drop = Drop("left", LayingSettings(astray=5.0, apart=0.1, starts=9))
     hand = replace(drop.hand, method="wedge", settle=replace(drop.hand.settle, margin=1.4))
     drop.hand = hand = replace(hand, limits=replace(hand.limits, rest=0.05))
@@ -162,10 +160,10 @@ def test_a_stone_is_wedged_at_the_cheapest_place_first() -> None:
         top = float(settled.corners[:, 1].max())
         unsure = hand.settings.rest * max(0.0, 1.0 - one.repose.margin)
         assert one.cost == pytest.approx(abs(top - 25.0) / drop.unit_px + 0.2 + unsure)
-        assert not_none(one.wedge).tobytes() == expected[round(settled.x_px), round(settled.y_px)]
+        assert one.wedge.tobytes() == expected[round(settled.x_px), round(settled.y_px)]
 
 
-def test_a_stone_that_rests_above_the_wall_or_far_from_its_top_does_not_count() -> None:
+def test_a_stone_that_rests_above_the_wall_or_far_from_its_top_does_not_count():
     drop = Drop("left", LayingSettings(astray=5.0, enough=99))
     aim = drop.aim(None, 25.0)
     starts = drop.starts(aim)

@@ -1,7 +1,6 @@
 """What is no input of `plan_wall` is said, before anything is planned; what time does to a wall."""
 
 import math
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,14 +10,13 @@ from drystone.model.wall import Wall
 from drystone.planner.deadline import Deadline
 from drystone.planner.events import OUT_OF_TIME
 from drystone.planner.settings import method_settings
-from drystone.search.plan_result import PlanResult
 from drystone.verify.check import check_plan
 from tests.planner.scenes import Ticks, after_looks, blocks, greedy, rubble
 from tests.verify.exact_examples import with_stone
 
 
 @pytest.fixture(scope="module")
-def stones() -> ds.StoneSet:
+def stones():
     """Three bricks."""
     bricks = ds.generate.BrickSettings(count=3, height_px=10, aspect=2)
     return ds.generate.brick_stones(bricks, np.random.default_rng(1))
@@ -37,25 +35,23 @@ def stones() -> ds.StoneSet:
         ((0, 20), {}, "E121"),
     ],
 )
-def test_values_that_make_no_sense(
-    stones: ds.StoneSet, size: tuple[float, float], options: dict[str, Any], code: str
-) -> None:
+def test_values_that_make_no_sense(stones, size, options, code):
     with pytest.raises(ds.DrystoneError) as caught:
         ds.plan_wall(stones, *size, **options)
     assert caught.value.code == code
     assert caught.value.cure
 
 
-def test_inputs_that_exclude_each_other_or_are_of_the_wrong_type(stones: ds.StoneSet) -> None:
+def test_inputs_that_exclude_each_other_or_are_of_the_wrong_type(stones):
     wall = ds.plan_wall(stones, 60, 20, scale=1.0, budget=1).wall
     with pytest.raises(ds.DrystoneError, match="E138"):
         ds.plan_wall(stones, 60, 20, scale=1.0, built=wall, begin=wall)
     for settings in ({"mu": 0.6}, {}, "best"):
         with pytest.raises(TypeError, match="settings must be PlannerSettings, not "):
-            ds.plan_wall(stones, 60, 20, settings=settings)  # type: ignore[arg-type]
+            ds.plan_wall(stones, 60, 20, settings=settings)
 
 
-def test_of_a_built_wall_that_does_not_stand_nothing_better_is_looked_for() -> None:
+def test_of_a_built_wall_that_does_not_stand_nothing_better_is_looked_for():
     """A search could not build it again; the plan goes on with it, as with one pass."""
     stones = blocks({1: (10, 10), 2: (30, 10), 3: (20, 10)})
     fallen = Wall.empty(ds.Site(60, 30), exact=True)
@@ -76,7 +72,7 @@ def test_of_a_built_wall_that_does_not_stand_nothing_better_is_looked_for() -> N
 FEW = {"search": {"budget": 4, "passes": 3, "chains": 2, "share_every": 2}}
 """Few walls of every kind."""
 
-WAYS: dict[str, dict[str, Any]] = {
+WAYS = {
     "best": {"settings": greedy(FEW)},
     "best, two processes": {"settings": greedy(FEW), "n_jobs": 2},
     "one pass in threads": {"settings": greedy(), "n_jobs": 2, "budget": 1},
@@ -86,10 +82,10 @@ WAYS: dict[str, dict[str, Any]] = {
 }
 
 
-def planned(until: Deadline | None, **options: Any) -> PlanResult:
+def planned(until, **options):
     """A wall of rubble, with a time limit by another clock than that of the world."""
 
-    def after(seconds: float, _: object = None) -> Deadline:
+    def after(seconds, _=None):
         return until if until and seconds == 5.0 else Deadline()
 
     with pytest.MonkeyPatch.context() as patch:
@@ -97,13 +93,13 @@ def planned(until: Deadline | None, **options: Any) -> PlanResult:
         return ds.plan_wall(rubble(), 100, 36, scale=1.0, seed=1, seconds=5.0, **options)
 
 
-def gone_on_with(result: PlanResult) -> dict[str, Any]:
+def gone_on_with(result):
     """What `--resume` hands over."""
     return {"built": result.wall, "course_heights_px": result.plan.course_heights_px}
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_a_first_wall_cut_short_is_a_plan_that_is_gone_on_with(way: str) -> None:
+def test_a_first_wall_cut_short_is_a_plan_that_is_gone_on_with(way):
     options = {"budget": 3, **WAYS[way]}
     clock = Ticks()
     alone = planned(Deadline(math.inf, clock), **{**options, "budget": 1})
@@ -125,7 +121,7 @@ def test_a_first_wall_cut_short_is_a_plan_that_is_gone_on_with(way: str) -> None
 
 
 @pytest.mark.parametrize("way", ["best, two processes"])
-def test_after_a_whole_first_wall_no_wall_that_is_cut_short_counts(way: str) -> None:
+def test_after_a_whole_first_wall_no_wall_that_is_cut_short_counts(way):
     options, clock = WAYS[way], Ticks()
     planned(Deadline(math.inf, clock), **options, budget=1)
     for more in (1, 40):
@@ -139,9 +135,9 @@ def test_after_a_whole_first_wall_no_wall_that_is_cut_short_counts(way: str) -> 
         assert f"after {used} walls of 6;" in notice.message
 
 
-def test_every_time_a_wall_grows_by_a_stone_however_little_time_there_is() -> None:
+def test_every_time_a_wall_grows_by_a_stone_however_little_time_there_is():
     settings, placed = greedy(FEW), 0
-    before: dict[str, Any] = {}
+    before = {}
     while True:
         result = planned(after_looks(0), settings=settings, **before)
         if result.plan.stopped != OUT_OF_TIME.text:

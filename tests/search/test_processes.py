@@ -3,26 +3,21 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
-from concurrent.futures import Executor, ThreadPoolExecutor
-from contextlib import AbstractContextManager
-from typing import Any
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from loky import ProcessPoolExecutor
 
 from drystone.search.processes import processes, threads
-from tests.narrow import not_none
 
 GROWTH_BYTES = 350_000_000
 """More than what loky takes for a leak if it is not told otherwise."""
 
-KEPT: list[bytes] = []
+KEPT = []
 
 
-def test_a_process_that_remembers_much_is_kept() -> None:
+def test_a_process_that_remembers_much_is_kept():
     with processes(2) as workers:
-        assert workers is not None
         both_at_work(workers)
         grown = set(workers.map(grow, range(2)))
         assert grown <= both_at_work(workers)
@@ -32,14 +27,10 @@ def test_a_process_that_remembers_much_is_kept() -> None:
 @pytest.mark.parametrize(
     ("start", "pool"), [(processes, ProcessPoolExecutor), (threads, ThreadPoolExecutor)]
 )
-def test_an_interrupt_while_they_end_waits_until_they_have(
-    start: Callable[[int], AbstractContextManager[Executor | None]],
-    pool: type[Executor],
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_an_interrupt_while_they_end_waits_until_they_have(start, pool, monkeypatch):
     ended, calls = pool.shutdown, []
 
-    def impatient(self: Executor, *args: Any, **options: Any) -> None:
+    def impatient(self, *args, **options):
         signal.raise_signal(signal.SIGINT)
         ended(self, *args, **options)
         calls.append(1)
@@ -53,15 +44,15 @@ def test_an_interrupt_while_they_end_waits_until_they_have(
 
 
 @pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="there are no masks here")
-def test_processes_hear_no_interrupt_from_their_very_beginning() -> None:
+def test_processes_hear_no_interrupt_from_their_very_beginning():
     before = signal.pthread_sigmask(signal.SIG_BLOCK, ())
     with processes(2) as workers:
-        heard = not_none(workers).submit(heard_here).result()
+        heard = workers.submit(heard_here).result()
     assert heard == ({signal.SIGINT, signal.SIGTERM} | before, [signal.SIG_IGN] * 2)
     assert signal.pthread_sigmask(signal.SIG_BLOCK, ()) == before
 
 
-def heard_here() -> tuple[set[int], list[object]]:
+def heard_here():
     """Return which signals are kept back here, and what is done at those of the keyboard."""
     mask = set(signal.pthread_sigmask(signal.SIG_BLOCK, ()))
     return mask, [signal.getsignal(one) for one in (signal.SIGINT, signal.SIGTERM)]
@@ -82,12 +73,12 @@ with processes(2) as workers:
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="there is no such signal here")
-def test_processes_end_with_the_one_that_asks_whatever_kills_it() -> None:
+def test_processes_end_with_the_one_that_asks_whatever_kills_it():
     command = [sys.executable, "-c", ASKING]
     with subprocess.Popen(  # noqa: S603 - our own code
         command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
     ) as asking:
-        left = {int(one) for one in not_none(asking.stdout).readline().split()}
+        left = {int(one) for one in asking.stdout.readline().split()}
         assert len(left) == 3
         assert all(alive(one) for one in left)
         asking.kill()
@@ -98,7 +89,7 @@ def test_processes_end_with_the_one_that_asks_whatever_kills_it() -> None:
     raise AssertionError(f"{[one for one in left if alive(one)]} are left")
 
 
-def alive(process: int) -> bool:
+def alive(process):
     """Say whether a process is at work; one that nobody has asked after is not."""
     said = subprocess.run(  # noqa: S603 - the number is ours
         ["ps", "-o", "stat=", "-p", str(process)],  # noqa: S607
@@ -109,20 +100,20 @@ def alive(process: int) -> bool:
     return said.stdout.strip() != "" and not said.stdout.strip().startswith("Z")
 
 
-def both_at_work(workers: Executor) -> set[int]:
+def both_at_work(workers):
     """Give tasks until two processes have done some."""
-    seen: set[int] = set()
+    seen = set()
     while len(seen) < 2:
         seen |= set(workers.map(at_work, range(2)))
     return seen
 
 
-def at_work(_number: int) -> int:
+def at_work(_number):
     time.sleep(0.1)
     return os.getpid()
 
 
-def grow(_number: int) -> int:
+def grow(_number):
     KEPT.append(b"x" * GROWTH_BYTES)
     time.sleep(1.2)  # loky looks at the memory once a second, after a task
     return os.getpid()

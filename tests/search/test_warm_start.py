@@ -3,17 +3,14 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 from drystone.kernels.polygons import on_grid
 from drystone.model.placement import Wedge
 from drystone.model.site import Site
 from drystone.model.wall import Group
 from drystone.model.wedge_shape import WedgeShape
-from drystone.planner.build import Build
 from drystone.planner.planner import Planner
 from drystone.planner.replay import Replayed
-from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
 from drystone.search.goal import FoundWall
 from drystone.search.packed import PackedWall, found_again
@@ -35,16 +32,16 @@ from tests.planner.scenes import (
 from tests.search.test_anytime import SMALL
 
 
-def built(seed: int = 3) -> Planner:
+def built(seed=3):
     settings = greedy()
     return finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=settings))
 
 
-def new(settings: PlannerSettings) -> Planner:
+def new(settings):
     return Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
 
 
-def test_the_wall_is_as_it_was() -> None:
+def test_the_wall_is_as_it_was():
     old = built()
     planner = new(old.settings)
     assert begin_with(planner, old.build.wall, {}) == ()
@@ -53,7 +50,7 @@ def test_the_wall_is_as_it_was() -> None:
     assert planner.build.wall.labels.tobytes() == old.build.wall.labels.tobytes()
 
 
-def test_banned_stones_are_taken_out_with_what_falls_then() -> None:
+def test_banned_stones_are_taken_out_with_what_falls_then():
     old = built(seed=2)
     before = [action.stone_id for action in old.build.actions]
     fell, stayed = set(), set()
@@ -72,7 +69,7 @@ def test_banned_stones_are_taken_out_with_what_falls_then() -> None:
     assert stayed
 
 
-def test_wedges_that_are_none_by_the_new_settings_are_left_out() -> None:
+def test_wedges_that_are_none_by_the_new_settings_are_left_out():
     site = Site.from_source(84.0, 34.0, 0.5)
     old = finish(Planner(few_stones(), site, seed=3, settings=greedy(WITH_WEDGES)))
     kept = set()
@@ -87,7 +84,7 @@ def test_wedges_that_are_none_by_the_new_settings_are_left_out() -> None:
     assert max(kept) == len(old.build.wall.wedges) > min(kept) == 0
 
 
-def test_a_stone_stays_without_a_wedge_that_nothing_is_beside() -> None:
+def test_a_stone_stays_without_a_wedge_that_nothing_is_beside():
     """A slab on two blocks reaches over the second; the wall ends 2 or 7 px further on."""
     stones = blocks({1: (20, 4), 2: (20, 4), 3: (50, 10)})
     settings = greedy({"order": "given", "vary": 0.0, "wedge": {"height": 1.0, "area": 1.0}})
@@ -103,10 +100,10 @@ def test_a_stone_stays_without_a_wedge_that_nothing_is_beside() -> None:
         assert len(planner.build.wall.wedges) == wedges
 
 
-def test_steps_that_the_solver_gave_up_on_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_steps_that_the_solver_gave_up_on_are_counted(monkeypatch):
     old = built()
 
-    def trouble(start: Build, *_args: object, **_options: object) -> Replayed:
+    def trouble(start, *_args, **_options):
         return Replayed(start, (), Solves(failed=2, cold=3))
 
     monkeypatch.setattr("drystone.search.yard.replayed", trouble)
@@ -115,7 +112,7 @@ def test_steps_that_the_solver_gave_up_on_are_counted(monkeypatch: pytest.Monkey
     assert planner.solves == Solves(2, 3)
 
 
-def test_what_stands_out_further_than_now_allowed_is_taken_out() -> None:
+def test_what_stands_out_further_than_now_allowed_is_taken_out():
     # A course may use all of 1 px; begun again with a smaller allowance, check would refuse it.
     old = built()
     corners = [action.stabilised.placement.settled.corners for action in old.build.actions]
@@ -131,7 +128,7 @@ def test_what_stands_out_further_than_now_allowed_is_taken_out() -> None:
     assert begin_with(planner, old.build.wall, {}) == ()
 
 
-def test_outlines_are_those_of_this_search_whatever_those_of_the_plan_were() -> None:
+def test_outlines_are_those_of_this_search_whatever_those_of_the_plan_were():
     """They are packed as their poses, and would be others when they are built again."""
     old = finish(new(greedy({"settle": {"outline_px": 0.5}})))
     planner = new(greedy())
@@ -144,7 +141,7 @@ def test_outlines_are_those_of_this_search_whatever_those_of_the_plan_were() -> 
     assert outlines(again) == outlines(planner)
 
 
-def test_in_a_given_order_only_what_ascends_is_used() -> None:
+def test_in_a_given_order_only_what_ascends_is_used():
     old = built()
     ids = [action.stone_id for action in old.build.actions]
     assert ids != sorted(ids)
@@ -159,7 +156,7 @@ def test_in_a_given_order_only_what_ascends_is_used() -> None:
     assert done[: len(used)] == used
 
 
-def test_a_plan_that_begins_with_a_wall_is_no_worse() -> None:
+def test_a_plan_that_begins_with_a_wall_is_no_worse():
     settings = greedy({"search": {"budget": 8, **SMALL}})
     before = plan_wall(rubble(), 100, 36, scale=1.0, seed=1, settings=settings)
     heights = {step.stone: step.course_height for step in before.plan.stone_steps}

@@ -7,16 +7,14 @@ import pytest
 
 from drystone.contacts.settled import PlacedPolygons, model_of_outlines, model_with_outlines
 from drystone.model.wall import outlined
-from drystone.planner.planner import Planner
 from drystone.search import wedge_draft
 from drystone.search.wedge_draft import Motion, WedgeDraft, WedgePlace, analysis_of
 from drystone.statics.incremental import HighsAnalysis, SimplexAnalysis
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import GROUND, Block, Direction, RigidBlockModel
-from drystone.statics.result import LimitResult, Mechanism
+from drystone.statics.model import GROUND, Block, RigidBlockModel
+from drystone.statics.result import Mechanism
 from tests.kernels.simplex_walls import needs_kernel
 from tests.naive.wedging import NaiveMotion
-from tests.narrow import not_none
 from tests.search.wedge_walls import all_places, limits_of, small_walls
 
 MU = 0.5
@@ -26,24 +24,24 @@ OPEN_WALLS = pytest.mark.parametrize("wall", range(2))
 """Those in which wedges have room."""
 
 
-def drafted(wall: int) -> tuple[Planner, WedgeDraft]:
+def drafted(wall):
     made = small_walls()[wall][1]
     return made, WedgeDraft.of(made.build, limits_of(made))
 
 
-def whole(draft: WedgeDraft) -> float | None:
+def whole(draft):
     """What the blocks of a draft carry, solved from the start."""
     return lateral_resistance(model_of_outlines(draft.placed)).value
 
 
-def all_move(draft: WedgeDraft) -> Motion:
+def all_move(draft):
     blocks = draft.analysis.model.blocks
     centroids = {block.id: block.centroid for block in blocks}
     return Motion.of({block.id: (1.0, 0.0, 0.0) for block in blocks}, centroids, 0.58)
 
 
 @OPEN_WALLS
-def test_a_wedge_is_added_in_the_order_of_construction(wall: int) -> None:
+def test_a_wedge_is_added_in_the_order_of_construction(wall):
     made, draft = drafted(wall)
     draft = draft.looked_at(all_move(draft))
     places = list(draft.places())
@@ -63,11 +61,11 @@ def test_a_wedge_is_added_in_the_order_of_construction(wall: int) -> None:
         assert after.resistance.value == pytest.approx(whole(after), abs=1e-7)
         for direction in ("left", "right"):
             side = after.resistance.left if direction == "left" else after.resistance.right
-            assert draft.alpha_with(model, direction) == side.alpha  # type: ignore[arg-type]
+            assert draft.alpha_with(model, direction) == side.alpha
 
 
 @OPEN_WALLS
-def test_places_are_looked_for_again_only_where_a_wedge_is_new(wall: int) -> None:
+def test_places_are_looked_for_again_only_where_a_wedge_is_new(wall):
     made, draft = drafted(wall)
     draft = draft.looked_at(all_move(draft))
     number = made.workshop.next_wedge(made.build)
@@ -84,14 +82,14 @@ def test_places_are_looked_for_again_only_where_a_wedge_is_new(wall: int) -> Non
 
 
 @OPEN_WALLS
-def test_nothing_is_looked_for_where_nothing_moves(wall: int) -> None:
+def test_nothing_is_looked_for_where_nothing_moves(wall):
     _, draft = drafted(wall)
     still = replace(all_move(draft), twists=dict.fromkeys([0, *draft.placed.ids], (0.0, 0.0, 0.0)))
     assert list(draft.looked_at(still).places()) == []
 
 
 @WALLS
-def test_an_idle_wedge_is_none(wall: int) -> None:
+def test_an_idle_wedge_is_none(wall):
     made, begun = drafted(wall)
     number = made.workshop.next_wedge(made.build)
     for place in all_places(made.build, begun.limits)[::5]:
@@ -101,7 +99,7 @@ def test_an_idle_wedge_is_none(wall: int) -> None:
         assert after.value == pytest.approx(begun.resistance.value, abs=1e-9)
         assert draft.without(model).resistance.value == after.value
     for k, wedge in enumerate(made.build.wall.wedges):
-        others = [block for block in made.build.wall.outlines.blocks if block[0] != wedge.id]  # type: ignore[union-attr]
+        others = [block for block in made.build.wall.outlines.blocks if block[0] != wedge.id]
         without = lateral_resistance(model_of_outlines(PlacedPolygons.of(others))).value
         idle = begun.analysis.resistance_with(begun.idle(wedge.id)).resistance.value
         assert (idle or 0.0) == pytest.approx(without or 0.0, abs=1e-7), k
@@ -109,13 +107,13 @@ def test_an_idle_wedge_is_none(wall: int) -> None:
 
 @needs_kernel
 @OPEN_WALLS
-def test_other_solvers_say_the_same(wall: int) -> None:
+def test_other_solvers_say_the_same(wall):
     made, draft = drafted(wall)
     assert isinstance(draft.analysis, SimplexAnalysis)
     units = draft.analysis.program.units
     other = replace(draft, analysis=HighsAnalysis.of(draft.analysis.model, units))
     number = made.workshop.next_wedge(made.build)
-    directions: tuple[Direction, Direction] = ("left", "right")
+    directions = ("left", "right")
     for direction in directions:
         one, two = draft.motion(direction), other.motion(direction)
         assert one is not None
@@ -128,14 +126,14 @@ def test_other_solvers_say_the_same(wall: int) -> None:
 
 
 @WALLS
-def test_a_mechanism_fails_under_the_load_that_the_wall_carries(wall: int) -> None:
+def test_a_mechanism_fails_under_the_load_that_the_wall_carries(wall):
     _, draft = drafted(wall)
     blocks = draft.analysis.model.blocks
     for direction, sign in (("left", -1.0), ("right", 1.0)):
-        motion = draft.motion(direction)  # type: ignore[arg-type]
+        motion = draft.motion(direction)
         pushed = raised = 0.0
         for block in blocks:
-            along, up, turning = not_none(motion).twists[block.id]
+            along, up, turning = motion.twists[block.id]
             x, y = block.centroid
             pushed += sign * block.weight * (along - turning * y)
             raised += block.weight * (up + turning * x)
@@ -146,9 +144,7 @@ def test_a_mechanism_fails_under_the_load_that_the_wall_carries(wall: int) -> No
 
 @needs_kernel
 @WALLS
-def test_walls_of_many_blocks_are_analysed_by_the_kernel(
-    wall: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_walls_of_many_blocks_are_analysed_by_the_kernel(wall, monkeypatch):
     """From the last state that the kernel has, on."""
     made = small_walls()[wall][1]
     build = made.build
@@ -166,17 +162,17 @@ def test_walls_of_many_blocks_are_analysed_by_the_kernel(
     assert again.result.resistance.value == pytest.approx(build.actions[-1].resistance.value)
 
 
-def motion_of(model: RigidBlockModel, mechanism: Mechanism) -> Motion:
+def motion_of(model, mechanism):
     told = zip(mechanism.block_ids, mechanism.velocity.tolist(), strict=True)
     return Motion.of(dict(told), {block.id: block.centroid for block in model.blocks}, model.mu)
 
 
-def failing(model: RigidBlockModel) -> LimitResult:
+def failing(model):
     both = lateral_resistance(model, mechanism=True)
-    return both.left if not_none(both.left.alpha) <= not_none(both.right.alpha) else both.right
+    return both.left if both.left.alpha <= both.right.alpha else both.right
 
 
-def test_what_the_mechanism_does_not_violate_does_not_help() -> None:
+def test_what_the_mechanism_does_not_violate_does_not_help():
     seen = {True: 0, False: 0}
     for _, made in small_walls():
         build = made.build
@@ -190,25 +186,24 @@ def test_what_the_mechanism_does_not_violate_does_not_help() -> None:
         for place, rate in zip(places, rates.tolist(), strict=True):
             new, near_px = [(999, place.corners)], limits_of(made).contact_px
             model = model_with_outlines(build.model, new, outlines, near_px)
-            assert model.added is not None
             assert rate == pytest.approx(naive.resisted_by(model.added.interfaces), abs=1e-9)
             violated = rate > 1e-9
             # The weight of the wedge is another thing: here it has none.
             weightless = replace(model.blocks[-1], density=1e-9)
             after = lateral_resistance(replace(model, blocks=(*model.blocks[:-1], weightless)))
-            alpha = not_none(after.left.alpha if one.direction == "left" else after.right.alpha)
-            assert violated or alpha <= not_none(one.alpha) + 1e-6
+            alpha = after.left.alpha if one.direction == "left" else after.right.alpha
+            assert violated or alpha <= one.alpha + 1e-6
             seen[violated] += 1
     assert min(seen.values()) > 3
 
 
-def motion(*velocity: float) -> Motion:
+def motion(*velocity):
     """A block 4 px wide and 2 high over the ground, 1 px above it, that moves."""
     model = RigidBlockModel((Block(1, 8.0, (2.0, 2.0)),), (), MU)
     return motion_of(model, Mechanism((1,), np.array([velocity])))
 
 
-def wedge(*touching: tuple[int, float, tuple[float, float]]) -> WedgePlace:
+def wedge(*touching):
     """A wedge under the right end of that block: what it touches, at which height, how."""
     contacts = [(other, (x, y), normal) for other, y, normal in touching for x in (3.0, 4.0)]
     return WedgePlace(
@@ -235,16 +230,14 @@ LOW, HIGH = (GROUND, 0.0, (0.0, 1.0)), (1, 1.0, (0.0, -1.0))
         ((0.0, 0.0, -1.0), 2.5),
     ],
 )
-def test_the_rate_is_that_of_the_worst_point_and_the_best_neighbour(
-    velocity: tuple[float, ...], rate: float
-) -> None:
+def test_the_rate_is_that_of_the_worst_point_and_the_best_neighbour(velocity, rate):
     rates = motion(*velocity).resisted_by([wedge(LOW), wedge(LOW, HIGH), wedge()])
     assert rates.tolist() == pytest.approx([0.0, rate, 0.0])
     falling = motion(0.0, -1.0, 0.0)
     assert [falling.resisted_by(some).tolist() for some in ([wedge(HIGH)], [])] == [[0.0], []]
 
 
-def test_blocks_stand_still_that_do_not_move() -> None:
+def test_blocks_stand_still_that_do_not_move():
     assert motion(0.0, 0.0, 0.0).stands_still([GROUND, 1])
     assert motion(0.0, 0.0, 1.0).stands_still([GROUND])
     for velocity in ((0.0, 0.0, -1.0), (0.0, -1e-6, 0.0), (1.0, 0.0, 0.0)):

@@ -2,10 +2,8 @@
 
 import json
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,14 +11,10 @@ import shapely
 
 from drystone.contacts.settled import PlacedPolygons, model_of_outlines
 from drystone.io.plan_json import plan_from_json, plan_to_json
-from drystone.kernels.polygons import Points, on_grid
-from drystone.kernels.raster import Mask
+from drystone.kernels.polygons import on_grid
 from drystone.model.placement import Settled, Wedge
 from drystone.model.site import Site
-from drystone.model.stone import StoneSet
 from drystone.model.wall import Group, outlined
-from drystone.planner.assemble import Frame
-from drystone.planner.build import Build
 from drystone.planner.deadline import Deadline, TimeIsUp
 from drystone.planner.events import Stopped
 from drystone.planner.planner import Planner
@@ -36,8 +30,8 @@ from drystone.settle.rest import placed_outline
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.verify import check_plan
-from tests.narrow import not_none
 from tests.planner.scenes import Ticks, after_looks, greedy, stones_of_masks
+from tests.polygons import box
 from tests.search.wedge_walls import LARGE, all_places, limits_of, small_walls
 
 NOTHING = np.zeros((0, 0), bool)
@@ -46,7 +40,7 @@ ENDS = (10, 0.01, 0.01), (11, 93.0, 0.01)
 """Low blocks at both ends of the wall, so that something is beside every wedge."""
 
 
-def toadstool(stem: slice, height: int, under: int) -> Mask:
+def toadstool(stem, height, under):
     """A block 20 px wide on a stem."""
     mask = np.ones((height + under, 20), bool)
     mask[height:] = False
@@ -72,17 +66,15 @@ STONES = stones_of_masks(
 )
 
 
-def planner() -> Planner:
+def planner():
     return Planner(STONES, SITE, settings=LARGE)
 
 
-def wedged(made: Planner, most: int) -> Build:
+def wedged(made, most):
     return wedged_up(made.build, Yard.of(made), most)[0]
 
 
-def built(
-    *places: tuple[int, float, float], wedges: dict[int, list[Points]] | None = None
-) -> Planner:
+def built(*places, wedges=None):
     """A wall of stones: id, left end and lower end of each, and outlines of wedges under them.
 
     Between two blocks at its ends.
@@ -94,8 +86,8 @@ def built(
         x, y = on_grid(np.array([left, low]) - outline.min(axis=0)).tolist()
         settled = Settled(x, y, placed_outline(outline, 0.0, x, y))
         outlines = made.build.wall.exact
-        placement = not_none(
-            settled_placement(outlines, SITE, STONES.by_id(stone_id), 0.0, settled, "left", 0)
+        placement = settled_placement(
+            outlines, SITE, STONES.by_id(stone_id), 0.0, settled, "left", 0
         )
         own = (wedges or {}).get(stone_id, [])
         under = tuple(Wedge(0, stone_id, NOTHING, 0, 0, on_grid(corners)) for corners in own)
@@ -105,26 +97,21 @@ def built(
     return made
 
 
-def box(left: float, low: float, right: float, high: float) -> Points:
-    return np.array([[left, low], [right, low], [right, high], [left, high]], float)
-
-
-def outlines_of(build: Build) -> list[Points]:
+def outlines_of(build):
     return [wedge.corners for wedge in build.wall.wedges if wedge.corners is not None]
 
 
-def value(build: Build) -> float:
-    return not_none(build.actions[-1].resistance.value)
+def value(build):
+    return build.actions[-1].resistance.value
 
 
-def check(made: Planner, build: Build, stones: StoneSet) -> None:
+def check(made, build, stones):
     """See that the plan of a wall, written and read again, is true, and that stones keep apart."""
-    settings, site = made.settings, made.workshop.site
+    settings = made.settings
     made.build = build
     provenance = {"version": "0", "method": "custom", "seed": 1, "settings": settings.as_dict()}
     stopped = Stopped("stones", "all stones placed")
-    frame = Frame(*site.extent_px, site)
-    result = finished(made, frame, stopped, provenance, 0.0)
+    result = finished(made, stopped, provenance, 0.0)
     plan = plan_from_json(json.loads(json.dumps(plan_to_json(result.plan))))
     report = check_plan(plan, stones, wall_labels=result.wall.labels)
     assert report.problems == ()
@@ -138,7 +125,7 @@ def check(made: Planner, build: Build, stones: StoneSet) -> None:
         assert one.distance(other) >= 0.49 * settings.settle.clearance_px
 
 
-def test_wedges_on_both_sides_keep_a_stone_from_toppling() -> None:
+def test_wedges_on_both_sides_keep_a_stone_from_toppling():
     made = built((1, 30.0, 0.01))
     before = value(made.build)
     # The centre of mass is 7.3 px high, the stem 4 wide.
@@ -155,7 +142,7 @@ def test_wedges_on_both_sides_keep_a_stone_from_toppling() -> None:
     assert wedged(made, 3) is made.build
 
 
-def test_time_that_is_up_leaves_the_wall_as_it_is() -> None:
+def test_time_that_is_up_leaves_the_wall_as_it_is():
     made, clock = built((1, 30.0, 0.01)), Ticks()
     after, _ = wedged_up(made.build, Yard.of(made, Deadline(math.inf, clock)), 2)
     assert len(after.wall.wedges) == 2
@@ -166,7 +153,7 @@ def test_time_that_is_up_leaves_the_wall_as_it_is() -> None:
     assert made.build.wall.wedges == ()
 
 
-def test_a_wedge_with_nothing_beside_it_is_none() -> None:
+def test_a_wedge_with_nothing_beside_it_is_none():
     """At its other side is the stem of the stone."""
     left, right, stone = built((1, 30.0, 0.01)).build.wall.groups
     for beside, sides in (([], set()), ([left], {False}), ([right], {True})):
@@ -178,12 +165,12 @@ def test_a_wedge_with_nothing_beside_it_is_none() -> None:
         assert sides or wedged(made, 2) is made.build
 
 
-def test_where_two_stones_topple_at_once_one_wedge_is_of_no_use() -> None:
+def test_where_two_stones_topple_at_once_one_wedge_is_of_no_use():
     made = built((1, 15.0, 0.01), (7, 50.0, 0.01))
     assert wedged(made, 1) is made.build
 
 
-def test_of_wedges_that_do_as_much_the_smallest_is_cut() -> None:
+def test_of_wedges_that_do_as_much_the_smallest_is_cut():
     """The stone then slides before it topples over a wedge anywhere under its end."""
     made = built((6, 30.0, 0.01))
     after = wedged(made, 1)
@@ -192,7 +179,7 @@ def test_of_wedges_that_do_as_much_the_smallest_is_cut() -> None:
     assert np.ptp(corners[:, 0]) == pytest.approx(1.25 * 2.99, abs=1e-5)
 
 
-def test_the_direction_that_was_the_weaker_one_gains_all_it_can() -> None:
+def test_the_direction_that_was_the_weaker_one_gains_all_it_can():
     """The other direction is then that in which another stone topples, wherever the wedge is."""
     alone = built((9, 50.0, 0.01)).build.actions[-1].resistance
     made = built((8, 15.0, 0.01), (9, 50.0, 0.01))
@@ -202,7 +189,7 @@ def test_the_direction_that_was_the_weaker_one_gains_all_it_can() -> None:
     assert after.right.alpha == pytest.approx(alone.right.alpha)
 
 
-def test_no_more_are_added_than_asked_for() -> None:
+def test_no_more_are_added_than_asked_for():
     made = built((1, 15.0, 0.01), (6, 50.0, 0.01))
     assert wedged(made, 0) is made.build
     counts = [len(wedged(made, most).wall.wedges) for most in range(5)]
@@ -210,7 +197,7 @@ def test_no_more_are_added_than_asked_for() -> None:
     assert counts[4] > counts[1]
 
 
-def test_a_wedge_that_does_not_matter_is_dropped() -> None:
+def test_a_wedge_that_does_not_matter_is_dropped():
     """The stone slides before it topples over its wide stem."""
     made = built((2, 30.0, 0.01), wedges={2: [box(47, 0.01, 49.5, 3.0)]})
     assert len(made.build.wall.wedges) == 1
@@ -221,36 +208,36 @@ def test_a_wedge_that_does_not_matter_is_dropped() -> None:
     check(made, after, STONES)
 
 
-def test_a_wedge_that_carries_stays() -> None:
+def test_a_wedge_that_carries_stays():
     """Without it the stone falls, whatever the wall beside it carries."""
     leaning = {4: [box(65, 0.01, 68, 8.0)]}
     made = built((5, 12.0, 0.01), (4, 50.0, 0.01), wedges=leaning)
     assert wedged(made, 0) is made.build
 
 
-def test_of_two_wedges_the_needless_one_is_dropped() -> None:
+def test_of_two_wedges_the_needless_one_is_dropped():
     two = {4: [box(60, 0.01, 62, 8.0), box(65, 0.01, 68, 8.0)]}
     after = wedged(built((5, 12.0, 0.01), (4, 50.0, 0.01), wedges=two), 0)
     assert [float(corners[:, 0].min()) for corners in outlines_of(after)] == [65.0]
 
 
-def test_a_wedge_that_is_needed_only_while_the_wall_grows_stays() -> None:
+def test_a_wedge_that_is_needed_only_while_the_wall_grows_stays():
     """The block on the other end of the stone keeps it from falling; but until it comes..."""
     held = {4: [box(65, 0.01, 68, 8.0)]}
     made = built((4, 50.0, 0.01), (5, 40.5, 18.02), wedges=held)
-    blocks = [b for b in made.build.wall.outlines.blocks if b[0] in (4, 5)]  # type: ignore[union-attr]
+    blocks = [b for b in made.build.wall.outlines.blocks if b[0] in (4, 5)]
     without = lateral_resistance(model_of_outlines(PlacedPolygons.of(blocks)))
     assert without.value == pytest.approx(value(made.build))
     assert wedged(made, 0) is made.build
 
 
-def test_wedges_keep_clear_of_what_comes_later_and_do_not_rest_on_it() -> None:
+def test_wedges_keep_clear_of_what_comes_later_and_do_not_rest_on_it():
     made = built((12, 30.0, 0.01), (3, 44.9, 0.01), wedges={12: [box(38.1, 0.01, 39.6, 5.0)]})
     places = all_places(
         made.build, replace(limits_of(made), greatest_height=20.0, greatest_area=99.0)
     )
     under = [p for p in places if p.step == 2]
-    later = shapely.Polygon(made.build.wall.groups[3].placement.settled.corners)  # type: ignore[union-attr]
+    later = shapely.Polygon(made.build.wall.groups[3].placement.settled.corners)
     assert under
     for place in under:
         shape = shapely.Polygon(place.corners)
@@ -264,7 +251,7 @@ GAINING = {0}
 
 
 @pytest.mark.parametrize("wall", range(len(WALLS)))
-def test_walls_that_are_wedged_up_are_true(wall: int) -> None:
+def test_walls_that_are_wedged_up_are_true(wall):
     stones, made = WALLS[wall]
     before = made.build
     after = wedged(made, 3)
@@ -288,7 +275,7 @@ def test_walls_that_are_wedged_up_are_true(wall: int) -> None:
 
 
 @pytest.mark.parametrize("wall", range(2))
-def test_the_first_wedge_is_the_best_one(wall: int) -> None:
+def test_the_first_wedge_is_the_best_one(wall):
     """Of all with which all steps can be taken."""
     _, made = WALLS[wall]
     gained = [value(made.build)]
@@ -306,17 +293,17 @@ def test_the_first_wedge_is_the_best_one(wall: int) -> None:
         assert len(after.wall.wedges) <= len(made.build.wall.wedges) + 1
 
 
-def test_a_wall_of_pixels_is_refused() -> None:
+def test_a_wall_of_pixels_is_refused():
     settings = greedy({"geometry": "raster"})
     made = Planner(STONES, SITE, settings=settings)
     with pytest.raises(ValueError, match="outlines"):
         wedged(made, 3)
 
 
-def refusing(monkeypatch: pytest.MonkeyPatch, refused: Callable[[Sequence[Group]], bool]) -> None:
+def refusing(monkeypatch, refused):
     """Let some steps not be taken again."""
 
-    def refuse(start: Build, groups: Sequence[Group], *rest: Any, **named: Any) -> Replayed:
+    def refuse(start, groups, *rest, **named):
         if refused(groups):
             return Replayed(start, (groups[0].placement.stone_id,), Solves())
         return replayed(start, groups, *rest, **named)
@@ -324,7 +311,7 @@ def refusing(monkeypatch: pytest.MonkeyPatch, refused: Callable[[Sequence[Group]
     monkeypatch.setattr(yard, "replayed", refuse)
 
 
-def test_other_wedges_are_found_when_the_best_is_barred(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_wedges_are_found_when_the_best_is_barred(monkeypatch):
     made = built((6, 30.0, 0.01))
     best = wedged(made, 1)
     (outline,) = outlines_of(best)
@@ -341,7 +328,7 @@ def test_other_wedges_are_found_when_the_best_is_barred(monkeypatch: pytest.Monk
     assert [one.tobytes() == outline.tobytes() for one in outlines_of(after)] == [False]
 
 
-def test_what_cannot_be_dropped_stays(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_cannot_be_dropped_stays(monkeypatch):
     """Both wedges may go as the finished wall is, but not one after the other."""
     two = {2: [box(46.5, 0.01, 48, 3.0), box(48.2, 0.01, 49.7, 3.0)]}
     made = built((2, 30.0, 0.01), (5, 55.0, 0.01), wedges=two)
@@ -352,7 +339,7 @@ def test_what_cannot_be_dropped_stays(monkeypatch: pytest.MonkeyPatch) -> None:
     assert [one.tolist() for one in outlines_of(wedged(made, 0))] == [on_grid(two[2][1]).tolist()]
 
 
-def test_a_solver_that_gives_up_is_no_reason_to_stop(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_solver_that_gives_up_is_no_reason_to_stop(monkeypatch):
     made = built((1, 30.0, 0.01))
     monkeypatch.setattr(WedgeDraft, "motion", lambda *_: None)
     assert wedged(made, 3) is made.build
@@ -362,13 +349,11 @@ def test_a_solver_that_gives_up_is_no_reason_to_stop(monkeypatch: pytest.MonkeyP
     assert wedged(built((2, 30.0, 0.01), wedges={2: [box(47, 0.01, 49.5, 3.0)]}), 3).wall.wedges
 
 
-def test_trouble_with_steps_that_are_taken_again_is_counted(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_trouble_with_steps_that_are_taken_again_is_counted(monkeypatch):
     _, made = WALLS[0]
-    calls: list[int] = []
+    calls = []
 
-    def troubled(*args: Any, **named: Any) -> Replayed:
+    def troubled(*args, **named):
         calls.append(1)
         return replayed(*args, **named)._replace(solves=Solves(2, 1))
 

@@ -7,12 +7,9 @@ import numpy as np
 from drystone.contacts.settled import PlacedPolygons
 from drystone.generate import PolygonSettings, RubbleSettings, polygon_stones, rubble_stones
 from drystone.model.site import Site
-from drystone.model.stone import StoneSet
-from drystone.planner.build import Build
 from drystone.planner.planner import Planner
-from drystone.search.wedge_draft import MOST_UNDER_ONE, WedgePlace, wedge_places
+from drystone.search.wedge_draft import MOST_UNDER_ONE, wedge_places
 from drystone.search.yard import Yard
-from drystone.settle.wedge import WedgeLimits
 from tests.planner.scenes import finish, greedy
 
 LARGE = greedy(
@@ -25,15 +22,15 @@ LARGE = greedy(
 """With larger wedges than usual, of which small walls have some; places need not be sure."""
 
 
-def limits_of(made: Planner) -> WedgeLimits:
+def limits_of(made):
     return Yard.of(made).limits
 
 
-def all_places(build: Build, limits: WedgeLimits) -> list[WedgePlace]:
+def all_places(build, limits):
     """Wedges under all stones that may get one more."""
     placed = PlacedPolygons(build.wall.exact.ids, build.wall.exact.polygons)
     width = build.wall.site.extent_px[0]
-    found: list[WedgePlace] = []
+    found = []
     for step, group in enumerate(build.wall.groups):
         if len(group.wedges) < MOST_UNDER_ONE:
             first = placed.ids.index(group.placement.stone_id)
@@ -42,7 +39,7 @@ def all_places(build: Build, limits: WedgeLimits) -> list[WedgePlace]:
 
 
 @cache
-def small_walls() -> tuple[tuple[StoneSet, Planner], ...]:
+def small_walls():
     """Walls of stones about 20 px wide, most of which gain by wedges."""
     rubble = RubbleSettings(count=8, width_px=90, height_px=40, courses=2)
     plain, sharp = (

@@ -1,20 +1,12 @@
 """Stones, a site, and course plans for them."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
-
 import numpy as np
 
-from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import bare, hanging, raised
 from drystone.kernels.raster import turn
-from drystone.model.placement import Side
-from drystone.model.site import Site
-from drystone.model.stone import StoneSet
-from drystone.planner.laying_settings import LayingSettings
 from drystone.planner.workshop import Workshop
 from drystone.search.courses import CoursePlan, PlannedStone
-from drystone.search.mason import CourseLaying, lay
+from drystone.search.mason import lay
 from drystone.search.yard import Yard
 from tests.planner.scenes import greedy
 
@@ -22,21 +14,16 @@ from tests.planner.scenes import greedy
 class Plot:
     """A yard, and plans for it."""
 
-    def __init__(
-        self, stones: StoneSet, site: Site, changes: Mapping[str, Any] | None = None
-    ) -> None:
+    def __init__(self, stones, site, changes=None):
         self.stones, self.site = stones, site
         settings = greedy(changes)
         self.yard = Yard(Workshop.prepare(stones, site, settings), settings)
 
-    def corners(self, stone_id: int, angle_deg: float = 0.0) -> Points:
+    def corners(self, stone_id, angle_deg=0.0):
         stone = self.stones.by_id(stone_id)
         return turn(self.yard.workshop.outlines.outline(stone), angle_deg)
 
-    def planned(
-        self, stone_id: int, left: float, bottom: float, side: Side = "left", angle: float = 0.0,
-        top: float | None = None,
-    ) -> PlannedStone:  # fmt: skip
+    def planned(self, stone_id, left, bottom, side="left", angle=0.0, top=None):
         corners = self.corners(stone_id, angle)
         low, high = corners.min(axis=0), corners.max(axis=0)
         y = bottom - low[1]
@@ -45,22 +32,20 @@ class Plot:
             y + high[1] if top is None else top,
         )  # fmt: skip
 
-    def lay(
-        self, *courses: Sequence[PlannedStone], laying: LayingSettings | None = None
-    ) -> CourseLaying:
+    def lay(self, *courses, laying=None):
         plan = CoursePlan(tuple(map(tuple, courses)), 0.0)
         return lay(plan, self.yard.planner().build, self.yard, laying)
 
-    def rows(self, count: int) -> list[list[PlannedStone]]:
+    def rows(self, count):
         """Fill courses with stones as they come, from both sides."""
         width, profile, ids = self.site.width_px, bare(self.site.width_px), 0
-        courses: list[list[PlannedStone]] = []
+        courses = []
         stones = iter(self.stones)
         stone = next(stones, None)
         while stone is not None and len(courses) < count:
-            course: list[PlannedStone] = []
+            course = []
             ends = {"left": 0, "right": width}
-            side: Side = "left"
+            side = "left"
             while stone is not None:
                 hung = hanging(self.corners(stone.id), 1.0)
                 columns = len(hung.bottoms)

@@ -1,7 +1,6 @@
 """Offers made by hand."""
 
 from dataclasses import replace
-from typing import Any
 
 from drystone.indices import Indices
 from drystone.selection.policy import Offer
@@ -26,6 +25,6 @@ OFFER = Offer(
 )
 
 
-def offered(stone_id: int = 1, *, indices: dict[str, Any] | None = None, **changes: Any) -> Offer:
+def offered(stone_id=1, *, indices=None, **changes):
     """Return an offer that differs from the others by what is said."""
     return replace(OFFER, stone_id=stone_id, indices=replace(INDICES, **(indices or {})), **changes)

@@ -1,13 +1,10 @@
 """What a policy sees, and what it may return."""
 
-from collections.abc import Sequence
-from typing import Any
-
 import numpy as np
 import pytest
 
 from drystone.errors import UsageError
-from drystone.selection.policy import Offer, choice_of
+from drystone.selection.policy import choice_of
 from tests.selection.offers import offered
 
 RNG = np.random.default_rng(0)
@@ -17,11 +14,11 @@ OFFERS = [offered(1), offered(2), offered(3)]
 class _Says:
     """Returns something, or raises it."""
 
-    def __init__(self, what: Any) -> None:
+    def __init__(self, what):
         self.what = what
         self.asked = 0
 
-    def choose(self, candidates: Sequence[Offer], rng: np.random.Generator) -> Any:
+    def choose(self, candidates, rng):
         self.asked += 1
         assert isinstance(candidates, tuple)
         assert rng is RNG
@@ -31,13 +28,13 @@ class _Says:
 
 
 @pytest.mark.parametrize("said", [0, 2, np.int64(1), np.uint8(2)])
-def test_a_position_is_taken(said: Any) -> None:
+def test_a_position_is_taken(said):
     found = choice_of("x", _Says(said), OFFERS, RNG)
     assert type(found) is int
     assert found == said
 
 
-def test_none_is_none_and_nobody_is_asked_when_there_is_nothing() -> None:
+def test_none_is_none_and_nobody_is_asked_when_there_is_nothing():
     assert choice_of("x", _Says(None), OFFERS, RNG) is None
     policy = _Says(0)
     assert choice_of("x", policy, [], RNG) is None
@@ -47,12 +44,12 @@ def test_none_is_none_and_nobody_is_asked_when_there_is_nothing() -> None:
 @pytest.mark.parametrize(
     "said", [3, -1, True, False, np.True_, 1.0, "1", [0], OFFERS[0], np.array([0, 1])]
 )
-def test_nonsense_is_named(said: Any) -> None:
+def test_nonsense_is_named(said):
     with pytest.raises(UsageError, match=r"E147 --policy: the policy 'x' returned .* 0 to 2\."):
         choice_of("x", _Says(said), OFFERS, RNG)
 
 
-def test_errors_are_named_but_an_interrupt_is_none_of_its_errors() -> None:
+def test_errors_are_named_but_an_interrupt_is_none_of_its_errors():
     for error in (KeyError("area"), RuntimeError("no"), AssertionError()):
         with pytest.raises(UsageError, match="E147 .*'x' raised " + type(error).__name__) as caught:
             choice_of("x", _Says(error), OFFERS, RNG)
@@ -61,7 +58,7 @@ def test_errors_are_named_but_an_interrupt_is_none_of_its_errors() -> None:
         choice_of("x", _Says(KeyboardInterrupt()), OFFERS, RNG)
 
 
-def test_what_follows_from_an_offer() -> None:
+def test_what_follows_from_an_offer():
     offer = offered()
     assert (offer.width_px, offer.support_width_px, offer.from_end_px) == (10.0, 10.0, 10.0)
     assert offered(support_px=((12.0, 1.0), (15.0, 0.0))).support_width_px == 3.0

@@ -13,7 +13,7 @@ from drystone.settle.book import OutlineBook
 TRAPEZE = Stone(7, np.tri(9, 16, 5, dtype=bool))
 
 
-def test_an_outline_is_the_stones_own_within_the_tolerance() -> None:
+def test_an_outline_is_the_stones_own_within_the_tolerance():
     for tolerance_px in (0.1, 0.35, 2.0):
         outline = OutlineBook(tolerance_px, 2.0).outline(TRAPEZE)
         assert (outline == stone_outline(TRAPEZE.mask, tolerance_px)).all()
@@ -21,7 +21,7 @@ def test_an_outline_is_the_stones_own_within_the_tolerance() -> None:
 
 
 @pytest.mark.parametrize("angle_deg", [0.0, 90.0, -33.0])
-def test_hung_outlines_are_turned_then_mirrored_for_the_right(angle_deg: float) -> None:
+def test_hung_outlines_are_turned_then_mirrored_for_the_right(angle_deg):
     book = OutlineBook(0.35, 2.0)
     outline = book.outline(TRAPEZE)
     left, right = (book.hung(TRAPEZE, angle_deg, side) for side in ("left", "right"))

@@ -3,34 +3,27 @@
 import numpy as np
 import pytest
 
-from drystone.kernels.polygons import Points
 from drystone.model.outlines import Outlines
-from drystone.model.placement import Placement, Settled
+from drystone.model.placement import Settled
 from drystone.model.site import Site
 from drystone.model.stone import Stone
 from drystone.model.wall import Wall
 from drystone.settle.placing import settled_placement, settled_wedge
+from tests.polygons import box
 
 STONE = Stone(5, np.ones((4, 6), bool))
 
 
-def box(left: float, low: float, right: float, high: float) -> Points:
-    return np.array([[left, low], [right, low], [right, high], [left, high]], float)
-
-
-def placed(
-    site: Site, corners: Points, outlines: Outlines | None = None, moves: int = 0
-) -> Placement | None:
+def placed(site, corners, outlines=None, moves=0):
     x, y = corners.mean(axis=0).tolist()
     settled = Settled(x, y, corners)
     there = Outlines.empty(site) if outlines is None else outlines
     return settled_placement(there, site, STONE, 12.5, settled, "right", moves)
 
 
-def test_pixels_that_are_half_full_are_the_stones() -> None:
+def test_pixels_that_are_half_full_are_the_stones():
     site = Site(12, 8)
     made = placed(site, box(2.5, 0.0, 8.49, 3.5), moves=1)
-    assert made is not None
     # Columns 2 to 7: the last column holds .49, the first .5; the top row is half full.
     assert (made.row, made.col, made.posed.mask.shape) == (4, 2, (4, 6))
     assert made.posed.mask[1:].all()
@@ -41,10 +34,9 @@ def test_pixels_that_are_half_full_are_the_stones() -> None:
 
 
 @pytest.mark.parametrize("scale", [1.0, 0.5, 0.25])
-def test_the_anchor_is_where_the_centroid_is(scale: float) -> None:
+def test_the_anchor_is_where_the_centroid_is(scale):
     site = Site(24, 16, scale)
     made = placed(site, box(3.3, 0.02, 19.7, 11.9))
-    assert made is not None
     x, y = made.posed.anchor
     bottom = site.height_px - made.row - made.posed.height_px
     assert (made.col + x, bottom + y) == pytest.approx((11.5 * scale, 5.96 * scale))
@@ -55,19 +47,16 @@ def test_the_anchor_is_where_the_centroid_is(scale: float) -> None:
     assert np.count_nonzero(alone.labels) == np.count_nonzero(made.posed.mask)
 
 
-def test_what_is_there_helps_to_fill_pixels() -> None:
+def test_what_is_there_helps_to_fill_pixels():
     site = Site(12, 8)
     alone = placed(site, box(6.6, 0.0, 9.0, 2.0))
-    assert alone is not None
     assert (alone.col, alone.posed.width_px) == (7, 2)
     there = Outlines.empty(site).added([(3, box(2.0, 0.0, 6.2, 2.0))], 1.0)
     beside = placed(site, box(6.6, 0.0, 9.0, 2.0), there)
-    assert beside is not None
     assert (beside.col, beside.posed.width_px) == (6, 3)
     # A pixel that was half full before is not its own.
     there = Outlines.empty(site).added([(3, box(2.0, 0.0, 6.55, 2.0))], 1.0)
     later = placed(site, box(6.56, 0.0, 9.0, 2.0), there)
-    assert later is not None
     assert (later.col, later.posed.width_px) == (7, 2)
 
 
@@ -76,19 +65,18 @@ def test_what_is_there_helps_to_fill_pixels() -> None:
     [box(5.1, 0.0, 5.5, 0.9), box(12.0, 0.0, 14.0, 3.0)],
     ids=["too thin", "beside the wall"],
 )
-def test_no_pixel_of_the_wall_is_no_placement(corners: Points) -> None:
+def test_no_pixel_of_the_wall_is_no_placement(corners):
     assert placed(Site(12, 8), corners) is None
 
 
 @pytest.mark.parametrize("over", [0.25, 0.6])
-def test_over_the_edge_there_are_no_pixels(over: float) -> None:
+def test_over_the_edge_there_are_no_pixels(over):
     made = placed(Site(12, 8), box(-over, 0.0, 12.0 + over, 8.0 + over))
-    assert made is not None
     assert (made.row, made.col, made.posed.mask.shape) == (0, 0, (8, 12))
     assert made.posed.anchor == pytest.approx((6.0, 4.0 + over / 2.0))
 
 
-def test_wedges() -> None:
+def test_wedges():
     site = Site(12, 8, 0.5)
     corners = box(4.0, 0.0, 8.0, 2.0)
     wedge = settled_wedge(Outlines.empty(site), site, 90, 5, corners)
@@ -103,7 +91,7 @@ def test_wedges() -> None:
 
 
 @pytest.mark.parametrize("top", [10.0, 14.0])  # of the smaller plate, and so which comes first
-def test_arms_thinner_than_a_pixel_are_not_seen_nor_what_is_beyond_them(top: float) -> None:
+def test_arms_thinner_than_a_pixel_are_not_seen_nor_what_is_beyond_them(top):
     site = Site(24, 12, 0.5)
     # A dumb-bell: two plates that a bar of .4 working px joins.
     bell = np.array(
@@ -111,6 +99,5 @@ def test_arms_thinner_than_a_pixel_are_not_seen_nor_what_is_beyond_them(top: flo
          [14, 6.4], [14, 12], [2, 12]], float,
     )  # fmt: skip
     made = placed(site, bell)
-    assert made is not None
     assert (made.row, made.col, made.posed.mask.shape) == (6, 1, (6, 6))
     assert made.posed.mask.all()

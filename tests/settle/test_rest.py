@@ -9,8 +9,6 @@ from hypothesis import strategies as st
 
 from drystone.kernels.polygons import (
     GRID,
-    Points,
-    Polygons,
     area_and_centroid,
     mirrored_polygon,
     no_polygons,
@@ -18,9 +16,7 @@ from drystone.kernels.polygons import (
 )
 from drystone.kernels.raster import turn
 from drystone.kernels.settling import Status, settle
-from drystone.model.placement import Side
 from drystone.settle.rest import (
-    Repose,
     SettlingScene,
     Turned,
     come_to_rest,
@@ -32,19 +28,19 @@ from drystone.settle.rest import (
     touch_down,
     ways,
 )
-from drystone.settle.settings import Method, SettleSettings
+from drystone.settle.settings import SettleSettings
 from tests.settle.piles import WIDTH, moved, piles
 from tests.strategies import repeatable
 
 MU = 0.58
-SIDES: tuple[Side, ...] = ("left", "right")
-METHODS: tuple[Method, ...] = ("energy", "pivot")
+SIDES = ("left", "right")
+METHODS = ("energy", "pivot")
 CLEAR = 0.01
 FINE = 2e-5
 """Settling ends where a step gains less than 4e-6 of the size of a stone."""
 
 
-def box(width: float, height: float) -> Points:
+def box(width, height):
     a, b = width / 2.0, height / 2.0
     return np.array([[-a, -b], [a, -b], [a, b], [-a, b]])
 
@@ -52,13 +48,13 @@ def box(width: float, height: float) -> Points:
 BRICK = box(20.0, 10.0)
 
 
-def scene_of(others: list[Points], side: Side = "left", width: float = 200.0) -> SettlingScene:
+def scene_of(others, side="left", width=200.0):
     """The scene of outlines that are given as the side sees them."""
     seen = no_polygons().added(others)
     return SettlingScene.of(seen if side == "left" else seen.mirrored(width), width, side, MU)
 
 
-def turned(outline: Points, angle_deg: float = 0.0, side: Side = "left") -> Turned:
+def turned(outline, angle_deg=0.0, side="left"):
     """An outline that a side sees turned by so much; from the right the mirrored one."""
     size = math.sqrt(area_and_centroid(outline)[0])
     if side == "right":
@@ -66,31 +62,29 @@ def turned(outline: Points, angle_deg: float = 0.0, side: Side = "left") -> Turn
     return Turned.of(outline, angle_deg, side, size)
 
 
-def seen(found: Repose | None, side: Side, width: float = 200.0) -> tuple[float, float, float]:
+def seen(found, side, width=200.0):
     """Where a stone rests, and its angle, as the side sees it."""
-    assert found is not None
     x, y = found.settled.x_px, found.settled.y_px
     return (x, y, found.angle_deg) if side == "left" else (width - x, y, -found.angle_deg)
 
 
-def energy(**changes: float) -> SettleSettings:
-    return SettleSettings(**changes)  # type: ignore[arg-type]
+def energy(**changes):
+    return SettleSettings(**changes)
 
 
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("method", METHODS)
-def test_without_a_neighbour_it_rests_where_it_is_let_go(side: Side, method: Method) -> None:
+def test_without_a_neighbour_it_rests_where_it_is_let_go(side, method):
     settings = SettleSettings(method=method)
     found = come_to_rest(turned(BRICK, side=side), scene_of([], side), (50.0, 12.0), settings)
     x, y, angle_deg = seen(found, side)
-    assert found is not None
     assert (x, angle_deg, found.turned) == (50.0, 0.0, False)
     assert y == pytest.approx(5.0 + CLEAR, abs=FINE)
     assert found.margin == pytest.approx(1.0, abs=1e-2)  # it slides before it tips
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_energy_closes_the_joint_on_the_building_side_and_pivot_does_not(side: Side) -> None:
+def test_energy_closes_the_joint_on_the_building_side_and_pivot_does_not(side):
     scene = scene_of([moved(BRICK, 40.0, 5.0 + CLEAR)], side)
     stone = turned(BRICK, side=side)
     pushed = come_to_rest(stone, scene, (62.0, 12.0), energy())
@@ -103,12 +97,11 @@ def test_energy_closes_the_joint_on_the_building_side_and_pivot_does_not(side: S
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_pivot_rolls_about_the_point_that_touches_first(side: Side) -> None:
+def test_pivot_rolls_about_the_point_that_touches_first(side):
     stone, scene = turned(BRICK, 5.0, side), scene_of([], side)
     corner, low = turn(BRICK, 5.0)[0].tolist()
     start = (50.0, 2 * CLEAR - low)
     rolled = come_to_rest(stone, scene, start, SettleSettings(method="pivot"))
-    assert rolled is not None
     assert rolled.turned
     x, y, angle_deg = seen(rolled, side)
     # It stops as soon as both corners are near enough to carry it.
@@ -119,7 +112,7 @@ def test_pivot_rolls_about_the_point_that_touches_first(side: Side) -> None:
     assert seen(fallen, side) == pytest.approx((50.0, 5.0 + CLEAR, 0.0), abs=2e-3)
 
 
-def ramp(slope_deg: float) -> Points:
+def ramp(slope_deg):
     """It goes up to the right from x = 20, and ends at 120."""
     return np.array(
         [[20.0, CLEAR], [120.0, CLEAR], [120.0, 100 * math.tan(math.radians(slope_deg))]]
@@ -129,9 +122,7 @@ def ramp(slope_deg: float) -> Points:
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize(("slope_deg", "rests"), [(20.0, True), (27.0, False), (45.0, False)])
-def test_what_slides_away_is_nowhere(
-    side: Side, method: Method, slope_deg: float, rests: bool
-) -> None:
+def test_what_slides_away_is_nowhere(side, method, slope_deg, rests):
     settings = SettleSettings(method=method, margin=0.3)
     start = (70.0, 50.0 * math.tan(math.radians(slope_deg)) + 8.0)
     scene = scene_of([ramp(slope_deg)], side)
@@ -146,23 +137,22 @@ def test_what_slides_away_is_nowhere(
 
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("method", METHODS)
-def test_it_must_rest_with_a_margin(side: Side, method: Method) -> None:
+def test_it_must_rest_with_a_margin(side, method):
     scene, stone = scene_of([moved(BRICK, 50.0, 5.0 + CLEAR)], side), turned(BRICK, side=side)
     firm = 1.0 / 5.0 / MU  # what is left of the support over the height of the centroid
 
-    def found(margin: float) -> Repose | None:
+    def found(margin):
         settings = SettleSettings(method=method, margin=margin)
         return come_to_rest(stone, scene, (59.0, 16.0), settings, turns=False)
 
     rests = found(firm - 0.01)
-    assert rests is not None
     assert rests.margin == pytest.approx(firm, abs=0.005)
     assert seen(rests, side)[0] == 59.0
     assert found(firm + 0.01) is None
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_what_lies_too_deep_in_others_is_not_let_go(method: Method) -> None:
+def test_what_lies_too_deep_in_others_is_not_let_go(method):
     scene, settings = scene_of([moved(BRICK, 50.0, 5.0)]), SettleSettings(method=method)
     assert come_to_rest(turned(BRICK), scene, (53.0, 14.4), settings) is None
     # A little is brought apart.
@@ -170,7 +160,7 @@ def test_what_lies_too_deep_in_others_is_not_let_go(method: Method) -> None:
     assert seen(apart, "left") == pytest.approx((53.0, 15.0 + CLEAR, 0.0), abs=1e-3)
 
 
-def test_it_does_not_turn_further_than_it_may() -> None:
+def test_it_does_not_turn_further_than_it_may():
     stone, scene = turned(BRICK, 5.0), scene_of([])
     assert come_to_rest(stone, scene, (50.0, 12.0), energy(max_turn_deg=4.0)) is None
     assert come_to_rest(stone, scene, (50.0, 12.0), energy(max_turn_deg=6.0)) is not None
@@ -179,28 +169,26 @@ def test_it_does_not_turn_further_than_it_may() -> None:
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_touching_down_needs_no_balance(side: Side) -> None:
+def test_touching_down_needs_no_balance(side):
     scene, stone = scene_of([moved(BRICK, 50.0, 5.0 + CLEAR)], side), turned(BRICK, side=side)
     settings = SettleSettings(margin=0.9)
     low = touch_down(stone, scene, (62.0, 18.0), settings)
-    assert low is not None
     assert seen(low, side) == pytest.approx((62.0, 15.0 + 2 * CLEAR, 0.0), abs=FINE)
     assert (low.margin, low.turned) == (-1.0, False)
     firm = touch_down(stone, scene, (52.0, 18.0), settings)
-    assert firm is not None
     assert firm.margin == pytest.approx(1.0, abs=1e-2)
     assert come_to_rest(stone, scene, (62.0, 18.0), SettleSettings()) is None
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_what_slides_away_does_not_touch_down(side: Side) -> None:
+def test_what_slides_away_does_not_touch_down(side):
     scene, start = scene_of([ramp(20.0)], side), (70.0, 27.0)
     assert touch_down(turned(BRICK, 20.0, side), scene, start, energy()) is None
     deep = scene_of([moved(BRICK, 50.0, 5.0)], side)
     assert touch_down(turned(BRICK, side=side), deep, (50.0, 10.0), energy()) is None
 
 
-def test_ways_to_settle() -> None:
+def test_ways_to_settle():
     settings, stone, scene = SettleSettings(), turned(BRICK), scene_of([])
     size = math.sqrt(200.0)
     first, second, third = ways(stone, scene, settings)
@@ -219,10 +207,10 @@ def test_ways_to_settle() -> None:
 
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("side", SIDES)
-def test_all_ways_are_tried_but_for_those_that_lead_nowhere(side: Side, method: Method) -> None:
+def test_all_ways_are_tried_but_for_those_that_lead_nowhere(side, method):
     rng = np.random.default_rng(5)
     settings = SettleSettings(method=method)
-    patterns: set[tuple[bool, ...]] = set()
+    patterns = set()
     for _ in range(60):
         height = rng.uniform(4.0, 16.0)
         post = moved(BRICK * [rng.uniform(0.2, 0.6), height / 10.0], 50.0, 0.5 * height)
@@ -247,12 +235,11 @@ def test_all_ways_are_tried_but_for_those_that_lead_nowhere(side: Side, method: 
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_poses_are_on_a_grid_and_angles_in_one_turn(side: Side) -> None:
+def test_poses_are_on_a_grid_and_angles_in_one_turn(side):
     outline = BRICK + np.array([0.1, -0.03])
     found = come_to_rest(
         Turned.of(outline, 177.0, side, 14.0), scene_of([], side), (50.3, 12.0), energy()
     )
-    assert found is not None
     assert -180.0 <= found.angle_deg < 180.0
     assert (found.angle_deg - 180.0 + 1.0) % 360.0 == pytest.approx(1.0, abs=1e-2)
     x, y = found.settled.x_px, found.settled.y_px
@@ -265,7 +252,7 @@ def test_poses_are_on_a_grid_and_angles_in_one_turn(side: Side) -> None:
 
 
 @st.composite
-def released(draw: st.DrawFn) -> tuple[Points, tuple[float, float], Polygons, float]:
+def released(draw):
     """A stone from its centroid, where it is let go among others on the grid, and its angle."""
     stone, around = draw(piles())
     _, x, y = area_and_centroid(stone)
@@ -277,9 +264,7 @@ def released(draw: st.DrawFn) -> tuple[Points, tuple[float, float], Polygons, fl
 
 @repeatable(25)
 @given(scene=released(), method=st.sampled_from(METHODS), turns=st.booleans())
-def test_from_the_right_everything_is_mirrored(
-    scene: tuple[Points, tuple[float, float], Polygons, float], method: Method, turns: bool
-) -> None:
+def test_from_the_right_everything_is_mirrored(scene, method, turns):
     outline, start, around, angle_deg = scene
     settings = SettleSettings(method=method, margin=0.0, max_turn_deg=40.0)
     size = math.sqrt(area_and_centroid(outline)[0])
@@ -308,7 +293,7 @@ def test_from_the_right_everything_is_mirrored(
         assert mirrored == pytest.approx(first.settled.corners, abs=2e-6)
 
 
-def test_rounding_is_no_turn(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_rounding_is_no_turn(monkeypatch):
     """The linear programs of a stone that may not turn leave turns of about 1e-18."""
     slightly = "drystone.settle.rest.settle"
     monkeypatch.setattr(slightly, lambda *args: settle(*args)._replace(angle=4e-18))
@@ -317,30 +302,26 @@ def test_rounding_is_no_turn(monkeypatch: pytest.MonkeyPatch) -> None:
         come_to_rest(stone, scene, (50.0, 12.0), energy(), turns=False),
         touch_down(stone, scene, (50.0, 12.0), energy()),
     ):
-        assert found is not None
         assert (found.angle_deg, found.turned) == (0.0, False)
     free = come_to_rest(stone, scene, (50.0, 12.0), energy())
-    assert free is not None
     assert free.turned
 
 
-def test_a_stone_that_rests_where_it_is_laid_stays_there() -> None:
+def test_a_stone_that_rests_where_it_is_laid_stays_there():
     scene = scene_of([BRICK + np.array([50.0, 5.01])])
     found = lay(turned(BRICK), scene, (52.0, 15.02), SettleSettings())
-    assert found is not None
     assert (found.settled.x_px, found.settled.y_px) == pytest.approx((52.0, 15.02), abs=1e-6)
     assert not found.turned
 
 
-def test_a_stone_that_is_laid_into_another_is_brought_apart() -> None:
+def test_a_stone_that_is_laid_into_another_is_brought_apart():
     scene = scene_of([BRICK + np.array([50.0, 5.01])])
     found = lay(turned(BRICK), scene, (52.0, 14.7), SettleSettings())
-    assert found is not None
     assert found.settled.y_px == pytest.approx(15.02, abs=0.01)
     assert lay(turned(BRICK), scene, (52.0, 14.0), SettleSettings()) is None
 
 
-def test_a_stone_that_falls_where_it_is_laid_is_lost() -> None:
+def test_a_stone_that_falls_where_it_is_laid_is_lost():
     scene = scene_of([BRICK + np.array([50.0, 5.01])])
     assert lay(turned(BRICK), scene, (61.0, 15.02), SettleSettings()) is None
 
@@ -353,13 +334,10 @@ def test_a_stone_keeps_a_joint_to_its_neighbour_where_it_rests_so(side):
     ends = []
     for settings in (closed, open_):
         rest = come_to_rest(stone, scene, (52.0, 6.0), settings)
-        assert rest is not None
         x = rest.settled.x_px if side == "left" else scene.width_px - rest.settled.x_px
         ends.append(x - 50.0)
         assert rest.settled.y_px == pytest.approx(5.0, abs=0.05)
     assert ends == pytest.approx([0.0, 0.05 * math.sqrt(200.0)], abs=0.1)
     # The end of the wall is not a neighbour.
     alone = [come_to_rest(stone, scene_of([], side), (10.0, 6.0), one) for one in (closed, open_)]
-    assert alone[0] is not None
-    assert alone[1] is not None
     assert alone[0].settled.x_px == alone[1].settled.x_px

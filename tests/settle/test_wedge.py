@@ -1,6 +1,5 @@
 """Wedges under stones that would fall: drawn by hand, and on random piles."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,8 +11,6 @@ from hypothesis import strategies as st
 from drystone.kernels.crevice import crevice
 from drystone.kernels.firmness import rest_margin
 from drystone.kernels.polygons import (
-    Points,
-    Polygons,
     area_and_centroid,
     mirrored_polygon,
     no_polygons,
@@ -32,6 +29,7 @@ from drystone.settle.wedge import (
 )
 from tests.naive.crevice import gap_at
 from tests.naive.wedge_shape import covered, objections
+from tests.polygons import box
 from tests.settle.piles import WIDTH, moved, piles
 from tests.strategies import repeatable
 
@@ -44,15 +42,11 @@ STRICT = WedgeLimits(
 """Least thickness, greatest height, greatest area, friction; all of them matter in piles."""
 
 
-def box(left: float, low: float, right: float, high: float) -> Points:
-    return np.array([[left, low], [right, low], [right, high], [left, high]], float)
-
-
-def centroid(polygon: Points) -> tuple[float, float]:
+def centroid(polygon):
     return area_and_centroid(polygon)[1:]
 
 
-def wedge_for(stone: Points, around: Polygons, limits: WedgeLimits = LIMITS) -> Points | None:
+def wedge_for(stone, around, limits=LIMITS):
     return wedge_under(stone, centroid(stone), around, WIDTH, limits)
 
 
@@ -62,7 +56,7 @@ PLANK = box(10.0, 2.01, 20.0, 4.0)
 SCENE = no_polygons().added([POST])
 
 
-def test_the_gap_beside_a_post_is_filled_from_the_centre_of_mass_on() -> None:
+def test_the_gap_beside_a_post_is_filled_from_the_centre_of_mass_on():
     wedge = wedge_for(PLANK, SCENE)
     assert wedge is not None
     # 1.25 times as wide as high.
@@ -71,22 +65,20 @@ def test_the_gap_beside_a_post_is_filled_from_the_centre_of_mass_on() -> None:
     assert wedge == pytest.approx(np.array(expected))
 
 
-def test_the_margin_moves_the_wedge_outwards() -> None:
+def test_the_margin_moves_the_wedge_outwards():
     wedge = wedge_for(
         PLANK, SCENE, WedgeLimits(least_thickness=0.5, greatest_height=6.0, margin=0.2)
     )
-    assert wedge is not None
     assert wedge[:, 0].min() == pytest.approx(17.0)
 
 
-def test_at_the_end_of_the_stone_the_wedge_grows_inwards() -> None:
+def test_at_the_end_of_the_stone_the_wedge_grows_inwards():
     limits = WedgeLimits(least_thickness=0.5, greatest_height=6.0, margin=0.4)
     wedge = wedge_for(PLANK, SCENE, limits)
-    assert wedge is not None
     assert wedge[:, 0].tolist() == pytest.approx([20 - 1.25 * 1.99, 20, 20, 20 - 1.25 * 1.99])
 
 
-def test_at_the_end_of_the_stone_it_is_still_as_wide_as_the_narrowest() -> None:
+def test_at_the_end_of_the_stone_it_is_still_as_wide_as_the_narrowest():
     """Floor and lid rise side by side; rounding takes nothing off the end."""
     stone = np.array([[10, 5.01], [24, 9.21], [24, 12], [10, 12]])
     hill = np.array([[13.02, 0], [26, 0], [26, 8.61], [13.02, 4.716]])
@@ -97,23 +89,20 @@ def test_at_the_end_of_the_stone_it_is_still_as_wide_as_the_narrowest() -> None:
         wedge = wedge_for(
             moved(stone, shift), no_polygons().added(moved(p, shift) for p in scene), limits
         )
-        assert wedge is not None
         assert np.ptp(wedge[:, 0]) == pytest.approx(3.0 * least)
         assert wedge[:, 0].max() == pytest.approx(24.0 + shift)
 
 
-def test_bends_do_not_end_a_wedge_but_steps_do() -> None:
+def test_bends_do_not_end_a_wedge_but_steps_do():
     bent = np.array([[10, 2.01], [15.5, 2.01], [16, 2.03], [16.5, 2.01], [17, 2.03], [20, 2.01],
                      [20, 4], [10, 4]])  # fmt: skip
     wedge = wedge_for(bent, SCENE)
-    assert wedge is not None
     assert np.ptp(wedge[:, 0]) >= np.ptp(wedge[:, 1])
     wedge = wedge_for(PLANK, SCENE.added([box(17, 0.01, 25, 0.8)]))
-    assert wedge is not None
     assert wedge[:, 0].max() == pytest.approx(16.99)
 
 
-def test_too_low_or_too_high_a_gap_takes_no_wedge() -> None:
+def test_too_low_or_too_high_a_gap_takes_no_wedge():
     for smallest, largest in ((0.5, 1.98), (2.0, 6.0)):
         limits = WedgeLimits(least_thickness=smallest, greatest_height=largest)
         assert wedge_for(PLANK, SCENE, limits) is None
@@ -121,7 +110,7 @@ def test_too_low_or_too_high_a_gap_takes_no_wedge() -> None:
     assert wedge_for(PLANK, SCENE, limits) is not None
 
 
-def test_where_the_gap_is_too_narrow_there_is_no_wedge() -> None:
+def test_where_the_gap_is_too_narrow_there_is_no_wedge():
     """From the centre of mass to the end of the stone, and as far as the next wall inwards."""
     stone = box(10.0, 2.01, 15.2, 4.0)
     scene = no_polygons().added([box(10, 0, 12.4, 2), box(12.4, 0, 16, 1.5)])
@@ -136,7 +125,7 @@ def test_where_the_gap_is_too_narrow_there_is_no_wedge() -> None:
 
 
 @pytest.mark.parametrize("above", [False, True])
-def test_no_face_is_steeper_than_friction_holds(above: bool) -> None:
+def test_no_face_is_steeper_than_friction_holds(above):
     """The floor or the lid rises to the right, with a slope of .5."""
     ramp = np.array([[14.0, 0.0], [26.0, 0.0], [26.0, 6.0]])
     stone = box(10.0, 8.01, 24.0, 12.0)
@@ -151,21 +140,20 @@ def test_no_face_is_steeper_than_friction_holds(above: bool) -> None:
     assert wedge_for(stone, scene, slippery) is None
 
 
-def test_no_wedge_stands_upright_in_a_narrow_place() -> None:
+def test_no_wedge_stands_upright_in_a_narrow_place():
     """Right of the post a slot narrower than high, then a ledge, then more room."""
     limits = WedgeLimits(least_thickness=0.3, greatest_height=6.0, margin=0.03)
     scene = SCENE.added([box(15.5, 0.01, 16.5, 1.9)])
     wedge = wedge_for(PLANK, scene, limits)
-    assert wedge is not None
     assert wedge[:, 0].min() == pytest.approx(16.51)
     assert wedge_for(PLANK, scene.added([box(17.5, 0.01, 20, 1.9)]), limits) is None
 
 
 @pytest.mark.parametrize("mirrored", [False, True])
-def test_a_wedge_at_the_end_of_the_wall_has_something_beside_it(mirrored: bool) -> None:
+def test_a_wedge_at_the_end_of_the_wall_has_something_beside_it(mirrored):
     """Or there is room for a stone between the one on it and the end of the wall."""
 
-    def found(right: float, *beside: Points) -> bool:
+    def found(right, *beside):
         shift = right - 20.0
         stone, *others = (moved(one, shift) for one in (PLANK, POST, *beside))
         around = no_polygons().added(others)
@@ -182,7 +170,7 @@ def test_a_wedge_at_the_end_of_the_wall_has_something_beside_it(mirrored: bool) 
     assert not found(WIDTH - 2.0, box(20.5, 0.01, 21.5, 0.99))
 
 
-def test_what_is_under_the_stone_itself_covers_its_wedge() -> None:
+def test_what_is_under_the_stone_itself_covers_its_wedge():
     hook = np.array([[10, 2.01], [18.5, 2.01], [18.5, 1.0], [20, 1.0], [20, 4], [10, 4]])
     limits = WedgeLimits(least_thickness=0.5, greatest_height=6.0, room_px=WIDTH)
     wedge = box(15.0, 0.01, 17.5, 2.0)
@@ -191,14 +179,14 @@ def test_what_is_under_the_stone_itself_covers_its_wedge() -> None:
     assert not squeezed_out(wedge, hook, beside, WIDTH, limits)
 
 
-def test_a_stone_that_rests_or_touches_nothing_needs_no_wedge() -> None:
+def test_a_stone_that_rests_or_touches_nothing_needs_no_wedge():
     assert falling_side(box(10.0, 2.01, 17.0, 4.0), 13.5, SCENE, LIMITS) == 0
     assert wedge_for(box(10.0, 2.01, 17.0, 4.0), SCENE) is None
     assert falling_side(moved(PLANK, 0.0, 0.2), 15.0, SCENE, LIMITS) == 0
     assert wedge_for(moved(PLANK, 0.0, 0.2), SCENE) is None
 
 
-def test_to_which_side_a_stone_falls() -> None:
+def test_to_which_side_a_stone_falls():
     margin = WedgeLimits(least_thickness=0.5, greatest_height=6.0, margin=0.1)
     assert [falling_side(PLANK, x, SCENE, LIMITS) for x in (10.9, 11.1, 13.9, 14.1)] == [
         -1,
@@ -221,7 +209,7 @@ def test_to_which_side_a_stone_falls() -> None:
     assert falling_side(moved(leaning, 0.0, 0.02), 11.9, roof, LIMITS) == 0
 
 
-def test_a_wedge_must_rest_and_hold_the_stone() -> None:
+def test_a_wedge_must_rest_and_hold_the_stone():
     stone = PLANK, centroid(PLANK)
     good, near_post = box(16, 0.01, 18, 2), box(14.02, 0.01, 14.5, 2)
     assert _holds(good, stone, SCENE, WIDTH, LIMITS)
@@ -232,7 +220,7 @@ def test_a_wedge_must_rest_and_hold_the_stone() -> None:
     assert not _holds(tipping, stone, SCENE, WIDTH, LIMITS)
 
 
-def test_the_margin_that_the_stone_keeps_is_asked_for() -> None:
+def test_the_margin_that_the_stone_keeps_is_asked_for():
     """The plank lifts off when gravity leans to the left by more than (15 - 11) / 1."""
     strict = WedgeLimits(least_thickness=0.5, greatest_height=6.0, rest=0.99)
     assert wedge_for(PLANK, SCENE, strict) is not None
@@ -242,9 +230,7 @@ def test_the_margin_that_the_stone_keeps_is_asked_for() -> None:
 
 @repeatable(250)
 @given(piles(), st.sampled_from([0.0, 0.1]))
-def test_wedges_touch_hold_and_overlap_nothing(
-    pile: tuple[Points, Polygons], margin: float
-) -> None:
+def test_wedges_touch_hold_and_overlap_nothing(pile, margin):
     stone, around = pile
     limits = replace(STRICT, margin=margin)
     side = falling_side(stone, centroid(stone)[0], around, limits)
@@ -271,7 +257,7 @@ def test_wedges_touch_hold_and_overlap_nothing(
     assert rest_margin(stone, centroid(stone), with_it, WIDTH, mu, tolerance) >= 0.0
 
 
-def stays_in(wedge: Points, stone: Points, others: Sequence[shapely.Polygon], room: float) -> bool:
+def stays_in(wedge, stone, others, room):
     """Whether something is beside a wedge on each side, or room for a stone; rows may be few."""
     shapes = [np.array(other.exterior.coords[:-1]) for other in (*others, shapely.Polygon(stone))]
     left, right = covered(wedge, shapes)
@@ -282,7 +268,7 @@ def stays_in(wedge: Points, stone: Points, others: Sequence[shapely.Polygon], ro
 
 @repeatable(150)
 @given(piles())
-def test_a_mirrored_scene_gives_the_mirrored_wedge(pile: tuple[Points, Polygons]) -> None:
+def test_a_mirrored_scene_gives_the_mirrored_wedge(pile):
     stone, around = pile
     one = wedge_for(stone, around)
     other = wedge_for(mirrored_polygon(stone, WIDTH), around.mirrored(WIDTH))
@@ -293,9 +279,7 @@ def test_a_mirrored_scene_gives_the_mirrored_wedge(pile: tuple[Points, Polygons]
 
 @repeatable(60)
 @given(piles(), st.lists(st.floats(0.001, 0.999), min_size=8, max_size=8))
-def test_parts_are_where_upright_lines_are_as_long_as_a_wedge(
-    pile: tuple[Points, Polygons], shares: list[float]
-) -> None:
+def test_parts_are_where_upright_lines_are_as_long_as_a_wedge(pile, shares):
     stone, around = pile
     left, right = float(stone[:, 0].min()), float(stone[:, 0].max())
     found = parts(CreviceSlabs.of(crevice(stone, around, 0.0)), LIMITS)
@@ -308,7 +292,7 @@ def test_parts_are_where_upright_lines_are_as_long_as_a_wedge(
                 assert (room > 0.0) == any(start <= x <= stop for start, stop in found)
 
 
-def test_limits_are_checked() -> None:
+def test_limits_are_checked():
     good = {"least_thickness": 1.0, "greatest_height": 2.0}
     WedgeLimits(**good)
     bad = [
@@ -322,9 +306,7 @@ def test_limits_are_checked() -> None:
 
 @repeatable()
 @given(piles(), st.data())
-def test_polygons_in_order_are_those_added_in_order(
-    pile: tuple[Points, Polygons], data: st.DataObject
-) -> None:
+def test_polygons_in_order_are_those_added_in_order(pile, data):
     stone, around = pile
     wall = around.added([stone])
     chosen = data.draw(st.lists(st.sampled_from(range(len(wall))), unique=True))
@@ -340,7 +322,7 @@ def test_polygons_in_order_are_those_added_in_order(
         assert one.flags.c_contiguous
 
 
-def test_a_stone_meets_what_is_beside_it_and_so_far_below_as_a_wedge_is_high() -> None:
+def test_a_stone_meets_what_is_beside_it_and_so_far_below_as_a_wedge_is_high():
     stone = box(10.0, 20.0, 20.0, 24.0)
     reach = LIMITS.contact_px + 4.0 * LIMITS.clearance_px
     deep = 20.0 - reach - LIMITS.greatest_height

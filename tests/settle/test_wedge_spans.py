@@ -6,7 +6,7 @@ import shapely
 from hypothesis import given
 
 from drystone.kernels.crevice import crevice
-from drystone.kernels.polygons import Points, Polygons, no_polygons, on_grid
+from drystone.kernels.polygons import no_polygons, on_grid
 from drystone.settle.wedge import (
     PLACES,
     CreviceSlabs,
@@ -17,20 +17,21 @@ from drystone.settle.wedge import (
     wedges_below,
 )
 from tests.naive.wedge_shape import objections
+from tests.polygons import box
 from tests.settle.piles import WIDTH, piles
-from tests.settle.test_wedge import SIZES, STRICT, box
+from tests.settle.test_wedge import SIZES, STRICT
 from tests.strategies import repeatable
 
 POST, PLANK = box(13.0, 0.01, 16.0, 2.0), box(10.0, 2.01, 20.0, 4.0)
 LIMITS = WedgeLimits(least_thickness=0.6, greatest_height=2.5)
 
 
-def spans(limits: WedgeLimits) -> list[tuple[float, float]]:
+def spans(limits):
     space = crevice(PLANK, no_polygons().added([POST]), limits.clearance_px)
     return all_spans(CreviceSlabs.of(space), PLACES, limits)
 
 
-def test_each_part_of_a_crevice_has_its_places_and_itself() -> None:
+def test_each_part_of_a_crevice_has_its_places_and_itself():
     found = spans(LIMITS)
     left = [span for span in found if span[1] < 13.0]
     right = [span for span in found if span[0] > 16.0]
@@ -47,7 +48,7 @@ def test_each_part_of_a_crevice_has_its_places_and_itself() -> None:
     assert len(set(found)) == len(found)
 
 
-def test_limits_hold_for_whole_parts_as_well() -> None:
+def test_limits_hold_for_whole_parts_as_well():
     assert spans(WedgeLimits(least_thickness=0.5, greatest_height=1.97)) == []
     assert spans(WedgeLimits(least_thickness=1.99, greatest_height=2.5)) == []
     wide = WedgeLimits(least_thickness=1.2, greatest_height=2.5)
@@ -62,7 +63,7 @@ def test_limits_hold_for_whole_parts_as_well() -> None:
     assert all_spans(CreviceSlabs.of(space), PLACES, steep) == []
 
 
-def test_the_stone_is_no_obstacle_to_its_own_wedges() -> None:
+def test_the_stone_is_no_obstacle_to_its_own_wedges():
     wall = no_polygons().added([POST, PLANK])
     wedges = list(wedges_below(wall, 1, LIMITS))
     assert len(wedges) == len(spans(LIMITS))
@@ -72,7 +73,7 @@ def test_the_stone_is_no_obstacle_to_its_own_wedges() -> None:
     assert list(wedges_below(wall, 0, LIMITS)) == []
 
 
-def test_the_grid_makes_no_two_corners_one() -> None:
+def test_the_grid_makes_no_two_corners_one():
     # Where the highest wedge may end, the floor has a corner a third of a step of the grid off.
     stone = box(10.0, 10.0, 30.0, 13.0)
     slab = on_grid(np.array([[8.0, 0.01], [34.0, 0.01], [34.0, 7.0], [14.0, 9.0], [8.0, 9.6]]))
@@ -89,13 +90,13 @@ def test_the_grid_makes_no_two_corners_one() -> None:
         assert (wedge != np.roll(wedge, 1, axis=0)).any(axis=1).all()
 
 
-def test_corners_that_the_grid_makes_one_are_one() -> None:
+def test_corners_that_the_grid_makes_one_are_one():
     tiny = 1e-7
     corners = np.array([[0, tiny], [0, 0], [2, 0], [2, tiny], [2, 2 * tiny], [2, 1], [0, 1]])
     assert gridded(corners).tolist() == [[0, 0], [2, 0], [2, 1], [0, 1]]
 
 
-def test_a_wedge_rests_or_falls() -> None:
+def test_a_wedge_rests_or_falls():
     around = no_polygons().added([POST])
     assert rests(box(17.0, 0.01, 19.0, 2.0), around, WIDTH, LIMITS)
     assert not rests(box(17.0, 0.2, 19.0, 2.0), around, WIDTH, LIMITS)
@@ -103,7 +104,7 @@ def test_a_wedge_rests_or_falls() -> None:
 
 @repeatable(150)
 @given(piles())
-def test_wedges_fit_and_overlap_nothing(pile: tuple[Points, Polygons]) -> None:
+def test_wedges_fit_and_overlap_nothing(pile):
     stone, around = pile
     limits = STRICT
     wall = around.added([stone])

@@ -3,7 +3,6 @@
 import numpy as np
 from hypothesis import strategies as st
 
-from drystone.kernels.raster import Mask
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
 from drystone.poses import PoseBook
@@ -18,21 +17,21 @@ _Y, _X = np.mgrid[-5:6, -13:14]
 PEBBLE = BOOK.pose(Stone(3, (_X / 13.5) ** 2 + (_Y / 5.5) ** 2 <= 1), 0.0)
 
 
-def ledge(height: int = 4, width: int = 14, site: tuple[int, int] = (24, 50)) -> Mask:
+def ledge(height=4, width=14, site=(24, 50)):
     """Ground with a step at the left."""
     occupied = np.zeros(site, bool)
     occupied[site[0] - height :, :width] = True
     return occupied
 
 
-def bar_on_the_ledge(occupied: Mask, book: PoseBook, col: int = 2, length: int = 30) -> Pose:
+def bar_on_the_ledge(occupied, book, col=2, length=30):
     """A bar that lies on the ledge and overhangs to the right."""
     posed = book.pose(Stone(7, np.ones((6, length), bool)), 0.0)
     top = int(np.flatnonzero(occupied[:, col])[0])
     return posed, top - 6, col
 
 
-def mirrored(occupied: Mask, pose: Pose, book: PoseBook) -> tuple[Mask, Pose]:
+def mirrored(occupied, pose, book):
     """The same scene with the stone's own mirror image, as another stone."""
     posed, row, col = pose
     other = book.pose(Stone(posed.stone.id + 1, posed.stone.mask[:, ::-1]), 0.0)
@@ -40,7 +39,7 @@ def mirrored(occupied: Mask, pose: Pose, book: PoseBook) -> tuple[Mask, Pose]:
 
 
 @st.composite
-def stairs(draw: st.DrawFn) -> tuple[Mask, Pose]:
+def stairs(draw):
     """Steps down from a pillar to one side, and a stone on top that overhangs them."""
     posed = draw(st.sampled_from([BAR, BLOCK, PEBBLE]))
     widths = draw(st.lists(st.integers(1, 9), min_size=4, max_size=8))
@@ -61,7 +60,7 @@ def stairs(draw: st.DrawFn) -> tuple[Mask, Pose]:
 
 
 @st.composite
-def high_walls(draw: st.DrawFn) -> list[Mask]:
+def high_walls(draw):
     """Walls of columns that are the same for some way down and differ further down."""
     steps = draw(st.lists(st.integers(0, 40), min_size=5, max_size=5))
     skyline = np.repeat(steps, draw(st.sampled_from([12, 13, 14])))

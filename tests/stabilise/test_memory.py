@@ -6,21 +6,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import drystone.stabilise.memory as memory_module
-from drystone.kernels.raster import Mask
-from drystone.model.pose import PosedStone
-from drystone.model.wall import Group, Wall
 from drystone.poses import PoseBook
 from drystone.stabilise.memory import StabiliseMemory
-from drystone.stabilise.settings import Method, StabiliseSettings
-from drystone.stabilise.stabilise import Outcome, WedgeStock, make_stable, stabilise
+from drystone.stabilise.settings import StabiliseSettings
+from drystone.stabilise.stabilise import WedgeStock, make_stable, stabilise
 from tests.naive.overlap import lowered, overlaps
-from tests.stabilise.scenes import BAR, BLOCK, BOOK, Pose, bar_on_the_ledge, high_walls, ledge
+from tests.stabilise.scenes import BAR, BLOCK, BOOK, bar_on_the_ledge, high_walls, ledge
 from tests.strategies import posed_on_walls, repeatable
 
 SETTINGS = StabiliseSettings()
 
 
-def told(outcome: Group | None) -> object:
+def told(outcome):
     """Everything that an outcome says, comparable."""
     if outcome is None:
         return None
@@ -29,9 +26,7 @@ def told(outcome: Group | None) -> object:
     return at.posed.mask.tobytes(), at.row, at.col, at.side, at.rotation_moves, wedges
 
 
-def afresh(
-    occupied: Mask, trial: Pose, settings: StabiliseSettings, mean_height_px: float = 12.0
-) -> Group | None:
+def afresh(occupied, trial, settings, mean_height_px=12.0):
     """Stabilise from the left in the window that reaches down to the ground, wedges from 50 on."""
     posed, row, col = trial
     reach = memory_module._reach_px(posed)
@@ -44,9 +39,7 @@ def afresh(
 
 @repeatable(80)
 @given(posed_on_walls())
-def test_on_a_site_within_the_window_it_is_stabilise_itself(
-    scene: tuple[Wall, PosedStone, int, int],
-) -> None:
+def test_on_a_site_within_the_window_it_is_stabilise_itself(scene):
     wall, posed, row, col = scene
     book = PoseBook()
     memory = StabiliseMemory(book, 12.0, SETTINGS)
@@ -61,15 +54,15 @@ def test_on_a_site_within_the_window_it_is_stabilise_itself(
     [("rotation", 15.0, 1.0), ("rotation", 70.0, 1.0), ("wedge", 0.0, 12.0), ("both", 30.0, 70.0)],
 )
 def test_walls_that_differ_far_below_are_told_apart_where_it_matters(
-    method: Method, max_turn_deg: float, mean_height_px: float
-) -> None:
+    method, max_turn_deg, mean_height_px
+):
     """One memory for all: what it remembers from one wall must hold in the next."""
     settings = StabiliseSettings(method=method, margin=0.1, max_turn_deg=max_turn_deg)
     memory = StabiliseMemory(BOOK, mean_height_px, settings)
 
     @repeatable(40)
     @given(walls=high_walls(), posed=st.sampled_from([BAR, BLOCK]), col=st.integers(0, 30))
-    def check(walls: list[Mask], posed: PosedStone, col: int) -> None:
+    def check(walls, posed, col):
         row = lowered(walls[0], posed.mask, col)
         for wall in walls:
             if row is None or overlaps(wall, posed.mask, row, col):
@@ -82,12 +75,12 @@ def test_walls_that_differ_far_below_are_told_apart_where_it_matters(
     assert len(memory._outcomes) > 10
 
 
-def worked_out(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+def worked_out(monkeypatch):
     """How deep was looked in each outcome that is worked out from now on."""
     depths = []
 
-    def counted(*arguments: object) -> Outcome:
-        outcome = make_stable(*arguments)  # type: ignore[arg-type]
+    def counted(*arguments):
+        outcome = make_stable(*arguments)
         depths.append(outcome.depth)
         return outcome
 
@@ -95,16 +88,14 @@ def worked_out(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     return depths
 
 
-def far_apart(offset: int) -> Mask:
+def far_apart(offset):
     """A ledge with much free ground to its left."""
     occupied = np.zeros((24, 200), bool)
     occupied[20:, offset : offset + 14] = True
     return occupied
 
 
-def test_the_same_surroundings_elsewhere_are_not_worked_out_again(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_the_same_surroundings_elsewhere_are_not_worked_out_again(monkeypatch):
     depths = worked_out(monkeypatch)
     book = PoseBook()
     memory = StabiliseMemory(book, 12.0, StabiliseSettings(method="wedge"))
@@ -112,8 +103,6 @@ def test_the_same_surroundings_elsewhere_are_not_worked_out_again(
     here = memory.stabilise(far_apart(60), (posed, row, 62), "left", 90)
     there = memory.stabilise(far_apart(100), (posed, row, 102), "right", 95)
     assert len(depths) == 1
-    assert here is not None
-    assert there is not None
     assert there.placement.col - here.placement.col == 40
     assert (here.placement.side, there.placement.side) == ("left", "right")
     assert there.wedges[0].col - here.wedges[0].col == 40
@@ -122,7 +111,7 @@ def test_the_same_surroundings_elsewhere_are_not_worked_out_again(
     assert len(depths) == 2, "another ledge is another scene"
 
 
-def test_the_place_in_a_window_that_is_cut_off_at_the_ends_matters() -> None:
+def test_the_place_in_a_window_that_is_cut_off_at_the_ends_matters():
     site = ledge(site=(24, 40))
     memory = StabiliseMemory(BOOK, 12.0, StabiliseSettings(method="wedge"))
     for col in (2, 4, 2, 6):
@@ -131,10 +120,9 @@ def test_the_place_in_a_window_that_is_cut_off_at_the_ends_matters() -> None:
         assert told(memory.stabilise(site, trial, "left", 50)) == told(expected)
 
 
-def test_two_wedges_have_ids_one_after_the_other() -> None:
+def test_two_wedges_have_ids_one_after_the_other():
     pillar = np.zeros((24, 50), bool)
     pillar[20:, 16:18] = True
     settings = StabiliseSettings(method="wedge", margin=0.1)
     found = StabiliseMemory(BOOK, 12.0, settings).stabilise(pillar, (BAR, 14, 2), "left", 70)
-    assert found is not None
     assert [wedge.id for wedge in found.wedges] == [70, 71]

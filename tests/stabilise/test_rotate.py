@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.raster import Mask
 from drystone.model.stone import Stone
 from drystone.poses import PoseBook
 from drystone.stabilise.rotate import rotate_to_rest
@@ -15,22 +14,24 @@ from drystone.stabilise.settings import StabiliseSettings
 from drystone.stabilise.support import support_polyline
 from tests.naive import support as naive
 from tests.naive.overlap import overlaps
-from tests.stabilise.scenes import BOOK, Pose, bar_on_the_ledge, ledge, mirrored, stairs
+from tests.stabilise.scenes import BOOK, bar_on_the_ledge, ledge, mirrored, stairs
 from tests.strategies import repeatable
 
 
-def rests(occupied: np.ndarray, pose: Pose) -> bool:
+def rests(occupied, pose):
     posed, row, col = pose
     return naive.rests_stably(occupied, posed.mask, row, col, col + posed.anchor[0], 0.0)
 
 
 @pytest.mark.parametrize("side", ["right", "left"])
-def test_an_overhanging_bar_turns_towards_its_fall_until_it_rests(side: str) -> None:
+def test_an_overhanging_bar_turns_towards_its_fall_until_it_rests(side):
     occupied = ledge()
     trial = bar_on_the_ledge(occupied, PoseBook())
     if side == "left":
         occupied, trial = mirrored(occupied, trial, PoseBook())
     assert not rests(occupied, trial)
+    nowhere = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings(max_pivots=0))
+    assert nowhere.pose is None
     result = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings())
     assert result.pose is not None
     turned, row, col = result.pose
@@ -44,13 +45,12 @@ def test_an_overhanging_bar_turns_towards_its_fall_until_it_rests(side: str) -> 
     lowest = row + turned.height_px
     assert lowest == occupied.shape[0]  # it stands on the ground and on the ledge's edge
     support = support_polyline(occupied, turned, row, col)
-    assert support is not None
     edge = support.left_x if side == "right" else occupied.shape[1] - support.right_x
     assert edge == pytest.approx(14, abs=6)  # a step of the turned edge lies on the ledge
 
 
 @pytest.mark.parametrize("side", ["right", "left"])
-def test_the_centroid_goes_round_the_end_of_the_support(side: str) -> None:
+def test_the_centroid_goes_round_the_end_of_the_support(side):
     occupied = ledge(height=4, width=14)
     trial = bar_on_the_ledge(occupied, PoseBook(), col=10)
     if side == "left":
@@ -71,19 +71,7 @@ def test_the_centroid_goes_round_the_end_of_the_support(side: str) -> None:
     assert height == pytest.approx(y, abs=1.6)
 
 
-def test_mirrored_scenes_have_mirrored_results() -> None:
-    occupied = ledge()
-    trial = bar_on_the_ledge(occupied, PoseBook())
-    other_side, other = mirrored(occupied, trial, PoseBook())
-    one = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings())
-    two = rotate_to_rest(other_side, other, PoseBook(), StabiliseSettings())
-    assert one.pose is not None
-    assert two.pose is not None
-    assert one.pose[0].angle_deg == -two.pose[0].angle_deg
-    assert one.pose[1] == pytest.approx(two.pose[1], abs=1)
-
-
-def test_a_stable_stone_is_left_alone() -> None:
+def test_a_stable_stone_is_left_alone():
     occupied = ledge()
     trial = bar_on_the_ledge(occupied, PoseBook(), col=0, length=20)
     result = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings())
@@ -101,31 +89,18 @@ def test_a_stable_stone_is_left_alone() -> None:
             StabiliseSettings(margin=0.1, max_turn_deg=70.0, step_deg=2.0),
             StabiliseSettings(max_turn_deg=40.0, max_pivots=2, new_pivot_px=0, max_shift_px=5),
             StabiliseSettings(new_pivot_px=60),
+            StabiliseSettings(max_turn_deg=5.0),
         ]
     ),
 )
-def test_it_turns_as_a_walk_from_angle_to_angle_does(
-    scene: tuple[Mask, Pose], settings: StabiliseSettings
-) -> None:
+def test_it_turns_as_a_walk_from_angle_to_angle_does(scene, settings):
     occupied, trial = scene
     result = rotate_to_rest(occupied, trial, BOOK, settings)
     expected = naive.rotated(occupied, trial, BOOK, settings)
     assert (result.pose and (result.pose, result.pivots)) == expected
 
 
-@pytest.mark.parametrize(
-    "limits", [{"max_turn_deg": 5.0}, {"max_pivots": 0}, {"max_turn_deg": 0.0}]
-)
-def test_limits_end_the_rotation(limits: dict[str, float]) -> None:
-    occupied = ledge()
-    trial = bar_on_the_ledge(occupied, PoseBook())
-    settings = StabiliseSettings(**limits)  # type: ignore[arg-type]
-    result = rotate_to_rest(occupied, trial, PoseBook(), settings)
-    assert result.pose is None
-    assert result.pivots <= settings.max_pivots
-
-
-def test_meeting_the_landscape_before_resting_ends_the_rotation() -> None:
+def test_meeting_the_landscape_before_resting_ends_the_rotation():
     occupied = ledge()
     posed, row, col = bar_on_the_ledge(occupied, PoseBook())
     occupied[: row + 4, col + posed.width_px :] = True  # a wall close to its free end
@@ -135,14 +110,7 @@ def test_meeting_the_landscape_before_resting_ends_the_rotation() -> None:
     assert rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings()).pose is None
 
 
-def test_it_never_leaves_the_site() -> None:
-    occupied = ledge(height=8, site=(24, 26))
-    trial = bar_on_the_ledge(occupied, PoseBook(), col=2, length=24)
-    pose = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings(max_turn_deg=60)).pose
-    assert pose is None or pose[2] + pose[0].width_px <= 26
-
-
-def test_a_stone_in_the_air_does_not_rest() -> None:
+def test_a_stone_in_the_air_does_not_rest():
     posed = PoseBook().pose(Stone(7, np.ones((6, 30), bool)), 0.0)
     result = rotate_to_rest(ledge(), (posed, 3, 10), PoseBook(), StabiliseSettings())
     assert result.pose is None

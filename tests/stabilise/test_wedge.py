@@ -4,21 +4,17 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from drystone.kernels.raster import Mask
-from drystone.model.placement import Wedge
 from drystone.model.stone import Stone
 from drystone.poses import PoseBook
 from drystone.stabilise.settings import StabiliseSettings
 from drystone.stabilise.stabilise import wedge_under
 from tests.naive import support as naive
-from tests.stabilise.scenes import Pose, bar_on_the_ledge, ledge, mirrored
+from tests.stabilise.scenes import bar_on_the_ledge, ledge, mirrored
 
 ID = 70_000
 
 
-def check_wedge(
-    occupied: Mask, pose: Pose, wedge: Wedge, largest_px: float, settings: StabiliseSettings
-) -> None:
+def check_wedge(occupied, pose, wedge, largest_px, settings):
     """What DESIGN 4.6 asks of a wedge."""
     posed, row, col = pose
     stone = np.zeros_like(occupied)
@@ -38,7 +34,7 @@ def check_wedge(
     assert wedge.mask.shape[1] >= settings.min_wedge_px
 
 
-def holds(occupied: Mask, pose: Pose, wedges: tuple[Wedge, ...], margin: float = 0.0) -> bool:
+def holds(occupied, pose, wedges, margin=0.0):
     posed, row, col = pose
     scene = occupied.copy()
     for wedge in wedges:
@@ -50,27 +46,25 @@ def holds(occupied: Mask, pose: Pose, wedges: tuple[Wedge, ...], margin: float =
 
 @pytest.mark.parametrize("side", ["right", "left"])
 @pytest.mark.parametrize("margin", [0.0, 0.1])
-def test_a_wedge_holds_an_overhanging_bar(side: str, margin: float) -> None:
+def test_a_wedge_holds_an_overhanging_bar(side, margin):
     occupied = ledge()
     trial = bar_on_the_ledge(occupied, PoseBook())
     if side == "left":
         occupied, trial = mirrored(occupied, trial, PoseBook())
     settings = StabiliseSettings(margin=margin)
     wedge = wedge_under(occupied, trial, ID, 12.0, settings)
-    assert wedge is not None
     assert wedge.id == ID
     check_wedge(occupied, trial, wedge, 6.0, settings)
     assert not holds(occupied, trial, (), margin)
     assert holds(occupied, trial, (wedge,), margin)
 
 
-def test_the_wedge_is_where_the_free_side_touches_first() -> None:
+def test_the_wedge_is_where_the_free_side_touches_first():
     occupied = ledge()
     occupied[-2:, 24:28] = True
     wedge = wedge_under(
         occupied, bar_on_the_ledge(occupied, PoseBook()), ID, 12.0, StabiliseSettings()
     )
-    assert wedge is not None
     assert (wedge.col, wedge.mask.shape) == (24, (2, 4))
 
 
@@ -86,29 +80,26 @@ def test_the_wedge_is_where_the_free_side_touches_first() -> None:
         (5, 10.0, 2, True),
     ],
 )
-def test_smallest_and_largest_size(height: int, mean: float, smallest: int, found: bool) -> None:
+def test_smallest_and_largest_size(height, mean, smallest, found):
     occupied = ledge(height=height)
     settings = StabiliseSettings(min_wedge_px=smallest)
     wedge = wedge_under(occupied, bar_on_the_ledge(occupied, PoseBook()), ID, mean, settings)
     assert (wedge is not None) is found
 
 
-def test_columns_that_do_not_help_are_not_wedged() -> None:
+def test_columns_that_do_not_help_are_not_wedged():
     """A low shelf just beside the support but short of the centre of mass holds nothing."""
     occupied = ledge()
     occupied[-2:, 14:16] = True
     trial = bar_on_the_ledge(occupied, PoseBook())
     wedge = wedge_under(occupied, trial, ID, 12.0, StabiliseSettings())
-    assert wedge is not None
     assert wedge.col + wedge.mask.shape[1] >= 17  # the centre of mass is at x = 17
     assert holds(occupied, trial, (wedge,))
 
 
 @pytest.mark.parametrize("side", ["right", "left"])
 @pytest.mark.parametrize(("shelf", "taken"), [((16, 18), (16, 18)), ((15, 18), (16, 18))])
-def test_the_column_at_the_centre_of_mass_is_the_first_that_helps(
-    side: str, shelf: tuple[int, int], taken: tuple[int, int]
-) -> None:
+def test_the_column_at_the_centre_of_mass_is_the_first_that_helps(side, shelf, taken):
     occupied = ledge()
     occupied[-2:, slice(*shelf)] = True
     trial = bar_on_the_ledge(occupied, PoseBook())
@@ -116,13 +107,12 @@ def test_the_column_at_the_centre_of_mass_is_the_first_that_helps(
         occupied, trial = mirrored(occupied, trial, PoseBook())
         taken = (50 - taken[1], 50 - taken[0])
     wedge = wedge_under(occupied, trial, ID, 12.0, StabiliseSettings())
-    assert wedge is not None
     assert (wedge.col, wedge.col + wedge.mask.shape[1]) == taken
     assert holds(occupied, trial, (wedge,))
 
 
 @pytest.mark.parametrize(("mean", "found"), [(12.0, False), (16.0, True)])
-def test_between_sloping_faces_the_whole_wedge_counts(mean: float, found: bool) -> None:
+def test_between_sloping_faces_the_whole_wedge_counts(mean, found):
     """Three pixels of gap, in a wedge of six columns that is eight pixels high."""
     bottoms = [12] * 4 + [2] * 10 + [4, 5, 6, 7, 8, 9]
     mask = np.arange(12)[:, None] < bottoms

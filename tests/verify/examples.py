@@ -9,7 +9,6 @@ from drystone.model.plan import Plan
 from drystone.model.site import Site
 from drystone.model.stone import Source, Stone, StoneSet
 from drystone.model.wall import Wall
-from drystone.planner.assemble import Frame
 from drystone.planner.events import Stopped
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
@@ -82,5 +81,5 @@ def plan_of(wall, stones, settings, heights):
     planner.restore(wall, heights)
     provenance = {"version": "0.1.0", "method": "custom", "seed": 1, "settings": settings.as_dict()}
     stopped = Stopped("stones", "all stones that fit are placed")
-    made = finish(planner, Frame(*WALL_PX, wall.site), stopped, provenance, 0.0)
+    made = finish(planner, stopped, provenance, 0.0)
     return Example(made.plan, stones, wall)

@@ -180,8 +180,7 @@ class Watch:
         for block, (x, y, turn) in zip(table.ids, poses.tolist(), strict=True):
             cos, sin = np.cos(turn), np.sin(turn)
             turned = self._arms[block] @ np.array([[cos, sin], [-sin, cos]])
-            centre = np.array([x, y]) * self._scene.length + (0.0, self._scene.ground_y)
-            found.append((block, turned + centre, turn))
+            found.append((block, turned + np.array([x, y]) * self._scene.length, turn))
         return found
 
 

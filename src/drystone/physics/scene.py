@@ -1,9 +1,8 @@
 """What is put on the tilting table: blocks by their outlines, and how the engine is driven."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
-from math import isfinite
 
 import numpy as np
 import shapely
@@ -21,21 +20,17 @@ class EngineScene:
     # of length.  Concave stones are welcome.
     outlines: Mapping[int, Points]
     mu: float = 0.58  # coefficient of friction of every pair, and of the ground
-    # Weight of a unit of area where it is not 1.
-    densities: Mapping[int, float] = field(default_factory=dict)
     fixed: frozenset[int] = frozenset()  # blocks that are part of the ground
-    ground_y: float = 0.0  # where the ground is
 
     def __post_init__(self) -> None:
         check_mu(self.mu)
         for block, shape in self.shapes.items():
-            density = self.density(block)
-            if shape.is_empty or not shape.is_valid or not (isfinite(density) and density > 0):
+            if shape.is_empty or not shape.is_valid:
                 raise InputError(
                     "E303",
-                    "its outline has no area or crosses itself, or its density is not above 0.",
+                    "its outline has no area or crosses itself.",
                     where=f"block {block}",
-                    cure="Correct its corners or its density.",
+                    cure="Correct its corners.",
                 )
         if not set(self.shapes) - self.fixed:
             raise InputError(
@@ -57,10 +52,6 @@ class EngineScene:
         """Mean square root of the areas of the free blocks: the unit of length of the engine."""
         free = [shape.area for block, shape in self.shapes.items() if block not in self.fixed]
         return float(np.sqrt(free).mean())
-
-    def density(self, block: int) -> float:
-        """Weight of a unit of area of a block."""
-        return self.densities.get(block, 1.0)
 
 
 @dataclass(frozen=True)

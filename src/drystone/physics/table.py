@@ -51,11 +51,11 @@ class TiltingTable:
         if block in scene.fixed:
             body = engine.Body(body_type=engine.Body.STATIC)
         else:
-            mass = shape.area / scene.length**2 * scene.density(block)
+            mass = shape.area / scene.length**2
             body = engine.Body(mass, engine.moment_for_poly(mass, corners.tolist()))
             self.ids += (block,)
             self._reaches = np.append(self._reaches, np.hypot(*corners.T).max())
-        body.position = tuple(((centre - (0.0, scene.ground_y)) / scene.length).tolist())
+        body.position = tuple((centre / scene.length).tolist())
         self._space.add(body)
         for part in convex_parts(corners):
             self._add_shape(body, part, scene.mu)

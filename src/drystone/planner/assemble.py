@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
@@ -21,45 +20,33 @@ from drystone.planner.workshop import Workshop
 from drystone.statics.result import LateralResistance
 
 
-@dataclass(frozen=True)
-class Frame:
-    """Lengths of the plan: the wall in source px, and how working px become plan units."""
-
-    # of the wall, source px
-    width: float
-    height: float
-    site: Site  # the same at the working resolution
-
-    def point(self, x: float, y: float) -> tuple[float, float]:
-        """Turn a point of the wall frame in working px into plan units."""
-        unit = self.site.units_per_px
-        return x * unit, y * unit
-
-    def source_point(self, x_px: float, y_px: float) -> tuple[float, float]:
-        """Turn a point of the wall frame in source px into plan units."""
-        px_per_m = self.site.px_per_m or 1.0
-        return x_px / px_per_m, y_px / px_per_m
-
-    def centroid(self, placement: Placement) -> tuple[float, float]:
-        """Return where the centroid of a stone is, in plan units."""
-        if placement.settled is not None:
-            return self.source_point(placement.settled.x_px, placement.settled.y_px)
-        return self.point(*placement.centroid(self.site.height_px))
-
-    def polygon(self, wedge: Wedge) -> tuple[tuple[float, float], ...]:
-        """Return the corners of a wedge, in plan units."""
-        if wedge.corners is not None:
-            return tuple(self.source_point(x, y) for x, y in wedge.corners.tolist())
-        bottom = self.site.height_px - wedge.row - wedge.mask.shape[0]
-        corners = pixel_polygon(wedge.mask) + np.array([wedge.col, bottom])
-        return tuple(self.point(float(x), float(y)) for x, y in corners)
+def _source_point(site: Site, x_px: float, y_px: float) -> tuple[float, float]:
+    """Turn a point of the wall frame in source px into plan units."""
+    px_per_m = site.px_per_m or 1.0
+    return x_px / px_per_m, y_px / px_per_m
 
 
-def plan_steps(
-    build: Build, frame: Frame, clusters: Mapping[int, int]
-) -> tuple[StoneStep | WedgeStep, ...]:
+def _centroid(placement: Placement, site: Site) -> tuple[float, float]:
+    """Return where the centroid of a stone is, in plan units."""
+    if placement.settled is not None:
+        return _source_point(site, placement.settled.x_px, placement.settled.y_px)
+    x, y = placement.centroid(site.height_px)
+    return x * site.units_per_px, y * site.units_per_px
+
+
+def _polygon(wedge: Wedge, site: Site) -> tuple[tuple[float, float], ...]:
+    """Return the corners of a wedge, in plan units."""
+    if wedge.corners is not None:
+        return tuple(_source_point(site, x, y) for x, y in wedge.corners.tolist())
+    bottom, unit = site.height_px - wedge.row - wedge.mask.shape[0], site.units_per_px
+    corners = pixel_polygon(wedge.mask) + np.array([wedge.col, bottom])
+    return tuple((float(x) * unit, float(y) * unit) for x, y in corners)
+
+
+def plan_steps(build: Build, clusters: Mapping[int, int]) -> tuple[StoneStep | WedgeStep, ...]:
     """Return the steps of a plan: each stone, right after it its wedges."""
     steps: list[StoneStep | WedgeStep] = []
+    site = build.wall.site
     for action in build.actions:
         placement, wedges = action.stabilised.placement, action.stabilised.wedges
         height = action.course_height_px
@@ -71,26 +58,25 @@ def plan_steps(
             stone=action.stone_id,
             angle_deg=placement.posed.angle_deg,
             source_centroid=placement.posed.stone.centroid,
-            centroid=frame.centroid(placement),
+            centroid=_centroid(placement, site),
             side=action.side,
             cluster=clusters[action.stone_id],
             rotation_moves=placement.rotation_moves,
             indices=action.indices.as_dict(),
-            course_height=None if height is None else height * frame.site.units_per_px,
+            course_height=None if height is None else height * site.units_per_px,
             alpha_left=left,
             alpha_right=right,
         )
         steps.append(stone)
         for index, wedge in enumerate(wedges, 1):
             left, right = alphas if index == len(wedges) else (None, None)
-            number, polygon = len(steps) + 1, frame.polygon(wedge)
+            number, polygon = len(steps) + 1, _polygon(wedge, site)
             steps.append(WedgeStep(number, wedge.id, wedge.under, polygon, left, right))
     return tuple(steps)
 
 
 def plan_metrics(
     build: Build,
-    frame: Frame,
     resistance: LateralResistance,
     others: Mapping[str, float | None] = MappingProxyType({}),
 ) -> PlanMetrics:
@@ -98,23 +84,23 @@ def plan_metrics(
 
     `others` are F_LR by other rules, by the names of :class:`drystone.model.plan.PlanMetrics`.
     """
-    scale = frame.site.scale
-    wall = build.wall
+    wall, site = build.wall, build.wall.site
     if not wall.groups:
         return PlanMetrics(0.0, None, None, None, 0.0, 0.0, None, None, 0.0)
+    width, height = site.extent_px
     measured = measure_labels(
         wall.labels,
         # Metres times px per metre leave rounding errors, which must not decide over a half px.
-        wall_px=(round(frame.width * scale, 9), round(frame.height * scale, 9)),
+        wall_px=(round(width * site.scale, 9), round(height * site.scale, 9)),
         wedge_ids=frozenset(wedge.id for wedge in wall.wedges),
-        stone_area_px=sum(p.posed.stone.area_px for p in wall.placements) * scale**2,
+        stone_area_px=sum(p.posed.stone.area_px for p in wall.placements) * site.scale**2,
         lateral_resistance=resistance.value,
     )
     figures: dict[str, Any] = {name: getattr(measured, name) for name in FIGURES}
     return PlanMetrics(
         alpha_left=resistance.left.alpha,
         alpha_right=resistance.right.alpha,
-        wedge_area=wedge_area(wall) / (frame.site.px_per_m or 1.0) ** 2,
+        wedge_area=wedge_area(wall) / (site.px_per_m or 1.0) ** 2,
         **(figures | dict(others)),
     )
 
@@ -129,7 +115,6 @@ def wedge_area(wall: Wall) -> float:
 
 def assemble_plan(
     workshop: Workshop,
-    frame: Frame,
     build: Build,
     stopped: Stopped,
     metrics: PlanMetrics,
@@ -151,18 +136,20 @@ def assemble_plan(
     if source.photograph:
         described["photograph"] = dict(source.photograph)
     placed = {action.stone_id for action in build.actions}
+    site = build.wall.site
+    width, height = _source_point(site, *site.extent_px)
     return Plan(
         version=provenance["version"],
         method=provenance["method"],
         seed=provenance["seed"],
         settings=provenance["settings"],
-        length_unit="m" if frame.site.px_per_m else "px",
-        px_per_m=frame.site.px_per_m,
-        working_scale=frame.site.scale,
+        length_unit="m" if site.px_per_m else "px",
+        px_per_m=site.px_per_m,
+        working_scale=site.scale,
         source=described,
-        width=frame.width / (frame.site.px_per_m or 1.0),
-        height=frame.height / (frame.site.px_per_m or 1.0),
-        steps=plan_steps(build, frame, workshop.clusters),
+        width=width,
+        height=height,
+        steps=plan_steps(build, workshop.clusters),
         unused=tuple(stone.id for stone in stones if stone.id not in placed),
         stopped=stopped.text,
         metrics=metrics,

@@ -18,7 +18,7 @@ from drystone.selection.algorithm2 import (
 from drystone.selection.policies.settings import PolicySettings
 from drystone.selection.policies.table1 import ENGINE
 from drystone.selection.policy import Policy, choice_of
-from drystone.selection.scored import ScoreSettings, cheapest_first
+from drystone.selection.scored import ScoreSettings
 
 EQUAL_GDS = 1e-9
 """Two winners' GDS within this are equal (DESIGN 4.7)."""
@@ -73,8 +73,9 @@ def choose_by_score(
     Proposals are analysed from the cheapest on, in batches, until enough of them stand, and one of
     these is sure.
     """
-    keys = [(p.stone_id, float(p.side != "left"), p.spot) for p in proposals]
-    order = cheapest_first([p.cost for p in proposals], keys)
+    order = sorted(
+        proposals, key=lambda p: (round(p.cost, 12), p.stone_id, p.side != "left", p.spot)
+    )
 
     def cost(candidate: Candidate) -> float:
         bonus = settings.llc * (candidate.indices.LLC or 0.0)
@@ -82,7 +83,7 @@ def choose_by_score(
 
     standing: list[Candidate] = []
     for start in range(0, len(order), settings.analysed):
-        batch = judge([proposals[k] for k in order[start : start + settings.analysed]])
+        batch = judge(order[start : start + settings.analysed])
         standing += [c for c in batch if c.stands]
         if len(standing) >= settings.analysed or start + settings.analysed >= len(order):
             compared, standing = standing[: settings.analysed], standing[settings.analysed :]

@@ -13,7 +13,7 @@ from drystone.errors import Notice
 from drystone.metrics.shape import top_profile
 from drystone.model.plan import Plan, PlanMetrics
 from drystone.model.wall import Wall
-from drystone.planner.assemble import Frame, assemble_plan, plan_metrics
+from drystone.planner.assemble import assemble_plan, plan_metrics
 from drystone.planner.build import Build
 from drystone.planner.deadline import NEVER, Deadline, TimeIsUp
 from drystone.planner.events import INTERRUPTED, Stopped
@@ -121,7 +121,6 @@ def provenance_of(settings: PlannerSettings, method: str, seed: int, budget: int
 
 def finish(
     planner: Planner,
-    frame: Frame,
     stopped: Stopped,
     provenance: Mapping[str, Any],
     seconds: float,
@@ -129,10 +128,11 @@ def finish(
 ) -> PlanResult:
     """Judge what a planner has built and write the plan."""
     build = planner.build
+    width, height = build.wall.site.extent_px
     resistance = lateral_resistance(build.model, mechanism=True)
     others = other_resistances(build, resistance, planner.settings, until)
-    metrics = plan_metrics(build, frame, resistance, others)
-    plan = assemble_plan(planner.workshop, frame, build, stopped, metrics, provenance)
+    metrics = plan_metrics(build, resistance, others)
+    plan = assemble_plan(planner.workshop, build, stopped, metrics, provenance)
     interrupted = stopped.reason == "interrupted"
     shortfall = "" if interrupted else _shortfall(planner, metrics)
     status = "interrupted" if interrupted else "incomplete" if shortfall else "complete"
@@ -148,7 +148,7 @@ def finish(
         resistance=resistance,
         clusters=planner.workshop.clusters,
         seconds=seconds,
-        F_SF_bound=min(1.0, usable_area_px(planner.workshop) / (frame.width * frame.height)),
+        F_SF_bound=min(1.0, usable_area_px(planner.workshop) / (width * height)),
         profile=planner.profile,
     )
 
@@ -175,9 +175,8 @@ def result_of(planner: Planner) -> PlanResult:
     ('interrupted', 2)
     """
     provenance = provenance_of(planner.settings, "custom", planner.seed, 1)
-    site = planner.build.wall.site
     stopped = planner.stopped or INTERRUPTED
-    result = finish(planner, Frame(*site.extent_px, site), stopped, provenance, 0.0)
+    result = finish(planner, stopped, provenance, 0.0)
     return replace(result, solves=planner.solves)
 
 

@@ -13,7 +13,6 @@ from drystone.errors import Notice, UsageError
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
-from drystone.planner.assemble import Frame
 from drystone.planner.deadline import Deadline, TimeIsUp
 from drystone.planner.events import INTERRUPTED, OUT_OF_TIME, Callbacks
 from drystone.planner.planner import Planner
@@ -206,8 +205,8 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
             where="--scale",
             cure="Give a share of the source resolution such as 0.5, or none to have it chosen.",
         )
-    frame = Frame(width, height, Site.from_source(width, height, scale, px_per_m))
-    asked = _PlanOrigin(frame, settings, method, seed, time.perf_counter())
+    site = Site.from_source(width, height, scale, px_per_m)
+    asked = _PlanOrigin(settings, method, seed, time.perf_counter())
     grace_s = max(1.0, GRACE * seconds)
     single = settings.search.budget == 1
     own = threads(n_jobs if executor is None and single else 1)
@@ -215,7 +214,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     try:
         with own as pool, processes(1 if single else n_jobs) as workers:
             first = Planner(
-                stones, frame.site, seed=seed, settings=settings,
+                stones, site, seed=seed, settings=settings,
                 executor=executor or pool, callbacks=callbacks,
             )  # fmt: skip
             if built is not None:
@@ -247,7 +246,6 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
 class _PlanOrigin:
     """What a plan says of how it was made."""
 
-    frame: Frame
     settings: PlannerSettings
     method: str
     seed: int
@@ -261,7 +259,7 @@ class _PlanOrigin:
     def plan(self, ended: SearchEnd, until: Deadline) -> PlanResult:
         """Judge the wall that a search ended with, and write its plan."""
         provenance = provenance_of(self.settings, self.method, self.seed, ended.walls)
-        return finish(ended.planner, self.frame, ended.stopped, provenance, self.took, until)
+        return finish(ended.planner, ended.stopped, provenance, self.took, until)
 
     def result(
         self,

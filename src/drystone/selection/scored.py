@@ -7,7 +7,6 @@ are analysed, and the lateral resistance counts as one more term.
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from operator import attrgetter
 
@@ -104,8 +103,3 @@ def craft_cost(craft: Craft, settings: ScoreSettings) -> float:
     costs = [weight * cost for weight, cost in zip(_costs(settings), _costs(craft), strict=True)]
     bonus = settings.area * craft.area, settings.thickness * craft.thickness
     return math.fsum([*costs, -bonus[0], -bonus[1]])
-
-
-def cheapest_first(costs: Sequence[float], keys: Sequence[tuple[float, ...]]) -> list[int]:
-    """Return the order of actions by cost; equal costs by their keys."""
-    return sorted(range(len(costs)), key=lambda k: (round(costs[k], 12), keys[k]))

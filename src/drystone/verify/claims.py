@@ -10,7 +10,7 @@ from drystone.model.landscape import Landscape
 from drystone.model.plan import Plan, PlanMetrics, StoneStep
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
-from drystone.planner.assemble import Frame, plan_metrics
+from drystone.planner.assemble import plan_metrics
 from drystone.planner.build import Build
 from drystone.planner.evaluate import action_indices
 from drystone.planner.settings import PlannerSettings
@@ -248,15 +248,13 @@ def check_indices(
     return problems
 
 
-def recompute_metrics(plan: Plan, replay: Replay, model: RigidBlockModel | None) -> PlanMetrics:
+def recompute_metrics(replay: Replay, model: RigidBlockModel | None) -> PlanMetrics:
     """Return the figures of merit of a wall that was rebuilt whole; no model is no stone."""
     model = model or RigidBlockModel((), (), replay.settings.mu)
-    source_px = plan.px_per_m or 1.0
-    frame = Frame(plan.width * source_px, plan.height * source_px, replay.site)
     build = Build(replay.wall, model)
     resistance = lateral_resistance(model)
     others = other_resistances(build, resistance, replay.settings)
-    return plan_metrics(build, frame, resistance, others)
+    return plan_metrics(build, resistance, others)
 
 
 def check_metrics(claimed: PlanMetrics, found: PlanMetrics) -> list[Problem]:

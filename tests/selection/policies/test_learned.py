@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -21,17 +20,17 @@ from tests.selection.offers import OFFER, offered
 RNG = np.random.default_rng(0)
 
 
-def row(name: str, *offers: Any) -> list[float]:
+def row(name, *offers):
     """Return one feature of some offers."""
     return [float(value) for value in features(offers)[:, FEATURES.index(name)]]
 
 
-def weighing(**weights: float) -> ValueModel:
+def weighing(**weights):
     """Return a model of some weights, the others 0."""
     return ValueModel(tuple(weights.get(name, 0.0) for name in FEATURES), {})
 
 
-def test_features_are_shares_of_wall_and_stone() -> None:
+def test_features_are_shares_of_wall_and_stone():
     # 100 x 40 wall; a stone of 10 x 4 on the ground, 10 px from the left end, borne all along.
     expected = {
         "LFR": 0.8, "GDS": 0.5, "NHR": 0.1, "IWR": 0.4, "IS": 0.0, "LLC": 0.5, "boundary": 0.0,
@@ -45,7 +44,7 @@ def test_features_are_shares_of_wall_and_stone() -> None:
     )
 
 
-def test_features_stay_within_their_bounds() -> None:
+def test_features_stay_within_their_bounds():
     wild = offered(
         indices={"NHR": 7.0, "LLC": 9.0, "IS": -1.0, "boundary": True},
         wedges=5, turned_deg=180.0, support_px=None, top_px=400.0,
@@ -57,7 +56,7 @@ def test_features_stay_within_their_bounds() -> None:
     assert row("IS", wild) == [-1.0]
 
 
-def test_room_for_half_a_stone_is_a_sliver() -> None:
+def test_room_for_half_a_stone_is_a_sliver():
     # A stone of 16 px area has a size of 4 px; the wall is 40 px high and 100 px wide.
     tops = [20.0, 36.0, 37.0, 38.0, 40.0]
     offers = [offered(1, area_px=16.0, top_px=top) for top in tops]
@@ -68,7 +67,7 @@ def test_room_for_half_a_stone_is_a_sliver() -> None:
     assert row("end_sliver", *ends) == [1.0, 0.5]
 
 
-def test_ranks_compare_with_the_others() -> None:
+def test_ranks_compare_with_the_others():
     low, high = offered(1, top_px=4.0), offered(2, top_px=8.0)
     highest = offered(3, top_px=9.0)
     assert row("top_rank", high, low, highest) == [0.5, 0.0, 1.0]
@@ -76,7 +75,7 @@ def test_ranks_compare_with_the_others() -> None:
     assert features([]).shape == (0, len(FEATURES))
 
 
-def test_the_largest_value_is_chosen() -> None:
+def test_the_largest_value_is_chosen():
     offers = [offered(1), offered(2, indices={"LFR": 0.9}), offered(3, indices={"LLC": 0.9})]
     assert learned(weighing(LFR=1.0)).choose(offers, RNG) == 1
     assert learned(weighing(LLC=1.0)).choose(offers, RNG) == 2
@@ -84,12 +83,12 @@ def test_the_largest_value_is_chosen() -> None:
     assert weighing(LFR=2.0).values(offers).tolist() == pytest.approx([1.6, 1.8, 1.6])
 
 
-def test_ties_go_to_the_lower_id_then_the_first() -> None:
+def test_ties_go_to_the_lower_id_then_the_first():
     offers = [offered(2), offered(1, angle_deg=90.0), offered(1, angle_deg=-90.0)]
     assert learned(weighing()).choose(offers, RNG) == 1
 
 
-def worse(**changes: Any) -> Any:
+def worse(**changes):
     indices = {"LFR": 0.5, "GDS": 0.2, "LLC": 0.1} | changes.pop("indices", {})
     return offered(1, indices=indices, **changes)
 
@@ -106,26 +105,26 @@ def worse(**changes: Any) -> Any:
         worse(bottom_px=20.0, top_px=24.0, centroid_px=(15.0, 22.0)),
     ],
 )  # fmt: skip
-def test_weights_of_the_package_prefer_low_tight_places(bad: Any) -> None:
+def test_weights_of_the_package_prefer_low_tight_places(bad):
     good = offered(1, indices={"LFR": 0.95, "GDS": 0.9, "LLC": 0.6})
     assert learned().choose([bad, good], RNG) == 1
     assert learned().choose([good, bad], RNG) == 0
 
 
-def test_file_is_read_as_it_was_written() -> None:
+def test_file_is_read_as_it_was_written():
     model = replace(weighing(LFR=0.1, top=-1 / 3), trained={"seed": 4})
     again = model_from_json(model.to_json(), "w.json")
     assert again == model
     assert again.to_json() == model.to_json()
 
 
-def test_weights_of_the_package_are_whole() -> None:
+def test_weights_of_the_package_are_whole():
     assert shipped_model() is shipped_model()
     assert len(shipped_model().weights) == len(FEATURES)
     assert any(shipped_model().weights)
 
 
-def edited(**changes: Any) -> str:
+def edited(**changes):
     return json.dumps(json.loads(shipped_model().to_json()) | changes)
 
 
@@ -141,7 +140,7 @@ def edited(**changes: Any) -> str:
         ("{}", "version None"),
     ],
 )
-def test_refuses_other_files(text: str, why: str) -> None:
+def test_refuses_other_files(text, why):
     with pytest.raises(UsageError, match=why) as caught:
         model_from_json(text, "w.json")
     assert caught.value.code == "E152"
@@ -149,6 +148,6 @@ def test_refuses_other_files(text: str, why: str) -> None:
 
 
 @pytest.mark.parametrize("weights", [(1.0,), (float("nan"),) * len(FEATURES)])
-def test_refuses_other_weights(weights: tuple[float, ...]) -> None:
+def test_refuses_other_weights(weights):
     with pytest.raises(ValueError, match="finite"):
         ValueModel(weights, {})

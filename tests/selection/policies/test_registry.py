@@ -1,8 +1,6 @@
 """Policies by name, also those of other packages."""
 
-from collections.abc import Callable
 from importlib.metadata import EntryPoint, EntryPoints
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,48 +10,45 @@ from drystone.selection.algorithm2 import SelectionSettings
 from drystone.selection.policies import registry
 from drystone.selection.policies.registry import BUILT_IN, GROUP, policy_named, rule_of
 from drystone.selection.policies.settings import PolicySettings
-from drystone.selection.policy import Policy
 from tests.selection.offers import offered
-
-Installed = Callable[..., None]
 
 
 class First:
     """A policy of another package."""
 
-    def choose(self, candidates: Any, rng: Any) -> int:  # noqa: ARG002
+    def choose(self, candidates, rng):  # noqa: ARG002
         return 0
 
 
 class NeedsMore(First):
-    def __init__(self, more: int) -> None: ...
+    def __init__(self, more): ...
 
 
 @pytest.fixture
-def installed(monkeypatch: pytest.MonkeyPatch) -> Installed:
+def installed(monkeypatch):
     """Pretend that packages with some entry points are installed."""
 
-    def install(*given: tuple[str, str]) -> None:
+    def install(*given):
         points = EntryPoints(EntryPoint(name, value, GROUP) for name, value in given)
         monkeypatch.setattr(registry, "entry_points", points.select)
 
     return install
 
 
-def named(name: str) -> Policy:
+def named(name):
     return policy_named(name, PolicySettings(), SelectionSettings())
 
 
 HERE = __name__
 
 
-def test_those_built_in_are_there(installed: Installed) -> None:
+def test_those_built_in_are_there(installed):
     installed()
     assert [rule_of(name) for name in BUILT_IN] == list(BUILT_IN)
     assert rule_of("paper") == "algorithm2"
 
 
-def test_one_of_another_package_is_made_anew(installed: Installed) -> None:
+def test_one_of_another_package_is_made_anew(installed):
     installed(("first", f"{HERE}:First"), ("other", "nowhere:Other"))
     assert rule_of("first") == "first"
     policy = named("first")
@@ -63,7 +58,7 @@ def test_one_of_another_package_is_made_anew(installed: Installed) -> None:
 
 
 @pytest.mark.parametrize("name", ["fist", "algorithm2", "score", "First", " "])
-def test_unknown_ones_are_refused_with_the_known_ones(name: str, installed: Installed) -> None:
+def test_unknown_ones_are_refused_with_the_known_ones(name, installed):
     installed(("first", f"{HERE}:First"), ("score", f"{HERE}:First"), ("paper", f"{HERE}:First"))
     for find in (rule_of, named):
         with pytest.raises(UsageError, match="E146") as caught:
@@ -74,7 +69,7 @@ def test_unknown_ones_are_refused_with_the_known_ones(name: str, installed: Inst
         assert caught.value.cure == f"{asked}Choose one of {known}"
 
 
-def test_names_of_ours_cannot_be_taken(installed: Installed) -> None:
+def test_names_of_ours_cannot_be_taken(installed):
     installed(("random", f"{HERE}:First"))
     assert type(named("random")).__module__.startswith("drystone.")
     with pytest.raises(UsageError, match="E146"):
@@ -91,14 +86,14 @@ def test_names_of_ours_cannot_be_taken(installed: Installed) -> None:
         ("builtins:dict", "has no method `choose`"),
     ],
 )
-def test_broken_ones_are_named(value: str, said: str, installed: Installed) -> None:
+def test_broken_ones_are_named(value, said, installed):
     installed(("mine", value))
     with pytest.raises(UsageError, match="E147 --policy: the policy 'mine' ") as caught:
         named("mine")
     assert said in caught.value.what
 
 
-def test_a_name_in_two_packages_is_refused(installed: Installed) -> None:
+def test_a_name_in_two_packages_is_refused(installed):
     installed(("mine", f"{HERE}:First"), ("mine", "other:First"))
     with pytest.raises(UsageError, match=r"E147 .*several packages.*other:First"):
         named("mine")

@@ -1,8 +1,5 @@
 """The systems of Table 1: seven different choices, each with switches for what it looks at."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 import pytest
 
@@ -12,7 +9,7 @@ from drystone.selection.policies.settings import PolicySettings
 from drystone.selection.policies.table1 import MARKS
 from tests.selection.offers import offered
 
-BETTER: Mapping[str, dict[str, Any]] = {
+BETTER = {
     "packing": {"indices": {"LFR": 0.95}},
     "course": {"indices": {"NHR": 0.0}},
     "interlocking": {"indices": {"IWR": 0.9}, "touches": (5, 6, 7)},
@@ -24,14 +21,14 @@ BETTER: Mapping[str, dict[str, Any]] = {
 """What makes an offer better in a component."""
 
 
-def chosen(name: str, *offers: Any, **switches: bool) -> int | None:
+def chosen(name, *offers, **switches):
     policy = policy_named(name, PolicySettings(**switches), SelectionSettings())
     return policy.choose(offers, np.random.default_rng(0))
 
 
 @pytest.mark.parametrize("name", ["johns", "lambert", "liu2021", "thangavelu"])
 @pytest.mark.parametrize("part", BETTER)
-def test_a_policy_looks_at_its_components_and_at_no_others(name: str, part: str) -> None:
+def test_a_policy_looks_at_its_components_and_at_no_others(name, part):
     end = {"boundary": True} if part == "sloping" else {}
     # The other one is lower, which decides where no component does.
     worse = {"turned_deg": 5.0, "support_px": ((14.0, 0.0), (16.0, 0.0))}
@@ -42,14 +39,14 @@ def test_a_policy_looks_at_its_components_and_at_no_others(name: str, part: str)
     assert chosen(name, plain, better, **{part: False}) == 0
 
 
-def test_thangavelu_counts_the_stones_that_are_touched() -> None:
+def test_thangavelu_counts_the_stones_that_are_touched():
     bonded = offered(1, indices={"IWR": 1.0}, touches=(4,))
     touching = offered(2, indices={"IWR": 0.0}, touches=(4, 5))
     assert chosen("thangavelu", bonded, touching) == 1
     assert chosen("liu2021", bonded, touching) == 0
 
 
-def test_learned_values_leave_out_what_a_system_does_not_have() -> None:
+def test_learned_values_leave_out_what_a_system_does_not_have():
     plain, strong = offered(1), offered(2, indices={"LLC": 0.9})
     assert chosen("liu2018", plain, strong) == 1
     assert chosen("menezes", plain, strong) == chosen("liu2018", plain, strong, lateral=False) == 0
