@@ -22,7 +22,7 @@ from drystone.drawing.photo import read_photo
 from drystone.drawing.pictures.mechanism import motion_of
 from drystone.drawing.sheet.words import beside_words, step_words, turn_words
 from drystone.drawing.words import content
-from drystone.drawing.words.analysis import ModelledWall
+from drystone.drawing.words.analysis import STONES, ModelledWall
 from drystone.drawing.words.content import masons_words
 from drystone.drawing.words.wall_verdict import WallVerdict, judge_wall
 from drystone.errors import Notice, counted
@@ -49,7 +49,6 @@ OUTCOMES = {
     LimitStatus.FAILED: "The analysis has no answer that could be certified.",
     LimitStatus.UNBOUNDED: "No load in this direction brings it down.",
 }
-STONES = Names("stone")
 PATTERNS = ("none", "rising", "falling", "dots", "level", "upright", "crossed", "grid")
 """Clusters that are apart in their colour only by a little are apart in their pattern."""
 
