@@ -2,7 +2,6 @@
 
 import json
 import os
-from pathlib import Path
 
 import pytest
 
@@ -53,12 +52,9 @@ def test_pipes_are_not_waited_for(command, tmp_path, run, rubble):
         assert (ran.code, "E128" in ran.err) == (3, True)
 
 
-@pytest.mark.parametrize("command", ["check", "measure", "analyse", "craft", "export"])
-@pytest.mark.parametrize("made", ["plan_copy", "settled_copy"])
-def test_a_byte_order_mark_is_no_fault(command, made, tmp_path, run, request):
-    plan: Path = request.getfixturevalue(made)
-    for path in plan.glob("*.json"):
+def test_a_byte_order_mark_is_no_fault(settled_copy, run):
+    for path in settled_copy.glob("*.json"):
         path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
-    more = ("--to", "csv", "-o", tmp_path / "out") if command == "export" else ()
-    ran = run(command, plan, *more)
-    assert ran.code == 0, ran.err
+    for command in ("check", "measure"):
+        ran = run(command, settled_copy)
+        assert ran.code == 0, ran.err

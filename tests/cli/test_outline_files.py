@@ -45,21 +45,20 @@ def coco(folder):
 
 
 @pytest.mark.parametrize(
-    "options", [[], ["--px-per-m", "800"], ["--unit", "mm"], ["--up", "z-back"]]
+    "reading", [{}, {"px_per_m": 800.0, "unit": "mm", "up": "z-back"}], ids=["plain", "told"]
 )
-def test_a_drawing_has_a_scale_and_its_plan_holds(tmp_path, run, options):
+def test_a_drawing_has_a_scale_and_its_plan_holds(tmp_path, run, reading):
     path = dxf(tmp_path)
     said = run("stones", path).out
     assert "2100 px a metre" in said
     assert "W119 the longer side of the median stone is 0.078 m" in said
     out = tmp_path / "out"
+    options = [word for n, value in reading.items() for word in (f"--{n.replace('_', '-')}", value)]
     ran = run("plan", path, "--wall", "0.25mx0.12m", *options, *QUICK, "-o", out)
     assert ran.code in (0, 4), ran.err
     plan = read_plan(out)
-    assert plan.length_unit == "m"
-    assert plan.px_per_m == (800.0 if "--px-per-m" in options else 2100.0)
-    given = {"--px-per-m": {"px_per_m": 800.0}, "--unit": {"unit": "mm"}, "--up": {"up": "z-back"}}
-    assert plan.source.get("reading", {}) == given.get(options[0] if options else "", {})
+    assert (plan.length_unit, plan.px_per_m) == ("m", reading.get("px_per_m", 2100.0))
+    assert plan.source.get("reading", {}) == reading
     assert run("check", out, "--json").json()["ok"]
     path.rename(tmp_path / "moved.dxf")
     assert run("check", out, "--stones", tmp_path / "moved.dxf", "--json").json()["ok"]

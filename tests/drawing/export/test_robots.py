@@ -21,7 +21,7 @@ from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.drawing.export.solids import inertia, material, solid_of_part
 from drystone.drawing.palette import WEDGE_COLOUR, cluster_colour, rgb
-from tests.drawing.export.robot_plans import METRIC, THICKNESS_M, assembly, assert_in_place
+from tests.drawing.export.robot_plans import THICKNESS_M, assembly, assert_in_place
 
 SETTINGS = ExportSettings()
 Meshes = Iterator[tuple[str, Any]]
@@ -155,10 +155,9 @@ def exact() -> Assembly:
     return assembly("exact")
 
 
-@pytest.mark.parametrize("name", METRIC)
 @pytest.mark.parametrize("reader", READERS)
-def test_every_part_is_closed_and_at_its_place_in_order(reader, name, tmp_path) -> None:
-    wall, (written, read, off) = assembly(name), READERS[reader]
+def test_every_part_is_closed_and_at_its_place_in_order(reader, exact, tmp_path) -> None:
+    wall, (written, read, off) = exact, READERS[reader]
     found = list(read(FORMATS[written].write(wall, tmp_path, SETTINGS)))
     order = [part.name for part in wall.parts]
     names = [one for one, _ in found]
@@ -207,14 +206,12 @@ def test_nodes_of_glb_have_the_poses_steps_and_colours_of_the_wall(exact, tmp_pa
         assert factor == pytest.approx([*light, 1.0], abs=0.003)
 
 
-@pytest.mark.parametrize("name", METRIC)
-def test_frames_of_compas_are_those_of_the_poses(name, tmp_path) -> None:
-    wall = assembly(name)
-    (path,) = FORMATS["compas"].write(wall, tmp_path, SETTINGS)
+def test_frames_of_compas_are_those_of_the_poses(exact, tmp_path) -> None:
+    (path,) = FORMATS["compas"].write(exact, tmp_path, SETTINGS)
     read = compas.json_load(str(path))
-    for element, part in zip(read["elements"], wall.parts, strict=True):
-        pairs = ((element["place"], wall.place_pose(part)), (element["pick"], wall.pick_pose(part)))
-        for frame, pose in pairs:
+    for element, part in zip(read["elements"], exact.parts, strict=True):
+        poses = exact.place_pose(part), exact.pick_pose(part)
+        for frame, pose in zip((element["place"], element["pick"]), poses, strict=True):
             if pose is None:
                 assert frame is None
                 continue

@@ -9,11 +9,11 @@ import pytest
 from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.drawing.sheet.pages import (
     DRAWING_MM,
+    BuildSheet,
     Scale,
     drawn_factor,
     in_photo_order,
     paper_scale,
-    sheet,
 )
 from drystone.drawing.sheet.words import (
     beside,
@@ -158,7 +158,7 @@ def test_no_words_of_the_first_page_lie_over_others_or_the_wall(px_per_m) -> Non
     width, height = wall.size
     scale = Scale(None, min(DRAWING_MM[0] / width, DRAWING_MM[1] / height))
     settings = ExportSettings(title=300 * "W", paper_scale=1000.0 / scale.mm_per_unit)
-    page = sheet(wall, settings, None)[0]
+    page = BuildSheet(wall, settings, None).pages()[0]
     frame = next(patch for patch in page.ax.patches if patch.get_gid() == "frame")
     inside, paper = frame.get_window_extent(), page.ax.get_window_extent()
     # Numbers of steps alone have a halo, and stand in the frame.

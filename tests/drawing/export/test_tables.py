@@ -12,23 +12,20 @@ from pyarrow import parquet
 
 from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.model.plan import StoneStep
-from tests.drawing.export.robot_plans import METRIC, PX_PER_M, THICKNESS_M, assembly
+from tests.drawing.export.robot_plans import PX_PER_M, THICKNESS_M, assembly
 
 SETTINGS = ExportSettings()
 
 
-def rows(name: str, folder: Path, px_per_m: float | None = PX_PER_M) -> list[dict[str, str]]:
-    wall = assembly(name, px_per_m)
-    (path,) = FORMATS["csv"].write(wall, folder, SETTINGS)
+def rows(folder: Path, px_per_m: float | None = PX_PER_M) -> list[dict[str, str]]:
+    (path,) = FORMATS["csv"].write(assembly("exact", px_per_m), folder, SETTINGS)
     assert b"\r" not in path.read_bytes()
     with path.open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
-@pytest.mark.parametrize("name", METRIC)
-def test_a_row_a_step_in_metres(name: str, tmp_path: Path) -> None:
-    wall = assembly(name)
-    found = rows(name, tmp_path)
+def test_a_row_a_step_in_metres(tmp_path: Path) -> None:
+    wall, found = assembly("exact"), rows(tmp_path)
     assert [row["name"] for row in found] == [part.name for part in wall.parts]
     for row, part in zip(found, wall.parts, strict=True):
         step = part.plan_step
@@ -52,8 +49,7 @@ def test_a_row_a_step_in_metres(name: str, tmp_path: Path) -> None:
 
 
 def test_without_a_scale_lengths_are_px_and_masses_are_missing(tmp_path: Path) -> None:
-    found = rows("exact", tmp_path, None)
-    metric = rows("exact", tmp_path)
+    found, metric = rows(tmp_path, None), rows(tmp_path)
     assert {"x_px", "y_px", "width_px", "height_px", "area_px2"} <= set(found[0])
     assert not any(name.endswith(("_m", "_m2")) for name in found[0])
     for row, other in zip(found, metric, strict=True):
@@ -64,7 +60,7 @@ def test_without_a_scale_lengths_are_px_and_masses_are_missing(tmp_path: Path) -
 
 
 def test_instructions_say_what_to_do(tmp_path: Path) -> None:
-    found = {row["name"]: row["instruction"] for row in rows("exact", tmp_path, None)}
+    found = {row["name"]: row["instruction"] for row in rows(tmp_path, None)}
     for name, words in (
         ("stone_004", "Set stone 4 (half turn), its middle "), ("wedge_010", "Push wedge 10 in "),
         ("stone_001", "Set stone 1 (turn left 166°), "), ("stone_005", "Set stone 5 (as it lies)"),
@@ -77,8 +73,8 @@ def test_all_hold_what_the_csv_holds(px_per_m: float | None, tmp_path: Path) -> 
     wall = assembly("exact", px_per_m)
     (path,) = FORMATS["parquet"].write(wall, tmp_path, SETTINGS)
     found = parquet.read_table(path).to_pylist()
-    shapes = written("exact", tmp_path, px_per_m)["features"]
-    listed = rows("exact", tmp_path, px_per_m)
+    shapes = written(tmp_path, px_per_m)["features"]
+    listed = rows(tmp_path, px_per_m)
     for one, shape, row in zip(found, shapes, listed, strict=True):
         assert shape["properties"] == one
         assert list(one) == list(row)
@@ -100,19 +96,17 @@ def test_all_hold_what_the_csv_holds(px_per_m: float | None, tmp_path: Path) -> 
     assert (said["unit"], said["px_per_m"], said["density_kg_m3"]) == told
 
 
-def written(name: str, folder: Path, px_per_m: float | None = PX_PER_M) -> dict[str, Any]:
-    wall = assembly(name, px_per_m)
-    (path,) = FORMATS["geojson"].write(wall, folder, SETTINGS)
+def written(folder: Path, px_per_m: float | None) -> dict[str, Any]:
+    (path,) = FORMATS["geojson"].write(assembly("exact", px_per_m), folder, SETTINGS)
     read: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     return read
 
 
-@pytest.mark.parametrize("name", METRIC)
-@pytest.mark.parametrize("px_per_m", [PX_PER_M, None])
-def test_polygons_are_closed_counter_clockwise_and_of_the_right_area(
-    name: str, px_per_m: float | None, tmp_path: Path
-) -> None:
-    wall, read = assembly(name, px_per_m), written(name, tmp_path, px_per_m)
+@pytest.mark.parametrize(
+    ("px_per_m", "unit", "factor"), [(PX_PER_M, "m", 1 / PX_PER_M), (None, "px", 1)]
+)
+def test_polygons_are_closed_and_those_of_the_parts(px_per_m, unit, factor, tmp_path: Path) -> None:
+    wall, read = assembly("exact", px_per_m), written(tmp_path, px_per_m)
     shapes = shapely.get_parts(shapely.from_geojson(json.dumps(read)))
     areas = {block.id: block.area for block in wall.model.blocks}
     assert len(shapes) == len(read["features"]) == len(wall.parts)
@@ -122,15 +116,8 @@ def test_polygons_are_closed_counter_clockwise_and_of_the_right_area(
         assert shape.is_valid
         assert shape.exterior.is_ccw
         assert shape.area == pytest.approx(areas[part.id], rel=1e-9)
-        assert shape.area == pytest.approx(feature["properties"][f"area_{wall.unit}2"], rel=1e-9)
+        assert shape.area == pytest.approx(feature["properties"][f"area_{unit}2"], rel=1e-9)
         assert feature["id"] == feature["properties"]["name"] == part.name
-
-
-def test_unit_and_frame_are_said(tmp_path: Path) -> None:
-    read = written("exact", tmp_path)
-    assert (read["type"], read["unit"], read["px_per_m"]) == ("FeatureCollection", "m", PX_PER_M)
+    assert (read["type"], read["unit"], read["px_per_m"]) == ("FeatureCollection", unit, px_per_m)
     assert "not longitude" in read["frame"]
-    assert read["wall"]["width"] == pytest.approx(110 / PX_PER_M)
-    read = written("exact", tmp_path, None)
-    assert (read["unit"], read["px_per_m"]) == ("px", None)
-    assert read["wall"] == {"width": 110.0, "height": 40.0}
+    assert read["wall"] == pytest.approx({"width": 110 * factor, "height": 40 * factor})

@@ -21,6 +21,7 @@ from drystone.drawing.report.viewer_data import PATTERNS
 from drystone.drawing.words.content import ResultCard, masons_words
 from drystone.io.published import SETS
 from drystone.model.plan import StoneStep
+from drystone.statics.failing.mechanism import Names
 from drystone.statics.limit import lateral_resistance
 from tests.drawing.report.walls import result, written
 
@@ -184,7 +185,7 @@ def test_what_is_not_planned_is_shown_too():
     cards = [ResultCard("F_AV", "Interlocking", "33.30 %", "higher", "words")]
     shown = view_of_wall(
         labels, model, lateral_resistance(model, mechanism=True),
-        title="three <b>blocks</b>", cards=cards, wedges=[12], settings={"a": {"b": 1}},
+        title="three <b>blocks</b>", cards=cards, names=Names("stone", frozenset([12])),
     )  # fmt: skip
     assert shown["steps"] == 0
     assert shown["summary"].startswith("2 stones, stands; falls when tilted by 30 degrees; weakest")
@@ -194,7 +195,6 @@ def test_what_is_not_planned_is_shown_too():
     assert shown["parts"][2]["neighbours"] == [7, 9]
     assert shown["parts"][0]["neighbours"] == [0, 9, 12]
     assert polygon(shown["parts"][0]).bounds == (5.0, 0.0, 25.0, 20.0)
-    assert shown["settings"] == [["a.b", "1"]]
     said = {card["name"]: card for card in shown["metrics"]}
     masons = "23.8 to 33.9 % in three walls of masons, of other stones"
     assert said["Interlocking"]["masons"] == masons
@@ -207,9 +207,8 @@ def test_a_wall_that_falls_has_a_mechanism_without_a_load(tmp_path):
     model = model_from_json({"blocks_xywh": [[0, 0, 2, 1], [1.5, 1, 4, 1]]})
     low, high = shapely.box(0, 0, 2, 1), shapely.box(1.5, 1, 5.5, 2)
     wall = {1: np.array(low.exterior.coords), 2: np.array(high.exterior.coords)}
-    shown = view_of_wall(
-        wall, model, lateral_resistance(model, mechanism=True), noun="block", unit="units"
-    )
+    resistance = lateral_resistance(model, mechanism=True)
+    shown = view_of_wall(wall, model, resistance, names=Names("block"), unit="units")
     found = shown["mechanisms"]["left"]
     assert (found["status"], found["alpha"]) == ("unstable", None)
     assert found["words"].startswith("It does not stand under its own weight. ")

@@ -20,7 +20,7 @@ from drystone.drawing.lettering import one_line
 from drystone.drawing.photo import read_photo
 from drystone.drawing.pictures.forces import JOINT, LONGEST_SHARE, RESULTANT, resultants
 from drystone.drawing.pictures.mechanism import motion_of
-from drystone.drawing.sheet.pages import sheet
+from drystone.drawing.sheet.pages import BuildSheet
 from drystone.drawing.wall import drawing_of_assembly
 from drystone.statics.result import LimitResult
 
@@ -69,7 +69,7 @@ def png(assembly: Assembly, settings: ExportSettings) -> Files:
 
 def pdf(assembly: Assembly, settings: ExportSettings) -> Files:
     """Return build-sheet.pdf; E189 when the photograph of the stones cannot be used."""
-    pages = sheet(assembly, settings, read_photo(assembly))
+    pages = BuildSheet(assembly, settings, read_photo(assembly)).pages()
     return {"build-sheet.pdf": pdf_bytes(page.figure for page in pages)}
 
 

@@ -1,6 +1,7 @@
 """A wall that was analysed: pictures, and the report with the wall to look around in."""
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 from typing import Literal
@@ -86,11 +87,11 @@ def _write_report(folder: Path, card: Card, loads: Loads, per_unit_m: float | No
     rows = [*_full_names(card.rows()), *friction]
     cite = CITATION.format(version=version("drystone"), sha256=card.sha256)
     view = view_of_wall(
-        shapes, model, resistance, title="Limit analysis of a wall", unit=unit,
-        noun=wall.names.noun, wedges=wall.names.wedges, steps=wall.names.steps,
-        cards=_cards(card), inputs=[*rows, ("cite", cite)],
-        notices=wall.notices, load_case=card.load_case, without_dilatancy=card.alphas_by_coulomb,
+        shapes, model, resistance, title="Limit analysis of a wall", unit=unit, names=wall.names,
+        cards=_cards(card), load_case=card.load_case, without_dilatancy=card.alphas_by_coulomb,
     )  # fmt: skip
+    view["inputs"] = [list(row) for row in (*rows, ("cite", cite))]
+    view["notices"] = [asdict(notice) for notice in wall.notices]
     write_report(folder / REPORT, view, pictures=folder)
 
 

@@ -4,7 +4,7 @@ Lengths are in ``unit``, x to the right (from the left end of a plan, else as in
 model) and y up from the ground.
 """
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
@@ -22,7 +22,7 @@ from drystone.drawing.photo import read_photo
 from drystone.drawing.pictures.mechanism import motion_of
 from drystone.drawing.sheet.words import beside_words, step_words, turn_words
 from drystone.drawing.words import content
-from drystone.drawing.words.analysis import ModelledWall
+from drystone.drawing.words.analysis import STONES, ModelledWall
 from drystone.drawing.words.content import masons_words
 from drystone.drawing.words.wall_verdict import WallVerdict, judge_wall
 from drystone.errors import Notice, counted
@@ -30,7 +30,7 @@ from drystone.io.plan_json import plan_digest
 from drystone.kernels.polygons import Points
 from drystone.model.plan import Plan, Point, StoneStep
 from drystone.model.wall import Labels
-from drystone.statics.failing.mechanism import Failure, Names, Noun
+from drystone.statics.failing.mechanism import Failure, Names
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 
@@ -93,52 +93,46 @@ def view_of_assembly(
     # The wall as ordered, and all that sticks out of it.
     corners = np.concatenate([[(0.0, 0.0), assembly.size], *shapes.values()])
     return _view(
-        wall, assembly.resistance, verdict, digits,
+        wall, assembly.resistance, verdict, digits, cards,
+        {part.id: part.centroid for part in assembly.parts}, plan=plan,
         title=f"Dry-stone wall from {content.source_name(plan) or 'stones'}", unit=assembly.unit,
-        size=assembly.size, box=(*corners.min(axis=0), *corners.max(axis=0)),
-        parts=_planned_parts(assembly, digits),
-        centroids={part.id: part.centroid for part in assembly.parts},
-        timings=timings, cards=cards, inputs=content.inputs(plan), settings=plan.settings,
-        assumptions=content.assumptions(plan), plan=plan,
+        size=rounded(assembly.size, digits),
+        box=rounded((*corners.min(axis=0), *corners.max(axis=0)), digits),
+        parts=_planned_parts(assembly, digits), inputs=[list(one) for one in content.inputs(plan)],
+        timings=[[name, round(seconds, 3)] for name, seconds in (timings or {}).items()],
+        settings=[list(pair) for pair in content.flat_settings(plan.settings)],
+        assumptions=content.assumptions(plan),
     )  # fmt: skip
 
 
-def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
+def view_of_wall(
     wall: Labels | Mapping[int, NDArray[np.float64]],
     model: RigidBlockModel,
     resistance: LateralResistance,
     *,
     title: str = "Wall",
     unit: Literal["px", "m", "units"] = "px",
-    noun: Noun = "stone",
-    wedges: Collection[int] = (),
-    steps: Mapping[int, int] | None = None,
+    names: Names = STONES,
     cards: Iterable[content.ResultCard] = (),
-    inputs: Iterable[tuple[str, str]] = (),
-    settings: Mapping[str, Any] | None = None,
-    notices: Sequence[Notice] = (),
-    timings: Mapping[str, float] | None = None,
     load_case: str = content.TILTING,
-    assumptions: Sequence[str] | None = None,
     without_dilatancy: Mapping[str, float | None] = MappingProxyType({}),
 ) -> ViewerData:
     """Show a wall that was not planned: its blocks have ids and no steps.
 
     `wall` is what the blocks look like in the frame of the model: a label image, row 0 at the top,
-    or polygons by id.  Lengths in "units" are those of a block model that says no other; `steps` of
-    a plan, by id, are named in words.  `cards` are further results, after those of the strength,
-    of a wall that stands; `inputs` what the analysis was made from.  `load_case` is the name of its
-    loads, whose assumptions are said where there are none; `without_dilatancy` has load multipliers
-    by Coulomb's law, to the "left" and "right", where they are known.
+    or polygons by id.  Lengths in "units" are those of a block model that says no other; `names`
+    say what its blocks are called, and which of them are wedges.  `cards` are further results,
+    after those of the strength, of a wall that stands.  `load_case` is the name of its loads;
+    `without_dilatancy` has load multipliers by Coulomb's law, to the "left" and "right", where they
+    are known.
 
-    The view is as of a plan, with 0 ``steps``.
+    The view is as of a plan, with 0 ``steps``; what it was made from is for whoever knows.
     """
     regions = wall_regions(wall)
     x0, y0, x1, y1 = regions_box(region.loops for region in regions)
     size = (x1 - x0, y1 - min(y0, 0.0))
     digits = part_digits(size)
-    names = Names(noun, frozenset(wedges), steps or {})
-    shown = ModelledWall(model, wall, names, tuple(notices))
+    shown = ModelledWall(model, wall, names)
     count = sum(region.id not in names.wedges for region in regions)
     verdict = judge_wall(counted(count, names.noun), shown, resistance, load_case=load_case,
                          without_dilatancy=without_dilatancy)  # fmt: skip
@@ -147,8 +141,6 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
                                 load_case=load_case),
         *cards,
     )  # fmt: skip
-    if assumptions is None:
-        assumptions = (*content.wall_assumptions(load_case), *content.model_assumptions(model))
     touching: dict[int, set[int]] = {region.id: set() for region in regions}
     for face in model.interfaces:
         touching.setdefault(face.block, set()).add(face.other)
@@ -163,51 +155,38 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
         for region in regions
     ]  # fmt: skip
     return _view(
-        shown, resistance, verdict, digits, title=title, unit=unit, size=size,
-        box=(x0, min(y0, 0.0), x1, y1), parts=parts,
-        centroids={region.id: region.centroid for region in regions}, timings=timings,
-        cards=results, inputs=inputs, settings=settings or {}, assumptions=assumptions,
-        load_case=load_case,
+        shown, resistance, verdict, digits, results,
+        {region.id: region.centroid for region in regions}, load_case, title=title, unit=unit,
+        size=rounded(size, digits), box=rounded((x0, min(y0, 0.0), x1, y1), digits), parts=parts,
+        inputs=[], timings=[], settings=[],
+        assumptions=(*content.wall_assumptions(load_case), *content.model_assumptions(model)),
     )  # fmt: skip
 
 
-def _view(  # noqa: PLR0913 - what is said of a wall, all by keyword
+def _view(
     wall: ModelledWall,
     resistance: LateralResistance,
     verdict: WallVerdict,
     digits: int,
-    *,
-    title: str,
-    unit: str,
-    size: Point,
-    box: tuple[float, float, float, float],
-    parts: list[ViewerData],
-    centroids: Mapping[int, Point],
-    timings: Mapping[str, float] | None,
     cards: Iterable[content.ResultCard],
-    inputs: Iterable[tuple[str, str]],
-    settings: Mapping[str, Any],
-    assumptions: Sequence[str],
+    centroids: Mapping[int, Point],
     load_case: str = content.TILTING,
     plan: Plan | None = None,
+    **said: Any,
 ) -> ViewerData:
     """Return all keys; results come with their meaning and with what walls of masons have."""
     ends = (resistance.left, resistance.right)
     failures, dead = wall.failures(ends), content.dead_load(load_case)
     sha256 = None if plan is None else plan.source.get("sha256")
     return {
-        "title": title,
-        "unit": unit,
+        **said,
         "summary": f"{verdict.words}.",
         "stands": verdict.stands,
-        "size": rounded(size, digits),
-        "box": rounded(box, digits),
         "version": version("drystone") if plan is None else plan.version,
         "method": plan and plan.method,
         "seed": None if plan is None else plan.seed,
         "plan": plan and plan_digest(plan),
         "steps": 0 if plan is None else len(plan.steps),
-        "parts": parts,
         "unused": [] if plan is None else list(plan.unused),
         "schema": SCHEMA,
         "noun": wall.names.noun,
@@ -223,14 +202,11 @@ def _view(  # noqa: PLR0913 - what is said of a wall, all by keyword
         "dead_load": dead,
         "forces_words": FORCES.format(dead),
         "notices": [asdict(notice) for notice in wall.notices],
-        "timings": [[name, round(seconds, 3)] for name, seconds in (timings or {}).items()],
         "index_meanings": {} if plan is None else dict(content.INDICES),
         "metrics": [
             {**asdict(card), "masons": masons_words(card.symbol, sha256)} for card in cards
         ],
-        "inputs": [list(pair) for pair in inputs],
-        "settings": [list(pair) for pair in content.flat_settings(settings)],
-        "assumptions": list(assumptions),
+        "assumptions": list(said["assumptions"]),
     }
 
 

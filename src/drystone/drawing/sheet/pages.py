@@ -7,6 +7,7 @@ the stones lie, wedges to cut, and what is left over.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from textwrap import wrap
 
 import numpy as np
@@ -41,7 +42,7 @@ from drystone.drawing.wall import FRAME_DASHES, drawing_of_assembly
 from drystone.drawing.words.content import source_name
 from drystone.io.plan_json import plan_digest
 from drystone.kernels.polygons import Points
-from drystone.model.plan import StoneStep
+from drystone.model.plan import Point, StoneStep
 
 USUAL_SCALES = (1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 50.0, 100.0, 200.0, 250.0, 500.0, 1000.0)
 
@@ -50,6 +51,32 @@ DRAWING_MM = (297.0 - 2 * EDGE_MM - 18.0, 110.0)
 
 SCALE_MM = 60.0  # room for the scale at the right end of the head
 BLOCK_MM = 33.0  # height of the title block
+
+
+ROW_MM = 27.0, 34.0
+"""Height of a line: the least, and the most where a page has few."""
+HEAD_MM = 19.0
+NUMBER, PICTURE, TURN, WHERE, BESIDE = 12.0, 31.0, 63.0, 117.0, 154.0
+"""Where the columns begin, mm from the left edge of the page."""
+
+PICTURE_MM = (30.0, 23.0)
+STONE_MM = 22.0  # the largest stone of the wall, turned any way, is drawn this large
+WORDS = 26  # letters in a line of the last column
+SEEN_DEG = 15.0  # smaller turns have no arrow: it would be a dot
+TURN_COLOUR = "#0072b2"
+CROP_SPARE = 0.14  # of the size of a stone, around it in its picture
+
+MAP_MM = (186.0, 96.0)
+LINE_MM = 5.6
+COLUMNS = 2
+GAP_MM = 8.0
+
+CARD_MM = (62.0, 45.0)  # room for a wedge to cut; its drawing is at most as large as `SHAPE_MM`
+SHAPE_MM = (44.0, 25.0)
+CARDS_ACROSS, WEDGE_HEAD_MM = 3, 13.0
+LEFT_OVER_LINES = 3
+USUAL_FACTORS = (10.0, 5.0, 2.0, 1.0, 1 / 2, 1 / 5, 1 / 10, 1 / 20, 1 / 50, 1 / 100)
+SMALLEST_MM = 8.0  # wedges smaller than this are drawn larger than they are
 
 
 @dataclass(frozen=True)
@@ -83,125 +110,112 @@ def paper_scale(assembly: Assembly, wished: float | None = None) -> Scale:
     return Scale(chosen, 1000.0 / chosen)
 
 
-def sheet(
-    assembly: Assembly, settings: ExportSettings, photo: StonePhoto | None
-) -> list[SheetPage]:
-    """Draw the pages: the wall, a line a stone, the fetch list, wedges to cut."""
-    source, sha256 = source_name(assembly.plan), plan_digest(assembly.plan)
-    title = settings.title or (f"Build sheet for {source}" if source else "Build sheet")
-    first = _first_page(assembly, settings, title, sha256)
-    pages = [first, *Rows(assembly, photo).pages(), *list_pages(assembly)]
-    for number, page in enumerate(pages, 1):
-        # What tells plans apart is first: a long title is cut.
-        page.foot(f"plan {sha256}   {title}", number, len(pages))
-    return pages
-
-
-def _first_page(assembly: Assembly, settings: ExportSettings, title: str, sha256: str) -> SheetPage:
-    """Draw the wall with the numbers of the steps, its dimensions and the title block."""
-    page = SheetPage(A4_MM[::-1])
-    scale = paper_scale(assembly, settings.paper_scale)
-    width, height = (side * scale.mm_per_unit for side in assembly.size)
-    left = (page.width - width) / 2 + 5.0
-    bottom = EDGE_MM + BLOCK_MM + 24.0 + (DRAWING_MM[1] - height) / 2
-    page.write(EDGE_MM, page.top - 6.0, title, 18.0, weight="bold",
-               room=page.right - EDGE_MM - SCALE_MM)  # fmt: skip
-    page.write(
-        EDGE_MM, page.top - 12.5,
-        "Numbers are steps, in the order of building: set each stone, then push in its wedges.",
-        PLAIN_PT,
-    )  # fmt: skip
-    loud = scale.denominator is None
-    page.write(page.right, page.top - 6.0, scale.words, 14.0, ha="right", weight="bold",
-               color=WEDGE_COLOUR if loud else "black")  # fmt: skip
-    # The ground: a line, and strokes below it.
-    ends = max(EDGE_MM, left - 10.0), min(page.right, left + width + 10.0)
-    page.line([(ends[0], bottom), (ends[1], bottom)], width_pt=1.2, z=4.0)
-    for x in np.arange(ends[0] + 3.0, ends[1] + 1e-9, 3.0):
-        page.line([(x, bottom), (x - 2.5, bottom - 2.5)], colour=GREY)
-    page.box(left, bottom, width, height, name="frame", line=GREY, dashes=FRAME_DASHES)
-    blocks = drawing_of_assembly(assembly).layers("STONES", "WEDGES", "NUMBERS")
-    page.draw(*placed(blocks, scale.mm_per_unit, (left, bottom)))
-    across, up = (
-        f"{side:.2f} m" if assembly.unit == "m" else f"{side:.0f} px" for side in assembly.size
-    )
-    page.dimension((left, bottom - 8.0), (left + width, bottom - 8.0), across)
-    page.dimension((left - 8.0, bottom), (left - 8.0, bottom + height), up, upright=True)
-    _title_block(page, assembly, settings, scale, sha256)
-    return page
-
-
-def _title_block(
-    page: SheetPage, assembly: Assembly, settings: ExportSettings, scale: Scale, sha256: str
-) -> None:
-    plan = assembly.plan
-    stones, wedges = len(plan.stone_steps), len(plan.wedge_steps)
-    size = " \N{MULTIPLICATION SIGN} ".join(
-        f"{side:.2f}" if assembly.unit == "m" else f"{side:.0f}" for side in assembly.size
-    )
-    source = source_name(plan) or "not from a file"
-    on_paper = scale.words if scale.denominator is None else f"{scale.words} on A4"
-    rows = [
-        [("Title", settings.title or source), ("Stones", source),
-         ("Date", ""), ("Built by", "")],
-        [("Wall", f"{size} {assembly.unit}"), ("Scale", on_paper),
-         ("Stones set", f"{stones}, and {len(plan.unused)} left over"), ("Wedges", str(wedges))],
-        [("Seed", str(plan.seed)), ("Method", plan.method),
-         ("Version", f"drystone {plan.version}"), ("Plan SHA-256", sha256)],
-    ]  # fmt: skip
-    wide = (page.right - EDGE_MM) / 4
-    high = BLOCK_MM / len(rows)
-    for row, cells in enumerate(rows):
-        y = EDGE_MM + BLOCK_MM - (row + 1) * high + 2.0
-        for column, (name, value) in enumerate(cells):
-            x = EDGE_MM + column * wide
-            page.box(x, y, wide, high, width_pt=0.5)
-            page.write(x + 1.5, y + high - 3.4, name, 6.5, color="#555555")
-            page.write(x + 1.5, y + 2.2, value, PLAIN_PT + 1, room=wide - 3.0)
-    _ruler(page, EDGE_MM + BLOCK_MM + 7.0, scale)
-
-
-def _ruler(page: SheetPage, y: float, scale: Scale) -> None:
-    """Draw 100 mm, to find out whether a printer has made the page smaller."""
-    x = EDGE_MM
-    page.line([(x, y), (x + 100.0, y)], width_pt=0.8)
-    for step in range(11):
-        tick = 2.5 if step % 5 == 0 else 1.4
-        page.line([(x + 10.0 * step, y), (x + 10.0 * step, y + tick)])
-    said = "100 mm on paper: print at 100 %"
-    if scale.denominator is not None:
-        said += f"; {scale.denominator / 10:g} m of wall"
-    page.write(x + 102.0, y - 0.5, said, SMALL_PT)
-    if scale.denominator is None:
-        page.write(
-            page.right, y - 0.5, "The size of a px is not known: all lengths are in px.",
-            LARGE_PT - 2, ha="right", color=WEDGE_COLOUR,
-        )  # fmt: skip
-
-
-ROW_MM = 27.0, 34.0
-"""Height of a line: the least, and the most where a page has few."""
-HEAD_MM = 19.0
-NUMBER, PICTURE, TURN, WHERE, BESIDE = 12.0, 31.0, 63.0, 117.0, 154.0
-"""Where the columns begin, mm from the left edge of the page."""
-
-PICTURE_MM = (30.0, 23.0)
-STONE_MM = 22.0  # the largest stone of the wall, turned any way, is drawn this large
-WORDS = 26  # letters in a line of the last column
-SEEN_DEG = 15.0  # smaller turns have no arrow: it would be a dot
-TURN_COLOUR = "#0072b2"
-CROP_SPARE = 0.14  # of the size of a stone, around it in its picture
-
-
 @dataclass(frozen=True, eq=False)
-class Rows:
-    """What all lines of a build sheet have in common."""
+class BuildSheet:
+    """The pages of a planned wall, with the photograph of its stones if there is one."""
 
     assembly: Assembly
+    settings: ExportSettings
     photo: StonePhoto | None
 
     def pages(self) -> list[SheetPage]:
-        """Return the pages; the drawings that show how to turn a stone are all to one scale."""
+        """Draw the pages: the wall, a line a stone, the fetch list, wedges to cut."""
+        pages = [self._first_page(), *self._row_pages(), *self._list_pages()]
+        for number, page in enumerate(pages, 1):
+            # What tells plans apart is first: a long title is cut.
+            page.foot(f"plan {self._sha256}   {self._title}", number, len(pages))
+        return pages
+
+    @cached_property
+    def _sha256(self) -> str:
+        return plan_digest(self.assembly.plan)
+
+    @property
+    def _title(self) -> str:
+        source = source_name(self.assembly.plan)
+        return self.settings.title or (f"Build sheet for {source}" if source else "Build sheet")
+
+    def _first_page(self) -> SheetPage:
+        """Draw the wall with the numbers of the steps, its dimensions and the title block."""
+        page, assembly = SheetPage(A4_MM[::-1]), self.assembly
+        scale = paper_scale(assembly, self.settings.paper_scale)
+        width, height = (side * scale.mm_per_unit for side in assembly.size)
+        left = (page.width - width) / 2 + 5.0
+        bottom = EDGE_MM + BLOCK_MM + 24.0 + (DRAWING_MM[1] - height) / 2
+        page.write(EDGE_MM, page.top - 6.0, self._title, 18.0, weight="bold",
+                   room=page.right - EDGE_MM - SCALE_MM)  # fmt: skip
+        page.write(
+            EDGE_MM, page.top - 12.5,
+            "Numbers are steps, in the order of building: set each stone, then push in its wedges.",
+            PLAIN_PT,
+        )  # fmt: skip
+        loud = scale.denominator is None
+        page.write(page.right, page.top - 6.0, scale.words, 14.0, ha="right", weight="bold",
+                   color=WEDGE_COLOUR if loud else "black")  # fmt: skip
+        # The ground: a line, and strokes below it.
+        ends = max(EDGE_MM, left - 10.0), min(page.right, left + width + 10.0)
+        page.line([(ends[0], bottom), (ends[1], bottom)], width_pt=1.2, z=4.0)
+        for x in np.arange(ends[0] + 3.0, ends[1] + 1e-9, 3.0):
+            page.line([(x, bottom), (x - 2.5, bottom - 2.5)], colour=GREY)
+        page.box(left, bottom, width, height, name="frame", line=GREY, dashes=FRAME_DASHES)
+        blocks = drawing_of_assembly(assembly).layers("STONES", "WEDGES", "NUMBERS")
+        page.draw(*placed(blocks, scale.mm_per_unit, (left, bottom)))
+        across, up = (f"{side} {assembly.unit}" for side in self._size)
+        page.dimension((left, bottom - 8.0), (left + width, bottom - 8.0), across)
+        page.dimension((left - 8.0, bottom), (left - 8.0, bottom + height), up, upright=True)
+        self._title_block(page, scale)
+        return page
+
+    @property
+    def _size(self) -> list[str]:
+        digits = 2 if self.assembly.unit == "m" else 0
+        return [f"{side:.{digits}f}" for side in self.assembly.size]
+
+    def _title_block(self, page: SheetPage, scale: Scale) -> None:
+        plan = self.assembly.plan
+        size = " \N{MULTIPLICATION SIGN} ".join(self._size)
+        source = source_name(plan) or "not from a file"
+        on_paper = scale.words if scale.denominator is None else f"{scale.words} on A4"
+        rows = [
+            [("Title", self.settings.title or source), ("Stones", source),
+             ("Date", ""), ("Built by", "")],
+            [("Wall", f"{size} {self.assembly.unit}"), ("Scale", on_paper),
+             ("Stones set", f"{len(plan.stone_steps)}, and {len(plan.unused)} left over"),
+             ("Wedges", str(len(plan.wedge_steps)))],
+            [("Seed", str(plan.seed)), ("Method", plan.method),
+             ("Version", f"drystone {plan.version}"), ("Plan SHA-256", self._sha256)],
+        ]  # fmt: skip
+        wide = (page.right - EDGE_MM) / 4
+        high = BLOCK_MM / len(rows)
+        for row, cells in enumerate(rows):
+            y = EDGE_MM + BLOCK_MM - (row + 1) * high + 2.0
+            for column, (name, value) in enumerate(cells):
+                x = EDGE_MM + column * wide
+                page.box(x, y, wide, high, width_pt=0.5)
+                page.write(x + 1.5, y + high - 3.4, name, 6.5, color="#555555")
+                page.write(x + 1.5, y + 2.2, value, PLAIN_PT + 1, room=wide - 3.0)
+        self._ruler(page, EDGE_MM + BLOCK_MM + 7.0, scale)
+
+    @staticmethod
+    def _ruler(page: SheetPage, y: float, scale: Scale) -> None:
+        """Draw 100 mm, to find out whether a printer has made the page smaller."""
+        x = EDGE_MM
+        page.line([(x, y), (x + 100.0, y)], width_pt=0.8)
+        for step in range(11):
+            tick = 2.5 if step % 5 == 0 else 1.4
+            page.line([(x + 10.0 * step, y), (x + 10.0 * step, y + tick)])
+        said = "100 mm on paper: print at 100 %"
+        if scale.denominator is not None:
+            said += f"; {scale.denominator / 10:g} m of wall"
+        page.write(x + 102.0, y - 0.5, said, SMALL_PT)
+        if scale.denominator is None:
+            page.write(
+                page.right, y - 0.5, "The size of a px is not known: all lengths are in px.",
+                LARGE_PT - 2, ha="right", color=WEDGE_COLOUR,
+            )  # fmt: skip
+
+    def _row_pages(self) -> list[SheetPage]:
+        """Draw a line a stone; the drawings that show how to turn one are all to one scale."""
         stones = list(self.assembly.stones)
         high = A4_MM[1] - 2 * EDGE_MM - HEAD_MM - 3.0
         # Pages of about the same length: none has a single row.
@@ -211,11 +225,11 @@ class Rows:
         spans = [float(np.hypot(*np.ptp(part.corners, axis=0))) for part in stones]
         scale = STONE_MM / max(spans, default=1.0)
         return [
-            self._page(stones[first : first + count], scale, row)
+            self._row_page(stones[first : first + count], scale, row)
             for first in range(0, len(stones), count)
         ]
 
-    def _page(self, stones: Sequence[Part], scale: float, high: float) -> SheetPage:
+    def _row_page(self, stones: Sequence[Part], scale: float, high: float) -> SheetPage:
         page = SheetPage()
         last = max(step for part in stones for step in
                    (part.step, *(w.step for w in wedges_after(self.assembly, part))))  # fmt: skip
@@ -307,6 +321,156 @@ class Rows:
         for place, (words, colour) in enumerate(told):
             page.write(BESIDE, top - pitch * place, words, size, color=colour)
 
+    def _list_pages(self) -> list[SheetPage]:
+        """Draw where the stones lie, list them, and draw the wedges to cut.
+
+        The wedges are below the list when all of them have room there, else on pages of their own.
+        """
+        pages, foot = self._fetch_pages()
+        wedges = list(self.assembly.wedges)
+        if wedges and _wedge_room(foot) >= len(wedges):
+            self._draw_wedges(pages[-1], wedges, foot)
+            return pages
+        while wedges:
+            page = SheetPage()
+            count = _wedge_room(page.top)
+            self._draw_wedges(page, wedges[:count], page.top)
+            pages.append(page)
+            wedges = wedges[count:]
+        return pages
+
+    def _fetch_pages(self) -> tuple[list[SheetPage], float]:
+        """List the stones as one walks past them; return the pages and the foot of the last."""
+        stones, pages, foot = in_photo_order(self.assembly), list[SheetPage](), 0.0
+        while stones or not pages:
+            page = SheetPage()
+            page.write(EDGE_MM, page.top - 4.5, "Fetch list", 13.0, weight="bold")
+            top = page.top - 11.0
+            if not pages:
+                page.write(
+                    EDGE_MM, top,
+                    "The stones as they lie in the picture that they were found in, from the top "
+                    "left. Chalk on each the number of its step.", PLAIN_PT,
+                )  # fmt: skip
+                top = self._map(page, top - 4.0) - 8.0
+            rows = int((top - EDGE_MM - 20.0) // LINE_MM)
+            here, stones = stones[: COLUMNS * rows], stones[COLUMNS * rows :]
+            # Columns of the same length, when there is room.
+            rows = min(rows, -(-len(here) // COLUMNS))
+            wide = (page.right - EDGE_MM - GAP_MM * (COLUMNS - 1)) / COLUMNS
+            for column in range(COLUMNS):
+                part = here[column * rows : (column + 1) * rows]
+                self._list(page, part, (EDGE_MM + column * (wide + GAP_MM), top), wide)
+            foot = top - (rows + 1) * LINE_MM - 3.0
+            if not stones:
+                foot = self._left_over(page, foot)
+            pages.append(page)
+        return pages, foot
+
+    def _draw_wedges(self, page: SheetPage, wedges: Sequence[Part], top: float) -> None:
+        page.write(EDGE_MM, top - 4.5, "Wedges to cut", 13.0, weight="bold")
+        said = (
+            "Each at the scale that stands below it, as it is seen from the front; mm."
+            if self.assembly.unit == "m" else f"{NOT_TO_SCALE}: each as large as there is room; px."
+        )  # fmt: skip
+        page.write(EDGE_MM, top - 10.5, said, PLAIN_PT)
+        for place, wedge in enumerate(wedges):
+            row, column = divmod(place, CARDS_ACROSS)
+            corner = (EDGE_MM + column * CARD_MM[0], top - WEDGE_HEAD_MM - (row + 1) * CARD_MM[1])
+            self._card(page, wedge, corner)
+
+    def _map(self, page: SheetPage, top: float) -> float:
+        """Draw the frame of the photograph with outlines and steps of stones; return its foot."""
+        assembly = self.assembly
+        outlines = {part.step: assembly.source_corners(part) for part in assembly.stones}
+        reach = np.concatenate([*outlines.values(), [[1.0, 1.0]]]).max(axis=0).tolist()
+        source = assembly.plan.source
+        width = float(source.get("width_px") or reach[0])
+        height = float(source.get("height_px") or reach[1])
+        scale = min(MAP_MM[0] / width, MAP_MM[1] / height)
+        left, foot = (page.width - width * scale) / 2, top - height * scale
+        page.box(left, foot, width * scale, height * scale, line=GREY)
+        room = {}
+        for step, outline in outlines.items():
+            wide, high = (np.ptp(outline, axis=0) * scale * PT_PER_MM).tolist()
+            room[step] = float(np.clip(letters_pt(str(step), wide, high), 3.5, 12.0))
+        usual = float(np.median([*room.values()])) if room else 0.0
+        for step, outline in outlines.items():
+            drawn = outline * scale + (left, foot)
+            page.draw(Surface("", (drawn,), PLAIN_COLOUR, width_pt=0.4))
+            x, y = ((drawn.min(axis=0) + drawn.max(axis=0)) / 2).tolist()
+            page.write(x, y, str(step), min(usual, room[step]), ha="center",
+                       va="center", zorder=5)  # fmt: skip
+        return foot
+
+    def _list(self, page: SheetPage, stones: Sequence[Part], at: Point, wide: float) -> None:
+        (x, y), assembly = at, self.assembly
+        if not stones:
+            return
+        columns = (x + 7.0, x + 19.0, x + 33.0, x + 64.0)
+        for place, name in zip(
+            columns, ("step", "stone", "across, down", "long, wide"), strict=True
+        ):
+            page.write(place, y, name, SMALL_PT, weight="bold")
+        page.line([(x, y - 1.6), (x + wide, y - 1.6)], colour=GREY)
+        height = float(assembly.plan.source.get("height_px") or 0.0)
+        for row, part in enumerate(stones):
+            base = y - (row + 1) * LINE_MM
+            across, up = _place(part)
+            down = (height - up) / assembly.px_per_unit
+            page.tick_box(x + 1.0, base - 0.8, 3.6)
+            texts = (
+                str(part.step), str(part.id),
+                length_words(assembly, across / assembly.px_per_unit, down),
+                length_words(assembly, *_sides(part)),
+            )  # fmt: skip
+            for place, text, weight in zip(columns, texts, ("bold", "normal", "normal", "normal"),
+                                           strict=True):  # fmt: skip
+                page.write(place, base, text, PLAIN_PT, weight=weight)
+
+    def _left_over(self, page: SheetPage, top: float) -> float:
+        """Name the stones that the wall is built without; return the foot."""
+        unused = self.assembly.plan.unused
+        if not unused:
+            return top
+        page.write(EDGE_MM, top - 4.0, "Left over", PLAIN_PT, weight="bold")
+        named = ", ".join(str(stone) for stone in unused)
+        lines = wrap(f"stones {named}: the wall is built without them.", 105)
+        if len(lines) > LEFT_OVER_LINES:
+            lines = [*lines[:LEFT_OVER_LINES], f"and others: {len(unused)} in all."]
+        for row, line in enumerate(lines):
+            page.write(EDGE_MM + 20.0, top - 4.0 - 4.0 * row, line, PLAIN_PT)
+        return top - 5.0 - 4.0 * len(lines)
+
+    def _card(self, page: SheetPage, wedge: Part, corner: Point) -> None:
+        """Draw a wedge with its dimensions, the steps it belongs to, and a box for a tick."""
+        (x, y), assembly = corner, self.assembly
+        page.box(x, y, *CARD_MM, line=GREY, width_pt=0.4)
+        stone = assembly.part(wedge.under or 0)
+        size = [float(side) for side in np.ptp(wedge.corners, axis=0)]
+        page.write(x + 2.0, y + CARD_MM[1] - 6.0, str(wedge.step), 13.0, weight="bold",
+                   color=WEDGE_COLOUR)  # fmt: skip
+        words = f"under {stone.step}, {wedge_place(assembly, wedge)}"
+        page.write(x + 13.0, y + CARD_MM[1] - 5.6, words, SMALL_PT)
+        page.tick_box(x + CARD_MM[0] - 7.0, y + CARD_MM[1] - 7.0)
+        factor = drawn_factor(assembly, wedge)
+        per_unit = factor * (1000.0 if assembly.unit == "m" else 1.0)
+        shown = [side * per_unit for side in size]
+        left, foot = (
+            x + 12.0 + (SHAPE_MM[0] - shown[0]) / 2,
+            y + 11.0 + (SHAPE_MM[1] - shown[1]) / 2,
+        )
+        low = wedge.corners.min(axis=0)
+        shape = (wedge.corners - low) * per_unit + (left, foot)
+        page.draw(Surface("", (shape,), "#f3d9d9"))
+        texts = [f"{1000 * side:.0f}" if assembly.unit == "m" else f"{side:.0f}" for side in size]
+        page.dimension((left, foot - 4.0), (left + shown[0], foot - 4.0), texts[0])
+        page.dimension((left - 4.5, foot), (left - 4.5, foot + shown[1]), texts[1], upright=True)
+        page.write(x + 2.0, y + 2.0, size_words(assembly, *size), SMALL_PT)
+        if assembly.unit == "m":
+            scale = f"{factor:g}:1" if factor > 1.0 else f"1:{1 / factor:g}"
+            page.write(x + CARD_MM[0] - 2.0, y + 2.0, f"drawn {scale}", SMALL_PT, ha="right")
+
 
 def _reach_up(outline: Points) -> float:
     """Return how far an outline reaches straight up from the origin."""
@@ -315,19 +479,6 @@ def _reach_up(outline: Points) -> float:
     (x0, y0), (x1, y1) = outline[crossing].T, following[crossing].T
     heights = y0 - x0 * (y1 - y0) / (x1 - x0)
     return float(heights.max(initial=1.0))
-
-
-MAP_MM = (186.0, 96.0)
-LINE_MM = 5.6
-COLUMNS = 2
-GAP_MM = 8.0
-
-CARD_MM = (62.0, 45.0)  # room for a wedge to cut; its drawing is at most as large as `SHAPE_MM`
-SHAPE_MM = (44.0, 25.0)
-CARDS_ACROSS, WEDGE_HEAD_MM = 3, 13.0
-LEFT_OVER_LINES = 3
-USUAL_FACTORS = (10.0, 5.0, 2.0, 1.0, 1 / 2, 1 / 5, 1 / 10, 1 / 20, 1 / 50, 1 / 100)
-SMALLEST_MM = 8.0  # wedges smaller than this are drawn larger than they are
 
 
 def in_photo_order(assembly: Assembly) -> list[Part]:
@@ -348,69 +499,17 @@ def in_photo_order(assembly: Assembly) -> list[Part]:
     return [part for row in rows for part in sorted(row, key=lambda part: _place(part)[0])]
 
 
-def list_pages(assembly: Assembly) -> list[SheetPage]:
-    """Draw where the stones lie, list them, and draw the wedges to cut.
-
-    The wedges are below the list when all of them have room there, else on pages of their own.
-    """
-    pages, foot = _fetch_pages(assembly)
-    wedges = list(assembly.wedges)
-    if wedges and _wedge_room(foot) >= len(wedges):
-        _draw_wedges(pages[-1], assembly, wedges, foot)
-        return pages
-    while wedges:
-        page = SheetPage()
-        count = _wedge_room(page.top)
-        _draw_wedges(page, assembly, wedges[:count], page.top)
-        pages.append(page)
-        wedges = wedges[count:]
-    return pages
+def _place(part: Part) -> tuple[float, float]:
+    step = part.plan_step
+    return step.source_centroid if isinstance(step, StoneStep) else (0.0, 0.0)
 
 
-def _fetch_pages(assembly: Assembly) -> tuple[list[SheetPage], float]:
-    """Return pages with the stones in the order in which one walks past them, and their foot."""
-    stones, pages, foot = in_photo_order(assembly), list[SheetPage](), 0.0
-    while stones or not pages:
-        page = SheetPage()
-        page.write(EDGE_MM, page.top - 4.5, "Fetch list", 13.0, weight="bold")
-        top = page.top - 11.0
-        if not pages:
-            page.write(
-                EDGE_MM, top,
-                "The stones as they lie in the picture that they were found in, from the top "
-                "left. Chalk on each the number of its step.", PLAIN_PT,
-            )  # fmt: skip
-            top = _map(page, assembly, top - 4.0) - 8.0
-        rows = int((top - EDGE_MM - 20.0) // LINE_MM)
-        here, stones = stones[: COLUMNS * rows], stones[COLUMNS * rows :]
-        # Columns of the same length, when there is room.
-        rows = min(rows, -(-len(here) // COLUMNS))
-        wide = (page.right - EDGE_MM - GAP_MM * (COLUMNS - 1)) / COLUMNS
-        for column in range(COLUMNS):
-            _list(page, assembly, here[column * rows : (column + 1) * rows],
-                  (EDGE_MM + column * (wide + GAP_MM), top), wide)  # fmt: skip
-        foot = top - (rows + 1) * LINE_MM - 3.0
-        if not stones:
-            foot = _left_over(page, assembly, foot)
-        pages.append(page)
-    return pages, foot
-
-
-def _wedge_room(top: float) -> int:
-    return CARDS_ACROSS * max(0, int((top - WEDGE_HEAD_MM - EDGE_MM) // CARD_MM[1]))
-
-
-def _draw_wedges(page: SheetPage, assembly: Assembly, wedges: Sequence[Part], top: float) -> None:
-    page.write(EDGE_MM, top - 4.5, "Wedges to cut", 13.0, weight="bold")
-    said = (
-        "Each at the scale that stands below it, as it is seen from the front; mm."
-        if assembly.unit == "m" else f"{NOT_TO_SCALE}: each as large as there is room; px."
-    )  # fmt: skip
-    page.write(EDGE_MM, top - 10.5, said, PLAIN_PT)
-    for place, wedge in enumerate(wedges):
-        row, column = divmod(place, CARDS_ACROSS)
-        corner = (EDGE_MM + column * CARD_MM[0], top - WEDGE_HEAD_MM - (row + 1) * CARD_MM[1])
-        _card(page, assembly, wedge, corner)
+def _sides(part: Part) -> tuple[float, float]:
+    """Return length and least width of a part, which do not depend on how it lies."""
+    width, across_deg = part.grip
+    along = np.radians(across_deg + 90.0)
+    length = np.ptp(part.own_corners @ np.array([np.cos(along), np.sin(along)]))
+    return float(length), width
 
 
 def drawn_factor(assembly: Assembly, wedge: Part) -> float:
@@ -425,110 +524,5 @@ def drawn_factor(assembly: Assembly, wedge: Part) -> float:
     return fitting[0] if fitting else min(SHAPE_MM[0] / width, SHAPE_MM[1] / height)
 
 
-def _place(part: Part) -> tuple[float, float]:
-    step = part.plan_step
-    return step.source_centroid if isinstance(step, StoneStep) else (0.0, 0.0)
-
-
-def _map(page: SheetPage, assembly: Assembly, top: float) -> float:
-    """Draw the photograph's frame with the outlines and steps of the stones; return its foot."""
-    outlines = {part.step: assembly.source_corners(part) for part in assembly.stones}
-    reach = np.concatenate([*outlines.values(), [[1.0, 1.0]]]).max(axis=0).tolist()
-    source = assembly.plan.source
-    width = float(source.get("width_px") or reach[0])
-    height = float(source.get("height_px") or reach[1])
-    scale = min(MAP_MM[0] / width, MAP_MM[1] / height)
-    left, foot = (page.width - width * scale) / 2, top - height * scale
-    page.box(left, foot, width * scale, height * scale, line=GREY)
-    room = {}
-    for step, outline in outlines.items():
-        wide, high = (np.ptp(outline, axis=0) * scale * PT_PER_MM).tolist()
-        room[step] = float(np.clip(letters_pt(str(step), wide, high), 3.5, 12.0))
-    usual = float(np.median([*room.values()])) if room else 0.0
-    for step, outline in outlines.items():
-        drawn = outline * scale + (left, foot)
-        page.draw(Surface("", (drawn,), PLAIN_COLOUR, width_pt=0.4))
-        x, y = ((drawn.min(axis=0) + drawn.max(axis=0)) / 2).tolist()
-        page.write(x, y, str(step), min(usual, room[step]), ha="center",
-                   va="center", zorder=5)  # fmt: skip
-    return foot
-
-
-def _list(
-    page: SheetPage,
-    assembly: Assembly,
-    stones: Sequence[Part],
-    at: tuple[float, float],
-    wide: float,
-) -> None:
-    x, y = at
-    if not stones:
-        return
-    columns = (x + 7.0, x + 19.0, x + 33.0, x + 64.0)
-    for place, name in zip(columns, ("step", "stone", "across, down", "long, wide"), strict=True):
-        page.write(place, y, name, SMALL_PT, weight="bold")
-    page.line([(x, y - 1.6), (x + wide, y - 1.6)], colour=GREY)
-    height = float(assembly.plan.source.get("height_px") or 0.0)
-    for row, part in enumerate(stones):
-        base = y - (row + 1) * LINE_MM
-        across, up = _place(part)
-        down = (height - up) / assembly.px_per_unit
-        page.tick_box(x + 1.0, base - 0.8, 3.6)
-        texts = (
-            str(part.step), str(part.id),
-            length_words(assembly, across / assembly.px_per_unit, down),
-            length_words(assembly, *_sides(part)),
-        )  # fmt: skip
-        for place, text, weight in zip(columns, texts, ("bold", "normal", "normal", "normal"),
-                                       strict=True):  # fmt: skip
-            page.write(place, base, text, PLAIN_PT, weight=weight)
-
-
-def _sides(part: Part) -> tuple[float, float]:
-    """Return length and least width of a part, which do not depend on how it lies."""
-    width, across_deg = part.grip
-    along = np.radians(across_deg + 90.0)
-    length = np.ptp(part.own_corners @ np.array([np.cos(along), np.sin(along)]))
-    return float(length), width
-
-
-def _left_over(page: SheetPage, assembly: Assembly, top: float) -> float:
-    """Name the stones that the wall is built without; return the foot."""
-    unused = assembly.plan.unused
-    if not unused:
-        return top
-    page.write(EDGE_MM, top - 4.0, "Left over", PLAIN_PT, weight="bold")
-    named = ", ".join(str(stone) for stone in unused)
-    lines = wrap(f"stones {named}: the wall is built without them.", 105)
-    if len(lines) > LEFT_OVER_LINES:
-        lines = [*lines[:LEFT_OVER_LINES], f"and others: {len(unused)} in all."]
-    for row, line in enumerate(lines):
-        page.write(EDGE_MM + 20.0, top - 4.0 - 4.0 * row, line, PLAIN_PT)
-    return top - 5.0 - 4.0 * len(lines)
-
-
-def _card(page: SheetPage, assembly: Assembly, wedge: Part, corner: tuple[float, float]) -> None:
-    """Draw a wedge with its dimensions, the steps it belongs to, and a box for a tick."""
-    x, y = corner
-    page.box(x, y, *CARD_MM, line=GREY, width_pt=0.4)
-    stone = assembly.part(wedge.under or 0)
-    size = [float(side) for side in np.ptp(wedge.corners, axis=0)]
-    page.write(x + 2.0, y + CARD_MM[1] - 6.0, str(wedge.step), 13.0, weight="bold",
-               color=WEDGE_COLOUR)  # fmt: skip
-    words = f"under {stone.step}, {wedge_place(assembly, wedge)}"
-    page.write(x + 13.0, y + CARD_MM[1] - 5.6, words, SMALL_PT)
-    page.tick_box(x + CARD_MM[0] - 7.0, y + CARD_MM[1] - 7.0)
-    factor = drawn_factor(assembly, wedge)
-    per_unit = factor * (1000.0 if assembly.unit == "m" else 1.0)
-    shown = [side * per_unit for side in size]
-    left, foot = x + 12.0 + (SHAPE_MM[0] - shown[0]) / 2, y + 11.0 + (SHAPE_MM[1] - shown[1]) / 2
-    low = wedge.corners.min(axis=0)
-    shape = (wedge.corners - low) * per_unit + (left, foot)
-    page.draw(Surface("", (shape,), "#f3d9d9"))
-    texts = [f"{1000 * side:.0f}" if assembly.unit == "m" else f"{side:.0f}" for side in size]
-    page.dimension((left, foot - 4.0), (left + shown[0], foot - 4.0), texts[0])
-    page.dimension((left - 4.5, foot), (left - 4.5, foot + shown[1]), texts[1], upright=True)
-    page.write(x + 2.0, y + 2.0, size_words(assembly, *size), SMALL_PT)
-    if assembly.unit == "m":
-        scale = f"{factor:g}:1" if factor > 1.0 else f"1:{1 / factor:g}"
-        page.write(x + CARD_MM[0] - 2.0, y + 2.0, f"drawn {scale}", SMALL_PT, ha="right")
+def _wedge_room(top: float) -> int:
+    return CARDS_ACROSS * max(0, int((top - WEDGE_HEAD_MM - EDGE_MM) // CARD_MM[1]))

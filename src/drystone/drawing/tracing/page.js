@@ -5,8 +5,8 @@ import { area, centroid, distance, sidesOf, simplified, simplifiedLine, snapped 
 import { proposed } from "./propose.js";
 import {
   History, SCHEMA, accepted, fileOf, openDoubts, pxPerMetre, stateOf, stoneAt, stoneOf,
-  withCorner, withCut, withGround, withMerged, withNewCorner, withNumber, withRing, withScale, withStone,
-  withUse, withoutCorner, withoutStones,
+  withCorner, withCut, withMerged, withNewCorner, withNumber, withRing, withStone, withUse, withoutCorner,
+  withoutStones,
 } from "./sketch.js";
 
 const REACH_PX = 10;
@@ -297,7 +297,7 @@ class Page {
       this.askLength(line);
     } else if (tool === "ground") {
       const ground = line.map((p) => p.map(rounded)).sort((a, b) => a[0] - b[0]);
-      if (ground[1][0] - ground[0][0] > 1) this.go(withGround(this.state, ground), "The ground is drawn.");
+      if (ground[1][0] - ground[0][0] > 1) this.go({ ...this.state, ground }, "The ground is drawn.");
       else this.tell("The ground goes from left to right.");
     }
     this.draw();
@@ -311,7 +311,7 @@ class Page {
         event.preventDefault();
         const length_m = Number(length.value) * UNITS[unit.value];
         if (!(length_m > 0)) return;
-        this.go(withScale(this.state, { ends, length_m }), "The scale is known.");
+        this.go({ ...this.state, scale: { ends, length_m } }, "The scale is known.");
         this.canvas.focus();
       },
     }, make("label", {}, "This line is ", length), unit, make("button", { class: "main" }, "long"));

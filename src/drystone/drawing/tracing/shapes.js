@@ -30,12 +30,17 @@ export function centroid(ring) {
 }
 
 export function contains(ring, [x, y]) {
-  let inside = false;
+  return crossings(ring, y).filter((end) => x < end).length % 2 === 1;
+}
+
+/** Where a ring crosses a height, ascending: by turns into it and out of it. */
+function crossings(ring, y) {
+  const ends = [];
   for (let i = 0, j = ring.length - 1; i < ring.length; j = i++) {
     const [[ax, ay], [bx, by]] = [ring[i], ring[j]];
-    if (ay > y !== by > y && x < ((bx - ax) * (y - ay)) / (by - ay) + ax) inside = !inside;
+    if (ay > y !== by > y) ends.push(((bx - ax) * (y - ay)) / (by - ay) + ax);
   }
-  return inside;
+  return ends.sort((a, b) => a - b);
 }
 
 export function distance([ax, ay], [bx, by]) {
@@ -112,18 +117,6 @@ function crossing(a, b, c, d) {
   const t = ((c[0] - a[0]) * sy - (c[1] - a[1]) * sx) / cross;
   const u = ((c[0] - a[0]) * ry - (c[1] - a[1]) * rx) / cross;
   return t >= 0 && t < 1 && u >= 0 && u < 1 ? [t, u] : null;
-}
-
-/** True when no edge crosses another one that it does not follow. */
-export function isSimple(ring) {
-  const n = ring.length;
-  for (let i = 0; i < n; i++) {
-    for (let j = i + 2; j < n; j++) {
-      if (i === 0 && j === n - 1) continue;
-      if (crossing(ring[i], ring[i + 1], ring[j], ring[(j + 1) % n])) return false;
-    }
-  }
-  return true;
 }
 
 /**
@@ -220,13 +213,7 @@ export function filled(rings, step = 1, rim = 2) {
   const mask = new Uint8Array(width * height);
   for (const ring of rings) {
     for (let row = 0; row < height; row++) {
-      const y = (top + row + 0.5) * step;
-      const ends = [];
-      for (let i = 0, j = ring.length - 1; i < ring.length; j = i++) {
-        const [[ax, ay], [bx, by]] = [ring[j], ring[i]];
-        if (ay > y !== by > y) ends.push(ax + ((y - ay) * (bx - ax)) / (by - ay));
-      }
-      ends.sort((a, b) => a - b);
+      const ends = crossings(ring, (top + row + 0.5) * step);
       for (let k = 0; k + 1 < ends.length; k += 2) {
         const from = Math.ceil(ends[k] / step - 0.5) - left;
         const to = Math.ceil(ends[k + 1] / step - 0.5) - left;
@@ -325,12 +312,7 @@ export function shifted(image, reach, grow) {
 /** A point inside of a ring: in the middle of its widest stretch at the height of its centroid. */
 export function innerPoint(ring) {
   const y = centroid(ring)[1] + 1e-6;
-  const ends = [];
-  for (let i = 0, j = ring.length - 1; i < ring.length; j = i++) {
-    const [[ax, ay], [bx, by]] = [ring[j], ring[i]];
-    if (ay > y !== by > y) ends.push(ax + ((y - ay) * (bx - ax)) / (by - ay));
-  }
-  ends.sort((a, b) => a - b);
+  const ends = crossings(ring, y);
   let best = 0;
   for (let k = 0; k + 1 < ends.length; k += 2) if (ends[k + 1] - ends[k] > ends[best + 1] - ends[best]) best = k;
   return ends.length ? [(ends[best] + ends[best + 1]) / 2, y] : ring[0];

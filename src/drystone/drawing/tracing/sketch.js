@@ -13,10 +13,6 @@ export const SCHEMA = "drystone-outlines/1";
  * scale is {px_per_m} or {ends, length_m}, or null; ground is two points, or null; next is the
  * number of the next stone.
  */
-export function emptyState() {
-  return { stones: [], scale: null, ground: null, next: 1 };
-}
-
 export function stateOf(file) {
   const own = file.drystone ?? {};
   const resting = new Set(own.not_used ?? []);
@@ -103,14 +99,6 @@ export function withUse(state, id, use) {
 export function accepted(state, ids) {
   const stones = state.stones.map((stone) => (ids.includes(stone.id) && stone.proposed ? { ...stone, proposed: false } : stone));
   return stones.every((stone, i) => stone === state.stones[i]) ? state : { ...state, stones };
-}
-
-export function withScale(state, scale) {
-  return { ...state, scale };
-}
-
-export function withGround(state, ground) {
-  return { ...state, ground };
 }
 
 /** Make one stone of several; the first keeps its number.  The same state when they lie apart. */

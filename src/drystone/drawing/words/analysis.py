@@ -48,6 +48,7 @@ ASSUMPTIONS = (
 
 
 Shapes = Labels | Mapping[int, NDArray[np.float64]]
+STONES = Names("stone")
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +61,7 @@ class ModelledWall:
 
     model: RigidBlockModel
     shapes: Shapes
-    names: Names
+    names: Names = STONES
     notices: tuple[Notice, ...] = ()
     remarks: Mapping[str, str] = field(default_factory=dict)
     joints: Literal["known", "drawn", "outlines", "swept"] = "known"

@@ -21,7 +21,7 @@ from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.contacts.outlines import model_of_traced, outlines_of_labels
 from drystone.contacts.scarce import scarce_contacts
 from drystone.contacts.settled import SETBACK
-from drystone.drawing.words.analysis import ModelledWall, Shapes
+from drystone.drawing.words.analysis import STONES, ModelledWall, Shapes
 from drystone.errors import InputError, Notice, UsageError
 from drystone.io.file_errors import listed
 from drystone.io.walls import GivenWall
@@ -54,12 +54,15 @@ class ModelRequest:
 def modelled(wall: GivenWall, asked: ModelRequest, where: str) -> ModelledWall:
     """Make the model that the options ask for."""
     mu = wall.mu if asked.mu is None else sum(asked.mu) / 2.0
+    noun: Noun = "block" if wall.blocks is not None and wall.plan is None else "stone"
+    steps = {} if wall.plan is None else wall.plan.step_by_id
     if wall.blocks is not None:
         found = _given(wall, wall.blocks, mu, asked)
     else:
         assert wall.labels is not None  # noqa: S101 - a wall without blocks has an image
         found = _drawn(wall, wall.labels, mu, asked)
         found = replace(found, notices=(*wall.notices, *found.notices))
+    found = replace(found, names=Names(noun, wall.wedge_ids, steps))
     if asked.mu_head is not None:
         if wall.blocks is None:
             found = replace(found, model=with_head_friction(found.model, asked.mu_head))
@@ -87,9 +90,7 @@ def _given(wall: GivenWall, blocks: dict[str, Any], mu: float, asked: ModelReque
     bare = None if wall.plan is None else wall.plan.metrics.F_LR_no_setback
     if bare is not None and asked.mu is None and asked.as_planned:
         remarks["contacts"] = f"set back; F_LR {bare:.3f} with contacts up to the ends of faces"
-    model, shapes = model_from_json(blocks), polygons_from_json(blocks)
-    noun: Noun = "block" if wall.plan is None else "stone"
-    return ModelledWall(model, shapes, _names(wall, noun), remarks=remarks)
+    return ModelledWall(model_from_json(blocks), polygons_from_json(blocks), remarks=remarks)
 
 
 def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> ModelledWall:
@@ -97,10 +98,10 @@ def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> M
         return _with_closed_gaps(wall, labels, mu, asked)
     if asked.contacts == "pixels" and wall.outlines is not None:
         model = model_of_traced(wall.outlines, mu)
-        return ModelledWall(model, wall.outlines, _names(wall), joints="drawn")
+        return ModelledWall(model, wall.outlines, joints="drawn")
     picture = model_from_labels(labels, mu)
     if asked.contacts == "pixels":
-        return ModelledWall(picture.model, labels, _names(wall), picture.notices, joints="drawn")
+        return ModelledWall(picture.model, labels, notices=picture.notices, joints="drawn")
     outlines = wall.outlines or outlines_of_labels(labels[: picture.ground_row])
     notices = picture.notices if wall.outlines is None else ()
     bare = model_of_traced(outlines, mu)
@@ -114,11 +115,7 @@ def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> M
         with_ends = "falls" if strength is None else f"F_LR {strength:.3f}"
         said += f"; {with_ends} with contacts up to the ends of faces"
     model, remarks = replace(bare, interfaces=found.interfaces), {"contacts": said}
-    return ModelledWall(model, outlines, _names(wall), notices, remarks, joints="outlines")
-
-
-def _names(wall: GivenWall, noun: Noun = "stone") -> Names:
-    return Names(noun, wall.wedge_ids, {} if wall.plan is None else wall.plan.step_by_id)
+    return ModelledWall(model, outlines, STONES, notices, remarks, joints="outlines")
 
 
 def _with_closed_gaps(
@@ -131,7 +128,7 @@ def _with_closed_gaps(
         return _with_swept_gaps(wall, labels, mu, asked)
     reach = _reach(asked.close_gaps or "")
     if reach is not None:
-        made, done = _closed(wall, labels, reach, mu), ""
+        made, done = _made(wall, labels, model_with_closed_gaps(labels, reach, mu)), ""
     else:
         settled, moved = settle_gaps(labels)
         made = _made(wall, settled, model_from_labels(settled, mu), moved)
@@ -184,7 +181,7 @@ def _with_swept_gaps(
     made: dict[int, ModelledWall] = {}
 
     def at(width: int) -> LateralResistance:
-        made[width] = _closed(wall, labels, width, mu)
+        made[width] = _made(wall, labels, model_with_closed_gaps(labels, width, mu))
         return _resistance(asked, made[width].model)
 
     _, usual_px = median_sides(_sides_px(labels))
@@ -239,11 +236,6 @@ def sweep_report(sweep: GapSweep) -> dict[str, Any]:
     }
 
 
-def _closed(wall: GivenWall, labels: Labels, reach: float, mu: float) -> ModelledWall:
-    """Let gaps up to a width bear."""
-    return _made(wall, labels, model_with_closed_gaps(labels, reach, mu))
-
-
 def _made(
     wall: GivenWall,
     labels: Labels,
@@ -252,13 +244,13 @@ def _made(
 ) -> ModelledWall:
     """Give outlines the contacts that were found on their pixels; pixels have them already."""
     if wall.outlines is None:
-        return ModelledWall(picture.model, labels, _names(wall), picture.notices)
+        return ModelledWall(picture.model, labels, notices=picture.notices)
     shapes = {
         i: outline + (moved.get(i, (0, 0)) * np.array([1.0, -1.0]))
         for i, outline in wall.outlines.items()
     }
     blocks = model_of_traced(shapes).blocks
-    return ModelledWall(replace(picture.model, blocks=blocks), shapes, _names(wall))
+    return ModelledWall(replace(picture.model, blocks=blocks), shapes)
 
 
 def _resistance(asked: ModelRequest, model: RigidBlockModel) -> LateralResistance:

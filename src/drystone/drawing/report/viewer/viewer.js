@@ -11,12 +11,7 @@ const LARGEST_MOVE = 0.12;
 const LONGEST_FORCE = 0.22;
 const SWIPE_PX = 50;
 const WIDEST_THRUST = 14;
-const KINDS = {
-  closed: { mark: "dot", words: "closed" },
-  opening: { mark: "ring", words: "opening" },
-  sliding: { mark: "triangle", words: "sliding" },
-  "opening and sliding": { mark: "square", words: "opening and sliding" },
-};
+const KINDS = { closed: "dot", opening: "ring", sliding: "triangle", "opening and sliding": "square" };
 const PATTERNS = {
   rising: "M-2 2 2 -2M0 12 12 0M10 14 14 10",
   falling: "M-2 10 2 14M0 0 12 12M10 -2 14 2",
@@ -44,7 +39,7 @@ export function mount(element, data, options = {}) {
   if (data.schema !== "drystone-view/1") {
     throw new Error(`this viewer shows drystone-view/1, not ${data.schema}`);
   }
-  return new Viewer(element, data, options).handle();
+  return new Viewer(element, data, options);
 }
 
 function text(value, digits = 3) {
@@ -59,6 +54,21 @@ function pathOf(loops, x, y) {
   return loops
     .map((loop) => "M" + loop.map((p) => `${x(p[0]).toFixed(1)} ${y(p[1]).toFixed(1)}`).join("L") + "Z")
     .join("");
+}
+
+function lineOf([x1, y1], [x2, y2], attributes = {}) {
+  const ends = Object.entries({ x1, y1, x2, y2 }).map(([name, value]) => [name, value.toFixed(1)]);
+  return draw("line", { ...attributes, ...Object.fromEntries(ends) });
+}
+
+// What a legend shows of a mark or a line.
+function sampleOf(shape) {
+  return draw("svg", { class: "ds-sample", viewBox: "0 0 22 14", "aria-hidden": "true" }, shape);
+}
+
+// Rows of names and values; those that nobody needs for building are marked.
+function definitions(rows) {
+  return make("dl", {}, rows.map(([name, value, more]) => make("div", { class: more ? "ds-more" : null }, make("dt", {}, name), make("dd", {}, value))));
 }
 
 function freeName() {
@@ -132,6 +142,7 @@ class Viewer {
     this.k = WIDTH / Math.max(x1 - x0, 1e-9);
     this.x = (x) => (x - x0) * this.k;
     this.y = (y) => (y1 - y) * this.k;
+    this.at = ([x, y]) => [this.x(x), this.y(y)];
     this.height = this.y(data.box[1]);
     this.state = {
       step: Math.min(this.last, options.step ?? this.last),
@@ -163,18 +174,8 @@ class Viewer {
     this.said.textContent = `Choose a ${this.noun.toLowerCase()} in the drawing${this.last ? ", or go to a step" : ""}.`;
   }
 
-  handle() {
-    const viewer = this;
-    return {
-      root: this.root,
-      show: (step) => this.show(step),
-      select: (id) => this.select(id),
-      build: (on) => this.build(on),
-      get step() {
-        return viewer.state.step;
-      },
-      destroy: () => this.destroy(),
-    };
+  get step() {
+    return this.state.step;
   }
 
   destroy() {
@@ -198,18 +199,18 @@ class Viewer {
     const chart = this.last && options.chart !== false ? this.buildChart() : null;
     this.root = make(
       "section",
-      { class: "ds-view", id: this.name, "aria-label": data.title, "data-theme": "auto" },
+      {
+        class: "ds-view", id: this.name, "aria-label": data.title, "data-theme": "auto",
+        keydown: (event) => this.key(event),
+        pointerdown: (event) => { this.swipe = event.isPrimary ? event : null; },
+        pointerup: (event) => this.swiped(event),
+      },
       options.css ? make("style", {}, options.css) : null,
       this.buildTop(),
       make("div", { class: "ds-main" }, left, this.card, tools, chart),
       options.metrics === false ? null : this.buildMetrics(),
       options.about === false ? null : this.buildAbout(),
     );
-    this.root.addEventListener("keydown", (event) => this.key(event));
-    this.root.addEventListener("pointerdown", (event) => {
-      this.swipe = event.isPrimary ? event : null;
-    });
-    this.root.addEventListener("pointerup", (event) => this.swiped(event));
     this.pageKey = (event) => {
       if (options.pageKeys && event.target === document.body && /^Arrow(Left|Right)$/.test(event.key)) this.key(event);
     };
@@ -258,9 +259,19 @@ class Viewer {
 
   buildPart(part) {
     const d = pathOf(part.points, this.x, this.y);
+    const choose = () => this.select(part.id);
+    const pressed = (event) => {
+      if (event.key !== "Enter" && event.key !== " ") return;
+      event.preventDefault();
+      event.stopPropagation();
+      choose();
+    };
     const group = draw(
       "g",
-      { class: `ds-part ds-${part.kind}`, "data-id": part.id, "data-step": part.step, role: "button", tabindex: -1, "aria-label": this.nameOf(part) },
+      {
+        class: `ds-part ds-${part.kind}`, "data-id": part.id, "data-step": part.step, role: "button", tabindex: -1, "aria-label": this.nameOf(part),
+        click: choose, focus: choose, keydown: pressed,
+      },
       draw("path", { class: "ds-shape", d, fill: part.colour, "fill-rule": "evenodd" }),
     );
     if (part.pattern in PATTERNS) {
@@ -268,55 +279,38 @@ class Viewer {
       group.append(draw("path", { ...ink, d, fill: `url(#${this.name}-${part.pattern})`, "fill-rule": "evenodd" }));
     }
     if (part.number !== null) {
-      const at = { x: this.x(part.centroid[0]).toFixed(1), y: this.y(part.centroid[1]).toFixed(1) };
+      const [x, y] = this.at(part.centroid).map((value) => value.toFixed(1));
       const halo = part.text_colour === "#000000" ? "ds-on-light" : "ds-on-dark";
-      const label = draw("text", { ...at, class: `ds-number ${halo}`, fill: part.text_colour, "aria-hidden": "true" });
+      const label = draw("text", { x, y, class: `ds-number ${halo}`, fill: part.text_colour, "aria-hidden": "true" });
       const [x0, y0, x1, y1] = boxOf(part.points.flat());
       this.labels.set(part.id, { label, part, high: this.k * (y1 - y0), wide: (this.k * (x1 - x0)) / 0.62 });
     }
-    const choose = () => this.select(part.id);
-    group.addEventListener("click", choose);
-    group.addEventListener("focus", choose);
-    group.addEventListener("keydown", (event) => {
-      if (event.key === "Enter" || event.key === " ") {
-        event.preventDefault();
-        event.stopPropagation();
-        choose();
-      }
-    });
     return group;
   }
 
   buildTransport() {
-    const button = (name, label, sign, action) => {
-      const made = make("button", { type: "button", class: `ds-${name}`, "aria-label": label, title: label }, sign);
-      made.addEventListener("click", action);
-      return made;
-    };
     const to = (step) => () => {
       this.pause();
       this.show(step());
     };
-    this.playButton = button("play", "Play", "Play", () => this.toggle());
-    this.playButton.removeAttribute("aria-label");
-    this.playButton.removeAttribute("title");
-    this.slider = make("input", { type: "range", class: "ds-slider", min: 0, max: this.last, step: 1, value: this.last, "aria-label": "Step of construction" });
-    this.slider.addEventListener("input", () => {
-      this.pause();
-      this.show(Number(this.slider.value));
+    const button = (name, label, sign, step) =>
+      make("button", { type: "button", class: `ds-${name}`, "aria-label": label, title: label, click: to(step) }, sign);
+    this.playButton = make("button", { type: "button", class: "ds-play", click: () => this.toggle() }, "Play");
+    this.slider = make("input", {
+      type: "range", class: "ds-slider", min: 0, max: this.last, step: 1, value: this.last, "aria-label": "Step of construction",
+      input: to(() => Number(this.slider.value)),
     });
     this.counter = make("output", { class: "ds-counter" });
-    this.buildButton = make("button", { type: "button", class: "ds-build" }, "Build");
-    this.buildButton.addEventListener("click", () => this.build(!this.building));
+    this.buildButton = make("button", { type: "button", class: "ds-build", click: () => this.build(!this.building) }, "Build");
     return make(
       "div",
       { class: "ds-transport", role: "group", "aria-label": "Steps" },
       this.options.build === false ? null : this.buildButton,
-      button("first", "First step", "|◀", to(() => 0)),
-      button("previous", "One step back", "◀", to(() => this.state.step - 1)),
+      button("first", "First step", "|◀", () => 0),
+      button("previous", "One step back", "◀", () => this.state.step - 1),
       this.playButton,
-      button("next", "One step forward", "▶", to(() => this.state.step + 1)),
-      button("last", "Last step", "▶|", to(() => this.last)),
+      button("next", "One step forward", "▶", () => this.state.step + 1),
+      button("last", "Last step", "▶|", () => this.last),
       this.slider,
       this.counter,
     );
@@ -326,9 +320,7 @@ class Viewer {
     const { data } = this;
     const cases = { none: "none" };
     const present = new Set(data.contacts.flatMap((contact) => Object.keys(contact.forces)));
-    if (present.has("self")) cases.self = data.dead_load;
-    if (present.has("left")) cases.left = "left";
-    if (present.has("right")) cases.right = "right";
+    for (const name of ["self", "left", "right"]) if (present.has(name)) cases[name] = name === "self" ? data.dead_load : name;
     const sides = { none: "none" };
     for (const side of ["left", "right"]) if (data.mechanisms[side]?.velocity) sides[side] = side;
     this.forceScale = this.range("Scale", "ds-force-scale", 0.2, 3, 0.1, 1, (value) => {
@@ -340,14 +332,12 @@ class Viewer {
       this.state.amplitude = value;
       this.move(value);
     });
-    this.swingButton = make("button", { type: "button", class: "ds-animate", "aria-pressed": "false" }, "Animate");
-    this.swingButton.addEventListener("click", () => this.swing());
+    this.swingButton = make("button", { type: "button", class: "ds-animate", "aria-pressed": "false", click: () => this.swing() }, "Animate");
     this.moving = make("span", { class: "ds-sub", hidden: true }, this.amplitude.label, this.swingButton);
     this.pushing = make("span", { class: "ds-sub", hidden: true }, this.forceScale.label);
     const many = Object.keys(cases).length > 1;
     const fails = Object.keys(sides).length > 1;
-    this.themeButton = make("button", { type: "button", class: "ds-theme" }, "Theme: auto");
-    this.themeButton.addEventListener("click", () => this.nextTheme());
+    this.themeButton = make("button", { type: "button", class: "ds-theme", click: () => this.nextTheme() }, "Theme: auto");
     const zoom = this.range("Zoom", "ds-zoom", 1, 4, 0.25, 1, (value) => this.zoom(value));
     return make(
       "div",
@@ -369,27 +359,25 @@ class Viewer {
   }
 
   range(label, name, min, max, step, value, change) {
-    const input = make("input", { type: "range", class: name, min, max, step, value });
-    input.addEventListener("input", () => change(Number(input.value)));
+    const input = make("input", { type: "range", class: name, min, max, step, value, input: () => change(Number(input.value)) });
     return { input, label: make("label", { class: "ds-range" }, `${label} `, input) };
   }
 
   check(label, name) {
-    const input = make("input", { type: "checkbox", class: `ds-${name}-on`, checked: this.state[name] });
-    input.addEventListener("change", () => {
+    const change = () => {
       this.state[name] = input.checked;
       this.root.classList.toggle("ds-plain", !this.state.patterns);
       this.perPx = null;
       this.update();
-    });
+    };
+    const input = make("input", { type: "checkbox", class: `ds-${name}-on`, checked: this.state[name], change });
     return make("label", { class: "ds-check" }, input, ` ${label}`);
   }
 
   choice(label, name, values, extra) {
     const box = make("fieldset", { class: `ds-choice ds-choose-${name}` }, make("legend", {}, label));
     for (const [value, words] of Object.entries(values)) {
-      const input = make("input", { type: "radio", name: `${this.name}-${name}`, value, checked: value === "none" });
-      input.addEventListener("change", () => {
+      const change = () => {
         this.state[name] = value;
         this.stopSwing();
         if (value !== "none" && this.state.step !== this.last) {
@@ -397,7 +385,8 @@ class Viewer {
           this.show(this.last);
         }
         this.update();
-      });
+      };
+      const input = make("input", { type: "radio", name: `${this.name}-${name}`, value, checked: value === "none", change });
       box.append(make("label", { class: "ds-check" }, input, ` ${words}`));
     }
     box.append(extra);
@@ -424,15 +413,15 @@ class Viewer {
     const pairs = (rows) =>
       make("table", {}, make("tbody", {}, rows.map(([name, value]) => make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, String(value))))));
     const list = (words) => make("ul", {}, words.map((one) => make("li", {}, one)));
-    const box = make("details", { class: "ds-about" }, make("summary", {}, "What it was made from, settings, assumptions"));
-    box.addEventListener("toggle", () => {
+    const toggle = () => {
       if (!box.open || box.children.length > 1) return;
       box.append(pairs(data.inputs));
       if (data.notices.length) box.append(make("h3", {}, "Notices"), list(data.notices.map((n) => `${n.code} ${n.message} ${n.cure}`)));
       if (data.timings.length) box.append(make("h3", {}, "Time"), pairs(data.timings.map(([name, s]) => [name, `${text(s, 2)} s`])));
       box.append(make("h3", {}, "Assumptions"), list(data.assumptions));
       box.append(make("h3", {}, "Settings"), pairs(data.settings));
-    });
+    };
+    const box = make("details", { class: "ds-about", toggle }, make("summary", {}, "What it was made from, settings, assumptions"));
     return box;
   }
 
@@ -584,9 +573,11 @@ class Viewer {
     const pad = this.mechanism ? reach : 0;
     if (this.building) return this.frameStep();
     const foot = this.finished && this.state.forces !== "none" ? 0.8 * reach : 0;
-    const [left, top] = [-16 - pad, -12 - pad];
-    const box = [left, top, WIDTH + 32 + 2 * pad, this.height + 26 + pad + foot].map((value) => value.toFixed(1));
-    this.svg.setAttribute("viewBox", box.join(" "));
+    this.look(-16 - pad, -12 - pad, WIDTH + 32 + 2 * pad, this.height + 26 + pad + foot);
+  }
+
+  look(...box) {
+    this.svg.setAttribute("viewBox", box.map((value) => value.toFixed(1)).join(" "));
     this.resize();
   }
 
@@ -596,8 +587,7 @@ class Viewer {
     const part = this.data.parts.find((one) => one.step === this.state.step);
     const middle = this.x((part ?? this.data.parts[0]).centroid[0]);
     const left = Math.min(Math.max(middle - wide / 2, -16), WIDTH + 16 - wide);
-    this.svg.setAttribute("viewBox", [left, -12, wide, this.height + 26].map((value) => value.toFixed(1)).join(" "));
-    this.resize();
+    this.look(left, -12, wide, this.height + 26);
   }
 
   resize() {
@@ -649,7 +639,7 @@ class Viewer {
     if (!velocity) drawn.forEach((one) => one.removeAttribute("transform"));
     else {
       const { x, y, angle } = displacement(velocity, amplitude * failing.scale);
-      const [cx, cy] = [this.x(part.centroid[0]), this.y(part.centroid[1])];
+      const [cx, cy] = this.at(part.centroid);
       const shift = `translate(${(x * this.k).toFixed(3)} ${(-y * this.k).toFixed(3)})`;
       const way = `${shift} rotate(${((-angle * 180) / Math.PI).toFixed(4)} ${cx.toFixed(3)} ${cy.toFixed(3)})`;
       drawn.forEach((one) => one.setAttribute("transform", way));
@@ -705,13 +695,9 @@ class Viewer {
       if (!contact.between.every(seen)) continue;
       const joint = draw("g", { "data-block": contact.between[0] });
       shown.push(joint);
-      const points = contact.points.map(([x, y]) => [this.x(x), this.y(y)]);
-      const [first, last] = [points[0], points[points.length - 1]];
-      if (state.contacts) joint.append(draw("line", { class: "ds-joint", x1: first[0].toFixed(1), y1: first[1].toFixed(1), x2: last[0].toFixed(1), y2: last[1].toFixed(1) }));
-      points.forEach(([x, y], at) => {
-        if (!kinds) joint.append(this.mark("dot", x, y));
-        else joint.append(this.mark(KINDS[contact.kinds[this.kindSide]?.[at] ?? "closed"].mark, x, y));
-      });
+      const points = contact.points.map(this.at);
+      if (state.contacts) joint.append(lineOf(points[0], points.at(-1), { class: "ds-joint" }));
+      points.forEach(([x, y], at) => joint.append(this.mark(kinds ? KINDS[contact.kinds[this.kindSide]?.[at] ?? "closed"] : "dot", x, y)));
     }
     this.layers.contacts.replaceChildren(...shown);
   }
@@ -738,15 +724,15 @@ class Viewer {
       const tall = Math.max(this.height, 0.2 * WIDTH);
       for (const one of acting) {
         if (one.size < 1e-6 * this.largest) continue;
-        const [x, y] = [this.x(one.point[0]), this.y(one.point[1])];
+        const [x, y] = this.at(one.point);
         const half = (0.5 * state.forceScale * LONGEST_FORCE * tall) / this.largest;
         const [dx, dy] = [one.total[0] * half, -one.total[1] * half];
-        lines.push(draw("line", { x1: (x - dx).toFixed(1), y1: (y - dy).toFixed(1), x2: (x + dx).toFixed(1), y2: (y + dy).toFixed(1) }));
-        const centres = one.between.filter((id) => id !== 0).map((id) => this.parts.get(id)?.centroid).filter(Boolean);
-        const way = centres.map(([cx, cy]) => `${this.x(cx).toFixed(1)},${this.y(cy).toFixed(1)}`);
-        way.splice(1, 0, `${x.toFixed(1)},${y.toFixed(1)}`);
+        lines.push(lineOf([x - dx, y - dy], [x + dx, y + dy]));
+        const way = one.between.map((id) => this.parts.get(id)?.centroid).filter(Boolean).map(this.at);
+        way.splice(1, 0, [x, y]);
+        const points = way.map((place) => place.map((value) => value.toFixed(1)).join()).join(" ");
         const wide = (WIDEST_THRUST * one.size) / this.largest;
-        thrust.push(draw("polyline", { points: way.join(" "), "stroke-width": wide.toFixed(2) }));
+        thrust.push(draw("polyline", { points, "stroke-width": wide.toFixed(2) }));
       }
     }
     this.layers.forces.replaceChildren(...lines);
@@ -760,10 +746,8 @@ class Viewer {
       rows.push(["force", `force at a joint, the largest ${text(100 * this.largest, 1)} % of the wall's weight`], ["thrust", "thrust, as wide as the force"]);
     }
     if (state.contacts) rows.push(["joint", "contact"]);
-    if (this.finished && state.kinds) for (const kind of Object.values(KINDS)) rows.push([kind.mark, kind.words]);
-    this.legend.replaceChildren(
-      ...rows.map(([mark, words]) => make("li", {}, this.sample(mark), ` ${words}`)),
-    );
+    if (this.finished && state.kinds) for (const [words, mark] of Object.entries(KINDS)) rows.push([mark, words]);
+    this.legend.replaceChildren(...rows.map(([mark, words]) => make("li", {}, this.sample(mark), ` ${words}`)));
     const said = [];
     const overlays = state.forces !== "none" || state.mechanism !== "none" || state.kinds;
     if (overlays && !this.finished) said.push("Forces and mechanisms are those of the finished wall.");
@@ -782,8 +766,7 @@ class Viewer {
       thrust: () => draw("g", { class: "ds-thrust" }, draw("polyline", { points: "2,7 20,7", "stroke-width": 6 })),
       joint: () => draw("g", { class: "ds-contacts" }, draw("line", { class: "ds-joint", x1: 3, y1: 7, x2: 19, y2: 7 })),
     };
-    const shape = mark in inside ? inside[mark]() : draw("g", { class: "ds-contacts" }, this.mark(mark, 11, 7));
-    return draw("svg", { class: "ds-sample", viewBox: "0 0 22 14", "aria-hidden": "true" }, shape);
+    return sampleOf(mark in inside ? inside[mark]() : draw("g", { class: "ds-contacts" }, this.mark(mark, 11, 7)));
   }
 
   // --- the stone card -----------------------------------------------------------------------------
@@ -822,7 +805,7 @@ class Viewer {
     return [
       make("h3", { class: `ds-name${stands === false ? " ds-alarm" : ""}` }, said),
       make("p", { class: "ds-sentence" }, data.summary),
-      make("dl", {}, more.map(([name, value]) => make("div", {}, make("dt", {}, name), make("dd", {}, value)))),
+      definitions(more),
     ];
   }
 
@@ -832,7 +815,6 @@ class Viewer {
     return `${values.map((value) => text(factor * value, unit === "units" ? 3 : 1)).join(" × ")} ${name}`;
   }
 
-  // Rows that nobody needs for building are marked.
   cardOf(part) {
     const wedge = part.kind === "wedge";
     const under = part.step === null ? "" : `step ${part.step} of ${this.last}`;
@@ -855,14 +837,13 @@ class Viewer {
       make("p", { class: "ds-which" }, under, cluster && make("span", { class: "ds-more" }, `${under && " · "}${cluster}`)),
       this.figure(part),
       part.step === null ? null : this.tickBox(part),
-      make("dl", {}, rows.map(([name, value, more]) => make("div", { class: more ? "ds-more" : null }, make("dt", {}, name), make("dd", {}, value)))),
+      definitions(rows),
       this.indexTable(part),
     ].filter(Boolean);
   }
 
   tickBox(part) {
-    const input = make("input", { type: "checkbox", checked: this.ticks.has(part.step) });
-    input.addEventListener("change", () => this.tick(part, input.checked));
+    const input = make("input", { type: "checkbox", checked: this.ticks.has(part.step), change: () => this.tick(part, input.checked) });
     return make("label", { class: "ds-tick-box" }, input, part.kind === "wedge" ? " Wedge is in" : " Stone is set");
   }
 
@@ -882,16 +863,15 @@ class Viewer {
       const part = this.parts.get(id);
       if (!part) return make("span", { class: "ds-link" }, String(id));
       const step = part.step === null ? "" : ` (step ${part.step})`;
-      const button = make("button", { type: "button", class: "ds-link" }, `${part.kind === "wedge" ? "wedge " : ""}${id}${step}`);
-      button.addEventListener("click", () => {
+      const click = () => {
         if (part.step !== null && part.step > this.state.step) {
           this.pause();
           this.show(part.step);
         }
         this.select(part.id);
         this.groups.get(part.id).focus();
-      });
-      return button;
+      };
+      return make("button", { type: "button", class: "ds-link", click }, `${part.kind === "wedge" ? "wedge " : ""}${id}${step}`);
     });
   }
 
@@ -970,16 +950,15 @@ class Viewer {
     const at = (turn) => [cx + r * Math.sin(turn), cy - r * Math.cos(turn)];
     const radians = (-angle * Math.PI) / 180;
     const [ex, ey] = at(radians);
-    const hand = (x, y) => draw("line", { class: "ds-dial", x1: cx, y1: cy, x2: x.toFixed(1), y2: y.toFixed(1) });
-    const hands = [hand(cx, cy - r), hand(ex, ey), words];
+    const hands = [at(0), [ex, ey]].map((end) => lineOf([cx, cy], end, { class: "ds-dial" }));
     // Too short for a head of an arrow: the hands and the words say it.
-    if (Math.abs(angle) < 30) return hands;
+    if (Math.abs(angle) < 30) return [...hands, words];
     const back = at(radians - Math.sign(radians) * 0.4);
     const way = Math.atan2(ey - back[1], ex - back[0]);
     const wing = (turn) => `${(ex - 8 * Math.cos(way + turn)).toFixed(1)} ${(ey - 8 * Math.sin(way + turn)).toFixed(1)}`;
     const round = `A${r} ${r} 0 0 ${angle > 0 ? 0 : 1} ${ex.toFixed(1)} ${ey.toFixed(1)}`;
     return [
-      ...hands,
+      ...hands, words,
       draw("path", { class: "ds-arc", d: `M${cx} ${cy - r}${round}` }),
       draw("path", { class: "ds-arc", d: `M${wing(0.45)}L${ex.toFixed(1)} ${ey.toFixed(1)}L${wing(-0.45)}` }),
     ];
@@ -989,22 +968,21 @@ class Viewer {
 
   buildChart() {
     const names = Object.keys(this.data.index_meanings);
-    const pick = make("select", { class: "ds-index" }, make("option", { value: "" }, "none"), names.map((name) => make("option", { value: name }, name)));
-    pick.addEventListener("change", () => {
+    const change = () => {
       this.state.index = pick.value;
       this.drawChart();
-    });
-    this.chart = draw("svg", { class: "ds-chart", role: "img" });
-    this.chart.addEventListener("click", (event) => {
-      const box = this.chart.getBoundingClientRect();
+    };
+    const pick = make("select", { class: "ds-index", change }, make("option", { value: "" }, "none"), names.map((name) => make("option", { value: name }, name)));
+    const click = (event) => {
       this.pause();
-      this.show(this.stepAt(event.clientX - box.left));
-    });
+      this.show(this.stepAt(event.clientX - this.chart.getBoundingClientRect().left));
+    };
+    this.chart = draw("svg", { class: "ds-chart", role: "img", click });
     this.keyOfChart = make("ul", { class: "ds-legend" });
-    const table = make("details", { class: "ds-as-table" }, make("summary", {}, "The same as a table"));
-    table.addEventListener("toggle", () => {
+    const toggle = () => {
       if (table.open && table.children.length === 1) table.append(this.chartTable(names));
-    });
+    };
+    const table = make("details", { class: "ds-as-table", toggle }, make("summary", {}, "The same as a table"));
     return make(
       "section",
       { class: "ds-over-steps", "aria-label": "Load multipliers and indices over the steps" },
@@ -1059,8 +1037,7 @@ class Viewer {
     const ends = series.map((one) => `${one.name} ends at ${text(one.points[one.points.length - 1]?.[1])}`);
     this.chart.setAttribute("aria-label", `Line chart over ${this.last} steps: ${ends.join(", ")}. The table below has all numbers.`);
     this.chart.replaceChildren(...shapes);
-    const lines = series.map((one) => make("li", {}, draw("svg", { class: "ds-sample", viewBox: "0 0 22 14", "aria-hidden": "true" }, draw("polyline", { class: `ds-line ds-line-${one.kind}`, points: "1,7 21,7" })), ` ${one.name}`));
-    this.keyOfChart.replaceChildren(...lines);
+    this.keyOfChart.replaceChildren(...series.map((one) => make("li", {}, sampleOf(draw("polyline", { class: `ds-line ds-line-${one.kind}`, points: "1,7 21,7" })), ` ${one.name}`)));
     this.markChart();
   }
 
