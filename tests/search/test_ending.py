@@ -15,7 +15,7 @@ from drystone.planner.planner import Planner
 from drystone.planner.settings import method_settings
 from drystone.planner.solves import Solves
 from drystone.search.chain import _opened
-from drystone.search.goal import LAST_RUNS, FoundWall, first_falls
+from drystone.search.goal import LAST_RUNS, FoundWall, falls_of
 from drystone.search.packed import PackedWall, found_again
 from drystone.search.plan_wall import plan_wall
 from drystone.search.whole_search import (
@@ -91,7 +91,7 @@ def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere():
     found = found_again(better, yard)
     assert found.judged(yard, THOROUGH).merit == pytest.approx(better.merit)
     assert repaired(planner, wall).groups == better.groups
-    assert first_falls(planner.build.wall.groups, yard, LAST_RUNS)
+    assert not_none(falls_of(planner.build.wall.groups, yard, LAST_RUNS)).first
     # Where nothing falls, and where nothing is better without it, the wall stays.
     still = repaired(planner, replace(wall, merit=math.inf))
     assert still.groups == wall.groups

@@ -8,7 +8,7 @@ import shapely
 
 from drystone.model.site import Site
 from drystone.planner.planner import Planner
-from drystone.search.goal import LAST_RUNS, FoundWall, falls_of, first_falls
+from drystone.search.goal import LAST_RUNS, FoundWall, falls_of
 from drystone.search.ordering import reordered
 from drystone.search.yard import Yard
 from tests.narrow import not_none
@@ -21,8 +21,9 @@ def laid() -> tuple[FoundWall, Yard, list[int]]:
     careless = greedy({"search": {"budget": 2}, "settle": {"trials": 0}})
     planner = finish(Planner(ROUNDED, ROUNDED_SITE, seed=1, settings=careless))
     yard = Yard.of(planner)
-    often = first_falls(planner.build.wall.groups, yard, LAST_RUNS).most_common()
-    return FoundWall.of(planner).judged(yard), yard, [stone for stone, _ in often]
+    falls = not_none(falls_of(planner.build.wall.groups, yard, LAST_RUNS))
+    often = [stone for stone, _ in falls.first.most_common()]
+    return FoundWall.of(planner).judged(yard), yard, often
 
 
 def above(one: shapely.Polygon, other: shapely.Polygon) -> bool:
@@ -57,7 +58,10 @@ def test_another_order_of_the_same_wall_falls_less(
     assert len(after) == len(before)
     assert all(action.stands for action in better.build.actions)
     figures = not_none(better.figures)
-    assert figures.fallen == falls_of(after, yard, LAST_RUNS)
+    assert falls_of(after, yard, LAST_RUNS) == better.falls
+    assert figures.fallen == not_none(better.falls).share
+    # It is given up as soon as more falls than is asked for.
+    assert falls_of(after, yard, LAST_RUNS, 0.5 * figures.fallen) is None
     assert replace(figures, fallen=1.0) == careless.figures
     known = not_none(found.figures).fallen
     weight = yard.settings.goal.fallen

@@ -2,8 +2,9 @@
 
 import math
 from collections import Counter
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from drystone.planner.search_settings import GoalSettings
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.courses import CoursePlan
-from drystone.search.rehearsal import RehearsalRun, errors_of, groups_of, mean_size, put_up
+from drystone.search.rehearsal import errors_of, groups_of, mean_size, put_up
 from drystone.search.yard import Yard
 from drystone.statics.flow.flow_search import STARTS, NonassociativeSettings
 from drystone.statics.flow.nonassociative import nonassociative_resistance
@@ -135,6 +136,14 @@ def _down(value: float, aim: float, urgent: float) -> float:
     return value if aim == 0.0 else urgent * max(value, aim)
 
 
+class Falls(NamedTuple):
+    """What falls in some rehearsals of a wall of outlines."""
+
+    # In the mean, over all its stones; a run that is not whole counts as `STOPPED` more stones.
+    share: float
+    first: Counter[int]  # in how many runs falls begin with which stones
+
+
 @dataclass(frozen=True)
 class Courses:
     """How a wall was laid course by course."""
@@ -152,6 +161,7 @@ class FoundWall:
     merit: float  # no less than that of the same wall once it is `judged`
     solves: Solves = field(default_factory=Solves)  # trouble with it
     courses: Courses | None = None  # None for a wall that was not planned before
+    falls: Falls | None = None  # in its rehearsals, once it was judged
 
     @classmethod
     def of(
@@ -170,59 +180,58 @@ class FoundWall:
         merit = merit_of(figures, possible_filling(yard.workshop), yard.settings.goal)
         return cls(build, figures, merit, solves or Solves(), courses)
 
-    def judged(self, yard: Yard, flow: NonassociativeSettings | None = None) -> "FoundWall":
+    def judged(
+        self, yard: Yard, flow: NonassociativeSettings | None = None, least: float = -math.inf
+    ) -> "FoundWall":
         """Return the same wall with what it carries without dilatancy, unless that is known.
 
         It is asked for again when settings are given.  The least that is found counts
         (DESIGN 4.8); where nothing is found the associative value stands, above which none can be.
+        It has no merit as soon as that cannot be more than `least`.
         """
-        figures, model = self.figures, self.build.model
+        figures, model, goal = self.figures, self.build.model, yard.settings.goal
         if figures is None or self.build.wall.outlines is None:
             return self
         if figures.F_LR_coulomb is not None and flow is None:
             return self
+        falls = self.falls
+        if goal.fallen:
+            most = figures.fallen + (self.merit - least) / goal.fallen
+            runs = RUNS if flow is None else LAST_RUNS
+            falls = falls_of(self.build.wall.groups, yard, runs, most)
+            if falls is None:
+                return replace(self, merit=-math.inf)
+            figures = replace(figures, fallen=falls.share)
         found = nonassociative_resistance(model, settings=flow or QUICK, look=yard.until.look)
-        least = figures.F_LR
+        carried = figures.F_LR
         for end in (found.left, found.right):
             if end.status is LimitStatus.UNSTABLE:
-                least = 0.0
+                carried = 0.0
             elif end.alpha is not None:
-                least = min(least, end.alpha / found.mu)
-        fallen = figures.fallen
-        if yard.settings.goal.fallen:
-            runs = RUNS if flow is None else LAST_RUNS
-            fallen = falls_of(self.build.wall.groups, yard, runs)
-        figures = replace(figures, F_LR_coulomb=least, fallen=fallen)
-        merit = merit_of(figures, possible_filling(yard.workshop), yard.settings.goal)
-        return replace(self, figures=figures, merit=merit)
+                carried = min(carried, end.alpha / found.mu)
+        figures = replace(figures, F_LR_coulomb=carried)
+        merit = merit_of(figures, possible_filling(yard.workshop), goal)
+        return replace(self, figures=figures, merit=merit, falls=falls)
 
 
-def falls_of(groups: Sequence[Group], yard: Yard, runs: int, most: float = math.inf) -> float:
-    """Return what falls in some rehearsals of a wall of outlines, over all its stones.
+def falls_of(
+    groups: Sequence[Group], yard: Yard, runs: int, most: float = math.inf
+) -> Falls | None:
+    """Rehearse a wall of outlines; None as soon as its share is known to be above `most`.
 
-    Groups are in the order of laying.  A run that is not whole counts as :data:`STOPPED` more
-    stones that fall.  Infinite as soon as it is known to be above `most`.
+    Groups are in the order of laying.
     """
-    falls, all_stones = 0, runs * len(groups)
-    for run in _rehearsals(groups, yard, runs):
-        falls += sum(end.fallen for end in run.stones)
-        falls += STOPPED * (run.first_fall is not None)
-        if falls > most * all_stones:
-            return math.inf
-    return falls / all_stones
-
-
-def first_falls(groups: Sequence[Group], yard: Yard, runs: int) -> Counter[int]:
-    """Count with which stones falls begin in some rehearsals of a wall of outlines."""
-    firsts = (run.first_fall for run in _rehearsals(groups, yard, runs))
-    return Counter(first for first in firsts if first is not None)
-
-
-def _rehearsals(groups: Sequence[Group], yard: Yard, runs: int) -> Iterator[RehearsalRun]:
     blocks = groups_of(groups)
     if not blocks:
-        return
+        return Falls(0.0, Counter())
+    fallen, first, all_stones = 0, Counter[int](), runs * len(blocks)
     errors = BuilderErrors.of_precision(HAND, mean_size(blocks))
     for put in errors_of(blocks, errors, [np.random.default_rng(run) for run in range(runs)]):
         yard.until.look()
-        yield put_up(blocks, put, yard.settings.mu, yard.settings.settle)
+        run = put_up(blocks, put, yard.settings.mu, yard.settings.settle)
+        if run.first_fall is not None:
+            fallen += STOPPED + sum(end.fallen for end in run.stones)
+            first[run.first_fall] += 1
+        if fallen > most * all_stones:
+            return None
+    return Falls(fallen / all_stones, first)

@@ -33,13 +33,13 @@ def reordered(found: FoundWall, yard: Yard, often: Sequence[int]) -> FoundWall |
     heights, best = found.build.course_heights_px(), None
     for order in dict.fromkeys(_orders(groups, 1.0 / yard.workshop.site.scale, often)):
         again = [groups[i] for i in order]
-        fallen = falls_of(again, yard, LAST_RUNS, figures.fallen)
-        if fallen < figures.fallen:
+        falls = falls_of(again, yard, LAST_RUNS, figures.fallen)
+        if falls is not None and falls.share < figures.fallen:
             build, left_out, solves = yard.replayed(yard.planner().build, again, heights)
             if not left_out:
-                figures = replace(figures, fallen=fallen)
+                figures = replace(figures, fallen=falls.share)
                 merit = merit_of(figures, possible_filling(yard.workshop), yard.settings.goal)
-                best = FoundWall(build, figures, merit, found.solves + solves)
+                best = FoundWall(build, figures, merit, found.solves + solves, falls=falls)
     return best
 
 

@@ -19,7 +19,7 @@ from drystone.planner.sturdy import ROUNDS
 from drystone.planner.vary import REPAIR_DRAWS
 from drystone.search.anytime import searching
 from drystone.search.chain import forget, without
-from drystone.search.goal import LAST_RUNS, FoundWall, WallFigures, first_falls
+from drystone.search.goal import LAST_RUNS, FoundWall, WallFigures, falls_of
 from drystone.search.interrupts import held
 from drystone.search.ordering import reordered
 from drystone.search.packed import PackedWall, archived, found_again
@@ -222,10 +222,10 @@ def repaired(planner: Planner, best: PackedWall, until: Deadline = NEVER) -> Pac
     yard = Yard.of(planner, until)
     now, found = best, found_again(best, yard)
     for turn in range(REPAIRS):
-        gone = first_falls(found.build.wall.groups, yard, LAST_RUNS)
-        if not gone:
+        falls = found.falls or falls_of(found.build.wall.groups, yard, LAST_RUNS)
+        if falls is None or not falls.first:
             break
-        often = [stone for stone, _ in gone.most_common()]
+        often = [stone for stone, _ in falls.first.most_common()]
         better = reordered(found, yard, often) or found
         if better.merit <= now.merit or not stays_at_every_step(better.build, until):
             walls, rng = [], np.random.default_rng([planner.seed, REPAIR_DRAWS, turn])
@@ -233,8 +233,8 @@ def repaired(planner: Planner, best: PackedWall, until: Deadline = NEVER) -> Pac
                 build, _, solves = without(found.build, chosen, yard)
                 walls += [FoundWall.measured(build, yard, solves)]
                 walls += [FoundWall.of(yard.built_up(build, rng), before=solves)]
-            judged = (one.judged(yard, THOROUGH) for one in walls if one.merit > now.merit)
-            better = max(judged, key=lambda one: one.merit, default=found)
+            judged = (one.judged(yard, THOROUGH, now.merit) for one in walls)
+            better = max(judged, key=lambda one: one.merit)
             if better.merit <= now.merit or not stays_at_every_step(better.build, until):
                 break
         now, found = PackedWall.of(better), better
