@@ -149,6 +149,11 @@ def test_half_a_pixel_is_not_decided_by_the_unit():
     check(result, stones)
 
 
+def test_a_plan_is_measured_by_its_own_size_however_many_digits_that_has():
+    stones = few_stones()
+    check(plan_wall(stones, 61.50156889234596, 53, settings=greedy(), scale=0.5), stones)
+
+
 def test_walls_with_wedges_are_restored_as_they_were():
     first = finish(Planner(few_stones(), SITE, seed=3, settings=WEDGES))
     assert first.build.wall.wedges
