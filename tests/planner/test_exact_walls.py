@@ -120,7 +120,7 @@ def check_outlines(result, settings, site):
         assert high <= height + beyond
 
 
-@repeatable(10)
+@repeatable(16)
 @given(case=cases(), seed=st.integers(0, 1000))
 def test_every_plan_is_true(case, seed):
     stones, (width, height), scale, settings = case
@@ -147,6 +147,11 @@ def test_half_a_pixel_is_not_decided_by_the_unit():
     result = plan_wall(stones, width, 53, settings=greedy(), scale=0.5, px_per_m=px_per_m)
     assert result.wall.labels.shape[1] == 26
     check(result, stones)
+
+
+def test_a_plan_is_measured_by_its_own_size_however_many_digits_that_has():
+    stones = few_stones()
+    check(plan_wall(stones, 61.50156889234596, 53, settings=greedy(), scale=0.5), stones)
 
 
 def test_walls_with_wedges_are_restored_as_they_were():

@@ -12,6 +12,7 @@ from numpy.random import Generator
 from drystone.model.site import Site
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.events import Stopped
+from drystone.planner.planner import Planner
 from drystone.planner.search_settings import SearchSettings
 from drystone.planner.workshop import Workshop
 from drystone.search.by_courses import newly_planned, relaid, replanned
@@ -182,12 +183,12 @@ def test_what_rests_on_what_is_taken_down_goes_too(ruin, free):
 
 def test_joint_paths_are_those_of_the_wall_not_of_the_air_above_it():
     stones = blocks(dict.fromkeys(range(1, 6), (20, 10)))
-    pile = scenes.finish(scenes.Planner(stones, Site(20, 300), settings=greedy())).build
+    pile = scenes.finish(Planner(stones, Site(20, 300), settings=greedy())).build
     *lower, highest = (p.stone_id for p in pile.wall.placements)
     draws = [joint(pile, 1, rng(seed)) for seed in range(40)]
     assert set().union(*draws) == {*lower, highest}
     assert draws.count(frozenset({highest})) < 20
-    low = scenes.finish(scenes.Planner(stones, Site(20, 30), settings=greedy())).build
+    low = scenes.finish(Planner(stones, Site(20, 30), settings=greedy())).build
     first, second, third = (p.stone_id for p in low.wall.placements)
     assert with_all_above(low, frozenset({first})) == {first, second, third}
     assert with_all_above(low, frozenset({second})) == {second, third}

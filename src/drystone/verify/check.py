@@ -73,7 +73,7 @@ def check_plan(
     if blocks is not None and replay.exact:
         problems += check_blocks(blocks, plan, replay, model)
     if whole:
-        metrics = recompute_metrics(replay, model)
+        metrics = recompute_metrics(plan, replay, model)
         problems += check_metrics(plan.metrics, metrics)
     depth, depth_at = deepest_overlap(_outlines(replay))
     area_error, area_error_at = _worst_area(replay)

@@ -1,7 +1,7 @@
 """What a plan claims of its stones, actions and wall, computed again."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 from drystone.clusters import cluster_stones
 from drystone.contacts.blocks import model_from_labels
@@ -248,10 +248,14 @@ def check_indices(
     return problems
 
 
-def recompute_metrics(replay: Replay, model: RigidBlockModel | None) -> PlanMetrics:
+def recompute_metrics(plan: Plan, replay: Replay, model: RigidBlockModel | None) -> PlanMetrics:
     """Return the figures of merit of a wall that was rebuilt whole; no model is no stone."""
     model = model or RigidBlockModel((), (), replay.settings.mu)
-    build = Build(replay.wall, model)
+    source_px = plan.px_per_m or 1.0
+    # The size in the plan has more digits than that of the site, which is rounded.
+    size = plan.width * source_px, plan.height * source_px
+    site = replace(replay.site, source_px=size)
+    build = Build(replace(replay.wall, site=site), model)
     resistance = lateral_resistance(model)
     others = other_resistances(build, resistance, replay.settings)
     return plan_metrics(build, resistance, others)
