@@ -4,7 +4,6 @@ import os
 import signal
 import sys
 import tomllib
-from collections.abc import Iterator
 from importlib.metadata import entry_points
 from pathlib import Path
 
@@ -23,7 +22,7 @@ settings.load_profile("repeatable")
 
 
 @pytest.fixture(autouse=True, scope="session")
-def _commands_of_the_lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+def _commands_of_the_lab(tmp_path_factory):
     """Make the entry points of pyproject.toml known to an installation that is older than they."""
     group = "drystone.commands"
     project = Path(__file__).resolve().parents[1] / "pyproject.toml"
@@ -47,13 +46,13 @@ def _commands_of_the_lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[N
 
 
 @pytest.fixture(autouse=True)
-def _no_data_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def _no_data_named(monkeypatch):
     """Let tests find published stone sets by `data_dir` alone, whatever the machine has set."""
     monkeypatch.delenv("DRYSTONE_DATA", raising=False)
 
 
 @pytest.fixture(scope="session")
-def data_dir() -> Path:
+def data_dir():
     """Folder of the published stone sets; tests that need it skip when it is absent."""
     default = Path(__file__).resolve().parents[2] / "shared" / "data"
     folder = Path(os.environ.get("DRYSTONE_DATA", default))
@@ -63,7 +62,7 @@ def data_dir() -> Path:
 
 
 @pytest.fixture
-def interruptible() -> Iterator[None]:
+def interruptible():
     """Have interrupts raise KeyboardInterrupt, also where a shell ignores them."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield

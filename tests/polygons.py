@@ -4,12 +4,11 @@ import numpy as np
 import shapely
 from hypothesis import strategies as st
 
-from drystone.kernels.polygons import Points, area_and_centroid
+from drystone.kernels.polygons import area_and_centroid
 from drystone.kernels.raster import turn
-from tests.strategies import Draw
 
 
-def random_polygon(rng: np.random.Generator, corners: int, size: float) -> Points:
+def random_polygon(rng, corners, size):
     """A star-shaped polygon of random radii: counter-clockwise, its centroid at the origin.
 
     Parameters
@@ -28,25 +27,25 @@ def random_polygon(rng: np.random.Generator, corners: int, size: float) -> Point
     return centred(np.column_stack([radius * np.cos(angle), radius * np.sin(angle)]))
 
 
-def box_of(left: float, bottom: float, width: float, height: float) -> Points:
+def box_of(left, bottom, width, height):
     """An upright box, counter-clockwise from its lower left corner."""
     right, top = left + width, bottom + height
     return np.array([[left, bottom], [right, bottom], [right, top], [left, top]], np.float64)
 
 
-def centred(corners: Points) -> Points:
+def centred(corners):
     """The same polygon with its centroid at the origin."""
     _, x, y = area_and_centroid(corners)
     return np.asarray(corners - np.array([x, y]))
 
 
-def convex(corners: Points) -> Points:
+def convex(corners):
     """The convex hull of some points, counter-clockwise."""
     hull = shapely.get_coordinates(shapely.convex_hull(shapely.multipoints(corners)))[:-1]
     return np.ascontiguousarray(hull if area_and_centroid(hull)[0] > 0.0 else hull[::-1])
 
 
-def on_grid(corners: Points, step: float) -> Points | None:
+def on_grid(corners, step):
     """The corners moved to a grid, without those that fall together; None when it is not simple."""
     moved = np.round(corners / step) * step
     moved = moved[(moved != np.roll(moved, 1, axis=0)).any(axis=1)]
@@ -54,7 +53,7 @@ def on_grid(corners: Points, step: float) -> Points | None:
     return moved if shape.is_valid and shape.area > 0.0 else None
 
 
-def outlines_along_a_line(rng: np.random.Generator) -> tuple[Points, Points]:
+def outlines_along_a_line(rng):
     """Two outlines above the ground with a common line of several pieces, otherwise rounded."""
     x = np.array([0.0, *np.sort(rng.uniform(0.0, 50.0, rng.integers(0, 5))), 50.0])
     line = np.column_stack([x, rng.uniform(-3.0, 3.0, len(x)) * rng.integers(0, 2)])
@@ -67,7 +66,7 @@ def outlines_along_a_line(rng: np.random.Generator) -> tuple[Points, Points]:
 
 
 @st.composite
-def simple_polygons(draw: Draw, max_corners: int = 12, max_size: float = 20.0) -> Points:
+def simple_polygons(draw, max_corners=12, max_size=20.0):
     """A simple polygon about the origin, counter-clockwise: concave, convex, a box, or on a grid.
 
     Those on a grid have corners at multiples of .5, with edges along the axes, corners in a row

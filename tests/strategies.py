@@ -7,26 +7,23 @@ from typing import Any
 import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from scipy import ndimage
 
-from drystone.kernels.raster import Mask
 from drystone.model.placement import Placement
-from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.stone import Stone
-from drystone.model.wall import Labels, Wall
+from drystone.model.wall import Wall
 from drystone.poses import PoseBook
 
 Draw = Callable[[st.SearchStrategy[Any]], Any]
 
 
-def repeatable(max_examples: int = 60) -> settings:
+def repeatable(max_examples=60):
     """The profile of `conftest.py` with another number of examples."""
     return settings(max_examples=max_examples)
 
 
-def whole(pixels: NDArray[np.bool_]) -> Mask:
+def whole(pixels):
     """The largest edge-connected piece of some pixels, holes filled, cropped."""
     labels, count = ndimage.label(pixels)
     if count == 0:
@@ -38,32 +35,32 @@ def whole(pixels: NDArray[np.bool_]) -> Mask:
 
 
 @st.composite
-def masks(draw: Draw, max_px: int = 7) -> Mask:
+def masks(draw, max_px=7):
     """A connected mask of any shape."""
     shape = draw(st.integers(1, max_px)), draw(st.integers(1, max_px))
     return whole(_pixels(draw, shape) | _pixels(draw, shape))
 
 
-def _pixels(draw: Draw, shape: tuple[int, int]) -> Mask:
+def _pixels(draw, shape):
     """Pixels from the bits of one integer: far quicker to draw than an array."""
     count = shape[0] * shape[1]
     bits = np.frombuffer(draw(st.integers(0, 2**count - 1)).to_bytes(-(-count // 8)), np.uint8)
     return np.unpackbits(bits, count=count).astype(bool).reshape(shape)
 
 
-def _resting_places(occupied: Mask, mask: Mask) -> list[tuple[int, int]]:
+def _resting_places(occupied, mask):
     """Where a mask overlaps nothing and would one pixel lower, or stands on the ground."""
     height, width = occupied.shape
     if mask.shape[0] > height or mask.shape[1] > width:
         return []
     scene = np.vstack([occupied, np.ones((1, width), bool)])
     windows = np.lib.stride_tricks.sliding_window_view(scene, mask.shape)
-    hit: Mask = np.asarray(windows[..., mask].any(axis=-1))
+    hit = np.asarray(windows[..., mask].any(axis=-1))
     return [(int(row), int(col)) for row, col in np.argwhere(~hit[:-1] & hit[1:])]
 
 
 @st.composite
-def blobs(draw: Draw, min_px: int = 8, max_px: int = 24) -> Mask:
+def blobs(draw, min_px=8, max_px=24):
     """A rounded mask, as photographed stones are: a circle with a few waves."""
     width = draw(st.integers(min_px, max_px))
     flat = draw(st.sampled_from([1.0, 0.7, 0.45]))
@@ -78,7 +75,7 @@ def blobs(draw: Draw, min_px: int = 8, max_px: int = 24) -> Mask:
 
 
 @st.composite
-def joined_masks(draw: Draw) -> Mask:
+def joined_masks(draw):
     """A piece that may be joined by corners only, as it is read: holes filled."""
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     shape = draw(st.tuples(st.integers(1, 12), st.integers(1, 12)))
@@ -90,7 +87,7 @@ def joined_masks(draw: Draw) -> Mask:
 
 
 @st.composite
-def holed(draw: Draw) -> Mask:
+def holed(draw):
     """A stone with some holes, of one pixel up to all but its rim."""
     mask = draw(st.one_of(masks(max_px=9), joined_masks(), blobs(min_px=10, max_px=40)))
     inner = ndimage.binary_erosion(np.pad(mask, 1))[1:-1, 1:-1]
@@ -100,13 +97,13 @@ def holed(draw: Draw) -> Mask:
 
 
 @st.composite
-def stones(draw: Draw, stone_id: int = 1, max_px: int = 7) -> Stone:
+def stones(draw, stone_id=1, max_px=7):
     """A stone of any shape somewhere in a source image."""
     return Stone(stone_id, draw(masks(max_px)), draw(st.integers(0, 9)), draw(st.integers(0, 9)))
 
 
 @st.composite
-def landscapes(draw: Draw, max_px: int = 20) -> Mask:
+def landscapes(draw, max_px=20):
     """Occupied pixels: rectangles painted over each other, and some dust."""
     height, width = draw(st.integers(1, max_px)), draw(st.integers(1, max_px))
     occupied = np.zeros((height, width), bool)
@@ -120,7 +117,7 @@ def landscapes(draw: Draw, max_px: int = 20) -> Mask:
 
 
 @st.composite
-def walls(draw: Draw, max_stones: int = 4) -> Wall:
+def walls(draw, max_stones=4):
     """A small wall of stones that rest on each other or on the ground, each as it was found."""
     wall = Wall.empty(Site(draw(st.integers(8, 28)), draw(st.integers(6, 18))))
     book = PoseBook()
@@ -134,7 +131,7 @@ def walls(draw: Draw, max_stones: int = 4) -> Wall:
 
 
 @st.composite
-def posed_on_walls(draw: Draw) -> tuple[Wall, PosedStone, int, int]:
+def posed_on_walls(draw):
     """A wall, and a stone that rests somewhere on it, stable or not."""
     wall = draw(walls())
     posed = PoseBook().pose(draw(stones(99)), 0.0)
@@ -146,13 +143,13 @@ def posed_on_walls(draw: Draw) -> tuple[Wall, PosedStone, int, int]:
     return wall, posed, row, col
 
 
-def _picture(rows: list[list[int]]) -> Labels:
+def _picture(rows):
     """Rows from the top as a label image."""
     return np.array(rows, np.uint32)
 
 
 @st.composite
-def brick_labels(draw: Draw) -> Labels:
+def brick_labels(draw):
     """Courses of bricks, some with gaps between them."""
     width, rows, brick = draw(st.integers(2, 16)), [], 0
     for _ in range(draw(st.integers(1, 5))):
@@ -167,7 +164,7 @@ def brick_labels(draw: Draw) -> Labels:
 
 
 @st.composite
-def stacked_labels(draw: Draw) -> Labels:
+def stacked_labels(draw):
     """One block on another, from one pixel wide, often just balanced or just not."""
     width, left, rows = draw(st.integers(1, 8)), 30, []
     for number in range(1, draw(st.integers(2, 8))):
@@ -180,7 +177,7 @@ def stacked_labels(draw: Draw) -> Labels:
 
 
 @st.composite
-def dust_labels(draw: Draw) -> Labels:
+def dust_labels(draw):
     """Pixels of any id: single ones, diagonal touches, ids in many pieces, large ids."""
     height, width = draw(st.integers(1, 7)), draw(st.integers(1, 7))
     ids = draw(st.integers(1, 7))
@@ -189,7 +186,7 @@ def dust_labels(draw: Draw) -> Labels:
     return labels.astype(np.uint32) * np.uint32(draw(st.sampled_from([1, 0x1FFFFFFF])))
 
 
-def _boxes(height: int, width: int) -> st.SearchStrategy[tuple[int, int, int, int]]:
+def _boxes(height, width):
     """Of pixels: top, left, bottom, right."""
     tops, lefts = st.integers(0, height - 1), st.integers(0, width - 1)
     sizes = st.integers(1, 8)
@@ -197,7 +194,7 @@ def _boxes(height: int, width: int) -> st.SearchStrategy[tuple[int, int, int, in
 
 
 @st.composite
-def holed_labels(draw: Draw) -> Labels:
+def holed_labels(draw):
     """Stones painted over each other, rings among them, empty or with loose stones inside."""
     height, width = draw(st.integers(3, 14)), draw(st.integers(3, 14))
     labels = np.zeros((height, width), np.uint32)
@@ -210,7 +207,7 @@ def holed_labels(draw: Draw) -> Labels:
 
 
 @st.composite
-def hanging_labels(draw: Draw) -> Labels:
+def hanging_labels(draw):
     """Two pillars, and stones between them that stand on nothing."""
     height, gap = draw(st.integers(3, 10)), draw(st.integers(1, 8))
     left, right = draw(st.integers(1, 6)), draw(st.integers(1, 6))
@@ -224,7 +221,7 @@ def hanging_labels(draw: Draw) -> Labels:
 
 
 @st.composite
-def floating_labels(draw: Draw) -> Labels:
+def floating_labels(draw):
     """A wall, and a stone in the air above or beside it."""
     below = draw(st.one_of(brick_labels(), stacked_labels(), holed_labels()))
     height, width = below.shape
@@ -239,7 +236,7 @@ def floating_labels(draw: Draw) -> Labels:
     return labels
 
 
-def label_images() -> st.SearchStrategy[Labels]:
+def label_images():
     """A small label image of any of these kinds but the last: most are walls that stand."""
     return st.one_of(
         brick_labels(), stacked_labels(), dust_labels(), holed_labels(), hanging_labels()

@@ -1,10 +1,7 @@
 """Clusters of similar stones (§3.4, Fig. 5)."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from PIL import Image
 from scipy import ndimage
 
@@ -13,7 +10,7 @@ from drystone.model.stone import Stone, StoneSet
 from drystone.poses import PoseBook
 
 
-def stones_of(labels: NDArray[np.int64]) -> StoneSet:
+def stones_of(labels):
     """Largest 8-connected piece of every id, holes filled."""
     found = []
     for value in np.unique(labels[labels > 0]).tolist():
@@ -25,7 +22,7 @@ def stones_of(labels: NDArray[np.int64]) -> StoneSet:
     return StoneSet(tuple(found))
 
 
-def read_ids(path: Path) -> NDArray[np.int64]:
+def read_ids(path):
     """Ids as DESIGN 4.1 reads them: the grey value, or R + 256 G + 65536 B."""
     with Image.open(path) as image:
         pixels = np.asarray(image.convert("RGB") if image.mode in ("RGBA", "RGB", "P") else image)
@@ -39,18 +36,18 @@ def read_ids(path: Path) -> NDArray[np.int64]:
 @pytest.mark.parametrize(
     ("name", "stones", "count"), [("PR", 32, 7), ("R", 34, 9), ("IR", None, 15)]
 )
-def test_published_sets(data_dir: Path, name: str, stones: int | None, count: int) -> None:
+def test_published_sets(data_dir, name, stones, count):
     """PR: the paper's Fig. 5 says 32 stones in 7 clusters; R and IR: docs/evidence/decisions.md."""
     found = stones_of(read_ids(data_dir / "almeida" / f"{name}.png"))
     assert stones is None or len(found) == stones
     assert len(set(cluster_stones(found, PoseBook()).values())) == count
 
 
-def rectangles(*sizes: tuple[int, int]) -> StoneSet:
+def rectangles(*sizes):
     return StoneSet(tuple(Stone(k, np.ones(size, bool)) for k, size in enumerate(sizes, 5)))
 
 
-def test_similar_stones_share_a_cluster_and_larger_ones_come_first() -> None:
+def test_similar_stones_share_a_cluster_and_larger_ones_come_first():
     stones = rectangles((4, 4), (20, 40), (4, 12), (20, 41), (4, 13), (5, 5))
     found = cluster_stones(stones, PoseBook())
     assert found[6] == found[8] == 1
@@ -60,13 +57,13 @@ def test_similar_stones_share_a_cluster_and_larger_ones_come_first() -> None:
     assert set(found) == {5, 6, 7, 8, 9, 10}
 
 
-def test_size_does_not_depend_on_how_the_stone_lies() -> None:
+def test_size_does_not_depend_on_how_the_stone_lies():
     lying, standing = rectangles((6, 20)), rectangles((20, 6))
     both = StoneSet((lying.stones[0], Stone(6, standing.stones[0].mask)))
     assert len(set(cluster_stones(both, PoseBook()).values())) == 1
 
 
-def test_distance_decides() -> None:
+def test_distance_decides():
     stones = rectangles((4, 4), (20, 20), (4, 12), (20, 21))
     assert set(cluster_stones(stones, PoseBook(), ClusterSettings(distance=99)).values()) == {1}
     assert (
@@ -76,6 +73,6 @@ def test_distance_decides() -> None:
         ClusterSettings(distance=0)
 
 
-def test_one_stone_and_none() -> None:
+def test_one_stone_and_none():
     assert cluster_stones(rectangles((3, 3)), PoseBook()) == {5: 1}
     assert cluster_stones(StoneSet(()), PoseBook()) == {}

@@ -11,9 +11,7 @@ import json
 import os
 import re
 import shlex
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -52,7 +50,7 @@ TOCTREE = re.compile(r"^```\{toctree\}\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 CODE_ROW = re.compile(r"^\| ([EW]\d{3}) \| (.*?) \|", re.MULTILINE)
 TABLE = re.compile(r"<!-- table (\w+) -->\n(.*?)<!-- end -->", re.DOTALL)
 
-SOURCES: dict[str, type[Any]] = {
+SOURCES = {
     "read": ReadSettings,
     "fourier": FourierSettings,
     "polygon": PolygonSettings,
@@ -62,14 +60,14 @@ SOURCES: dict[str, type[Any]] = {
 """Settings outside the planner, by the name of their table."""
 
 
-def value(thing: object) -> str:
+def value(thing):
     """Write a value as in TOML; None, which TOML lacks, as none."""
     if thing is None:
         return "none"
     return f"`{json.dumps(thing)}`"
 
 
-def written_table(name: str) -> str:
+def written_table(name):
     """Return a table of docs/settings.md as the code has it."""
     kind = SOURCES.get(name) or planner_tables()[name]
     if name in SOURCES:
@@ -92,21 +90,21 @@ def written_table(name: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def rewritten(text: str) -> str:
+def rewritten(text):
     """Return docs/settings.md with every table as the code has it."""
     return TABLE.sub(lambda m: f"<!-- table {m[1]} -->\n{written_table(m[1])}<!-- end -->", text)
 
 
-def with_meanings(text: str) -> str:
+def with_meanings(text):
     """Return docs/errors.md with what every code means as the code has it."""
     return CODE_ROW.sub(lambda m: f"| {m[1]} | {CODES.get(m[1], m[2])} |", text)
 
 
-def written_commands() -> str:
+def written_commands():
     """Return docs/commands.md as the parser has it; options that commands share stand once."""
-    parsers = build_parser()._subparsers._group_actions[0].choices  # type: ignore[union-attr]
+    parsers = build_parser()._subparsers._group_actions[0].choices
     assert isinstance(parsers, dict)
-    places: dict[str, list[str]] = {}
+    places = {}
     for name, parser in parsers.items():
         for row in _options(parser):
             places.setdefault(row, []).append(name)
@@ -130,12 +128,12 @@ def written_commands() -> str:
     return "\n\n".join(lines) + "\n"
 
 
-def _table(rows: list[str], more: str = "") -> list[str]:
+def _table(rows, more=""):
     head = f"| option | what it does{more} |\n{'|---' * (2 + bool(more))}|"
     return ["\n".join([head, *rows])] if rows else []
 
 
-def _options(parser: argparse.ArgumentParser) -> list[str]:
+def _options(parser):
     """Return a row of a table for each option that help shows."""
     layout, rows = parser._get_formatter(), []
     for action in parser._actions:
@@ -147,13 +145,13 @@ def _options(parser: argparse.ArgumentParser) -> list[str]:
     return rows
 
 
-def blocks(page: Path, language: str) -> list[str]:
+def blocks(page, language):
     """Return the fenced blocks of a page in one language."""
     text = page.read_text(encoding="utf-8")
     return [body for found, body in BLOCK.findall(text) if found == language]
 
 
-def command_lines(page: Path) -> Iterator[list[str]]:
+def command_lines(page):
     """Yield the words of every drystone command in the shell blocks of a page.
 
     Of the README those in the text count too, when they have arguments.
@@ -168,41 +166,41 @@ def command_lines(page: Path) -> Iterator[list[str]]:
             yield shlex.split(line)
 
 
-def test_the_settings_are_those_of_the_code() -> None:
+def test_the_settings_are_those_of_the_code():
     text = SETTINGS.read_text(encoding="utf-8")
     names = [name for name, _ in TABLE.findall(text)]
     assert names == [*planner_tables(), *SOURCES]
     assert text == rewritten(text), "run python -m tests.test_documents"
 
 
-def test_the_codes_mean_what_the_code_says() -> None:
+def test_the_codes_mean_what_the_code_says():
     text = ERRORS.read_text(encoding="utf-8")
     assert text == with_meanings(text), "run python -m tests.test_documents"
     assert list(CODES) == sorted(CODES)
     assert all(said[-1] == "." and len(said.split()) < 26 for said in CODES.values())
 
 
-def test_the_commands_are_those_of_the_parser() -> None:
+def test_the_commands_are_those_of_the_parser():
     text = COMMANDS.read_text(encoding="utf-8")
     assert text == written_commands(), "run python -m tests.test_documents"
 
 
 @pytest.mark.parametrize("described", [*planner_tables().values(), *SOURCES.values()])
-def test_every_setting_is_explained(described: type[Any]) -> None:
+def test_every_setting_is_explained(described):
     explained = entries(described)
     assert list(explained) == [field.name for field in dataclasses.fields(described)]
     assert all(explained[name].text for name in plain_fields(described))
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_every_command_line_is_understood(name: str) -> None:
+def test_every_command_line_is_understood(name):
     parser = build_parser()
     for words in command_lines(ROOT / name):
         if words not in (["--help"], ["--version"]):
             assert parser.parse_args(words).command == words[0]
 
 
-def test_files_of_code_that_documents_name_are_there() -> None:
+def test_files_of_code_that_documents_name_are_there():
     named = {
         (page.name, path)
         for page in PAGES
@@ -215,12 +213,12 @@ def test_files_of_code_that_documents_name_are_there() -> None:
     assert lost == set()
 
 
-def test_the_readme_shows_every_command() -> None:
+def test_the_readme_shows_every_command():
     shown = {words[0] for words in command_lines(ROOT / "README.md")}
     assert shown >= {"plan", "demo", "stones", "analyse", "measure", "check", "generate"}
 
 
-def test_the_python_of_the_readme_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_python_of_the_readme_runs(tmp_path, monkeypatch):
     made = brick_stones(BrickSettings(count=6, height_px=10, aspect=2), np.random.default_rng(1))
     write_labels(lay_out(made), tmp_path / "stones.png")
     monkeypatch.chdir(tmp_path)
@@ -231,9 +229,7 @@ def test_the_python_of_the_readme_runs(tmp_path: Path, monkeypatch: pytest.Monke
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name.startswith("docs/for-")])
-def test_the_python_of_the_pages_for_users_runs(
-    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_python_of_the_pages_for_users_runs(name, tmp_path, monkeypatch):
     made = brick_stones(BrickSettings(count=6, height_px=10, aspect=2), np.random.default_rng(1))
     write_labels(lay_out(made), tmp_path / "stones.png")
     monkeypatch.chdir(tmp_path)
@@ -242,7 +238,7 @@ def test_the_python_of_the_pages_for_users_runs(
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_every_link_leads_to_a_file(name: str) -> None:
+def test_every_link_leads_to_a_file(name):
     page = ROOT / name
     for target, _ in LINK.findall(page.read_text(encoding="utf-8")):
         if "://" not in target:
@@ -250,7 +246,7 @@ def test_every_link_leads_to_a_file(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_every_link_to_a_heading_finds_it(name: str) -> None:
+def test_every_link_to_a_heading_finds_it(name):
     page = ROOT / name
     for target, heading in re.findall(
         r"\]\(([^)#\s]*)#([^)\s]+)\)", page.read_text(encoding="utf-8")
@@ -262,14 +258,14 @@ def test_every_link_to_a_heading_finds_it(name: str) -> None:
             assert heading in slugs
 
 
-def tree_of(page: Path) -> list[str]:
+def tree_of(page):
     """Return the entries of the tables of contents of a page."""
     trees = TOCTREE.findall(page.read_text(encoding="utf-8"))
     lines = [line for tree in trees for line in tree.splitlines()]
     return [line for line in lines if line and not line.startswith(":")]
 
 
-def test_every_page_is_in_the_menu_or_among_the_evidence() -> None:
+def test_every_page_is_in_the_menu_or_among_the_evidence():
     index, evidence = MENU[0].parent / "index.md", MENU[0].parent / "evidence" / "index.md"
     menu, behind = tree_of(index), tree_of(evidence)
     assert len(menu) <= 20, "one purpose a page; what was measured goes to docs/evidence"
@@ -284,25 +280,25 @@ def test_every_page_is_in_the_menu_or_among_the_evidence() -> None:
 
 
 @pytest.mark.parametrize("page", [page.name for page in MENU])
-def test_every_page_says_in_its_first_line_what_it_is_for(page: str) -> None:
+def test_every_page_says_in_its_first_line_what_it_is_for(page):
     title, first = (ROOT / "docs" / page).read_text(encoding="utf-8").split("\n\n")[:2]
     assert re.fullmatch("# .+", title)
     sentence = re.split(r"[.:?](?:\s|$)", first)[0]
     assert 5 <= len(sentence.split()) <= 30
 
 
-def test_no_page_has_a_name_that_sphinx_keeps() -> None:
+def test_no_page_has_a_name_that_sphinx_keeps():
     pages = {page.stem for page in (ROOT / "docs").glob("*.md")}
     assert not pages & {"search", "genindex", "modindex"}, "its page would replace ours"
 
 
-def test_the_reference_names_everything_that_is_public() -> None:
+def test_the_reference_names_everything_that_is_public():
     text = (ROOT / "docs" / "api.md").read_text(encoding="utf-8")
     described = re.findall(r"^\.\. auto\w+:: drystone\.(\w+)$", text, re.MULTILINE)
     assert sorted(described) == sorted(drystone.__all__)
 
 
-def test_the_theory_has_every_equation_and_files_that_exist() -> None:
+def test_the_theory_has_every_equation_and_files_that_exist():
     text = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
     numbers = re.findall(r"\((\d+)[a-d]?(?:-[a-d])?(?:, (\d+))?\)", text)
     assert {int(n) for pair in numbers for n in pair if n} >= set(range(1, 31))
@@ -313,7 +309,7 @@ def test_the_theory_has_every_equation_and_files_that_exist() -> None:
         assert (source / file).exists(), file
 
 
-def test_the_gallery_has_titles_and_is_short() -> None:
+def test_the_gallery_has_titles_and_is_short():
     scripts = sorted((ROOT / "docs" / "gallery").glob("plot_*.py"))
     assert len(scripts) >= 4
     for script in scripts:
@@ -322,7 +318,7 @@ def test_the_gallery_has_titles_and_is_short() -> None:
         assert len(text.splitlines()) < 80, script.name
 
 
-def test_pictures_are_light_and_shown() -> None:
+def test_pictures_are_light_and_shown():
     shown = {
         os.path.normpath(page.parent / target)
         for page in PAGES
@@ -337,19 +333,19 @@ def test_pictures_are_light_and_shown() -> None:
             assert image.width >= (600 if picture.suffix == ".gif" else 800)
 
 
-def test_the_plan_of_the_documents_is_valid() -> None:
+def test_the_plan_of_the_documents_is_valid():
     (example,) = blocks(ROOT / "docs" / "plan-format.md", "json")
     plan = plan_from_json(json.loads(example))
     assert [step.kind for step in plan.steps] == ["stone", "stone", "wedge"]
 
 
-def test_every_property_of_a_plan_is_described() -> None:
+def test_every_property_of_a_plan_is_described():
     text = (ROOT / "docs" / "plan-format.md").read_text(encoding="utf-8")
     missing = {name for name in _properties(plan_schema()) if f"`{name}`" not in text}
     assert not missing
 
 
-def _properties(schema: object) -> set[str]:
+def _properties(schema):
     """Return the names of all properties in a JSON Schema."""
     if isinstance(schema, dict):
         own = schema.get("properties", {})

@@ -35,7 +35,7 @@ from tests.naive import rays as naive_rays
 from tests.strategies import posed_on_walls, repeatable
 
 
-def test_an_upright_rectangle_has_one_and_a_turned_square_one_half() -> None:
+def test_an_upright_rectangle_has_one_and_a_turned_square_one_half():
     square = Stone(1, np.ones((10, 10), bool))
     assert shape_factor(PoseBook(0.3).pose(square, 90.0)) == pytest.approx(1.0)
     assert shape_factor(PoseBook(0.3).pose(square, 45.0)) == pytest.approx(0.5)
@@ -43,13 +43,13 @@ def test_an_upright_rectangle_has_one_and_a_turned_square_one_half() -> None:
 
 @repeatable()
 @given(scene=posed_on_walls())
-def test_lfr_is_that_of_rays(scene: tuple[Wall, PosedStone, int, int]) -> None:
+def test_lfr_is_that_of_rays(scene):
     wall, posed, row, col = scene
     got = local_filling_ratio_at(Landscape.of(wall), posed, row, col)
     assert got == pytest.approx(naive_rays.local_filling_ratio(wall.occupied, posed.mask, row, col))
 
 
-def test_nothing_swept_is_full() -> None:
+def test_nothing_swept_is_full():
     block = PoseBook().pose(Stone(1, np.ones((2, 3), bool)), 0.0)
     landscape = Landscape.of(Wall.empty(Site(8, 4)))
     found = [local_filling_ratio_at(landscape, block, *at) for at in ((2, 0), (2, 4), (0, 0))]
@@ -58,7 +58,7 @@ def test_nothing_swept_is_full() -> None:
 
 @repeatable()
 @given(scene=posed_on_walls())
-def test_gds_is_that_of_the_painted_box(scene: tuple[Wall, PosedStone, int, int]) -> None:
+def test_gds_is_that_of_the_painted_box(scene):
     wall, posed, row, col = scene
     stone = naive.painted(wall.occupied.shape, posed.mask, row, col)
     landscape = Landscape.of(wall)
@@ -71,7 +71,7 @@ def test_gds_is_that_of_the_painted_box(scene: tuple[Wall, PosedStone, int, int]
     assert dice_score(np.array([inside], np.int32), posed.area_px, box_area).tolist() == [got]
 
 
-def test_inside_outside_and_between() -> None:
+def test_inside_outside_and_between():
     book = PoseBook()
     block = book.pose(Stone(1, np.ones((4, 4), bool)), 0.0)
     small = book.pose(Stone(2, np.ones((2, 2), bool)), 0.0)
@@ -84,9 +84,7 @@ def test_inside_outside_and_between() -> None:
 
 @repeatable(80)
 @given(scene=posed_on_walls(), others=st.lists(st.integers(1, 20).map(float), max_size=3))
-def test_nhr_is_that_of_the_label_image(
-    scene: tuple[Wall, PosedStone, int, int], others: list[float]
-) -> None:
+def test_nhr_is_that_of_the_label_image(scene, others):
     wall, posed, row, col = scene
     landscape = Landscape.of(wall)
     box = view_box(posed, row, col, landscape.height_px)
@@ -103,7 +101,7 @@ def test_nhr_is_that_of_the_label_image(
     ) == pytest.approx(naive.neighbour_height_ratio(wall.labels, stone, others))
 
 
-def test_level_tops_are_best_and_the_first_of_a_course_is_compared_with_the_mean() -> None:
+def test_level_tops_are_best_and_the_first_of_a_course_is_compared_with_the_mean():
     box = Box(20, 30, 0, 10)
     assert neighbour_height_ratio(box, Box(0, 10, 0, 10), 99.0) == 0.0
     assert neighbour_height_ratio(box, Box(0, 10, 0, 14), None) == 0.4
@@ -113,7 +111,7 @@ def test_level_tops_are_best_and_the_first_of_a_course_is_compared_with_the_mean
 
 @repeatable(80)
 @given(scene=posed_on_walls(), end=st.integers(0, 6))
-def test_iwr_is_that_of_the_label_image(scene: tuple[Wall, PosedStone, int, int], end: int) -> None:
+def test_iwr_is_that_of_the_label_image(scene, end):
     wall, posed, row, col = scene
     landscape = Landscape.of(wall)
     box = view_box(posed, row, col, landscape.height_px)
@@ -123,7 +121,7 @@ def test_iwr_is_that_of_the_label_image(scene: tuple[Wall, PosedStone, int, int]
     )
 
 
-def test_of_equals_the_higher_neighbour_and_the_first_joint_are_taken() -> None:
+def test_of_equals_the_higher_neighbour_and_the_first_joint_are_taken():
     occupied = Wall.empty(Site(60, 40)).occupied
     low, high = Box(0, 10, 4, 12), Box(4, 10, 6, 14)
     assert left_neighbour(Landscape(occupied, (low, high)), Box(10, 20, 6, 14)) == high
@@ -133,18 +131,18 @@ def test_of_equals_the_higher_neighbour_and_the_first_joint_are_taken() -> None:
     assert joints_below(landscape, Box(15, 40, 8, 11), 0) == (None, None)
 
 
-def course(*edges: int) -> Landscape:
+def course(*edges):
     boxes = tuple(Box(a, b, 0, 10) for a, b in itertools.pairwise(edges))
     return Landscape(Wall.empty(Site(60, 30)).occupied, boxes)
 
 
-def test_running_bond_has_one_half_and_a_stack_bond_nothing() -> None:
+def test_running_bond_has_one_half_and_a_stack_bond_nothing():
     landscape = course(0, 20, 40, 60)
     assert interlocking_width_ratio(landscape, Box(10, 30, 10, 20), 5) == 0.5
     assert interlocking_width_ratio(landscape, Box(20, 40, 10, 20), 5) == 0.0
 
 
-def test_the_ends_of_the_wall_are_no_joints() -> None:
+def test_the_ends_of_the_wall_are_no_joints():
     # Below is one stone up to the wall's right end; its left end at 40 is the only joint.
     assert interlocking_width_ratio(course(40, 60), Box(36, 56, 10, 20), 5) == pytest.approx(0.8)
     # Below is one stone from the wall's left end on.
@@ -159,7 +157,7 @@ FALLS_TO_THE_RIGHT = PoseBook().pose(
 
 @repeatable(80)
 @given(scene=posed_on_walls())
-def test_is_is_that_of_the_wall_image(scene: tuple[Wall, PosedStone, int, int]) -> None:
+def test_is_is_that_of_the_wall_image(scene):
     wall, posed, row, col = scene
     stone = naive.painted(wall.occupied.shape, posed.mask, row, col)
     assert inward_slope(Landscape.of(wall), posed, col) == pytest.approx(
@@ -167,14 +165,14 @@ def test_is_is_that_of_the_wall_image(scene: tuple[Wall, PosedStone, int, int]) 
     )
 
 
-def test_falling_inwards_is_positive_at_both_ends() -> None:
+def test_falling_inwards_is_positive_at_both_ends():
     # Highest points: column 0 (outermost of two), and column 2, one px lower.
     assert inward_slope(EMPTY, FALLS_TO_THE_RIGHT, 0) == pytest.approx(0.5)
     assert inward_slope(EMPTY, FALLS_TO_THE_RIGHT, 36) == pytest.approx(-0.5)
     assert inward_slope(EMPTY, FALLS_TO_THE_RIGHT.mirrored, 36) == pytest.approx(0.5)
 
 
-def test_a_steep_slope_is_clipped_and_a_level_top_has_none() -> None:
+def test_a_steep_slope_is_clipped_and_a_level_top_has_none():
     steep = np.ones((9, 2), bool)
     steep[:8, 1] = False
     steep_posed = PosedStone(Stone(1, steep), 0.0, 1.0, steep, (0.75, 4.0))
@@ -187,13 +185,11 @@ def test_a_steep_slope_is_clipped_and_a_level_top_has_none() -> None:
 @pytest.mark.parametrize(
     ("left", "right", "expected"), [(0, 5, True), (4, 9, True), (5, 9, False), (31, 36, True)]
 )
-def test_boundary_stones_are_nearer_to_an_end_than_the_narrowest_is_wide(
-    left: int, right: int, expected: bool
-) -> None:
+def test_boundary_stones_are_nearer_to_an_end_than_the_narrowest_is_wide(left, right, expected):
     assert is_boundary(EMPTY, Box(left, right, 0, 3), narrowest_px=5) is expected
 
 
-def test_a_peak_exactly_at_the_centroid_slopes_to_neither_side() -> None:
+def test_a_peak_exactly_at_the_centroid_slopes_to_neither_side():
     pyramid = np.array([[0, 0, 1, 0, 0], [0, 1, 1, 1, 0], [1, 1, 1, 1, 1]], bool)
     posed = PosedStone(Stone(1, pyramid), 0.0, 1.0, pyramid, (2.5, 1.0))
     assert inward_slope(EMPTY, posed, 0) == 0.0
@@ -202,17 +198,17 @@ def test_a_peak_exactly_at_the_centroid_slopes_to_neither_side() -> None:
 INDICES = Indices(SF=0.9, LFR=0.8, GDS=0.7, NHR=0.1, IWR=0.5, IS=-0.2, LLC=0.4, boundary=False)
 
 
-def test_boundary_stones_are_judged_by_is_inner_ones_by_iwr() -> None:
+def test_boundary_stones_are_judged_by_is_inner_ones_by_iwr():
     assert INDICES.third == 0.5
     assert dataclasses.replace(INDICES, boundary=True).third == -0.2
 
 
-def test_names_are_those_of_the_paper() -> None:
+def test_names_are_those_of_the_paper():
     assert list(INDICES.as_dict()) == ["SF", "LFR", "GDS", "NHR", "IWR", "IS", "LLC"]
     assert list(INDICES.as_dict().values()) == [0.9, 0.8, 0.7, 0.1, 0.5, -0.2, 0.4]
 
 
-def test_llc_is_the_smaller_factor_over_mu_and_none_without_one() -> None:
+def test_llc_is_the_smaller_factor_over_mu_and_none_without_one():
     left = LimitResult(LimitStatus.OPTIMAL, "left", 0.29)
     right = LimitResult(LimitStatus.OPTIMAL, "right", 0.58)
     fallen = LimitResult(LimitStatus.UNSTABLE, "right")

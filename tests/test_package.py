@@ -28,12 +28,12 @@ MODULES = sorted(
 )
 
 
-def test_importing_loads_nothing_heavy() -> None:
+def test_importing_loads_nothing_heavy():
     code = "import sys, drystone; sys.exit(bool({'numpy', 'scipy', 'matplotlib'} & {*sys.modules}))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0  # noqa: S603
 
 
-def test_every_public_name_is_there() -> None:
+def test_every_public_name_is_there():
     for name in drystone.__all__:
         assert getattr(drystone, name) is not None
     with pytest.raises(AttributeError, match="no attribute 'wonder'"):
@@ -41,13 +41,13 @@ def test_every_public_name_is_there() -> None:
 
 
 @pytest.mark.parametrize("name", ["drystone", *MODULES])
-def test_the_examples_of_the_docstrings_run(name: str) -> None:
+def test_the_examples_of_the_docstrings_run(name):
     failed, _ = doctest.testmod(importlib.import_module(name))
     assert failed == 0
 
 
-def test_no_two_classes_have_one_name() -> None:
-    places: dict[str, list[str]] = {}
+def test_no_two_classes_have_one_name():
+    places = {}
     for path in sorted((ROOT / "src").rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.ClassDef):
@@ -55,7 +55,7 @@ def test_no_two_classes_have_one_name() -> None:
     assert {name: found for name, found in places.items() if len(found) > 1} == {}
 
 
-def test_every_error_code_is_explained() -> None:
+def test_every_error_code_is_explained():
     text = (ROOT / "docs" / "errors.md").read_text(encoding="utf-8")
     rows = ROW.findall(text)
     codes = [code for code, _, _ in rows]
@@ -69,7 +69,7 @@ def test_every_error_code_is_explained() -> None:
     assert all(meaning.strip() and cure.strip() for _, meaning, cure in rows)
 
 
-def test_the_codes_are_in_order() -> None:
+def test_the_codes_are_in_order():
     text = (ROOT / "docs" / "errors.md").read_text(encoding="utf-8")
     for section in text.split("\n## ")[1:]:
         codes = [code for code, _, _ in ROW.findall(section)]

@@ -10,8 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.errors import UsageError
-from drystone.kernels.raster import Mask, quantise, rotation
-from drystone.model.pose import PosedStone
+from drystone.kernels.raster import quantise, rotation
 from drystone.model.stone import Stone
 from drystone.poses import (
     PoseBook,
@@ -31,7 +30,7 @@ SCALES = st.sampled_from([1.0, 0.5, 0.3, 0.2])
 
 @repeatable()
 @given(mask=masks(), angle=st.floats(-180, 180))
-def test_shape_factor_is_that_of_the_turned_polygon(mask: Mask, angle: float) -> None:
+def test_shape_factor_is_that_of_the_turned_polygon(mask, angle):
     assert bounding_box_shape_factor(Stone(1, mask), angle) == pytest.approx(
         naive.shape_factor(mask, angle)
     )
@@ -39,7 +38,7 @@ def test_shape_factor_is_that_of_the_turned_polygon(mask: Mask, angle: float) ->
 
 @repeatable(25)
 @given(mask=masks())
-def test_initial_angle_maximises_shape_factor_over_whole_degrees(mask: Mask) -> None:
+def test_initial_angle_maximises_shape_factor_over_whole_degrees(mask):
     factors = {a: naive.shape_factor(mask, a) for a in range(-45, 45)}
     best = max(factors.values())
     level = [a for a, factor in factors.items() if factor >= best - 1e-9]
@@ -50,7 +49,7 @@ def test_initial_angle_maximises_shape_factor_over_whole_degrees(mask: Mask) -> 
 
 @pytest.mark.parametrize("quarters", [0, 1, 2, 3])
 @pytest.mark.parametrize("scale", [1.0, 0.5])
-def test_quarter_turns_of_a_pose_are_exact_and_not_mirrored(quarters: int, scale: float) -> None:
+def test_quarter_turns_of_a_pose_are_exact_and_not_mirrored(quarters, scale):
     source = np.kron(L_MASK, np.ones((4, 4), bool))
     posed = PoseBook(scale).pose(Stone(1, source), 90.0 * quarters)
     reduced = np.kron(L_MASK, np.ones((int(4 * scale), int(4 * scale)), bool))
@@ -59,9 +58,7 @@ def test_quarter_turns_of_a_pose_are_exact_and_not_mirrored(quarters: int, scale
 
 @repeatable(40)
 @given(mask=blobs(min_px=10, max_px=40), angle=st.floats(-180, 180), scale=SCALES)
-def test_area_is_kept_within_one_percent_or_two_pixels(
-    mask: Mask, angle: float, scale: float
-) -> None:
+def test_area_is_kept_within_one_percent_or_two_pixels(mask, angle, scale):
     posed = PoseBook(scale).pose(Stone(1, mask), angle)
     area = int(mask.sum()) * scale**2
     assert abs(posed.area_px - area) <= max(0.01 * area, 2.0)
@@ -69,9 +66,7 @@ def test_area_is_kept_within_one_percent_or_two_pixels(
 
 @repeatable(25)
 @given(mask=blobs(), angle=st.floats(-180, 180), scale=SCALES)
-def test_the_anchor_is_where_the_centroid_of_the_turned_stone_falls(
-    mask: Mask, angle: float, scale: float
-) -> None:
+def test_the_anchor_is_where_the_centroid_of_the_turned_stone_falls(mask, angle, scale):
     stone = Stone(5, mask, left_px=30, bottom_px=40)
     posed = PoseBook(scale).pose(stone, angle)
     assert [(a * 64).is_integer() for a in posed.anchor] == [True, True]
@@ -85,9 +80,7 @@ def test_the_anchor_is_where_the_centroid_of_the_turned_stone_falls(
 
 @repeatable(40)
 @given(mask=masks(6), angle=st.integers(-180, 179).map(float), scale=st.sampled_from([1.0, 0.6]))
-def test_a_pose_is_the_first_of_sixteen_positions_with_the_right_area(
-    mask: Mask, angle: float, scale: float
-) -> None:
+def test_a_pose_is_the_first_of_sixteen_positions_with_the_right_area(mask, angle, scale):
     stone = Stone(1, mask)
     posed = PoseBook(scale).pose(stone, angle)
     (cos, sin), (x0, y0) = rotation(angle), stone.local_centroid
@@ -112,14 +105,14 @@ def test_a_pose_is_the_first_of_sixteen_positions_with_the_right_area(
     assert {(x + c, y + r) for r, c in zip(rows.tolist(), cols.tolist(), strict=True)} == pixels
 
 
-def test_a_pose_depends_on_the_pixels_not_on_the_id_or_the_place() -> None:
+def test_a_pose_depends_on_the_pixels_not_on_the_id_or_the_place():
     one = PoseBook(0.5).pose(Stone(1, L_MASK), 25.0)
     other = PoseBook(0.5).pose(Stone(2**32 - 1, L_MASK, 100, 200), 25.0)
     assert np.array_equal(one.mask, other.mask)
     assert one.anchor == other.anchor
 
 
-def test_a_pose_can_be_made_again_from_angle_and_anchor() -> None:
+def test_a_pose_can_be_made_again_from_angle_and_anchor():
     stone = Stone(1, np.kron(L_MASK, np.ones((5, 5), bool)))
     posed = PoseBook(0.3).pose(stone, -37.0)
     again, left, bottom = pose_at(stone, -37.0, 0.3, (posed.anchor[0] % 1.0, posed.anchor[1] % 1.0))
@@ -127,13 +120,13 @@ def test_a_pose_can_be_made_again_from_angle_and_anchor() -> None:
     assert (left, bottom) == (-math.floor(posed.anchor[0]), -math.floor(posed.anchor[1]))
 
 
-def test_the_book_makes_each_pose_once() -> None:
+def test_the_book_makes_each_pose_once():
     book, stone = PoseBook(), Stone(1, L_MASK)
     assert book.pose(stone, 190.0) is book.pose(stone, -170.0)
     assert book.pose(stone, 190.0).angle_deg == -170.0
 
 
-def test_threads_share_the_poses_of_a_book() -> None:
+def test_threads_share_the_poses_of_a_book():
     stones = [Stone(k, np.kron(L_MASK, np.ones((k, k), bool))) for k in range(1, 5)]
     asked = [(stone, float(angle)) for angle in range(0, 50, 5) for stone in stones] * 3
     alone = PoseBook(0.7)
@@ -147,7 +140,7 @@ def test_threads_share_the_poses_of_a_book() -> None:
     many = PoseBook(0.7)
     start = threading.Barrier(4)
 
-    def together(_: int) -> PosedStone:
+    def together(_):
         start.wait()
         return many.pose(stones[3], 31.0)
 
@@ -156,7 +149,7 @@ def test_threads_share_the_poses_of_a_book() -> None:
     assert all(posed is first for posed in others)
 
 
-def test_what_was_not_used_for_longest_is_forgotten_first() -> None:
+def test_what_was_not_used_for_longest_is_forgotten_first():
     used = RecentlyUsed[str, int](10)
     assert used.keep("a", 1, 4) == 1
     assert used.keep("b", 2, 4) == 2
@@ -173,11 +166,11 @@ def test_what_was_not_used_for_longest_is_forgotten_first() -> None:
     assert [used.get(key) for key in "de"] == [4, None]
 
 
-def test_orientation_sets() -> None:
+def test_orientation_sets():
     book, stone = PoseBook(), Stone(1, np.kron(L_MASK, np.ones((3, 3), bool)))
     first = book.initial_angle(stone)
 
-    def angles(orientations: str) -> list[float]:
+    def angles(orientations):
         return [posed.angle_deg for posed in book.orientations(stone, orientations)]
 
     assert angles("sf") == [initial_angle_deg(stone)]
@@ -188,7 +181,7 @@ def test_orientation_sets() -> None:
     assert angles("360deg") == [-180.0]
 
 
-def test_poses_with_the_same_pixels_are_given_once() -> None:
+def test_poses_with_the_same_pixels_are_given_once():
     square = Stone(1, np.ones((5, 5), bool))
     assert len(PoseBook().orientations(square, "quarter")) == 1
     bar = Stone(2, np.ones((3, 5), bool))
@@ -198,21 +191,21 @@ def test_poses_with_the_same_pixels_are_given_once() -> None:
 @pytest.mark.parametrize(
     "text", ["", "10", "deg", "0deg", "-5deg", "0.001deg", "361deg", "nandeg", "SF"]
 )
-def test_unknown_orientation_sets_are_refused(text: str) -> None:
+def test_unknown_orientation_sets_are_refused(text):
     with pytest.raises(UsageError, match=r"E122 --orientations: .*Use sf, quarter, or a step"):
         orientation_step_deg(text)
 
 
 @given(angle=st.floats(-2000, 2000))
 @repeatable()
-def test_wrap(angle: float) -> None:
+def test_wrap(angle):
     wrapped = wrap_deg(angle)
     assert -180.0 <= wrapped < 180.0
     assert math.cos(math.radians(wrapped - angle)) == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("quarter", [0, 1, 2, 3])
-def test_a_stone_lies_heavy_side_down_however_it_was_photographed(quarter: int) -> None:
+def test_a_stone_lies_heavy_side_down_however_it_was_photographed(quarter):
     mask = np.ones((6, 20), bool)
     mask[:3, :7] = False  # Its top left is missing
     stone = Stone(1, np.rot90(mask, quarter))

@@ -8,7 +8,7 @@ from tests.planner.scenes import RUBBLE_SITE, rubble
 from tests.statics.walls import brick_model
 
 
-def test_stones_say_how_many_and_how_large() -> None:
+def test_stones_say_how_many_and_how_large():
     one, two = (ds.Stone(i, [[True] * 4] * i, name="a.png" * (i - 1)) for i in (1, 2))
     assert repr(one) == "<Stone 1: 4 x 1 px, area 4 px²>"
     assert repr(two) == "<Stone 2 (a.png): 4 x 2 px, area 8 px²>"
@@ -17,7 +17,7 @@ def test_stones_say_how_many_and_how_large() -> None:
     assert repr(read) == "<StoneSet of pile.png: 1 stones, area 4 px², 1 notices>"
 
 
-def test_a_result_says_how_it_ended_and_its_figures() -> None:
+def test_a_result_says_how_it_ended_and_its_figures():
     result = ds.plan_wall(rubble(), 100, 36, scale=1.0, seed=1, budget=1)
     stones, wedges = len(result.plan.stone_steps), len(result.wall.wedges)
     figures = str(result.metrics)
@@ -37,12 +37,12 @@ def test_a_result_says_how_it_ended_and_its_figures() -> None:
     assert "array" not in repr(result.resistance)
 
 
-def test_figures_that_are_not_known_are_not_zero() -> None:
+def test_figures_that_are_not_known_are_not_zero():
     unknown = PlanMetrics(0.5, None, None, None, None, None, None, None, 0.0)
     assert str(unknown).startswith("F_SF 0.5, F_AV -, F_AH -, F_LR -, ")
 
 
-def test_a_limit_analysis_says_its_factors_but_not_every_force() -> None:
+def test_a_limit_analysis_says_its_factors_but_not_every_force():
     model = brick_model(3, 3, 1.0, 0.6)
     for both in (ds.lateral_resistance(model, mechanism=True), ds.nonassociative_resistance(model)):
         assert both.left.forces is not None
@@ -50,7 +50,7 @@ def test_a_limit_analysis_says_its_factors_but_not_every_force() -> None:
         assert "array" not in repr(both)
 
 
-def test_a_step_says_which_stone_goes_where() -> None:
+def test_a_step_says_which_stone_goes_where():
     step = next(ds.Planner(rubble(), RUBBLE_SITE, seed=1).steps())
     placement = step.action.stabilised.placement
     x_px, y_px = placement.centroid(RUBBLE_SITE.height_px)
@@ -62,7 +62,7 @@ def test_a_step_says_which_stone_goes_where() -> None:
     assert repr(step.action) == f"<Candidate: {said}>"
 
 
-def test_names_of_files_do_not_move_the_cursor() -> None:
+def test_names_of_files_do_not_move_the_cursor():
     name = "a\nb\x1b[2J\u2028c\x85é"
     for text in (Notice("W119", name, name), InputError("E100", name, where=name, cure=name)):
         assert str(text).isprintable()

@@ -16,7 +16,7 @@ PINNED = re.compile(
 )
 
 
-def pinned(name: str) -> set[tuple[str, ...]]:
+def pinned(name):
     """Return names, versions and hashes of a lock, in which there is nothing else."""
     text = (ROOT / name).read_text(encoding="utf-8")
     found = set(PINNED.findall(text))
@@ -25,7 +25,7 @@ def pinned(name: str) -> set[tuple[str, ...]]:
     return found
 
 
-def test_locks_agree_and_have_a_checksum_for_everything() -> None:
+def test_locks_agree_and_have_a_checksum_for_everything():
     user, everything = pinned("requirements.lock"), pinned("requirements-dev.lock")
     assert user < everything
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -48,7 +48,7 @@ def test_locks_agree_and_have_a_checksum_for_everything() -> None:
         ("Summary: says nothing of it", False),
     ],
 )
-def test_licences_that_bind_are_refused(tmp_path: Path, said: str, passes: bool) -> None:
+def test_licences_that_bind_are_refused(tmp_path, said, passes):
     folder = tmp_path / "made_up-1.dist-info"
     folder.mkdir()
     (folder / "METADATA").write_text(f"Metadata-Version: 2.4\nName: made-up\nVersion: 1\n{said}\n")

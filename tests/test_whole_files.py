@@ -9,7 +9,7 @@ from drystone.errors import PlanError
 from drystone.whole_files import remove_parts, write_whole
 
 
-def test_a_file_is_written_and_replaced(tmp_path: Path) -> None:
+def test_a_file_is_written_and_replaced(tmp_path):
     path = tmp_path / "a.txt"
     for data in (b"one", b"two"):
         write_whole(path, data)
@@ -18,10 +18,8 @@ def test_a_file_is_written_and_replaced(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("place", ["fsync", "replace"])
-def test_an_interrupt_leaves_nothing_behind(
-    place: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def interrupt(*_: object) -> None:
+def test_an_interrupt_leaves_nothing_behind(place, tmp_path, monkeypatch):
+    def interrupt(*_):
         assert len(list(tmp_path.iterdir())) == 1
         raise KeyboardInterrupt
 
@@ -32,10 +30,8 @@ def test_an_interrupt_leaves_nothing_behind(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_full_disk_names_the_file_and_leaves_it_as_it_was(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def full(_: int) -> None:
+def test_a_full_disk_names_the_file_and_leaves_it_as_it_was(tmp_path, monkeypatch):
+    def full(_):
         raise OSError(28, "No space left on device")
 
     path = tmp_path / "a.txt"
@@ -47,16 +43,14 @@ def test_a_full_disk_names_the_file_and_leaves_it_as_it_was(
     assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [("a.txt", b"one")]
 
 
-def test_a_folder_that_is_none_is_an_error_of_the_path(tmp_path: Path) -> None:
+def test_a_folder_that_is_none_is_an_error_of_the_path(tmp_path):
     (tmp_path / "file").write_bytes(b"")
     with pytest.raises(PlanError, match=r"a\.txt"):
         write_whole(tmp_path / "file" / "a.txt", b"one")
 
 
-def test_a_file_is_on_the_disk_before_it_has_its_name(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    done: list[str] = []
+def test_a_file_is_on_the_disk_before_it_has_its_name(tmp_path, monkeypatch):
+    done = []
     synced, replaced = os.fsync, os.replace
     monkeypatch.setattr("os.fsync", lambda file: (done.append("fsync"), synced(file)))
     monkeypatch.setattr("os.replace", lambda a, b: (done.append("replace"), replaced(a, b)))
@@ -64,9 +58,7 @@ def test_a_file_is_on_the_disk_before_it_has_its_name(
     assert done == ["fsync", "replace"]
 
 
-def test_what_a_killed_run_was_writing_is_removed_and_nothing_else(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_a_killed_run_was_writing_is_removed_and_nothing_else(tmp_path, monkeypatch):
     for name in ("a.txt", ".b.part", ".c.0123.part", "d.part"):
         (tmp_path / name).write_bytes(b"one")
     before = sorted(tmp_path.iterdir())

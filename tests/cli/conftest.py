@@ -4,8 +4,6 @@ import json
 import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, NoReturn
 
 import pytest
 
@@ -20,13 +18,12 @@ class Ran:
     out: str
     err: str
 
-    def json(self) -> dict[str, Any]:
+    def json(self):
         """The one JSON object on stdout; NaN and infinities are none."""
-        value: dict[str, Any] = json.loads(self.out, parse_constant=_refuse_constant)
-        return value
+        return json.loads(self.out, parse_constant=_refuse_constant)
 
 
-def _refuse_constant(name: str) -> NoReturn:
+def _refuse_constant(name):
     raise ValueError(f"{name} is not a JSON number")
 
 
@@ -34,10 +31,10 @@ Run = Callable[..., Ran]
 
 
 @pytest.fixture
-def run(capsys: pytest.CaptureFixture[str]) -> Run:
+def run(capsys):
     """Call ``drystone`` with some arguments."""
 
-    def call(*arguments: object) -> Ran:
+    def call(*arguments):
         capsys.readouterr()
         try:
             code = main([str(argument) for argument in arguments])
@@ -48,7 +45,7 @@ def run(capsys: pytest.CaptureFixture[str]) -> Run:
     return call
 
 
-def rewrite(path: Path, tamper: Callable[[Any], Any]) -> None:
+def rewrite(path, tamper):
     """Change what a JSON file holds."""
     content = json.loads(path.read_text(encoding="utf-8"))
     tamper(content)
@@ -56,7 +53,7 @@ def rewrite(path: Path, tamper: Callable[[Any], Any]) -> None:
 
 
 @pytest.fixture(scope="session")
-def rubble(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def rubble(tmp_path_factory):
     """Eight stones of two courses for a wall of 100 x 36 px."""
     path = tmp_path_factory.mktemp("stones") / "rubble.png"
     sizes = ["width_px=100", "height_px=36", "courses=2"]
@@ -69,7 +66,7 @@ def rubble(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def bricks(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def bricks(tmp_path_factory):
     """Six bricks of 20 x 10 px."""
     path = tmp_path_factory.mktemp("stones") / "bricks.png"
     sizes = ["--set", "height_px=10", "--set", "aspect=2"]
@@ -82,7 +79,7 @@ WALL = ("--wall", "100x36", "--scale", "1", "--method", "paper")
 
 
 @pytest.fixture(scope="session")
-def finished(rubble: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def finished(rubble, tmp_path_factory):
     """The folder of a plan of the rubble; not to be changed."""
     folder = tmp_path_factory.mktemp("plans") / "finished"
     assert main(["plan", str(rubble), *WALL, "-o", str(folder), "--seed", "1"]) in (0, 4)
@@ -90,7 +87,7 @@ def finished(rubble: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def plan_copy(finished: Path, rubble: Path, tmp_path: Path) -> Path:
+def plan_copy(finished, rubble, tmp_path):
     """A plan in a folder of its own, the stones beside it, to be tampered with."""
     folder = tmp_path / "copy"
     shutil.copytree(finished, folder)
@@ -103,7 +100,7 @@ EXACT = ("--wall", "100x36", "--scale", "1", "--budget", "1")
 
 
 @pytest.fixture(scope="session")
-def settled(rubble: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def settled(rubble, tmp_path_factory):
     """The folder of a plan of the rubble on outlines; not to be changed."""
     folder = tmp_path_factory.mktemp("plans") / "settled"
     assert main(["plan", str(rubble), *EXACT, "-o", str(folder), "--seed", "1"]) in (0, 4)
@@ -111,7 +108,7 @@ def settled(rubble: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def settled_copy(settled: Path, rubble: Path, tmp_path: Path) -> Path:
+def settled_copy(settled, rubble, tmp_path):
     """A plan on outlines in a folder of its own, the stones beside it, to be tampered with."""
     folder = tmp_path / "settled"
     shutil.copytree(settled, folder)

@@ -45,11 +45,18 @@ def written(path, blocks):
 def test_the_card_and_json_say_what_an_engineer_quotes(tower, run):
     said = run("analyse", tower).out
     for words in (
-        "load to the left", "alpha = 0.2500", "without dilatancy", "adequacy factor",
-        "Rocking of block 1 about its right toe.", "d alpha / d mu = 0.000",
-        "tilted by 14.0 degrees", "no tension", "equilibrium to", "HiGHS simplex",
+        "load to the left",
+        "alpha = 0.2500",
+        "without dilatancy",
+        "adequacy factor",
+        "Rocking of block 1 about its right toe.",
+        "d alpha / d mu = 0.000",
+        "tilted by 14.0 degrees",
+        "no tension",
+        "equilibrium to",
+        "HiGHS simplex",
         hashlib.sha256(tower.read_bytes()).hexdigest()[:16],
-    ):  # fmt: skip
+    ):
         assert words in said
     report = run("analyse", tower, "--json").json()
     assert report["nonassociative"]["alpha_left"] == pytest.approx(0.25)

@@ -51,5 +51,5 @@ def test_a_long_film_is_left_to_export(tmp_path, monkeypatch):
     result = argparse.Namespace(plan=argparse.Namespace(stone_steps=[None] * 3))
     monkeypatch.setattr(planning, "FILM_STONES", 2)
     (tmp_path / "build.gif").touch()
-    planning.write_film(result, tmp_path)  # type: ignore[arg-type]
+    planning.write_film(result, tmp_path)
     assert list(tmp_path.iterdir()) == []

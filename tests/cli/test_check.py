@@ -179,7 +179,7 @@ def test_views_of_a_wall_that_does_not_stand(plan_copy, run, monkeypatch):
 
 def _views(folder, tamper, run, monkeypatch):
     """Return what a check draws of a tampered plan."""
-    seen: list[check_picture.FailureView] = []
+    seen = []
     draw = check_picture.plot_failures
 
     def keep(views):

@@ -202,7 +202,7 @@ def test_measure(finished, tmp_path, run):
     assert (half["width"], half["height"]) == (whole["width"] / 2, whole["height"] / 2)
 
 
-def test_cite_says_what_the_citation_file_says(run) -> None:
+def test_cite_says_what_the_citation_file_says(run):
     """The file is not installed; it goes by the version of the package."""
     cff = yaml.safe_load((Path(__file__).parents[2] / "CITATION.cff").read_text("utf-8"))
     ran = run("cite")

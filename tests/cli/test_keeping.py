@@ -43,7 +43,7 @@ def so_far(one):
 @pytest.fixture
 def kept(monkeypatch):
     """What is written, and nothing is."""
-    written: list[str] = []
+    written = []
     monkeypatch.setattr(Keeper, "_keep_plan", lambda *_: written.append("plan"))
     monkeypatch.setattr(keeping, "write_checkpoint", lambda *_: written.append("search"))
     return written
@@ -94,7 +94,7 @@ def test_what_takes_long_is_kept_less_often(kept, tmp_path, monkeypatch):
 
 def test_a_full_disk_ends_no_search_and_is_told_once(rubble, tmp_path, run, monkeypatch):
     whole = run("plan", rubble, *SEARCH, "-o", tmp_path / "whole")
-    calls: list[object] = []
+    calls = []
 
     def full(*_):
         calls.append(_)

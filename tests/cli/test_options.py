@@ -27,7 +27,7 @@ from tests.cli.conftest import WALL
     (["--mu", ".7"], "mu", 0.7),
 ], ids=str)  # fmt: skip
 def test_an_option_is_a_setting(options, path, value):
-    setting: object = settings_from(parsed(*options)).as_dict()
+    setting = settings_from(parsed(*options)).as_dict()
     for name in path.split("."):
         assert isinstance(setting, dict)
         setting = setting[name]

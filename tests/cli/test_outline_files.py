@@ -24,7 +24,7 @@ def boxes():
 
 
 def dxf(folder, unit=4):
-    document = ezdxf.new("R2010")  # type: ignore[attr-defined]
+    document = ezdxf.new("R2010")
     document.header["$INSUNITS"] = unit
     for corners in boxes():
         document.modelspace().add_lwpolyline(corners, close=True)

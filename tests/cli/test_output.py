@@ -3,7 +3,6 @@
 import io
 import json
 import sys
-from typing import Any
 
 import numpy as np
 import pytest
@@ -81,5 +80,5 @@ def test_json_is_json_on_any_stdout(encoding, rubble, tmp_path, monkeypatch):
     printed = out.getvalue().decode(encoding)
     if encoding == "utf-8":
         assert named.name in printed
-    told: dict[str, Any] = json.loads(printed)
+    told = json.loads(printed)
     assert told["source"] == named.name

@@ -44,7 +44,7 @@ def test_resume_gives_the_plan_that_no_interrupt_would_have_changed(
     assert count > 3
     assert (interrupted / "report.html").exists()
     assert run("check", interrupted, "--stones", rubble).code == 0
-    told: list[int] = []
+    told = []
     monkeypatch.setattr(Callbacks, "on_step", lambda _, step: told.append(step.number))
     ran = run("plan", rubble, *WALL, "--seed", 1, "-o", interrupted, "--resume")
     assert ran.code in (0, 4)
@@ -85,8 +85,8 @@ def test_a_first_wall_that_the_time_limit_cuts_short_is_gone_on_with(
 ):
     plan = ("plan", rubble, "--wall", "100x36", "--scale", "1", "--seed", 1)
     timed = (*plan, "--time", "5", "--jobs", jobs, "-o", tmp_path / "part")
-    placed: list[int] = []
-    more: tuple[str, ...] = ()
+    placed = []
+    more = ()
     while True:
         limit(monkeypatch, 9)
         ran = run(*timed, *more)
@@ -310,7 +310,7 @@ def test_a_damaged_checkpoint_is_set_aside_and_the_partial_plan_gone_on_from(
 ):
     part, path = kill(search, tmp_path, 9, monkeypatch), tmp_path / CHECKPOINT
     path.write_bytes(path.read_bytes()[:-20])
-    told: list[float] = []
+    told = []
     with monkeypatch.context() as patch:
         patch.setattr(Callbacks, "on_walls", lambda _, found: told.append(found.F_SF))
         ran = search(tmp_path, "--resume")

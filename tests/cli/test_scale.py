@@ -77,7 +77,6 @@ def test_either_may_know_the_scale_and_who_says_another_is_named():
 )
 def test_a_scale_that_makes_no_building_stones_is_asked_about(px_per_m, said):
     notice = scale_notice(40.0, px_per_m)
-    assert notice is not None
     assert notice.code == "W123"
     assert f"is {said} long" in notice.message
     assert all(scale_notice(40.0, usual) is None for usual in (None, 20.0, 200.0, 4_000.0))

@@ -6,14 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import Run
 from tests.cli.traced import labelme, photograph
 
 PAGE = Path(__file__).parents[2] / "docs" / "for-engineers.md"
 SECTION = "## From a photograph of a wall\n"
 
 
-def printed(kind: str) -> list[str]:
+def printed(kind):
     """The lines of the blocks of a kind in the section."""
     section = PAGE.read_text(encoding="utf-8").split(SECTION)[1].split("\n## ")[0]
     blocks = re.findall(rf"^ *```{kind}\n(.*?)^ *```$", section, re.MULTILINE | re.DOTALL)
@@ -21,7 +20,7 @@ def printed(kind: str) -> list[str]:
 
 
 @pytest.fixture
-def traced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def traced(tmp_path, monkeypatch):
     """A folder, worked in, with wall.jpg and outlines.json."""
     photograph(tmp_path / "wall.jpg")
     labelme(tmp_path / "outlines.json")
@@ -29,7 +28,7 @@ def traced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_every_command_of_the_page_gives_what_it_says(traced: Path, run: Run) -> None:
+def test_every_command_of_the_page_gives_what_it_says(traced, run):
     commands = [shlex.split(line)[1:] for line in printed("sh")]
     assert [words[0] for words in commands] == [
         "trace", "stones", "analyse", "analyse", "stones", "measure",
@@ -42,24 +41,22 @@ def test_every_command_of_the_page_gives_what_it_says(traced: Path, run: Run) ->
     assert set(printed("text")) <= set(told[2].out.splitlines())
     assert "m wide" in told[2].out
     values = [re.search(r"^F_LR +(0\.\d+)", one.out, re.MULTILINE) for one in told[2:4]]
-    assert values[0] is not None
-    assert values[1] is not None
     assert values[0][1] == values[1][1]
     assert (traced / "traced-analysis" / "report.html").exists()
     photo = run("analyse", "wall.jpg")
     assert (photo.code, "for-engineers.md#from-a-photograph-of-a-wall" in photo.err) == (3, True)
 
 
-def test_following_the_hints_ends_with_a_number(traced: Path, run: Run) -> None:
+def test_following_the_hints_ends_with_a_number(traced, run):
     follow(traced / "outlines.json", run)
 
 
 @pytest.mark.parametrize("name", ["R", "PR"])
-def test_the_hints_lead_through_published_walls(name: str, data_dir: Path, run: Run) -> None:
+def test_the_hints_lead_through_published_walls(name, data_dir, run):
     follow(data_dir / "almeida" / f"{name}.png", run)
 
 
-def follow(wall: Path, run: Run) -> None:
+def follow(wall, run):
     """Do what each hint says, as it is printed, from the bare command on."""
     asked, seen = ["analyse", str(wall), "--associative-only"], []
     ran = run(*asked)
@@ -72,13 +69,11 @@ def follow(wall: Path, run: Run) -> None:
     assert ran.code == 0
     value = re.search(r"^F_LR +([01]\.\d+)", ran.out, re.MULTILINE)
     again = re.search(r"the same again: (--close-gaps \d+px)", ran.out)
-    assert value is not None
-    assert again is not None
     assert f" {value[1]} " in run(*asked, *again[1].split()).out
 
 
 @pytest.mark.usefixtures("traced")
-def test_what_was_traced_is_measured_and_looked_at_too(run: Run) -> None:
+def test_what_was_traced_is_measured_and_looked_at_too(run):
     for command in ("measure", "craft"):
         ran = run(command, "outlines.json", "--json")
         assert ran.code == 0

@@ -4,24 +4,18 @@ import re
 import shlex
 from pathlib import Path
 
-import pytest
-
-from tests.cli.conftest import Run
-
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "tutorial.md"
 
 
-def printed(kind: str) -> list[str]:
+def printed(kind):
     """The lines of the blocks of a kind."""
     text = PAGE.read_text(encoding="utf-8")
     found = re.findall(rf"^```{kind}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
     return "".join(found).splitlines()
 
 
-def test_the_photograph_becomes_a_wall_that_holds(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, run: Run
-) -> None:
+def test_the_photograph_becomes_a_wall_that_holds(tmp_path, monkeypatch, run):
     (tmp_path / "docs").symlink_to(ROOT / "docs")
     monkeypatch.chdir(tmp_path)
     lines = [line for line in printed("sh") if line.startswith("drystone")]

@@ -1,21 +1,19 @@
 """Every command reads what `stones` reads, and `stones --to` converts it."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
 from drystone.io.wall_image import read_wall_image
-from tests.cli.conftest import Run
 from tests.io.test_walls_of_stones import drawn
 
 QUICK = ["--method", "paper", "--quiet"]
 
 
 @pytest.mark.parametrize("form", ["coco", "svg", "y up"])
-def test_outlines_in_every_command(form, tmp_path: Path, run: Run) -> None:
+def test_outlines_in_every_command(form, tmp_path, run):
     path = drawn(form, tmp_path)
     told = run("analyse", path, "--json", "--associative-only").json()
     assert (told["blocks"], told["stands"]) == (3, True)
@@ -28,7 +26,7 @@ def test_outlines_in_every_command(form, tmp_path: Path, run: Run) -> None:
     assert run("check", out, "--stones", path).code == 0
 
 
-def test_the_scale_of_a_drawing_is_kept(tmp_path: Path, run: Run) -> None:
+def test_the_scale_of_a_drawing_is_kept(tmp_path, run):
     path = drawn("dxf", tmp_path)
     assert "0.1 m wide, 0.05 m high" in run("analyse", path, "--mu", "1:2").out
     assert "0.1 m wide, 0.05 m high" in run("analyse", path, "--px-per-m", "3000").out
@@ -40,7 +38,7 @@ def test_the_scale_of_a_drawing_is_kept(tmp_path: Path, run: Run) -> None:
 
 
 @pytest.mark.parametrize("command", ["analyse", "measure", "craft"])
-def test_options_of_reading_are_those_of_stones(command: str, tmp_path: Path, run: Run) -> None:
+def test_options_of_reading_are_those_of_stones(command, tmp_path, run):
     for form, last in (("labelme", 8), ("coco", 3)):
         path = drawn(form, tmp_path)
         less = run(command, path, "--skip", last, "--json")
@@ -65,9 +63,7 @@ def test_options_of_reading_are_those_of_stones(command: str, tmp_path: Path, ru
         ("labelme", ".json"),
     ],
 )
-def test_stones_are_converted_with_their_ids_and_scale(
-    form, ending: str, tmp_path: Path, run: Run
-) -> None:
+def test_stones_are_converted_with_their_ids_and_scale(form, ending, tmp_path, run):
     path, to = drawn(form, tmp_path), tmp_path / "to" / f"labels{ending}"
     first = run("stones", path, "--to", to, "--json").json()
     again = run("stones", to, "--json").json()
@@ -81,9 +77,7 @@ def test_stones_are_converted_with_their_ids_and_scale(
         assert "m high" in run("analyse", to, "--close-gaps", "1", "--associative-only").out
 
 
-def test_what_cannot_be_converted_is_refused_before_anything_is_written(
-    tmp_path: Path, run: Run
-) -> None:
+def test_what_cannot_be_converted_is_refused_before_anything_is_written(tmp_path, run):
     for name in ("labels.bmp", "stones.json", "labels"):
         refused = run("stones", drawn("labelme", tmp_path), "--to", tmp_path / "to" / name)
         assert (refused.code, "E139" in refused.err) == (2, True)

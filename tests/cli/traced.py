@@ -1,7 +1,6 @@
 """A small wall as a photograph shows it, and as a person traced that picture by eye."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import shapely
@@ -28,7 +27,7 @@ STONES = (
 )
 
 
-def photograph(path: Path) -> Path:
+def photograph(path):
     """Render the wall: stones in shades, with grain and dark joints, grass, sky, a staff."""
     random = np.random.default_rng(35)
     image = Image.new("RGB", (WIDTH, HEIGHT), (176, 198, 222))
@@ -47,12 +46,12 @@ def photograph(path: Path) -> Path:
     return path
 
 
-def _rounded(corners: list[tuple[int, int]]) -> list[tuple[float, float]]:
+def _rounded(corners):
     shape = shapely.Polygon(corners).buffer(-6).buffer(6)
     return [(float(x), float(y)) for x, y in shape.exterior.coords]
 
 
-def _clouds(random: np.random.Generator) -> np.ndarray:
+def _clouds(random):
     small = Image.fromarray(
         random.normal(0.0, 14.0, (HEIGHT // 12, WIDTH // 12)).astype(np.float32)
     )
@@ -77,7 +76,7 @@ TRACED = (
 """As clicked by eye on the rendered picture, shown at twice its size; joints stay open."""
 
 
-def labelme(path: Path) -> Path:
+def labelme(path):
     """Write the trace as the page of outlines does, all of one class as people leave it."""
     shapes = [
         {

@@ -1,6 +1,5 @@
 from itertools import pairwise
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -175,10 +174,10 @@ def test_no_toe_grows_beyond_its_stone():
             assert interface.points[:, 0].max() <= cols[-1] + 1
 
 
-def answers(alphas: dict[int, float | None]) -> Any:
+def answers(alphas):
     """Answer as at the widest known width that is not wider; None is a wall that falls."""
 
-    def at(width: int) -> Any:
+    def at(width):
         alpha = alphas[max(known for known in alphas if known <= width)]
         end = SimpleNamespace(alpha=alpha)
         return SimpleNamespace(stable=alpha is not None, left=end, right=end)
@@ -198,9 +197,7 @@ def answers(alphas: dict[int, float | None]) -> Any:
         ({0: None}, 20, None, False),
     ],
 )
-def test_a_sweep_finds_from_where_a_wall_stands(
-    alphas: dict[int, float | None], chosen: int, first: int | None, steady: bool
-) -> None:
+def test_a_sweep_finds_from_where_a_wall_stands(alphas, chosen, first, steady):
     sweep = gap_sweep(answers(alphas), 40.0)
     assert (sweep.chosen_px, sweep.stands_from_px, sweep.steady) == (chosen, first, steady)
     assert [width for width, *_ in sweep.tried] == sorted({width for width, *_ in sweep.tried})
@@ -214,7 +211,7 @@ def test_a_sweep_finds_from_where_a_wall_stands(
 
 
 @pytest.mark.parametrize("factor", [1, 3])
-def test_widths_that_are_tried_grow_with_the_stones(factor: int) -> None:
+def test_widths_that_are_tried_grow_with_the_stones(factor):
     sweep = gap_sweep(answers({0: None, 4 * factor: 0.4}), 60.0 * factor)
     assert (sweep.chosen_px, sweep.stands_from_px) == (4 * factor, 4 * factor)
     assert len(sweep.tried) < 14

@@ -331,7 +331,7 @@ def test_not_all_of_many_blocks_may_meet_at_one_point(monkeypatch):
         model_from_json(sectors(20))
 
 
-def test_rectangles_among_polygons_are_told_where_they_belong() -> None:
+def test_rectangles_among_polygons_are_told_where_they_belong():
     with pytest.raises(InputError, match='belongs into "blocks_xywh"') as caught:
         model_from_json({"blocks": [{"xywh": [0, 0, 2, 1]}]})
     assert (caught.value.code, "[[x, y, width, height]" in caught.value.cure) == ("E303", True)

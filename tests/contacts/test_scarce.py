@@ -10,7 +10,7 @@ from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.contacts.scarce import Scarce, scarce_contacts
 
 
-def test_a_stone_that_floats_and_one_that_touches_at_a_corner() -> None:
+def test_a_stone_that_floats_and_one_that_touches_at_a_corner():
     wall = np.zeros((34, 60), int)
     wall[20:34, 0:30], wall[20:34, 30:60] = 1, 2
     wall[10:20, 5:20] = 3  # on 1, by an interface: it rests
@@ -20,14 +20,14 @@ def test_a_stone_that_floats_and_one_that_touches_at_a_corner() -> None:
     assert found == (Scarce(4, 1, 1, 10.0), Scarce(5, 0, 2, 5.0))
 
 
-def test_the_ground_is_a_neighbour_too() -> None:
+def test_the_ground_is_a_neighbour_too():
     wall = np.zeros((12, 30), int)
     wall[6:12, 0:10], wall[0:9, 20:28] = 1, 2
     found = scarce_contacts(model_from_labels(wall).model, wall)
     assert [(one.block, one.nearest, one.gap) for one in found] == [(2, 0, 3.0)]
 
 
-def test_polygons() -> None:
+def test_polygons():
     data = {"blocks_xywh": [[0, 0, 4, 2], [0, 2.5, 4, 2], [6, 1, 2, 2]], "mu": 0.6}
     found = scarce_contacts(model_from_json(data), polygons_from_json(data))
     assert [(one.block, one.contacts, one.nearest, one.gap) for one in found] == [
@@ -37,13 +37,13 @@ def test_polygons() -> None:
 
 
 @given(arrays(np.int64, (9, 12), elements=st.integers(0, 4)))
-def test_gaps_are_those_between_all_pixels(cells: np.ndarray) -> None:
+def test_gaps_are_those_between_all_pixels(cells):
     """A slow twin: every pair of pixels."""
     if not (cells > 0).any():
         return
     wall = cells[: np.flatnonzero((cells > 0).any(axis=1))[-1] + 1]
     model = model_from_labels(wall).model
-    touched: dict[int, set[int]] = {}
+    touched = {}
     for face in model.interfaces:
         touched.setdefault(face.block, set()).add(face.other)
         touched.setdefault(face.other, set()).add(face.block)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.contacts.settled import PlacedPolygons, model_of_outlines
-from drystone.kernels.polygons import Points, area_and_centroid
+from drystone.kernels.polygons import area_and_centroid
 from drystone.kernels.raster import turn
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
@@ -18,20 +18,20 @@ from tests.strategies import repeatable
 MU, TOLERANCE, CLEARANCE = 0.58, 0.1, 0.01
 
 
-def model_of(polygons: list[Points], setback: float = 0.01) -> RigidBlockModel:
+def model_of(polygons, setback=0.01):
     return model_of_outlines(
         PlacedPolygons.of(enumerate(polygons, start=1)), MU, TOLERANCE, setback
     )
 
 
-def strength(polygons: list[Points], setback: float = 0.01) -> float:
+def strength(polygons, setback=0.01):
     """F_LR; 0 where the wall falls by itself."""
     found = lateral_resistance(model_of(polygons, setback))
     assert not found.failed
     return found.value or 0.0
 
 
-def bricks(width: float, height: float, count: int, courses: int, gap: float, lap: float):
+def bricks(width, height, count, courses, gap, lap):
     """Bricks whose courses are moved to and fro by half a lap; `gap` is that of all joints."""
     return [
         box_of(
@@ -45,7 +45,7 @@ def bricks(width: float, height: float, count: int, courses: int, gap: float, la
     ]
 
 
-def lapped(width: float, height: float, count: int, courses: int, lap: float):
+def lapped(width, height, count, courses, lap):
     """A wall with straight ends: every other course begins with a brick longer by the lap."""
     wall = []
     for course in range(courses):
@@ -116,7 +116,7 @@ def test_a_brick_on_the_last_of_an_edge_has_nothing_below(aside):
     assert len(model_of(wall, 0.0).interfaces) > 1
 
 
-def bed_of(wall: list[Points], setback: float = 0.01) -> tuple[float, float]:
+def bed_of(wall, setback=0.01):
     """From where to where the second stone bears on the first."""
     (face,) = (f for f in model_of(wall, setback).interfaces if (f.block, f.other) == (2, 1))
     ends = sorted(face.points[:, 0].tolist())
@@ -154,7 +154,7 @@ def test_rounded_stones_keep_contacts_of_corner_on_corner():
     assert [(face.block, face.other) for face in model_of(wall).interfaces] == [(1, GROUND), (2, 1)]
 
 
-def naive_model(boxes: list[Points], setback: float) -> RigidBlockModel:
+def naive_model(boxes, setback):
     """Slow twin for upright boxes: common intervals of their sides, cut at both ends."""
     blocks, interfaces = [], []
     ground = np.array([[-1e4, -1e4], [1e4, -1e4], [1e4, 0.0], [-1e4, 0.0]])

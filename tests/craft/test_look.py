@@ -161,7 +161,7 @@ def test_the_memory_does_not_grow_with_the_square_of_the_joints():
     assert peak < 8e6
 
 
-def comb(teeth: int) -> np.ndarray:
+def comb(teeth):
     """One outline that every level line cuts many times."""
     x = np.arange(2.0 * teeth)
     y = np.where(np.arange(2 * teeth) % 2, 100.0, 1.0)

@@ -1,28 +1,26 @@
 """Hand-drawn walls whose findings are known."""
 
-from collections.abc import Mapping, Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.craft import RULES, Finding, Masonry
+from drystone.craft import RULES, Masonry
 
 Loops = dict[int, NDArray[np.float64]]
 PX = 24
 """Pixels of a unit in label images."""
 
 
-def box(x: float, y: float, width: float, height: float) -> NDArray[np.float64]:
+def box(x, y, width, height):
     return np.array([[x, y], [x + width, y], [x + width, y + height], [x, y + height]], float)
 
 
-def find(rule: str, wall: Masonry) -> Finding:
+def find(rule, wall):
     return RULES[rule].find(wall)
 
 
-def courses(widths: Sequence[Sequence[float]], height: float = 1.0) -> Loops:
+def courses(widths, height=1.0):
     """Courses of bricks from the foot up, numbered from 1 along each course."""
-    loops: Loops = {}
+    loops = {}
     for level, course in enumerate(widths):
         x = 0.0
         for width in course:
@@ -31,18 +29,18 @@ def courses(widths: Sequence[Sequence[float]], height: float = 1.0) -> Loops:
     return loops
 
 
-def stack_bond(columns: int = 4, rows: int = 5) -> Loops:
+def stack_bond(columns=4, rows=5):
     return courses([[2.0] * columns] * rows)
 
 
-def running_bond(rows: int = 5) -> Loops:
+def running_bond(rows=5):
     """8 wide: four bricks, or a half, three bricks and a half."""
     return courses(
         [[2.0] * 4 if row % 2 == 0 else [1.0, 2.0, 2.0, 2.0, 1.0] for row in range(rows)]
     )
 
 
-def open_joints(loops: Mapping[int, NDArray[np.float64]], gap: float) -> Loops:
+def open_joints(loops, gap):
     """Shrink every stone, as in a tracing."""
     shrunk = {}
     for i, loop in loops.items():
@@ -52,11 +50,11 @@ def open_joints(loops: Mapping[int, NDArray[np.float64]], gap: float) -> Loops:
     return shrunk
 
 
-def mirrored(loops: Mapping[int, NDArray[np.float64]]) -> Loops:
+def mirrored(loops):
     return {i: loop * [-1.0, 1.0] for i, loop in loops.items()}
 
 
-def painted(loops: Mapping[int, NDArray[np.float64]]) -> NDArray[np.uint32]:
+def painted(loops):
     """Paint upright rectangles into a label image with some air around."""
     points = np.concatenate(list(loops.values()))
     width, height = np.rint(points.max(axis=0) * PX).astype(int).tolist()
@@ -68,6 +66,6 @@ def painted(loops: Mapping[int, NDArray[np.float64]]) -> NDArray[np.uint32]:
     return image
 
 
-def both(loops: Mapping[int, NDArray[np.float64]]) -> tuple[Masonry, Masonry]:
+def both(loops):
     """The same wall from polygons and from pixels."""
     return Masonry(loops), Masonry.from_labels(painted(loops))

@@ -15,13 +15,13 @@ UNUSED = 40
 WEDGE = 301
 
 
-def _l_shape() -> np.ndarray:
+def _l_shape():
     mask = np.ones((8, 12), bool)
     mask[:4, 6:] = False
     return mask
 
 
-def stone_set() -> StoneSet:
+def stone_set():
     masks = {
         3: np.ones((8, 14), bool),
         5: np.ones((6, 16), bool),
@@ -37,7 +37,7 @@ def stone_set() -> StoneSet:
     return StoneSet(tuple(stones), Source("<b>PR.png", "0" * 64, left, 14))
 
 
-def wall(px_per_m: float | None = None) -> Wall:
+def wall(px_per_m=None):
     """Three stones on the ground, an L and a slab on top, a wedge under the slab."""
     stones = stone_set()
     site = Site(44, 20, scale=1.0, px_per_m=px_per_m)
@@ -49,11 +49,11 @@ def wall(px_per_m: float | None = None) -> Wall:
     return built.add(slab, (wedge,))
 
 
-def _posed(stone: Stone) -> PosedStone:
+def _posed(stone):
     return PosedStone(stone, 0.0, 1.0, stone.mask.copy(), stone.local_centroid)
 
 
-def mechanism() -> Mechanism:
+def mechanism():
     """The L slides to the left, the slab turns counter-clockwise."""
     velocity = np.zeros((6, 3))
     velocity[3] = (-1.0, 0.0, 0.0)
@@ -61,17 +61,17 @@ def mechanism() -> Mechanism:
     return Mechanism((3, 5, 8, 12, 300, WEDGE), velocity)
 
 
-def resistance() -> LateralResistance:
+def resistance():
     left = LimitResult(LimitStatus.OPTIMAL, "left", 0.41, mechanism())
     right = LimitResult(LimitStatus.FAILED, "right", message="gave up")
     return LateralResistance(left, right, 0.58)
 
 
-def plan(built: Wall | None = None, metrics: PlanMetrics | None = None) -> Plan:
+def plan(built=None, metrics=None):
     built = built or wall()
     stones, units = stone_set(), built.site.units_per_px
     indices = {"SF": 1.0, "LFR": 0.95, "GDS": 0.9, "NHR": 0.1, "IWR": 0.4, "IS": 0.0, "LLC": 0.7}
-    steps: list[StoneStep | WedgeStep] = []
+    steps = []
     for group in built.groups:
         placement = group.placement
         x, y = placement.centroid(built.site.height_px)

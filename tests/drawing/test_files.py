@@ -3,7 +3,6 @@
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
@@ -120,8 +119,8 @@ WRITERS = {
 
 
 @pytest.mark.parametrize("name", WRITERS)
-def test_a_file_is_whole_or_as_it_was(name: str, tmp_path: Path, monkeypatch) -> None:
-    def full(*_: object) -> None:
+def test_a_file_is_whole_or_as_it_was(name, tmp_path, monkeypatch):
+    def full(*_):
         raise OSError(28, "No space left on device")
 
     path = tmp_path / name
@@ -140,7 +139,7 @@ def coordinates(width, height):
 
 
 @pytest.mark.parametrize("zoom", [0.5, 1, 4, 20])
-def test_a_piece_shows_its_box_at_any_resolution(zoom) -> None:
+def test_a_piece_shows_its_box_at_any_resolution(zoom):
     photo = StonePhoto(coordinates(round(200 * zoom), round(100 * zoom)), 200.0, 100.0)
     piece = photo.crop((50.0, 20.0, 110.0, 60.0)).astype(float)
     height, width, _ = piece.shape
@@ -156,7 +155,7 @@ def test_a_piece_shows_its_box_at_any_resolution(zoom) -> None:
     assert piece[-1, width // 2, 1] / 255 * 100 == pytest.approx(bottom, abs=1.8)
 
 
-def test_beyond_the_photograph_it_is_white_and_there_may_be_none() -> None:
+def test_beyond_the_photograph_it_is_white_and_there_may_be_none():
     photo = StonePhoto(Image.new("RGB", (100, 100), "black"), 100.0, 100.0)
     piece = photo.crop((-20.0, 40.0, 20.0, 60.0))
     assert (piece[:, :18] == 255).all()

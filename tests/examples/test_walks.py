@@ -13,7 +13,7 @@ pytestmark = pytest.mark.timeout(900)
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
-def run(script: str, tmp_path: Path) -> str:
+def run(script, tmp_path):
     """Run a script where nothing of the checkout is in the way; return what it prints."""
     ran = subprocess.run(  # noqa: S603 - a script of this repository
         [sys.executable, str(EXAMPLES / script)],
@@ -28,7 +28,7 @@ def run(script: str, tmp_path: Path) -> str:
     return ran.stdout
 
 
-def test_robot(tmp_path: Path) -> None:
+def test_robot(tmp_path):
     said = run("robot.py", tmp_path)
     assert "drystone: Read 10 stones (largest 30.3 x 10.0 cm" in said
     assert "wrote to out: plan.json report.html wall.png" in said
@@ -43,7 +43,7 @@ def test_robot(tmp_path: Path) -> None:
     assert "--ban 5 -o without/" in said
 
 
-def test_researcher(tmp_path: Path) -> None:
+def test_researcher(tmp_path):
     for extra in ("spyrrow", "gymnasium"):
         pytest.importorskip(extra, reason="an extra that the script is about")
     said = run("researcher.py", tmp_path)
@@ -56,7 +56,7 @@ def test_researcher(tmp_path: Path) -> None:
     assert "actions, return " in said
 
 
-def test_engineer(tmp_path: Path) -> None:
+def test_engineer(tmp_path):
     said = run("engineer.py", tmp_path)
     first, closed = said.split("$ drystone analyse")[1:3]
     assert "W305" in first

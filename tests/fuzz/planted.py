@@ -10,7 +10,6 @@ import subprocess
 import sys
 import time
 import warnings
-from collections.abc import Callable
 from pathlib import Path
 
 from fuzz.cli import main
@@ -21,95 +20,95 @@ from drystone.errors import InputError
 OUTSIDE = Path(__file__).with_name("written.txt")
 
 
-def fine(_: Path) -> None:
+def fine(_):
     """Nothing is wrong."""
 
 
-def refuses(path: Path) -> None:
+def refuses(path):
     raise InputError("E106", f"{len(path.read_bytes())} bytes are damaged.")
 
 
-def raises(_: Path) -> None:
+def raises(_):
     raise LookupError("a foreign error")
 
 
-def leaves(_: Path) -> None:
+def leaves(_):
     sys.exit(1)
 
 
-def spins(_: Path) -> None:
+def spins(_):
     while True:
         pass
 
 
-def backtracks(_: Path) -> None:
+def backtracks(_):
     re.match(r"(a+)+$", 40 * "a" + "b")  # one call into C, which Python cannot end
 
 
-def waits(_: Path) -> None:
+def waits(_):
     time.sleep(3600)
 
 
-def eats(_: Path) -> None:
+def eats(_):
     bytearray(1 << 33)
 
 
-def eats_quietly(_: Path) -> None:
+def eats_quietly(_):
     try:
         bytearray(1 << 33)
     except MemoryError:
         raise InputError("E110", "there is not enough memory.") from None
 
 
-def dies(_: Path) -> None:
+def dies(_):
     faulthandler._sigsegv()
 
 
-def prints(_: Path) -> None:
+def prints(_):
     os.write(2, b"TIFFReadDirectory: as libraries in C do\n")
 
 
-def warns(_: Path) -> None:
+def warns(_):
     warnings.warn("corrupt EXIF data", UserWarning, stacklevel=1)
 
 
-def logs(_: Path) -> None:
+def logs(_):
     logging.getLogger("tifffile").error("invalid page offset")
 
 
-def starts(_: Path) -> None:
+def starts(_):
     subprocess.run(["true"], check=False)  # noqa: S607
 
 
-def hides(_: Path) -> None:
+def hides(_):
     try:
         starts(_)
     except BaseException as error:
         raise InputError("E106", "the file is damaged.") from error
 
 
-def writes(_: Path) -> None:
+def writes(_):
     OUTSIDE.write_text("a")
 
 
-def removes(_: Path) -> None:
+def removes(_):
     Path(__file__).unlink()
 
 
-def writes_within(path: Path) -> None:
+def writes_within(path):
     path.with_name("out").mkdir()
     path.with_name("out").joinpath("a").write_text("a")
 
 
-def unpickles(_: Path) -> None:
+def unpickles(_):
     pickle.loads(pickle.dumps(Path))  # noqa: S301
 
 
-def connects(_: Path) -> None:
+def connects(_):
     socket.create_connection(("127.0.0.1", 9))
 
 
-def sometimes(read: Callable[[Path], object]) -> Format:
+def sometimes(read):
     """Return a format of which one in five executions meets the defect."""
     return Format(
         read.__name__,

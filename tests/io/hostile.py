@@ -9,8 +9,6 @@ import json
 import struct
 import zipfile
 import zlib
-from collections.abc import Callable
-from typing import Any
 
 import ezdxf
 import numpy as np
@@ -24,7 +22,7 @@ STONE = '<rect width="9" height="9"/>'
 LIMIT = 10**6
 
 
-def tiff_of(tags: dict[int, int] | None = None, *, following: int = 0, big: bool = False) -> bytes:
+def tiff_of(tags=None, *, following=0, big=False):
     """A TIFF of 6 x 4 px, with some tags of other values; all values are longs."""
     pixels = bytes(range(24))
     start, count, entry = (16, 8, 20) if big else (8, 2, 12)
@@ -39,27 +37,27 @@ def tiff_of(tags: dict[int, int] | None = None, *, following: int = 0, big: bool
     return head + number + entries + struct.pack("<Q" if big else "<I", following) + pixels
 
 
-def many_entries() -> bytes:
+def many_entries():
     """A BigTIFF with more entries than offsets can count."""
     data = bytearray(tiff_of(big=True))
     data[16:24] = struct.pack("<Q", 2**63)
     return bytes(data)
 
 
-def signalling() -> np.ndarray:
+def signalling():
     """An array with a NaN that arithmetic warns of, as few others do."""
     values = two_stones(7, 9, np.float32)
     values.view(np.uint32)[0, 0] = 0x7F800001
     return values
 
 
-def npy(shape: str, descr: str = "<u4") -> bytes:
+def npy(shape, descr="<u4"):
     """The header of an array, and 4 bytes of it."""
     text = f"{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}".ljust(117) + "\n"
     return b"\x93NUMPY\x01\0" + struct.pack("<H", len(text)) + text.encode() + bytes(4)
 
 
-def npz(members: dict[str, bytes], compression: int = zipfile.ZIP_DEFLATED) -> bytes:
+def npz(members, compression=zipfile.ZIP_DEFLATED):
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", compression) as archive:
         for name, data in members.items():
@@ -67,12 +65,12 @@ def npz(members: dict[str, bytes], compression: int = zipfile.ZIP_DEFLATED) -> b
     return buffer.getvalue()
 
 
-def saved(array: np.ndarray) -> bytes:
+def saved(array):
     np.save(buffer := io.BytesIO(), array)
     return buffer.getvalue()
 
 
-def gif(width: int, height: int) -> bytes:
+def gif(width, height):
     """A GIF of 6 x 4 px whose frame has another size."""
     Image.fromarray(np.ones((4, 6), np.uint8)).save(buffer := io.BytesIO(), "GIF")
     frame = struct.pack("<HHHH", 0, 0, 6, 4)
@@ -80,7 +78,7 @@ def gif(width: int, height: int) -> bytes:
     return buffer.getvalue().replace(frame, struct.pack("<HHHH", 0, 0, width, height))
 
 
-def bmp(width: int) -> bytes:
+def bmp(width):
     """A BMP of one row of run lengths, which goes two rows up before its first pixel."""
     Image.fromarray(np.ones((4, 6), np.uint8)).save(buffer := io.BytesIO(), "BMP")
     data = bytearray(buffer.getvalue())
@@ -89,7 +87,7 @@ def bmp(width: int) -> bytes:
     return bytes(data[:start]) + b"\0\2\0\xff" * 9
 
 
-def jpeg(scans: int) -> bytes:
+def jpeg(scans):
     """A progressive JPEG whose last scan comes again and again."""
     values = np.full((40, 60), 7, np.uint8)
     Image.fromarray(values).save(buffer := io.BytesIO(), "JPEG", progressive=True)
@@ -98,18 +96,18 @@ def jpeg(scans: int) -> bytes:
     return data[:last] + data[last:-2] * scans + data[-2:]
 
 
-def svg(body: str, **attributes: str) -> bytes:
+def svg(body, **attributes):
     said = " ".join(f'{name}="{value}"' for name, value in attributes.items())
     return f'<svg xmlns="http://www.w3.org/2000/svg" {said}>{body}</svg>'.encode()
 
 
-def labelme(mask: bytes) -> bytes:
+def labelme(mask):
     shape = {"label": "1", "points": [[0, 0], [9, 9]], "shape_type": "mask"}
     shape["mask"] = base64.b64encode(mask).decode()
     return json.dumps({"shapes": [shape], "imageWidth": 60, "imageHeight": 36}).encode()
 
 
-def coco(*segmentations: Any, side: int = 60) -> bytes:
+def coco(*segmentations, side=60):
     annotations = [
         {"id": i, "image_id": 1, "iscrowd": 0, "segmentation": one}
         for i, one in enumerate(segmentations, start=1)
@@ -118,45 +116,45 @@ def coco(*segmentations: Any, side: int = 60) -> bytes:
     return json.dumps({"images": [image], "annotations": annotations}).encode()
 
 
-def runs(side: int) -> dict[str, Any]:
+def runs(side):
     return {"size": [side, side], "counts": [1, side * side - 1]}
 
 
-def dxf(draw: Callable[[Any], None]) -> bytes:
+def dxf(draw):
     document, text = ezdxf.new(units=4), io.StringIO()
     draw(document)
     document.write(text)
     return text.getvalue().encode()
 
 
-def polygon(*corners: tuple[float, float]) -> Callable[[Any], None]:
+def polygon(*corners):
     return lambda document: document.modelspace().add_lwpolyline(corners, close=True)
 
 
-def far_away(document: Any) -> None:
+def far_away(document):
     for left in range(0, 200, 20):
         polygon((left, 0), (left + 15, 0), (left + 15, 10))(document)
     polygon((0, 20), (1200, 20), (0, 1200))(document)
 
 
-def in_rows(document: Any) -> None:
+def in_rows(document):
     document.blocks.new("NOTHING")
     reference = document.modelspace().add_blockref("NOTHING", (0, 0))
     reference.dxf.row_count = reference.dxf.column_count = 30_000
     reference.dxf.row_spacing = reference.dxf.column_spacing = 1.0
 
 
-def nested(document: Any) -> None:
+def nested(document):
     for side in range(700, 0, -1):
         polygon((-side, -side), (side, -side), (side, side), (-side, side))(document)
 
 
-def high_degree(document: Any) -> None:
+def high_degree(document):
     points = [(float(x), float(y), 0.0) for x, y in np.random.default_rng(0).random((90, 2))]
     document.modelspace().add_open_spline(points, degree=89)
 
 
-def stl(corners: np.ndarray) -> bytes:
+def stl(corners):
     facets = np.zeros(len(corners), [("n", "<f4", 3), ("c", "<f4", (3, 3)), ("a", "<u2")])
     facets["c"] = corners
     return bytes(80) + struct.pack("<I", len(corners)) + facets.tobytes()
@@ -175,21 +173,21 @@ PLY = (
 )
 
 
-def inflated() -> bytes:
+def inflated():
     """A TIFF whose strip becomes more than a million times as large as the picture."""
     strip = zlib.compress(bytes(90_000_000), 1)
     return tiff_of({259: 8, 273: 200, 279: len(strip)}).ljust(200, b"\0") + strip
 
 
-def parens(depth: int) -> str:
+def parens(depth):
     return "(" * depth + ")" * depth
 
 
-def groups(selectors: str) -> bytes:
+def groups(selectors):
     return svg(f"<style>{selectors}{{opacity:0}}</style>{'<g>' * 50}{STONE}{'</g>' * 50}")
 
 
-def used(length: int) -> bytes:
+def used(length):
     return svg(f"<defs><path id='p' class='{'x' * length}'/></defs>" + "<use href='#p'/>" * 999)
 
 
@@ -201,7 +199,7 @@ SETTINGS = {
 }
 """With which some files are as bad as larger ones are without."""
 
-FILES: dict[str, tuple[Callable[[], bytes], str]] = {
+FILES = {
     # a program that is started
     "eps.json": (lambda: labelme(EPS), "E114 .*is not a picture"),
     # no end

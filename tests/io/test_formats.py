@@ -238,7 +238,7 @@ def test_pictures_beyond_pillows_guard_are_read(monkeypatch):
         Image.open(io.BytesIO(data))
 
 
-def test_what_reading_was_told_is_kept_with_the_source() -> None:
+def test_what_reading_was_told_is_kept_with_the_source():
     labels = np.full((40, 60), 255, np.uint32)
     labels[5:25, 5:30] = 3
     labels[5:25, 35:55] = 4

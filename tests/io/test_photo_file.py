@@ -150,7 +150,7 @@ def test_white_is_zero_is_light_all_the_same(tmp_path, dtype, channels):
     light = np.array([[0, 51, 255], [10, 20, 30]], np.uint8)
     white = np.iinfo(dtype).max
     values = (255 - light).astype(dtype) * dtype(white // 255)
-    more: dict[str, object] = {}
+    more = {}
     if channels == 2:
         values = np.stack([values, np.full_like(values, white)], axis=-1)
         more = {"extrasamples": ["unassalpha"], "planarconfig": "contig"}
@@ -165,9 +165,12 @@ def test_orientations_in_any_compression_and_in_xmp_are_said(tmp_path):
     upright = PICTURE[::-1]
     xmp = b'<rdf:Description tiff:Orientation="4"/>'
     for number, options in enumerate(
-        ({"tiffinfo": {274: 4}}, {"tiffinfo": {274: 4}, "compression": "tiff_lzw"},
-         {"tiffinfo": {700: xmp}}),
-    ):  # fmt: skip
+        (
+            {"tiffinfo": {274: 4}},
+            {"tiffinfo": {274: 4}, "compression": "tiff_lzw"},
+            {"tiffinfo": {700: xmp}},
+        ),
+    ):
         photo = read_photo(saved(tmp_path / f"{number}.tif", **options))
         assert np.array_equal(photo.values, upright)
         assert [notice.code for notice in photo.notices] == ["W173"]

@@ -17,9 +17,13 @@ def in_pieces():
     """Stones 1 of three pieces, 2 of one, and 3 of two; the pieces are 4, 5 and 6."""
     labels = np.zeros((50, 90), np.uint8)
     for stone, row, col, side in (
-        (1, 2, 2, 20), (1, 2, 30, 15), (1, 2, 60, 12), (2, 26, 2, 18), (3, 26, 30, 16),
+        (1, 2, 2, 20),
+        (1, 2, 30, 15),
+        (1, 2, 60, 12),
+        (2, 26, 2, 18),
+        (3, 26, 30, 16),
         (3, 26, 60, 11),
-    ):  # fmt: skip
+    ):
         labels[row : row + side, col : col + side] = stone
     return labels
 

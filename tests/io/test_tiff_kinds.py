@@ -65,9 +65,21 @@ def coded(table, compression, *, reverse):
 
 
 def tiff(
-    values, bits=8, compression=NONE, *, order="<", sample=1, predictor=1, tile=None, rows=None,
-    planar=False, reverse=False, photometric=1, sparse=(), tags=(),
-):  # fmt: skip
+    values,
+    bits=8,
+    compression=NONE,
+    *,
+    order="<",
+    sample=1,
+    predictor=1,
+    tile=None,
+    rows=None,
+    planar=False,
+    reverse=False,
+    photometric=1,
+    sparse=(),
+    tags=(),
+):
     """The bytes of a TIFF; strips whose number is in `sparse` are not in it."""
     values = values.reshape(*values.shape[:2], -1)
     height, width, channels = values.shape

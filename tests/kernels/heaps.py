@@ -1,7 +1,6 @@
 """Heaps of random stones, each let go above those that rest already."""
 
 import math
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +12,7 @@ from drystone.kernels.polygons import (
     no_polygons,
     polygon_edges,
 )
-from drystone.kernels.settling import Settling, SettlingRules, Status, settle
+from drystone.kernels.settling import SettlingRules, Status, settle
 from tests.naive.settling import Pose, placed
 from tests.polygons import centred, convex, random_polygon
 
@@ -28,12 +27,12 @@ class Drop(NamedTuple):
     around: Polygons
     rules: SettlingRules
 
-    def settled(self) -> Settling:
+    def settled(self):
         edges = polygon_edges(self.outline)
         return settle(self.outline, edges, self.pose, self.around, WIDTH, self.rules)
 
 
-def rules(size: float, **changes: float) -> SettlingRules:
+def rules(size, **changes):
     """Those of exact settling, with lengths by a stone's size."""
     usual = SettlingRules(
         lean=0.3,
@@ -57,7 +56,7 @@ def rules(size: float, **changes: float) -> SettlingRules:
     return usual._replace(**changes)
 
 
-WAYS: tuple[dict[str, float], ...] = (
+WAYS = (
     {},
     {"lean": 0.0},
     {"lean": 0.0, "stop": 0.2},
@@ -67,7 +66,7 @@ WAYS: tuple[dict[str, float], ...] = (
 """Ways of settling: pushed aside, frictionless, as soon as it rests, rolling, without turning."""
 
 
-def random_outline(rng: np.random.Generator) -> Points:
+def random_outline(rng):
     """Convex, concave, with many corners, a thin sliver, or one that is bent."""
     kind, size = int(rng.integers(5)), float(rng.uniform(8.0, 50.0))
     if kind == 0:
@@ -83,7 +82,7 @@ def random_outline(rng: np.random.Generator) -> Points:
     return centred(random_polygon(rng, int(rng.integers(3, 9) if kind == 3 else 30), size))
 
 
-def drops(seed: int, count: int) -> Iterator[tuple[Drop, Settling]]:
+def drops(seed, count):
     """Stones let go one after the other; those that rest stay."""
     rng = np.random.default_rng(seed)
     around = no_polygons()

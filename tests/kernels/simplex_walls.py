@@ -1,16 +1,13 @@
 """Walls as the simplex kernel sees them, for its tests: what is added, step by step."""
 
-from collections.abc import Iterator, Sequence
-
 import numpy as np
 import pytest
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.kernels import simplex
-from drystone.kernels.simplex import OPTIMAL, Added, Answer, Cones, Optimum
-from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
+from drystone.kernels.simplex import OPTIMAL, Added, Cones, Optimum
+from drystone.statics.model import GROUND
 from tests.naive import simplex as naive
-from tests.statics.walls import Labels
 
 SIGNS = (1, -1)
 NOTHING = np.empty(0, np.int32)
@@ -22,7 +19,7 @@ needs_kernel = pytest.mark.skipif(
 )
 
 
-def assert_right(optimum: Optimum, added: Added, answer: Answer, *, anew: bool = True) -> None:
+def assert_right(optimum, added, answer, *, anew=True):
     """As the certificate says, and as the whole program says from the start."""
     assert max(naive.errors(optimum, added, answer).values()) <= 1e-9
     if not anew:
@@ -33,21 +30,19 @@ def assert_right(optimum: Optimum, added: Added, answer: Answer, *, anew: bool =
         assert answer.alpha == pytest.approx(alpha, abs=1e-9)
 
 
-def cones(first: Sequence[int], second: Sequence[int], entries: object) -> Cones:
+def cones(first, second, entries):
     table = np.ascontiguousarray(np.array(entries, float).reshape(-1, 6).T)
     return Cones(np.array(first, np.int32), np.array(second, np.int32), table)
 
 
-def edges_of(
-    interfaces: Sequence[Interface], blocks: dict[int, tuple[int, Block]], mu: float
-) -> Cones:
+def edges_of(interfaces, blocks, mu):
     """The two edges of the cone of every contact point."""
     first, second, entries = [], [], []
     for interface in interfaces:
         normal_x, normal_y = interface.normal
         for x, y in interface.points.tolist():
             for along in (mu, -mu):
-                column: list[float] = []
+                column = []
                 force_x, force_y = normal_x + along * normal_y, normal_y - along * normal_x
                 for number, way in ((interface.block, 1.0), (interface.other, -1.0)):
                     if number == GROUND:
@@ -63,7 +58,7 @@ def edges_of(
     return cones(first, second, entries)
 
 
-def added_blocks(model: RigidBlockModel, placed: list[Block], new: Sequence[Block]) -> Added:
+def added_blocks(model, placed, new):
     """Some blocks of a model on top of others, with all contacts to those and to each other."""
     blocks = {block.id: (i, block) for i, block in enumerate([*placed, *new])}
     ids = {block.id for block in new}
@@ -75,11 +70,11 @@ def added_blocks(model: RigidBlockModel, placed: list[Block], new: Sequence[Bloc
     return Added(weights, edges_of(touching, blocks, model.mu), NOTHING)
 
 
-def steps(labels: Labels, candidates: int, at_once: int = 1) -> Iterator[list[Added]]:
+def steps(labels, candidates, at_once=1):
     """What may be added, step by step, from the lowest block up; the first one is chosen."""
     model = model_from_labels(labels).model
     rest = sorted(model.blocks, key=lambda block: block.centroid[1])
-    placed: list[Block] = []
+    placed = []
     while len(rest) >= at_once:
         groups = [rest[:at_once], *([block] for block in rest[at_once : at_once + candidates - 1])]
         yield [added_blocks(model, placed, group) for group in groups]
@@ -87,9 +82,7 @@ def steps(labels: Labels, candidates: int, at_once: int = 1) -> Iterator[list[Ad
         rest = rest[at_once:]
 
 
-def grown(
-    labels: Labels, candidates: int = 1, at_once: int = 1
-) -> Iterator[tuple[dict[int, Optimum], list[Added]]]:
+def grown(labels, candidates=1, at_once=1):
     """The optima of a wall that grows, and what may be added to it; ends when it falls."""
     optima = {sign: Optimum.of_nothing(sign) for sign in SIGNS}
     for choices in steps(labels, candidates, at_once):
@@ -100,7 +93,7 @@ def grown(
         optima = {sign: optima[sign].extended(choices[0], answers[sign]) for sign in SIGNS}
 
 
-def with_columns(added: Added, more: Cones) -> Added:
+def with_columns(added, more):
     """The same with more columns."""
     old = added.cones
     return Added(
@@ -114,13 +107,13 @@ def with_columns(added: Added, more: Cones) -> Added:
     )
 
 
-def some_columns(some: Cones, places: object) -> Cones:
+def some_columns(some, places):
     """Some of the columns."""
     entries = np.ascontiguousarray(some.entries[:, places])
     return Cones(some.first[places], some.second[places], entries)
 
 
-def variants(optimum: Optimum, added: Added, seed: int) -> dict[str, Added]:
+def variants(optimum, added, seed):
     """What else could be added: degenerate, near to it, with contacts that go."""
     rng = np.random.default_rng(seed)
     new, old = added.cones, optimum.cones
@@ -152,7 +145,7 @@ def variants(optimum: Optimum, added: Added, seed: int) -> dict[str, Added]:
     return found
 
 
-def identical(one: Answer, other: Answer) -> bool:
+def identical(one, other):
     """Equal, number by number."""
     same = (one.status, one.pivots, one.restarts) == (other.status, other.pivots, other.restarts)
     alpha = one.alpha == other.alpha or (np.isnan(one.alpha) and np.isnan(other.alpha))
@@ -160,7 +153,7 @@ def identical(one: Answer, other: Answer) -> bool:
     return bool(same and alpha and forces and np.array_equal(one.velocity, other.velocity))
 
 
-def differing(one: Optimum, other: Optimum) -> list[str]:
+def differing(one, other):
     """Names of what is not equal in two optima."""
     names = [
         name

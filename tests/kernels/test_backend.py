@@ -16,9 +16,7 @@ for name in kernel_names():
 """
 
 
-def test_nothing_compiled_is_used_where_python_is_asked_for(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_nothing_compiled_is_used_where_python_is_asked_for(monkeypatch):
     for name in ("python", "numpy"):
         monkeypatch.setenv(backend.VARIABLE, name)
         assert backend.compiled("bits") is None
@@ -32,9 +30,7 @@ def test_nothing_compiled_is_used_where_python_is_asked_for(
     assert all(file.endswith(".py") for file in ran.stdout.split())
 
 
-def test_what_was_not_built_is_an_error_only_when_it_must_be_there(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_what_was_not_built_is_an_error_only_when_it_must_be_there(monkeypatch):
     monkeypatch.setenv(backend.VARIABLE, "auto")
     assert backend.compiled("no_such_kernel") is None
     monkeypatch.setenv(backend.VARIABLE, "compiled")
@@ -42,13 +38,13 @@ def test_what_was_not_built_is_an_error_only_when_it_must_be_there(
         backend.compiled("no_such_kernel")
 
 
-def test_an_unknown_choice_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_unknown_choice_is_refused(monkeypatch):
     monkeypatch.setenv(backend.VARIABLE, "fortran")
     with pytest.raises(ImportError, match="fortran"):
         backend.compiled("bits")
 
 
-def test_the_description_names_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_description_names_what_is_missing(monkeypatch):
     monkeypatch.setenv(backend.VARIABLE, "auto")
     monkeypatch.setattr(backend, "kernel_names", lambda: ["here", "gone"])
     monkeypatch.setattr(backend, "_is_compiled", lambda name: name == "here")

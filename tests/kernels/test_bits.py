@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from drystone.kernels import bits
 from drystone.kernels.bits import bit_landscape
-from drystone.kernels.lowering import Positions, skyline
-from drystone.kernels.raster import Mask
+from drystone.kernels.lowering import skyline
 from drystone.kernels.silhouette import silhouette
 from tests.kernels.twins import both_ways
 from tests.naive import placement as naive
@@ -19,13 +18,13 @@ from tests.strategies import landscapes, masks, repeatable
 kernel = both_ways(bits)
 
 
-def resting(occupied: Mask, mask: Mask) -> Positions:
+def resting(occupied, mask):
     return bit_landscape(occupied, skyline(occupied)).resting(silhouette(mask))
 
 
 @repeatable(80)
 @given(occupied=landscapes(16), mask=masks(8))
-def test_masks_rest_where_two_loops_say(occupied: Mask, mask: Mask) -> None:
+def test_masks_rest_where_two_loops_say(occupied, mask):
     found = resting(occupied, mask)
     assert found.dtype == np.int64
     assert found.flags.c_contiguous
@@ -35,16 +34,14 @@ def test_masks_rest_where_two_loops_say(occupied: Mask, mask: Mask) -> None:
 @pytest.mark.parametrize("stretch", [13, 40])
 @repeatable(60)
 @given(occupied=landscapes(9), mask=masks(5), shift=st.integers(0, 12), cut=st.integers(0, 12))
-def test_rows_of_several_words_and_runs_longer_than_one(
-    stretch: int, occupied: Mask, mask: Mask, shift: int, cut: int
-) -> None:
+def test_rows_of_several_words_and_runs_longer_than_one(stretch, occupied, mask, shift, cut):
     wide = np.roll(np.repeat(occupied, stretch, axis=1), shift, axis=1)
     stone = np.repeat(mask, stretch, axis=1)[:, : mask.shape[1] * stretch - cut]
     expected = naive.resting_by_areas(wide, stone, slid) if fits(wide, stone) else []
     assert resting(wide, stone).tolist() == [list(at) for at in expected]
 
 
-def test_long_masks_between_thin_posts_under_a_roof() -> None:
+def test_long_masks_between_thin_posts_under_a_roof():
     columns = st.integers(0, 299)
     posts = st.lists(st.tuples(columns, st.integers(1, 9)), max_size=4)
 
@@ -52,7 +49,7 @@ def test_long_masks_between_thin_posts_under_a_roof() -> None:
     @given(
         posts=posts, length=st.integers(1, 300), heel=st.integers(0, 99), foot=st.integers(1, 99)
     )
-    def check(posts: list[tuple[int, int]], length: int, heel: int, foot: int) -> None:
+    def check(posts, length, heel, foot):
         occupied = np.zeros((12, 300), bool)
         occupied[1] = True
         for col, height in posts:
@@ -66,11 +63,11 @@ def test_long_masks_between_thin_posts_under_a_roof() -> None:
     check()
 
 
-def fits(occupied: Mask, mask: Mask) -> bool:
+def fits(occupied, mask):
     return mask.shape[0] <= occupied.shape[0] and mask.shape[1] <= occupied.shape[1]
 
 
-def slid(scene: Mask, mask: Mask) -> np.ndarray:
+def slid(scene, mask):
     """Overlapping pixels at every position, all positions of a pixel of the mask at once."""
     rows, cols = scene.shape[0] - mask.shape[0] + 1, scene.shape[1] - mask.shape[1] + 1
     areas = np.zeros((rows, cols), np.int64)
@@ -79,14 +76,14 @@ def slid(scene: Mask, mask: Mask) -> np.ndarray:
     return areas
 
 
-def test_a_long_run_does_not_see_the_next_row() -> None:
+def test_a_long_run_does_not_see_the_next_row():
     occupied = np.zeros((4, 9), bool)
     occupied[1:, 0] = True
     found = resting(occupied, np.ones((1, 8), bool))
     assert found.tolist() == [[0, 0], [3, 1]]
 
 
-def test_under_a_roof_and_on_it() -> None:
+def test_under_a_roof_and_on_it():
     occupied = np.zeros((7, 200), bool)
     occupied[3, 10:190] = True
     # As wide as what is left of the roof, and a pixel wider.
@@ -95,14 +92,14 @@ def test_under_a_roof_and_on_it() -> None:
     assert places == [[0, col] for col in range(51)] + [[4, col] for col in range(51)]
 
 
-def test_a_mask_that_is_too_large_has_no_position() -> None:
+def test_a_mask_that_is_too_large_has_no_position():
     occupied = np.zeros((4, 6), bool)
     for shape in ((5, 2), (4, 7)):
         assert resting(occupied, np.ones(shape, bool)).shape == (0, 2)
 
 
 @pytest.mark.parametrize("width", [1, 64, 65, 200])
-def test_a_mask_as_large_as_the_image(width: int) -> None:
+def test_a_mask_as_large_as_the_image(width):
     occupied, mask = np.zeros((4, width), bool), np.ones((4, width), bool)
     assert resting(occupied, mask).tolist() == [[0, 0]]
     for col in (0, width // 2, width - 1):
@@ -112,7 +109,7 @@ def test_a_mask_as_large_as_the_image(width: int) -> None:
     assert resting(mask, np.ones((1, 1), bool)).tolist() == []
 
 
-def test_threads_may_share_a_landscape() -> None:
+def test_threads_may_share_a_landscape():
     rng = np.random.default_rng(0)
     occupied = np.vstack([np.zeros((8, 150), bool), rng.random((12, 150)) < 0.1])
     landscape = bit_landscape(occupied, skyline(occupied))

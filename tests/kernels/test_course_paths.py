@@ -1,7 +1,5 @@
 """Paths along planned joints, against what is measured on pixels."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 
@@ -11,14 +9,13 @@ from drystone.kernels.courses import evaluate, path_starts
 from drystone.kernels.raster import turn
 from drystone.metrics import joints as metric_joints
 from drystone.metrics import measure, paths
-from drystone.model.wall import Labels
 from drystone.search.course_task import poses_of
 
 RULES = Rules(Weights(*[1.0] * 16), 32, 0.0, 0, 0, 9, 1000.0)
 COLUMN_PX = 0.5
 
 
-def bond(shift_px: int, courses: int) -> Labels:
+def bond(shift_px, courses):
     """Bricks of 60 x 20 px, each course shifted against that below."""
     labels = np.zeros((20 * courses, 300), np.uint32)
     for course in range(courses):
@@ -27,7 +24,7 @@ def bond(shift_px: int, courses: int) -> Labels:
     return labels
 
 
-def laid(rows: list[list[int]], height_px: int, beds: Any = ()) -> tuple[float, float]:
+def laid(rows, height_px, beds=()):
     """F_AV and F_AH of courses of bricks, given by their widths, on nothing but bed joints."""
     widths = [width for row in rows for width in row]
     corners = [
@@ -52,7 +49,7 @@ def laid(rows: list[list[int]], height_px: int, beds: Any = ()) -> tuple[float, 
 
 
 @pytest.mark.parametrize("courses", [3, 4, 5])
-def test_bricks_are_judged_as_on_pixels(courses: int) -> None:
+def test_bricks_are_judged_as_on_pixels(courses):
     found = {}
     for shift in (0, 10, 20, 30):
         shifted = [60 - shift, 60, 60, 60, 60, shift] if shift else [60] * 5
@@ -68,7 +65,7 @@ def test_bricks_are_judged_as_on_pixels(courses: int) -> None:
     assert found[0] < found[10] < found[20] < found[30]
 
 
-def test_ups_and_downs_and_distance_make_a_bed_joint_longer() -> None:
+def test_ups_and_downs_and_distance_make_a_bed_joint_longer():
     top = 100 * PIXEL_UNITS
     heights = [top - start for start in path_starts(top)]
     straight = 302 * PIXEL_UNITS
@@ -80,7 +77,7 @@ def test_ups_and_downs_and_distance_make_a_bed_joint_longer() -> None:
     assert laid([[300]], 100, aside)[1] == pytest.approx(100 * 120 / straight)
 
 
-def test_paths_also_run_along_the_ground_and_over_the_top() -> None:
+def test_paths_also_run_along_the_ground_and_over_the_top():
     top, half = 100 * PIXEL_UNITS, PIXEL_UNITS // 2
     # The wall's own top is a bed joint too.
     ways = sorted(2 * min(start, top - start + half) for start in path_starts(top))
@@ -88,14 +85,14 @@ def test_paths_also_run_along_the_ground_and_over_the_top() -> None:
     assert laid([[300]], 100)[1] == pytest.approx(100 * sum(ways[:5]) / (5 * straight))
 
 
-def test_the_definitions_are_those_of_the_metrics() -> None:
+def test_the_definitions_are_those_of_the_metrics():
     assert course_types.FIRST_PX == paths.FIRST_PX
     assert course_types.STARTS == paths.STARTS
     assert metric_joints.PAD_TOP + metric_joints.PAD_BOTTOM == course_types.PADDING_PX
     assert metric_joints.PAD_LEFT + metric_joints.PAD_RIGHT == course_types.PADDING_PX
 
 
-def test_there_are_never_more_starts_than_room_for_them() -> None:
+def test_there_are_never_more_starts_than_room_for_them():
     # One more would be thrown away.
     for side in range(3000):
         rest = side + course_types.PADDING_PX - course_types.FIRST_PX

@@ -1,7 +1,5 @@
 """Courses, against loops over columns, and annealing, against one that lays all anew."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -16,7 +14,6 @@ from drystone.kernels.course_types import (
     Arrangement,
     Cooling,
     Ground,
-    Layout,
     Poses,
     Rules,
     Weights,
@@ -32,7 +29,7 @@ from tests.strategies import repeatable
 Case = tuple[Poses, Arrangement, Ground, Rules]
 
 
-def random_case(seed: int) -> Case:
+def random_case(seed):
     """Some stones, in courses, on what may be there already."""
     rng = np.random.default_rng(seed)
     count = int(rng.integers(1, 13))
@@ -52,7 +49,7 @@ def random_case(seed: int) -> Case:
     return poses, plan, random_ground(rng, columns, width), random_rules(rng, count)
 
 
-def random_ground(rng: np.random.Generator, columns: int, width: int) -> Ground:
+def random_ground(rng, columns, width):
     """Bare, or with a course of some joints."""
     height = int(rng.integers(10, 1500))
     if rng.random() < 0.5:
@@ -67,7 +64,7 @@ def random_ground(rng: np.random.Generator, columns: int, width: int) -> Ground:
     return Ground(rng.integers(0, 200, columns, np.int32), ends, ways, beds, width, height)
 
 
-def random_rules(rng: np.random.Generator, count: int) -> Rules:
+def random_rules(rng, count):
     weights = Weights(*rng.uniform(0.0, 1.0, TERMS).tolist())
     return Rules(
         weights,
@@ -83,17 +80,17 @@ def random_rules(rng: np.random.Generator, count: int) -> Rules:
 cases = st.integers(0, 10**6).map(random_case)
 
 
-def bits(parts: Any) -> list[Any]:
+def bits(parts):
     return [(p.dtype.str, p.shape, p.tobytes()) if isinstance(p, np.ndarray) else p for p in parts]
 
 
-def priced(layout: Layout, rules: Rules) -> float:
+def priced(layout, rules):
     return float((layout.terms * np.array(rules.weights)).sum())
 
 
 @repeatable(120)
 @given(case=cases)
-def test_stones_lie_and_count_as_in_loops_over_columns(case: Case) -> None:
+def test_stones_lie_and_count_as_in_loops_over_columns(case):
     rules = case[3]
     layout = evaluate(*case)
     places, level, joints, terms = all_terms(*case)
@@ -112,9 +109,7 @@ def test_stones_lie_and_count_as_in_loops_over_columns(case: Case) -> None:
     doubt=st.sampled_from([0.0, 50.0, np.inf]),
     narrow=st.booleans(),
 )
-def test_annealing_is_the_same_when_all_is_laid_anew(
-    case: Case, seed: int, hot: float, doubt: float, narrow: bool
-) -> None:
+def test_annealing_is_the_same_when_all_is_laid_anew(case, seed, hot, doubt, narrow):
     poses, _, ground, _ = case
     if narrow:  # courses too wide for the wall: their joints go to and fro
         case = (*case[:2], ground._replace(width=int(poses.width.max())), case[3])
@@ -126,7 +121,7 @@ def test_annealing_is_the_same_when_all_is_laid_anew(
 
 
 @pytest.mark.parametrize(("seed", "doubt"), [(0, np.inf), (2, 1.0)])
-def test_a_longer_annealing_of_more_stones_is_the_same(seed: int, doubt: float) -> None:
+def test_a_longer_annealing_of_more_stones_is_the_same(seed, doubt):
     poses, _, ground, rules = next(
         case for case in map(random_case, range(100 * seed, 9999)) if case[1].order.size == 12
     )
@@ -143,7 +138,7 @@ def test_a_longer_annealing_of_more_stones_is_the_same(seed: int, doubt: float) 
 
 @pytest.mark.skipif(describe() == "Python", reason="it takes a minute in Python")
 @pytest.mark.parametrize("hot", [0.1, 10.0, 300.0])
-def test_what_is_kept_of_old_courses_never_drifts(hot: float) -> None:
+def test_what_is_kept_of_old_courses_never_drifts(hot):
     """After very many changes the cost is still that of the plan laid anew."""
     for case in map(random_case, range(40)):
         poses, _, ground, rules = case
@@ -154,7 +149,7 @@ def test_what_is_kept_of_old_courses_never_drifts(hot: float) -> None:
 
 @repeatable(40)
 @given(case=cases, seed=st.integers(0, 99))
-def test_changes_keep_every_stone_and_say_where_they_begin(case: Case, seed: int) -> None:
+def test_changes_keep_every_stone_and_say_where_they_begin(case, seed):
     poses, plan, _, rules = case
     dice = Dice(seed)
     for _ in range(60):
@@ -178,7 +173,7 @@ def test_changes_keep_every_stone_and_say_where_they_begin(case: Case, seed: int
         assert (plan.turns[stones] == before.turns[stones]).all()
 
 
-def test_every_kind_of_change_happens() -> None:
+def test_every_kind_of_change_happens():
     plan = Arrangement(*(np.array(p, np.int32) for p in ([*range(9)], [0] * 9, [3, 2], [1, 1])))
     dice = Dice(1)
     counts, placed, gaps = set(), set(), set()
@@ -193,7 +188,7 @@ def test_every_kind_of_change_happens() -> None:
     assert set(plan.turns.tolist()) == {0, 1, 2, 3}
 
 
-def test_the_dice_are_splitmix64() -> None:
+def test_the_dice_are_splitmix64():
     dice = Dice(0)
     assert [dice.below(2**32) for _ in range(3)] == [0xE220A839, 0x6E789E6A, 0x06C45D18]
     assert Dice(2**64).below(2**32) == 0xE220A839
@@ -201,8 +196,8 @@ def test_the_dice_are_splitmix64() -> None:
     assert set(numbers) == {0, 1, 2}
 
 
-def spoilt(case: Case, **changes: Any) -> Case:
-    def fitting(part: Any) -> Any:
+def spoilt(case, **changes):
+    def fitting(part):
         return part._replace(**{k: v for k, v in changes.items() if k in part._fields})
 
     poses, plan, ground, rules = case
@@ -221,7 +216,7 @@ def spoilt(case: Case, **changes: Any) -> Case:
         ({"joints": np.zeros((3, 2), np.int32)}, "way"),
     ],
 )
-def test_arrays_that_do_not_fit_are_refused(changes: dict[str, Any], message: str) -> None:
+def test_arrays_that_do_not_fit_are_refused(changes, message):
     case = next(case for case in map(random_case, range(999)) if case[1].order.size == 8)
     with pytest.raises(ValueError, match=message):
         evaluate(*spoilt(case, **changes))
@@ -231,15 +226,15 @@ def test_arrays_that_do_not_fit_are_refused(changes: dict[str, Any], message: st
 
 @pytest.mark.parametrize("evaluations", [0, 1, 4, 7, 8])
 def test_a_look_is_taken_every_round_and_what_it_raises_ends_the_annealing(
-    evaluations: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    evaluations, monkeypatch
+):
     case = random_case(0)
     cooling = Cooling(evaluations, 1.0, 0.98, 1)
     unseen, cost = anneal(*case, cooling)
     monkeypatch.setattr(courses, "ROUND", 4)
-    looks: list[int] = []
+    looks = []
 
-    def looked() -> None:
+    def looked():
         looks.append(1)
         if len(looks) > 2:
             raise TimeoutError

@@ -7,7 +7,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.kernels.coverage import Grid, coverage, newly_filled, windows
-from drystone.kernels.polygons import Points
 from tests.naive import coverage as naive
 from tests.polygons import simple_polygons
 from tests.strategies import repeatable
@@ -19,7 +18,7 @@ PLACES = st.one_of(
 
 @repeatable(120)
 @given(polygon=simple_polygons(max_size=9.0), x=PLACES, y=PLACES)
-def test_shares_are_the_areas_in_common_with_each_cell(polygon: Points, x: float, y: float) -> None:
+def test_shares_are_the_areas_in_common_with_each_cell(polygon, x, y):
     corners = polygon + np.array([x, y])
     shares, left, bottom = coverage(corners)
     expected, *corner = naive.coverage(corners)
@@ -29,7 +28,7 @@ def test_shares_are_the_areas_in_common_with_each_cell(polygon: Points, x: float
 
 
 @pytest.mark.parametrize(("x", "y"), [(0, 0), (-7, 3), (120, -45)])
-def test_cells_inside_are_full_and_cells_outside_empty_to_the_last_bit(x: int, y: int) -> None:
+def test_cells_inside_are_full_and_cells_outside_empty_to_the_last_bit(x, y):
     angle = np.arange(50) * (2.0 * np.pi / 50)
     corners = np.column_stack([18.3 * np.cos(angle) + 0.1 + x, 11.7 * np.sin(angle) + 0.7 + y])
     shares, left, bottom = coverage(corners)
@@ -44,13 +43,13 @@ def test_cells_inside_are_full_and_cells_outside_empty_to_the_last_bit(x: int, y
             assert (shares[row, col] == 0.0) == (shape.intersection(cell).area < 1e-12)
 
 
-def test_a_box_on_cell_edges_fills_its_cells() -> None:
+def test_a_box_on_cell_edges_fills_its_cells():
     shares, left, bottom = coverage(np.array([[3.0, -1.0], [5.0, -1.0], [5.0, 2.0], [3.0, 2.0]]))
     assert (shares.tolist(), left, bottom) == ([[1.0, 1.0]] * 3, 3, -1)
 
 
 @pytest.mark.parametrize("size", [1e-3, 1e-9, 1e-160])
-def test_a_speck_has_one_cell(size: float) -> None:
+def test_a_speck_has_one_cell(size):
     shares, left, bottom = coverage(size * np.array([[0.1, 0.2], [0.9, 0.2], [0.5, 0.8]]))
     assert (shares.shape, left, bottom) == ((1, 1), 0, 0)
     assert shares[0, 0] == pytest.approx(0.24 * size**2, abs=1e-12)
@@ -66,7 +65,7 @@ def test_a_speck_has_one_cell(size: float) -> None:
         ([[0.0, 0.0], [1.0, -np.inf], [0.0, 1.0]], "finite"),
     ],
 )
-def test_what_is_no_polygon_is_refused(corners: list[list[float]], message: str) -> None:
+def test_what_is_no_polygon_is_refused(corners, message):
     with pytest.raises(ValueError, match=message):
         coverage(np.array(corners))
 
@@ -75,7 +74,7 @@ Scene = tuple[Grid, Grid, int, int]
 
 
 @st.composite
-def scenes(draw: st.DrawFn) -> Scene:
+def scenes(draw):
     """Shares on a grid, sums of quarters often, and a window anywhere about it."""
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     grid = draw(st.tuples(st.integers(1, 9), st.integers(1, 9)))
@@ -89,7 +88,7 @@ def scenes(draw: st.DrawFn) -> Scene:
 
 @repeatable(300)
 @given(scene=scenes())
-def test_newly_filled_cells_are_those_that_turn_to_half(scene: Scene) -> None:
+def test_newly_filled_cells_are_those_that_turn_to_half(scene):
     total, _, _, _ = scene
     expected = naive.newly_filled(*scene)
     inside = all(0 <= r < total.shape[0] and 0 <= c < total.shape[1] for r, c in expected)
@@ -104,18 +103,17 @@ def test_newly_filled_cells_are_those_that_turn_to_half(scene: Scene) -> None:
     assert mask[:, [0, -1]].any(axis=0).all()
 
 
-def test_half_is_filled_and_what_was_half_is_not_new() -> None:
+def test_half_is_filled_and_what_was_half_is_not_new():
     total = np.array([[0.25, 0.5, 0.25, 0.0]])
     shares = np.array([[0.25, 0.5, 0.24, 0.5]])
     found = newly_filled(total, shares, 0, 0)
-    assert found is not None
     assert (found[0].tolist(), found[1:]) == ([[True, False, False, True]], (0, 0))
     third = np.full((1, 1), 1.0 / 3.0)
     assert newly_filled(third, np.full((1, 1), 0.5 - 1.0 / 3.0 - 1e-13), 0, 0) is not None
 
 
 @pytest.mark.parametrize(("row", "col"), [(-1, 0), (0, -1), (2, 0), (0, 2)])
-def test_nothing_new_when_a_cell_outside_is_filled(row: int, col: int) -> None:
+def test_nothing_new_when_a_cell_outside_is_filled(row, col):
     assert newly_filled(np.zeros((3, 3)), np.ones((2, 2)), row, col) is None
 
 
@@ -126,9 +124,7 @@ def test_nothing_new_when_a_cell_outside_is_filled(row: int, col: int) -> None:
     row=st.integers(-9, 9),
     col=st.integers(-9, 9),
 )
-def test_windows_are_what_both_have(
-    grid: tuple[int, int], shape: tuple[int, int], row: int, col: int
-) -> None:
+def test_windows_are_what_both_have(grid, shape, row, col):
     cells = np.arange(grid[0] * grid[1]).reshape(grid)
     inside, part = windows(grid, shape, row, col)
     wide = np.pad(cells, 20, constant_values=-1)

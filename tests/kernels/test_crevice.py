@@ -7,7 +7,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from drystone.kernels.crevice import between, crevice, slabs
-from drystone.kernels.polygons import Points, Polygons, mirrored_polygon, no_polygons
+from drystone.kernels.polygons import mirrored_polygon, no_polygons
 from tests.naive.crevice import gap_at
 from tests.settle.piles import WIDTH, moved, piles
 from tests.strategies import repeatable
@@ -15,28 +15,26 @@ from tests.strategies import repeatable
 CLEARANCE = 0.01
 
 
-def box(left: float, low: float, right: float, high: float) -> Points:
+def box(left, low, right, high):
     return np.array([[left, low], [right, low], [right, high], [left, high]])
 
 
-def gap_polygon(
-    stone: Points, around: Polygons, left: float, right: float, clearance: float
-) -> Points | None:
+def gap_polygon(stone, around, left, right, clearance):
     return between(crevice(stone, around, clearance), left, right)
 
 
-def extent(polygon: Points) -> tuple[float, float]:
+def extent(polygon):
     return float(polygon[:, 0].min()), float(polygon[:, 0].max())
 
 
-def at(chain: Points, x: float) -> float:
+def at(chain, x):
     """y of a chain at an x where it has no corner."""
     stop = int(np.searchsorted(chain[:, 0], x))
     (x0, y0), (x1, y1) = chain[stop - 1], chain[stop]
     return float(y0 + (y1 - y0) * (x - x0) / (x1 - x0))
 
 
-def away_from_corners(stone: Points, around: Polygons, share: float) -> float:
+def away_from_corners(stone, around, share):
     """An x below the stone that is not that of any corner."""
     left, right = extent(stone)
     x = left + share * (right - left)
@@ -44,7 +42,7 @@ def away_from_corners(stone: Points, around: Polygons, share: float) -> float:
     return x
 
 
-def bodies(around: Polygons) -> shapely.Geometry:
+def bodies(around):
     ground = shapely.box(-100.0, -50.0, 200.0, 0.0)
     return shapely.union_all(
         [ground, *(shapely.Polygon(around.polygon(i)) for i in range(len(around)))]
@@ -53,9 +51,7 @@ def bodies(around: Polygons) -> shapely.Geometry:
 
 @repeatable(100)
 @given(piles(), st.lists(st.floats(0.001, 0.999), min_size=4, max_size=4))
-def test_boundaries_are_what_upright_lines_meet(
-    pile: tuple[Points, Polygons], shares: list[float]
-) -> None:
+def test_boundaries_are_what_upright_lines_meet(pile, shares):
     stone, around = pile
     space = crevice(stone, around, 0.0)
     for share in shares:
@@ -67,9 +63,7 @@ def test_boundaries_are_what_upright_lines_meet(
 
 @repeatable(100)
 @given(piles(), st.floats(0.0, 0.9), st.floats(0.02, 1.0), st.integers(0, 2**32 - 1))
-def test_keeps_its_distance_and_gives_nothing_away(
-    pile: tuple[Points, Polygons], start: float, run: float, seed: int
-) -> None:
+def test_keeps_its_distance_and_gives_nothing_away(pile, start, run, seed):
     stone, around = pile
     left, right = extent(stone)
     x = left + start * (right - left)
@@ -98,7 +92,7 @@ def test_keeps_its_distance_and_gives_nothing_away(
 
 @repeatable(60)
 @given(piles())
-def test_a_mirrored_scene_gives_the_mirrored_space(pile: tuple[Points, Polygons]) -> None:
+def test_a_mirrored_scene_gives_the_mirrored_space(pile):
     stone, around = pile
     left, right = extent(stone)
     ends = left + 0.3 * (right - left), left + 0.8 * (right - left)
@@ -113,7 +107,7 @@ def test_a_mirrored_scene_gives_the_mirrored_space(pile: tuple[Points, Polygons]
         assert shapely.hausdorff_distance(*shapes) < 1e-9
 
 
-def test_a_corner_of_the_stone_gets_a_corner_of_the_wedge() -> None:
+def test_a_corner_of_the_stone_gets_a_corner_of_the_wedge():
     stone = np.array([[0.0, 4.0], [3.0, 3.0], [6.0, 4.0], [6.0, 9.0], [0.0, 9.0]])
     piece = gap_polygon(stone, no_polygons(), 1.0, 5.0, 0.1)
     assert piece is not None
@@ -125,7 +119,7 @@ def test_a_corner_of_the_stone_gets_a_corner_of_the_wedge() -> None:
     assert piece == pytest.approx(np.array(expected))
 
 
-def test_a_step_below_is_kept_as_a_step() -> None:
+def test_a_step_below_is_kept_as_a_step():
     """One corner stands out and stays at a distance on both of its sides, one does not."""
     piece = gap_polygon(box(0, 5, 6, 8), no_polygons().added([box(0, 0, 3, 2)]), 1.0, 5.0, 0.1)
     assert piece is not None
@@ -133,7 +127,7 @@ def test_a_step_below_is_kept_as_a_step() -> None:
     assert piece == pytest.approx(np.array(expected))
 
 
-def test_an_acute_corner_is_cut_off() -> None:
+def test_an_acute_corner_is_cut_off():
     """The tip of a stone below, 26.6 degrees: moved edges would meet 4.2 clearances from it."""
     spike = np.array([[3.0, 0.0], [5.0, 0.0], [4.0, 2.0]])
     space = crevice(box(0, 5, 8, 8), no_polygons().added([spike]), 0.1)
@@ -143,7 +137,7 @@ def test_an_acute_corner_is_cut_off() -> None:
     assert shapely.distance(shapely.Polygon(spike), shapely.LineString(top)) >= 0.1
 
 
-def test_only_what_is_met_first_counts() -> None:
+def test_only_what_is_met_first_counts():
     """A shelf hides what is below it; what is above the stone or in a hollow of it is not below."""
     shelf, lid, hidden = box(0, 3, 4, 4), box(0, 20, 9, 21), box(1, 0, 3, 2)
     arch = np.array([[0, 6], [2, 6], [2, 9], [6, 9], [6, 6], [8, 6], [8, 12], [0, 12]], float)
@@ -154,7 +148,7 @@ def test_only_what_is_met_first_counts() -> None:
     assert space.lid.tolist() == [[0, 6], [2, 6], [2, 9], [6, 9], [6, 6], [8, 6]]
 
 
-def test_no_piece_where_the_space_closes() -> None:
+def test_no_piece_where_the_space_closes():
     stone = np.array([[0.0, 2.0], [3.0, 0.5], [6.0, 2.0], [6.0, 5.0], [0.0, 5.0]])
     assert gap_polygon(stone, no_polygons(), 0.5, 5.5, 0.1) is not None
     assert gap_polygon(stone, no_polygons(), 0.5, 5.5, 0.3) is None
@@ -162,14 +156,14 @@ def test_no_piece_where_the_space_closes() -> None:
     assert gap_polygon(moved(stone, 0.0, -0.6), no_polygons(), 0.5, 5.5, 0.0) is None
 
 
-def test_no_piece_in_a_polygon() -> None:
+def test_no_piece_in_a_polygon():
     """A stone that stands in another has no space there, though there is some further down."""
     table = np.array([[0, 3], [6, 3], [6, 5], [0, 5]], float)
     assert gap_polygon(box(1, 4, 5, 7), no_polygons().added([table]), 2.0, 4.0, 0.0) is None
     assert gap_polygon(box(1, 6, 5, 7), no_polygons().added([table]), 2.0, 4.0, 0.0) is not None
 
 
-def test_two_halves_that_meet_in_a_point_are_no_piece() -> None:
+def test_two_halves_that_meet_in_a_point_are_no_piece():
     """At one x the floor rises to the height down to which the lid falls."""
     stone = np.array([[0, 2], [3, 2], [3, 5], [6, 5], [6, 9], [0, 9]], float)
     scene = no_polygons().added([box(3, 0, 7, 2)])
@@ -177,7 +171,7 @@ def test_two_halves_that_meet_in_a_point_are_no_piece() -> None:
     assert gap_polygon(stone, no_polygons().added([box(3, 0, 7, 1.9)]), 1.0, 5.0, 0.0) is not None
 
 
-def test_what_stands_just_beside_a_line_keeps_its_distance() -> None:
+def test_what_stands_just_beside_a_line_keeps_its_distance():
     """A post whose face is half a clearance left of the piece, and one beside the stone's end."""
     posts = no_polygons().added([box(0, 0, 2, 3), box(8.05, 0, 9, 3)])
     piece = gap_polygon(box(0, 4, 8, 6), posts, 2.05, 8.0, 0.1)
@@ -185,7 +179,7 @@ def test_what_stands_just_beside_a_line_keeps_its_distance() -> None:
     assert shapely.Polygon(piece).distance(bodies(posts)) == pytest.approx(0.1)
 
 
-def test_slabs_are_cut_at_all_corners() -> None:
+def test_slabs_are_cut_at_all_corners():
     stone = np.array([[0.0, 4.0], [3.0, 3.0], [6.0, 4.0], [6.0, 9.0], [0.0, 9.0]])
     space = crevice(stone, no_polygons().added([box(2, 0, 9, 1)]), 0.0)
     x, low, high = slabs(space, 1.0, 5.0)

@@ -7,9 +7,7 @@ from hypothesis import strategies as st
 
 from drystone.kernels import drops as module
 from drystone.kernels.drops import DropTerms, Wanted
-from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import (
-    Floats,
     HeightProfile,
     StoneProfile,
     bare,
@@ -19,19 +17,12 @@ from drystone.kernels.profiles import (
 )
 from tests.naive.drops import all_drops
 from tests.polygons import box_of, random_polygon
-from tests.strategies import Draw, repeatable
+from tests.strategies import repeatable
 
 WEIGHTS = ("height", "void", "gap", "slot", "headroom", "step", "joint", "unbalanced")
 
 
-def drops(
-    profile: HeightProfile,
-    stone: StoneProfile,
-    terms: DropTerms,
-    constant: float,
-    count: int,
-    apart_px: float,
-) -> Floats:
+def drops(profile, stone, terms, constant, count, apart_px):
     """All drops of one stone."""
     wanted = Wanted(count, np.array([apart_px]), np.array([7]))
     places, limit = module.drops(profile, in_a_row([stone]), terms, np.array([constant]), wanted)
@@ -39,18 +30,18 @@ def drops(
     return places[0]
 
 
-def moved(polygon: Points, x: float, y: float) -> Points:
+def moved(polygon, x, y):
     return np.asarray(polygon + np.array([x, y]))
 
 
-def wall_of(polygons: list[Points], columns: int, cell: float) -> HeightProfile:
+def wall_of(polygons, columns, cell):
     profile = bare(columns)
     for index, polygon in enumerate(polygons):
         profile = raised(profile, polygon, index, cell)
     return profile
 
 
-def terms_of(**changes: object) -> DropTerms:
+def terms_of(**changes):
     """A wall of 40 x 20 px, nothing of which the others could fill; only what is given costs."""
     terms = DropTerms(
         2.0, 40.0, 20.0, 0.0, 0.0, 5.0, 4.0, 32.0, *[0.0] * 8, np.arange(21), np.arange(11)
@@ -62,7 +53,7 @@ Scene = tuple[HeightProfile, StoneProfile, DropTerms]
 
 
 @st.composite
-def scenes(draw: Draw) -> Scene:
+def scenes(draw):
     """A wall of a few stones that were dropped at random, another stone, and random weights.
 
     Half the walls are of bricks on the grid, which makes equal costs.
@@ -99,11 +90,8 @@ def scenes(draw: Draw) -> Scene:
     return profile, hanging(_stone(rng, cell, bricks), cell), terms
 
 
-Batch = tuple[HeightProfile, list[StoneProfile], DropTerms, Floats, Wanted]
-
-
 @st.composite
-def batches(draw: Draw, fewest: int = 0) -> Batch:
+def batches(draw, fewest=0):
     """Some stones over a wall, in groups, and how many of their drops are wanted."""
     profile, _, terms = draw(scenes())
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
@@ -121,7 +109,7 @@ def batches(draw: Draw, fewest: int = 0) -> Batch:
     return profile, [hanging(one, terms.cell_px) for one in stones], terms, constants, wanted
 
 
-def _stone(rng: np.random.Generator, cell: float, brick: bool) -> Points:
+def _stone(rng, cell, brick):
     if brick:
         width, height = rng.integers(1, 7, 2) * cell
         return box_of(-width / 2, -height / 2, width, height)
@@ -132,9 +120,7 @@ def _stone(rng: np.random.Generator, cell: float, brick: bool) -> Points:
 @given(
     scene=scenes(), constant=st.floats(-2.0, 2.0), count=st.integers(0, 5), apart=st.integers(0, 6)
 )
-def test_the_cheapest_places_are_those_of_a_loop_over_all(
-    scene: Scene, constant: float, count: int, apart: int
-) -> None:
+def test_the_cheapest_places_are_those_of_a_loop_over_all(scene, constant, count, apart):
     profile, stone, terms = scene
     cell = terms.cell_px
     found = drops(profile, stone, terms, constant, count, apart * cell)
@@ -153,7 +139,7 @@ def test_the_cheapest_places_are_those_of_a_loop_over_all(
 
 @repeatable(100)
 @given(batch=batches())
-def test_stones_in_a_row_are_dropped_as_each_by_itself(batch: Batch) -> None:
+def test_stones_in_a_row_are_dropped_as_each_by_itself(batch):
     profile, stones, terms, constants, wanted = batch
     places, limit = module.drops(
         profile, in_a_row(stones), terms, constants, wanted._replace(cheapest=0)
@@ -168,12 +154,12 @@ def test_stones_in_a_row_are_dropped_as_each_by_itself(batch: Batch) -> None:
 
 @repeatable(200)
 @given(batch=batches(fewest=1))
-def test_the_cheapest_drops_are_all_there_up_to_the_limit(batch: Batch) -> None:
+def test_the_cheapest_drops_are_all_there_up_to_the_limit(batch):
     profile, stones, terms, constants, wanted = batch
     row = in_a_row(stones)
     every, _ = module.drops(profile, row, terms, constants, wanted._replace(cheapest=0))
     found, limit = module.drops(profile, row, terms, constants, wanted)
-    costs: dict[int, list[float]] = {}
+    costs = {}
     for mine, known, group in zip(found, every, wanted.groups.tolist(), strict=True):
         assert mine.tobytes() == known[: len(mine)].tobytes()
         assert (known[len(mine) :, 2] > limit + 1e-9).all()
@@ -183,7 +169,7 @@ def test_the_cheapest_drops_are_all_there_up_to_the_limit(batch: Batch) -> None:
     assert limit == (counting[wanted.cheapest - 1] if full else np.inf)
 
 
-def test_views_from_the_end_are_read_as_they_are() -> None:
+def test_views_from_the_end_are_read_as_they_are():
     profile = wall_of([box_of(0, 0, 6, 4), box_of(10, 0, 4, 3)], 20, 2.0)
     turned = HeightProfile(profile.tops[::-1], profile.owners[::-1], profile.boxes)
     copied = HeightProfile(*(part.copy() for part in turned))
@@ -193,7 +179,7 @@ def test_views_from_the_end_are_read_as_they_are() -> None:
     assert found.tolist() == drops(copied, stone, terms, 0.0, 20, 0.0).tolist()
 
 
-def foot(end: float) -> list[Points]:
+def foot(end):
     """What is 9 px high up to 14 and 2 px high from there to an end."""
     return [np.array([[10.0, 0.0], [end, 0.0], [end, 2.0], [14.0, 2.0], [14.0, 9.0], [10.0, 9.0]])]
 
@@ -227,7 +213,7 @@ ONE, TWO, THREE = box_of(14, 0, 8, 2), box_of(22, 0, 4, 2), box_of(26, 0, 8, 2)
         ("unbalanced", 12.0, [box_of(10, 0, 4, 2.9)], 0.0),
     ],
 )
-def test_costs_at_their_edges(name: str, x: float, polygons: list[Points], cost: float) -> None:
+def test_costs_at_their_edges(name, x, polygons, cost):
     """Of a block of 8 x 6 px that comes down with its left end at x."""
     profile, stone = wall_of(polygons, 20, 2.0), hanging(box_of(-4, -3, 8, 6), 2.0)
     terms = terms_of(**{name: 1.0}, mean_height_px=1.0, height_px=40.0)
@@ -235,7 +221,7 @@ def test_costs_at_their_edges(name: str, x: float, polygons: list[Points], cost:
     assert places[x] == cost
 
 
-def test_of_equal_costs_the_lower_place_comes_first_then_the_one_further_left() -> None:
+def test_of_equal_costs_the_lower_place_comes_first_then_the_one_further_left():
     profile = wall_of([box_of(0, 0, 8, 3), box_of(20, 0, 4, 3)], 20, 2.0)
     stone = hanging(box_of(-4, -3, 8, 6), 2.0)
     found = drops(profile, stone, terms_of(clearance_px=0.02), 0.75, 20, 4.0)
@@ -252,7 +238,7 @@ def test_of_equal_costs_the_lower_place_comes_first_then_the_one_further_left() 
     ]
 
 
-def test_equal_costs_of_different_kinds_are_in_order_too() -> None:
+def test_equal_costs_of_different_kinds_are_in_order_too():
     """At 0 all of the cost is void, at 12, where the stone lies higher, all of it is gap."""
     profile = wall_of([box_of(0, 0, 4, 8), box_of(12, 0, 8, 10)], 20, 2.0)
     terms = terms_of(void=1.0, gap=1.0)
@@ -265,7 +251,7 @@ def test_equal_costs_of_different_kinds_are_in_order_too() -> None:
 @pytest.mark.parametrize(
     ("width", "expected"), [(38.0, [0.0, 2.0]), (40.0, [0.0]), (40.0 + 1e-10, [0.0]), (40.1, [])]
 )
-def test_a_stone_fits_between_the_ends_of_the_wall(width: float, expected: list[float]) -> None:
+def test_a_stone_fits_between_the_ends_of_the_wall(width, expected):
     stone = hanging(box_of(-width / 2, -3.0, width, 6.0), 2.0)
     found = drops(bare(20), stone, terms_of(), 0.0, 9, 0.0)
     assert found.shape == (len(expected), 4)
@@ -274,14 +260,14 @@ def test_a_stone_fits_between_the_ends_of_the_wall(width: float, expected: list[
 
 
 @pytest.mark.parametrize(("height", "slack", "fits"), [(20, 0, 1), (21, 0, 0), (21, 1, 1)])
-def test_a_stone_ends_below_the_walls_height(height: float, slack: float, fits: int) -> None:
+def test_a_stone_ends_below_the_walls_height(height, slack, fits):
     stone = hanging(box_of(-4, -3, 8, height), 2.0)
     # What stands out has no room over it.
     terms = terms_of(slack_px=slack, headroom=1.0)
     assert drops(bare(20), stone, terms, 0.0, 1, 0.0)[:, 2].tolist() == [0.0] * fits
 
 
-def test_a_stone_on_one_end_leans_to_the_other() -> None:
+def test_a_stone_on_one_end_leans_to_the_other():
     profile = wall_of([box_of(10, 0, 4, 10)], 20, 2.0)
     terms = terms_of(height_px=40.0, unbalanced=2.0)
     stone = hanging(box_of(-4.0, -3.0, 8.0, 6.0), 2.0)
@@ -299,7 +285,7 @@ def test_a_stone_on_one_end_leans_to_the_other() -> None:
     assert set(found.values()) == {1.0 / 4.5}
 
 
-def test_what_cannot_be_is_refused() -> None:
+def test_what_cannot_be_is_refused():
     stone, terms = hanging(box_of(-4, -3, 8, 6), 2.0), terms_of(joint=1.0)
     one, two = np.zeros(1), np.zeros(2)
     none = np.zeros(1, np.int64)

@@ -5,14 +5,13 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.raster import Mask
 from drystone.kernels.silhouette import pixel_hull
 from tests.strategies import blobs, repeatable
 
 shapes = st.tuples(st.integers(1, 9), st.integers(1, 9))
 
 
-def noise(shape: tuple[int, int], share: float, seed: int) -> Mask:
+def noise(shape, share, seed):
     return np.asarray(np.random.default_rng(seed).random(shape) < share)
 
 
@@ -23,7 +22,7 @@ pixels = st.one_of(dust, dust, blobs(max_px=16)).filter(lambda mask: bool(mask.a
 
 @repeatable(150)
 @given(pixels)
-def test_corners_are_those_of_all_pixel_squares(mask: Mask) -> None:
+def test_corners_are_those_of_all_pixel_squares(mask):
     rows, cols = np.nonzero(mask)
     x, y = cols, mask.shape[0] - 1 - rows
     squares = shapely.multipoints(
@@ -41,7 +40,7 @@ def test_corners_are_those_of_all_pixel_squares(mask: Mask) -> None:
     assert found[-1].tolist() == [min(x[y == y.min()]), y.min()]
 
 
-def test_one_pixel_and_empty_lines_around_it() -> None:
+def test_one_pixel_and_empty_lines_around_it():
     assert pixel_hull(np.ones((1, 1), bool)).tolist() == [[1, 0], [1, 1], [0, 1], [0, 0]]
     lonely = np.zeros((4, 5), bool)
     lonely[1, 3] = True

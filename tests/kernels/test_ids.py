@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
-from numpy.typing import NDArray
 
 from drystone.kernels import ids as module
 from drystone.kernels.ids import counted, looked_up, numbered
@@ -24,7 +23,7 @@ values = st.sampled_from([0, 1, 2, 7, 300, 65535, 65536, 70000, 2**31, 2**32 - 1
         hnp.arrays(np.int64, shapes, elements=st.integers(0, 400)),
     )
 )
-def test_numbers_are_places_among_the_sorted_values(ids: NDArray[np.integer]) -> None:
+def test_numbers_are_places_among_the_sorted_values(ids):
     for image in (ids, ids.T):
         index, found = numbered(image)
         expected, sorted_values = naive.index_of(image)
@@ -35,7 +34,7 @@ def test_numbers_are_places_among_the_sorted_values(ids: NDArray[np.integer]) ->
 
 
 @pytest.mark.parametrize(("most", "kind"), [(255, np.uint8), (256, np.uint16), (65536, np.int32)])
-def test_numbers_have_no_more_bytes_than_they_need(most: int, kind: type[np.integer]) -> None:
+def test_numbers_have_no_more_bytes_than_they_need(most, kind):
     for ids in (np.arange(most), 10**6 * np.arange(most)):
         index, _ = numbered(ids.reshape(1, -1))
         assert index.dtype == kind
@@ -43,14 +42,14 @@ def test_numbers_have_no_more_bytes_than_they_need(most: int, kind: type[np.inte
 
 
 @pytest.mark.parametrize("block", [1, 5, 1 << 20])
-def test_counts_do_not_depend_on_the_blocks(block: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_counts_do_not_depend_on_the_blocks(block, monkeypatch):
     monkeypatch.setattr(module, "BLOCK_PX", block)
     index = np.random.default_rng(1).integers(0, 6, (7, 9)).astype(np.int32)
     assert counted(index, 8).tolist() == [int((index == k).sum()) for k in range(9)]
 
 
 @pytest.mark.parametrize("kind", [np.uint8, np.uint32, np.int64])
-def test_looking_up_is_indexing(kind: type, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_looking_up_is_indexing(kind, monkeypatch):
     monkeypatch.setattr(module, "_CACHED_PX", 10)
     rng = np.random.default_rng(2)
     table, index = rng.integers(0, 99, 6).astype(np.uint16), rng.integers(0, 6, (7, 9)).astype(kind)

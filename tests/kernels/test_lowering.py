@@ -5,7 +5,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.kernels.lowering import lowered_positions, skyline
-from drystone.kernels.raster import Mask
 from drystone.kernels.silhouette import silhouette
 from tests.naive import placement as naive
 from tests.strategies import landscapes, masks, repeatable
@@ -13,7 +12,7 @@ from tests.strategies import landscapes, masks, repeatable
 
 @repeatable(100)
 @given(occupied=landscapes(30))
-def test_the_skyline_is_that_of_the_columns(occupied: Mask) -> None:
+def test_the_skyline_is_that_of_the_columns(occupied):
     height = occupied.shape[0]
     tops = [next((r for r in range(height) if col[r]), height) for col in occupied.T]
     assert skyline(occupied).tolist() == tops
@@ -22,7 +21,7 @@ def test_the_skyline_is_that_of_the_columns(occupied: Mask) -> None:
 
 @repeatable(120)
 @given(occupied=landscapes(14), mask=masks(), clearance=st.integers(0, 3))
-def test_a_mask_comes_to_rest_as_pixel_by_pixel(occupied: Mask, mask: Mask, clearance: int) -> None:
+def test_a_mask_comes_to_rest_as_pixel_by_pixel(occupied, mask, clearance):
     found = lowered_positions(skyline(occupied), silhouette(mask), occupied.shape[0], clearance)
     assert found.dtype == np.int64
     assert found.flags.c_contiguous

@@ -10,7 +10,7 @@ from drystone.kernels.meetings import meetings
 from drystone.kernels.polygons import no_polygons
 from drystone.kernels.raster import turn
 from tests.polygons import simple_polygons
-from tests.strategies import Draw, repeatable
+from tests.strategies import repeatable
 
 TOLERANCE = 0.1
 
@@ -50,7 +50,7 @@ def near(corners, other, angle, gap):
 
 
 @st.composite
-def pairs(draw: Draw):
+def pairs(draw):
     """Two polygons up in the air with a gap of .001 to .12 between them."""
     other, corners = 10.0 * draw(simple_polygons()), 10.0 * draw(simple_polygons())
     angle = draw(st.sampled_from([0.0, np.pi / 2, np.pi]) | st.floats(0.0, 6.28))

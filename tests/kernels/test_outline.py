@@ -2,22 +2,20 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from drystone.kernels.outline import pixel_polygon, rasterise_polygon
-from drystone.kernels.raster import Mask
 from tests.naive.outline import centre_inside, inside_by_floats
 from tests.strategies import masks, repeatable
 
 
-def _area(polygon: NDArray[np.float64]) -> float:
+def _area(polygon):
     x, y = polygon.T
     return float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
 
 
 @repeatable(150)
 @given(masks(max_px=9))
-def test_rasterising_the_polygon_of_a_mask_gives_the_mask_back(mask: Mask) -> None:
+def test_rasterising_the_polygon_of_a_mask_gives_the_mask_back(mask):
     polygon = pixel_polygon(mask)
     found, left, bottom = rasterise_polygon(polygon)
     assert (left, bottom) == (0, 0)
@@ -26,7 +24,7 @@ def test_rasterising_the_polygon_of_a_mask_gives_the_mask_back(mask: Mask) -> No
 
 @repeatable(150)
 @given(masks(max_px=9))
-def test_polygon_runs_counter_clockwise_along_pixel_edges(mask: Mask) -> None:
+def test_polygon_runs_counter_clockwise_along_pixel_edges(mask):
     polygon = pixel_polygon(mask)
     assert _area(polygon) == mask.sum()
     steps = np.roll(polygon, -1, axis=0) - polygon
@@ -38,7 +36,7 @@ def test_polygon_runs_counter_clockwise_along_pixel_edges(mask: Mask) -> None:
     assert start[0] == np.flatnonzero(mask[-1])[0]
 
 
-def test_polygon_passes_a_corner_where_two_pixels_touch_twice() -> None:
+def test_polygon_passes_a_corner_where_two_pixels_touch_twice():
     ring = np.array([[1, 1, 0], [1, 0, 1], [1, 1, 1]], bool)
     polygon = pixel_polygon(ring)
     corners = [tuple(corner) for corner in polygon.tolist()]
@@ -56,18 +54,14 @@ def test_polygon_passes_a_corner_where_two_pixels_touch_twice() -> None:
         ([[1, 1, 1], [1, 0, 1], [1, 1, 1]], "hole"),
     ],
 )
-def test_masks_that_one_polygon_cannot_describe_are_refused(
-    rows: list[list[int]], message: str
-) -> None:
+def test_masks_that_one_polygon_cannot_describe_are_refused(rows, message):
     with pytest.raises(ValueError, match=message):
         pixel_polygon(np.array(rows, bool))
 
 
 @repeatable(150)
 @given(st.lists(st.tuples(st.integers(-6, 6), st.integers(-6, 6)), min_size=3, max_size=8))
-def test_rasterised_polygon_holds_the_pixels_whose_centres_are_inside(
-    corners: list[tuple[int, int]],
-) -> None:
+def test_rasterised_polygon_holds_the_pixels_whose_centres_are_inside(corners):
     mask, left, bottom = rasterise_polygon(np.array(corners, float))
     canvas = np.zeros((14, 14), bool)
     if mask.size:
@@ -80,16 +74,14 @@ def test_rasterised_polygon_holds_the_pixels_whose_centres_are_inside(
                 assert canvas[13 - (row + 7), col + 7] == inside
 
 
-def test_polygon_without_a_pixel_centre_has_an_empty_mask() -> None:
+def test_polygon_without_a_pixel_centre_has_an_empty_mask():
     mask, _, _ = rasterise_polygon(np.array([[0.1, 0.1], [0.4, 0.1], [0.4, 0.4]]))
     assert mask.shape == (0, 0)
 
 
 @repeatable(150)
 @given(st.integers(0, 10**6), st.integers(3, 9), st.sampled_from([0.4, 3.0, 9.0]), st.booleans())
-def test_pixels_of_any_polygon_are_those_of_loops(
-    seed: int, count: int, size: float, halves: bool
-) -> None:
+def test_pixels_of_any_polygon_are_those_of_loops(seed, count, size, halves):
     """Polygons that cross themselves among them, and corners that are centres of pixels."""
     polygon = np.random.default_rng(seed).uniform(-size, size, (count, 2))
     if halves:

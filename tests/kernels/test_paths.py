@@ -6,15 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from drystone.kernels.paths import DIAGONAL, STRAIGHT, row_lengths, row_ways, step_counts
-from drystone.kernels.raster import Mask
 from tests.naive import metrics as naive
 from tests.strategies import repeatable
 
 
-def noise(shape: tuple[int, int], share: float, seed: int) -> Mask:
+def noise(shape, share, seed):
     return np.asarray(np.random.default_rng(seed).random(shape) < share)
 
 
@@ -26,7 +24,7 @@ images = st.builds(
 )
 
 
-def lengths_px(lengths: NDArray[np.int64]) -> list[float | None]:
+def lengths_px(lengths):
     """Lengths in pixels, as the slow twin gives them."""
     counts = [step_counts(length) if length >= 0 else None for length in lengths.tolist()]
     return [None if c is None else c[0] + math.sqrt(2) * c[1] for c in counts]
@@ -34,7 +32,7 @@ def lengths_px(lengths: NDArray[np.int64]) -> list[float | None]:
 
 @repeatable(120)
 @given(images)
-def test_lengths_are_those_of_the_slow_twin(image: Mask) -> None:
+def test_lengths_are_those_of_the_slow_twin(image):
     rows = np.arange(image.shape[0])
     last = image.shape[1] - 1
     expected = [naive.shortest_length(image, (row, 0), (row, last)) for row in rows.tolist()]
@@ -45,9 +43,7 @@ def test_lengths_are_those_of_the_slow_twin(image: Mask) -> None:
 
 @repeatable(100)
 @given(images, st.data())
-def test_a_way_is_as_long_as_it_should_be_and_stays_on_open_pixels(
-    image: Mask, data: st.DataObject
-) -> None:
+def test_a_way_is_as_long_as_it_should_be_and_stays_on_open_pixels(image, data):
     row = data.draw(st.integers(0, image.shape[0] - 1))
     (way,) = row_ways(image, np.array([row]))
     length = row_lengths(image, np.array([row]))[0]
@@ -64,7 +60,7 @@ def test_a_way_is_as_long_as_it_should_be_and_stays_on_open_pixels(
 
 
 @pytest.mark.parametrize(("share", "seed"), [(0.62, 0), (0.95, 1)])
-def test_lengths_in_larger_images_are_those_of_the_slow_twin(share: float, seed: int) -> None:
+def test_lengths_in_larger_images_are_those_of_the_slow_twin(share, seed):
     image = noise((60, 110), share, seed)
     rows = np.arange(0, 60, 9)
     expected = [naive.shortest_length(image, (row, 0), (row, 109)) for row in rows.tolist()]
@@ -72,7 +68,7 @@ def test_lengths_in_larger_images_are_those_of_the_slow_twin(share: float, seed:
 
 
 @pytest.mark.parametrize("seed", [2492, 2882, 3913, 4836])
-def test_a_better_way_that_is_found_just_after_the_first(seed: int) -> None:
+def test_a_better_way_that_is_found_just_after_the_first(seed):
     """Images in which a search that ends with the first bucket of the end is wrong."""
     image, rows = noise((12, 18), 0.62, seed), np.arange(12)
     expected = [naive.shortest_length(image, (row, 0), (row, 17)) for row in rows.tolist()]
@@ -80,7 +76,7 @@ def test_a_better_way_that_is_found_just_after_the_first(seed: int) -> None:
     assert found == pytest.approx(expected, abs=1e-9)
 
 
-def test_rows_do_not_disturb_each_other() -> None:
+def test_rows_do_not_disturb_each_other():
     image = noise((25, 40), 0.66, 4)
     rows = np.array([3, 20, 3, 11, 0, 24, 11])
     alone = [row_lengths(image, rows[k : k + 1])[0] for k in range(len(rows))]
@@ -89,7 +85,7 @@ def test_rows_do_not_disturb_each_other() -> None:
     assert max(alone) > 0
 
 
-def test_edges() -> None:
+def test_edges():
     nothing = np.zeros((3, 4), bool)
     assert row_lengths(nothing, np.array([1])).tolist() == [-1]
     assert row_lengths(~nothing, np.zeros(0, int)).tolist() == []
@@ -101,7 +97,7 @@ def test_edges() -> None:
     assert row_lengths(shut, np.array([1, 2])).tolist() == [-1, -1]
 
 
-def test_of_equal_ways_always_the_same_is_taken() -> None:
+def test_of_equal_ways_always_the_same_is_taken():
     ring = np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], bool)
     found = row_ways(ring, np.array([1, 0]))
     assert [way.tolist() for way in found] == [[[1, 0], [2, 1], [1, 2]], [[0, 0], [0, 1], [0, 2]]]
@@ -110,14 +106,12 @@ def test_of_equal_ways_always_the_same_is_taken() -> None:
     assert row_ways(ring[:, :1], np.array([2]))[0].tolist() == [[2, 0]]
 
 
-def test_the_ratio_of_the_steps_is_a_convergent_of_the_root_of_two() -> None:
+def test_the_ratio_of_the_steps_is_a_convergent_of_the_root_of_two():
     assert abs(DIAGONAL**2 - 2 * STRAIGHT**2) == 1
 
 
 @given(*[st.integers(0, 10**6)] * 4)
-def test_whole_numbers_order_ways_as_their_true_lengths_do(
-    a: int, b: int, straight: int, diagonal: int
-) -> None:
+def test_whole_numbers_order_ways_as_their_true_lengths_do(a, b, straight, diagonal):
     whole = (a - straight) * STRAIGHT + (b - diagonal) * DIAGONAL
     more, less = a - straight, diagonal - b  # longer when more > sqrt 2 * less
     true = np.sign(more * abs(more) - 2 * less * abs(less))

@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import HeightProfile, bare, extremes, hanging, in_a_row, raised
 from tests.naive.drops import column_span, height_profile
 from tests.polygons import box_of, simple_polygons
@@ -16,9 +15,7 @@ CELLS = st.sampled_from([0.5, 1.0, 2.0, 1 / 0.35, 40.0])
 
 @repeatable(80)
 @given(polygon=simple_polygons(), cell=CELLS, left=st.floats(-20.0, 20.0))
-def test_extremes_are_those_of_the_polygon_cut_into_columns(
-    polygon: Points, cell: float, left: float
-) -> None:
+def test_extremes_are_those_of_the_polygon_cut_into_columns(polygon, cell, left):
     columns = 9
     bottoms, tops = extremes(polygon, left, cell, columns)
     for column, low, high in zip(range(columns), bottoms, tops, strict=True):
@@ -28,7 +25,7 @@ def test_extremes_are_those_of_the_polygon_cut_into_columns(
 
 @repeatable(60)
 @given(data=st.data(), cell=CELLS)
-def test_a_profile_is_raised_where_a_polygon_is_higher(data: st.DataObject, cell: float) -> None:
+def test_a_profile_is_raised_where_a_polygon_is_higher(data, cell):
     at = st.tuples(st.floats(-10.0, 40.0), st.floats(0.0, 20.0))
     polygons = [
         polygon + np.array(shift) - [0.0, polygon[:, 1].min()]
@@ -51,7 +48,7 @@ def test_a_profile_is_raised_where_a_polygon_is_higher(data: st.DataObject, cell
 
 @repeatable(40)
 @given(polygon=simple_polygons(), cell=CELLS)
-def test_a_hanging_polygon_starts_on_a_column_edge(polygon: Points, cell: float) -> None:
+def test_a_hanging_polygon_starts_on_a_column_edge(polygon, cell):
     stone = hanging(polygon, cell)
     left, bottom = polygon.min(axis=0)
     right, top = polygon.max(axis=0)
@@ -72,7 +69,7 @@ def test_a_hanging_polygon_starts_on_a_column_edge(polygon: Points, cell: float)
 
 @repeatable(20)
 @given(polygons=st.lists(simple_polygons(), max_size=4))
-def test_stones_in_a_row_are_those_one_after_the_other(polygons: list[Points]) -> None:
+def test_stones_in_a_row_are_those_one_after_the_other(polygons):
     stones = [hanging(polygon, 2.0) for polygon in polygons]
     row = in_a_row(stones)
     assert (row.bottoms.dtype, row.first.dtype, row.boxes.shape) == (
@@ -85,7 +82,7 @@ def test_stones_in_a_row_are_those_one_after_the_other(polygons: list[Points]) -
         assert tuple(row.boxes[k].tolist()) == stone[2:]
 
 
-def test_a_polygon_is_not_over_columns_into_which_it_reaches_by_little() -> None:
+def test_a_polygon_is_not_over_columns_into_which_it_reaches_by_little():
     profile = raised(bare(6), box_of(2.0, 0.0, 4.0, 3.0), 0, 2.0)
     assert profile.tops.tolist() == [0.0, 3.0, 3.0, 0.0, 0.0, 0.0]
     tiny = raised(bare(6), box_of(2.0 - 1e-10, 0.0, 4.0 + 2e-10, 3.0), 0, 2.0)
@@ -96,14 +93,14 @@ def test_a_polygon_is_not_over_columns_into_which_it_reaches_by_little() -> None
     assert over.tops.tolist() == [3.0, 3.0, 3.0, 3.0, 0.0, 0.0]
 
 
-def test_of_equal_heights_the_first_owns_the_column() -> None:
+def test_of_equal_heights_the_first_owns_the_column():
     profile = raised(bare(2), box_of(0.0, 0.0, 4.0, 3.0), 0, 2.0)
     profile = raised(profile, box_of(2.0, 1.0, 2.0, 2.0), 1, 2.0)
     assert profile.owners.tolist() == [0, 0]
     assert raised(bare(1), box_of(0.0, -1.0, 1.0, 1.0), 0, 2.0).owners.tolist() == [-1]
 
 
-def test_what_is_beside_the_columns_is_ignored() -> None:
+def test_what_is_beside_the_columns_is_ignored():
     for left in (-1e300, -50.0, 50.0, 1e300):
         profile = raised(bare(4), box_of(left, 0.0, 3.0, 3.0), 0, 2.0)
         assert profile.tops.tolist() == [0.0] * 4
@@ -113,7 +110,7 @@ def test_what_is_beside_the_columns_is_ignored() -> None:
 
 
 @pytest.mark.parametrize("zero", [0.0, -0.0])
-def test_zeros_have_no_sign(zero: float) -> None:
+def test_zeros_have_no_sign(zero):
     """Which of +0 and -0 is the smaller depends on the order."""
     standing = np.array([[0.0, zero], [2.0, -zero], [2.0, 3.0]])
     assert not np.signbit(extremes(standing, 0.0, 2.0, 1)[0]).any()
@@ -121,7 +118,7 @@ def test_zeros_have_no_sign(zero: float) -> None:
     assert not np.signbit(extremes(hung, 0.0, 2.0, 1)[1]).any()
 
 
-def test_a_polygon_needs_a_width_and_columns_too() -> None:
+def test_a_polygon_needs_a_width_and_columns_too():
     with pytest.raises(ValueError, match="without width"):
         hanging(np.array([[1.0, 0.0], [1.0, 2.0], [1.0, 3.0]]), 2.0)
     for cell in (0.0, -1.0, float("nan")):

@@ -1,7 +1,6 @@
 """Turning, reducing and rasterising by coverage (DESIGN 4.2)."""
 
 import math
-from typing import Literal
 
 import numpy as np
 import pytest
@@ -12,7 +11,6 @@ from drystone.kernels import raster
 from drystone.kernels.backend import compiled
 from drystone.kernels.raster import (
     PHASE_STEPS,
-    Mask,
     mirrored,
     quantise,
     rasterise,
@@ -33,7 +31,7 @@ PHASES = st.integers(0, PHASE_STEPS - 1).map(lambda n: n / PHASE_STEPS)
 
 
 @pytest.mark.parametrize("quarters", [-2, -1, 0, 1, 2, 3, 5])
-def test_quarter_turns_of_an_l_are_counter_clockwise_and_never_mirrored(quarters: int) -> None:
+def test_quarter_turns_of_an_l_are_counter_clockwise_and_never_mirrored(quarters):
     turned, left, bottom = rasterise(L_SHAPE, (0.0, 0.0), 90.0 * quarters, 1.0, (0.0, 0.0))
     assert np.array_equal(turned, np.rot90(L_SHAPE, quarters))
     corners = {0: (0, 0), 1: (-4, 0), 2: (-3, -4), 3: (0, -3)}
@@ -42,7 +40,7 @@ def test_quarter_turns_of_an_l_are_counter_clockwise_and_never_mirrored(quarters
 
 @given(angle=st.floats(-720, 720))
 @repeatable()
-def test_turn_is_a_rotation_by_the_angle(angle: float) -> None:
+def test_turn_is_a_rotation_by_the_angle(angle):
     points = [(2.0, 0.0), (0.0, 1.0), (-3.0, 0.5)]
     for (x, y), (u, v) in zip(turn(np.array(points), angle).tolist(), points, strict=True):
         assert math.hypot(x, y) == pytest.approx(math.hypot(u, v))
@@ -52,7 +50,7 @@ def test_turn_is_a_rotation_by_the_angle(angle: float) -> None:
 
 @given(value=st.floats(-1e6, 1e6))
 @repeatable()
-def test_quantise_is_exact_and_nearest(value: float) -> None:
+def test_quantise_is_exact_and_nearest(value):
     rounded = quantise(value)
     assert (rounded * PHASE_STEPS).is_integer()
     assert abs(rounded - value) <= 0.5 / PHASE_STEPS + 1e-9
@@ -60,7 +58,7 @@ def test_quantise_is_exact_and_nearest(value: float) -> None:
 
 @repeatable()
 @given(mask=masks(), angle=st.floats(-180, 180), scale=st.sampled_from([0.05, 0.2, 0.6, 1.0]))
-def test_a_stone_never_vanishes_and_is_cropped(mask: Mask, angle: float, scale: float) -> None:
+def test_a_stone_never_vanishes_and_is_cropped(mask, angle, scale):
     turned, _, _ = rasterise(mask, (0.3, 0.4), angle, scale, (0.25, 0.75))
     assert turned[0].any()
     assert turned[-1].any()
@@ -68,7 +66,7 @@ def test_a_stone_never_vanishes_and_is_cropped(mask: Mask, angle: float, scale: 
     assert turned[:, -1].any()
 
 
-def pixels_of(mask: Mask, left: int, bottom: int) -> set[tuple[int, int]]:
+def pixels_of(mask, left, bottom):
     rows, cols = np.nonzero(mask)
     top = bottom + mask.shape[0] - 1
     return {(left + col, top - row) for row, col in zip(rows.tolist(), cols.tolist(), strict=True)}
@@ -91,9 +89,7 @@ ANGLES = st.one_of(
     scale=st.sampled_from([2.0, 1.0, 0.5, 0.3, 0.12]),
     phase=st.tuples(PHASES, PHASES),
 )
-def test_rasterising_is_counting_samples_one_by_one(
-    mask: Mask, at: tuple[float, float], angle: float, scale: float, phase: tuple[float, float]
-) -> None:
+def test_rasterising_is_counting_samples_one_by_one(mask, at, angle, scale, phase):
     centre = (at[0] * mask.shape[1], at[1] * mask.shape[0])
     expected = naive.rasterised(mask, centre, angle, scale, phase)
     if expected:
@@ -110,8 +106,8 @@ def test_rasterising_is_counting_samples_one_by_one(
     tolerance=st.sampled_from([0.0, 0.6, 1.0, 2.0, math.inf]),
 )
 def test_the_area_is_sought_at_sixteen_positions_one_after_the_other(
-    mask: Mask, angle: float, scale: float, phase: tuple[float, float], off: float, tolerance: float
-) -> None:
+    mask, angle, scale, phase, off, tolerance
+):
     wanted = (round(int(mask.sum()) * scale**2) + off, tolerance)
     expected, best = naive.rasterised_to_area(mask, (0.5, 0.5), angle, scale, phase, wanted)
     if expected:
@@ -131,14 +127,7 @@ def test_the_area_is_sought_at_sixteen_positions_one_after_the_other(
     area=st.tuples(st.floats(0.5, 1.5), st.sampled_from([0.0, 2.0, math.inf])),
     order=st.sampled_from("CF"),
 )
-def test_compiled_pixels_are_those_of_numpy(
-    mask: Mask,
-    angle: float,
-    scale: float,
-    phase: tuple[float, float],
-    area: tuple[float, float],
-    order: Literal["C", "F"],
-) -> None:
+def test_compiled_pixels_are_those_of_numpy(mask, angle, scale, phase, area, order):
     wanted = (area[0] * mask.sum() * scale**2, area[1])
     source = np.array(mask, order=order)
     found = []
@@ -161,9 +150,7 @@ def test_compiled_pixels_are_those_of_numpy(
         (0.125, ["####"]),
     ],
 )
-def test_a_neck_too_thin_for_the_resolution_does_not_break(
-    scale: float, expected: list[str]
-) -> None:
+def test_a_neck_too_thin_for_the_resolution_does_not_break(scale, expected):
     dumbbell = np.zeros((8, 30), bool)
     dumbbell[:, :12], dumbbell[:, 18:] = True, True
     dumbbell[4, :] = dumbbell[3, 13:15] = True
@@ -171,7 +158,7 @@ def test_a_neck_too_thin_for_the_resolution_does_not_break(
     assert ["".join(".#"[pixel] for pixel in row) for row in turned.astype(int)] == expected
 
 
-def test_a_pixel_between_the_sample_points_does_not_vanish() -> None:
+def test_a_pixel_between_the_sample_points_does_not_vanish():
     counts, _ = naive.sampled(np.ones((1, 1), bool), (0.5, 0.5), 45.0, 0.25, (0.0, 0.0))
     assert not counts
     turned, left, bottom = rasterise(np.ones((1, 1), bool), (0.5, 0.5), 45.0, 0.25, (0.0, 0.0))
@@ -179,20 +166,18 @@ def test_a_pixel_between_the_sample_points_does_not_vanish() -> None:
 
 
 @pytest.mark.parametrize(("phase", "shape"), [((0.625, 0.0), (1, 2)), ((0.0, 0.375), (2, 1))])
-def test_samples_on_an_edge_belong_to_the_pixel_right_of_or_below_it(
-    phase: tuple[float, float], shape: tuple[int, int]
-) -> None:
+def test_samples_on_an_edge_belong_to_the_pixel_right_of_or_below_it(phase, shape):
     """A pixel across two of the result: half of each when one of its two edges counts."""
     turned, left, bottom = rasterise(np.ones((1, 1), bool), (0.0, 0.0), 0.0, 1.0, phase)
     assert (turned.shape, left, bottom) == (shape, 0, 0)
 
 
-def test_a_mask_without_pixels_is_refused() -> None:
+def test_a_mask_without_pixels_is_refused():
     with pytest.raises(ValueError, match="no pixel"):
         rasterise(np.zeros((2, 3), bool), (0.0, 0.0), 10.0, 1.0, (0.0, 0.0))
 
 
-def test_numpy_takes_a_large_mask_in_bands(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_numpy_takes_a_large_mask_in_bands(monkeypatch):
     monkeypatch.setattr(raster, "_fast", None)
     mask = np.indices((23, 31)).sum(axis=0) % 7 > 1
     whole = rasterise(mask, (9.2, 8.1), 33.0, 0.15, (0.25, 0.5))
@@ -207,9 +192,7 @@ def test_numpy_takes_a_large_mask_in_bands(monkeypatch: pytest.MonkeyPatch) -> N
     points=st.lists(st.tuples(st.floats(-99, 99), st.floats(-99, 99)), min_size=1, max_size=9),
     angles=st.lists(ANGLES, min_size=1, max_size=4),
 )
-def test_boxes_are_those_of_the_points_turned_one_by_one(
-    points: list[tuple[float, float]], angles: list[float]
-) -> None:
+def test_boxes_are_those_of_the_points_turned_one_by_one(points, angles):
     turns = [rotation(angle) for angle in angles]
     boxes = turned_boxes(np.array(points), np.array(turns))
     for (cos, sin), box in zip(turns, boxes.tolist(), strict=True):
@@ -218,7 +201,7 @@ def test_boxes_are_those_of_the_points_turned_one_by_one(
         assert box == [min(x), min(y), max(x), max(y)]
 
 
-def test_a_mirror_image_is_a_copy_read_backwards() -> None:
+def test_a_mirror_image_is_a_copy_read_backwards():
     image = mirrored(L_SHAPE)
     assert image.tolist() == [row[::-1] for row in L_SHAPE.tolist()]
     assert image.flags.c_contiguous

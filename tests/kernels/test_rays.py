@@ -3,7 +3,6 @@
 import numpy as np
 from hypothesis import given
 
-from drystone.kernels.raster import Mask
 from drystone.kernels.rays import RaySums
 from drystone.kernels.silhouette import silhouette
 from tests.naive import placement, rays
@@ -12,7 +11,7 @@ from tests.strategies import landscapes, masks, repeatable
 
 @repeatable(80)
 @given(occupied=landscapes(14), mask=masks())
-def test_shares_and_gaps_are_those_of_rays_shot_one_by_one(occupied: Mask, mask: Mask) -> None:
+def test_shares_and_gaps_are_those_of_rays_shot_one_by_one(occupied, mask):
     at = placement.all_positions(occupied, mask)
     positions = np.array(at, np.int64).reshape(-1, 2)
     outline, sums = silhouette(mask), RaySums(occupied)
@@ -23,7 +22,7 @@ def test_shares_and_gaps_are_those_of_rays_shot_one_by_one(occupied: Mask, mask:
     assert sums.empty_beside(outline, positions).tolist() == gaps
 
 
-def test_high_walls() -> None:
+def test_high_walls():
     occupied = np.ones((602, 5), bool)
     occupied[:2] = occupied[300] = False
     block = silhouette(np.ones((2, 2), bool))
@@ -31,7 +30,7 @@ def test_high_walls() -> None:
     assert found.tolist() == [2 * 599 / (2 * 600 + 2 * 3)]
 
 
-def test_no_position_is_no_share() -> None:
+def test_no_position_is_no_share():
     none = np.zeros((0, 2), np.int64)
     sums, outline = RaySums(np.eye(3, dtype=bool)), silhouette(np.ones((2, 2), bool))
     assert sums.filled_share(outline, none).shape == (0,)

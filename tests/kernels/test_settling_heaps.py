@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.kernels.firmness import rest_margin
-from drystone.kernels.settling import Settling, Status
-from tests.kernels.heaps import WIDTH, Drop, drops
+from drystone.kernels.settling import Status
+from tests.kernels.heaps import WIDTH, drops
 from tests.naive.settling import best_nearby, contacts, distances, overlap_area, placed, unbalanced
 from tests.strategies import repeatable
 
@@ -43,7 +43,7 @@ def test_settled_stones_lie_over_nothing_and_rest(seed):
     assert rested >= 3
 
 
-def agrees_with_forces(drop: Drop, found: Settling) -> None:
+def agrees_with_forces(drop, found):
     """Forces at the contacts carry the weight of what rests, and of nothing else."""
     corners = placed(drop.outline, found[1:4])
     sure, doubtful = contacts(corners, drop.around, drop.rules.tolerance)

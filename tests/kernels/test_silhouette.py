@@ -3,14 +3,13 @@
 import numpy as np
 from hypothesis import given
 
-from drystone.kernels.raster import Mask
 from drystone.kernels.silhouette import silhouette
 from tests.strategies import masks, repeatable
 
 
 @repeatable(100)
 @given(mask=masks(12))
-def test_runs_give_back_the_mask_from_the_lowest_row_up(mask: Mask) -> None:
+def test_runs_give_back_the_mask_from_the_lowest_row_up(mask):
     outline = silhouette(mask)
     painted = np.zeros_like(mask)
     for row, start, length in outline.runs.tolist():
@@ -28,7 +27,7 @@ def test_runs_give_back_the_mask_from_the_lowest_row_up(mask: Mask) -> None:
 
 @repeatable(100)
 @given(mask=masks(12))
-def test_swept_is_what_is_left_of_the_mask_or_below_it(mask: Mask) -> None:
+def test_swept_is_what_is_left_of_the_mask_or_below_it(mask):
     rays = silhouette(mask).rays
     height, width = mask.shape
     expected = {

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from drystone.kernels import spots
 from drystone.kernels.bits import bit_landscape
 from drystone.kernels.lowering import Positions, lowered_positions, skyline
-from drystone.kernels.raster import Mask
 from drystone.kernels.rays import RaySums
 from drystone.kernels.silhouette import Ints, Silhouette, silhouette
 from drystone.kernels.spots import (
@@ -23,21 +22,16 @@ from drystone.kernels.spots import (
     snug_merits,
     threshold,
 )
-from drystone.model.pose import PosedStone
-from drystone.model.wall import Wall
 from tests.naive import placement as naive
-from tests.strategies import Draw, landscapes, masks, posed_on_walls, repeatable
+from tests.strategies import landscapes, masks, posed_on_walls, repeatable
 
 wanted = st.sampled_from([1, 2, 5, 1000])
 WEIGHTS = [(0, 0, 0, 0), (0, 0, -0.5, 0), (0, -0.5, 0, 0), (1.6, 0.5, 0.7, 0.25), (0, 1, 1, -0.5)]
 
 
-Posed = tuple[Wall, PosedStone, int, int]
-
-
 @repeatable(40)
 @given(scene=posed_on_walls())
-def test_eq12_is_that_of_every_position_on_its_own(scene: Posed) -> None:
+def test_eq12_is_that_of_every_position_on_its_own(scene):
     wall, posed, _, _ = scene
     at = naive.resting_positions(wall.occupied, posed.mask)[:40]
     rays = RaySums(wall.occupied)
@@ -52,7 +46,7 @@ def test_eq12_is_that_of_every_position_on_its_own(scene: Posed) -> None:
 
 @repeatable(40)
 @given(scene=posed_on_walls())
-def test_void_gap_height_and_end_are_counted_pixel_by_pixel(scene: Posed) -> None:
+def test_void_gap_height_and_end_are_counted_pixel_by_pixel(scene):
     wall, posed, _, _ = scene
     outline, top = silhouette(posed.mask), skyline(wall.occupied)
     positions = lowered_positions(top, outline, wall.site.height_px)
@@ -63,7 +57,7 @@ def test_void_gap_height_and_end_are_counted_pixel_by_pixel(scene: Posed) -> Non
     height = [(wall.site.height_px - p[0] - posed.height_px) / posed.height_px for p in at]
     end = [p[1] / wall.site.width_px for p in at]
 
-    def merits(*weights: float) -> np.ndarray:
+    def merits(*weights):
         return snug_merits(positions, outline, top, rays, SnugWeights(*weights))
 
     assert merits(1, 0, 0, 0) == pytest.approx([-h for h in height])
@@ -76,12 +70,12 @@ def test_void_gap_height_and_end_are_counted_pixel_by_pixel(scene: Posed) -> Non
     )
 
 
-def test_the_threshold_itself_counts_as_below() -> None:
+def test_the_threshold_itself_counts_as_below():
     assert threshold(np.array([0.0, 0.7, 0.7000001, 1.0]), 0.7).tolist() == [0, 0, 0.7000001, 1.0]
 
 
 @st.composite
-def scenes(draw: Draw) -> "Scene":
+def scenes(draw):
     """Some have a floor, so that rays downwards are filled, with dents in it."""
     occupied, floor = draw(landscapes()), draw(st.integers(0, 12))
     occupied[occupied.shape[0] - floor :] = True
@@ -101,13 +95,13 @@ class Scene:
     positions: Positions
 
     @classmethod
-    def of(cls, occupied: Mask, mask: Mask) -> "Scene":
+    def of(cls, occupied, mask):
         top, outline = skyline(occupied), silhouette(mask)
         positions = bit_landscape(occupied, top).resting(outline)
         return cls(top, RaySums(occupied), outline, positions)
 
     @property
-    def built(self) -> int:
+    def built(self):
         return self.rays.height - int(self.top.min())
 
 
@@ -121,13 +115,8 @@ class Scene:
     guesses=st.sampled_from([0, 3, 16]),
 )
 def test_the_best_by_a_rule_are_those_of_the_merits_of_all(
-    scene: Scene,
-    anchor: int,
-    beta: float,
-    weights: tuple[float, float, float, float],
-    tries: int,
-    guesses: int,
-) -> None:
+    scene, anchor, beta, weights, tries, guesses
+):
     """Most places are passed over."""
     at, outline, rays = scene.positions, scene.outline, scene.rays
     eq12 = (scene.built, anchor / 64, beta)
@@ -142,7 +131,7 @@ def test_the_best_by_a_rule_are_those_of_the_merits_of_all(
     assert best_by_height(at, outline, rays, tries) == lowest
 
 
-def test_a_place_further_on_is_not_passed_over_when_its_rays_are_all_filled() -> None:
+def test_a_place_further_on_is_not_passed_over_when_its_rays_are_all_filled():
     occupied = np.zeros((20, 100), bool)
     occupied[5:, :50] = occupied[10:, :] = occupied[:, 99] = True
     # Voids under the upper step, in whose corner is the most promising place.
@@ -155,7 +144,7 @@ def test_a_place_further_on_is_not_passed_over_when_its_rays_are_all_filled() ->
 
 @repeatable(100)
 @given(data=st.data(), tries=st.integers(1, 9))
-def test_the_best_are_the_first_of_all_sorted(data: st.DataObject, tries: int) -> None:
+def test_the_best_are_the_first_of_all_sorted(data, tries):
     worth = st.sampled_from([0.0, 0.5, 0.5 + 1e-14, 0.5 + 1e-11, 1.0])
     at = sorted(data.draw(st.sets(st.tuples(st.integers(0, 3), st.integers(0, 3)), min_size=1)))
     merits = {p: data.draw(worth) for p in at}

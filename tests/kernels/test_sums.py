@@ -15,18 +15,18 @@ few_kinds = st.lists(st.sampled_from([(3,), (2, 7), (4, 5)]), max_size=7)
 
 @repeatable(200)
 @given(st.one_of(lengths, few_kinds), st.integers(0, 40))
-def test_tries_all_combinations(stones: list[tuple[int, ...]], limit: int) -> None:
+def test_tries_all_combinations(stones, limit):
     assert unfillable(Counter(stones), limit).tolist() == naive.unfillable(stones, limit)
 
 
-def test_a_length_is_used_once_and_in_one_orientation() -> None:
+def test_a_length_is_used_once_and_in_one_orientation():
     assert unfillable({(3, 5): 1}, 8).tolist() == [0, 1, 2, 0, 1, 0, 1, 2, 3]
 
 
-def test_very_many_stones_are_as_many_as_fit() -> None:
+def test_very_many_stones_are_as_many_as_fit():
     assert unfillable({(7,): 10**9}, 15).tolist() == unfillable({(7,): 2}, 15).tolist()
 
 
-def test_no_stone_fills_nothing() -> None:
+def test_no_stone_fills_nothing():
     assert unfillable({}, 3).tolist() == [0, 1, 2, 3]
     assert unfillable({(2,): 0}, 3).tolist() == [0, 1, 2, 3]

@@ -5,10 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.raster import Mask
 from drystone.kernels.support import (
-    Ends,
-    Longs,
     free_below,
     free_beside,
     gap_filling,
@@ -22,15 +19,13 @@ from tests.naive.support import gap_pixels
 from tests.strategies import landscapes, masks, repeatable
 
 
-def flat(ends: naive.Ends | None) -> Ends | None:
+def flat(ends):
     return None if ends is None else (ends[0][0], ends[1][0], ends[0][1], ends[1][1])
 
 
 @repeatable(100)
 @given(data=st.data(), occupied=landscapes(14), mask=masks())
-def test_support_ends_are_those_of_every_pixel_on_its_own(
-    data: st.DataObject, occupied: Mask, mask: Mask
-) -> None:
+def test_support_ends_are_those_of_every_pixel_on_its_own(data, occupied, mask):
     free = [at for at in all_positions(occupied, mask) if not overlaps(occupied, mask, *at)]
     if free:
         at = data.draw(st.sampled_from(free))
@@ -45,9 +40,7 @@ def test_support_ends_are_those_of_every_pixel_on_its_own(
     col=st.integers(-2, 16),
     reach=st.integers(0, 4),
 )
-def test_a_mask_rests_in_the_nearest_row_that_a_walk_finds(
-    occupied: Mask, mask: Mask, row: int, col: int, reach: int
-) -> None:
+def test_a_mask_rests_in_the_nearest_row_that_a_walk_finds(occupied, mask, row, col, reach):
     expected = naive.resting_row(occupied, mask, row, col, reach)
     place = resting_place(occupied, mask, row, col, reach)
     if expected is None:
@@ -59,9 +52,7 @@ def test_a_mask_rests_in_the_nearest_row_that_a_walk_finds(
 
 @repeatable(100)
 @given(occupied=landscapes(14), mask=masks(), row=st.integers(-2, 16), col=st.integers(0, 10))
-def test_views_in_any_direction_are_read_in_place(
-    occupied: Mask, mask: Mask, row: int, col: int
-) -> None:
+def test_views_in_any_direction_are_read_in_place(occupied, mask, row, col):
     """A mirrored view has negative strides, a window gaps between its rows."""
     frame = np.pad(occupied, ((0, 0), (2, 3)), constant_values=True)
     window, mirrored = frame[:, 2:-3], frame[:, ::-1][:, 3:-2]
@@ -76,7 +67,7 @@ def test_views_in_any_direction_are_read_in_place(
         assert other == (place[0], (width - right, width - left, right_row, left_row))
 
 
-def test_one_pixel_on_a_site_of_one_pixel() -> None:
+def test_one_pixel_on_a_site_of_one_pixel():
     site, pixel = np.zeros((1, 1), bool), np.ones((1, 1), bool)
     assert support_ends(site, pixel, 0, 0) == (0, 1, 1, 1)
     assert resting_place(site, pixel, 0, 0, 0) == (0, (0, 1, 1, 1))
@@ -86,15 +77,13 @@ def test_one_pixel_on_a_site_of_one_pixel() -> None:
     assert resting_place(site, np.ones((2, 1), bool), 0, 0, 5) is None
 
 
-def lowest(mask: Mask) -> Longs:
+def lowest(mask):
     return np.asarray(mask.shape[0] - 1 - np.argmax(mask[::-1], axis=0))
 
 
 @repeatable(150)
 @given(data=st.data(), occupied=landscapes(14), mask=masks(), mirror=st.booleans())
-def test_free_space_is_counted_pixel_by_pixel(
-    data: st.DataObject, occupied: Mask, mask: Mask, mirror: bool
-) -> None:
+def test_free_space_is_counted_pixel_by_pixel(data, occupied, mask, mirror):
     if mirror:  # views with strides of their own
         occupied, mask = np.pad(occupied, 1)[1:-1, -2:0:-1], np.asfortranarray(mask)
     free = [at for at in all_positions(occupied, mask) if not overlaps(occupied, mask, *at)]
@@ -124,9 +113,7 @@ def test_free_space_is_counted_pixel_by_pixel(
     mask=masks(),
     sizes=st.tuples(st.integers(1, 3), st.integers(0, 6)),
 )
-def test_a_filling_has_the_pixels_of_the_gap_that_is_lowest(
-    data: st.DataObject, occupied: Mask, mask: Mask, sizes: tuple[int, int]
-) -> None:
+def test_a_filling_has_the_pixels_of_the_gap_that_is_lowest(data, occupied, mask, sizes):
     free = [at for at in all_positions(occupied, mask) if not overlaps(occupied, mask, *at)]
     if not free:
         return
@@ -148,7 +135,7 @@ def test_a_filling_has_the_pixels_of_the_gap_that_is_lowest(
     assert pixels[-1].any()
 
 
-def gap_of(*heights: int) -> Mask:
+def gap_of(*heights):
     """A landscape under a row of pixels, with free columns of these heights."""
     occupied = np.zeros((1 + max(heights), len(heights)), bool)
     for col, height in enumerate(heights):
@@ -172,20 +159,17 @@ def gap_of(*heights: int) -> Mask:
         ((5, 5, 5), (2, 4), None),
     ],
 )
-def test_the_columns_that_touch_first_are_filled(
-    heights: tuple[int, ...], sizes: tuple[int, int], columns_taken: tuple[int, int] | None
-) -> None:
+def test_the_columns_that_touch_first_are_filled(heights, sizes, columns_taken):
     bar = np.ones((1, len(heights)), bool)
     filling = gap_filling(gap_of(*heights), bar, 0, 0, (0, len(heights)), sizes)
     if columns_taken is None:
         assert filling is None
     else:
-        assert filling is not None
         assert (filling[2], filling[2] + filling[0].shape[1]) == columns_taken
         assert filling[0].sum(axis=0).tolist() == list(heights[slice(*columns_taken)])
 
 
-def test_a_filling_that_would_fall_apart_is_none() -> None:
+def test_a_filling_that_would_fall_apart_is_none():
     """Two columns of the same height, the second one lower than the first by that height."""
     mask = np.array([[1, 1], [0, 1], [0, 1], [0, 1]], bool)
     occupied = np.zeros((8, 2), bool)
@@ -194,19 +178,18 @@ def test_a_filling_that_would_fall_apart_is_none() -> None:
     assert gap_filling(occupied, mask, 0, 0, (0, 2), (1, 5)) is None
     occupied[4, 0] = False
     joined = gap_filling(occupied, mask, 0, 0, (0, 2), (1, 5))
-    assert joined is not None
     assert joined[0].tolist() == [[i < 4, i > 2] for i in range(6)]
 
 
 @pytest.mark.parametrize("columns", [(0, -1), (-2, 3), (0, 4)])
-def test_columns_outside_are_refused(columns: tuple[int, int]) -> None:
+def test_columns_outside_are_refused(columns):
     """Of slices from the end NumPy would make something else."""
     with pytest.raises(ValueError, match="columns"):
         gap_filling(np.zeros((6, 6), bool), np.ones((2, 3), bool), 0, 0, columns, (1, 3))
 
 
 @pytest.mark.parametrize("at", [(-1, 0), (0, -1), (3, 0), (0, 4)])
-def test_a_mask_outside_is_refused(at: tuple[int, int]) -> None:
+def test_a_mask_outside_is_refused(at):
     occupied, mask = np.zeros((4, 5), bool), np.ones((2, 2), bool)
     with pytest.raises(ValueError, match="leaves the landscape"):
         support_ends(occupied, mask, *at)

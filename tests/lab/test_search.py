@@ -1,7 +1,6 @@
 """The comparison of methods: bricks, of which all is known, and results made by hand."""
 
 from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -35,7 +34,7 @@ def result(walls=1, **figures):
 
 @pytest.fixture(scope="module")
 def quick():
-    said: list[str] = []
+    said = []
     settings = BenchSettings(quick=True, seconds=(0.02,), seeds=1, say=said.append)
     return search.run(settings), said
 
@@ -203,7 +202,7 @@ def test_a_masons_wall_by_both_definitions():
     assert figures == [1.0, first.F_AV, first.F_AH, *[second.F_AV, second.F_AH] * 2]
 
 
-def test_the_masons_walls_are_those_of_the_published_data(data_dir: Path):
+def test_the_masons_walls_are_those_of_the_published_data(data_dir):
     rows = {row["wall"]: row for row in masons_walls(BenchSettings(data=data_dir)).records()}
     found = {name: (rows[name]["F_AV"], rows[name]["F_AH"]) for name in ("R", "PR", "IR")}
     expected = {"R": (33.95, 0.59), "PR": (29.50, 1.50), "IR": (23.77, 3.69)}

@@ -1,10 +1,9 @@
 """Ways to look for a wall stop when the time is used up, and give the best wall until then."""
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import chain, count, repeat
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -22,7 +21,6 @@ from drystone_lab.search_runs import (
     FIGURES,
     SPENT,
     WAYS,
-    SearchResult,
     SearchRun,
     SearchTask,
     SearchWay,
@@ -43,7 +41,7 @@ WALL = Target("bricks", generated("brick", 1, count=4), 72, 24, 1.0)
 BY_NAME = {way.name: way for way in WAYS}
 
 
-def ticking() -> search_runs.Clock:
+def ticking():
     """A clock that goes on by a second whenever it is looked at."""
     ticks = count()
     return lambda: next(ticks)
@@ -53,7 +51,7 @@ def looked_for(way, stones, target, seconds, seed, clock):
     return looked_at_times(way, stones, target, (seconds,), seed, clock)[0]
 
 
-def clock_of(*times: float) -> search_runs.Clock:
+def clock_of(*times):
     values = chain(times, repeat(times[-1]))
     return lambda: next(values)
 
@@ -95,12 +93,12 @@ def test_the_first_wall_counts_however_long_it_takes():
 
 
 def test_the_time_is_counted_from_the_start():
-    asked: list[int] = []
+    asked = []
 
-    def states(*_: object) -> Iterator[WayState]:
+    def states(*_):
         for number in count(1):
             asked.append(number)
-            yield WayState(number, lambda number=number: number)  # type: ignore[misc, return-value]
+            yield WayState(number, lambda number=number: number)
 
     way = SearchWay("by hand", states)
     looked = looked_for(way, STONES, WALL, 5, 1, clock_of(10, 14.9, 15, 15.1))
@@ -115,11 +113,11 @@ class Fake:
     merits: Iterator[float]
     seeds: list[int]
 
-    def __init__(self, *_: object, seed: int, **__: object) -> None:
+    def __init__(self, *_, seed, **__):
         self.seeds.append(seed)
 
     @staticmethod
-    def steps() -> tuple[()]:
+    def steps():
         return ()
 
 
@@ -127,7 +125,7 @@ class Fake:
 def worth(monkeypatch):
     """Walls that are worth what is said, in place of built ones."""
 
-    def of(*merits: float) -> SimpleNamespace:
+    def of(*merits):
         values = iter(merits)
         Fake.seeds = []
         found = SimpleNamespace(of=lambda _: SimpleNamespace(merit=next(values)))
@@ -190,11 +188,11 @@ ONE_WAY = BenchSettings(quick=True, policies=("restarts",))
 
 
 @pytest.fixture
-def done(monkeypatch: pytest.MonkeyPatch) -> list[SearchTask]:
+def done(monkeypatch):
     """Tasks that were done; their walls have as many stones as their seed says."""
-    tasks: list[SearchTask] = []
+    tasks = []
 
-    def do(task: SearchTask) -> list[SearchResult]:
+    def do(task):
         tasks.append(task)
         figures = dict.fromkeys((*FIGURES, *SPENT), 0.5) | {"placed": task.seed}
         return [{**figures, "CPU s": seconds} for seconds in task.times]
@@ -203,8 +201,8 @@ def done(monkeypatch: pytest.MonkeyPatch) -> list[SearchTask]:
     return tasks
 
 
-def test_what_the_table_holds_is_not_done_again(done: list[SearchTask], tmp_path: Path) -> None:
-    said: list[str] = []
+def test_what_the_table_holds_is_not_done_again(done, tmp_path):
+    said = []
     kept = replace(ONE_WAY, runs=tmp_path / "runs.csv", say=said.append)
     walls = [(TARGET, NINE)]
     first = searched(walls, [1, 2], (1.0, 3.0), kept)
@@ -224,7 +222,7 @@ def test_what_the_table_holds_is_not_done_again(done: list[SearchTask], tmp_path
     assert said[-1].startswith("bricks, restarts, seed 1, 2 s: 1 of 9 stones, ")
 
 
-def test_seeds_are_outermost_and_ways_take_turns(done: list[SearchTask]) -> None:
+def test_seeds_are_outermost_and_ways_take_turns(done):
     both = replace(ONE_WAY, policies=("restarts", "search"))
     searched([(TARGET, NINE)], [5, 6], (1.0,), both)
     assert [(task.seed, task.way) for task in done] == [
@@ -232,7 +230,7 @@ def test_seeds_are_outermost_and_ways_take_turns(done: list[SearchTask]) -> None
     ]  # fmt: skip
 
 
-def test_runs_with_other_settings_are_others(done: list[SearchTask], tmp_path: Path) -> None:
+def test_runs_with_other_settings_are_others(done, tmp_path):
     plain = replace(ONE_WAY, runs=tmp_path / "runs.csv")
     aimed = replace(plain, changes=(("goal.F_AH", 1.5), ("goal.F_AV", 40)))
     walls = [(TARGET, NINE)]
@@ -245,7 +243,7 @@ def test_runs_with_other_settings_are_others(done: list[SearchTask], tmp_path: P
     assert len(read_results(tmp_path / "runs.csv")) == 2
 
 
-def test_settings_are_what_a_way_goes_by() -> None:
+def test_settings_are_what_a_way_goes_by():
     task = SearchTask(TARGET.name, "restarts", 1, (1e-6,), None, True)
     (plain,) = search_runs.do(task)
     (halved,) = search_runs.do(replace(task, changes=(("goal.filling", 0.0),)))
@@ -259,13 +257,11 @@ class Deadly(str):
 
     __slots__ = ()
 
-    def __reduce__(self) -> tuple[Callable[[int], object], tuple[int]]:
+    def __reduce__(self):
         return os._exit, (1,)
 
 
-def test_processes_do_what_one_does_and_what_ended_is_kept_when_one_dies(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_processes_do_what_one_does_and_what_ended_is_kept_when_one_dies(tmp_path, monkeypatch):
     # The first wall is always finished, and here none is begun after it.
     walls, times = [(TARGET, NINE)], (1e-6,)
     one = searched(walls, [1], times, ONE_WAY)
@@ -280,7 +276,7 @@ def test_processes_do_what_one_does_and_what_ended_is_kept_when_one_dies(
     assert timeless[0] == timeless[1]
 
 
-def test_ways_are_chosen_by_name() -> None:
+def test_ways_are_chosen_by_name():
     assert chosen_ways(()) == WAYS
     chosen = chosen_ways(("search", "restarts with wedges"))
     assert [way.name for way in chosen] == ["restarts with wedges", "search"]
@@ -288,7 +284,7 @@ def test_ways_are_chosen_by_name() -> None:
         chosen_ways(("search", "annealing"))
 
 
-def result(*values: float | None) -> dict[str, float | None]:
+def result(*values):
     return dict(zip((*FIGURES, *SPENT), values, strict=True))
 
 
@@ -300,7 +296,7 @@ RUNS = {
 }
 
 
-def test_what_is_read_is_what_was_written(tmp_path: Path) -> None:
+def test_what_is_read_is_what_was_written(tmp_path):
     path = tmp_path / "runs.csv"
     assert read_results(path) == {}
     for one in RUNS.items():
@@ -311,7 +307,7 @@ def test_what_is_read_is_what_was_written(tmp_path: Path) -> None:
     assert len(lines) == 3
 
 
-def test_the_last_of_two_equal_runs_counts(tmp_path: Path) -> None:
+def test_the_last_of_two_equal_runs_counts(tmp_path):
     path = tmp_path / "runs.csv"
     (run, first), (_, second) = RUNS.items()
     append_results(path, [(run, first), (run, second)])
@@ -327,7 +323,7 @@ def test_the_last_of_two_equal_runs_counts(tmp_path: Path) -> None:
         (lambda text: text.replace(",60.0,", ",long,"), 2),
     ],
 )
-def test_other_files_are_not_taken_for_tables(change, line: int, tmp_path: Path) -> None:
+def test_other_files_are_not_taken_for_tables(change, line, tmp_path):
     path = tmp_path / "runs.csv"
     append_results(path, RUNS.items())
     path.write_text(change(path.read_text(encoding="utf-8")), encoding="utf-8")
@@ -336,7 +332,7 @@ def test_other_files_are_not_taken_for_tables(change, line: int, tmp_path: Path)
     assert caught.value.where == f"{path}:{line}"
 
 
-def test_a_result_in_words() -> None:
+def test_a_result_in_words():
     words = in_words(next(iter(RUNS.values())), 60)
     assert words.startswith("58 of 60 stones, F_SF 0.3, F_AV -, F_AH 1e-07, ")
     assert words.endswith("merit -1.25, 17 walls")

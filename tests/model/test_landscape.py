@@ -17,7 +17,7 @@ from tests.strategies import repeatable, walls
 L_STONE = Stone(9, np.array([[1, 0, 0], [1, 0, 0], [1, 1, 1]], bool))
 
 
-def mirror_of(wall: Wall) -> Wall:
+def mirror_of(wall):
     """The wall of mirrored stones, for comparison only."""
     mirrored = Wall.empty(wall.site)
     for p in wall.placements:
@@ -28,7 +28,7 @@ def mirror_of(wall: Wall) -> Wall:
 
 @repeatable()
 @given(wall=walls())
-def test_the_view_from_the_right_is_the_left_view_of_the_mirrored_wall(wall: Wall) -> None:
+def test_the_view_from_the_right_is_the_left_view_of_the_mirrored_wall(wall):
     right, left = Landscape.of(wall, "right"), Landscape.of(mirror_of(wall), "left")
     assert np.array_equal(right.occupied, left.occupied)
     assert right.boxes == left.boxes
@@ -37,7 +37,7 @@ def test_the_view_from_the_right_is_the_left_view_of_the_mirrored_wall(wall: Wal
 
 @repeatable()
 @given(wall=walls())
-def test_boxes_skyline_and_height_are_those_of_the_pixels(wall: Wall) -> None:
+def test_boxes_skyline_and_height_are_those_of_the_pixels(wall):
     landscape = Landscape.of(wall)
     extents = [extent_of(wall.labels == p.stone_id) for p in wall.placements]
     assert landscape.boxes == tuple(Box(e.x0, e.x1, e.y0, e.y1) for e in extents)
@@ -49,7 +49,7 @@ def test_boxes_skyline_and_height_are_those_of_the_pixels(wall: Wall) -> None:
 
 @repeatable()
 @given(wall=walls())
-def test_places_found_from_the_right_hold_the_true_stone(wall: Wall) -> None:
+def test_places_found_from_the_right_hold_the_true_stone(wall):
     landscape = Landscape.of(wall, "right")
     posed = PoseBook().pose(L_STONE, 0.0)
     seen = landscape.view(posed)
@@ -62,7 +62,7 @@ def test_places_found_from_the_right_hold_the_true_stone(wall: Wall) -> None:
         assert np.array_equal(window == L_STONE.id, L_STONE.mask)
 
 
-def test_from_the_right_the_first_stone_stands_at_the_right_end() -> None:
+def test_from_the_right_the_first_stone_stands_at_the_right_end():
     wall = Wall.empty(Site(12, 6))
     posed = PoseBook().pose(L_STONE, 0.0)
     for side, expected in (("left", 0), ("right", 9)):

@@ -1,7 +1,5 @@
 """Outlines of pixels: simple, exact in area and centroid, near the contour, with its corners."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import shapely
@@ -10,8 +8,8 @@ from hypothesis import strategies as st
 
 from drystone.io.read_stones import read_stones
 from drystone.kernels.outline import pixel_polygon
-from drystone.kernels.polygons import Points, area_and_centroid
-from drystone.kernels.raster import Mask, turn
+from drystone.kernels.polygons import area_and_centroid
+from drystone.kernels.raster import turn
 from drystone.model.outline import (
     _contour,
     _mended,
@@ -31,7 +29,7 @@ TOLERANCE = OUTLINE_TOLERANCE_PX
 TOLERANCES = [0.0, 0.1, TOLERANCE, 1.0, 4.0]
 
 
-def pixels(*rows: str) -> Mask:
+def pixels(*rows):
     return np.array([[cell == "#" for cell in row] for row in rows])
 
 
@@ -52,7 +50,7 @@ TOUCHING = {
 }
 
 
-def check(corners: Points, mask: Mask) -> None:
+def check(corners, mask):
     """An outline is simple, counter-clockwise, without straight corners; area and centroid fit."""
     mask = solid(mask)
     shape = shapely.Polygon(corners)
@@ -72,19 +70,19 @@ def check(corners: Points, mask: Mask) -> None:
 @given(
     mask=st.one_of(masks(max_px=9), joined_masks(), blobs()), tolerance=st.sampled_from(TOLERANCES)
 )
-def test_outlines_are_simple_and_weigh_what_the_pixels_do(mask: Mask, tolerance: float) -> None:
+def test_outlines_are_simple_and_weigh_what_the_pixels_do(mask, tolerance):
     check(stone_outline(mask, tolerance), mask)
 
 
 @pytest.mark.parametrize("tolerance", TOLERANCES)
 @pytest.mark.parametrize("name", TOUCHING)
-def test_thin_and_touching_pixels_have_outlines(name: str, tolerance: float) -> None:
+def test_thin_and_touching_pixels_have_outlines(name, tolerance):
     check(stone_outline(TOUCHING[name], tolerance), TOUCHING[name])
 
 
 @pytest.mark.parametrize("tolerance", TOLERANCES[:3])
 @pytest.mark.parametrize(("width", "height"), [(2, 2), (2, 9), (3, 2), (36, 12), (200, 35)])
-def test_a_brick_is_its_rectangle(width: int, height: int, tolerance: float) -> None:
+def test_a_brick_is_its_rectangle(width, height, tolerance):
     corners = stone_outline(np.ones((height, width), bool), tolerance)
     x, y = width / 2, height / 2
     expected = {(-x, -y), (x, -y), (x, y), (-x, y)}
@@ -92,7 +90,7 @@ def test_a_brick_is_its_rectangle(width: int, height: int, tolerance: float) -> 
     assert len(corners) == 4
 
 
-def test_an_l_keeps_its_inner_corner() -> None:
+def test_an_l_keeps_its_inner_corner():
     mask = np.zeros((30, 20), bool)
     mask[:, :6] = True
     mask[-6:, :] = True
@@ -102,7 +100,7 @@ def test_an_l_keeps_its_inner_corner() -> None:
     assert {tuple(corner) for corner in found.tolist()} == expected
 
 
-def test_blocks_that_touch_at_a_corner_are_joined_by_a_neck() -> None:
+def test_blocks_that_touch_at_a_corner_are_joined_by_a_neck():
     """Six corners of pixels, and the four ends of a neck half a pixel's diagonal wide."""
     corners = stone_outline(TOUCHING["blocks at a corner"], TOLERANCE)
     assert len(corners) == 10
@@ -110,7 +108,7 @@ def test_blocks_that_touch_at_a_corner_are_joined_by_a_neck() -> None:
     np.testing.assert_allclose(np.sort(distances[distances > 0])[0], 0.5**0.5, rtol=0.02)
 
 
-def test_corners_are_put_back_where_two_sides_meet_not_on_slopes() -> None:
+def test_corners_are_put_back_where_two_sides_meet_not_on_slopes():
     """A slope of one pixel across for two up; only the corners at its foot and its head are."""
     mask = np.tri(60, 30, dtype=bool)[np.arange(60) // 2]
     contour = _contour(mask)
@@ -120,7 +118,7 @@ def test_corners_are_put_back_where_two_sides_meet_not_on_slopes() -> None:
 
 @repeatable(200)
 @given(mask=holed(), tolerance=st.sampled_from([0.0, 0.1, TOLERANCE, 0.5, 1.0, 4.0]))
-def test_outlines_stay_near_the_rim_of_the_pixels(mask: Mask, tolerance: float) -> None:
+def test_outlines_stay_near_the_rim_of_the_pixels(mask, tolerance):
     """The middle of every pixel edge around a stone is near its outline, holes or not."""
     stone = Stone(1, mask)
     outline = shapely.LinearRing(stone.outline_within(tolerance) + np.array(stone.local_centroid))
@@ -129,7 +127,7 @@ def test_outlines_stay_near_the_rim_of_the_pixels(mask: Mask, tolerance: float) 
 
 @repeatable(40)
 @given(mask=blobs(min_px=14, max_px=40), tolerance=st.sampled_from([0.1, TOLERANCE, 1.0]))
-def test_outlines_go_nowhere_else(mask: Mask, tolerance: float) -> None:
+def test_outlines_go_nowhere_else(mask, tolerance):
     """√2/4 px for a corner that is put back or cut off, beside what the rim shows."""
     stone = Stone(1, mask)
     outline = shapely.LinearRing(stone.outline_within(tolerance) + np.array(stone.local_centroid))
@@ -140,7 +138,7 @@ def test_outlines_go_nowhere_else(mask: Mask, tolerance: float) -> None:
 
 @repeatable(100)
 @given(mask=holed())
-def test_a_hole_moves_the_centroid_and_nothing_else(mask: Mask) -> None:
+def test_a_hole_moves_the_centroid_and_nothing_else(mask):
     stone, filled = Stone(1, mask), Stone(1, naive.filled(mask))
     assert stone.area_px == mask.sum()
     np.testing.assert_allclose(
@@ -154,12 +152,12 @@ def test_a_hole_moves_the_centroid_and_nothing_else(mask: Mask) -> None:
     ("mask", "tolerance", "message"),
     [(np.zeros((2, 2), bool), 0.35, "no pixel"), (np.ones((2, 2), bool), -0.1, "0 or more")],
 )
-def test_what_has_no_outline_is_refused(mask: Mask, tolerance: float, message: str) -> None:
+def test_what_has_no_outline_is_refused(mask, tolerance, message):
     with pytest.raises(ValueError, match=message):
         stone_outline(mask, tolerance)
 
 
-def test_the_tolerance_is_halved_until_nothing_crosses() -> None:
+def test_the_tolerance_is_halved_until_nothing_crosses():
     mask = pixels("###", "..#", "##.")
     coarse = _without_straight_ones(_simplified(_mended(_contour(mask)), 1.4))
     assert len(coarse) == 4
@@ -169,7 +167,7 @@ def test_the_tolerance_is_halved_until_nothing_crosses() -> None:
 
 
 @pytest.mark.parametrize("flip", [(1, 1), (-1, 1), (1, -1), (-1, -1)])
-def test_of_several_pieces_the_largest_counts(flip: tuple[int, int]) -> None:
+def test_of_several_pieces_the_largest_counts(flip):
     mask = pixels("##.......", "##.######", "...######", "...######")[:: flip[0], :: flip[1]]
     corners = stone_outline(mask, TOLERANCE)
     width, height = np.ptp(corners, axis=0).tolist()
@@ -177,7 +175,7 @@ def test_of_several_pieces_the_largest_counts(flip: tuple[int, int]) -> None:
     assert width * height == pytest.approx(18.0)
 
 
-def test_a_stone_remembers_its_outlines() -> None:
+def test_a_stone_remembers_its_outlines():
     stone = Stone(1, np.ones((5, 9), bool))
     assert stone.outline is stone.outline
     assert stone.outline_within(TOLERANCE) is stone.outline
@@ -192,7 +190,7 @@ def test_a_stone_remembers_its_outlines() -> None:
 
 @repeatable(60)
 @given(mask=masks(max_px=9))
-def test_second_moments_are_those_of_the_pixels(mask: Mask) -> None:
+def test_second_moments_are_those_of_the_pixels(mask):
     rows, cols = np.nonzero(mask)
     x, y = cols - cols.mean(), rows.mean() - rows
     own = len(rows) / 12.0  # of unit squares about their own centres
@@ -202,9 +200,7 @@ def test_second_moments_are_those_of_the_pixels(mask: Mask) -> None:
 
 @repeatable(60)
 @given(polygon=simple_polygons(), angle=st.floats(-180, 180), far=st.floats(-1e3, 1e3))
-def test_second_moments_turn_and_move_as_tensors_do(
-    polygon: Points, angle: float, far: float
-) -> None:
+def test_second_moments_turn_and_move_as_tensors_do(polygon, angle, far):
     xx, yy, xy = second_moments(polygon)
     assert second_moments(polygon + far) == pytest.approx((xx, yy, xy), rel=1e-6, abs=1e-6)
     axes = turn(np.eye(2), angle).T
@@ -214,7 +210,7 @@ def test_second_moments_turn_and_move_as_tensors_do(
     assert turned == pytest.approx(expected, rel=1e-9, abs=1e-9 * (xx + yy))
 
 
-def test_second_moments_in_closed_form() -> None:
+def test_second_moments_in_closed_form():
     triangle = np.array([[0.0, 0.0], [6.0, 0.0], [0.0, 3.0]])
     expected = 3.0 * 6.0**3 / 36, 6.0 * 3.0**3 / 36, -(6.0**2) * 3.0**2 / 72
     assert second_moments(triangle) == pytest.approx(expected)
@@ -225,7 +221,7 @@ def test_second_moments_in_closed_form() -> None:
 @pytest.mark.parametrize(
     ("name", "mean_corners"), [("R", 4.0), ("PR", 33.0)], ids=["bricks", "rubble"]
 )
-def test_published_stones(data_dir: Path, name: str, mean_corners: float) -> None:
+def test_published_stones(data_dir, name, mean_corners):
     """The stones of R are rectangles of pixels; those of PR are followed to a fraction of one."""
     stones = read_stones(data_dir / "almeida" / f"{name}.png")
     corners = []

@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.kernels.coverage import coverage
-from drystone.kernels.polygons import Points
 from drystone.model.outlines import Outlines
 from drystone.model.shares import Shares
 from drystone.model.site import Site
@@ -14,17 +13,17 @@ from tests.polygons import simple_polygons
 from tests.strategies import repeatable
 
 
-def box(left: float, low: float, right: float, high: float) -> Points:
+def box(left, low, right, high):
     return np.array([[left, low], [right, low], [right, high], [left, high]], float)
 
 
-def test_nothing_is_there_yet() -> None:
+def test_nothing_is_there_yet():
     empty = Outlines.empty(Site(6, 4, 0.5))
     assert (len(empty.polygons), empty.ids, empty.blocks) == (0, (), [])
     assert empty.shares.labels.tolist() == [[0] * 6] * 4
 
 
-def test_adding_keeps_the_old_ones() -> None:
+def test_adding_keeps_the_old_ones():
     site = Site(6, 4, 0.5)
     stone, wedge = box(0.0, 0.0, 8.0, 4.0), box(8.0, 0.0, 12.0, 2.0)
     one = Outlines.empty(site).added([(70_000, stone)], site.scale)
@@ -41,7 +40,7 @@ def test_adding_keeps_the_old_ones() -> None:
     assert two.added([], site.scale).ids == two.ids
 
 
-def test_blocks_are_the_corners_in_source_px() -> None:
+def test_blocks_are_the_corners_in_source_px():
     corners = [box(0.0, 0.0, 8.0, 4.0), np.array([[9.0, 0.0], [12.0, 0.0], [9.0, 2.5]])]
     outlines = Outlines.empty(Site(6, 4, 0.5)).added(list(zip((5, 2), corners, strict=True)), 0.5)
     assert [block for block, _ in outlines.blocks] == [5, 2]
@@ -56,9 +55,7 @@ def test_blocks_are_the_corners_in_source_px() -> None:
     scale=st.sampled_from([1.0, 0.5, 0.3]),
     data=st.data(),
 )
-def test_shares_are_those_of_every_block_in_the_order_of_placement(
-    polygons: list[Points], scale: float, data: st.DataObject
-) -> None:
+def test_shares_are_those_of_every_block_in_the_order_of_placement(polygons, scale, data):
     site = Site(14, 10, scale)
     blocks = [
         (10 * k + 7, polygon + np.array([data.draw(st.floats(0.0, 14.0)), 5.0]) / scale)

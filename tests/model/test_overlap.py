@@ -19,7 +19,7 @@ RIGHT = 1e-6
 """Of the size: no overlap is seen or missed above it."""
 
 
-def box(x: float, y: float, width: float, height: float) -> shapely.Polygon:
+def box(x, y, width, height):
     return shapely.box(x, y, x + width, y + height)
 
 
@@ -39,9 +39,7 @@ def box(x: float, y: float, width: float, height: float) -> shapely.Polygon:
         (box(0, 0, 20, 20), box(-1, 9, 22, 2), 9.0),
     ],
 )
-def test_depth_of_simple_shapes(
-    first: shapely.Polygon, second: shapely.Polygon, depth: float
-) -> None:
+def test_depth_of_simple_shapes(first, second, depth):
     assert overlap_depth(first, second) == pytest.approx(depth, abs=1e-9)
     assert overlap_depth(second, first) == pytest.approx(depth, abs=1e-9)
 
@@ -52,9 +50,7 @@ def test_depth_of_simple_shapes(
     simple_polygons(max_corners=8),
     st.tuples(st.floats(-5, 5), st.floats(-5, 5)),
 )
-def test_depth_is_that_of_all_points_of_the_rims(
-    one: Points, other: Points, shift: tuple[float, float]
-) -> None:
+def test_depth_is_that_of_all_points_of_the_rims(one, other, shift):
     pieces = 12
     moved = other + np.array(shift)
     depth, slow = overlap_depth(shape_of(one), shape_of(moved)), naive.depth(one, moved, pieces)
@@ -70,14 +66,14 @@ class Stacked(NamedTuple):
     above: Points
     size: float
 
-    def pushed(self, by: float, angle_deg: float, away: Points) -> tuple[Points, Points]:
+    def pushed(self, by, angle_deg, away):
         """The upper one pushed into the other by a share of the size, seen from anywhere."""
         lowered = self.above - np.array([0.0, by * self.size])
         return turn(self.below, angle_deg) + away, turn(lowered, angle_deg) + away
 
 
 @st.composite
-def stacked(draw: st.DrawFn) -> Stacked:
+def stacked(draw):
     """Polygons that touch: corners on corners or edges, edges on parts of edges, common lines."""
     size = 10.0 ** draw(st.integers(-3, 3))
     below, above = (draw(simple_polygons(max_corners=7)) for _ in range(2))
@@ -98,9 +94,7 @@ ANYWHERE = st.tuples(st.floats(-180, 180), st.floats(-1, 1), st.sampled_from([0.
 
 @repeatable(400)
 @given(stacked(), ANYWHERE, st.sampled_from([0.0, 1e-16, 1e-15, 1e-13, 1e-11, 1e-9]), st.booleans())
-def test_what_touches_does_not_overlap(
-    pair: Stacked, seen: tuple[float, float, float], gap: float, into: bool
-) -> None:
+def test_what_touches_does_not_overlap(pair, seen, gap, into):
     """Rounding, and up to 1e-9 of the size between both, make no overlap."""
     away = np.array([seen[1], 1.0 - seen[1]]) * seen[2] * pair.size
     below, above = map(shape_of, pair.pushed(gap if into else -gap, seen[0], away))
@@ -111,9 +105,7 @@ def test_what_touches_does_not_overlap(
 
 @repeatable(200)
 @given(stacked(), ANYWHERE, st.floats(-5.5, -1.0))
-def test_what_is_pushed_in_overlaps(
-    pair: Stacked, seen: tuple[float, float, float], exponent: float
-) -> None:
+def test_what_is_pushed_in_overlaps(pair, seen, exponent):
     """By no more than it was pushed, and no less than exact arithmetic finds at some points."""
     away = np.array([seen[1], 1.0 - seen[1]]) * seen[2] * pair.size
     below, above = pair.pushed(10.0**exponent, seen[0], away)
@@ -123,7 +115,7 @@ def test_what_is_pushed_in_overlaps(
     assert depth >= naive.depth(below, above, 4) - RIGHT * pair.size
 
 
-def test_deepest_overlap_names_the_pair() -> None:
+def test_deepest_overlap_names_the_pair():
     outlines = [(4, box(0, 0, 16, 8)), (2, box(0, 8, 16, 8)), (9, box(14, -2, 16, 8))]
     depth, pair = deepest_overlap(outlines)
     assert (pair, depth) == ((4, 9), pytest.approx(2.0, abs=1e-9))

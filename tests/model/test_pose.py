@@ -10,7 +10,7 @@ from tests.strategies import repeatable, stones
 
 @repeatable()
 @given(stone=stones())
-def test_profiles_are_the_outermost_pixels_of_the_columns(stone: Stone) -> None:
+def test_profiles_are_the_outermost_pixels_of_the_columns(stone):
     posed = PosedStone(stone, 0.0, 1.0, stone.mask.copy(), (1.0, 1.0))
     assert (posed.height_px, posed.width_px) == stone.mask.shape
     assert posed.area_px == stone.area_px
@@ -19,7 +19,7 @@ def test_profiles_are_the_outermost_pixels_of_the_columns(stone: Stone) -> None:
         assert (posed.top[col], posed.bottom[col]) == (rows[0], rows[-1])
 
 
-def test_the_mirror_image_of_the_mirror_image_is_the_stone() -> None:
+def test_the_mirror_image_of_the_mirror_image_is_the_stone():
     mask = np.array([[1, 0, 0], [1, 1, 1]], bool)
     posed = PosedStone(Stone(1, mask), 0.0, 1.0, mask.copy(), (1.25, 0.75))
     assert posed.mirrored.mask.tolist() == [[False, False, True], [True, True, True]]

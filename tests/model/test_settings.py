@@ -3,8 +3,6 @@
 import dataclasses
 import math
 import re
-from collections.abc import Iterator
-from typing import Any
 
 import pytest
 
@@ -13,7 +11,7 @@ from drystone.planner.settings import PlannerSettings
 from drystone.settle.settings import SettleSettings
 
 
-def kinds() -> Iterator[type[Any]]:
+def kinds():
     """The settings of the planner that check themselves."""
     default = PlannerSettings()
     groups = [getattr(default, field.name) for field in dataclasses.fields(default)]
@@ -29,7 +27,7 @@ RANGES = [
 
 
 @pytest.mark.parametrize(("kind", "field"), RANGES)
-def test_numbers_out_of_their_range_are_refused(kind: type[Any], field: Any) -> None:
+def test_numbers_out_of_their_range_are_refused(kind, field):
     allowed, step = field.metadata, 1 if isinstance(field.default, int) else 1e-9
     ends = {"least": -step, "above": 0, "most": step, "below": 0}
     wrong = [allowed[name] + away for name, away in ends.items() if name in allowed]
@@ -45,7 +43,7 @@ class Some(Ranged):
     count: int = ranged(2, above=1, below=4)
 
 
-def test_the_ends_of_a_range_are_in_it_where_they_are_allowed() -> None:
+def test_the_ends_of_a_range_are_in_it_where_they_are_allowed():
     assert [Some(share=end).share for end in (0.0, 1.0)] == [0.0, 1.0]
     assert [Some(count=count).count for count in (2, 3)] == [2, 3]
     for count in (1, 4):
@@ -53,9 +51,9 @@ def test_the_ends_of_a_range_are_in_it_where_they_are_allowed() -> None:
             Some(count=count)
 
 
-def test_choices_are_those_of_the_type() -> None:
+def test_choices_are_those_of_the_type():
     with pytest.raises(ValueError, match=re.escape("method must be one of 'energy', 'pivot', not")):
-        SettleSettings(method="glue")  # type: ignore[arg-type]
+        SettleSettings(method="glue")
 
 
 @pytest.mark.parametrize(
@@ -67,6 +65,6 @@ def test_choices_are_those_of_the_type() -> None:
         ({"laying": {"judged": 4}}, "analysed must not be above judged"),
     ],
 )
-def test_settings_that_do_not_go_together_are_refused(changes: Any, said: str) -> None:
+def test_settings_that_do_not_go_together_are_refused(changes, said):
     with pytest.raises(Exception, match=said):
         PlannerSettings().updated(changes)

@@ -11,39 +11,39 @@ from drystone.model.site import Site, working_px
 @pytest.mark.parametrize(
     ("length", "scale", "expected"), [(5, 0.5, 3), (7, 0.5, 4), (1445, 0.2, 289), (383, 0.3, 115)]
 )
-def test_halves_round_up(length: float, scale: float, expected: int) -> None:
+def test_halves_round_up(length, scale, expected):
     assert working_px(length, scale) == expected
 
 
-def test_units() -> None:
+def test_units():
     assert Site.from_source(560, 160, 0.5).units_per_px == 2.0
     assert Site.from_source(560, 160, 0.5, px_per_m=400.0).units_per_px == 0.005
 
 
-def test_a_site_without_a_pixel_is_refused() -> None:
+def test_a_site_without_a_pixel_is_refused():
     with pytest.raises(UsageError, match=r"E121 --wall: .*Give a larger wall"):
         Site.from_source(2, 160, 0.2)
 
 
-def test_a_wall_of_too_many_pixels_is_refused_with_the_cure() -> None:
+def test_a_wall_of_too_many_pixels_is_refused_with_the_cure():
     with pytest.raises(UsageError, match=r"E121.*--scale"):
         Site.from_source(9999, 9999)
     assert Site.from_source(9999, 9999, scale=0.5).width_px == 5000
 
 
 @pytest.mark.parametrize("size", [(math.nan, 20), (60, math.inf)])
-def test_a_size_that_is_no_finite_number_is_refused(size: tuple[float, float]) -> None:
+def test_a_size_that_is_no_finite_number_is_refused(size):
     with pytest.raises(UsageError, match=r"E127 --wall: .* is not a wall size"):
         Site.from_source(*size)
 
 
 @pytest.mark.parametrize("px_per_m", [0.0, -400.0, math.nan, math.inf])
-def test_a_scale_that_is_none_is_refused(px_per_m: float) -> None:
+def test_a_scale_that_is_none_is_refused(px_per_m):
     with pytest.raises(UsageError, match=r"E138 --px-per-m: .* is not a scale"):
         Site.from_source(560, 160, px_per_m=px_per_m)
 
 
-def test_outlines_must_stay_within_the_lengths_in_source_px() -> None:
+def test_outlines_must_stay_within_the_lengths_in_source_px():
     # 26 working px are 52 source px, but the wall is 51 wide.
     site = Site.from_source(51, 33.4, 0.5)
     assert (site.width_px, site.height_px) == (26, 17)

@@ -6,7 +6,6 @@ import shapely
 from hypothesis import given
 
 from drystone.errors import PlanError
-from drystone.kernels.raster import Mask
 from drystone.model.stone import Source, Stone, StoneSet
 from tests.naive import raster as naive
 from tests.strategies import masks, repeatable
@@ -14,7 +13,7 @@ from tests.strategies import masks, repeatable
 
 @repeatable()
 @given(mask=masks())
-def test_area_and_centroid_are_those_of_the_pixel_squares(mask: Mask) -> None:
+def test_area_and_centroid_are_those_of_the_pixel_squares(mask):
     stone = Stone(3, mask, left_px=10, bottom_px=20)
     polygon = naive.polygon_of(mask)
     assert stone.area_px == polygon.area
@@ -24,7 +23,7 @@ def test_area_and_centroid_are_those_of_the_pixel_squares(mask: Mask) -> None:
 
 @repeatable()
 @given(mask=masks())
-def test_hull_is_that_of_the_pixel_squares(mask: Mask) -> None:
+def test_hull_is_that_of_the_pixel_squares(mask):
     stone = Stone(3, mask)
     hull = shapely.Polygon(stone.hull + stone.local_centroid)
     assert hull.symmetric_difference(naive.polygon_of(mask).convex_hull).area < 1e-9
@@ -32,18 +31,18 @@ def test_hull_is_that_of_the_pixel_squares(mask: Mask) -> None:
 
 @repeatable(30)
 @given(mask=masks())
-def test_eccentricity_is_that_of_the_second_moments(mask: Mask) -> None:
+def test_eccentricity_is_that_of_the_second_moments(mask):
     assert Stone(1, mask).eccentricity == pytest.approx(
         naive.second_moment_eccentricity(mask), abs=0.02
     )
 
 
-def test_eccentricity_of_a_rectangle_in_closed_form() -> None:
+def test_eccentricity_of_a_rectangle_in_closed_form():
     assert Stone(1, np.ones((30, 60), bool)).eccentricity == pytest.approx((1 - 0.25) ** 0.5)
     assert Stone(1, np.ones((9, 9), bool)).eccentricity == 0.0
 
 
-def test_a_stone_keeps_its_own_pixels() -> None:
+def test_a_stone_keeps_its_own_pixels():
     pixels = np.ones((2, 2), bool)
     stone = Stone(70_000, pixels)
     pixels[0, 0] = False
@@ -53,18 +52,18 @@ def test_a_stone_keeps_its_own_pixels() -> None:
 
 
 @pytest.mark.parametrize("stone_id", [0, -1])
-def test_ids_are_positive(stone_id: int) -> None:
+def test_ids_are_positive(stone_id):
     with pytest.raises(ValueError, match="id must be positive"):
         Stone(stone_id, np.ones((1, 1), bool))
 
 
 @pytest.mark.parametrize("shape", [(2, 2), (0, 3), (4,)])
-def test_a_stone_has_pixels(shape: tuple[int, ...]) -> None:
+def test_a_stone_has_pixels(shape):
     with pytest.raises(ValueError, match="at least one pixel"):
         Stone(1, np.zeros(shape, bool))
 
 
-def test_a_set_is_ordered_and_knows_its_stones() -> None:
+def test_a_set_is_ordered_and_knows_its_stones():
     pixel = np.ones((1, 1), bool)
     stones = StoneSet((Stone(300, pixel), Stone(7, pixel)), Source("a.png"))
     assert [stone.id for stone in stones] == [7, 300]

@@ -6,7 +6,7 @@ import pytest
 from drystone.model.stone_size import median_sides, sides_px, sizes_of
 
 
-def block(length: float, width: float, angle_deg: float) -> np.ndarray:
+def block(length, width, angle_deg):
     rows, cols = np.mgrid[-100:101, -100:101]
     turn = np.exp(1j * np.deg2rad(angle_deg))
     at = (cols + 1j * rows) * turn

@@ -14,7 +14,7 @@ from tests.strategies import repeatable, walls
 POSED = PoseBook().pose(Stone(70_000, np.ones((2, 3), bool)), 0.0)
 
 
-def test_adding_paints_stone_and_wedges_and_keeps_the_old_wall() -> None:
+def test_adding_paints_stone_and_wedges_and_keeps_the_old_wall():
     empty = Wall.empty(Site(6, 4))
     wedge = Wedge(4_000_000_000, 70_000, np.ones((1, 2), bool), 3, 1)
     wall = empty.add(Placement(POSED, 1, 1), (wedge,))
@@ -33,23 +33,23 @@ def test_adding_paints_stone_and_wedges_and_keeps_the_old_wall() -> None:
 
 
 @pytest.mark.parametrize(("row", "col"), [(-1, 0), (3, 0), (0, -1), (0, 4)])
-def test_leaving_the_site_is_refused(row: int, col: int) -> None:
+def test_leaving_the_site_is_refused(row, col):
     with pytest.raises(ValueError, match="leaves the site"):
         Wall.empty(Site(6, 4)).add(Placement(POSED, row, col))
 
 
-def test_overlap_is_refused() -> None:
+def test_overlap_is_refused():
     wall = Wall.empty(Site(6, 4)).add(Placement(POSED, 2, 0))
     with pytest.raises(ValueError, match="overlaps"):
         wall.add(Placement(POSED, 1, 2))
 
 
-def test_labels_are_read_only() -> None:
+def test_labels_are_read_only():
     with pytest.raises(ValueError, match="read-only"):
         Wall.empty(Site(6, 4)).labels[0, 0] = 1
 
 
-def test_filling_counts_source_pixels_at_the_working_scale() -> None:
+def test_filling_counts_source_pixels_at_the_working_scale():
     posed = PoseBook(0.5).pose(Stone(1, np.ones((5, 5), bool)), 0.0)
     wall = Wall.empty(Site(5, 5, scale=0.5)).add(Placement(posed, 5 - posed.height_px, 0))
     assert wall.filling == pytest.approx(25 / 4 / 25)
@@ -57,7 +57,7 @@ def test_filling_counts_source_pixels_at_the_working_scale() -> None:
 
 @repeatable()
 @given(wall=walls())
-def test_labels_are_those_of_the_placements(wall: Wall) -> None:
+def test_labels_are_those_of_the_placements(wall):
     expected = np.zeros_like(wall.labels)
     for placement in wall.placements:
         mask, height = placement.posed.mask, wall.site.height_px
@@ -70,7 +70,7 @@ def test_labels_are_those_of_the_placements(wall: Wall) -> None:
     assert np.array_equal(wall.labels, expected)
 
 
-def _settled(stone_id: int, left: float, low: float, right: float, high: float) -> Placement:
+def _settled(stone_id, left, low, right, high):
     """A box in source px; its pixels are of no account for a wall of outlines."""
     posed = PoseBook(0.5).pose(Stone(stone_id, np.ones((4, 4), bool)), 0.0)
     corners = np.array([[left, low], [right, low], [right, high], [left, high]])
@@ -78,7 +78,7 @@ def _settled(stone_id: int, left: float, low: float, right: float, high: float) 
     return Placement(posed, 0, 0, settled=centre)
 
 
-def test_with_outlines_a_pixel_is_whose_share_is_largest_where_half_is_covered() -> None:
+def test_with_outlines_a_pixel_is_whose_share_is_largest_where_half_is_covered():
     site = Site(6, 3, 0.5)
     one = _settled(3, 0.0, 0.0, 5.3, 4.0)
     empty = Wall.empty(site, exact=True)
@@ -103,7 +103,7 @@ def test_with_outlines_a_pixel_is_whose_share_is_largest_where_half_is_covered()
         third.labels[0, 0] = 1
 
 
-def test_a_stone_takes_a_pixel_of_which_it_has_more_than_those_before() -> None:
+def test_a_stone_takes_a_pixel_of_which_it_has_more_than_those_before():
     wall = Wall.empty(Site(3, 1, 0.5), exact=True).add(_settled(3, 0.0, 0.0, 2.9, 2.0))
     assert wall.labels.tolist() == [[3, 0, 0]]
     # .45 of the second column is the first stone's, .55 the second's.
@@ -111,7 +111,7 @@ def test_a_stone_takes_a_pixel_of_which_it_has_more_than_those_before() -> None:
     assert wall.add(_settled(9, 3.3, 0.0, 6.0, 2.0)).labels.tolist() == [[3, 3, 9]]
 
 
-def test_outlined_are_the_stone_and_its_wedges() -> None:
+def test_outlined_are_the_stone_and_its_wedges():
     stone = _settled(3, 0.0, 0.0, 5.3, 4.0)
     corners = np.array([[6.0, 0.0], [7.0, 0.0], [7.0, 1.0]])
     wedges = tuple(
@@ -123,7 +123,7 @@ def test_outlined_are_the_stone_and_its_wedges() -> None:
     assert found[1][1] is corners
 
 
-def test_a_wall_of_pixels_has_no_outlines() -> None:
+def test_a_wall_of_pixels_has_no_outlines():
     assert Wall.empty(Site(3, 1)).outlines is None
     pixels = Wall.empty(Site(6, 4)).add(Placement(POSED, 2, 0))
     assert pixels.outlines is None

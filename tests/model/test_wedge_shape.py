@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.polygons import Points, no_polygons
+from drystone.kernels.polygons import no_polygons
 from drystone.model.wedge_shape import WedgeRule, WedgeSettings, WedgeShape, open_sides
 from tests.naive.wedge_shape import covered, measures
 from tests.polygons import simple_polygons
@@ -17,12 +17,12 @@ from tests.strategies import repeatable
 RULE = WedgeRule(least_thickness=2.0, greatest_height=10.0, greatest_area=90.0)
 
 
-def quad(left: tuple[float, float], right: tuple[float, float], width: float = 10.0) -> Points:
+def quad(left, right, width=10.0):
     """Low and high at the left end, and at the right end."""
     return np.array([[0.0, left[0]], [width, right[0]], [width, right[1]], [0.0, left[1]]])
 
 
-def faults(corners: Points, rule: WedgeRule = RULE) -> list[str]:
+def faults(corners, rule=RULE):
     return list(rule.faults(WedgeShape.of(corners)))
 
 
@@ -59,14 +59,14 @@ def faults(corners: Points, rule: WedgeRule = RULE) -> list[str]:
         ),
     ],
 )
-def test_each_limit_is_named_when_it_is_missed(corners: Points, fault: str) -> None:
+def test_each_limit_is_named_when_it_is_missed(corners, fault):
     for mirrored in (corners, (corners * [-1.0, 1.0])[::-1], (corners * [1.0, -1.0])[::-1]):
         named = "; ".join(faults(mirrored))
         assert named.replace("above", "below") == fault.replace("above", "below")
         assert RULE.allows(WedgeShape.of(mirrored)) == (fault == "")
 
 
-def test_limits_by_the_stones_and_by_the_scale() -> None:
+def test_limits_by_the_stones_and_by_the_scale():
     sizes = WedgeSettings(thickness=0.05, thickness_mm=6.0, height=0.25, area=0.1)
     rule = WedgeRule.of(sizes, 0.6, 200.0)
     assert (rule.least_thickness, rule.greatest_height) == (10.0, 50.0)
@@ -78,21 +78,24 @@ def test_limits_by_the_stones_and_by_the_scale() -> None:
     assert tiny.greatest_height == tiny.least_thickness == pytest.approx(6.0)
 
 
-def test_settings_and_limits_are_checked() -> None:
+def test_settings_and_limits_are_checked():
     for name in ("thickness", "thickness_mm", "height", "area"):
         with pytest.raises(ValueError, match="above 0"):
             WedgeSettings(**{name: 0.0})
     good = {"least_thickness": 1.0, "greatest_height": 2.0, "greatest_area": 9.0}
     for name, value in (
-        ("least_thickness", 0.0), ("greatest_height", 0.9), ("greatest_area", 0.0), ("mu", 0.0),
-    ):  # fmt: skip
+        ("least_thickness", 0.0),
+        ("greatest_height", 0.9),
+        ("greatest_area", 0.0),
+        ("mu", 0.0),
+    ):
         with pytest.raises(ValueError, match="must be positive"):
             WedgeRule(**{**good, name: value})
 
 
 @repeatable(60)
 @given(simple_polygons())
-def test_measures_are_those_of_many_upright_lines(corners: Points) -> None:
+def test_measures_are_those_of_many_upright_lines(corners):
     found, twin = WedgeShape.of(corners), measures(corners)
     size = float(np.ptp(corners))
     for name in ("width", "height", "area"):
@@ -103,17 +106,17 @@ def test_measures_are_those_of_many_upright_lines(corners: Points) -> None:
     assert found.bend == pytest.approx(twin["bend"], abs=1e-4 * (1.0 + size))
 
 
-def test_a_fork_is_as_thick_as_its_thinner_prong() -> None:
+def test_a_fork_is_as_thick_as_its_thinner_prong():
     fork = np.array([[0, 0], [9, 0], [9, 2], [3, 2], [3, 4], [9, 4], [9, 5], [0, 5]], float)
     assert WedgeShape.of(fork).thickness == 1.0
     assert WedgeShape.of(fork).area == 15.0 + 12.0 + 6.0
     assert WedgeShape.of(np.array([[0.0, 0.0], [9.0, 0.0], [0.0, 4.0]])).thickness == 0.0
 
 
-def test_beside_a_wedge_is_what_fills_half_of_its_rows_up_to_the_end() -> None:
+def test_beside_a_wedge_is_what_fills_half_of_its_rows_up_to_the_end():
     wedge = quad((0, 4), (0, 4))
 
-    def opened(*boxes: tuple[float, float, float, float]) -> tuple[bool, bool]:
+    def opened(*boxes):
         beside = [np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]) for x0, y0, x1, y1 in boxes]
         return open_sides(wedge, no_polygons().added([wedge, *beside]))
 
@@ -130,9 +133,7 @@ def test_beside_a_wedge_is_what_fills_half_of_its_rows_up_to_the_end() -> None:
 
 @repeatable(40)
 @given(st.lists(simple_polygons(max_size=25.0), min_size=1, max_size=4), st.data())
-def test_open_sides_are_those_of_many_level_rays(
-    polygons: list[Points], data: st.DataObject
-) -> None:
+def test_open_sides_are_those_of_many_level_rays(polygons, data):
     shift = st.floats(-30.0, 30.0)
     others = [moved(p, data.draw(shift), data.draw(st.floats(-15.0, 15.0))) for p in polygons]
     wedge = quad((0, 4), (1, 6))
@@ -142,7 +143,7 @@ def test_open_sides_are_those_of_many_level_rays(
             assert side == (share < 0.5)
 
 
-def test_friction_is_that_of_the_rule() -> None:
+def test_friction_is_that_of_the_rule():
     slope = math.tan(math.radians(20.0))
     leaning = quad((0, 4), (10 * slope, 4 + 10 * slope))
     for mu, fine in ((0.37, True), (0.36, False)):

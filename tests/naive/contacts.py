@@ -4,7 +4,6 @@ import math
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
 from tests.naive.statics import diagonal_touches
@@ -17,9 +16,9 @@ Told = tuple[int, int, list[tuple[float, float]], Normal]
 TOLERANCE_PX = math.sqrt(2.0)
 
 
-def interfaces(labels: NDArray[np.uint32]) -> list[Told]:
+def interfaces(labels):
     """Larger id, smaller id, points and normal of every interface, in their order."""
-    found: list[Told] = []
+    found = []
     for (high, low), edges in sorted(directed_edges(labels).items()):
         for chain in chains(edges):
             for piece in split(chain):
@@ -32,10 +31,10 @@ def interfaces(labels: NDArray[np.uint32]) -> list[Told]:
     return found
 
 
-def directed_edges(labels: NDArray[np.uint32]) -> dict[tuple[int, int], set[Edge]]:
+def directed_edges(labels):
     """Unit edges in the wall frame for each pair of labels, with the larger one to the left."""
     height, width = labels.shape
-    edges: dict[tuple[int, int], set[Edge]] = {}
+    edges = {}
     for y in range(-1, height):
         for x in range(-1, width):
             here = pixel(labels, x, y)
@@ -50,7 +49,7 @@ def directed_edges(labels: NDArray[np.uint32]) -> dict[tuple[int, int], set[Edge
     return edges
 
 
-def pixel(labels: NDArray[np.uint32], x: int, y: int) -> int:
+def pixel(labels, x, y):
     """Label of the pixel whose lower left corner is (x, y): 0 for the ground, -1 for nothing."""
     height, width = labels.shape
     if y < 0:
@@ -59,10 +58,10 @@ def pixel(labels: NDArray[np.uint32], x: int, y: int) -> int:
     return int(labels[height - 1 - y, x]) or -1 if inside else -1
 
 
-def chains(edges: set[Edge]) -> list[list[Node]]:
+def chains(edges):
     """Edges one after the other, turning left where there is a choice."""
 
-    def following(edge: Edge) -> Edge | None:
+    def following(edge):
         (x0, y0), (x1, y1) = edge
         choices = [other for other in edges if other[0] == (x1, y1)]
         turns = {
@@ -87,12 +86,12 @@ def chains(edges: set[Edge]) -> list[list[Node]]:
     return sorted(found, key=lambda nodes: (nodes[0][1], nodes[0][0]))
 
 
-def split(points: list[Node]) -> list[list[Node]]:
+def split(points):
     """Douglas and Peucker (1973), by distances."""
     (x0, y0), (x1, y1) = points[0], points[-1]
     length = math.hypot(x1 - x0, y1 - y0)
 
-    def away(point: Node) -> float:
+    def away(point):
         x, y = point[0] - x0, point[1] - y0
         if length == 0.0:
             return math.hypot(x, y) + TOLERANCE_PX
@@ -105,7 +104,7 @@ def split(points: list[Node]) -> list[list[Node]]:
     return split(points[: middle + 1]) + split(points[middle:])
 
 
-def without_hooks(run: list[Node]) -> list[Node]:
+def without_hooks(run):
     """Leave out an edge that turns off after three edges in one direction, at both ends."""
     for _ in range(2):
         steps = [(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(run)]
@@ -117,7 +116,7 @@ def without_hooks(run: list[Node]) -> list[Node]:
     return run
 
 
-def fitted_normal(run: list[Node]) -> Normal:
+def fitted_normal(run):
     """Unit normal to the left of the line fitted to the midpoints of edges, by an angle."""
     nodes = np.array(run, float)
     x, y = ((nodes[1:] + nodes[:-1]) / 2.0).T
@@ -132,7 +131,7 @@ def fitted_normal(run: list[Node]) -> Normal:
     return -sign * along_y, sign * along_x
 
 
-def normal_at_point(labels: NDArray[np.uint32], x: int, y: int) -> Normal:
+def normal_at_point(labels, x, y):
     """First moments of two stones around their common corner; up where these say nothing."""
     on_right = pixel(labels, x, y) > 0
     above, below = pixel(labels, x - (not on_right), y), pixel(labels, x - on_right, y - 1)
@@ -155,7 +154,7 @@ def normal_at_point(labels: NDArray[np.uint32], x: int, y: int) -> Normal:
     return right, up
 
 
-def pieces_apart(labels: NDArray[np.uint32]) -> dict[int, int]:
+def pieces_apart(labels):
     """For each id in several pieces: its pixels that are not in the largest one."""
     apart = {}
     for block in np.unique(labels[labels > 0]).tolist():

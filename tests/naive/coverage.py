@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 Grid = NDArray[np.float64]
 
 
-def coverage(corners: Grid) -> tuple[Grid, int, int]:
+def coverage(corners):
     """The area that a polygon and each cell of its box have in common."""
     shape = shapely.Polygon(corners)
     left, bottom = (math.floor(value) for value in shape.bounds[:2])
@@ -22,7 +22,7 @@ def coverage(corners: Grid) -> tuple[Grid, int, int]:
     return shares, left, bottom
 
 
-def newly_filled(total: Grid, shares: Grid, row: int, col: int) -> set[tuple[int, int]]:
+def newly_filled(total, shares, row, col):
     """The cells (row, col) of the grid that change from less than half to at least half."""
     cells = set()
     for i in range(shares.shape[0]):

@@ -2,10 +2,8 @@
 
 import numpy as np
 
-from drystone.kernels.polygons import Points, Polygons
 
-
-def met(polygon: Points, x: float) -> list[float]:
+def met(polygon, x):
     """Heights at which an upright line crosses a polygon, from the lowest; x is at no corner."""
     found = []
     for (x0, y0), (x1, y1) in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
@@ -14,7 +12,7 @@ def met(polygon: Points, x: float) -> list[float]:
     return sorted(found)
 
 
-def gap_at(stone: Points, around: Polygons, x: float) -> tuple[float, float]:
+def gap_at(stone, around, x):
     """Floor and lid on an upright line; equal where the stone stands in something."""
     lid = met(stone, x)[0]
     floor = 0.0 if lid >= 0.0 else lid
@@ -26,7 +24,7 @@ def gap_at(stone: Points, around: Polygons, x: float) -> tuple[float, float]:
     return floor, lid
 
 
-def drop(stone: Points, around: Polygons) -> float:
+def drop(stone, around):
     """How far a stone that is above everything else can go down until it touches."""
     least = float(stone[:, 1].min())
     for i in range(len(around)):

@@ -3,15 +3,14 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 Pixels = list[tuple[int, int]]
 
 
-def distance(labels: NDArray[np.uint32], one: int, other: int) -> float:
+def distance(labels, one, other):
     """Between the edges of two stones, pixel by pixel."""
-    first: Pixels = np.argwhere(labels == one).tolist()
-    second: Pixels = np.argwhere(labels == other).tolist()
+    first = np.argwhere(labels == one).tolist()
+    second = np.argwhere(labels == other).tolist()
     return min(
         math.hypot(max(abs(r - s) - 1, 0), max(abs(c - d) - 1, 0))
         for r, c in first
@@ -19,14 +18,14 @@ def distance(labels: NDArray[np.uint32], one: int, other: int) -> float:
     )
 
 
-def lies_between(labels: NDArray[np.uint32], row: int, col: int) -> bool:
+def lies_between(labels, row, col):
     """Whether a way to a side and the opposite way end at two blocks, or a stone and the ground.
 
     Slantwise ways count as well, since joints meet at corners.
     """
     height, width = labels.shape
 
-    def first_in(down: int, right: int) -> int:
+    def first_in(down, right):
         r, c = row, col
         while 0 <= r < height and 0 <= c < width:
             if labels[r, c]:

@@ -4,9 +4,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
-
-from drystone.kernels.raster import Mask
 
 
 @dataclass(frozen=True)
@@ -19,7 +16,7 @@ class Extent:
     y1: int
 
 
-def extent_of(pixels: Mask) -> Extent:
+def extent_of(pixels):
     """Extent of the set pixels of a wall image."""
     rows, cols = np.nonzero(pixels)
     height = pixels.shape[0]
@@ -29,14 +26,14 @@ def extent_of(pixels: Mask) -> Extent:
     )  # fmt: skip
 
 
-def painted(shape: tuple[int, int], mask: Mask, row: int, col: int) -> Mask:
+def painted(shape, mask, row, col):
     """The wall image with one stone in it."""
     image = np.zeros(shape, bool)
     image[row : row + mask.shape[0], col : col + mask.shape[1]] = mask
     return image
 
 
-def shape_factor(mask: Mask, angle_deg: float) -> float:
+def shape_factor(mask, angle_deg):
     """Eq. 3: pixels over the box of all their corners, turned."""
     cells = [(x, y) for y, row in enumerate(mask[::-1]) for x, there in enumerate(row) if there]
     cos, sin = math.cos(math.radians(angle_deg)), math.sin(math.radians(angle_deg))
@@ -46,7 +43,7 @@ def shape_factor(mask: Mask, angle_deg: float) -> float:
     return len(cells) / ((max(across) - min(across)) * (max(up) - min(up)))
 
 
-def dice_score(occupied: Mask, stone: Mask) -> float:
+def dice_score(occupied, stone):
     """Eq. 5 on whole images: the box B is painted."""
     if not occupied.any():
         return 0.0
@@ -56,10 +53,10 @@ def dice_score(occupied: Mask, stone: Mask) -> float:
     return float(inside * np.count_nonzero(box) / np.count_nonzero(stone | box))
 
 
-def left_neighbour(labels: NDArray[np.uint32], stone: Mask) -> int | None:
+def left_neighbour(labels, stone):
     """Id of the nearest stone to the left with half the smaller height in common rows."""
     me = extent_of(stone)
-    nearest: tuple[int, int, int] | None = None
+    nearest = None
     for value in np.unique(labels[labels > 0]):
         other = extent_of(labels == value)
         common = sum(other.y0 <= y < other.y1 for y in range(me.y0, me.y1))
@@ -70,9 +67,7 @@ def left_neighbour(labels: NDArray[np.uint32], stone: Mask) -> int | None:
     return None if nearest is None else nearest[2]
 
 
-def neighbour_height_ratio(
-    labels: NDArray[np.uint32], stone: Mask, other_heights: list[float]
-) -> float:
+def neighbour_height_ratio(labels, stone, other_heights):
     """Eq. 6-8."""
     me = extent_of(stone)
     height = me.y1 - me.y0
@@ -84,7 +79,7 @@ def neighbour_height_ratio(
     return abs(height - sum(other_heights) / len(other_heights)) / height
 
 
-def interlocking(labels: NDArray[np.uint32], stone: Mask, end_px: float) -> float:
+def interlocking(labels, stone, end_px):
     """Eq. 9 as DESIGN 4.5 mends it; corners nearer to an end of the wall than end_px are none."""
     me = extent_of(stone)
     if me.y0 == 0:
@@ -106,7 +101,7 @@ def interlocking(labels: NDArray[np.uint32], stone: Mask, end_px: float) -> floa
     return sum(terms) / len(terms) if terms else 0.5
 
 
-def inward_slope(stone: Mask, x_c: float) -> float:
+def inward_slope(stone, x_c):
     """Eq. 10 on the wall image."""
     height, width = stone.shape
     tops = {

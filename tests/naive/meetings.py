@@ -2,21 +2,20 @@
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
-from drystone.kernels.polygons import Points, area_and_centroid
+from drystone.kernels.polygons import area_and_centroid
 from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
 
 FAR = 1e4
 GROUND_POLYGON = np.array([[-FAR, -1.0], [FAR, -1.0], [FAR, 0.0], [-FAR, 0.0]])
 
 
-def edges(corners: Points) -> list[tuple[Points, Points]]:
+def edges(corners):
     """Both ends of every edge."""
     return [(corners[i - 1], corners[i]) for i in range(len(corners))]
 
 
-def samples(corners: Points, other: Points, step: float) -> Points:
+def samples(corners, other, step):
     """Points on the boundary: the corners, what is nearest to corners of the other, and between."""
     ring = shapely.LinearRing(corners)
     places = [ring.project(shapely.Point(corner)) for corner in (*corners, *other)]
@@ -24,9 +23,7 @@ def samples(corners: Points, other: Points, step: float) -> Points:
     return shapely.get_coordinates([ring.interpolate(place) for place in sorted(set(places))])
 
 
-def touching(
-    corners: Points, other: Points, tolerance: float, step: float
-) -> list[tuple[Points, Points]]:
+def touching(corners, other, tolerance, step):
     """Samples within the tolerance of the other polygon, with the normal there.
 
     The normal is that of the other one's edge where the nearest point lies inside it, otherwise
@@ -48,22 +45,20 @@ def touching(
     return found
 
 
-def outward(edge: tuple[Points, Points]) -> Points:
+def outward(edge):
     """The outward unit normal of an edge of a counter-clockwise polygon."""
     x, y = edge[1] - edge[0]
     return np.array([y, -x]) / np.hypot(x, y)
 
 
-def is_inside(point: Points, edge: tuple[Points, Points]) -> bool:
+def is_inside(point, edge):
     """Whether a point projects into an edge, away from its ends."""
     step = edge[1] - edge[0]
     share = float((point - edge[0]) @ step / (step @ step))
     return 1e-6 < share < 1 - 1e-6
 
 
-def model(
-    polygons: list[NDArray[np.float64]], mu: float, tolerance: float, step: float
-) -> RigidBlockModel:
+def model(polygons, mu, tolerance, step):
     """A wall of blocks 1, 2, ... with a contact at every sample that is near another block."""
     blocks, interfaces = [], []
     for number, corners in enumerate(polygons, start=1):

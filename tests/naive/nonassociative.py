@@ -1,6 +1,5 @@
 """Slow, obvious twin of drystone.statics.flow.nonassociative: all sets of contact states."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import highspy
@@ -8,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
-from drystone.statics.model import GROUND, Direction, RigidBlockModel
+from drystone.statics.model import GROUND
 
 Floats = NDArray[np.float64]
 
@@ -46,7 +45,7 @@ class _Wall:
     mu: float
 
 
-def all_limits(model: RigidBlockModel, direction: Direction) -> list[Limits]:
+def all_limits(model, direction):
     """Enumerate the solutions of the non-associative problem for a handful of blocks.
 
     States are given to one contact point after another; a branch ends where no forces or no
@@ -56,9 +55,7 @@ def all_limits(model: RigidBlockModel, direction: Direction) -> list[Limits]:
     return list(_branch(wall, _motions(wall), _forces(wall), []))
 
 
-def _branch(
-    wall: _Wall, motions: highspy.Highs, forces: highspy.Highs, states: list[str]
-) -> Iterator[Limits]:
+def _branch(wall, motions, forces, states):
     if _least(motions, 0, 0.0) is None:
         return
     least = _least(forces, 0, 1.0)
@@ -87,7 +84,7 @@ def _branch(
     forces.changeRowBounds(down, -INF, 0.0)
 
 
-def _motions(wall: _Wall) -> highspy.Highs:
+def _motions(wall):
     """Rates of opening, rates of slip, and the power of the live load by velocities of blocks."""
     count = wall.normal.shape[1]
     rows = np.vstack((wall.normal.T, wall.tangent.T, wall.live))
@@ -97,7 +94,7 @@ def _motions(wall: _Wall) -> highspy.Highs:
     return _program(rows, least, greatest, -free, free)
 
 
-def _forces(wall: _Wall) -> highspy.Highs:
+def _forces(wall):
     """Equilibrium, and t - mu n and -t - mu n at each point, by alpha and all n and t."""
     size, count = wall.normal.shape
     rows = np.zeros((size + 2 * count, 1 + 2 * count))
@@ -112,7 +109,7 @@ def _forces(wall: _Wall) -> highspy.Highs:
     return _program(rows, least, greatest, lowest, np.full(1 + 2 * count, INF))
 
 
-def _least(highs: highspy.Highs, column: int, cost: float) -> float | None:
+def _least(highs, column, cost):
     """Least of cost times one unknown, or None when nothing is feasible."""
     highs.changeColCost(column, cost)
     highs.run()
@@ -125,9 +122,7 @@ def _least(highs: highspy.Highs, column: int, cost: float) -> float | None:
     return cost * highs.getSolution().col_value[column] if feasible else None
 
 
-def _program(
-    rows: Floats, least: Floats, greatest: Floats, lowest: Floats, highest: Floats
-) -> highspy.Highs:
+def _program(rows, least, greatest, lowest, highest):
     highs = highspy.Highs()
     for name, value in (("output_flag", False), ("presolve", "off"), ("threads", 1)):
         highs.setOptionValue(name, value)
@@ -141,7 +136,7 @@ def _program(
     return highs
 
 
-def _wall(model: RigidBlockModel, sign: float) -> _Wall:
+def _wall(model, sign):
     rows = {block.id: 3 * i for i, block in enumerate(model.blocks)}
     centroid = {block.id: block.centroid for block in model.blocks}
     contacts = [(i, p) for i in model.interfaces for p in i.points]

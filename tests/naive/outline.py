@@ -5,10 +5,8 @@ from fractions import Fraction
 import numpy as np
 import shapely
 
-from drystone.kernels.raster import Mask
 
-
-def centre_inside(corners: list[tuple[int, int]], col: int, row: int) -> bool | None:
+def centre_inside(corners, col, row):
     """Say whether the centre of a pixel is inside a polygon; None when it is on the edge.
 
     Counts crossings of the ray to the left, in exact arithmetic.
@@ -24,7 +22,7 @@ def centre_inside(corners: list[tuple[int, int]], col: int, row: int) -> bool | 
     return crossings % 2 == 1
 
 
-def inside_by_floats(corners: list[list[float]], x: float, y: float) -> bool:
+def inside_by_floats(corners, x, y):
     """Say whether a point is inside any polygon, even one that crosses itself: even-odd rule."""
     inside = False
     for (x0, y0), (x1, y1) in zip(corners, corners[1:] + corners[:1], strict=True):
@@ -33,7 +31,7 @@ def inside_by_floats(corners: list[list[float]], x: float, y: float) -> bool:
     return inside
 
 
-def filled(mask: Mask) -> Mask:
+def filled(mask):
     """Pixels with their holes filled: what no way over edges leads out of."""
     free = {tuple(place) for place in np.argwhere(~np.pad(mask, 1)).tolist()}
     outside, left = {(0, 0)}, [(0, 0)]
@@ -49,7 +47,7 @@ def filled(mask: Mask) -> Mask:
     return found
 
 
-def rim(mask: Mask) -> list[shapely.Point]:
+def rim(mask):
     """Middles of the pixel edges around a stone, from the mask's bottom-left corner, y up."""
     inside = np.pad(filled(mask), 1)
     height, points = len(mask), []

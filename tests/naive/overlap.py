@@ -4,11 +4,8 @@ from fractions import Fraction
 
 import numpy as np
 
-from drystone.kernels.polygons import Points
-from drystone.kernels.raster import Mask
 
-
-def overlaps(occupied: Mask, mask: Mask, row: int, col: int) -> bool:
+def overlaps(occupied, mask, row, col):
     """Whether some pixel of the mask meets an occupied one, or leaves the image (§3.6)."""
     height, width = occupied.shape
     for i, j in zip(*np.nonzero(mask), strict=True):
@@ -18,7 +15,7 @@ def overlaps(occupied: Mask, mask: Mask, row: int, col: int) -> bool:
     return False
 
 
-def lowered(occupied: Mask, mask: Mask, col: int) -> int | None:
+def lowered(occupied, mask, col):
     """Row at which a mask comes to rest that is lowered from far above, row by row.
 
     The site is open at the top; None when the mask comes to rest above it.
@@ -33,7 +30,7 @@ def lowered(occupied: Mask, mask: Mask, col: int) -> int | None:
     return row if row >= 0 else None
 
 
-def depth(first: Points, second: Points, pieces: int) -> float:
+def depth(first, second, pieces):
     """How deep two polygons lie in each other, at least: by exact arithmetic, at some points.
 
     Looked at are all corners and `pieces` - 1 points between any two for the surfaces, and a grid
@@ -62,7 +59,7 @@ def depth(first: Points, second: Points, pieces: int) -> float:
     return found
 
 
-def _inside(ring: list[tuple[Fraction, Fraction]], x: Fraction, y: Fraction) -> bool:
+def _inside(ring, x, y):
     """Whether a ray to the right meets the ring an odd number of times."""
     inside = False
     for (x0, y0), (x1, y1) in zip(ring, ring[1:] + ring[:1], strict=True):
@@ -71,7 +68,7 @@ def _inside(ring: list[tuple[Fraction, Fraction]], x: Fraction, y: Fraction) -> 
     return inside
 
 
-def _to_boundary(ring: list[tuple[Fraction, Fraction]], x: Fraction, y: Fraction) -> float:
+def _to_boundary(ring, x, y):
     """Distance to the nearest edge; the square is exact."""
     squares = []
     for (x0, y0), (x1, y1) in zip(ring, ring[1:] + ring[:1], strict=True):

@@ -14,13 +14,13 @@ Position = tuple[int, int]
 OverlapAreas = Callable[[Mask, Mask], NDArray[np.int64]]
 
 
-def all_positions(occupied: Mask, mask: Mask) -> list[Position]:
+def all_positions(occupied, mask):
     rows = range(occupied.shape[0] - mask.shape[0] + 1)
     cols = range(occupied.shape[1] - mask.shape[1] + 1)
     return [(row, col) for row in rows for col in cols]
 
 
-def touching_positions(occupied: Mask, mask: Mask) -> list[Position]:
+def touching_positions(occupied, mask):
     """Fig. 8: free, and overlapping the landscape (with its ground) dilated by one pixel."""
     height, width = occupied.shape
     scene = np.vstack([occupied, np.ones((1, width), bool)])
@@ -34,7 +34,7 @@ def touching_positions(occupied: Mask, mask: Mask) -> list[Position]:
     ]
 
 
-def resting_positions(occupied: Mask, mask: Mask) -> list[Position]:
+def resting_positions(occupied, mask):
     """Free, and one pixel lower not free or in the ground (DESIGN 4.4)."""
     return [
         (row, col)
@@ -43,7 +43,7 @@ def resting_positions(occupied: Mask, mask: Mask) -> list[Position]:
     ]
 
 
-def positions_from_above(occupied: Mask, mask: Mask, clearance: int = 0) -> list[Position]:
+def positions_from_above(occupied, mask, clearance=0):
     """Where a mask comes to rest that is lowered from above (reach="above").
 
     With a clearance: widened to both sides by it, the mask comes down at least to one own height
@@ -68,7 +68,7 @@ def positions_from_above(occupied: Mask, mask: Mask, clearance: int = 0) -> list
     return sorted(found)
 
 
-def eq12(occupied: Mask, mask: Mask, anchor_x: float, at: Position, beta: float) -> float:
+def eq12(occupied, mask, anchor_x, at, beta):
     """Eq. 12a at one position."""
     dice = indices.dice_score(occupied, indices.painted(occupied.shape, mask, *at))
     filling = rays.local_filling_ratio(occupied, mask, *at)
@@ -76,7 +76,7 @@ def eq12(occupied: Mask, mask: Mask, anchor_x: float, at: Position, beta: float)
     return float(filling + (dice if dice > beta else 0.0) - x_c)
 
 
-def gap_beside(occupied: Mask, mask: Mask, at: Position) -> int:
+def gap_beside(occupied, mask, at):
     """Empty pixels between a stone and the first thing to its left, row by row."""
     empty = 0
     for i in range(mask.shape[0]):
@@ -87,7 +87,7 @@ def gap_beside(occupied: Mask, mask: Mask, at: Position) -> int:
     return empty
 
 
-def void_below(occupied: Mask, mask: Mask, at: Position) -> int:
+def void_below(occupied, mask, at):
     """Empty pixels between a stone and the first thing below it, for a stone open from above."""
     empty = 0
     for j in range(mask.shape[1]):
@@ -98,7 +98,7 @@ def void_below(occupied: Mask, mask: Mask, at: Position) -> int:
     return empty
 
 
-def areas_by_convolution(scene: Mask, mask: Mask) -> NDArray[np.int64]:
+def areas_by_convolution(scene, mask):
     """Overlapping pixels at every position of a mask, by convolution of the whole image (§3.6)."""
     stone = mask[::-1, ::-1].astype(np.int64)
     areas = ndimage.convolve(scene.astype(np.int64), stone, mode="constant")
@@ -108,20 +108,20 @@ def areas_by_convolution(scene: Mask, mask: Mask) -> NDArray[np.int64]:
     return np.asarray(areas[top : top + max(0, rows), left : left + max(0, cols)])
 
 
-def areas_by_fft(scene: Mask, mask: Mask) -> NDArray[np.int64]:
+def areas_by_fft(scene, mask):
     """The same by Fourier transforms; the mask is not larger than the scene."""
     areas = signal.fftconvolve(scene.astype(float), mask[::-1, ::-1].astype(float), mode="valid")
     return np.asarray(np.rint(areas), np.int64)
 
 
-def resting_by_areas(occupied: Mask, mask: Mask, areas: OverlapAreas) -> list[Position]:
+def resting_by_areas(occupied, mask, areas):
     """`resting_positions` from two maps: of the landscape, and of all of it a row higher."""
     raised = np.vstack([occupied[1:], np.ones((1, occupied.shape[1]), bool)])
     free, rests = areas(occupied, mask) == 0, areas(raised, mask) > 0
     return [(int(row), int(col)) for row, col in np.argwhere(free & rests)]
 
 
-def filling_on_images(occupied: Mask, stone: Mask) -> float:
+def filling_on_images(occupied, stone):
     """Eq. 4 with the rays of a painted stone painted as whole images."""
     left = np.logical_or.accumulate(stone[:, ::-1], axis=1)[:, ::-1]
     swept = (left | np.logical_or.accumulate(stone, axis=0)) & ~stone
@@ -129,7 +129,7 @@ def filling_on_images(occupied: Mask, stone: Mask) -> float:
     return float(np.count_nonzero(swept & occupied) / count) if count else 1.0
 
 
-def eq12_on_images(occupied: Mask, mask: Mask, anchor_x: float, at: Position, beta: float) -> float:
+def eq12_on_images(occupied, mask, anchor_x, at, beta):
     """`eq12` on whole images."""
     stone = indices.painted(occupied.shape, mask, *at)
     dice = indices.dice_score(occupied, stone)
@@ -137,9 +137,7 @@ def eq12_on_images(occupied: Mask, mask: Mask, anchor_x: float, at: Position, be
     return filling_on_images(occupied, stone) + (dice if dice > beta else 0.0) - x_c
 
 
-def best_by_eq12(
-    occupied: Mask, mask: Mask, anchor_x: float, positions: list[Position], beta: float
-) -> Position | None:
+def best_by_eq12(occupied, mask, anchor_x, positions, beta):
     """The position of the largest merit; equal ones: the lower, then the one further left."""
     ranked = [
         (-round(eq12_on_images(occupied, mask, anchor_x, at, beta), 12), -at[0], at[1])

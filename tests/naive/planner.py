@@ -1,6 +1,5 @@
 """Slow, obvious versions of what the planner computes, and of the planner itself."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import product
 
@@ -10,9 +9,6 @@ from drystone.clusters import cluster_stones
 from drystone.contacts.blocks import model_from_labels
 from drystone.indices import Indices
 from drystone.model.placement import Placement, Wedge
-from drystone.model.pose import PosedStone
-from drystone.model.site import Site
-from drystone.model.stone import Stone, StoneSet
 from drystone.planner.settings import PlannerSettings
 from drystone.poses import PoseBook
 from drystone.selection.algorithm2 import Action
@@ -21,7 +17,7 @@ from drystone.stabilise.memory import StabiliseMemory
 from tests.naive import indices, placement, selection, statics
 
 
-def unfillable(lengths: list[tuple[int, ...]], limit: int) -> list[int]:
+def unfillable(lengths, limit):
     """What is left of every length when all combinations of stones have been tried."""
     sums = {sum(choice) for choice in product(*[(0, *choices) for choices in lengths])}
     return [min(length - total for total in sums if total <= length) for length in range(limit + 1)]
@@ -44,7 +40,7 @@ class SlowPlanner:
     positions, indices, contacts and loads are found on whole images and by fresh programs.
     """
 
-    def __init__(self, stones: StoneSet, site: Site, seed: int = 0) -> None:
+    def __init__(self, stones, site, seed=0):
         self.settings = PlannerSettings()
         self.site, self.seed = site, seed
         self.book = PoseBook(site.scale)
@@ -56,12 +52,12 @@ class SlowPlanner:
         self.labels = np.zeros((site.height_px, site.width_px), np.uint32)
         # Numbered in the order of placement, without wedges.
         self.order = np.zeros_like(self.labels)
-        self.built: list[Tried] = []
+        self.built = []
 
-    def quarter_turns(self, stone: Stone) -> list[PosedStone]:
+    def quarter_turns(self, stone):
         """The poses of largest SF, lying first; those of the same pixels only once."""
         first = self.book.initial_angle(stone)
-        found: list[PosedStone] = []
+        found = []
         for quarter in range(4):
             posed = self.book.pose(stone, first + 90.0 * quarter)
             if not any(np.array_equal(posed.mask, other.mask) for other in found):
@@ -69,7 +65,7 @@ class SlowPlanner:
         fitting = self.site.height_px, self.site.width_px
         return [p for p in found if p.height_px <= fitting[0] and p.width_px <= fitting[1]]
 
-    def plan(self, at_most: int | None = None) -> list[Tried]:
+    def plan(self, at_most=None):
         """Place stones until the wall is full, none is left, or five samples in a row failed."""
         failures = 0
         while failures < self.settings.stop.failures and len(self.built) != at_most:
@@ -92,7 +88,7 @@ class SlowPlanner:
             self.build(candidates[actions.index(chosen)])
         return self.built
 
-    def build(self, tried: Tried) -> None:
+    def build(self, tried):
         """Paint a stone and its wedges."""
         self.built.append(tried)
         at = tried.placement
@@ -101,7 +97,7 @@ class SlowPlanner:
         for wedge in tried.wedges:
             self.labels[wedge.window][wedge.mask] = wedge.id
 
-    def tried(self, posed: PosedStone, sample: Iterable[int]) -> Tried | None:
+    def tried(self, posed, sample):
         """Place, stabilise and judge one stone; None when it can stand nowhere."""
         occupied = self.labels > 0
         positions = placement.resting_by_areas(occupied, posed.mask, placement.areas_by_convolution)
@@ -119,7 +115,7 @@ class SlowPlanner:
         ]
         return self.judged(stabilised.placement, stabilised.wedges, others)
 
-    def judged(self, at: Placement, wedges: tuple[Wedge, ...], other_heights: list[float]) -> Tried:
+    def judged(self, at, wedges, other_heights):
         """Everything that selection asks for."""
         occupied = self.labels > 0
         grown = self.labels.copy()

@@ -4,15 +4,14 @@ import math
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely import affinity
 
-from drystone.kernels.raster import Mask, rotation
+from drystone.kernels.raster import rotation
 
 Pixel = tuple[int, int]
 
 
-def polygon_of(mask: Mask) -> shapely.Geometry:
+def polygon_of(mask):
     """The pixel squares of a mask, y up from its bottom-left corner."""
     height = mask.shape[0]
     squares = [
@@ -22,14 +21,7 @@ def polygon_of(mask: Mask) -> shapely.Geometry:
     return shapely.union_all(squares)
 
 
-def coverage(
-    mask: Mask,
-    centre: tuple[float, float],
-    angle_deg: float,
-    scale: float,
-    phase: tuple[float, float],
-    window: tuple[int, int, int, int],
-) -> NDArray[np.float64]:
+def coverage(mask, centre, angle_deg, scale, phase, window):
     """Covered share of every pixel of a window (left, bottom, right, top), row 0 at the top."""
     polygon = affinity.translate(polygon_of(mask), -centre[0], -centre[1])
     polygon = affinity.rotate(polygon, angle_deg, origin=(0, 0))
@@ -45,13 +37,13 @@ def coverage(
     return np.asarray(areas, float).reshape(top - bottom, right - left)
 
 
-def shape_factor(mask: Mask, angle_deg: float) -> float:
+def shape_factor(mask, angle_deg):
     """Eq. 3: area over that of the axis-aligned bounding box."""
     left, bottom, right, top = affinity.rotate(polygon_of(mask), angle_deg).bounds
     return float(np.count_nonzero(mask) / ((right - left) * (top - bottom)))
 
 
-def second_moment_eccentricity(mask: Mask) -> float:
+def second_moment_eccentricity(mask):
     """Focal distance over major axis of the ellipse of equal second moments (§3.4)."""
     rows, cols = np.nonzero(mask)
     # Four quarters of every pixel instead of its own moment: converges to the unit square.
@@ -62,13 +54,7 @@ def second_moment_eccentricity(mask: Mask) -> float:
     return float(np.sqrt(1 - small / large))
 
 
-def sampled(
-    mask: Mask,
-    centre: tuple[float, float],
-    angle_deg: float,
-    scale: float,
-    phase: tuple[float, float],
-) -> tuple[dict[Pixel, int], int]:
+def sampled(mask, centre, angle_deg, scale, phase):
     """Samples that hit, of each pixel (x, y of its bottom-left corner), and samples in a pixel."""
     height, width = mask.shape
     cos, sin = rotation(angle_deg)
@@ -76,7 +62,7 @@ def sampled(
     while k < (1 - 1e-9) / scale:
         k *= 2
     reach = math.ceil(scale * math.hypot(width, height)) + 1  # from any point of the mask
-    counts: dict[Pixel, int] = {}
+    counts = {}
     for x in range(-reach, reach + 1):
         for y in range(-reach, reach + 1):
             for i in range(k * k):
@@ -89,13 +75,7 @@ def sampled(
     return counts, k * k
 
 
-def rasterised(
-    mask: Mask,
-    centre: tuple[float, float],
-    angle_deg: float,
-    scale: float,
-    phase: tuple[float, float],
-) -> set[Pixel]:
+def rasterised(mask, centre, angle_deg, scale, phase):
     """Pixels covered to a half, or to less where the mask would fall apart; empty when missed."""
     counts, full = sampled(mask, centre, angle_deg, scale, phase)
     for share in (2, 4):
@@ -105,14 +85,7 @@ def rasterised(
     return set(counts)
 
 
-def rasterised_to_area(
-    mask: Mask,
-    centre: tuple[float, float],
-    angle_deg: float,
-    scale: float,
-    phase: tuple[float, float],
-    area: tuple[float, float],
-) -> tuple[set[Pixel], tuple[float, float]]:
+def rasterised_to_area(mask, centre, angle_deg, scale, phase, area):
     """Rasterise at one sub-pixel position after the other until the area is right."""
     phases = [(phase[0] + i / 4, phase[1] + j / 4) for j in range(4) for i in range(4)]
     errors = []
@@ -125,7 +98,7 @@ def rasterised_to_area(
     return rasterised(mask, centre, angle_deg, scale, best), best
 
 
-def pieces(pixels: set[Pixel]) -> int:
+def pieces(pixels):
     """Count the pieces of some pixels, joined at edges or corners."""
     left, count = set(pixels), 0
     while left:

@@ -1,9 +1,7 @@
 """Slow, obvious twin of the local filling ratio: rays are shot pixel by pixel (Eq. 4, Fig. 7)."""
 
-from drystone.kernels.raster import Mask
 
-
-def local_filling_ratio(occupied: Mask, mask: Mask, row: int, col: int) -> float:
+def local_filling_ratio(occupied, mask, row, col):
     height = occupied.shape[0]
     stone = {
         (row + i, col + j) for i in range(mask.shape[0]) for j in range(mask.shape[1]) if mask[i, j]

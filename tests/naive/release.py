@@ -4,8 +4,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
-from drystone.statics.model import RigidBlockModel
-
 Floats = NDArray[np.float64]
 
 STATES = ("open", "stick", "slide+", "slide-")
@@ -18,7 +16,7 @@ NO_POWER = 1e-6
 """Of free fall of a block of weight 1."""
 
 
-def greatest_power_of_a_fall(model: RigidBlockModel) -> float:
+def greatest_power_of_a_fall(model):
     """Most work that weight does on an acceleration that obeys Newton and Coulomb; 0 at rest.
 
     Unknown are the acceleration and a normal and a tangential force at every contact point.
@@ -29,7 +27,7 @@ def greatest_power_of_a_fall(model: RigidBlockModel) -> float:
 
 
 class _Problem:
-    def __init__(self, model: RigidBlockModel) -> None:
+    def __init__(self, model):
         free = [block for block in model.blocks if not block.fixed]
         place = {block.id: 3 * i for i, block in enumerate(free)}
         centroid = {block.id: block.centroid for block in free}
@@ -51,7 +49,7 @@ class _Problem:
         self.newton = np.hstack((np.diag(mass.ravel()), -self.rates.T))
 
 
-def _branch(problem: _Problem, states: list[str]) -> float:
+def _branch(problem, states):
     power = _power(problem, states)
     if power < NO_POWER:
         return 0.0
@@ -60,11 +58,11 @@ def _branch(problem: _Problem, states: list[str]) -> float:
     return max(_branch(problem, [*states, state]) for state in STATES)
 
 
-def _power(problem: _Problem, states: list[str]) -> float:
+def _power(problem, states):
     """Greatest power with the states of the first contact points given; 0 where there is none."""
     size, rows = len(problem.dead), len(problem.rates)
-    above: list[Floats] = []  # combinations of the unknowns that are at least 0
-    zero: list[Floats] = []
+    above = []  # combinations of the unknowns that are at least 0
+    zero = []
     for k, mu in enumerate(problem.mu):
         opening, slip = (
             np.concatenate((r, np.zeros(rows))) for r in problem.rates[2 * k : 2 * k + 2]

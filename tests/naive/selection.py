@@ -1,26 +1,23 @@
 """Slow, obvious twin of Algorithm 2, nested as in Appendix A, with exact means (DESIGN 4.7)."""
 
-from collections.abc import Callable, Sequence
 from fractions import Fraction
-
-from drystone.selection.algorithm2 import Action
 
 SLACK = Fraction(1, 10**12)
 
 
-def _mean(values: Sequence[float]) -> Fraction:
+def _mean(values):
     return sum((Fraction(v) for v in values), Fraction(0)) / len(values)
 
 
-def _at_least_mean(pi: list[Action], index: Callable[[Action], float]) -> list[Action]:
+def _at_least_mean(pi, index):
     if not pi:
         return []
     mean = _mean([index(a) for a in pi])
     return [a for a in pi if Fraction(index(a)) >= mean - SLACK]
 
 
-def _argmax(pi: list[Action], weights: Sequence[float], terms: int) -> Action:
-    def objective(a: Action) -> Fraction:
+def _argmax(pi, weights, terms):
+    def objective(a):
         e = (a.llc, -a.indices.NHR, _third(a), a.indices.GDS, a.indices.LFR)
         return sum((Fraction(w) * Fraction(x) for w, x in zip(weights[:terms], e, strict=False)),
                    Fraction(0))  # fmt: skip
@@ -30,13 +27,13 @@ def _argmax(pi: list[Action], weights: Sequence[float], terms: int) -> Action:
     return min(level, key=lambda a: a.stone_id)
 
 
-def _third(a: Action) -> float:
+def _third(a):
     return a.indices.IS if a.indices.boundary else a.indices.IWR
 
 
 def algorithm2(  # noqa: PLR0911 - nested as in the paper
-    pi: Sequence[Action], weights: Sequence[float]
-) -> Action | None:
+    pi, weights
+):
     pi1 = [a for a in pi if a.indices.LLC is not None and a.indices.LLC > 0]
     if not pi1:
         return None

@@ -7,21 +7,19 @@ import numpy as np
 import shapely
 from scipy.optimize import linprog
 
-from drystone.kernels.polygons import Points, Polygons
-
 Pose = tuple[float, float, float]
 Contact = tuple[float, float, float, float]
 """A point, and the unit normal there, towards the polygon that rests."""
 
 
-def placed(outline: Points, pose: Pose) -> Points:
+def placed(outline, pose):
     """An outline turned and moved."""
     turn = shapely.affinity.rotate(shapely.Polygon(outline), pose[2], (0, 0), use_radians=True)
     moved = shapely.affinity.translate(turn, pose[0], pose[1])
     return np.array(moved.exterior.coords)[:-1]
 
 
-def distances(corners: Points, around: Polygons, width: float) -> list[float]:
+def distances(corners, around, width):
     """To each polygon, the ground and the two ends of the wall; below 0 beyond these."""
     shape = shapely.Polygon(corners)
     others = [shape.distance(shapely.Polygon(around.polygon(i))) for i in range(len(around))]
@@ -29,16 +27,14 @@ def distances(corners: Points, around: Polygons, width: float) -> list[float]:
     return [*others, low, left, width - right]
 
 
-def overlap_area(corners: Points, around: Polygons) -> float:
+def overlap_area(corners, around):
     """What a polygon has in common with others."""
     shape = shapely.Polygon(corners)
     others = [shapely.Polygon(around.polygon(i)) for i in range(len(around))]
     return float(sum(shape.intersection(other).area for other in others))
 
 
-def best_nearby(
-    outline: Points, pose: Pose, around: Polygons, width: float, lean: float, clearance: float
-) -> float:
+def best_nearby(outline, pose, around, width, lean, clearance):
     """The most that small motions in many directions, of several sizes, go down.
 
     Motions are shifts and turns whose furthest corner goes a thousandth to a fiftieth of the
@@ -60,12 +56,10 @@ def best_nearby(
     return best
 
 
-def contacts(
-    corners: Points, around: Polygons, tolerance: float
-) -> tuple[list[Contact], list[tuple[Contact, ...]]]:
+def contacts(corners, around, tolerance):
     """Corners in front of edges, and pairs of corners with all normals that their edges have."""
-    sure: list[Contact] = [(x, y, 0.0, 1.0) for x, y in corners.tolist() if y <= tolerance]
-    doubtful: list[tuple[Contact, ...]] = []
+    sure = [(x, y, 0.0, 1.0) for x, y in corners.tolist() if y <= tolerance]
+    doubtful = []
     for i in range(len(around)):
         other = around.polygon(i)
         for a, b, sign in ((corners, other, 1.0), (other, corners, -1.0)):
@@ -82,7 +76,7 @@ def contacts(
     return sure, doubtful
 
 
-def _near_edges(polygon: Points, x: float, y: float, tolerance: float) -> list[tuple[float, float]]:
+def _near_edges(polygon, x, y, tolerance):
     """Outward normals of the edges that a point lies in front of, so near."""
     found = []
     for a, b in pairwise([*polygon.tolist(), polygon[0].tolist()]):
@@ -95,16 +89,14 @@ def _near_edges(polygon: Points, x: float, y: float, tolerance: float) -> list[t
     return found
 
 
-def _all_normals(polygon: Points, sign: float) -> list[tuple[float, float]]:
+def _all_normals(polygon, sign):
     """Normals of all edges: outwards, or inwards with sign -1."""
     along = np.roll(polygon, -1, axis=0) - polygon
     along /= np.hypot(*along.T)[:, None]
     return [(sign * uy, -sign * ux) for ux, uy in along.tolist()]
 
 
-def unbalanced(
-    points: list[Contact], centroid: tuple[float, float], arm: float, mu: float
-) -> float:
+def unbalanced(points, centroid, arm, mu):
     """How much of a unit weight contact forces with friction cannot carry: 0 when it rests.
 
     Forces along both edges of each cone are sought that leave the least horizontal force,

@@ -7,8 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
-from drystone.kernels.simplex import Added, Answer, Optimum
-
 Floats = NDArray[np.float64]
 OPTIMAL, UNSTABLE, UNBOUNDED = 0, 1, 2
 
@@ -22,7 +20,7 @@ class Whole:
     rhs: Floats
 
 
-def whole(optimum: Optimum, added: Added) -> Whole:
+def whole(optimum, added):
     """The program of a wall with a stone, entry by entry, without what is closed."""
     weights = [*optimum.weights, *added.weights]
     rows = 3 * len(weights)
@@ -43,7 +41,7 @@ def whole(optimum: Optimum, added: Added) -> Whole:
     return Whole(np.array(columns).reshape(-1, rows).T, live, rhs)
 
 
-def solved(program: Whole, sign: int) -> tuple[int, float | None]:
+def solved(program, sign):
     """Status and alpha, by HiGHS from the start."""
     count = program.matrix.shape[1]
     found = linprog(
@@ -58,7 +56,7 @@ def solved(program: Whole, sign: int) -> tuple[int, float | None]:
     return status, float(found.x[-1]) if status == OPTIMAL else None
 
 
-def exactly_solved(program: Whole, sign: int) -> tuple[int, Fraction | None]:
+def exactly_solved(program, sign):
     """Status and alpha in fractions, without rounding: alpha as the difference of two unknowns."""
     live = program.live[:, None]
     costs = [0] * program.matrix.shape[1] + [-sign, sign]
@@ -67,7 +65,7 @@ def exactly_solved(program: Whole, sign: int) -> tuple[int, Fraction | None]:
     return status, None if value is None else -sign * value
 
 
-def exact_minimum(columns: Floats, rhs: Floats, costs: list[float]) -> tuple[int, Fraction | None]:
+def exact_minimum(columns, rhs, costs):
     """Least costs . x for columns x = rhs, x >= 0: tableau, two phases, Bland's rule, fractions."""
     rows, count = columns.shape
     table = []
@@ -93,9 +91,7 @@ def exact_minimum(columns: Floats, rhs: Floats, costs: list[float]) -> tuple[int
     return OPTIMAL, sum((second[h] * table[i][-1] for i, h in enumerate(basic)), Fraction(0))
 
 
-def _bland(
-    table: list[list[Fraction]], basic: list[int], costs: list[Fraction], allowed: int
-) -> bool:
+def _bland(table, basic, costs, allowed):
     while True:
         rows = range(len(table))
         entering = next(
@@ -115,7 +111,7 @@ def _bland(
         _pivot(table, basic, leaving, entering)
 
 
-def _pivot(table: list[list[Fraction]], basic: list[int], row: int, column: int) -> None:
+def _pivot(table, basic, row, column):
     pivot = table[row][column]
     table[row] = [v / pivot for v in table[row]]
     for i, line in enumerate(table):
@@ -125,7 +121,7 @@ def _pivot(table: list[list[Fraction]], basic: list[int], row: int, column: int)
     basic[row] = column
 
 
-def errors(optimum: Optimum, added: Added, answer: Answer) -> dict[str, float]:
+def errors(optimum, added, answer):
     """What is wrong with the vectors of an answer, whatever it claims of itself."""
     program, v = whole(optimum, added), answer.velocity
     largest = max(1.0, np.abs(v).max())

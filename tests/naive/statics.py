@@ -1,22 +1,21 @@
 """Slow, obvious twins of drystone.statics and drystone.kernels.boundary."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import linprog
 from scipy.sparse import csc_array
 
-from drystone.statics.model import GROUND, RigidBlockModel
+from drystone.statics.model import GROUND
 
 Pair = tuple[int, int]
 Edge = frozenset[tuple[int, int]]
 
 
-def pixel_edges(labels: NDArray[np.uint32]) -> dict[Pair, set[Edge]]:
+def pixel_edges(labels):
     """Unit edges between each pair of labels, as sets of two wall-frame corners (x, y)."""
     height, width = labels.shape
-    edges: dict[Pair, set[Edge]] = {}
+    edges = {}
 
-    def label(x: int, y: int) -> int:
+    def label(x, y):
         """Of the pixel whose lower left corner is (x, y); -1 where nothing is."""
         if y < 0:
             return GROUND
@@ -35,7 +34,7 @@ def pixel_edges(labels: NDArray[np.uint32]) -> dict[Pair, set[Edge]]:
     return edges
 
 
-def diagonal_touches(labels: NDArray[np.uint32]) -> set[tuple[int, int, int, int]]:
+def diagonal_touches(labels):
     """(larger id, smaller id, x, y) where two labels touch across two empty pixels."""
     height, width = labels.shape
     found = set()
@@ -48,7 +47,7 @@ def diagonal_touches(labels: NDArray[np.uint32]) -> set[tuple[int, int, int, int
     return found
 
 
-def limit_alphas(model: RigidBlockModel) -> tuple[float, float] | None:
+def limit_alphas(model):
     """Least upper bounds of alpha to the left and right; None when unstable by itself.
 
     Forces are normal and tangential, friction is two inequalities (Eq. 23c), nothing is scaled.
@@ -77,7 +76,7 @@ def limit_alphas(model: RigidBlockModel) -> tuple[float, float] | None:
         friction[2 * k + 1, 1 + 2 * k : 3 + 2 * k] = (-model.mu, -1)
     forces = [bounds for _ in contacts for bounds in ((0, None), (None, None))]
 
-    def solve(sign: float, highest: float | None) -> float | None:
+    def solve(sign, highest):
         push = equilibrium.copy()
         push[:, 0] *= sign
         answer = linprog(
@@ -99,7 +98,7 @@ def limit_alphas(model: RigidBlockModel) -> tuple[float, float] | None:
     return left, right
 
 
-def cone_program(model: RigidBlockModel) -> tuple[csc_array, NDArray[np.float64]]:
+def cone_program(model):
     """Matrix and right-hand side of the tilting table, entry by entry.
 
     Column 0 is alpha, then come the two edges of the friction cone of every contact point; mean
@@ -110,7 +109,7 @@ def cone_program(model: RigidBlockModel) -> tuple[csc_array, NDArray[np.float64]
     place = {block.id: 3 * i for i, block in enumerate(model.blocks)}
     centroid = {block.id: block.centroid for block in model.blocks}
     dead = np.zeros(3 * len(model.blocks))
-    entries: list[tuple[int, int, float]] = []
+    entries = []
     for block in model.blocks:
         entries.append((place[block.id], 0, block.weight / weight))
         dead[place[block.id] + 1] = block.weight / weight
@@ -133,7 +132,7 @@ def cone_program(model: RigidBlockModel) -> tuple[csc_array, NDArray[np.float64]
     return csc_array((values, (rows, columns)), shape=(dead.size, column + 1)), dead
 
 
-def alphas_by_linprog(model: RigidBlockModel) -> tuple[float, float] | None:
+def alphas_by_linprog(model):
     """alpha to the left and right, each from the start; None when the blocks do not stand."""
     matrix, dead = cone_program(model)
     costs = np.zeros(matrix.shape[1])

@@ -4,19 +4,16 @@ import math
 
 import numpy as np
 
-from drystone.kernels.raster import Mask
 from drystone.model.pose import PosedStone
-from drystone.poses import PoseBook
-from drystone.stabilise.settings import StabiliseSettings
 from tests.naive.overlap import overlaps
 
 Ends = tuple[tuple[int, int], tuple[int, int]]
 Pose = tuple[PosedStone, int, int]
 
 
-def supported_columns(occupied: Mask, mask: Mask, row: int, col: int) -> dict[int, list[int]]:
+def supported_columns(occupied, mask, row, col):
     """Wall columns in which some pixel of the stone stands on something: rows of those edges."""
-    found: dict[int, list[int]] = {}
+    found = {}
     for i, j in zip(*np.nonzero(mask), strict=True):
         r, c = int(row + i + 1), int(col + j)
         if r == occupied.shape[0] or occupied[r, c]:
@@ -24,7 +21,7 @@ def supported_columns(occupied: Mask, mask: Mask, row: int, col: int) -> dict[in
     return found
 
 
-def support_ends(occupied: Mask, mask: Mask, row: int, col: int) -> Ends | None:
+def support_ends(occupied, mask, row, col):
     """A and B as (x, row of the edge); None when nothing supports."""
     columns = supported_columns(occupied, mask, row, col)
     if not columns:
@@ -33,15 +30,13 @@ def support_ends(occupied: Mask, mask: Mask, row: int, col: int) -> Ends | None:
     return (first, max(columns[first])), (last + 1, max(columns[last]))
 
 
-def rests_stably(
-    occupied: Mask, mask: Mask, row: int, col: int, x_c: float, margin_px: float
-) -> bool:
+def rests_stably(occupied, mask, row, col, x_c, margin_px):
     """Whether the centre of mass projects inside the support, by a margin."""
     ends = support_ends(occupied, mask, row, col)
     return ends is not None and ends[0][0] + margin_px <= x_c <= ends[1][0] - margin_px
 
 
-def resting_row(occupied: Mask, mask: Mask, row: int, col: int, reach: int) -> int | None:
+def resting_row(occupied, mask, row, col, reach):
     """The nearest row, the lower of two, where the mask is free and one row lower is not."""
     found = [
         (abs(at - row), -at)
@@ -51,13 +46,7 @@ def resting_row(occupied: Mask, mask: Mask, row: int, col: int, reach: int) -> i
     return -min(found)[1] if found else None
 
 
-def gap_pixels(
-    occupied: Mask,
-    mask: Mask,
-    at: tuple[int, int],
-    columns: tuple[int, int],
-    sizes: tuple[int, int],
-) -> set[tuple[int, int]] | None:
+def gap_pixels(occupied, mask, at, columns, sizes):
     """Pixels (row, column of the wall) of the gap that fills what touches first, if it can."""
     smallest, largest = sizes
     under = {at[1] + j: _gap_rows(occupied, mask, at, j) for j in range(*columns)}
@@ -72,7 +61,7 @@ def gap_pixels(
     return None
 
 
-def _gap_rows(occupied: Mask, mask: Mask, at: tuple[int, int], column: int) -> list[int]:
+def _gap_rows(occupied, mask, at, column):
     """Free rows of the wall under a column of the stone."""
     below = at[0] + int(max(np.flatnonzero(mask[:, column]))) + 1
     rows = []
@@ -82,7 +71,7 @@ def _gap_rows(occupied: Mask, mask: Mask, at: tuple[int, int], column: int) -> l
     return rows
 
 
-def _run(gaps: dict[int, list[int]], start: int, highest: int) -> set[int]:
+def _run(gaps, start, highest):
     """Columns side by side, from one on, whose gaps are no higher than that."""
     run = {start}
     for step in (-1, 1):
@@ -93,7 +82,7 @@ def _run(gaps: dict[int, list[int]], start: int, highest: int) -> set[int]:
     return run
 
 
-def _connected(pixels: set[tuple[int, int]]) -> set[tuple[int, int]] | None:
+def _connected(pixels):
     """The pixels, if edges join them all."""
     reached = open_ends = {min(pixels)}
     while open_ends:
@@ -105,9 +94,7 @@ def _connected(pixels: set[tuple[int, int]]) -> set[tuple[int, int]] | None:
     return pixels if reached == pixels else None
 
 
-def rotated(
-    occupied: Mask, trial: Pose, book: PoseBook, settings: StabiliseSettings
-) -> tuple[Pose, int] | None:
+def rotated(occupied, trial, book, settings):
     """Turn a stone about the nearer end of its support until it rests: pose, and points used."""
     pose = trial
     for pivots in range(settings.max_pivots + 1):
@@ -136,9 +123,7 @@ def rotated(
     return None
 
 
-def _about(
-    pivot: tuple[int, int], start: Pose, posed: PosedStone, turn_deg: float
-) -> tuple[int, int]:
+def _about(pivot, start, posed, turn_deg):
     """Row and column of a turned stone that keeps a point where it is, to the nearest pixel."""
     before, row, col = start
     x = col + before.anchor[0] - pivot[0]
@@ -151,7 +136,7 @@ def _about(
     return math.floor(top + 0.5), math.floor(left + 0.5)
 
 
-def fall(occupied: Mask, pose: Pose, settings: StabiliseSettings) -> int | None:
+def fall(occupied, pose, settings):
     """Side to which a stone falls, 0 when it is stable, None when it stands on nothing."""
     posed, row, col = pose
     ends = support_ends(occupied, posed.mask, row, col)
@@ -163,9 +148,8 @@ def fall(occupied: Mask, pose: Pose, settings: StabiliseSettings) -> int | None:
     return -1 if x_c - ends[0][0] < ends[1][0] - x_c else 1
 
 
-def support_end(occupied: Mask, pose: Pose, side: int) -> tuple[int, int]:
+def support_end(occupied, pose, side):
     """x and row of one end of the support."""
     posed, row, col = pose
     ends = support_ends(occupied, posed.mask, row, col)
-    assert ends is not None
     return ends[0] if side < 0 else ends[1]

@@ -1,19 +1,16 @@
 """A wedge measured along many upright and level lines, and what a mason would object to."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 import shapely
-
-from drystone.kernels.polygons import Points
 
 COLUMNS, ROWS = 400, 400
 NEAR = 1e-7
 """So near to a corner a line is drawn beside it."""
 
 
-def chords(corners: Points) -> tuple[Points, Points]:
+def chords(corners):
     """Upright lines through a polygon: x, and y of the ends of the pieces inside, low to high."""
     polygon = shapely.Polygon(corners)
     left, low, right, high = polygon.bounds
@@ -29,7 +26,7 @@ def chords(corners: Points) -> tuple[Points, Points]:
     return x, np.array(ends)
 
 
-def measures(corners: Points) -> dict[str, float]:
+def measures(corners):
     """Width, height, thickness, area, slopes and bend of a wedge."""
     x, ends = chords(corners)
     width = float(np.ptp(corners[:, 0]))
@@ -47,9 +44,7 @@ def measures(corners: Points) -> dict[str, float]:
     return found
 
 
-def objections(
-    corners: Points, least_thickness: float, greatest_height: float, greatest_area: float, mu: float
-) -> dict[str, float]:
+def objections(corners, least_thickness, greatest_height, greatest_area, mu):
     """By how much a wedge misses each limit; below 0 where it keeps it."""
     one, friction = measures(corners), math.atan(mu)
     bed, top = math.atan(one["bed"]), math.atan(one["top"])
@@ -67,7 +62,7 @@ def objections(
     }
 
 
-def covered(wedge: Points, others: Sequence[Points]) -> tuple[float, float]:
+def covered(wedge, others):
     """Share of the rows of a wedge in which something lies to the left of it, and to the right."""
     shapes = shapely.union_all([shapely.Polygon(other) for other in others])
     left, low, right, high = shapely.Polygon(wedge).bounds

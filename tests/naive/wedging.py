@@ -1,12 +1,10 @@
 """How fast a mechanism violates the contacts of a wedge, block by block and point by point."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from drystone.kernels.polygons import Points
-from drystone.statics.model import GROUND, Interface, RigidBlockModel
+from drystone.statics.model import GROUND, RigidBlockModel
 from drystone.statics.result import Mechanism
 
 
@@ -17,7 +15,7 @@ class NaiveMotion:
     model: RigidBlockModel
     mechanism: Mechanism
 
-    def at(self, block: int, points: Points) -> Points:
+    def at(self, block, points):
         """Return the velocity of a block at some points; the ground stays."""
         if block == GROUND or block not in self.mechanism.block_ids:
             return np.zeros_like(points)
@@ -26,12 +24,12 @@ class NaiveMotion:
         arm = points - next(b.centroid for b in self.model.blocks if b.id == block)
         return np.column_stack([x - turning * arm[:, 1], y + turning * arm[:, 0]])
 
-    def resisted_by(self, interfaces: Sequence[Interface]) -> float:
+    def resisted_by(self, interfaces):
         """Return the rate at the worst point, along with the best neighbour."""
         others = sorted({interface.other for interface in interfaces})
         return min((self._violated(carrier, interfaces) for carrier in others), default=0.0)
 
-    def _violated(self, carrier: int, interfaces: Sequence[Interface]) -> float:
+    def _violated(self, carrier, interfaces):
         worst = 0.0
         for interface in interfaces:
             points = interface.points

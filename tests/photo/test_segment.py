@@ -311,7 +311,7 @@ TILTED = np.array([[0.4, 0.03, -20.0], [-0.02, 0.5, 10.0], [1e-5, 4e-5, 1.0]])
 
 @pytest.mark.parametrize("from_photo", [np.eye(3), TILTED])
 @pytest.mark.parametrize("angle_deg", [0.0, 33.0, -140.0])
-def test_the_frame_of_a_marker_is_in_the_middle_of_its_print(angle_deg, from_photo) -> None:
+def test_the_frame_of_a_marker_is_in_the_middle_of_its_print(angle_deg, from_photo):
     true = {one: laid(SHEET, one, angle_deg, (0.3, 0.4)) for one in (3, 0, 1)}
     true[9] = laid(SINGLE, 9, angle_deg + 90.0, (0.1, 0.2))
     for layout, ids in ((SHEET, (3, 0, 1)), (SINGLE, (9,))):
@@ -329,7 +329,7 @@ def test_the_frame_of_a_marker_is_in_the_middle_of_its_print(angle_deg, from_pho
             assert matrix[:3, :3] == pytest.approx(axes / layout.side_m, abs=1e-9)
 
 
-def test_all_markers_of_a_sheet_say_how_it_lies() -> None:
+def test_all_markers_of_a_sheet_say_how_it_lies():
     """One marker that was found a little turned does not turn the frame as much."""
     true = {one: laid(SHEET, one, 20.0, (0.3, 0.4)) for one in range(4)}
     seen = [

@@ -62,7 +62,6 @@ ASKING = """
 import time
 from loky.backend.resource_tracker import _resource_tracker
 from drystone.search.processes import processes
-from tests.narrow import not_none
 
 with processes(2) as workers:
     busy = [workers.submit(time.sleep, 0.0 if k < 2 else 1000.0) for k in range(4)]

@@ -1,7 +1,5 @@
 """Walls that grow stone by stone, for tests of the incremental analysis."""
 
-from collections.abc import Callable
-
 import pytest
 
 from drystone.contacts.blocks import model_from_labels
@@ -9,7 +7,6 @@ from drystone.kernels import simplex
 from drystone.statics.incremental import (
     LOCAL,
     SIMPLEX,
-    IncrementalAnalysis,
     LocalAnalysis,
     incremental_analysis,
 )
@@ -26,10 +23,8 @@ ANALYSES = ["simplex", "local", "highs"]
 SOLVERS = {"simplex": {SIMPLEX}, "local": {SIMPLEX, LOCAL, WARM}, "highs": {WARM}}
 """Who answers about walls that stand."""
 
-Begin = Callable[[RigidBlockModel, Units], IncrementalAnalysis]
 
-
-def beginning(name: str, monkeypatch: pytest.MonkeyPatch) -> Begin:
+def beginning(name, monkeypatch):
     """What begins a wall that is analysed by one of the analyses."""
     if name == "highs":
         monkeypatch.setattr(simplex, "AVAILABLE", False)

@@ -7,7 +7,6 @@ from drystone.contacts.given import model_from_json
 from drystone.statics import squeeze
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, tilting_table
-from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.statics.squeeze import held_by_upright_faces
 from drystone_lab.statics_cases import arch
@@ -70,7 +69,7 @@ def test_friction_of_pairs_stays_on_other_faces():
 
 
 def test_a_solver_that_gives_up_knows_nothing(monkeypatch):
-    def failing(model: RigidBlockModel, *_, **__):
+    def failing(model, *_, **__):
         ends = (LimitResult(LimitStatus.FAILED, d) for d in ("left", "right"))
         return LateralResistance(*ends, model.mu)
 

@@ -1,9 +1,7 @@
 """Generated walls for tests of the limit analysis."""
 
 import math
-from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from hypothesis import strategies as st
@@ -11,9 +9,6 @@ from numpy.typing import NDArray
 
 from drystone.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.loads import Loads
-from drystone.statics.model import Direction, RigidBlockModel
-from drystone.statics.result import LimitResult
 
 Labels = NDArray[np.uint32]
 
@@ -27,7 +22,7 @@ JAMS = {
 """What :func:`between_piers` is given."""
 
 
-def stacked(*blocks: tuple[int, int, int]) -> Labels:
+def stacked(*blocks):
     """Blocks (width, height, left) on top of each other, the first one lowest, numbered from 1."""
     height = sum(block[1] for block in blocks)
     labels = np.zeros((height, max(left + width for width, _, left in blocks)), np.uint32)
@@ -38,7 +33,7 @@ def stacked(*blocks: tuple[int, int, int]) -> Labels:
     return labels
 
 
-def coursed(seed: int, courses: int, length_px: int, gap_px: int = 0) -> Labels:
+def coursed(seed, courses, length_px, gap_px=0):
     """Courses of stones of random lengths; gaps of up to `gap_px` open some head joints."""
     rng = np.random.default_rng(seed)
     heights = rng.integers(8, 16, courses)
@@ -57,7 +52,7 @@ def coursed(seed: int, courses: int, length_px: int, gap_px: int = 0) -> Labels:
     return labels
 
 
-def brick_model(courses: int, bricks: int, height: float, mu: float) -> RigidBlockModel:
+def brick_model(courses, bricks, height, mu):
     """Running bond of bricks 2 x `height` with half bricks at the ends of every other course."""
     rows = []
     for course in range(courses):
@@ -69,9 +64,7 @@ def brick_model(courses: int, bricks: int, height: float, mu: float) -> RigidBlo
     return model_from_json({"blocks_xywh": rows, "mu": mu})
 
 
-def between_piers(
-    pier: float, height: float, gap: float, mu: float, *, covered: bool = False
-) -> RigidBlockModel:
+def between_piers(pier, height, gap, mu, *, covered=False):
     """A brick, 3, between two piers that stand free; a slab, 4, may cover them."""
     rows = [[0, 0, pier, height], [pier + gap, 0, pier, height], [pier, 1, gap, 1]]
     if covered:
@@ -79,7 +72,7 @@ def between_piers(
     return model_from_json({"blocks_xywh": rows, "mu": mu})
 
 
-def slot(left: float, right: float, mu: float) -> RigidBlockModel:
+def slot(left, right, mu):
     """A block, 2, between two fixed ones, whose upper corners lie so far right of the lower."""
     outlines = (
         [[-2, 1], [0, 1], [left, 2], [-2, 2]],
@@ -89,7 +82,7 @@ def slot(left: float, right: float, mu: float) -> RigidBlockModel:
     return _with_one_free(outlines, mu)
 
 
-def under_a_roof(slope_deg: float, mu: float) -> RigidBlockModel:
+def under_a_roof(slope_deg, mu):
     """A block, 2, between fixed faces that lean over it by so many degrees from the vertical."""
     lean = math.tan(math.radians(slope_deg))
     outlines = (
@@ -100,14 +93,14 @@ def under_a_roof(slope_deg: float, mu: float) -> RigidBlockModel:
     return _with_one_free(outlines, mu)
 
 
-def _with_one_free(outlines: Sequence[list[list[float]]], mu: float) -> RigidBlockModel:
+def _with_one_free(outlines, mu):
     blocks = [
         {"id": i, "polygon": corners, "fixed": i != 2} for i, corners in enumerate(outlines, 1)
     ]
     return model_from_json({"blocks": blocks, "mu": mu})
 
 
-def irregular(seed: int, count: int, width_px: int, height_px: int) -> Labels:
+def irregular(seed, count, width_px, height_px):
     """Cells nearest to random points: every joint tilted, no gaps."""
     points = np.random.default_rng(seed).random((count, 2)) * (height_px, width_px)
     row, col = np.mgrid[:height_px, :width_px]
@@ -115,9 +108,7 @@ def irregular(seed: int, count: int, width_px: int, height_px: int) -> Labels:
     return (distance.argmin(axis=-1) + 1).astype(np.uint32)
 
 
-def limit_load(
-    model: RigidBlockModel, direction: Direction, loads: Loads | None = None, **how: Any
-) -> LimitResult:
+def limit_load(model, direction, loads=None, **how):
     """One direction of the resistance of a wall."""
     both = lateral_resistance(model, loads, **how)
     return both.left if direction == "left" else both.right

@@ -13,14 +13,13 @@ from tests.drawing.export.robot_plans import METRIC, PX_PER_M, THICKNESS_M, asse
 
 
 @pytest.mark.parametrize("name", METRIC)
-def test_pixels_of_a_stone_land_inside_its_outline(name: str) -> None:
+def test_pixels_of_a_stone_land_inside_its_outline(name):
     wall, stones = assembly(name), source_stones()
     # The outline of a plan on pixels is that of pixels of 2 source px.
     near_m = (0.7 if name.startswith("exact") else 2.5) / PX_PER_M
     for part in wall.stones:
         stone = stones.by_id(part.id)
         pick = wall.pick_pose(part)
-        assert pick is not None
         rows, cols = np.nonzero(stone.mask)
         x = stone.left_px + cols + 0.5
         y = stone.bottom_px + stone.mask.shape[0] - rows - 0.5
@@ -32,7 +31,7 @@ def test_pixels_of_a_stone_land_inside_its_outline(name: str) -> None:
         assert outline.area * PX_PER_M**2 == pytest.approx(len(x), rel=0.06)
 
 
-def test_a_plan_in_px_and_one_in_metres_give_the_same_parts() -> None:
+def test_a_plan_in_px_and_one_in_metres_give_the_same_parts():
     for name in ("exact", "raster"):
         px, metres = assembly(name), assembly(f"{name}-m")
         areas = [wall.plan.metrics.wedge_area for wall in (px, metres)]
@@ -44,7 +43,7 @@ def test_a_plan_in_px_and_one_in_metres_give_the_same_parts() -> None:
             assert px.mass_kg(one) == pytest.approx(metres.mass_kg(other), rel=1e-9)
 
 
-def test_the_grip_is_the_least_width_of_any_direction() -> None:
+def test_the_grip_is_the_least_width_of_any_direction():
     for part in assembly("exact").parts:
         width, angle_deg = part.grip
         angles = np.radians(np.append(np.arange(0.0, 180.0, 0.25), angle_deg))
@@ -55,7 +54,7 @@ def test_the_grip_is_the_least_width_of_any_direction() -> None:
         assert 0.0 <= angle_deg < 180.0
 
 
-def test_wedges_are_in_no_photo() -> None:
+def test_wedges_are_in_no_photo():
     wall = assembly("exact")
     (wedge,) = wall.wedges
     assert wall.pick_pose(wedge) is None
@@ -68,7 +67,7 @@ def test_wedges_are_in_no_photo() -> None:
         wall.source_corners(wedge)
 
 
-def test_without_a_scale_there_is_no_pose_and_no_mass() -> None:
+def test_without_a_scale_there_is_no_pose_and_no_mass():
     wall = assembly("exact", None)
     part = wall.parts[0]
     assert wall.unit == "px"
@@ -81,12 +80,12 @@ def test_without_a_scale_there_is_no_pose_and_no_mass() -> None:
             assert way in caught.value.cure
 
 
-def test_a_part_is_frozen() -> None:
+def test_a_part_is_frozen():
     with pytest.raises(ValueError, match="read-only"):
         assembly("exact").parts[0].corners[0, 0] = 1.0
 
 
-def test_stones_begin_above_everything_that_stands() -> None:
+def test_stones_begin_above_everything_that_stands():
     wall = assembly("exact")
     top = 0.0
     for part in wall.parts:
@@ -105,7 +104,7 @@ def test_stones_begin_above_everything_that_stands() -> None:
 
 
 @pytest.mark.parametrize("name", ["exact", "raster"])
-def test_what_is_in_the_way_down_is_what_small_steps_down_run_into(name: str) -> None:
+def test_what_is_in_the_way_down_is_what_small_steps_down_run_into(name):
     wall = assembly(name)
     found = []
     for part in wall.stones:
@@ -128,7 +127,7 @@ def test_what_is_in_the_way_down_is_what_small_steps_down_run_into(name: str) ->
 
 
 @pytest.mark.parametrize("overlap_m", [0.0, 1e-12, -1e-12])
-def test_what_a_stone_rests_on_is_not_in_its_way(overlap_m: float) -> None:
+def test_what_a_stone_rests_on_is_not_in_its_way(overlap_m):
     wall = assembly("exact")
     first, second, *_ = wall.parts
     box = np.array([[0.0, 0.0], [0.3, 0.0], [0.3, 0.1], [0.0, 0.1]])

@@ -1,9 +1,6 @@
 """Plans read with the files beside them."""
 
 import json
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,14 +13,14 @@ from drystone.statics.limit import lateral_resistance
 from tests.drawing.export.robot_plans import PX_PER_M, assembly, write_plan_folder
 
 
-def refused(code: str, path: Path, **options: float) -> DrystoneError:
+def refused(code, path, **options):
     with pytest.raises(DrystoneError) as caught:
         read_assembly(path, **options)
     assert caught.value.code == code
     return caught.value
 
 
-def test_folder_and_file_are_the_same_plan(tmp_path: Path) -> None:
+def test_folder_and_file_are_the_same_plan(tmp_path):
     write_plan_folder("exact", tmp_path)
     one, other = read_assembly(tmp_path), read_assembly(tmp_path / "plan.json")
     assert one.plan == other.plan
@@ -38,7 +35,7 @@ def test_folder_and_file_are_the_same_plan(tmp_path: Path) -> None:
     refused("E133", tmp_path)
 
 
-def test_areas_of_outlines_are_those_of_the_blocks() -> None:
+def test_areas_of_outlines_are_those_of_the_blocks():
     for name in ("exact", "exact-m", "raster", "raster-m"):
         wall = assembly(name)
         areas = {block.id: block.area for block in wall.model.blocks}
@@ -53,14 +50,14 @@ def test_areas_of_outlines_are_those_of_the_blocks() -> None:
             assert part.centroid == pytest.approx((x, y), abs=near_m)
 
 
-def test_a_scale_changes_no_load_multiplier() -> None:
+def test_a_scale_changes_no_load_multiplier():
     wall = assembly("exact", None)
     other = lateral_resistance(scaled(wall.model, 1 / PX_PER_M))
     assert other.left.alpha == pytest.approx(wall.resistance.left.alpha, abs=1e-8)
     assert wall.resistance.left.alpha == pytest.approx(wall.plan.metrics.alpha_left, abs=1e-6)
 
 
-def test_one_scale_only_and_a_thickness_needs_one(tmp_path: Path) -> None:
+def test_one_scale_only_and_a_thickness_needs_one(tmp_path):
     for name in ("exact-m", "raster"):
         (tmp_path / name).mkdir()
         write_plan_folder(name, tmp_path / name)
@@ -71,25 +68,25 @@ def test_one_scale_only_and_a_thickness_needs_one(tmp_path: Path) -> None:
     assert read_assembly(px, thickness_m=0.3, px_per_m=100.0).thickness == 0.3
 
 
-def renumbered(steps: list[dict[str, Any]]) -> None:
+def renumbered(steps):
     for number, step in enumerate(steps, 1):
         step["step"] = number
 
 
-def twice(steps: list[dict[str, Any]]) -> None:
+def twice(steps):
     steps.append(dict(steps[-1]))
     renumbered(steps)
 
 
-def without_its_stone(steps: list[dict[str, Any]]) -> None:
+def without_its_stone(steps):
     next(step for step in steps if step["kind"] == "wedge")["under"] = 9999
 
 
-def backwards(steps: list[dict[str, Any]]) -> None:
+def backwards(steps):
     steps.reverse()
 
 
-def from_two(steps: list[dict[str, Any]]) -> None:
+def from_two(steps):
     for step in steps:
         step["step"] += 1
 
@@ -103,9 +100,7 @@ def from_two(steps: list[dict[str, Any]]) -> None:
         ("raster", from_two, "E214", "this is step 1 of the plan"),
     ],
 )
-def test_steps_that_nobody_can_build_by_are_refused(
-    name: str, tamper: Callable[[Any], None], code: str, said: str, tmp_path: Path
-) -> None:
+def test_steps_that_nobody_can_build_by_are_refused(name, tamper, code, said, tmp_path):
     path = write_plan_folder(name, tmp_path) / "plan.json"
     plan = json.loads(path.read_text("utf-8"))
     tamper(plan["steps"])
@@ -115,7 +110,7 @@ def test_steps_that_nobody_can_build_by_are_refused(
     assert "`drystone check`" in error.cure
 
 
-def test_a_pit_that_meets_the_outside_at_a_corner_is_filled() -> None:
+def test_a_pit_that_meets_the_outside_at_a_corner_is_filled():
     labels = np.zeros((8, 9), np.uint32)
     labels[1:7, 1:8] = 3
     labels[1, 1] = labels[2, 2] = 0
@@ -127,7 +122,7 @@ def test_a_pit_that_meets_the_outside_at_a_corner_is_filled() -> None:
     assert polygon.area == 6 * 7 - 1
 
 
-def test_holes_and_lesser_pieces_are_left_out() -> None:
+def test_holes_and_lesser_pieces_are_left_out():
     labels = np.zeros((9, 12), np.uint32)
     labels[1:8, 1:8] = 3
     labels[3:5, 3:5] = 0

@@ -5,7 +5,6 @@ angle of its own; the first one slants below, and a wedge is under its right end
 """
 
 import math
-from pathlib import Path
 
 import numpy as np
 import shapely
@@ -24,20 +23,18 @@ INDICES = ("SF", "LFR", "GDS", "NHR", "IWR", "IS", "LLC")
 UNUSED = (901, 902)
 
 
-def wall_px(columns: int, rows: int) -> tuple[float, float]:
+def wall_px(columns, rows):
     return columns * STONE_PX[0], rows * STONE_PX[1]
 
 
-def assembly(
-    columns: int = 3, rows: int = 2, px_per_m: float | None = 200.0, photo: Path | None = None
-) -> Assembly:
+def assembly(columns=3, rows=2, px_per_m=200.0, photo=None):
     """Build a wall course by course from the left, the wedge after the first stone."""
     factor = 1.0 if px_per_m is None else 1.0 / px_per_m
     across = math.ceil(math.sqrt(columns * rows))
     size = across * CELL_PX, across * CELL_PX
-    steps: list[StoneStep | WedgeStep] = []
-    parts: list[Part] = []
-    corners_px: dict[int, np.ndarray] = {}
+    steps = []
+    parts = []
+    corners_px = {}
     wedge_id = 1000
     for place in range(columns * rows):
         row, column = divmod(place, columns)
@@ -63,7 +60,7 @@ def assembly(
     )  # fmt: skip
 
 
-def outline_px(place: int) -> np.ndarray:
+def outline_px(place):
     """Return a brick from its lower left corner; the first slants below from its middle."""
     w, h = STONE_PX
     rise = WEDGE_PX[2][1] if place == 0 else 0.0
@@ -72,15 +69,13 @@ def outline_px(place: int) -> np.ndarray:
     return np.array([(0.0, 0.0), *middle, (w, rise), (w, h), (bevel, h), (0.0, h - bevel)], float)
 
 
-def centroid_of(corners: np.ndarray) -> tuple[float, float]:
+def centroid_of(corners):
     """By shapely: not how the package does it."""
     x, y = shapely.Polygon(corners).centroid.coords[0]
     return x, y
 
 
-def stone_step(
-    step: int, stone: int, place: int, centroid_px: tuple[float, float], across: int, factor: float
-) -> StoneStep:
+def stone_step(step, stone, place, centroid_px, across, factor):
     row, column = divmod(place, across)
     # Rows of the image from the top, so that the first stones are fetched first.
     source = (column + 0.5) * CELL_PX, (across - row - 0.5) * CELL_PX
@@ -91,12 +86,7 @@ def stone_step(
     )  # fmt: skip
 
 
-def plan_of(
-    steps: tuple[StoneStep | WedgeStep, ...],
-    size: tuple[float, float],
-    source_px: tuple[int, int],
-    px_per_m: float | None,
-) -> Plan:
+def plan_of(steps, size, source_px, px_per_m):
     stones = [step.stone for step in steps if isinstance(step, StoneStep)]
     source = {
         "path": "stones.png", "sha256": "0" * 64, "stones": len(stones) + len(UNUSED),
@@ -109,7 +99,7 @@ def plan_of(
     )  # fmt: skip
 
 
-def photograph(wall: Assembly, path: Path, zoom: float = 3.0) -> Path:
+def photograph(wall, path, zoom=3.0):
     """Draw the stones as they lie, every one in a colour that tells its step."""
     width, height = wall.plan.source["width_px"], wall.plan.source["height_px"]
     image = Image.new("RGB", (round(width * zoom), round(height * zoom)), (235, 232, 225))
@@ -122,11 +112,11 @@ def photograph(wall: Assembly, path: Path, zoom: float = 3.0) -> Path:
     return path
 
 
-def photo_colour(step: int) -> tuple[int, int, int]:
+def photo_colour(step):
     return 90 + (step * 37) % 120, 80 + (step * 59) % 110, 70 + (step * 83) % 100
 
 
-def runs(lit: np.ndarray) -> np.ndarray:
+def runs(lit):
     """Return the lengths of what is lit in a row."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], lit.astype(int), [0]])))
     return edges[1::2] - edges[::2]

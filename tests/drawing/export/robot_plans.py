@@ -5,20 +5,17 @@ import tempfile
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 import shapely
 
 import drystone as ds
-from drystone.drawing.assembly.parts import Assembly, Part
 from drystone.drawing.assembly.read import read_assembly
 from drystone.generate import RubbleSettings, rubble_stones
 from drystone.io.plan_folder import BLOCKS, blocks_to_json
 from drystone.io.wall_image import write_wall_image
 from drystone.model.wedge_shape import WedgeSettings
-from drystone.search.plan_result import PlanResult
 
 PX_PER_M = 137.0
 
@@ -28,7 +25,7 @@ METRIC = ("exact", "raster-m")
 THICKNESS_M = 0.21
 
 
-def assert_in_place(mesh: Any, part: Part, abs_m: float = 1e-9) -> None:
+def assert_in_place(mesh, part, abs_m=1e-9):
     """A mesh is closed, faces outward, and fills what a part takes up in the wall."""
     assert mesh.is_watertight
     area = shapely.Polygon(part.corners).area
@@ -39,7 +36,7 @@ def assert_in_place(mesh: Any, part: Part, abs_m: float = 1e-9) -> None:
 
 
 @cache
-def assembly(name: str, px_per_m: float | None = PX_PER_M) -> Assembly:
+def assembly(name, px_per_m=PX_PER_M):
     """Return one of METRIC; without a scale those of plans in px are in px."""
     told = None if name.endswith("-m") else px_per_m
     metric = name.endswith("-m") or told is not None
@@ -50,7 +47,7 @@ def assembly(name: str, px_per_m: float | None = PX_PER_M) -> Assembly:
         )
 
 
-def write_plan_folder(name: str, folder: Path) -> Path:
+def write_plan_folder(name, folder):
     """Write the plan of one of METRIC with the files beside it."""
     made = _planned(name)
     ds.write_plan(made.plan, folder / "plan.json")
@@ -61,14 +58,14 @@ def write_plan_folder(name: str, folder: Path) -> Path:
 
 
 @cache
-def source_stones() -> ds.StoneSet:
+def source_stones():
     """Return the stones of all of them."""
     rubble = RubbleSettings(count=9, width_px=110.0, height_px=40.0, courses=2, tilt_deg=14.0)
     return rubble_stones(rubble, np.random.default_rng(4))
 
 
 @cache
-def _planned(name: str) -> PlanResult:
+def _planned(name):
     settings = ds.method_settings("best" if name.startswith("exact") else "paper")
     # So small that it decides nothing: in px and in metres the wedge is the same.
     small = WedgeSettings(thickness=0.01, thickness_mm=1.5)

@@ -52,7 +52,7 @@ def placed(root, use):
 
 
 @pytest.mark.parametrize("px_per_m", [200.0, None])
-def test_placed_stones_are_where_the_plan_has_them(tmp_path, px_per_m) -> None:
+def test_placed_stones_are_where_the_plan_has_them(tmp_path, px_per_m):
     wall = assembly(columns=4, rows=3, px_per_m=px_per_m)
     root = drawing(wall, tmp_path)
     unit = 1000.0 if px_per_m else 1.0
@@ -78,7 +78,7 @@ def test_placed_stones_are_where_the_plan_has_them(tmp_path, px_per_m) -> None:
     assert np.abs(here / unit - next(wall.wedges).corners).max() < 1e-6
 
 
-def test_layers_are_there_and_statics_are_not_shown_at_first(tmp_path) -> None:
+def test_layers_are_there_and_statics_are_not_shown_at_first(tmp_path):
     wall = assembly()
     root = drawing(wall, tmp_path, title="Wall <A> & B")
     box = [float(number) for number in root.get("viewBox").split()]
@@ -96,7 +96,7 @@ def test_layers_are_there_and_statics_are_not_shown_at_first(tmp_path) -> None:
     assert f"{wall.resistance.left.alpha:.4f}" in layer(root, "FORCES-LEFT")[0].text
 
 
-def test_the_mechanism_keeps_the_areas_of_what_it_moves(tmp_path) -> None:
+def test_the_mechanism_keeps_the_areas_of_what_it_moves(tmp_path):
     wall = assembly()
     root = drawing(wall, tmp_path)
     for side in ("left", "right"):
@@ -136,7 +136,7 @@ def polygon(outline):
     return shapely.Polygon([(x, y) for x, y, *_ in outline.get_points()])
 
 
-def test_the_audit_finds_nothing_and_the_unit_is_the_metre_or_none(doc, tmp_path) -> None:
+def test_the_audit_finds_nothing_and_the_unit_is_the_metre_or_none(doc, tmp_path):
     audit = doc.audit()
     assert not audit.errors
     assert not audit.fixes
@@ -151,7 +151,7 @@ def test_the_audit_finds_nothing_and_the_unit_is_the_metre_or_none(doc, tmp_path
     assert "Not to scale: the unit is 1 px" in words
 
 
-def test_outlines_are_closed_and_those_of_the_plan(doc, wall) -> None:
+def test_outlines_are_closed_and_those_of_the_plan(doc, wall):
     drawn = {told(e)[0]: e for layer in ("STONES", "WEDGES") for e in on_layer(doc, layer)}
     assert set(drawn) == {part.name for part in wall.parts}
     for part in wall.parts:
@@ -167,7 +167,7 @@ def test_outlines_are_closed_and_those_of_the_plan(doc, wall) -> None:
     assert total == pytest.approx(6 * 0.3 * 0.15 - bevels, rel=1e-9)
 
 
-def test_layers_and_what_is_shown(doc) -> None:
+def test_layers_and_what_is_shown(doc):
     shown = {layer.dxf.name for layer in doc.layers if layer.is_on()}
     layers = {layer.dxf.name for layer in doc.layers}
     assert {"STONES", "WEDGES", "NUMBERS", "SITE"} <= shown
@@ -177,14 +177,14 @@ def test_layers_and_what_is_shown(doc) -> None:
     }  # fmt: skip
 
 
-def test_contacts_are_lines_as_long_as_the_interfaces(doc, wall) -> None:
+def test_contacts_are_lines_as_long_as_the_interfaces(doc, wall):
     lines = on_layer(doc, "CONTACTS", "LINE")
     drawn = sum((line.dxf.end - line.dxf.start).magnitude for line in lines)
     assert drawn == pytest.approx(sum(one.length for one in wall.model.interfaces))
     assert len(lines) + len(on_layer(doc, "CONTACTS", "POINT")) == len(wall.model.interfaces)
 
 
-def test_forces_on_the_ground_carry_the_wall(doc, wall) -> None:
+def test_forces_on_the_ground_carry_the_wall(doc, wall):
     """Upright, the arrows from the ground add up to the weight, to the scale that is said."""
     for direction, sign in (("LEFT", -1.0), ("RIGHT", 1.0)):
         (note,) = (t.dxf.text for t in on_layer(doc, f"FORCES-{direction}", "TEXT"))
@@ -201,7 +201,7 @@ def test_forces_on_the_ground_carry_the_wall(doc, wall) -> None:
         assert weights[0] == pytest.approx(-sign * result.alpha * 7.0, rel=0.04)
 
 
-def test_numbers_are_the_steps_at_the_centroids(doc, wall) -> None:
+def test_numbers_are_the_steps_at_the_centroids(doc, wall):
     texts = {text.dxf.text: text for text in on_layer(doc, "NUMBERS", "TEXT")}
     assert set(texts) == {str(part.step) for part in wall.parts}
     for part in wall.parts:
@@ -209,7 +209,7 @@ def test_numbers_are_the_steps_at_the_centroids(doc, wall) -> None:
         assert (place.x, place.y) == pytest.approx(part.centroid)
 
 
-def test_every_step_is_written_those_of_wedges_above_the_ground() -> None:
+def test_every_step_is_written_those_of_wedges_above_the_ground():
     ax = draw(drawing_of_assembly(assembly(columns=5, rows=3), "A wall"))
     assert sorted(int(text.get_text()) for text in ax.texts) == list(range(1, 17))
     wedge = next(text for text in ax.texts if text.get_text() == "2")
@@ -218,7 +218,7 @@ def test_every_step_is_written_those_of_wedges_above_the_ground() -> None:
     assert draw(drawing_of_assembly(assembly(px_per_m=None))).get_xlabel() == "px"
 
 
-def test_a_picture_has_the_shape_of_the_wall_whatever_its_title(tmp_path) -> None:
+def test_a_picture_has_the_shape_of_the_wall_whatever_its_title(tmp_path):
     wall, sizes = assembly(columns=6), []
     for title in ("A wall", 300 * "W", "$x_1"):
         (path,) = FORMATS["png"].write(wall, tmp_path, ExportSettings(title=title))

@@ -3,7 +3,6 @@
 import re
 import sys
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +16,7 @@ SETTINGS = ExportSettings()
 
 
 @pytest.mark.parametrize("name", FORMATS)
-def test_equal_walls_give_equal_bytes_under_the_names_that_are_told(name, tmp_path) -> None:
+def test_equal_walls_give_equal_bytes_under_the_names_that_are_told(name, tmp_path):
     if name == "mp4":
         pytest.importorskip("av")
     one, other = (assembly(columns=2, rows=1) for _ in range(2))
@@ -35,14 +34,14 @@ def test_equal_walls_give_equal_bytes_under_the_names_that_are_told(name, tmp_pa
         assert b"CreationDate" not in written
 
 
-def test_no_two_formats_write_one_file_and_none_one_of_the_plan() -> None:
+def test_no_two_formats_write_one_file_and_none_one_of_the_plan():
     names = [name for one in FORMATS.values() for name in one.writes]
     assert len(set(names)) == len(names)
     assert not {"plan.json", "blocks.json", "wall.png", "report.html"} & set(names)
 
 
 @pytest.mark.parametrize("name", [name for name, one in FORMATS.items() if one.metric])
-def test_there_is_none_in_metres_without_a_scale(name, tmp_path) -> None:
+def test_there_is_none_in_metres_without_a_scale(name, tmp_path):
     with pytest.raises(UsageError, match="E131"):
         FORMATS[name].write(assembly(px_per_m=None), tmp_path, SETTINGS)
     assert not list(tmp_path.iterdir())
@@ -52,7 +51,7 @@ def test_there_is_none_in_metres_without_a_scale(name, tmp_path) -> None:
     ("glb", "trimesh", "E182", "mesh"), ("parquet", "pyarrow", "E181", "io"),
     ("dxf", "ezdxf", "E185", "cad"), ("mp4", "av", "E186", "film"),
 ])  # fmt: skip
-def test_an_extra_that_is_missing_is_named(name, module, code, extra, monkeypatch) -> None:
+def test_an_extra_that_is_missing_is_named(name, module, code, extra, monkeypatch):
     monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(UsageError, match="not installed") as caught:
         FORMATS[name].files(assembly(), SETTINGS)
@@ -63,16 +62,14 @@ def test_an_extra_that_is_missing_is_named(name, module, code, extra, monkeypatc
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "for-robotics.md"
 
 
-def test_the_programs_of_the_page_run(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_programs_of_the_page_run(tmp_path, monkeypatch, capsys):
     wall = robot_plans.assembly("exact")
     for name in ("poses", "compas"):
         FORMATS[name].write(wall, tmp_path / "out", ExportSettings())
     monkeypatch.chdir(tmp_path)
     programs = re.findall(r"^```py\n(.*?)^```$", PAGE.read_text("utf-8"), re.MULTILINE | re.DOTALL)
     assert len(programs) == 2
-    names: dict[str, Any] = {}
+    names = {}
     for program in programs:
         exec(compile(program, PAGE.name, "exec"), names)  # noqa: S102 - our own document
     printed = capsys.readouterr().out.split()

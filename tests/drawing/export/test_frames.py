@@ -38,7 +38,7 @@ def near(colour, name):
     return np.abs(colour / 255 - np.array(rgb(name))).max() < 0.03
 
 
-def test_every_part_is_white_then_bright_and_then_stays(tmp_path) -> None:
+def test_every_part_is_white_then_bright_and_then_stays(tmp_path):
     wall = assembly()
     (path,) = FORMATS["gif"].write(wall, tmp_path, SETTINGS)
     assert path.stat().st_size < 200_000
@@ -55,7 +55,7 @@ def test_every_part_is_white_then_bright_and_then_stays(tmp_path) -> None:
             assert near(picture[row, column], seen), (part.name, frame)
 
 
-def test_tall_walls_keep_their_shape() -> None:
+def test_tall_walls_keep_their_shape():
     film = Film(assembly(columns=1, rows=8), 400)
     width, height = film.size_px
     assert height <= 0.75 * 400 + 60
@@ -64,7 +64,7 @@ def test_tall_walls_keep_their_shape() -> None:
     assert np.ptp(corners[:, 1]) / np.ptp(corners[:, 0]) == np.float64(4.0).item()
 
 
-def test_steps_that_are_too_long_for_a_gif_are_refused(tmp_path) -> None:
+def test_steps_that_are_too_long_for_a_gif_are_refused(tmp_path):
     wall = assembly()
     longest = ExportSettings(seconds_per_step=LONGEST_S, film_px=200)
     assert tuple(FORMATS["gif"].files(wall, longest)) == ("build.gif",)
@@ -75,7 +75,7 @@ def test_steps_that_are_too_long_for_a_gif_are_refused(tmp_path) -> None:
             FORMATS["gif"].files(wall, ExportSettings(seconds_per_step=seconds))
 
 
-def test_the_film_has_every_step_for_its_time(tmp_path) -> None:
+def test_the_film_has_every_step_for_its_time(tmp_path):
     av = pytest.importorskip("av")
     wall, settings = assembly(), ExportSettings(seconds_per_step=0.2, film_px=320)
     (path,) = FORMATS["mp4"].write(wall, tmp_path, settings)
@@ -120,7 +120,7 @@ def bright_box(image):
     return columns.min(), 599 - rows.max(), columns.max(), 599 - rows.min()
 
 
-def test_the_stone_to_be_placed_is_drawn_one_to_one(scene) -> None:
+def test_the_stone_to_be_placed_is_drawn_one_to_one(scene):
     wall, images = scene
     assert len(images) == len(wall.parts) + 1
     assert {image.shape for image in images} == {(600, 800)}
@@ -132,7 +132,7 @@ def test_the_stone_to_be_placed_is_drawn_one_to_one(scene) -> None:
         assert bright_box(image) == pytest.approx(expected, abs=LINE_PX / 2 + 1)
 
 
-def test_what_stands_is_dim_and_what_is_to_come_dark(scene) -> None:
+def test_what_stands_is_dim_and_what_is_to_come_dark(scene):
     wall, images = scene
     stone = wall.parts[2]
     # Its lower edge lies on the ground, which is drawn always; its right edge does not.
@@ -144,13 +144,13 @@ def test_what_stands_is_dim_and_what_is_to_come_dark(scene) -> None:
     assert around[5:] == [DIM] * 3
 
 
-def test_the_bar_is_as_long_as_it_says(scene) -> None:
+def test_the_bar_is_as_long_as_it_says(scene):
     strip = scene[1][1][600 - 30 :, 400:]
     longest = max(int(run) for row in strip for run in runs(row > 0))
     assert longest == pytest.approx(0.1 * 500, abs=2)
 
 
-def test_the_wall_begins_where_it_is_told_to(tmp_path) -> None:
+def test_the_wall_begins_where_it_is_told_to(tmp_path):
     settings = replace(PROJECTOR, projector_offset_px=(20, 200))
     wall = assembly()
     image = picture(FORMATS["projector"].write(wall, tmp_path, settings)[1])
@@ -163,7 +163,7 @@ def test_the_wall_begins_where_it_is_told_to(tmp_path) -> None:
     replace(PROJECTOR, projector_px_per_m=900.0),
     replace(PROJECTOR, projector_offset_px=(400, 84)),
 ])  # fmt: skip
-def test_a_wall_that_is_not_in_the_picture_is_refused_with_the_cure(tmp_path, settings) -> None:
+def test_a_wall_that_is_not_in_the_picture_is_refused_with_the_cure(tmp_path, settings):
     with pytest.raises(UsageError) as caught:
         FORMATS["projector"].write(assembly(), tmp_path, settings)
     assert caught.value.code == "E187"

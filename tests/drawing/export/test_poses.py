@@ -1,8 +1,6 @@
 """poses.json, read back with the JSON of the standard library and SciPy's rotations."""
 
 import json
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,20 +14,19 @@ from tests.drawing.export.robot_plans import METRIC, PX_PER_M, THICKNESS_M, asse
 SETTINGS = ExportSettings()
 
 
-def written(name: str, folder: Path) -> dict[str, Any]:
+def written(name, folder):
     (path,) = FORMATS["poses"].write(assembly(name), folder, SETTINGS)
     assert b"-0.0," not in path.read_bytes()
-    read: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    return read
+    return json.loads(path.read_text(encoding="utf-8"))
 
 
-def xyz(values: dict[str, float]) -> list[float]:
+def xyz(values):
     assert list(values) == ["x", "y", "z"]
     return list(values.values())
 
 
 @pytest.mark.parametrize("name", METRIC)
-def test_pick_and_place_follow_the_formula_of_the_plan(name: str, tmp_path: Path) -> None:
+def test_pick_and_place_follow_the_formula_of_the_plan(name, tmp_path):
     read, plan = written(name, tmp_path), assembly(name).plan
     unit = PX_PER_M if plan.length_unit == "px" else 1.0
     assert len(read["parts"]) == len(plan.steps)
@@ -54,7 +51,7 @@ def test_pick_and_place_follow_the_formula_of_the_plan(name: str, tmp_path: Path
         assert np.array(part["pick_to_place"]) @ photo == pytest.approx(moved, abs=1e-12)
 
 
-def test_approaches_end_at_their_poses(tmp_path: Path) -> None:
+def test_approaches_end_at_their_poses(tmp_path):
     read = written("exact", tmp_path)
     assert read["clearance_m"] == 0.05
     for part in read["parts"]:
@@ -66,7 +63,7 @@ def test_approaches_end_at_their_poses(tmp_path: Path) -> None:
         assert part["place"]["approach"]["blocked_m"] * PX_PER_M < 1.0
 
 
-def test_grasps_masses_and_sizes(tmp_path: Path) -> None:
+def test_grasps_masses_and_sizes(tmp_path):
     read, wall = written("exact", tmp_path), assembly("exact")
     assert read["density_kg_m3"] == 2450.0
     assert read["thickness_m"] == THICKNESS_M
@@ -86,7 +83,7 @@ def test_grasps_masses_and_sizes(tmp_path: Path) -> None:
         assert held["width_m"] <= min(found["size_m"]["x"], found["size_m"]["z"]) + 1e-12
 
 
-def test_the_order_of_work_can_be_followed(tmp_path: Path) -> None:
+def test_the_order_of_work_can_be_followed(tmp_path):
     read = written("exact", tmp_path)
     there = {0}
     names = [part["name"] for part in read["parts"]]
@@ -104,7 +101,7 @@ def test_the_order_of_work_can_be_followed(tmp_path: Path) -> None:
     ]
 
 
-def test_frames_units_and_provenance_are_said(tmp_path: Path) -> None:
+def test_frames_units_and_provenance_are_said(tmp_path):
     read, plan = written("raster-m", tmp_path), assembly("raster-m").plan
     assert read["schema"] == "drystone-poses/1"
     assert read["units"]["length"] == "m"

@@ -2,9 +2,6 @@
 
 import json
 import struct
-from collections.abc import Callable, Iterator
-from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree as ET
 
 import compas
@@ -17,25 +14,23 @@ from compas_robots import RobotModel
 from compas_robots.resources import DefaultMeshLoader
 from scipy.spatial.transform import Rotation
 
-from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.drawing.export.solids import inertia, material, solid_of_part
 from drystone.drawing.palette import WEDGE_COLOUR, cluster_colour, rgb
 from tests.drawing.export.robot_plans import THICKNESS_M, assembly, assert_in_place
 
 SETTINGS = ExportSettings()
-Meshes = Iterator[tuple[str, Any]]
 
 Y_DOWN = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
 """From glTF, where (x, y, z) of the wall is (x, z, -y)."""
 
 
-def mesh_of(points: Any, faces: Any, matrix: Any = None) -> Any:
+def mesh_of(points, faces, matrix=None):
     mesh = trimesh.Trimesh(points, faces, process=False)
     return mesh.apply_transform(np.eye(4) if matrix is None else matrix)
 
 
-def obj(paths: tuple[Path, ...]) -> Meshes:
+def obj(paths):
     scene = trimesh.load_scene(paths[0], split_objects=True, group_material=False, process=False)
     lines = paths[0].read_text(encoding="utf-8").splitlines()
     for name in [line[2:] for line in lines if line.startswith("o ")]:
@@ -43,14 +38,14 @@ def obj(paths: tuple[Path, ...]) -> Meshes:
     assert paths[1].name == "wall.mtl"
 
 
-def glb(paths: tuple[Path, ...]) -> Meshes:
+def glb(paths):
     scene = trimesh.load_scene(paths[0])
     for node in scene.graph.nodes_geometry:
         matrix, geometry = scene.graph[node]
         yield node, scene.geometry[geometry].copy().apply_transform(Y_DOWN @ matrix)
 
 
-def stl(paths: tuple[Path, ...]) -> Meshes:
+def stl(paths):
     for path in paths:
         # A header that begins with "solid" is taken for a text file.
         header = f"drystone, metres: {path.stem}, frame W"
@@ -58,7 +53,7 @@ def stl(paths: tuple[Path, ...]) -> Meshes:
         yield path.stem, trimesh.load_mesh(path)
 
 
-def seven(pose: dict[str, Any]) -> list[float]:
+def seven(pose):
     assert [[*one] for one in pose.values()] == [["x", "y", "z"], ["x", "y", "z", "w"]]
     found = [value for one in pose.values() for value in one.values()]
     # A message field of floats takes no whole numbers and no words.
@@ -66,13 +61,13 @@ def seven(pose: dict[str, Any]) -> list[float]:
     return found
 
 
-def matrix_of(pose: list[float]) -> Any:
+def matrix_of(pose):
     matrix = np.eye(4)
     matrix[:3, :3], matrix[:3, 3] = Rotation.from_quat(pose[3:]).as_matrix(), pose[:3]
     return matrix
 
 
-def scene_yaml(paths: tuple[Path, ...]) -> Meshes:
+def scene_yaml(paths):
     read = yaml.safe_load(paths[0].read_text(encoding="utf-8"))
     assert read["is_diff"] is True
     objects = read["world"]["collision_objects"]
@@ -93,7 +88,7 @@ def scene_yaml(paths: tuple[Path, ...]) -> Meshes:
         yield one["id"], mesh_of(vertices, faces, matrix_of(seven(one["pose"])))
 
 
-def scene_text(paths: tuple[Path, ...]) -> Meshes:
+def scene_text(paths):
     """Read what PlanningScene::loadGeometryFromStream of MoveIt reads, word by word."""
     name, _, rest = paths[1].read_text(encoding="utf-8").partition("\n")
     assert name == "drystone_wall"
@@ -101,7 +96,7 @@ def scene_text(paths: tuple[Path, ...]) -> Meshes:
     assert " " in rest.splitlines()[1].strip()
     words = iter(rest.split())
 
-    def numbers(count: int) -> list[float]:
+    def numbers(count):
         return [float(next(words)) for _ in range(count)]
 
     while (marker := next(words)) == "*":
@@ -118,7 +113,7 @@ def scene_text(paths: tuple[Path, ...]) -> Meshes:
     assert next(words, None) is None
 
 
-def urdf(paths: tuple[Path, ...]) -> Meshes:
+def urdf(paths):
     robot = RobotModel.from_urdf_file(str(paths[0]))
     assert robot.root.name == "wall"
     assert not robot.get_configurable_joints()
@@ -131,7 +126,7 @@ def urdf(paths: tuple[Path, ...]) -> Meshes:
             yield link.name, trimesh.load_mesh(path).apply_transform(place)
 
 
-def compas_json(paths: tuple[Path, ...]) -> Meshes:
+def compas_json(paths):
     read = compas.json_load(str(paths[0]))
     assert read["units"] == "m"
     for element in read["elements"]:
@@ -141,7 +136,7 @@ def compas_json(paths: tuple[Path, ...]) -> Meshes:
         yield element["name"], mesh_of(*moved.to_vertices_and_faces())
 
 
-READERS: dict[str, tuple[str, Callable[[tuple[Path, ...]], Meshes], float]] = {
+READERS = {
     "obj": ("obj", obj, 1e-8), "glb": ("glb", glb, 1e-6), "stl": ("stl", stl, 1e-7),
     "scene.yaml": ("moveit", scene_yaml, 1e-9), "wall.scene": ("moveit", scene_text, 1e-9),
     "urdf": ("urdf", urdf, 1e-7), "compas": ("compas", compas_json, 1e-9),
@@ -150,13 +145,13 @@ READERS: dict[str, tuple[str, Callable[[tuple[Path, ...]], Meshes], float]] = {
 
 
 @pytest.fixture(scope="module")
-def exact() -> Assembly:
+def exact():
     """A plan with a wedge."""
     return assembly("exact")
 
 
 @pytest.mark.parametrize("reader", READERS)
-def test_every_part_is_closed_and_at_its_place_in_order(reader, exact, tmp_path) -> None:
+def test_every_part_is_closed_and_at_its_place_in_order(reader, exact, tmp_path):
     wall, (written, read, off) = exact, READERS[reader]
     found = list(read(FORMATS[written].write(wall, tmp_path, SETTINGS)))
     order = [part.name for part in wall.parts]
@@ -169,7 +164,7 @@ def test_every_part_is_closed_and_at_its_place_in_order(reader, exact, tmp_path)
         assert_in_place(mesh, wall.parts[order.index(part_name)], off)
 
 
-def test_colours_of_obj_are_those_of_the_clusters(exact, tmp_path) -> None:
+def test_colours_of_obj_are_those_of_the_clusters(exact, tmp_path):
     path, _ = FORMATS["obj"].write(exact, tmp_path, SETTINGS)
     scene = trimesh.load_scene(path, split_objects=True, group_material=False, process=False)
     for part in exact.parts:
@@ -183,7 +178,7 @@ def test_colours_of_obj_are_those_of_the_clusters(exact, tmp_path) -> None:
     assert (np.array(lines[: len(first)], float)[:, [0, 2]] == first).all()
 
 
-def test_nodes_of_glb_have_the_poses_steps_and_colours_of_the_wall(exact, tmp_path) -> None:
+def test_nodes_of_glb_have_the_poses_steps_and_colours_of_the_wall(exact, tmp_path):
     (path,) = FORMATS["glb"].write(exact, tmp_path, SETTINGS)
     data = path.read_bytes()
     assert struct.unpack("<4sII", data[:12]) == (b"glTF", 2, len(data))
@@ -206,7 +201,7 @@ def test_nodes_of_glb_have_the_poses_steps_and_colours_of_the_wall(exact, tmp_pa
         assert factor == pytest.approx([*light, 1.0], abs=0.003)
 
 
-def test_frames_of_compas_are_those_of_the_poses(exact, tmp_path) -> None:
+def test_frames_of_compas_are_those_of_the_poses(exact, tmp_path):
     (path,) = FORMATS["compas"].write(exact, tmp_path, SETTINGS)
     read = compas.json_load(str(path))
     for element, part in zip(read["elements"], exact.parts, strict=True):
@@ -220,7 +215,7 @@ def test_frames_of_compas_are_those_of_the_poses(exact, tmp_path) -> None:
             assert matrix == pytest.approx(pose.matrix, abs=1e-9)
 
 
-def test_a_urdf_loads_with_mass_centre_and_inertia_of_its_meshes(exact, tmp_path) -> None:
+def test_a_urdf_loads_with_mass_centre_and_inertia_of_its_meshes(exact, tmp_path):
     path, *_ = FORMATS["urdf"].write(exact, tmp_path, SETTINGS)
     robot = RobotModel.from_urdf_file(str(path))
     robot.load_geometry(DefaultMeshLoader(basepath=str(path.parent)), precision=12)
@@ -241,7 +236,7 @@ def test_a_urdf_loads_with_mass_centre_and_inertia_of_its_meshes(exact, tmp_path
         tensor = [[said.ixx, said.ixy, said.ixz], [said.ixy, said.iyy, said.iyz],
                   [said.ixz, said.iyz, said.izz]]  # fmt: skip
         assert np.array(tensor) == pytest.approx(found.tensor, abs=1e-9 * size)
-    colours: dict[str, set[str]] = {}
+    colours = {}
     for paint in ET.fromstring(path.read_text()).iter("material"):  # noqa: S314 - our own file
         (rgba,) = paint
         colours.setdefault(paint.attrib["name"], set()).add(rgba.attrib["rgba"])

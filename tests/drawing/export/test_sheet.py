@@ -68,7 +68,7 @@ def box_of(image, colour, off=3):
     return np.ptp(columns) + 1, np.ptp(rows) + 1
 
 
-def test_pages_are_a4_and_the_first_one_lies(path) -> None:
+def test_pages_are_a4_and_the_first_one_lies(path):
     with pypdfium2.PdfDocument(path) as document:
         sizes = [tuple(side * 25.4 / 72 for side in page.get_size()) for page in document]
     assert sizes[0] == pytest.approx((297.0, 210.0), abs=0.1)
@@ -76,7 +76,7 @@ def test_pages_are_a4_and_the_first_one_lies(path) -> None:
     assert sizes[1:] == [pytest.approx((210.0, 297.0), abs=0.1)] * 3
 
 
-def test_the_wall_is_drawn_one_to_ten_beside_a_ruler_of_100_mm(wall, first_page) -> None:
+def test_the_wall_is_drawn_one_to_ten_beside_a_ruler_of_100_mm(wall, first_page):
     """The fill of the stones, which reach the frame, is as wide as the wall."""
     width, height = box_of(first_page, STONE)
     assert width / PX_PER_MM == pytest.approx(wall.size[0] * 1000 / 10, abs=0.5)
@@ -91,7 +91,7 @@ def test_the_wall_is_drawn_one_to_ten_beside_a_ruler_of_100_mm(wall, first_page)
     (4, 10.0, 10.0), (4, 5.0, 5.0), (9, 10.0, 20.0), (10, 8.0, 20.0), (20, 10.0, 25.0),
     (30, 10.0, 50.0), (4, 33.0, 33.0), (4, None, 5.0), (1, None, 2.0), (20, None, 25.0),
 ])  # fmt: skip
-def test_the_next_usual_scale_is_taken_where_the_wall_does_not_fit(columns, wished, drawn) -> None:
+def test_the_next_usual_scale_is_taken_where_the_wall_does_not_fit(columns, wished, drawn):
     wall = assembly(columns=columns, rows=1)
     scale = paper_scale(wall, wished)
     assert scale.denominator == drawn
@@ -99,7 +99,7 @@ def test_the_next_usual_scale_is_taken_where_the_wall_does_not_fit(columns, wish
     assert wall.size[0] * scale.mm_per_unit <= DRAWING_MM[0]
 
 
-def test_every_stone_is_said_with_what_to_do(wall, words) -> None:
+def test_every_stone_is_said_with_what_to_do(wall, words):
     lines = "\n".join(words[1:3])
     for said in (*(f"stone {part.id}" for part in wall.stones), "turn left 97°", "turn right 45°",
                  "half turn", "as it lies", "wedge 2: 150 \N{MULTIPLICATION SIGN} 30 mm,",
@@ -110,14 +110,14 @@ def test_every_stone_is_said_with_what_to_do(wall, words) -> None:
     assert {str(part.step) for part in wall.stones} <= {*lines.split()}
 
 
-def test_the_title_block_says_what_the_plan_is(wall, words) -> None:
+def test_the_title_block_says_what_the_plan_is(wall, words):
     for said in ("Wall $4, $5", "stones.png", "1.20 \N{MULTIPLICATION SIGN} 0.45 m", "1:10",
                  "drystone 0.1.0", plan_digest(wall.plan), "12, and 2 left over",
                  "page 1 of 4"):  # fmt: skip
         assert said in words[0]
 
 
-def test_the_fetch_list_is_sorted_as_the_stones_lie(wall, words) -> None:
+def test_the_fetch_list_is_sorted_as_the_stones_lie(wall, words):
     # They lie in rows of four from the top left, in the order of their steps.
     assert [part.step for part in in_photo_order(wall)] == [1, *range(3, 14)]
     rows = [line.split() for line in words[3].splitlines()]
@@ -127,7 +127,7 @@ def test_the_fetch_list_is_sorted_as_the_stones_lie(wall, words) -> None:
     assert "Wedges to cut" in words[3]
 
 
-def test_every_line_shows_the_photograph_of_its_stone(wall, path) -> None:
+def test_every_line_shows_the_photograph_of_its_stone(wall, path):
     image = rendered(path, 1, 100)
     column = image[:, round(31 / 25.4 * 100) : round(61 / 25.4 * 100)]
     for part in list(wall.stones)[:6]:
@@ -139,7 +139,7 @@ def test_every_line_shows_the_photograph_of_its_stone(wall, path) -> None:
         assert abs(np.median(rows) - middle) < 6
 
 
-def test_without_a_scale_nothing_is_to_scale(tmp_path) -> None:
+def test_without_a_scale_nothing_is_to_scale(tmp_path):
     wall = assembly(px_per_m=None)
     (path,) = FORMATS["pdf"].write(wall, tmp_path, ExportSettings())
     with pypdfium2.PdfDocument(path) as document:
@@ -152,7 +152,7 @@ def test_without_a_scale_nothing_is_to_scale(tmp_path) -> None:
 
 
 @pytest.mark.parametrize("px_per_m", [200.0, None])
-def test_no_words_of_the_first_page_lie_over_others_or_the_wall(px_per_m) -> None:
+def test_no_words_of_the_first_page_lie_over_others_or_the_wall(px_per_m):
     # As high as its frame may be, with a title that is much too long.
     wall = assembly(columns=6, rows=5, px_per_m=px_per_m)
     width, height = wall.size
@@ -188,22 +188,25 @@ def part(small, step):
     (180.0, "half turn"), (-178.0, "half turn"),
     (-540.0, "half turn"),
 ])  # fmt: skip
-def test_turns_are_the_short_way_round(angle_deg, words) -> None:
+def test_turns_are_the_short_way_round(angle_deg, words):
     assert turn_words(angle_deg) == words
 
 
-def test_neighbours_are_those_that_stand_already(small) -> None:
+def test_neighbours_are_those_that_stand_already(small):
     assert beside(small, part(small, 1)) == {"on": [GROUND]}
     assert beside(small, part(small, 7)) == {"on": [4], "right of": [6]}
     for step, words in (
-        (1, "on the ground"), (2, "on the ground, under 1"), (5, "on 1"), (6, "on 3, right of 5"),
+        (1, "on the ground"),
+        (2, "on the ground, under 1"),
+        (5, "on 1"),
+        (6, "on 3, right of 5"),
         # The wedge touches it too, and nobody sets a stone by a wedge beside it.
         (3, "on the ground, right of 1"),
-    ):  # fmt: skip
+    ):
         assert beside_words(small, part(small, step)) == words
 
 
-def test_sizes_and_places_have_units(small) -> None:
+def test_sizes_and_places_have_units(small):
     wedge, px = part(small, 2), assembly(px_per_m=None)
     said = "wedge 2: 150 \N{MULTIPLICATION SIGN} 30 mm, under its right end"
     assert wedge_words(small, wedge) == said
@@ -217,7 +220,7 @@ def test_sizes_and_places_have_units(small) -> None:
     assert drawn_factor(fine, next(fine.wedges)) == 1.0  # 10 mm x 2 mm
 
 
-def test_it_does_not_matter_which_part_of_a_pair_an_interface_names_first(small) -> None:
+def test_it_does_not_matter_which_part_of_a_pair_an_interface_names_first(small):
     turned = tuple(
         replace(face, block=face.other, other=face.block, normal=(-face.normal[0], -face.normal[1]))
         for face in small.model.interfaces
@@ -229,7 +232,7 @@ def test_it_does_not_matter_which_part_of_a_pair_an_interface_names_first(small)
         assert beside(replace(small, model=model), part) == beside(small, part)
 
 
-def test_stones_side_by_side_that_meet_at_a_corner_are_not_upon_each_other(small) -> None:
+def test_stones_side_by_side_that_meet_at_a_corner_are_not_upon_each_other(small):
     left, right = part(small, 3), part(small, 4)
     normal = {True: (0.8, 0.6), False: (-0.8, -0.6)}
     for first in (True, False):

@@ -18,7 +18,7 @@ OUTLINES = {
 
 
 @pytest.mark.parametrize("name", OUTLINES)
-def test_a_prism_is_closed_and_faces_outward(name: str) -> None:
+def test_a_prism_is_closed_and_faces_outward(name):
     outline = np.array(OUTLINES[name], float)
     solid = solids.extruded(outline, -1.0, 2.0)
     mesh = trimesh.Trimesh(solid.vertices, solid.triangles, process=False)
@@ -41,14 +41,14 @@ def test_a_prism_is_closed_and_faces_outward(name: str) -> None:
     ],
     ids=["crosses itself", "touches itself", "flat"],
 )
-def test_an_outline_that_bounds_no_solid_is_refused(corners: list[tuple[float, float]]) -> None:
+def test_an_outline_that_bounds_no_solid_is_refused(corners):
     with pytest.raises(InputError) as caught:
         solids.extruded(np.array(corners, float), 0.0, 1.0, "stone_012")
     assert caught.value.code == "E180"
     assert "stone_012" in str(caught.value)
 
 
-def test_second_moments_of_a_shifted_and_turned_box() -> None:
+def test_second_moments_of_a_shifted_and_turned_box():
     # By the parallel axis theorem.
     box = np.array([[-1.0, -2.0], [1.0, -2.0], [1.0, 2.0], [-1.0, 2.0]])
     xx, zz, xz = solids.second_moments(box + np.array([3.0, 5.0]))

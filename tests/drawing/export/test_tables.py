@@ -2,8 +2,6 @@
 
 import csv
 import json
-from pathlib import Path
-from typing import Any
 
 import pyarrow as pa
 import pytest
@@ -17,14 +15,14 @@ from tests.drawing.export.robot_plans import PX_PER_M, THICKNESS_M, assembly
 SETTINGS = ExportSettings()
 
 
-def rows(folder: Path, px_per_m: float | None = PX_PER_M) -> list[dict[str, str]]:
+def rows(folder, px_per_m=PX_PER_M):
     (path,) = FORMATS["csv"].write(assembly("exact", px_per_m), folder, SETTINGS)
     assert b"\r" not in path.read_bytes()
     with path.open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
-def test_a_row_a_step_in_metres(tmp_path: Path) -> None:
+def test_a_row_a_step_in_metres(tmp_path):
     wall, found = assembly("exact"), rows(tmp_path)
     assert [row["name"] for row in found] == [part.name for part in wall.parts]
     for row, part in zip(found, wall.parts, strict=True):
@@ -48,7 +46,7 @@ def test_a_row_a_step_in_metres(tmp_path: Path) -> None:
         assert row["alpha_left"] == ("" if alpha is None else repr(alpha))
 
 
-def test_without_a_scale_lengths_are_px_and_masses_are_missing(tmp_path: Path) -> None:
+def test_without_a_scale_lengths_are_px_and_masses_are_missing(tmp_path):
     found, metric = rows(tmp_path, None), rows(tmp_path)
     assert {"x_px", "y_px", "width_px", "height_px", "area_px2"} <= set(found[0])
     assert not any(name.endswith(("_m", "_m2")) for name in found[0])
@@ -59,17 +57,19 @@ def test_without_a_scale_lengths_are_px_and_masses_are_missing(tmp_path: Path) -
             assert px == pytest.approx(metres * PX_PER_M, rel=1e-9)
 
 
-def test_instructions_say_what_to_do(tmp_path: Path) -> None:
+def test_instructions_say_what_to_do(tmp_path):
     found = {row["name"]: row["instruction"] for row in rows(tmp_path, None)}
     for name, words in (
-        ("stone_004", "Set stone 4 (half turn), its middle "), ("wedge_010", "Push wedge 10 in "),
-        ("stone_001", "Set stone 1 (turn left 166°), "), ("stone_005", "Set stone 5 (as it lies)"),
-    ):  # fmt: skip
+        ("stone_004", "Set stone 4 (half turn), its middle "),
+        ("wedge_010", "Push wedge 10 in "),
+        ("stone_001", "Set stone 1 (turn left 166°), "),
+        ("stone_005", "Set stone 5 (as it lies)"),
+    ):
         assert found[name].startswith(words)
 
 
 @pytest.mark.parametrize("px_per_m", [PX_PER_M, None])
-def test_all_hold_what_the_csv_holds(px_per_m: float | None, tmp_path: Path) -> None:
+def test_all_hold_what_the_csv_holds(px_per_m, tmp_path):
     wall = assembly("exact", px_per_m)
     (path,) = FORMATS["parquet"].write(wall, tmp_path, SETTINGS)
     found = parquet.read_table(path).to_pylist()
@@ -96,16 +96,15 @@ def test_all_hold_what_the_csv_holds(px_per_m: float | None, tmp_path: Path) -> 
     assert (said["unit"], said["px_per_m"], said["density_kg_m3"]) == told
 
 
-def written(folder: Path, px_per_m: float | None) -> dict[str, Any]:
+def written(folder, px_per_m):
     (path,) = FORMATS["geojson"].write(assembly("exact", px_per_m), folder, SETTINGS)
-    read: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    return read
+    return json.loads(path.read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize(
     ("px_per_m", "unit", "factor"), [(PX_PER_M, "m", 1 / PX_PER_M), (None, "px", 1)]
 )
-def test_polygons_are_closed_and_those_of_the_parts(px_per_m, unit, factor, tmp_path: Path) -> None:
+def test_polygons_are_closed_and_those_of_the_parts(px_per_m, unit, factor, tmp_path):
     wall, read = assembly("exact", px_per_m), written(tmp_path, px_per_m)
     shapes = shapely.get_parts(shapely.from_geojson(json.dumps(read)))
     areas = {block.id: block.area for block in wall.model.blocks}

@@ -12,7 +12,7 @@ from drystone.drawing.export.text import json_text, number
 from drystone.drawing.lettering import ELLIPSIS, MISSING, drawable, fitted, one_line
 
 
-def test_json_is_json_of_any_shape() -> None:
+def test_json_is_json_of_any_shape():
     value = {
         "empty": {}, "none": None, "list": [], "text": "µm", "true": True,
         "matrix": np.eye(4), "deep": [{"a": [1, 2]}, {"b": {"c": (1.5,)}}],
@@ -26,31 +26,31 @@ def test_json_is_json_of_any_shape() -> None:
 
 
 @pytest.mark.parametrize("bad", [float("nan"), float("inf"), [1.0, float("nan")]])
-def test_what_json_does_not_have_is_refused(bad: object) -> None:
+def test_what_json_does_not_have_is_refused(bad):
     with pytest.raises(ValueError, match="JSON compliant"):
         json_text({"a": bad})
 
 
 @pytest.mark.parametrize("value", [0.0, -0.0, 1e-5, 1.25e-7, 1e300, -3.0, 0.1, 123456789.123456789])
-def test_numbers_are_floats_for_every_reader(value: float) -> None:
+def test_numbers_are_floats_for_every_reader(value):
     found = yaml.safe_load(number(value))
     assert type(found) is float
     assert found == value == float(number(value))
     assert not number(value + 0.0).startswith("-0.0")
 
 
-def test_a_line_is_one_line() -> None:
+def test_a_line_is_one_line():
     assert one_line("a\nb\tc\x01d\u2028e\ud800f") == "a b c d e f"
     assert one_line("<é 漢>") == "<é 漢>"
 
 
-def test_letters_that_the_typeface_lacks_are_boxes() -> None:
+def test_letters_that_the_typeface_lacks_are_boxes():
     assert drawable("Mäuer → 漢字\n") == f"Mäuer → {MISSING}{MISSING} "
 
 
 @pytest.mark.parametrize("weight", ["normal", "bold"])
 @pytest.mark.parametrize("text", [300 * "W", 300 * "i", "dry stone " * 30])
-def test_what_is_too_wide_is_cut_and_no_more(text, weight) -> None:
+def test_what_is_too_wide_is_cut_and_no_more(text, weight):
     """Matplotlib's own outlines of the letters are what is drawn."""
     said = fitted(text, 9.5, 180.0, bold=weight == "bold")
     assert said.endswith(ELLIPSIS)
@@ -60,6 +60,6 @@ def test_what_is_too_wide_is_cut_and_no_more(text, weight) -> None:
     assert 165.0 < width <= 181.0
 
 
-def test_what_fits_stays() -> None:
+def test_what_fits_stays():
     assert fitted("Build sheet", 9.5, 180.0) == "Build sheet"
     assert fitted("", 9.5, 0.0) == ""

@@ -185,12 +185,12 @@ FIGURES = {"F_SF": 0.8, "F_AV": 20.0, "F_AH": 2.0, "F_LR": 0.5}
 
 
 @pytest.fixture(scope="module")
-def wall() -> Wall:
+def wall():
     return finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=greedy())).build.wall
 
 
 @pytest.mark.parametrize("count", [1, COLUMNS, COLUMNS + 1])
-def test_every_wall_has_its_picture_and_its_points(wall: Wall, count: int) -> None:
+def test_every_wall_has_its_picture_and_its_points(wall, count):
     values = [{**FIGURES, "F_SF": 0.8 + 0.01 * k} for k in range(count)]
     figure = plot_choice([wall] * count, [*values[:-1], {**values[-1], "F_AV": None}])
     *walls, one, two = figure.axes

@@ -112,13 +112,22 @@ def test_the_report_says_every_step_result_input_and_notice(report):
     for said in (
         f"Push wedge {examples.WEDGE} in under the left end of stone 300 (step 5): 3 {TIMES} 2 px",
         "Stones left over: 40",
-        "5 of 6 stones, ", "no acceptable place was found five times in a row",
-        "0.672", "4.25 %", "Load multiplier (adequacy factor) to the left",
-        "in three walls of masons, of other stones", f"44.0 {TIMES} 20.0 px", "0" * 64, "W112",
-        "3.46 s", "upper bound", "placement.rule", "1 (6.0 px²)",
+        "5 of 6 stones, ",
+        "no acceptable place was found five times in a row",
+        "0.672",
+        "4.25 %",
+        "Load multiplier (adequacy factor) to the left",
+        "in three walls of masons, of other stones",
+        f"44.0 {TIMES} 20.0 px",
+        "0" * 64,
+        "W112",
+        "3.46 s",
+        "upper bound",
+        "placement.rule",
+        "1 (6.0 px²)",
         "Geometry raster",
         "Stones touch where their pixels have edges or corners in common",
-    ):  # fmt: skip
+    ):
         assert said in page.text
     assert "contact tolerance" not in page.text
 
@@ -232,29 +241,29 @@ PAGE = Path(__file__).resolve().parents[3] / "docs" / "viewer.md"
 
 
 @pytest.fixture
-def programs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+def programs(tmp_path, monkeypatch):
     """The programs of the page, in a folder where they can run."""
     monkeypatch.chdir(tmp_path)
     return re.findall(r"```python\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
 
 
-def test_a_wall_that_was_not_planned_is_shown(programs: list[str]) -> None:
+def test_a_wall_that_was_not_planned_is_shown(programs):
     bricks = BrickSettings(count=3, height_px=10, aspect=2)
     write_labels(lay_out(brick_stones(bricks, np.random.default_rng(1))), Path("wall.png"))
     exec(programs[1], {})  # noqa: S102 - our own page
     assert "Wall in the garden" in Path("report.html").read_text("utf-8")
 
 
-def unfitting(path: Path) -> None:
+def unfitting(path):
     source = result().plan.source
     Image.new("RGB", (2 * source["width_px"], source["height_px"])).save(path)
 
 
-def broken(path: Path) -> None:
+def broken(path):
     path.write_bytes(b"no picture")
 
 
-def cut_short(path: Path) -> None:
+def cut_short(path):
     source = result().plan.source
     Image.new("RGB", (source["width_px"], source["height_px"])).save(path)
     path.write_bytes(path.read_bytes()[:-200])
@@ -264,7 +273,7 @@ def cut_short(path: Path) -> None:
     ("spoil", "said"),
     [(unfitting, "something else"), (broken, "cannot be read"), (cut_short, "cannot be read")],
 )
-def test_both_refuse_alike(spoil, said: str, tmp_path: Path) -> None:
+def test_both_refuse_alike(spoil, said, tmp_path):
     folder = written(tmp_path)
     spoil(folder / "photo.jpg")
     refusals = []

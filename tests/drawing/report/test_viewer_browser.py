@@ -160,9 +160,13 @@ def test_the_slider_goes_through_the_steps(page):
 def test_buttons_step_and_stop_at_the_ends(page):
     last = shown()["steps"]
     for name, step in (
-        ("One step forward", last), ("One step back", last - 1), ("First step", 0),
-        ("One step back", 0), ("One step forward", 1), ("Last step", last),
-    ):  # fmt: skip
+        ("One step forward", last),
+        ("One step back", last - 1),
+        ("First step", 0),
+        ("One step back", 0),
+        ("One step forward", 1),
+        ("Last step", last),
+    ):
         page.get_by_role("button", name=name, exact=True).click()
         assert seen(page) == placed(step)
 
@@ -225,10 +229,13 @@ def test_a_stone_has_a_card(page):
     text = card.inner_text()
     x, y = (f"{value:.1f}" for value in part["centroid"])
     for said in (
-        f"Stone {part['id']}", f"step {part['step']} of", f"cluster {part['cluster']}",
-        f"{x} px from the left end, {y} px above the ground", f"left {part['alpha_left']:.3f}",
+        f"Stone {part['id']}",
+        f"step {part['step']} of",
+        f"cluster {part['cluster']}",
+        f"{x} px from the left end, {y} px above the ground",
+        f"left {part['alpha_left']:.3f}",
         part["turn"],
-    ):  # fmt: skip
+    ):
         assert said in text
     assert card.get_by_role(
         "img", name=f"Stone {part['id']} (step {part['step']}): {part['turn']}"

@@ -2,23 +2,21 @@
 
 import hashlib
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 
 import drystone as ds
-from drystone.search.plan_result import PlanResult
 
 WALL_PX = (130.0, 50.0)
 
 
-def result(method: str = "best", px_per_m: float | None = None) -> PlanResult:
+def result(method="best", px_per_m=None):
     """Plan nine of ten stones: "best" has outlines, "paper" pixels and a wedge."""
     return _planned(method, px_per_m)
 
 
 @cache
-def _planned(method: str, px_per_m: float | None) -> PlanResult:
+def _planned(method, px_per_m):
     rubble = ds.generate.RubbleSettings(
         count=10, width_px=130, height_px=50, courses=3, area_ratio=0.86
     )
@@ -29,11 +27,11 @@ def _planned(method: str, px_per_m: float | None) -> PlanResult:
     )
 
 
-def written(folder: Path, method: str = "best", px_per_m: float | None = None) -> Path:
+def written(folder, method="best", px_per_m=None):
     """Write the files of a plan as `drystone plan` does, without pictures."""
     ds.write_plan_folder(result(method, px_per_m), folder)
     return folder
 
 
-def sha256(path: Path) -> str:
+def sha256(path):
     return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -43,13 +43,13 @@ def judged(blocks, names=None, **more):
     ([[0, 0, 2, 1], [1.5, 1, 4, 1]], {}, False,
      "does not stand: stone 2 rocks and slides on 1 (step 7)"),
 ])  # fmt: skip
-def test_a_wall_is_judged_in_words(blocks, more, stands, words) -> None:
+def test_a_wall_is_judged_in_words(blocks, more, stands, words):
     found = judged(blocks, **more)
     assert found.stands is stands
     assert found.words.startswith(f"1 of 2 stones, {words}")
 
 
-def test_what_no_solver_could_answer_is_not_judged() -> None:
+def test_what_no_solver_could_answer_is_not_judged():
     model = model_from_json({"blocks_xywh": TALL})
     failed = LimitResult(LimitStatus.FAILED, "left")
     found = judge_wall("1 stone", ModelledWall(model, np.ones((1, 1)), Names()),

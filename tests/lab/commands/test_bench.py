@@ -1,31 +1,26 @@
 """`drystone bench`."""
 
-from pathlib import Path
-
 import pytest
 
 from drystone_lab import shear
 from drystone_lab.commands import bench
 from drystone_lab.suites import GOES_BY, HISTORY, PUBLIC, SUITES
 from drystone_lab.table import Table
-from tests.cli.conftest import Run
 
 
-def test_suites_are_named_one_a_line(run: Run) -> None:
+def test_suites_are_named_one_a_line(run):
     lines = run("bench", "--list").out.splitlines()
     assert [line.split(":")[0] for line in lines][: len(SUITES)] == list(SUITES)
 
 
 @pytest.mark.parametrize("suite", [(), ("speed",)])
-def test_a_suite_that_is_none(suite: tuple[str, ...], run: Run) -> None:
+def test_a_suite_that_is_none(suite, run):
     ran = run("bench", *suite)
     assert ran.code == 2
     assert "E138" in ran.err
 
 
-def test_a_suite_is_printed_and_has_a_folder_for_pictures(
-    tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_suite_is_printed_and_has_a_folder_for_pictures(tmp_path, run, monkeypatch):
     monkeypatch.setattr(shear, "predict", lambda *_: shear.ShearForces(20.0, 10.0))
     ran = run("bench", "shear", "--quick", "-o", tmp_path / "new")
     assert ran.code == 0
@@ -34,7 +29,7 @@ def test_a_suite_is_printed_and_has_a_folder_for_pictures(
     assert "E129" in run("bench", "shear", "--quick", "-o", __file__).err
 
 
-def test_a_suite_without_pictures_makes_no_folder_for_them(tmp_path: Path, run: Run) -> None:
+def test_a_suite_without_pictures_makes_no_folder_for_them(tmp_path, run):
     ran = run("bench", "photos", "--quick", "-o", tmp_path / "new")
     assert ran.code == 2
     assert "E138 -o: the suite 'photos' draws no pictures." in ran.err
@@ -42,9 +37,7 @@ def test_a_suite_without_pictures_makes_no_folder_for_them(tmp_path: Path, run: 
     assert not (tmp_path / "new").exists()
 
 
-def test_walls_say_that_data_is_missing(
-    tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_walls_say_that_data_is_missing(tmp_path, run, monkeypatch):
     monkeypatch.setattr("drystone.io.published._cache", lambda: None)
     for options in ((), ("--data", tmp_path), ("--data", tmp_path / "none")):
         ran = run("bench", "walls", *options)
@@ -52,14 +45,14 @@ def test_walls_say_that_data_is_missing(
         assert "Rows need the published stone sets" in ran.out
 
 
-def test_a_miss_is_a_failed_check(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_miss_is_a_failed_check(run, monkeypatch):
     table = Table("Cases", ("case", "verdict"), (("one", "pass"), ("other", "miss")))
     monkeypatch.setattr(bench, "run_suite", lambda *_: (table,))
     assert run("bench", "statics").code == 5
     assert run("bench", "statics", "--markdown").out.startswith("**Cases**")
 
 
-def test_searches_are_kept_and_not_done_again(run: Run, tmp_path: Path) -> None:
+def test_searches_are_kept_and_not_done_again(run, tmp_path):
     table = tmp_path / "runs.csv"
     options = (
         "bench", "search", "--quick", "--seconds", ".01", ".02", "--seeds", "1", "--only",
@@ -79,9 +72,7 @@ def test_searches_are_kept_and_not_done_again(run: Run, tmp_path: Path) -> None:
     [("statics", ["statics"]), ("search", ["search"]), ("packing", ["packing"]),
      (PUBLIC, ["bricks"]), (HISTORY, ["--history", "--store", "x"])],
 )  # fmt: skip
-def test_options_that_a_suite_does_not_go_by(
-    who: str, given: list[str], run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_options_that_a_suite_does_not_go_by(who, given, run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     values = {
         "policy": "random", "settings": "x.toml", "dask": "tcp://localhost:1", "store": "x",
@@ -98,7 +89,7 @@ def test_options_that_a_suite_does_not_go_by(
     assert not any(tmp_path.iterdir())
 
 
-def test_who_goes_by_what() -> None:
+def test_who_goes_by_what():
     """`--seeds` and `--only` are no options of suites that have their own cases."""
     own = {name: set(names) - {"quick", "seed"} for name, names in GOES_BY.items()}
     assert {name for name, names in own.items() if names} == {
@@ -121,7 +112,7 @@ def test_who_goes_by_what() -> None:
         (("bricks", "--jobs", "2", "--dask", "tcp://localhost:1"), "--dask"),
     ],
 )
-def test_options_that_make_no_sense(options: tuple[str, ...], named: str, run: Run) -> None:
+def test_options_that_make_no_sense(options, named, run):
     ran = run("bench", *options)
     assert ran.code == 2
     assert "E138" in ran.err

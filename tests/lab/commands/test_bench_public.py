@@ -1,17 +1,15 @@
 """`drystone bench` for public suites."""
 
 import json
-from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import Run
 from tests.lab.runs.bricks import picture
 
 BRICKS = ("bench", "--suite", "bricks", "--quick", "--seeds", "1", "--policy", "paper", "random")
 
 
-def test_suites_and_policies_are_named_once(run: Run) -> None:
+def test_suites_and_policies_are_named_once(run):
     lines = run("bench", "--list").out.splitlines()
     names = [name for line in lines for name in line.split(":")[0].split(", ")]
     assert {"statics", "search", "masons", "fourier", "all"} <= set(names)
@@ -19,7 +17,7 @@ def test_suites_and_policies_are_named_once(run: Run) -> None:
     assert len(set(names)) == len(names)
 
 
-def test_both_spellings_are_the_same(run: Run) -> None:
+def test_both_spellings_are_the_same(run):
     ran = run(*BRICKS, "--json")
     assert (ran.code, "2 of 2 walls" in ran.err) == (0, True)
     named = ran.json()
@@ -32,7 +30,7 @@ def test_both_spellings_are_the_same(run: Run) -> None:
     assert walls[0]["placed share"] == 1.0
 
 
-def test_settings_hold_for_all(run: Run, tmp_path: Path) -> None:
+def test_settings_hold_for_all(run, tmp_path):
     settings = tmp_path / "full.toml"
     settings.write_text('sampling = "full"\n', encoding="utf-8")
     ran = run(*BRICKS, "--settings", settings, "--store", tmp_path / "store")
@@ -43,7 +41,7 @@ def test_settings_hold_for_all(run: Run, tmp_path: Path) -> None:
     assert "E138" in run(*BRICKS, "--settings", settings).err
 
 
-def test_a_store_has_a_history(run: Run, tmp_path: Path) -> None:
+def test_a_store_has_a_history(run, tmp_path):
     store = tmp_path / "store"
     assert "E138" in run("bench", "--history").err
     assert "no runs" in run("bench", "--history", "--store", store).err
@@ -62,7 +60,7 @@ def test_a_store_has_a_history(run: Run, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("suite", ["masons", "walls"])
-def test_other_stones_in_the_place_of_the_masons(suite: str, run: Run, tmp_path: Path) -> None:
+def test_other_stones_in_the_place_of_the_masons(suite, run, tmp_path):
     data, store = tmp_path / "data", tmp_path / "store"
     picture(data / "almeida" / "PR.png")
     kept = ("--store", store) if suite == "masons" else ()

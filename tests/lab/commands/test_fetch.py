@@ -1,21 +1,18 @@
 """`drystone fetch`: sets, licence, what to cite; every failure with a cure."""
 
-from pathlib import Path
-
 import pytest
 
 from drystone.io.published import LICENCE, PAPER, SETS
 from drystone_lab.commands import fetch
-from tests.cli.conftest import Run
 from tests.io.served import COMMIT, CONTENTS, lay_open, nobody, serving, toy_set
 
 
 @pytest.fixture
-def _toys(monkeypatch: pytest.MonkeyPatch) -> None:
+def _toys(monkeypatch):
     monkeypatch.setattr(fetch, "SETS", {"toy": toy_set()})
 
 
-def test_the_sets_are_listed_one_a_line(run: Run) -> None:
+def test_the_sets_are_listed_one_a_line(run):
     ran = run("fetch", "--list")
     assert (ran.code, ran.err) == (0, "")
     assert (
@@ -26,9 +23,7 @@ def test_the_sets_are_listed_one_a_line(run: Run) -> None:
 
 
 @pytest.mark.usefixtures("_toys")
-def test_a_set_arrives_with_licence_and_source(
-    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_set_arrives_with_licence_and_source(run, tmp_path, monkeypatch):
     lay_open(tmp_path / "served")
     with serving(tmp_path / "served") as address:
         monkeypatch.setattr(fetch, "RAW", address)
@@ -44,7 +39,7 @@ def test_a_set_arrives_with_licence_and_source(
 
 
 @pytest.mark.usefixtures("_toys")
-def test_a_local_copy_wins(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_local_copy_wins(run, tmp_path, monkeypatch):
     (tmp_path / "toy").mkdir()
     for name, contents in CONTENTS.items():
         (tmp_path / name).write_bytes(contents)
@@ -62,9 +57,7 @@ def test_a_local_copy_wins(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.usefixtures("_toys")
-def test_no_network_ends_with_a_cure(
-    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_no_network_ends_with_a_cure(run, tmp_path, monkeypatch):
     monkeypatch.setattr(fetch, "RAW", nobody())
     ran = run("fetch", "toy", "--to", tmp_path)
     assert (ran.code, ran.out) == (3, "")
@@ -73,7 +66,7 @@ def test_no_network_ends_with_a_cure(
 
 
 @pytest.mark.parametrize(("names", "said"), [([], "no set is named"), (["ferris"], "'ferris'")])
-def test_a_set_must_be_one_that_there_is(run: Run, names: list[str], said: str) -> None:
+def test_a_set_must_be_one_that_there_is(run, names, said):
     ran = run("fetch", *names)
     assert ran.code == 2
     assert "E138 fetch: " in ran.err

@@ -1,8 +1,7 @@
 """`drystone reproduce`."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -11,24 +10,23 @@ from drystone.errors import ExitCode, InputError, UsageError
 from drystone.io.folder_lock import LOCK, locked
 from drystone_lab.commands import reproduce
 from drystone_lab.reproduce.driver import MadeItem
-from drystone_lab.reproduce.item import PaperItem
 from drystone_lab.reproduce.items import ITEMS
-from tests.cli.conftest import Ran, Run
+from tests.cli.conftest import Ran
 from tests.lab.reproduce import fakes
 
 RunItems = Callable[..., Ran]
 
 
 @pytest.fixture(autouse=True)
-def _no_data_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def _no_data_named(monkeypatch, tmp_path):
     monkeypatch.setenv("DRYSTONE_DATA", str(tmp_path / "none"))
 
 
 @pytest.fixture
-def run_items(capsys: pytest.CaptureFixture[str]) -> RunItems:
+def run_items(capsys):
     """Call the command on small items."""
 
-    def call(*arguments: object, items: Mapping[str, PaperItem] = fakes.ITEMS) -> Ran:
+    def call(*arguments, items=fakes.ITEMS):
         capsys.readouterr()
         parsed = build_parser().parse_args(["reproduce", *map(str, arguments)])
         return Ran(int(reproduce.run(parsed, items)), *capsys.readouterr())
@@ -36,7 +34,7 @@ def run_items(capsys: pytest.CaptureFixture[str]) -> RunItems:
     return call
 
 
-def test_items_are_named_one_a_line(run: Run) -> None:
+def test_items_are_named_one_a_line(run):
     lines = run("reproduce", "--list").out.splitlines()
     assert [line.split()[0] for line in lines] == list(ITEMS)
     assert all(ITEMS[line.split()[0]]["listed"] in line for line in lines)
@@ -50,9 +48,7 @@ def test_items_are_named_one_a_line(run: Run) -> None:
         (("fig99", "-o", "x"), "'fig99'"),
     ],
 )
-def test_what_is_not_said_well(
-    options: tuple[str, ...], said: str, run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_not_said_well(options, said, run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     ran = run("reproduce", *options)
     assert ran.code == 2
@@ -61,7 +57,7 @@ def test_what_is_not_said_well(
     assert not any(tmp_path.iterdir())
 
 
-def test_tables_and_pages(run_items: RunItems, tmp_path: Path) -> None:
+def test_tables_and_pages(run_items, tmp_path):
     out = tmp_path / "out"
     ran = run_items("beta", "fig5", "-o", out)
     assert ran.code == 0
@@ -76,7 +72,7 @@ def test_tables_and_pages(run_items: RunItems, tmp_path: Path) -> None:
     assert again.err == f"drystone: there is no folder {tmp_path / 'none'} of published data\n"
 
 
-def test_json(run_items: RunItems, tmp_path: Path) -> None:
+def test_json(run_items, tmp_path):
     ran = run_items("fig5", "fig13", "-o", tmp_path / "out", "--json", "--seed", "3", "--quick")
     assert ran.code == 3
     found = ran.json()
@@ -88,40 +84,40 @@ def test_json(run_items: RunItems, tmp_path: Path) -> None:
     assert (missed["status"], missed["error"]["code"]) == ("missing data", "E100")
 
 
-def test_all_goes_on_without_some_stones(run_items: RunItems, tmp_path: Path) -> None:
+def test_all_goes_on_without_some_stones(run_items, tmp_path):
     items = dict.fromkeys(ITEMS, fakes.NEEDY) | {"beta": fakes.WORDS}
     ran = run_items("all", "-o", tmp_path / "out", items=items)
     assert ran.code == 0
     assert ran.err.count("E100") == len(ITEMS) - 1
 
 
-def test_all_without_any(tmp_path: Path) -> None:
+def test_all_without_any(tmp_path):
     error = InputError("E100", "none")
     missed = MadeItem("fig5", "missing data", None, error, tmp_path)
     assert reproduce.exit_code([missed, missed], every=True) == ExitCode.BAD_INPUT
     assert reproduce.exit_code([missed, replace(missed, status="kept")], every=True) == 0
 
 
-def test_an_error_is_told_and_is_the_exit_code(run_items: RunItems, tmp_path: Path) -> None:
+def test_an_error_is_told_and_is_the_exit_code(run_items, tmp_path):
     ran = run_items("figB33", "beta", "-o", tmp_path / "out")
     assert ran.code == ExitCode.BAD_INPUT
     assert "drystone: figB33: E104 broken: there are no stones." in ran.err
     assert "beta: words" in ran.out
 
 
-def test_published_data_named_by_the_option(run_items: RunItems, tmp_path: Path) -> None:
+def test_published_data_named_by_the_option(run_items, tmp_path):
     for name in fakes.NEEDY.needs:
         (tmp_path / "data" / name).parent.mkdir(parents=True)
         (tmp_path / "data" / name).touch()
     assert run_items("fig13", "-o", tmp_path / "out", "--data", tmp_path / "data").code == 0
 
 
-def test_who_works(run_items: RunItems, tmp_path: Path) -> None:
+def test_who_works(run_items, tmp_path):
     with pytest.raises(UsageError, match="E138"):
         run_items("fig5", "-o", tmp_path / "out", "--jobs", 2, "--dask", "tcp://127.0.0.1:1")
 
 
-def test_two_runs_do_not_write_into_one_folder(run_items: RunItems, tmp_path: Path) -> None:
+def test_two_runs_do_not_write_into_one_folder(run_items, tmp_path):
     (tmp_path / "out").mkdir()
     with locked(tmp_path / "out"), pytest.raises(UsageError, match="E149"):
         run_items("beta", "-o", tmp_path / "out", "--quick")

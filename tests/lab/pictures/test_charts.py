@@ -4,9 +4,7 @@ from statistics import median
 
 import numpy as np
 import pytest
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from drystone.planner.profile import StepTime
 from drystone_lab.pictures.charts import group_panels, plot_groups, plot_history, plot_two_figures
@@ -23,12 +21,12 @@ from drystone_lab.pictures.validation import COLOURS, MARKERS, Prediction, plot_
 VALUES = {"both": [0.8, 0.7, 0.9, 0.75, 0.72, 0.71], "none": [0.5, None, 0.4], "empty": [None]}
 
 
-def _line(ax: Axes, gid: str) -> Line2D:
+def _line(ax, gid):
     (line,) = [line for line in ax.lines if line.get_gid() == gid]
     return line
 
 
-def test_points_are_the_values_and_lines_their_medians() -> None:
+def test_points_are_the_values_and_lines_their_medians():
     ax = plot_groups(VALUES, figure="F_SF")
     assert list(_line(ax, "group-both").get_ydata()) == VALUES["both"]
     assert list(_line(ax, "group-none").get_ydata()) == [0.5, 0.4]
@@ -39,25 +37,24 @@ def test_points_are_the_values_and_lines_their_medians() -> None:
     assert ax.get_ylabel() == "F_SF"
 
 
-def test_claims_stand_in_their_groups() -> None:
+def test_claims_stand_in_their_groups():
     ax = plot_groups(VALUES, claims={"none": 0.6})
     cross = _line(ax, "claim-none")
     assert (list(cross.get_xdata()), list(cross.get_ydata())) == ([1], [0.6])
     legend = ax.get_legend()
-    assert legend is not None
     assert [text.get_text() for text in legend.get_texts()] == ["the paper"]
     assert plot_groups(VALUES).get_legend() is None
 
 
 @pytest.mark.parametrize(("count", "columns"), [(1, 1), (4, 4), (5, 3), (8, 4), (12, 4)])
-def test_panels_fill_rows(count: int, columns: int) -> None:
+def test_panels_fill_rows(count, columns):
     figure = group_panels({f"figure {k}": VALUES for k in range(count)}, title="t")
     assert [ax.get_ylabel() for ax in figure.axes] == [f"figure {k}" for k in range(count)]
     specs = [ax.get_subplotspec() for ax in figure.axes]
     assert {spec.get_gridspec().ncols for spec in specs if spec is not None} == {columns}
 
 
-def test_one_figure_over_another() -> None:
+def test_one_figure_over_another():
     pairs = {"rotation": [(1.0, 0.5), (3.0, 0.7), (2.0, 0.1)], "wedge": [(None, 0.5), (4.0, 0.6)]}
     ax = plot_two_figures(pairs, across="area", up="F_SF")
     assert [value[0] for value in _line(ax, "median-rotation").get_data()] == [2.0, 0.5]

@@ -17,11 +17,11 @@ from drystone_lab.pictures.walls import (
 from tests.drawing.examples import CLUSTERS, WEDGE, wall
 
 
-def _panel(title: str, aspect: float) -> Panel:
+def _panel(title, aspect):
     return Panel(title, aspect, lambda ax: ax.plot([0, 1], [0, 1], label="line"))
 
 
-def test_panels_go_from_left_to_right_and_down_and_never_overlap() -> None:
+def test_panels_go_from_left_to_right_and_down_and_never_overlap():
     panels = [_panel("a", 0.2), _panel("b\nsecond", 0.5), EMPTY, _panel("d", 0.3)]
     figure = sheet_of(panels, 2)
     a, b, d = figure.axes
@@ -34,7 +34,7 @@ def test_panels_go_from_left_to_right_and_down_and_never_overlap() -> None:
     assert max(box.y1 for box in boxes) < 1
 
 
-def test_a_panel_has_the_height_of_the_tallest_of_its_row() -> None:
+def test_a_panel_has_the_height_of_the_tallest_of_its_row():
     figure = sheet_of([_panel("", 0.2), _panel("", 0.5), _panel("", 0.3)], 2)
     inches = figure.get_size_inches()
     sizes = [ax.get_position(original=True).size * inches for ax in figure.axes]
@@ -43,12 +43,12 @@ def test_a_panel_has_the_height_of_the_tallest_of_its_row() -> None:
 
 
 @pytest.mark.parametrize(("panels", "columns"), [([], 1), ([EMPTY], 0)])
-def test_there_must_be_something(panels: list[Panel], columns: int) -> None:
+def test_there_must_be_something(panels, columns):
     with pytest.raises(ValueError, match="a panel and a column"):
         sheet_of(panels, columns)
 
 
-def test_every_wall_is_drawn_whole_under_its_title() -> None:
+def test_every_wall_is_drawn_whole_under_its_title():
     figure = plot_walls([("one", wall(), CLUSTERS), ("two\nlines", wall(), None)], 2)
     assert [ax.get_title(loc="left") for ax in figure.axes] == ["one", "two\nlines"]
     for ax in figure.axes:
@@ -58,14 +58,14 @@ def test_every_wall_is_drawn_whole_under_its_title() -> None:
         assert ax.get_legend() is None
 
 
-def test_a_panel_has_the_shape_of_its_picture() -> None:
+def test_a_panel_has_the_shape_of_its_picture():
     site = wall().site
     ax = plot_wall(wall())
     (x0, x1), (y0, y1) = ax.get_xlim(), ax.get_ylim()
     assert wall_aspect(site.height_px / site.width_px) == pytest.approx((y1 - y0) / (x1 - x0))
 
 
-def test_masonry_is_coloured_by_cluster_and_in_source_px() -> None:
+def test_masonry_is_coloured_by_cluster_and_in_source_px():
     labels = np.kron([[1, 2], [7, 7]], np.ones((4, 10), int)).astype(np.uint32)
     ax = plot_masonry(labels, {1: 2, 7: 1}, units_per_px=5.0)
     colours = {p.get_gid(): p.get_facecolor() for p in ax.patches if p.get_gid() != "ground"}
@@ -77,5 +77,5 @@ def test_masonry_is_coloured_by_cluster_and_in_source_px() -> None:
     assert panel.get_xlim() == ax.get_xlim()
 
 
-def _hex(colour: tuple[float, ...]) -> str:
+def _hex(colour):
     return "#" + "".join(f"{round(255 * part):02x}" for part in colour[:3])

@@ -12,7 +12,6 @@ from drystone_lab.public.suites import (
     method_named,
     walls_of,
 )
-from drystone_lab.walls import Target
 
 GENERATED = [wall for wall in walls_of("all") if wall.source.kind != "published"]
 
@@ -44,7 +43,7 @@ AREAS_PX = {
 
 
 @pytest.mark.parametrize("wall", GENERATED, ids=lambda wall: wall.name)
-def test_stones_fill_85_percent(wall: Target):
+def test_stones_fill_85_percent(wall):
     stones = wall.source.stones(None)
     assert stones.total_area_px == AREAS_PX[wall.name]
     assert stones.total_area_px / (wall.width * wall.height) == pytest.approx(0.85, abs=0.01)

@@ -1,8 +1,5 @@
 """The yardstick of the public benchmark: strips packed without gravity."""
 
-from pathlib import Path
-from typing import Any
-
 import pytest
 
 from drystone.errors import UsageError
@@ -19,9 +16,9 @@ STAMP = Stamp("0.1.0", "2026-01-01T00:00:00+00:00", "Linux x86_64")
 WALL = walls_of("bricks")[0]
 
 
-def packing_into(monkeypatch: pytest.MonkeyPatch, width: float) -> list[tuple[object, ...]]:
+def packing_into(monkeypatch, width):
     """Pack everything into a strip of a width; return what is asked."""
-    asked: list[tuple[object, ...]] = []
+    asked = []
 
     def packed(_packer, stones, height, turns, seconds, seed):
         asked.append((len(stones), height, turns, seconds, seed))
@@ -34,9 +31,7 @@ def packing_into(monkeypatch: pytest.MonkeyPatch, width: float) -> list[tuple[ob
 
 
 @pytest.mark.parametrize(("strip", "over"), [(300.0, 300.0), (60.0, 120.0)])
-def test_it_fills_a_strip_as_high_as_the_wall(
-    monkeypatch: pytest.MonkeyPatch, strip: float, over: float
-) -> None:
+def test_it_fills_a_strip_as_high_as_the_wall(monkeypatch, strip, over):
     asked = packing_into(monkeypatch, strip)
     outcome = execute(method_named("spyrrow").run(WALL, 3), None)
     stones = WALL.source.stones(None)
@@ -47,7 +42,7 @@ def test_it_fills_a_strip_as_high_as_the_wall(
     assert {k for k, v in outcome.figures.items() if v is None} == {*FIGURES} - {"F_SF", "stones"}
 
 
-def test_it_is_in_tables_but_in_no_pairs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_it_is_in_tables_but_in_no_pairs(monkeypatch, tmp_path):
     packing_into(monkeypatch, 150.0)
     policies = ("paper", "spyrrow", "lowest")
     settings = BenchSettings(policies=policies, quick=True, seeds=1, store=tmp_path)
@@ -70,12 +65,12 @@ def test_it_is_in_tables_but_in_no_pairs(monkeypatch: pytest.MonkeyPatch, tmp_pa
     assert run_public("bricks", settings, STAMP)[0].rows == walls.rows
 
 
-def history(folder: Path) -> list[dict[str, Any]]:
+def history(folder):
     return history_table(medians_of(kept_runs(folder))).records()
 
 
-def test_what_is_missing_is_said_before_anything_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
-    def absent(name: str) -> None:
+def test_what_is_missing_is_said_before_anything_is_done(monkeypatch):
+    def absent(name):
         raise ImportError(name)
 
     monkeypatch.setattr(packing, "import_module", absent)

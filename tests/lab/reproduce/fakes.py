@@ -1,12 +1,11 @@
 """Items that take no time, under names of the paper's."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from matplotlib.figure import Figure
 
 from drystone.errors import InputError
-from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
+from drystone_lab.reproduce.item import ItemFigure, PaperItem
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.spec import RunSpec, generated
 
@@ -21,7 +20,7 @@ class Walls:
     outcomes: tuple[RunOutcome, ...]
 
 
-def walls(context: Context) -> Walls:
+def walls(context):
     """Two walls of bricks; one in the quick version."""
     seeds = range(context.seed, context.seed + (1 if context.quick else 2))
     runs = tuple(RunSpec(source=BRICKS, width=40, height=20, seed=seed) for seed in seeds)
@@ -29,30 +28,30 @@ def walls(context: Context) -> Walls:
     return Walls(runs, outcomes)
 
 
-def _rows(found: Walls) -> Rows:
+def _rows(found):
     for run, outcome in zip(found.runs, found.outcomes, strict=True):
         yield run.seed, outcome.figures["F_SF"], None
 
 
-def _times(found: Walls) -> Rows:
+def _times(found):
     for run, outcome in zip(found.runs, found.outcomes, strict=True):
         yield run.seed, outcome.times["wall"]
 
 
-def _picture(found: Walls) -> ItemFigure:
+def _picture(found):
     figure = Figure(figsize=(2, 1))
     filled = [outcome.figures["F_SF"] for outcome in found.outcomes]
     figure.add_subplot().plot([run.seed for run in found.runs], filled, marker="o")
     return ItemFigure("filling", figure)
 
 
-def broken(context: Context) -> Walls:
+def broken(context):
     """An error with a code, after a wall was planned."""
     walls(context)
     raise InputError("E104", "there are no stones.", where="broken", cure="Look for some.")
 
 
-def interrupted(context: Context) -> Walls:
+def interrupted(context):
     """Ctrl-C after a wall was planned."""
     walls(context)
     raise KeyboardInterrupt
@@ -80,7 +79,7 @@ WORDS = PaperItem(
 )
 
 
-def _said(item: PaperItem, **words: object) -> PaperItem:
+def _said(item, **words):
     return replace(item, words={**item.words, **words})
 
 
@@ -89,16 +88,16 @@ NEEDY = _said(WORDS, title="published stones", section="§5.1",
 BROKEN = replace(_said(FILLING, title="no stones", section="B.1"), study=broken)
 INTERRUPTED = replace(_said(FILLING, title="interrupted", section="§5.2"), study=interrupted)
 
-ITEMS: Mapping[str, PaperItem] = {
+ITEMS = {
     "fig5": FILLING, "fig13": NEEDY, "beta": WORDS, "fig17": INTERRUPTED, "figB33": BROKEN,
 }  # fmt: skip
 
 
-def counted(item: PaperItem) -> tuple[PaperItem, list[Context]]:
+def counted(item):
     """An item, and the contexts that it is made with."""
-    contexts: list[Context] = []
+    contexts = []
 
-    def noted(context: Context) -> object:
+    def noted(context):
         contexts.append(context)
         return item.study(context)
 

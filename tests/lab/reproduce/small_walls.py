@@ -2,11 +2,9 @@
 
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
-from typing import Any
 
-from drystone_lab.reproduce.construction import Construction, construction
-from drystone_lab.reproduce.item import Context, Output, PaperItem
+from drystone_lab.reproduce.construction import construction
+from drystone_lab.reproduce.item import Context
 from drystone_lab.runs.outcome import Runner, RunStore
 from drystone_lab.runs.spec import generated
 from drystone_lab.walls import Target
@@ -19,38 +17,38 @@ SHARP = Target("sharp", generated("polygon", 3, count=14, noise=0.3), 700, 300, 
 """Polygons of which most fall where they are tried."""
 
 
-def context(folder: Path, data: Path | None = None) -> Context:
+def context(folder, data=None):
     """A context that keeps its runs in a folder."""
     return Context(Runner(RunStore(folder), data))
 
 
-def built(folder: Path, wall: Target) -> Construction:
+def built(folder, wall):
     """The run that the items look at."""
     return construction(context(folder), wall.run(1))
 
 
-def on(item: PaperItem, *walls: Target, seeds: int = 2) -> PaperItem:
+def on(item, *walls, seeds=2):
     """An item that builds walls, of these and from so many seeds."""
-    study: Any = item.study
+    study = item.study
     inner = study.keywords["study"] if isinstance(study, partial) else study
     inner = replace(inner, walls=walls, quick_walls=(), seeds=seeds, quick_seeds=seeds)
     changed = partial(study.func, study=inner) if isinstance(study, partial) else inner
     return replace(item, study=changed)
 
 
-def of(item: PaperItem, *given: object, **named: object) -> PaperItem:
+def of(item, *given, **named):
     """An item whose study takes these instead of what it usually takes."""
-    return replace(item, study=lambda context: item.study(context, *given, **named))  # type: ignore[call-arg]
+    return replace(item, study=lambda context: item.study(context, *given, **named))
 
 
-def gids(output: Output, picture: str) -> list[str]:
+def gids(output, picture):
     """Names of everything that is drawn in a picture."""
     (figure,) = [one.figure for one in output.pictures if one.name == picture]
     children = [artist for ax in figure.axes for artist in ax.get_children()]
     return [str(artist.get_gid()) for artist in children if artist.get_gid() is not None]
 
 
-def rows(output: Output, table: str) -> list[dict[str, object]]:
+def rows(output, table):
     """The rows of a table, a dict each."""
     (found,) = [one for name, one in output.tables if name == table]
     return list(found.records())

@@ -14,7 +14,7 @@ from drystone_lab.reproduce.item import claims_table, sentences
 from tests.lab.reproduce.made_outcomes import outcome
 
 
-def test_medians_and_ranges() -> None:
+def test_medians_and_ranges():
     walls = [
         outcome(placed=8, F_SF=0.7, F_LR=None),
         outcome(placed=10, F_SF=0.9, F_LR=0.25),
@@ -29,14 +29,14 @@ def test_medians_and_ranges() -> None:
     assert cells["F_AV median"] == 1.0
 
 
-def test_a_figure_that_no_wall_has() -> None:
+def test_a_figure_that_no_wall_has():
     cells = dict(zip(COLUMNS, summary([outcome(F_LR=None)] * 2), strict=True))
     assert (cells["F_LR median"], cells["F_LR range"]) == (None, None)
     assert figures_of([outcome(F_LR=None), outcome(F_LR=0.5)], "F_LR") == [0.5]
 
 
 @pytest.mark.parametrize("figure", ["F_SF", "F_AH"])
-def test_counts_are_those_of_all_pairs(figure: str) -> None:
+def test_counts_are_those_of_all_pairs(figure):
     rng = np.random.default_rng(4)
     first, second = rng.integers(0, 4, (2, 40)).astype(float)
     more, less = int((first > second).sum()), int((first < second).sum())
@@ -45,33 +45,30 @@ def test_counts_are_those_of_all_pairs(figure: str) -> None:
     assert found == (figure, better, 40 - better - worse, worse, np.median(first - second))
 
 
-def test_what_is_missing_makes_no_pair() -> None:
+def test_what_is_missing_makes_no_pair():
     assert wins([None, 1.0], [2.0, None], "F_LR") == ("F_LR", 0, 0, 0, None)
     assert wins([0.5, 0.5], [0.5 + 1e-12, None], "F_LR")[2] == 1
 
 
-def test_a_trend_is_the_correlation_of_the_ranks() -> None:
+def test_a_trend_is_the_correlation_of_the_ranks():
     rng = np.random.default_rng(3)
     x = np.repeat([10, 20, 30, 40], 3)
     y = np.round(x / 40 + rng.normal(0, 0.3, 12), 1)
     ranks = [(v[:, None] > v).sum(axis=1) + ((v[:, None] == v).sum(axis=1) + 1) / 2 for v in (x, y)]
     found = trend(list(zip(x.tolist(), y.tolist(), strict=True)))
-    assert found is not None
     assert found.rho == pytest.approx(np.corrcoef(*ranks)[0, 1], abs=1e-6)
     falling = trend([(n, -n) for n in range(8)])
     mixed = trend(list(enumerate([3.0, 1.0, 4.0, 1.0, 5.0, 2.0, 6.0, 0.0])))
-    assert falling is not None
-    assert mixed is not None
     assert (falling.rho, falling.clear, mixed.clear) == (-1, True, False)
 
 
-def test_there_is_no_trend_of_few_or_equal_values() -> None:
+def test_there_is_no_trend_of_few_or_equal_values():
     assert trend([(1, 1.0), (2, 2.0), (3, 3.0), (4, None)]) is None
     assert trend([(n, 1.0) for n in range(9)]) is None
     assert trend([(1, float(n)) for n in range(9)]) is None
 
 
-def test_claims_that_cannot_be_told_do_not_count() -> None:
+def test_claims_that_cannot_be_told_do_not_count():
     found = [("A.", "one", True), ("B.", "two", False), ("C.", "three", None)]
     told = sentences(found)
     assert told[0] == "Of 2 claims of the paper that can be told, 1 agree."

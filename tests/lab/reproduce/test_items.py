@@ -14,7 +14,7 @@ PUBLISHED = {file.name for published in SETS.values() for file in published.file
 
 
 @pytest.mark.parametrize("name", ITEMS)
-def test_an_item_says_what_it_is(name: str) -> None:
+def test_an_item_says_what_it_is(name):
     item = item_named(name)
     assert isinstance(item, PaperItem)
     assert item.words is ITEMS[name]
@@ -28,7 +28,7 @@ def test_an_item_says_what_it_is(name: str) -> None:
     assert not any(table.endswith("_times") for table in (*item.tables, *item.times))
 
 
-def test_names() -> None:
+def test_names():
     assert item_names("all") == tuple(ITEMS)
     assert {*ALSO.values()} <= {*ITEMS}
     assert not {*ALSO} & {*ITEMS}
@@ -37,7 +37,7 @@ def test_names() -> None:
         item_names("fig99")
 
 
-def test_names_are_there_without_waiting() -> None:
+def test_names_are_there_without_waiting():
     code = (
         "import sys\n"
         "from drystone.cli import main\n"

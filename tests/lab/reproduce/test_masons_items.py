@@ -1,7 +1,6 @@
 """Items that set walls beside the masons' and beside the paper's figures."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,14 +8,11 @@ from PIL import Image
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.metrics.measure import measure_labels
-from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
 from drystone_lab.reproduce import base_case
-from drystone_lab.reproduce.item import Context
 from drystone_lab.reproduce.masons import (
     FIG13,
     TABLE2,
-    TracedWall,
     best_trial,
     dilated,
     drawn_together,
@@ -24,7 +20,6 @@ from drystone_lab.reproduce.masons import (
     tenths,
     treatments,
 )
-from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.spec import published
 from drystone_lab.walls import Target
 from tests.lab.reproduce.made_outcomes import outcome as made
@@ -35,7 +30,7 @@ SEEDS = (1, 2)
 
 
 @pytest.fixture(scope="module")
-def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def data(tmp_path_factory):
     """A folder with a wall of masons: courses of blocks with gaps of a pixel above and beside."""
     folder = tmp_path_factory.mktemp("data")
     labels = np.zeros((33, 68), np.uint16)
@@ -49,16 +44,16 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def here(tmp_path_factory: pytest.TempPathFactory, data: Path) -> Context:
+def here(tmp_path_factory, data):
     return context(tmp_path_factory.mktemp("runs"), data)
 
 
 @pytest.fixture(scope="module")
-def masons(data: Path) -> TracedWall:
+def masons(data):
     return masons_wall(BLOCKS, data)
 
 
-def test_gaps_are_closed_in_every_way(masons: TracedWall) -> None:
+def test_gaps_are_closed_in_every_way(masons):
     found = {way.name: way for way in treatments(masons)}
     assert (found["as traced"].F_LR, found["as traced"].status) == (None, "unstable")
     assert found["gaps up to 1 px closed"].status == "optimal"
@@ -68,7 +63,7 @@ def test_gaps_are_closed_in_every_way(masons: TracedWall) -> None:
     assert (masons.papers_way > 0).sum() > (masons.labels > 0).sum()
 
 
-def test_fig13(here: Context, masons: TracedWall) -> None:
+def test_fig13(here, masons):
     output = of(FIG13, (BLOCKS,)).make(here)
     traced, closed, papers = rows(output, "fig13")
     measured = measure_labels(masons.labels)
@@ -81,7 +76,7 @@ def test_fig13(here: Context, masons: TracedWall) -> None:
     assert len(output.pictures[0].figure.axes) == 2
 
 
-def test_base_case(here: Context) -> None:
+def test_base_case(here):
     output = on(base_case.BASE_CASE, RUBBLE).make(here)
     outcomes = here.run([RUBBLE.run(seed) for seed in SEEDS])
     (row,) = rows(output, "fig14")
@@ -98,7 +93,7 @@ def test_base_case(here: Context) -> None:
     assert {"fig14", "fig15_left", "fig15_right", "fig14_seeds"} <= names
 
 
-def test_table2(here: Context) -> None:
+def test_table2(here):
     stand_in = replace(RUBBLE, name="other", number=4, stand_in=True)
     output = on(TABLE2, BLOCKS, stand_in).make(here)
     outcomes = here.run([BLOCKS.run(seed) for seed in SEEDS])
@@ -122,7 +117,7 @@ def test_table2(here: Context) -> None:
     assert len(output.pictures[0].figure.axes) == 4 + 3
 
 
-def _wall(resistance: float | None, filled: float) -> RunOutcome:
+def _wall(resistance, filled):
     return made(F_LR=resistance, F_SF=filled)
 
 
@@ -141,16 +136,16 @@ def _wall(resistance: float | None, filled: float) -> RunOutcome:
         ([_wall(None, 0.84), _wall(0.01, 0.76)], 1),
     ],
 )
-def test_the_best_trial(walls: list[RunOutcome], best: int) -> None:
+def test_the_best_trial(walls, best):
     assert best_trial(walls) == best
 
 
-def test_halves_are_rounded_up_whatever_the_solver_leaves() -> None:
+def test_halves_are_rounded_up_whatever_the_solver_leaves():
     assert [tenths(value) for value in (0.05, 0.15, 0.25, 0.35, 0.45, 0.55)] == [1, 2, 3, 4, 5, 6]
     assert tenths(0.35 - 1e-12) == tenths(0.35 + 1e-12) == 4
 
 
-def _blocks() -> Labels:
+def _blocks():
     labels = np.zeros((12, 30), np.uint32)
     labels[7:11, 3:9] = 5
     labels[6:11, 12:19] = 2
@@ -159,12 +154,12 @@ def _blocks() -> Labels:
     return labels
 
 
-def _distance(labels: Labels, block: int) -> float:
+def _distance(labels, block):
     row, col = np.argwhere(labels == block).mean(axis=0)
     return float(np.hypot(labels.shape[0] - 0.5 - row, col + 0.5))
 
 
-def test_stones_keep_their_shape_and_come_nearer_until_they_are_stopped() -> None:
+def test_stones_keep_their_shape_and_come_nearer_until_they_are_stopped():
     before = _blocks()
     after = drawn_together(before)
     assert after.dtype == before.dtype
@@ -178,7 +173,7 @@ def test_stones_keep_their_shape_and_come_nearer_until_they_are_stopped() -> Non
     assert np.argwhere(after == 2).min(axis=0).tolist() == [7, 10]
 
 
-def test_dilation_is_by_one_pixel_and_takes_nothing_from_others() -> None:
+def test_dilation_is_by_one_pixel_and_takes_nothing_from_others():
     before = _blocks()
     after = dilated(before)
     assert np.array_equal(after[before > 0], before[before > 0])

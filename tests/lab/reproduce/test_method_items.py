@@ -1,7 +1,5 @@
 """The items that show the method on a small run: Table 1, Figs. 3, 4, 10 and 11."""
 
-from pathlib import Path
-
 import pytest
 
 from drystone.model.site import Site
@@ -11,7 +9,7 @@ from drystone_lab.reproduce import method
 from tests.lab.reproduce.small_walls import RUBBLE, context, of, rows
 
 
-def test_table_1_has_the_components_of_our_policies(tmp_path: Path) -> None:
+def test_table_1_has_the_components_of_our_policies(tmp_path):
     table = rows(method.TABLE1.make(context(tmp_path)), "table1")
     assert [row["component"] for row in table] == [name for name, *_ in method.ROWS.values()]
     for row, (_, count, _) in zip(table, method.ROWS.values(), strict=True):
@@ -19,7 +17,7 @@ def test_table_1_has_the_components_of_our_policies(tmp_path: Path) -> None:
     assert len({rule_of(name) for name in method.MARKS}) == 7
 
 
-def test_a_run_is_followed_step_by_step(tmp_path: Path) -> None:
+def test_a_run_is_followed_step_by_step(tmp_path):
     output = of(method.WORKFLOW, RUBBLE).make(context(tmp_path))
     table = rows(output, "steps")
     assert [row["step"] for row in table] == list(range(1, len(table) + 1))
@@ -30,7 +28,7 @@ def test_a_run_is_followed_step_by_step(tmp_path: Path) -> None:
     assert table[-1]["filled"] == pytest.approx(area / wall.labels.size, abs=1e-4)
 
 
-def test_the_step_is_the_planners_own(tmp_path: Path) -> None:
+def test_the_step_is_the_planners_own(tmp_path):
     step = method.selection_step(context(tmp_path), RUBBLE)
     stones = RUBBLE.source.stones(None)
     site = Site.from_source(*RUBBLE.size(stones), RUBBLE.scale)
@@ -45,7 +43,7 @@ def test_the_step_is_the_planners_own(tmp_path: Path) -> None:
     assert [row["stone"] for row in table if row["chosen"]] == [chosen.stone_id]
 
 
-def test_forces_on_two_stones_are_in_balance(tmp_path: Path) -> None:
+def test_forces_on_two_stones_are_in_balance(tmp_path):
     found = method.two_stones(context(tmp_path))
     assert found.both.right.alpha == pytest.approx(found.model.mu)
     table = rows(method.RIGID.make(context(tmp_path)), "forces")

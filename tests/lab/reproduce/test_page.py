@@ -1,8 +1,5 @@
 """The report of the paper's tables and figures."""
 
-from pathlib import Path
-from typing import Any
-
 import pytest
 
 from drystone_lab.reproduce.page import LONG, duration, heading, write_item_page, write_page
@@ -12,7 +9,7 @@ from tests.drawing.report.test_report import Page
 ORDER = ("fig5", "fig13", "table2")
 
 
-def table(name: str, rows: int) -> dict[str, Any]:
+def table(name, rows):
     return {
         "name": name, "file": f"{name}.csv", "title": f"Table of {name}",
         "columns": ["wall", "F_SF <share>"], "rows": [["R", 0.123456789 + k] for k in range(rows)],
@@ -20,7 +17,7 @@ def table(name: str, rows: int) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def record(name: str, *, quick: bool = False, seed: int = 1) -> dict[str, Any]:
+def record(name, *, quick=False, seed=1):
     return {
         "name": name, "title": "walls <of> stones", "section": "§5.1",
         "request": {"version": "9.8", "quick": quick, "seed": seed},
@@ -39,14 +36,14 @@ def record(name: str, *, quick: bool = False, seed: int = 1) -> dict[str, Any]:
 
 
 @pytest.fixture
-def page(tmp_path: Path) -> Page:
+def page(tmp_path):
     records = [record("table2", quick=True, seed=3), record("fig5")]
     misses = {"fig13": {"title": "masons", "section": "§5.1", "error": "E100 R.png: is not there."}}
     path = write_page(tmp_path / "index.html", records, misses, ORDER)
     return Page(path.read_text(encoding="utf-8"))
 
 
-def test_it_reads_in_the_order_of_the_paper(page: Page) -> None:
+def test_it_reads_in_the_order_of_the_paper(page):
     heads = [attributes["id"] for attributes in page.all("h2") if "id" in attributes]
     assert heads == ["contents", *ORDER]
     links = [attributes["href"] for attributes in page.all("a")]
@@ -56,7 +53,7 @@ def test_it_reads_in_the_order_of_the_paper(page: Page) -> None:
     assert page.text.index("In the paper") < page.text.index("It is .89 here.")
 
 
-def test_it_says_what_it_was_made_with(page: Page) -> None:
+def test_it_says_what_it_was_made_with(page):
     assert (
         "2 of 3 were made, 1 as quick versions and 1 in full, with drystone 9.8, "
         "2026-01-01 to 2026-01-03, on Linux x86_64, 2 cores." in page.text
@@ -66,7 +63,7 @@ def test_it_says_what_it_was_made_with(page: Page) -> None:
     assert "E100 R.png: is not there." in page.text
 
 
-def test_files_are_linked_where_they_are(page: Page) -> None:
+def test_files_are_linked_where_they_are(page):
     assert [image["src"] for image in page.all("img")] == ["fig5/p.png", "table2/p.png"]
     links = {attributes["href"] for attributes in page.all("a")}
     files = ("p.png", "p.svg", "short.csv", "long.csv", "t_times.csv", "fig5.json")
@@ -74,27 +71,27 @@ def test_files_are_linked_where_they_are(page: Page) -> None:
     assert not any("://" in link for link in links)
 
 
-def test_pictures_have_texts(page: Page) -> None:
+def test_pictures_have_texts(page):
     for image in page.all("img"):
         assert "Walls of 'R'." in image["alt"]
         assert (image["width"], image["height"]) == ("1000", "500")
 
 
-def test_long_tables_are_folded(page: Page) -> None:
+def test_long_tables_are_folded(page):
     assert len(page.all("details")) == 1 + 2  # what it was made with, and one an item
     assert f"Table of long ({LONG + 1} rows)" in page.text
     assert "0.12346" in page.text
     assert "0.123456789" not in page.text
 
 
-def test_a_page_of_one(tmp_path: Path) -> None:
+def test_a_page_of_one(tmp_path):
     path = write_item_page(tmp_path / "index.html", record("fig5"))
     page = Page(path.read_text(encoding="utf-8"))
     assert page.all("a")[0]["href"] == "../index.html#fig5"
     assert [image["src"] for image in page.all("img")] == ["p.png"]
 
 
-def test_a_page_of_nothing(tmp_path: Path) -> None:
+def test_a_page_of_nothing(tmp_path):
     path = write_page(
         tmp_path / "index.html",
         [],
@@ -104,7 +101,7 @@ def test_a_page_of_nothing(tmp_path: Path) -> None:
     assert "None of 3 was made so far." in path.read_text(encoding="utf-8")
 
 
-def test_words() -> None:
+def test_words():
     assert heading("table2", "walls") == "Table 2: walls"
     assert heading("figB30-32", "x") == "Fig. B.30\N{EN DASH}32: x"
     assert heading("beta", "the threshold") == "The threshold"

@@ -1,10 +1,8 @@
 """The items about the walls of §5.1 and §5.2, on small generated walls."""
 
 from dataclasses import replace
-from pathlib import Path
 from statistics import median
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -14,8 +12,6 @@ from drystone.model.site import Site
 from drystone.model.wall import Group, Wall
 from drystone.planner.profile import StepTime
 from drystone_lab.reproduce import base_case, noise, other_stones, times, ways
-from drystone_lab.reproduce.item import Context, Output
-from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.runs.spec import generated
 from drystone_lab.timed_walls import TimedWall
 from drystone_lab.walls import Target
@@ -29,23 +25,23 @@ SHARP = replace(RUBBLE, name="sharp", source=replace(RUBBLE.source, seed=8), num
 
 
 @pytest.fixture(scope="module")
-def here(tmp_path_factory: pytest.TempPathFactory) -> Context:
+def here(tmp_path_factory):
     return context(tmp_path_factory.mktemp("runs"))
 
 
-def _outcomes(here: Context, *changes: tuple[str, str | float | bool]) -> list[RunOutcome]:
+def _outcomes(here, *changes):
     return list(here.run([RUBBLE.run(seed, *changes) for seed in SEEDS]))
 
 
-def _filled(outcomes: list[RunOutcome]) -> list[float]:
+def _filled(outcomes):
     return [float(outcome.figures["F_SF"] or 0) for outcome in outcomes]
 
 
-def _drawn(output: Output) -> dict[str, int]:
+def _drawn(output):
     return {picture.name: len(picture.figure.axes) for picture in output.pictures}
 
 
-def test_beta(here: Context) -> None:
+def test_beta(here):
     output = on(ways.BETA, RUBBLE).make(here)
     table = {row["beta"]: row for row in rows(output, "beta")}
     assert list(table) == ["0", "0.5", "0.7", "0.9"]
@@ -58,7 +54,7 @@ def test_beta(here: Context) -> None:
     assert _drawn(output) == {"beta": 4}
 
 
-def test_sampling(here: Context) -> None:
+def test_sampling(here):
     output = on(ways.SAMPLING, RUBBLE).make(here)
     table = {row["sampling"]: row for row in rows(output, "fig16")}
     full = _outcomes(here, ("sampling", "full"))
@@ -75,7 +71,7 @@ def test_sampling(here: Context) -> None:
     assert _drawn(output) == {"fig16": 4, "fig16_seeds": 6}
 
 
-def test_wedges(here: Context) -> None:
+def test_wedges(here):
     output = on(base_case.WEDGES, RUBBLE, SHARP, seeds=1).make(replace(here, seed=2))
     table = rows(output, "fig19")
     assert table
@@ -94,16 +90,16 @@ def test_wedges(here: Context) -> None:
         assert (chosen[0].area_px if chosen else None) == largest
 
 
-def test_the_largest_wedges_are_shown_once() -> None:
+def test_the_largest_wedges_are_shown_once():
     wall = Wall.empty(Site(200, 40))
     # By column and size; the second largest is seen beside the largest.
     for number, (column, size) in enumerate(((10, 2), (100, 6), (110, 5), (60, 4), (190, 3)), 1):
         wedge = Wedge(number, 0, np.ones((size, size), bool), 20, column)
-        wall = Wall(wall.site, wall.labels, (*wall.groups, Group(None, (wedge,))))  # type: ignore[arg-type]
+        wall = Wall(wall.site, wall.labels, (*wall.groups, Group(None, (wedge,))))
     assert [wedge.id for wedge in base_case.shown(wall)] == [2, 4, 5]
 
 
-def test_stabilisation(here: Context) -> None:
+def test_stabilisation(here):
     output = on(ways.STABILISATION, RUBBLE).make(here)
     table = {row["stabilise"]: row for row in rows(output, "fig20")}
     assert list(table) == ["both", "rotation", "wedge", "none"]
@@ -120,7 +116,7 @@ def test_stabilisation(here: Context) -> None:
     assert f"largest with {best}" in str(rows(output, "claims")[0]["here"])
 
 
-def test_both_ends(here: Context) -> None:
+def test_both_ends(here):
     output = on(ways.BOTH_ENDS, RUBBLE).make(here)
     one, two = rows(output, "fig21")
     assert (one["built"], two["built"]) == ("one-sided", "two-sided")
@@ -131,7 +127,7 @@ def test_both_ends(here: Context) -> None:
     assert _drawn(output) == {"fig21": 2, "fig21_seeds": 5}
 
 
-def test_all_methods(here: Context) -> None:
+def test_all_methods(here):
     wall = replace(RUBBLE, name="PR", width=RUBBLE.width + 0.5)
     output = on(ways.ALL_METHODS, wall, seeds=1).make(here)
     table = rows(output, "figB30_32")
@@ -148,7 +144,7 @@ def test_all_methods(here: Context) -> None:
     assert _drawn(output) == {"figB31": 8}
 
 
-def test_noise(here: Context) -> None:
+def test_noise(here):
     output = on(noise.NOISE, *(replace(SHARP, number=n, stand_in=True) for n in (30, 80))).make(
         here
     )
@@ -165,7 +161,7 @@ def test_noise(here: Context) -> None:
     assert [picture.name for picture in output.pictures] == ["fig22", "fig23", "fig24"]
 
 
-def test_orientations(here: Context) -> None:
+def test_orientations(here):
     output = on(noise.TURNED, RUBBLE, seeds=1).make(here)
     few, many = rows(output, "walls")
     assert (few["orientations"], many["orientations"]) == ("quarter", "10deg")
@@ -176,13 +172,13 @@ def test_orientations(here: Context) -> None:
 
 
 @pytest.mark.parametrize(("more", "agrees"), [(0.1, True), (0.0, False), (-0.1, False)])
-def test_a_gain_is_told_from_chance(more: float, agrees: bool) -> None:
+def test_a_gain_is_told_from_chance(more, agrees):
     assert noise.gain_of("filling", [more] * 6).holds is agrees
     assert noise.gain_of("filling", [more] * 4).holds is None
     assert noise.gain_of("filling", []).holds is None
 
 
-def test_rounded_stones(here: Context) -> None:
+def test_rounded_stones(here):
     assert [len(wall.here(None).source.stones(None)) for wall in other_stones.KINDS] == [100] * 4
     kinds = [replace(RUBBLE, name=f"{kind} px") for kind in ("round, 1", "round, 1 to 2")]
     few = [replace(wall, name=wall.name.replace("round", "elliptic")) for wall in kinds]
@@ -192,9 +188,9 @@ def test_rounded_stones(here: Context) -> None:
     assert [picture.name for picture in output.pictures] == ["fig26", "fig27"]
 
 
-def test_more_walls_tell_a_difference() -> None:
-    def holds(*firsts: float, count: int = 5) -> bool | None:
-        walls: list[Any] = [
+def test_more_walls_tell_a_difference():
+    def holds(*firsts, count=5):
+        walls = [
             SimpleNamespace(
                 wall=SimpleNamespace(name=shape),
                 outcomes=[SimpleNamespace(figures=dict.fromkeys(("F_SF", "F_AV"), first + k / 100))
@@ -203,12 +199,12 @@ def test_more_walls_tell_a_difference() -> None:
             for shape in other_stones.SHAPES
             for first in firsts
         ]  # fmt: skip
-        return next(other_stones.rounded_findings(SimpleNamespace(all=walls))).holds  # type: ignore[arg-type]
+        return next(other_stones.rounded_findings(SimpleNamespace(all=walls))).holds
 
     assert [holds(0.5, 0.6), holds(0.6, 0.5), holds(0.5, 0.6, count=3)] == [True, False, None]
 
 
-def test_variants(here: Context) -> None:
+def test_variants(here):
     walls = (replace(RUBBLE, name="free"), replace(RUBBLE, name="framed", width=104))
     found = ways.named_variants(here, ((walls[0], ways.NAMED), (walls[1], {})), 2)
     assert [(one.wall.name, one.way) for one in found] == [
@@ -218,14 +214,14 @@ def test_variants(here: Context) -> None:
         assert all(spec.changes == ways.NAMED.get(one.way, ()) for spec in one.specs)
 
 
-def test_resolutions(here: Context) -> None:
+def test_resolutions(here):
     output = of(times.RESOLUTION, RUBBLE, (0.5, 1.0)).make(replace(here, quick=True))
     assert [row["wall, px"] for row in rows(output, "walls")] == ["50 x 20", "100 x 40"]
     assert [name for name, _ in output.times] == ["claims", "released", "pixels"]
     assert [picture.name for picture in output.pictures] == ["fig29", "fig29-time"]
 
 
-def test_stones_and_clusters(here: Context) -> None:
+def test_stones_and_clusters(here):
     sizes = times.Sizes((8, 12), (0.1,))
     output = of(times.GROWTH, sizes).make(replace(here, quick=True))
     found = rows(output, "walls")
@@ -238,7 +234,7 @@ def test_stones_and_clusters(here: Context) -> None:
     assert 2 * stones < int(str(full["candidates"])) <= 4 * (stones + 8)
 
 
-def test_steps_by_part() -> None:
+def test_steps_by_part():
     steps = [
         StepTime(n, 4, 0.01, {"placement": 0.006, "stabilisation": 0.0001, "contacts": 0.001 * n})
         for n in range(1, 9)
@@ -250,11 +246,10 @@ def test_steps_by_part() -> None:
     assert [one.holds for one in found] == [True, True, True, True, False]
 
 
-def test_the_times_of_the_authors(data_dir: Path, tmp_path: Path) -> None:
+def test_the_times_of_the_authors(data_dir, tmp_path):
     assert times.released(tmp_path, "variant") is None
     for name, count in (("variant", 812), ("full", 2112), ("0.5", 812), ("2.0", 812)):
         found = times.released(data_dir, name)
-        assert found is not None
         assert found[:2] == (32, count)
     steps = tuple(StepTime(n, 4, 0.01, {"placement": 0.005, "indices": 0.005}) for n in range(9))
     wall = TimedWall(Site(280, 80), 0.5, steps)

@@ -9,7 +9,7 @@ from drystone_lab.rl.draw import KINDS, DrawSettings, draw_wall, in_order
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_size_and_surplus_are_those_asked_for(kind: str) -> None:
+def test_size_and_surplus_are_those_asked_for(kind):
     settings = DrawSettings(kinds=(kind,), stones=30, size_px=16.0, surplus=1.3, aspect=2.0)
     stones, site = draw_wall(settings, np.random.default_rng(3))
     assert [stone.id for stone in stones] == list(range(1, 31))
@@ -19,8 +19,8 @@ def test_size_and_surplus_are_those_asked_for(kind: str) -> None:
     assert site.width_px / site.height_px == pytest.approx(2.0, rel=0.03)
 
 
-def test_equal_seeds_equal_walls() -> None:
-    def masks(seed: int) -> list[bytes]:
+def test_equal_seeds_equal_walls():
+    def masks(seed):
         stones, _ = draw_wall(DrawSettings(stones=5), np.random.default_rng(seed))
         return [stone.mask.tobytes() for stone in stones]
 
@@ -28,7 +28,7 @@ def test_equal_seeds_equal_walls() -> None:
     assert masks(4) != masks(5)
 
 
-def test_order_keeps_every_stone() -> None:
+def test_order_keeps_every_stone():
     bricks = brick_stones(BrickSettings(count=8, halves=4), np.random.default_rng(1))
     again = in_order(bricks, np.random.default_rng(2))
     widths = [[stone.mask.shape[1] for stone in some] for some in (bricks, again)]
@@ -41,7 +41,7 @@ def test_order_keeps_every_stone() -> None:
     [{"kinds": ()}, {"kinds": ("marble",)}, {"stones": 2}, {"size_px": 3.0}, {"surplus": 0.0},
      {"aspect": 0.0}],
 )  # fmt: skip
-def test_refuses(wrong: dict[str, object]) -> None:
+def test_refuses(wrong):
     with pytest.raises(UsageError) as caught:
-        DrawSettings(**wrong)  # type: ignore[arg-type]
+        DrawSettings(**wrong)
     assert caught.value.code == "E123"

@@ -3,7 +3,6 @@
 from copy import deepcopy
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import gymnasium
 import numpy as np
@@ -20,13 +19,13 @@ from drystone_lab.rl.episode import ARRIVING
 from tests.lab.rl.walls import SMALL, bricks
 
 
-def made(**changes: Any) -> WallEnv:
+def made(**changes):
     env = gymnasium.make(drystone_lab.rl.ENVIRONMENT, **({"draw": SMALL} | changes)).unwrapped
     assert isinstance(env, WallEnv)
     return env
 
 
-def played(env: WallEnv, seed: int) -> tuple[list[float], dict[str, Any], bytes]:
+def played(env, seed):
     """Play an episode at random; return its rewards, the last info, and the bytes of it all."""
     rng = np.random.default_rng(0)
     seen, info = env.reset(seed=seed)
@@ -42,14 +41,14 @@ def played(env: WallEnv, seed: int) -> tuple[list[float], dict[str, Any], bytes]
 
 
 @pytest.mark.parametrize("name", [drystone_lab.rl.ENVIRONMENT, "drystone_lab.rl:drystone/Wall-v0"])
-def test_passes_the_checks_of_gymnasium(name: str) -> None:
+def test_passes_the_checks_of_gymnasium(name):
     # Warnings are errors in these tests.
     check_env(gymnasium.make(name, draw=SMALL, render_mode="rgb_array").unwrapped)
 
 
-def test_rewards_sum_up_to_the_merit_of_the_wall() -> None:
+def test_rewards_sum_up_to_the_merit_of_the_wall():
     env = made()
-    all_rewards: list[float] = []
+    all_rewards = []
     for seed in range(5):
         rewards, info, _ = played(env, seed)
         possible = min(1.0, SMALL.surplus)
@@ -62,14 +61,14 @@ def test_rewards_sum_up_to_the_merit_of_the_wall() -> None:
     assert min(all_rewards) < 0 < max(all_rewards)
 
 
-def test_a_seed_repeats_the_episode() -> None:
+def test_a_seed_repeats_the_episode():
     env = made()
     first = played(env, 5)[2]
     assert played(env, 6)[2] != first
     assert played(env, 5)[2] == first == played(made(), 5)[2]
 
 
-def test_masks_say_what_is_offered() -> None:
+def test_masks_say_what_is_offered():
     env = made(offers=20)
     seen, info = env.reset(seed=1)
     assert env.action_masks().dtype == bool
@@ -86,7 +85,7 @@ def test_masks_say_what_is_offered() -> None:
     assert not env.action_masks().any()
 
 
-def test_illegal_action_puts_the_stone_aside() -> None:
+def test_illegal_action_puts_the_stone_aside():
     env = made(offers=20)
     _, before = env.reset(seed=1)
     _, reward, over, _, info = env.step(np.int64(19))
@@ -95,7 +94,7 @@ def test_illegal_action_puts_the_stone_aside() -> None:
     assert info["stone"] != before["stone"]
 
 
-def test_illegal_action_can_be_an_error() -> None:
+def test_illegal_action_can_be_an_error():
     env = made(offers=20, illegal="error")
     env.reset(seed=1)
     with pytest.raises(UsageError, match="places offered") as caught:
@@ -104,7 +103,7 @@ def test_illegal_action_can_be_an_error() -> None:
     assert env.step(np.int64(0))[4]["placed"] == 1  # nothing was changed by it
 
 
-def test_no_action_before_the_start_or_after_the_end() -> None:
+def test_no_action_before_the_start_or_after_the_end():
     env = made()
     with pytest.raises(UsageError, match="no wall was begun"):
         env.step(np.int64(0))
@@ -116,7 +115,7 @@ def test_no_action_before_the_start_or_after_the_end() -> None:
         env.step(np.int64(8))
 
 
-def test_profile_is_the_top_of_the_wall() -> None:
+def test_profile_is_the_top_of_the_wall():
     stones, site = bricks()
     env = made(columns=8)
     seen, _ = env.reset(seed=1, options={"stones": stones, "site": site, "order": [1, 2]})
@@ -129,7 +128,7 @@ def test_profile_is_the_top_of_the_wall() -> None:
     assert seen["left"].tolist() == [0.0, 0.75]
 
 
-def test_profile_of_parts_that_are_no_whole_columns() -> None:
+def test_profile_of_parts_that_are_no_whole_columns():
     stones, site = bricks()
     env = made(columns=3)
     env.reset(seed=1, options={"stones": stones, "site": site, "order": [1, 2]})
@@ -139,11 +138,11 @@ def test_profile_of_parts_that_are_no_whole_columns() -> None:
     assert seen["profile"] == pytest.approx([0.5, 0.25, 0.0])
 
 
-def test_given_stones_arrive_in_a_random_order_of_the_seed() -> None:
+def test_given_stones_arrive_in_a_random_order_of_the_seed():
     stones, site = bricks()
     env = made()
 
-    def order(seed: int) -> list[int]:
+    def order(seed):
         _, info = env.reset(seed=seed, options={"stones": stones, "site": site})
         arrived = []
         while info["stone"]:
@@ -169,7 +168,7 @@ def test_given_stones_arrive_in_a_random_order_of_the_seed() -> None:
         ({"stones": bricks()[0], "site": bricks()[1], "order": 3}, "E123"),
     ],
 )
-def test_reset_refuses(options: dict[str, Any], code: str) -> None:
+def test_reset_refuses(options, code):
     with pytest.raises(Exception, match=r".") as caught:
         made().reset(seed=1, options=options)
     assert caught.value.code == code
@@ -178,21 +177,21 @@ def test_reset_refuses(options: dict[str, Any], code: str) -> None:
 @pytest.mark.parametrize(
     "wrong", [{"offers": 0}, {"columns": 0}, {"illegal": "ignore"}, {"render_mode": "human"}]
 )
-def test_refuses_settings(wrong: dict[str, Any]) -> None:
+def test_refuses_settings(wrong):
     with pytest.raises(UsageError) as caught:
         WallEnv(**wrong)
     assert caught.value.code == "E123"
 
 
-def test_example_of_the_documents_runs(capsys: pytest.CaptureFixture[str]) -> None:
+def test_example_of_the_documents_runs(capsys):
     page = (Path(__file__).parents[3] / "docs" / "evidence" / "learning.md").read_text("utf-8")
     code = page.split("```python\n")[1].split("```")[0]
-    names: dict[str, Any] = {}
+    names = {}
     exec(code.replace("gymnasium.make(", "gymnasium.make(draw=draw, id="), names | {"draw": SMALL})  # noqa: S102 - ours
     assert "F_SF" in capsys.readouterr().out
 
 
-def test_stones_of_outlines_arrive_too() -> None:
+def test_stones_of_outlines_arrive_too():
     settings = replace(ARRIVING, geometry="exact")
     rewards, info, _ = played(made(settings=settings, draw=replace(SMALL, stones=4)), 1)
     assert info["placed"] == len(rewards) >= 2
@@ -200,7 +199,7 @@ def test_stones_of_outlines_arrive_too() -> None:
 
 
 @pytest.mark.parametrize("illegal", ["aside", "error"])
-def test_a_wall_in_which_nothing_can_be_built_is_over_with_any_action(illegal: str) -> None:
+def test_a_wall_in_which_nothing_can_be_built_is_over_with_any_action(illegal):
     env = made(illegal=illegal)
     seen, info = env.reset(seed=1, options={"stones": bricks()[0], "site": Site(4, 4)})
     assert (info["stone"], info["merit"], info["metrics"]) == (0, 0.0, {})
@@ -212,7 +211,7 @@ def test_a_wall_in_which_nothing_can_be_built_is_over_with_any_action(illegal: s
         env.step(action)
 
 
-def test_a_deep_copy_goes_on_by_itself() -> None:
+def test_a_deep_copy_goes_on_by_itself():
     wrapped = gymnasium.make(drystone_lab.rl.ENVIRONMENT, draw=SMALL)
     wrapped.reset(seed=1)
     wrapped.action_space.seed(1)

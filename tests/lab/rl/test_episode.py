@@ -13,7 +13,7 @@ from drystone_lab.rl.episode import ARRIVING, Episode, prepared
 from tests.lab.rl.walls import SMALL, bricks
 
 
-def test_builds_the_wall_of_the_planner_with_the_same_policy() -> None:
+def test_builds_the_wall_of_the_planner_with_the_same_policy():
     rng = np.random.default_rng(0)
     for seed in range(2):
         stones, site = draw_wall(SMALL, np.random.default_rng(seed))
@@ -30,7 +30,7 @@ def test_builds_the_wall_of_the_planner_with_the_same_policy() -> None:
         assert episode.aside == len(stones) - len(planner.build.actions)
 
 
-def test_put_aside_for_good() -> None:
+def test_put_aside_for_good():
     episode = Episode(prepared(*bricks(3)))
     first = episode.stone_id
     episode.take(None)
@@ -41,7 +41,7 @@ def test_put_aside_for_good() -> None:
     assert (episode.aside, episode.merit, episode.potential) == (3, 0.0, 0.0)
 
 
-def test_full_wall_is_over_with_stones_left() -> None:
+def test_full_wall_is_over_with_stones_left():
     episode = Episode(prepared(*bricks(6)))
     while not episode.over:
         lying = [k for k, offer in enumerate(episode.offers) if offer.width_px == 20]
@@ -50,7 +50,7 @@ def test_full_wall_is_over_with_stones_left() -> None:
     assert (len(episode.build.actions), episode.aside, episode.waiting) == (4, 0, 2)
 
 
-def test_keeps_the_lowest_of_the_offers() -> None:
+def test_keeps_the_lowest_of_the_offers():
     workshop = prepared(*bricks())
     every, few = Episode(workshop), Episode(workshop, most=3)
     heights = [offer.centroid_px[1] for offer in every.offers]
@@ -62,6 +62,6 @@ def test_keeps_the_lowest_of_the_offers() -> None:
 
 
 @pytest.mark.parametrize("position", [-1, 8])
-def test_there_is_no_such_place(position: int) -> None:
+def test_there_is_no_such_place(position):
     with pytest.raises(IndexError):
         Episode(prepared(*bricks())).take(position)

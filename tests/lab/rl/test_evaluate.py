@@ -11,7 +11,7 @@ from drystone_lab.rl.evaluate import FIGURES, Interval, figures_by, held_out_wal
 DRAW = DrawSettings(stones=6, size_px=10.0)
 
 
-def test_interval_is_that_of_the_paired_t_test() -> None:
+def test_interval_is_that_of_the_paired_t_test():
     rng = np.random.default_rng(1)
     first, second = rng.normal(1.0, 1.0, 12), rng.normal(0.5, 1.0, 12)
     ours = Interval.of((first - second).tolist())
@@ -20,13 +20,13 @@ def test_interval_is_that_of_the_paired_t_test() -> None:
     assert ours.mean + ours.half == pytest.approx(theirs.high)
 
 
-def test_interval_is_starred_without_zero() -> None:
+def test_interval_is_starred_without_zero():
     assert Interval(0.5, 0.4).text == "+0.500 ± 0.400*"
     assert Interval(-0.5, 0.6).text == "-0.500 ± 0.600"
     assert Interval.of([2.0]).half == np.inf
 
 
-def test_figures_of_a_policy_are_those_of_its_walls() -> None:
+def test_figures_of_a_policy_are_those_of_its_walls():
     walls = [held_out_wall("brick", number, DRAW) for number in range(2)]
     found = figures_by("lowest", walls)
     assert list(found) == list(FIGURES)
@@ -39,14 +39,14 @@ def test_figures_of_a_policy_are_those_of_its_walls() -> None:
         assert parts - 2.0 < found["merit"][k] <= parts
 
 
-def test_free_order_is_another(capsys: pytest.CaptureFixture[str]) -> None:
+def test_free_order_is_another(capsys):
     few = ["--walls", "1", "--stones", "6", "--kinds", "rubble", "--policies", "lowest", "paper"]
     assert main(few) == main([*few, "--free"]) == 0
     given, free = capsys.readouterr().out.split("1 walls of rubble stones: means")[1:]
     assert given.strip() != free.strip()
 
 
-def test_report_has_means_and_differences() -> None:
+def test_report_has_means_and_differences():
     walls = {
         "one": {name: [1.0, 3.0] for name in FIGURES},
         "two": {name: [0.5, 2.5] for name in FIGURES},
@@ -57,7 +57,7 @@ def test_report_has_means_and_differences() -> None:
     assert "| two | +0.500 ± 0.000* |" in text
 
 
-def test_command(capsys: pytest.CaptureFixture[str]) -> None:
+def test_command(capsys):
     arguments = ["--walls", "1", "--stones", "5", "--kinds", "brick", "rubble"]
     assert main([*arguments, "--policies", "learned", "paper"]) == 0
     out = capsys.readouterr().out

@@ -16,6 +16,6 @@ except UsageError as error:
 """
 
 
-def test_says_what_to_install() -> None:
+def test_says_what_to_install():
     done = subprocess.run([sys.executable, "-c", CODE], capture_output=True, text=True, check=True)  # noqa: S603
     assert done.stdout == "E150 Install it with `pip install 'drystone[rl]'`.\n"

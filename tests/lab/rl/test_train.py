@@ -1,7 +1,6 @@
 """A training run in seconds."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -33,35 +32,35 @@ TINY = TrainSettings(
 )  # fmt: skip
 
 
-def test_better_than_random_on_other_walls() -> None:
-    said: list[str] = []
+def test_better_than_random_on_other_walls():
+    said = []
     model = train(TINY, said.append)
     assert model.trained["merit_learned"] > model.trained["merit_random"] + 0.5
     assert model.trained["finished"] > 2 * TINY.rounds * TINY.walls
     assert len(said) == TINY.rounds + 1
 
 
-def test_equal_seeds_equal_bytes() -> None:
+def test_equal_seeds_equal_bytes():
     short = replace(TINY, rounds=2, walls=2, validation=1)
     text = train(short).to_json()
     assert train(short).to_json() == text
     assert train(replace(short, seed=4)).to_json() != text
 
 
-def test_time_cuts_it_short_and_says_so() -> None:
+def test_time_cuts_it_short_and_says_so():
     model = train(replace(TINY, validation=1), seconds=-1.0)
     assert model.trained["rounds"] == model.trained["finished"] == 0
     assert model.weights == (0.0,) * len(FEATURES)
 
 
-def test_shipped_weights_beat_random_on_walls_that_were_not_trained_on() -> None:
+def test_shipped_weights_beat_random_on_walls_that_were_not_trained_on():
     draw = DrawSettings(kinds=TRAINED_ON, stones=9, size_px=12.0)
     walls = [prepared(*draw_wall(draw, np.random.default_rng([9, k]))) for k in range(6)]
     by_value = mean_merit(learned().choose, walls)
     assert by_value > mean_merit(at_random, walls) + 0.3
 
 
-def test_shipped_weights_are_of_the_settings_of_today() -> None:
+def test_shipped_weights_are_of_the_settings_of_today():
     trained, settings = shipped_model().trained, TrainSettings()
     for name in ("seed", "rounds", "walls", "strength"):
         assert trained[name] == getattr(settings, name)
@@ -70,7 +69,7 @@ def test_shipped_weights_are_of_the_settings_of_today() -> None:
     assert trained["merit_learned"] > trained["merit_random"]
 
 
-def test_command_writes_the_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_command_writes_the_file(tmp_path, capsys):
     path = tmp_path / "weights.json"
     few = ["--walls", "1", "--validation", "1", "--stones", "4", "--minutes", "-1"]
     assert main(["-o", str(path), *few]) == 0
@@ -81,7 +80,7 @@ def test_command_writes_the_file(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert "at random" in err
 
 
-def test_walls_without_a_choice_teach_nothing(tmp_path: Path) -> None:
+def test_walls_without_a_choice_teach_nothing(tmp_path):
     full = DrawSettings(kinds=("brick",), stones=3, size_px=12.0, surplus=60.0)
     with pytest.raises(UsageError, match="no stone of these walls has a choice") as caught:
         train(replace(TINY, walls=2, draw=full))
@@ -93,13 +92,13 @@ def test_walls_without_a_choice_teach_nothing(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "wrong", [["--walls", "0"], ["--seed", "-1"], ["--seed", str(HELD_OUT)], ["--rounds", "0"]]
 )
-def test_command_refuses(wrong: list[str], tmp_path: Path) -> None:
+def test_command_refuses(wrong, tmp_path):
     with pytest.raises(SystemExit) as caught:
         main(["-o", str(tmp_path / "w.json"), *wrong])
     assert caught.value.code == 2
 
 
-def made(count: int, weights: list[float], noise: float = 0.0) -> list[Branching]:
+def made(count, weights, noise=0.0):
     """Return branchings whose merits are weighted sums of features, and a sum of their own."""
     rng = np.random.default_rng(5)
     found = []
@@ -110,7 +109,7 @@ def made(count: int, weights: list[float], noise: float = 0.0) -> list[Branching
     return found
 
 
-def test_fit_finds_the_weights_whatever_the_walls_are_worth() -> None:
+def test_fit_finds_the_weights_whatever_the_walls_are_worth():
     weights = [1.0, -2.0, 0.0]
     ones = np.ones(3)
     assert fitted(made(50, weights), ones, 1e-9) == pytest.approx(weights, abs=1e-6)
@@ -118,39 +117,37 @@ def test_fit_finds_the_weights_whatever_the_walls_are_worth() -> None:
     assert noisy == pytest.approx(weights, abs=0.06)
 
 
-def test_fit_is_of_features_over_their_scale() -> None:
+def test_fit_is_of_features_over_their_scale():
     scale = np.array([2.0, 0.5, 1.0])
     found = fitted(made(50, [1.0, -2.0, 0.0]), scale, 1e-9)
     assert found / scale == pytest.approx([1.0, -2.0, 0.0], abs=1e-6)
 
 
-def test_fit_is_drawn_to_zero() -> None:
+def test_fit_is_drawn_to_zero():
     data = made(50, [1.0, -2.0, 0.0])
     assert fitted(data, np.ones(3), 1e9) == pytest.approx(np.zeros(3), abs=1e-4)
     # 50 times 4 places less their mean: as many zeros halve them.
     assert fitted(data, np.ones(3), 150.0)[1] == pytest.approx(-1.0, abs=0.2)
 
 
-def test_spread_is_within_branchings() -> None:
+def test_spread_is_within_branchings():
     rows = np.array([[1.0, 5.0], [3.0, 5.0]])
     two = [Branching(rows, np.zeros(2)), Branching(rows + 10.0, np.zeros(2))]
     assert spread_of(two).tolist() == [1.0, 1.0]
     assert spread_of([Branching(2 * rows, np.zeros(2))]).tolist() == [2.0, 1.0]
 
 
-def test_branching_finishes_the_wall_from_every_place() -> None:
+def test_branching_finishes_the_wall_from_every_place():
     workshop = prepared(*draw_wall(SMALL, np.random.default_rng(2)))
     one = branching(workshop, at_random, (1, 2))
     again = branching(workshop, at_random, (1, 2))
-    assert one is not None
-    assert again is not None
     assert one.features.shape == (len(one.merits), len(FEATURES))
     assert len(one.merits) > 1
     assert one.merits.tolist() == again.merits.tolist()
     assert (one.merits > 0).all()
 
 
-def test_no_branching_where_no_stone_fits() -> None:
+def test_no_branching_where_no_stone_fits():
     stones, _ = bricks(3)
     workshop = prepared(stones, Site(5, 5))
     assert branching(workshop, at_random, (1,)) is None

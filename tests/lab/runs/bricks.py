@@ -9,21 +9,19 @@ import numpy as np
 
 from drystone.generate import BrickSettings, brick_stones, lay_out
 from drystone.io.wall_image import write_labels
-from drystone.planner.settings import PlannerSettings
-from drystone_lab.runs.outcome import RunStore
-from drystone_lab.runs.spec import RunSpec, StoneSource, generated
+from drystone_lab.runs.spec import RunSpec, generated
 
 SOURCE = generated("brick", 1, count=6, height_px=10, aspect=2)
 NOT_SIX = generated("brick", 1, count=-6)
 """Bricks that no generator makes: E130."""
 
 
-def run(seed: int, source: StoneSource = SOURCE) -> RunSpec:
+def run(seed, source=SOURCE):
     """Return a run of a few hundredths of a second."""
     return RunSpec(source=source, width=60, height=20, seed=seed)
 
 
-def endless() -> RunSpec:
+def endless():
     """Return a run that does not end within a test."""
     return RunSpec(
         source=SOURCE, width=60, height=20, method="best", changes=(("search.budget", 10**6),)
@@ -42,7 +40,7 @@ class Deadly(RunSpec):
 
     once: str = ""
 
-    def settings(self) -> PlannerSettings:
+    def settings(self):
         if self.once and Path(self.once).exists():
             return super().settings()
         if self.once:
@@ -51,12 +49,12 @@ class Deadly(RunSpec):
         raise AssertionError("still alive")
 
 
-def deadly(seed: int, once: Path | None = None) -> Deadly:
+def deadly(seed, once=None):
     """Return a run at which its process dies."""
     return Deadly(source=SOURCE, width=60, height=20, seed=seed, once=str(once or ""))
 
 
-def picture(path: Path, count: int = 6) -> Path:
+def picture(path, count=6):
     """Write bricks as a label image."""
     path.parent.mkdir(parents=True, exist_ok=True)
     bricks = BrickSettings(count=count, height_px=10, aspect=2)
@@ -64,6 +62,6 @@ def picture(path: Path, count: int = 6) -> Path:
     return path
 
 
-def kept(store: RunStore, spec: RunSpec) -> bool:
+def kept(store, spec):
     """Return True when a run has an outcome that is kept."""
     return store.get(spec.key) is not None

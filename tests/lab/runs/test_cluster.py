@@ -2,16 +2,13 @@ import gc
 import sys
 import threading
 import time
-from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
-from typing import Any
 
 import pytest
 
 from drystone.errors import DrystoneError, UsageError
 from drystone_lab.runs.cluster import check_versions, cluster_at_work, execute_there
-from drystone_lab.runs.outcome import Runner, RunStore, RunWorker, one_by_one
+from drystone_lab.runs.outcome import Runner, RunStore, one_by_one
 from drystone_lab.runs.spec import RunSpec, published
 from tests.lab.runs.bricks import NOT_SIX, SOURCE, deadly, kept, picture, run
 
@@ -28,7 +25,7 @@ QUIET = {
 
 
 @pytest.fixture(scope="module")
-def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+def cluster(tmp_path_factory):
     """Two workers, processes of their own; those that die are started again."""
     folder = str(tmp_path_factory.mktemp("dask"))
     with distributed.LocalCluster(
@@ -38,23 +35,23 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
 
 
 @pytest.fixture
-def work(cluster: Any) -> Iterator[RunWorker]:
+def work(cluster):
     with cluster_at_work(cluster.scheduler_address, patience_s=60) as work:
         yield work
 
 
 @pytest.fixture
-def thread() -> Iterator[Any]:
+def thread():
     """A cluster with one worker, a thread of this process."""
     with distributed.LocalCluster(n_workers=1, processes=False, **QUIET) as cluster:
         yield cluster
 
 
-def test_outcomes_are_the_same_bytes_whoever_works(work: RunWorker, tmp_path: Path) -> None:
+def test_outcomes_are_the_same_bytes_whoever_works(work, tmp_path):
     picture(tmp_path / "data" / "set" / "bricks.png")
     specs = [run(1), run(3, published("set/bricks.png")), run(4)]
 
-    def kept_by(name: str, work: RunWorker) -> dict[str, bytes]:
+    def kept_by(name, work):
         Runner(RunStore(tmp_path / name), data=tmp_path / "data", work=work).run(specs)
         return {path.name: without_times(path) for path in (tmp_path / name).iterdir()}
 
@@ -63,14 +60,14 @@ def test_outcomes_are_the_same_bytes_whoever_works(work: RunWorker, tmp_path: Pa
     assert kept_by("dask", work) == one
 
 
-def without_times(path: Path) -> bytes:
+def without_times(path):
     """Return the bytes of a kept outcome up to its times, which are last."""
     before, times, _ = path.read_bytes().partition(b', "times": {')
     assert times
     return before
 
 
-def test_a_killed_worker_loses_nothing(work: RunWorker, tmp_path: Path) -> None:
+def test_a_killed_worker_loses_nothing(work, tmp_path):
     once = tmp_path / "died"
     specs = [run(1), run(2), deadly(3, once), run(4), run(5), run(6)]
     outcomes = Runner(RunStore(tmp_path / "store"), work=work).run(specs)
@@ -80,16 +77,14 @@ def test_a_killed_worker_loses_nothing(work: RunWorker, tmp_path: Path) -> None:
     assert [outcome.key for outcome in outcomes] == [spec.key for spec in specs]
 
 
-def test_a_run_that_kills_workers_is_given_up(
-    work: RunWorker, cluster: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_that_kills_workers_is_given_up(work, cluster, tmp_path, monkeypatch):
     monkeypatch.setattr(cluster.scheduler, "allowed_failures", 0)
     with pytest.raises(DrystoneError) as caught:
         Runner(RunStore(tmp_path), work=work).run([deadly(1)])
     assert (caught.value.code, caught.value.where) == ("E402", str(deadly(1)))
 
 
-def test_a_run_that_fails_is_told(thread: Any, tmp_path: Path) -> None:
+def test_a_run_that_fails_is_told(thread, tmp_path):
     store = RunStore(tmp_path)
     with cluster_at_work(thread.scheduler_address) as work:
         with pytest.raises(DrystoneError) as caught:
@@ -101,7 +96,7 @@ def test_a_run_that_fails_is_told(thread: Any, tmp_path: Path) -> None:
     assert not kept(store, run(2, NOT_SIX))
 
 
-def test_what_ended_is_given_before_an_interrupt(thread: Any) -> None:
+def test_what_ended_is_given_before_an_interrupt(thread):
     specs = [run(1), run(2), run(3)]
     with cluster_at_work(thread.scheduler_address) as work:
         outcomes = work(specs, None)
@@ -117,10 +112,10 @@ def test_what_ended_is_given_before_an_interrupt(thread: Any) -> None:
     assert sorted(keys) == sorted(spec.key for spec in specs)
 
 
-def test_a_cluster_that_goes_away(thread: Any, tmp_path: Path) -> None:
+def test_a_cluster_that_goes_away(thread, tmp_path):
     specs, store = [run(seed) for seed in range(100)], RunStore(tmp_path)
 
-    def end(_: str) -> None:
+    def end(_):
         thread.close()
 
     with (
@@ -137,11 +132,11 @@ class Newer(RunSpec):
     """A run that has another key on the worker, which is a thread."""
 
     @property
-    def key(self) -> str:
+    def key(self):
         return super().key if threading.current_thread() is threading.main_thread() else "newer"
 
 
-def test_a_worker_of_another_version_that_came_later(thread: Any) -> None:
+def test_a_worker_of_another_version_that_came_later(thread):
     spec = Newer(source=SOURCE, width=60, height=20)
     at_work = cluster_at_work(thread.scheduler_address)
     with at_work as work, pytest.raises(UsageError) as caught:
@@ -149,9 +144,7 @@ def test_a_worker_of_another_version_that_came_later(thread: Any) -> None:
     assert caught.value.code == "E405"
 
 
-def test_published_stones_where_the_worker_has_them(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_published_stones_where_the_worker_has_them(tmp_path, monkeypatch):
     spec = run(1, published("bricks.png"))
     picture(tmp_path / "six" / "bricks.png", count=6)
     picture(tmp_path / "five" / "bricks.png", count=5)
@@ -167,14 +160,14 @@ def test_published_stones_where_the_worker_has_them(
 class Workers:
     """A client that knows versions."""
 
-    def __init__(self, scheduler: str | None, **workers: str | None) -> None:
+    def __init__(self, scheduler, **workers):
         self.scheduler, self.workers = scheduler, workers
 
-    def run(self, function: Any, name: str, *, on_error: str) -> dict[str, Any]:
+    def run(self, function, name, *, on_error):
         assert (function, name, on_error) == (version, "drystone", "return")
         return {at: one or PackageNotFoundError(name) for at, one in self.workers.items()}
 
-    def run_on_scheduler(self, function: Any, name: str) -> str:
+    def run_on_scheduler(self, function, name):
         assert (function, name) == (version, "drystone")
         if self.scheduler is None:
             raise PackageNotFoundError(name)
@@ -191,7 +184,7 @@ HERE = version("drystone")
         (Workers(None, a=HERE), "and none at scheduler."),
     ],
 )
-def test_other_versions(client: Workers, said: str) -> None:
+def test_other_versions(client, said):
     with pytest.raises(UsageError) as caught:
         check_versions(client)
     assert caught.value.code == "E405"
@@ -199,7 +192,7 @@ def test_other_versions(client: Workers, said: str) -> None:
 
 
 @pytest.fixture
-def _collected() -> Iterator[None]:
+def _collected():
     """Let go of a client that failed now: while another one begins, its end would wait for that."""
     yield
     gc.collect()
@@ -207,14 +200,14 @@ def _collected() -> Iterator[None]:
 
 @pytest.mark.usefixtures("_collected")
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "nonsense://here"])
-def test_nobody_answers(address: str) -> None:
+def test_nobody_answers(address):
     with pytest.raises(UsageError) as caught, cluster_at_work(address, patience_s=0.3):
         pass
     assert caught.value.code == "E404"
     assert address in caught.value.what
 
 
-def test_a_cluster_without_workers() -> None:
+def test_a_cluster_without_workers():
     with (
         distributed.LocalCluster(n_workers=0, processes=False, **QUIET) as cluster,
         pytest.raises(UsageError) as caught,
@@ -225,7 +218,7 @@ def test_a_cluster_without_workers() -> None:
     assert "has no workers" in caught.value.what
 
 
-def test_dask_is_not_installed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_dask_is_not_installed(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(UsageError) as caught, cluster_at_work("tcp://127.0.0.1:9"):
         pass

@@ -1,9 +1,7 @@
 """Tests."""
 
 import json
-from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,12 +9,11 @@ import pytest
 from drystone.errors import DrystoneError
 from drystone.planner.planner import Planner
 from drystone.search.plan_wall import plan_wall
-from drystone_lab.runs.outcome import FIGURES, Runner, RunOutcome, RunStore, execute, one_by_one
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.runs.outcome import FIGURES, Runner, RunStore, execute, one_by_one
 from tests.lab.runs.bricks import SOURCE, kept, run
 
 
-def test_it_is_what_plan_wall_gives() -> None:
+def test_it_is_what_plan_wall_gives():
     outcome = execute(run(3), None)
     stones, rest = SOURCE.stones(None), {"seed": 3, "method": "paper", "scale": 1.0}
     result = plan_wall(stones, 60, 20, **rest, coulomb=False)
@@ -30,14 +27,14 @@ def test_it_is_what_plan_wall_gives() -> None:
     assert outcome.key == run(3).key
 
 
-def test_the_wall_is_built_again_from_its_plan() -> None:
+def test_the_wall_is_built_again_from_its_plan():
     outcome = execute(run(1), None)
     wall = outcome.wall(run(1), None)
     assert set(np.unique(wall.labels)) - {0} == set(outcome.clusters)
     assert np.count_nonzero(wall.labels) / wall.labels.size == outcome.figures["F_SF"]
 
 
-def test_the_image_is_the_wall_when_no_size_is_given() -> None:
+def test_the_image_is_the_wall_when_no_size_is_given():
     spec = replace(run(1), width=0.0, height=0.0)
     source = spec.source.stones(None).source
     assert execute(spec, None).plan["wall"] == {
@@ -46,8 +43,8 @@ def test_the_image_is_the_wall_when_no_size_is_given() -> None:
     }
 
 
-def test_an_interrupted_wall_is_no_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(_: Planner) -> Iterator[None]:
+def test_an_interrupted_wall_is_no_outcome(monkeypatch):
+    def interrupted(_):
         raise KeyboardInterrupt
         yield
 
@@ -59,11 +56,11 @@ def test_an_interrupted_wall_is_no_outcome(monkeypatch: pytest.MonkeyPatch) -> N
 class Book:
     """Does runs one by one, and writes down which."""
 
-    def __init__(self, interrupt_after: int | None = None) -> None:
-        self.done: list[int] = []
+    def __init__(self, interrupt_after=None):
+        self.done = []
         self.interrupt_after = interrupt_after
 
-    def __call__(self, specs: Sequence[RunSpec], data: Path | None) -> Iterator[RunOutcome]:
+    def __call__(self, specs, data):
         for spec in specs:
             if len(self.done) == self.interrupt_after:
                 raise KeyboardInterrupt
@@ -71,18 +68,18 @@ class Book:
             self.done.append(spec.seed)
 
 
-def test_outcomes_are_in_the_order_of_the_runs(tmp_path: Path) -> None:
-    def backwards(specs: Sequence[RunSpec], data: Path | None) -> Iterator[RunOutcome]:
+def test_outcomes_are_in_the_order_of_the_runs(tmp_path):
+    def backwards(specs, data):
         yield from one_by_one(specs[::-1], data)
 
     specs = [run(3), run(1), run(2)]
-    said: list[str] = []
+    said = []
     outcomes = Runner(RunStore(tmp_path), work=backwards, say=said.append).run(specs)
     assert [outcome.key for outcome in outcomes] == [spec.key for spec in specs]
     assert [line.split(",")[0] for line in said] == [f"{k} of 3 walls" for k in (1, 2, 3)]
 
 
-def test_a_second_time_nothing_is_done(tmp_path: Path) -> None:
+def test_a_second_time_nothing_is_done(tmp_path):
     book = Book()
     runner = Runner(RunStore(tmp_path), work=book)
     first = runner.run([run(1), run(2)])
@@ -92,14 +89,14 @@ def test_a_second_time_nothing_is_done(tmp_path: Path) -> None:
     assert [one.times for one in again] == [one.times for one in reversed(first)]
 
 
-def test_equal_runs_are_done_once(tmp_path: Path) -> None:
+def test_equal_runs_are_done_once(tmp_path):
     book = Book()
     outcomes = Runner(RunStore(tmp_path), work=book).run([run(1), run(2), run(1)])
     assert book.done == [1, 2]
     assert outcomes[0] is outcomes[2]
 
 
-def test_what_ended_before_an_interrupt_is_kept(tmp_path: Path) -> None:
+def test_what_ended_before_an_interrupt_is_kept(tmp_path):
     specs, store = [run(1), run(2), run(3)], RunStore(tmp_path)
     with pytest.raises(KeyboardInterrupt):
         Runner(store, work=Book(interrupt_after=2)).run(specs)
@@ -109,29 +106,28 @@ def test_what_ended_before_an_interrupt_is_kept(tmp_path: Path) -> None:
     assert later.done == [3]
 
 
-def test_runs_that_nobody_did_are_missed(tmp_path: Path) -> None:
+def test_runs_that_nobody_did_are_missed(tmp_path):
     with pytest.raises(RuntimeError, match="lost"):
         Runner(RunStore(tmp_path), work=lambda _specs, _data: iter(())).run([run(1)])
 
 
 @pytest.fixture(scope="module")
-def outcome() -> RunOutcome:
+def outcome():
     return execute(run(1), None)
 
 
-def test_what_was_kept_is_found(tmp_path: Path, outcome: RunOutcome) -> None:
+def test_what_was_kept_is_found(tmp_path, outcome):
     store = RunStore(tmp_path / "new" / "folder")
     assert store.get(outcome.key) is None
     store.put(outcome)
     found = RunStore(store.folder).get(outcome.key)
-    assert found is not None
     assert found.key == outcome.key
     assert (found.figures, found.times) == (outcome.figures, outcome.times)
     assert found.plan == outcome.plan
     assert store.get(run(2).key) is None
 
 
-def without(text: str, *names: str) -> str:
+def without(text, *names):
     data = json.loads(text)
     part = data
     for name in names[:-1]:
@@ -152,7 +148,7 @@ def without(text: str, *names: str) -> str:
         lambda text: without(text, "figures", "F_LR"),
     ],
 )
-def test_a_damaged_file_is_named_with_the_cure(tmp_path: Path, outcome: RunOutcome, damage) -> None:
+def test_a_damaged_file_is_named_with_the_cure(tmp_path, outcome, damage):
     store = RunStore(tmp_path)
     store.put(outcome)
     (path,) = tmp_path.iterdir()

@@ -1,7 +1,6 @@
 """Tests."""
 
 from dataclasses import fields, replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -31,29 +30,29 @@ OTHER_SOURCES = {
 }
 
 
-def test_every_field_is_tried() -> None:
+def test_every_field_is_tried():
     assert set(OTHERS) == {field.name for field in fields(RunSpec)}
     assert set(OTHER_SOURCES) == {field.name for field in fields(StoneSource)}
 
 
 @pytest.mark.parametrize("name", OTHERS)
-def test_the_key_changes_with_a_field(name: str) -> None:
+def test_the_key_changes_with_a_field(name):
     assert replace(SPEC, **{name: OTHERS[name]}).key != SPEC.key
 
 
 @pytest.mark.parametrize("name", OTHER_SOURCES)
-def test_the_key_changes_with_a_field_of_the_source(name: str) -> None:
+def test_the_key_changes_with_a_field_of_the_source(name):
     source = replace(SOURCE, **{name: OTHER_SOURCES[name]})
     assert replace(SPEC, source=source).key != SPEC.key
 
 
-def test_the_key_changes_with_the_version(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_key_changes_with_the_version(monkeypatch):
     before = SPEC.key
     monkeypatch.setattr(spec_module, "version", lambda _: "0.0.0")
     assert SPEC.key != before
 
 
-def test_equal_runs_have_equal_keys() -> None:
+def test_equal_runs_have_equal_keys():
     as_floats = RunSpec(source=SOURCE, width=60.0, height=20.0, scale=1)
     assert as_floats == SPEC
     assert as_floats.key == SPEC.key
@@ -64,7 +63,7 @@ def test_equal_runs_have_equal_keys() -> None:
     assert replace(SPEC, changes=usual).key == SPEC.key
 
 
-def test_changes_replace_settings_and_leave_the_others() -> None:
+def test_changes_replace_settings_and_leave_the_others():
     changed = replace(SPEC, changes=(("placement.beta", 0.5), ("mu", 0.4))).settings()
     default = method_settings("paper")
     assert (changed.placement.beta, changed.mu) == (0.5, 0.4)
@@ -82,12 +81,12 @@ def test_changes_replace_settings_and_leave_the_others() -> None:
         ),
     ],
 )
-def test_in_a_line(spec: RunSpec, line: str) -> None:
+def test_in_a_line(spec, line):
     assert str(spec) == line
 
 
 @pytest.mark.parametrize("kind", GENERATORS)
-def test_a_generator_makes_the_same_stones_of_a_seed(kind: str) -> None:
+def test_a_generator_makes_the_same_stones_of_a_seed(kind):
     first, again, other = (generated(kind, seed, count=5).stones(None) for seed in (3, 3, 4))
     assert len(first) == 5
     assert [stone.mask.tobytes() for stone in first] == [stone.mask.tobytes() for stone in again]
@@ -97,7 +96,7 @@ def test_a_generator_makes_the_same_stones_of_a_seed(kind: str) -> None:
         ]
 
 
-def test_published_stones_are_read_from_their_folder(tmp_path: Path) -> None:
+def test_published_stones_are_read_from_their_folder(tmp_path):
     source = published("set/bricks.png")
     assert not source.is_there(None)
     assert not source.is_there(tmp_path)
@@ -106,7 +105,7 @@ def test_published_stones_are_read_from_their_folder(tmp_path: Path) -> None:
     assert len(source.stones(tmp_path)) == 6
 
 
-def test_other_stones_in_the_place_of_published_ones(tmp_path: Path) -> None:
+def test_other_stones_in_the_place_of_published_ones(tmp_path):
     source = published("almeida/PR.png")
     source.check(None)
     source.check(tmp_path)  # a file that is missing is another matter
@@ -116,7 +115,7 @@ def test_other_stones_in_the_place_of_published_ones(tmp_path: Path) -> None:
             refused(tmp_path)
 
 
-def test_published_pictures_may_be_read_otherwise(tmp_path: Path) -> None:
+def test_published_pictures_may_be_read_otherwise(tmp_path):
     path = tmp_path / "one.png"
     Image.fromarray(np.full((12, 24, 4), 255, np.uint8)).save(path)
     bricks = published("one.png", copies=3).stones(tmp_path)

@@ -3,11 +3,8 @@
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager
-from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -19,11 +16,11 @@ from tests.lab.runs.bricks import NOT_SIX, deadly, endless, kept, run
 
 
 @contextmanager
-def named(*args: object) -> Iterator[object]:
+def named(*args):
     yield args
 
 
-def test_options_name_who_works(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_options_name_who_works(monkeypatch):
     monkeypatch.setattr(workers, "processes_at_work", lambda jobs: named("processes", jobs))
     monkeypatch.setattr(workers, "cluster_at_work", lambda address: named("cluster", address))
     with work_of(3, None) as work:
@@ -32,7 +29,7 @@ def test_options_name_who_works(monkeypatch: pytest.MonkeyPatch) -> None:
         assert work == ("cluster", "tcp://a:1")
 
 
-def test_processes_and_a_cluster_are_one_too_many() -> None:
+def test_processes_and_a_cluster_are_one_too_many():
     with pytest.raises(UsageError, match="E138"), work_of(1, "tcp://a:1"):
         pass
 
@@ -40,25 +37,25 @@ def test_processes_and_a_cluster_are_one_too_many() -> None:
 class AtOnce(Executor):
     """Does what it is given when it is given."""
 
-    def submit(self, do: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        future: Future[Any] = Future()
+    def submit(self, do, /, *args, **kwargs):
+        future = Future()
         try:
             future.set_result(do(*args, **kwargs))
         except DrystoneError as error:
             future.set_exception(error)
         return future
 
-    def shutdown(self, wait: bool = True, *, kill_workers: bool = False) -> None:
+    def shutdown(self, wait=True, *, kill_workers=False):
         assert wait
         assert kill_workers
 
 
-def interrupt_soon(_: str) -> None:
+def interrupt_soon(_):
     threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
 
 
 @pytest.mark.usefixtures("interruptible")
-def test_deaths_and_interrupts_lose_nothing_that_ended(tmp_path: Path) -> None:
+def test_deaths_and_interrupts_lose_nothing_that_ended(tmp_path):
     store = RunStore(tmp_path)
     with processes_at_work(2) as work:
         runner = Runner(store, work=work)
@@ -76,9 +73,7 @@ def test_deaths_and_interrupts_lose_nothing_that_ended(tmp_path: Path) -> None:
         assert kept(store, run(6))
 
 
-def test_a_run_that_fails_does_not_stop_those_that_have_begun(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_that_fails_does_not_stop_those_that_have_begun(tmp_path, monkeypatch):
     monkeypatch.setattr(workers, "_process", AtOnce)
     specs = [run(1), run(2, NOT_SIX), run(3), run(4), run(5)]
     store = RunStore(tmp_path)
@@ -91,9 +86,7 @@ def test_a_run_that_fails_does_not_stop_those_that_have_begun(
 
 
 @pytest.mark.parametrize("fresh", [False, True])
-def test_processes_have_one_thread_and_are_used_again_or_not(
-    monkeypatch: pytest.MonkeyPatch, fresh: bool
-) -> None:
+def test_processes_have_one_thread_and_are_used_again_or_not(monkeypatch, fresh):
     monkeypatch.setenv(ONE_THREAD[0], "2")
     with crew(1, fresh=fresh) as processes:
         assert list(processes.work(os.getenv, ONE_THREAD[:1])) == ["1"]
@@ -103,12 +96,12 @@ def test_processes_have_one_thread_and_are_used_again_or_not(
     assert not [one for one in ids if alive(one)]
 
 
-def pid(_: int) -> int:
+def pid(_):
     """Return the number of this process."""
     return os.getpid()
 
 
-def alive(process: int) -> bool:
+def alive(process):
     """Return True when there is a process of this number."""
     try:
         os.kill(process, 0)

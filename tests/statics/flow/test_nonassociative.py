@@ -25,7 +25,7 @@ DIRECTIONS = ("left", "right")
 FEW = NonassociativeSettings(random_starts=0)
 
 
-def block(width: float, height: float, mu: float):
+def block(width, height, mu):
     return model_from_json({"blocks_xywh": [[0, 0, width, height]], "mu": mu})
 
 
