@@ -91,7 +91,7 @@ def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere():
     found = found_again(better, yard)
     assert found.judged(yard, THOROUGH).merit == pytest.approx(better.merit)
     assert repaired(planner, wall).groups == better.groups
-    assert falls_of(planner.build.wall.groups, yard, LAST_RUNS).first
+    assert falls_of(planner.build, yard, LAST_RUNS).first
     # Where nothing falls, and where nothing is better without it, the wall stays.
     still = repaired(planner, replace(wall, merit=math.inf))
     assert still.groups == wall.groups

@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -13,7 +13,6 @@ from drystone.craft.masonry import Masonry
 from drystone.craft.settings import CraftSettings
 from drystone.metrics.measure import measure_labels
 from drystone.model.builder import HAND, BuilderErrors
-from drystone.model.wall import Group
 from drystone.planner.build import Build
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import GoalSettings
@@ -40,7 +39,7 @@ QUICK = NonassociativeSettings(starts=STARTS[:1], random_starts=0, let_go=False)
 STOPPED = 3
 """A builder who has to mend a wall loses as much as with so many stones."""
 
-RUNS, LAST_RUNS = 8, 24
+RUNS, LAST_RUNS = 4, 24
 """So often a wall of a search is rehearsed, and the best ones at the end."""
 
 
@@ -190,6 +189,8 @@ class FoundWall:
         It has no merit as soon as that cannot be more than `least`.
         """
         figures, model, goal = self.figures, self.build.model, yard.settings.goal
+        if self.merit <= least:
+            return replace(self, merit=-math.inf)
         if figures is None or self.build.wall.outlines is None:
             return self
         if figures.F_LR_coulomb is not None and flow is None:
@@ -198,7 +199,7 @@ class FoundWall:
         if goal.fallen:
             most = figures.fallen + (self.merit - least) / goal.fallen
             runs = RUNS if flow is None else LAST_RUNS
-            falls = falls_of(self.build.wall.groups, yard, runs, most)
+            falls = falls_of(self.build, yard, runs, most)
             if falls is None:
                 return replace(self, merit=-math.inf)
             figures = replace(figures, fallen=falls.share)
@@ -214,14 +215,9 @@ class FoundWall:
         return replace(self, figures=figures, merit=merit, falls=falls)
 
 
-def falls_of(
-    groups: Sequence[Group], yard: Yard, runs: int, most: float = math.inf
-) -> Falls | None:
-    """Rehearse a wall of outlines; None as soon as its share is known to be above `most`.
-
-    Groups are in the order of laying.
-    """
-    blocks = groups_of(groups)
+def falls_of(build: Build, yard: Yard, runs: int, most: float = math.inf) -> Falls | None:
+    """Rehearse a wall of outlines; None as soon as its share is known to be above `most`."""
+    blocks = groups_of(build.wall)
     if not blocks:
         return Falls(0.0, Counter())
     fallen, first, all_stones = 0, Counter[int](), runs * len(blocks)

@@ -14,7 +14,7 @@ import numpy as np
 from drystone.kernels.polygons import area_and_centroid, no_polygons
 from drystone.model.builder import NUMBERS, WEDGE_SHARE, BuilderErrors, Built
 from drystone.model.outlines import Outlined
-from drystone.model.wall import Group, outlined
+from drystone.model.wall import Wall, outlined
 from drystone.physics.building import BuildSettings, build_up, tilt_of
 from drystone.physics.scene import EngineSettings
 from drystone.settle.putting import FALLEN_DEG, FALLEN_SHARE, fallen_share, moved, put_down
@@ -64,9 +64,9 @@ class RehearsalRun:
         return next((end.stone for end in self.stones if end.fallen), None)
 
 
-def groups_of(groups: Sequence[Group]) -> Groups:
-    """Return stones of a wall of outlines with their wedges, as they are rehearsed."""
-    return [outlined(group.placement, group.wedges) for group in groups]
+def groups_of(wall: Wall) -> Groups:
+    """Return the stones of a wall of outlines with their wedges."""
+    return [outlined(group.placement, group.wedges) for group in wall.groups]
 
 
 def mean_size(groups: Groups) -> float:

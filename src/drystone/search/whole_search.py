@@ -21,7 +21,6 @@ from drystone.search.anytime import searching
 from drystone.search.chain import forget, without
 from drystone.search.goal import LAST_RUNS, FoundWall, WallFigures, falls_of
 from drystone.search.interrupts import held
-from drystone.search.ordering import reordered
 from drystone.search.packed import PackedWall, archived, found_again
 from drystone.search.state import Progress, SearchState
 from drystone.search.yard import Yard
@@ -34,10 +33,10 @@ _FOUND = Stopped("search", "kept as the search found it")
 THOROUGH = NonassociativeSettings()
 """How the load without dilatancy is looked for at the end."""
 
-REPAIRS = 12
+REPAIRS = 8
 """So often the best wall is repaired at most, where its stones fall in rehearsals."""
 
-JUDGED_AGAIN = 6
+JUDGED_AGAIN = 4
 """So many of the best walls of a search are looked at thoroughly at most."""
 
 
@@ -213,30 +212,28 @@ def surest(
 
 
 def repaired(planner: Planner, best: PackedWall, until: Deadline = NEVER) -> PackedWall:
-    """Return a wall that falls less in its rehearsals, mended at most :data:`REPAIRS` times.
+    """Return a wall without stones that fall first in its rehearsals, where that is better.
 
-    Its stones are laid in another order.  Where none is better, the one that falls first most often
-    is taken out, or all are that do, and what they leave is built up again or stays open: the best
-    of these four walls goes on.
+    The one that does most often is taken out, or all are, and what they leave is built up again or
+    stays open; so the best of four walls goes on, at most :data:`REPAIRS` times.
     """
     yard = Yard.of(planner, until)
     now, found = best, found_again(best, yard)
     for turn in range(REPAIRS):
-        falls = found.falls or falls_of(found.build.wall.groups, yard, LAST_RUNS)
+        falls = found.falls or falls_of(found.build, yard, LAST_RUNS)
         if falls is None or not falls.first:
             break
-        often = [stone for stone, _ in falls.first.most_common()]
-        better = reordered(found, yard, often) or found
+        walls, rng = [], np.random.default_rng([planner.seed, REPAIR_DRAWS, turn])
+        often = frozenset([falls.first.most_common(1)[0][0]])
+        for chosen in dict.fromkeys((often, frozenset(falls.first))):
+            build, _, solves = without(found.build, chosen, yard)
+            walls += [FoundWall.measured(build, yard, solves)]
+            walls += [FoundWall.of(yard.built_up(build, rng), before=solves)]
+        better = max(
+            (one.judged(yard, THOROUGH, now.merit) for one in walls), key=lambda one: one.merit
+        )
         if better.merit <= now.merit or not stays_at_every_step(better.build, until):
-            walls, rng = [], np.random.default_rng([planner.seed, REPAIR_DRAWS, turn])
-            for chosen in dict.fromkeys((frozenset(often[:1]), frozenset(often))):
-                build, _, solves = without(found.build, chosen, yard)
-                walls += [FoundWall.measured(build, yard, solves)]
-                walls += [FoundWall.of(yard.built_up(build, rng), before=solves)]
-            judged = (one.judged(yard, THOROUGH, now.merit) for one in walls)
-            better = max(judged, key=lambda one: one.merit)
-            if better.merit <= now.merit or not stays_at_every_step(better.build, until):
-                break
+            break
         now, found = PackedWall.of(better), better
     return now
 
