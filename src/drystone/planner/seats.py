@@ -40,7 +40,7 @@ class SeatTrial(NamedTuple):
     pushed: dict[int, float]  # by how much which polygons of those near it are pushed along x
 
 
-class _Place(NamedTuple):
+class _TriedPlace(NamedTuple):
     """A place of a stone: what is the same in all trials."""
 
     group: Group
@@ -52,7 +52,7 @@ class _Place(NamedTuple):
     wedges: list[Points]
 
     @classmethod
-    def of(cls, group: Group) -> "_Place":
+    def of(cls, group: Group) -> "_TriedPlace":
         """Return where a group is planned."""
         placement = group.placement
         stone, at = placement.posed.stone, placement.exact
@@ -115,7 +115,7 @@ class Seats:
         most = self.bearable(group.placement.posed.stone)
         fallen, trials = 0, self._settle.trials
         walls, falls = self._built(wall.groups), self._falls[group.placement.stone_id]
-        place = _Place.of(group)
+        place = _TriedPlace.of(group)
         # Where it fell elsewhere it may fall here: the sooner it is known that it falls too often.
         for k in sorted(range(trials), key=falls.__getitem__, reverse=True):
             if self._trial(place, k, walls[k], place.near(walls[k])).fell:
@@ -133,7 +133,7 @@ class Seats:
             done, walls = (), [no_polygons()] * self._settle.trials
         walls = list(walls)
         for group in groups[len(done) :]:
-            place = _Place.of(group)
+            place = _TriedPlace.of(group)
             for k, built in enumerate(walls):
                 near = place.near(built)
                 trial = self._trial(place, k, built, near)
@@ -142,7 +142,7 @@ class Seats:
         self._last = groups, walls
         return walls
 
-    def _trial(self, place: _Place, k: int, built: Polygons, near: list[int]) -> SeatTrial:
+    def _trial(self, place: _TriedPlace, k: int, built: Polygons, near: list[int]) -> SeatTrial:
         """Put a stone down with its errors of a trial, in the wall of that trial."""
         key = k, built.boxes[near].tobytes(), place.key
         known = self._known.get(key)

@@ -135,7 +135,7 @@ def _down(value: float, aim: float, urgent: float) -> float:
     return value if aim == 0.0 else urgent * max(value, aim)
 
 
-class Falls(NamedTuple):
+class RehearsalFalls(NamedTuple):
     """What falls in some rehearsals of a wall of outlines."""
 
     # In the mean, over all its stones; a run that is not whole counts as `STOPPED` more stones.
@@ -160,7 +160,7 @@ class FoundWall:
     merit: float  # no less than that of the same wall once it is `judged`
     solves: Solves = field(default_factory=Solves)  # trouble with it
     courses: Courses | None = None  # None for a wall that was not planned before
-    falls: Falls | None = None  # in its rehearsals, once it was judged
+    falls: RehearsalFalls | None = None  # in its rehearsals, once it was judged
 
     @classmethod
     def of(
@@ -215,11 +215,11 @@ class FoundWall:
         return replace(self, figures=figures, merit=merit, falls=falls)
 
 
-def falls_of(build: Build, yard: Yard, runs: int, most: float = math.inf) -> Falls | None:
+def falls_of(build: Build, yard: Yard, runs: int, most: float = math.inf) -> RehearsalFalls | None:
     """Rehearse a wall of outlines; None as soon as its share is known to be above `most`."""
     blocks = groups_of(build.wall)
     if not blocks:
-        return Falls(0.0, Counter())
+        return RehearsalFalls(0.0, Counter())
     fallen, first, all_stones = 0, Counter[int](), runs * len(blocks)
     errors = BuilderErrors.of_precision(HAND, mean_size(blocks))
     for put in errors_of(blocks, errors, [np.random.default_rng(run) for run in range(runs)]):
@@ -230,4 +230,4 @@ def falls_of(build: Build, yard: Yard, runs: int, most: float = math.inf) -> Fal
             first[run.first_fall] += 1
         if fallen > most * all_stones:
             return None
-    return Falls(fallen / all_stones, first)
+    return RehearsalFalls(fallen / all_stones, first)
