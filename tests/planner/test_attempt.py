@@ -1,6 +1,7 @@
 """One step: nothing is evaluated twice, and both sides and folds are tried."""
 
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from drystone.model.landscape import Landscape
 from drystone.model.placement import Placement
 from drystone.model.site import Site
 from drystone.model.wall import Group
-from drystone.planner.attempt import Attempt
+from drystone.planner.attempt import SHORTLISTS, Attempt
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
@@ -141,3 +142,44 @@ def test_a_stone_that_turns_keeps_its_clearance(clearance_px, proposed):
     slot[10:, :19] = slot[10:, 41:] = True
     turned = Group(Placement(posed, 30, 20, "left", 1))
     assert proposer._reached(Landscape(slot, ()), turned) is proposed
+
+
+BRICKS = {k: (9 + k, 12) for k in range(1, 13)}
+
+
+class _Falling:
+    """Trials in which all stones fall as often as they are told to."""
+
+    def __init__(self, falls):
+        self.falls_of, self.asked = falls, []
+
+    def falls(self, group, _):
+        stone = group.placement.stone_id
+        self.asked.append(stone)
+        return self.falls_of.get(stone, 0.5)
+
+
+def _chosen(falls):
+    """Choose a first brick of which some are sure; also return the stones in order of cost."""
+    alone = {"shortlist": 1, "per_stone": 1, "spots": 1}
+    settings = greedy({"settle": alone, "two_sided": False, "orientations": "sf"})
+    planner = Planner(blocks(BRICKS), Site(60, 40), settings=settings)
+    seats = _Falling(falls)
+    workshop = replace(planner.workshop, seats=seats)
+    found = Attempt(workshop, settings, planner.build).choose(np.random.default_rng(0))
+    return found.stone_id, seats.asked
+
+
+def test_the_surest_place_of_the_first_shortlists_is_taken():
+    first, asked = _chosen({})
+    assert first == asked[0]
+    assert len(asked) == SHORTLISTS
+    # A place that is sure is taken where it comes.
+    for stone in asked[1], asked[-1]:
+        assert _chosen({stone: 0.0})[0] == stone
+    # Where none is, the one that falls least; what comes later is not asked for.
+    assert _chosen({asked[3]: 0.2, asked[5]: 0.3})[0] == asked[3]
+    later = next(stone for stone in BRICKS if stone not in asked)
+    assert _chosen({later: 0.0}) == (first, asked)
+    # Where a place is sure at once, no trial of another counts.
+    assert _chosen({asked[0]: 0.0})[1] == asked[:1]
