@@ -11,6 +11,7 @@ from drystone.model.landscape import Landscape
 from drystone.model.site import Site
 from drystone.planner.evaluate import Evaluator, Loaded
 from drystone.planner.laying_settings import LayingSettings
+from drystone.planner.seats import Seats
 from drystone.statics.incremental import IncrementalResult
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import Block, RigidBlockModel
@@ -161,6 +162,37 @@ def test_of_places_that_do_not_stand_sturdily_the_next_best_is_taken(monkeypatch
     for angle in (0.0, -180.0):  # one of the poses does not rest at all
         course = [tips.planned(1, 0, 0), tips.planned(2, 24, 0, angle=angle)]
         assert statuses(tips.lay(course)) == [["falls", "falls"]]
+
+
+@pytest.mark.parametrize(
+    ("shares", "taken", "status"),
+    [
+        ([0.0], 0, "as planned"),
+        ([0.5, 0.0], 1, "as planned"),
+        ([0.5, 0.2, 0.3], 1, "as planned"),
+        ([None, 0.6], 1, "as planned"),
+        ([0.9, 0.9, 0.9, 0.9, 0.9, 0.1], 5, "half turn"),
+        ([None] * 99, None, "falls"),
+    ],
+)
+def test_of_places_that_stand_the_one_that_falls_least_is_taken(monkeypatch, shares, taken, status):
+    asked = []
+
+    def falls(_, group, wall):
+        assert not wall.groups
+        asked.append(float(group.placement.exact.corners[:, 0].min()))
+        return shares[len(asked) - 1] if len(asked) <= len(shares) else 0.7
+
+    monkeypatch.setattr(Seats, "falls", falls)
+    plot = bricks()
+    laid = plot.lay([plot.planned(1, 10, 0)], laying=LayingSettings(apart=0.1, enough=4))
+    assert statuses(laid) == [[status]]
+    if taken is None:
+        assert not laid.build.actions
+    else:
+        assert boxes(laid)[1][0] == pytest.approx(asked[taken])
+    if shares[-1] == 0.0:  # what is sure is taken at once
+        assert len(asked) == len(shares)
 
 
 def test_a_stone_on_its_tip_is_turned_by_half():
