@@ -27,12 +27,6 @@ def random_polygon(rng, corners, size):
     return centred(np.column_stack([radius * np.cos(angle), radius * np.sin(angle)]))
 
 
-def box_of(left, bottom, width, height):
-    """An upright box, counter-clockwise from its lower left corner."""
-    right, top = left + width, bottom + height
-    return np.array([[left, bottom], [right, bottom], [right, top], [left, top]], np.float64)
-
-
 def centred(corners):
     """The same polygon with its centroid at the origin."""
     _, x, y = area_and_centroid(corners)
@@ -90,3 +84,8 @@ def simple_polygons(draw, max_corners=12, max_size=20.0):
 def box(left, low, right, high):
     """The corners of a rectangle."""
     return np.array([[left, low], [right, low], [right, high], [left, high]], float)
+
+
+def box_of(left, bottom, width, height):
+    """The corners of a rectangle of some size."""
+    return box(left, bottom, left + width, bottom + height)
