@@ -20,6 +20,7 @@ from PIL import Image
 import drystone
 from drystone.cli.commands.settings import entries, explained_rows, plain_fields, planner_tables
 from drystone.cli.parser import build_parser
+from drystone.drawing.export.formats import FORMATS
 from drystone.errors import CODES
 from drystone.generate import (
     BrickSettings,
@@ -29,11 +30,13 @@ from drystone.generate import (
     brick_stones,
     lay_out,
 )
+from drystone.indices import INDEX_NAMES
 from drystone.io.plan_json import plan_from_json, plan_schema
 from drystone.io.read_settings import ReadSettings
 from drystone.io.wall_image import write_labels
 from drystone.model.settings import range_text
 from drystone.planner.settings import METHODS
+from drystone.selection.policies.registry import BUILT_IN, PAPER
 
 ROOT = Path(__file__).resolve().parents[1]
 SETTINGS = ROOT / "docs" / "settings.md"
@@ -307,6 +310,17 @@ def test_the_theory_has_every_equation_and_files_that_exist():
     assert len(files) > 20
     for file in files:
         assert (source / file).exists(), file
+
+
+def test_what_has_a_name_has_its_place_in_the_pages():
+    for page, names in (
+        ("for-researchers.md", [PAPER, *BUILT_IN]),
+        ("formats.md", FORMATS),
+        ("plan-format.md", INDEX_NAMES),
+    ):
+        text = (ROOT / "docs" / page).read_text(encoding="utf-8")
+        rows = " ".join(line for line in text.splitlines() if line.startswith("|"))
+        assert {name for name in names if f"`{name}`" not in rows} == set()
 
 
 def test_the_gallery_has_titles_and_is_short():

@@ -13,7 +13,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 MOST_WORDS = 25
 FAULTS = (
-    re.compile(r"(?<!here )\b(?:is|are) no (?!longer\b|more\b|data\b|\w+er than\b)[a-z]\w*", re.I),
+    re.compile(r"(?<!here )\b(?:is|are) no (?!longer\b|more\b|data\b|\w+er\b)[a-z]\w*", re.I),
     re.compile(r"\w\(s\)"),
     re.compile(r"(?:^|[\s(=:])\.\d\w*"),
 )

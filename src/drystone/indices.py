@@ -44,12 +44,12 @@ class Indices:
         return self.IS if self.boundary else self.IWR
 
     def as_dict(self) -> dict[str, float | None]:
-        """Return the seven indices under their names in the paper."""
+        """Return the indices under their names."""
         return {name: getattr(self, name) for name in INDEX_NAMES}
 
 
 INDEX_NAMES = tuple(field.name for field in fields(Indices) if field.name != "boundary")
-"""The indices of the paper, in the order of plan.json."""
+"""Names of the indices, in the order of plan.json."""
 
 
 def shape_factor(posed: PosedStone) -> float:

@@ -96,6 +96,8 @@ CASES = [
     (f"{EXACT} --bugdet 1", 2, "E138", "Did you mean `--budget`?"),
     (f"{PLAN} --orientations north", 2, "E122", "--orientations: 'north' is not a set"),
     (f"{PLAN} --method wurst", 2, "E124", ""),
+    (f"{PLAN} --method towers", 2, "E124", "--method paper --policy towers."),
+    ("export x --to geojsn", 2, "E138", "Did you mean `geojson`?"),
     (f"{PLAN} --mu -1", 2, "E123", "--mu: mu must be in (0, 1e+06], not -1.0. Change mu."),
     (f"{PLAN} --budget 3", 2, "E123", "--budget: better walls are looked for on outlines"),
     (f"{EXACT} --placement snug", 2, "E138", "--placement would do nothing"),

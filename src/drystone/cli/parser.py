@@ -18,8 +18,8 @@ _SUMMARY = "Plan dry-stone walls from the stones that you have, and test whether
 STUDIES = ("bench", "reproduce", "fetch")
 """Commands that every installation has, and whose code is not in this package."""
 
-_UNKNOWN = re.compile(r"argument COMMAND: invalid choice: '(.*?)'.*\(choose from (.*)\)", re.DOTALL)
-"""What argparse says of a command that there is not."""
+_CHOICE = re.compile(r"argument (.*): invalid choice: '(.*?)'.*\(choose from (.*)\)", re.DOTALL)
+"""What argparse says of a command, or a value of an option, that there is not."""
 
 _COMMANDS = {
     "demo": "Plan a sample wall: no arguments, no network.",
@@ -175,10 +175,12 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         cure = f"`{self.prog} --help` explains."
-        if (unknown := _UNKNOWN.search(message)) is not None:
-            message = f"there is no command {unknown[1]!r}"
-            known = re.findall(r"[\w-]+", unknown[2])
-            cure = f"{meant(unknown[1], known, 'drystone ')}`drystone --help` lists the commands."
+        if (choice := _CHOICE.search(message)) is not None:
+            known = re.findall(r"[\w-]+", choice[3])
+            if choice[1] == "COMMAND":
+                message = f"there is no command {choice[2]!r}"
+                cure = "`drystone --help` lists the commands."
+            cure = meant(choice[2], known, "drystone " if choice[1] == "COMMAND" else "") + cure
         elif (option := re.match(r"unrecognized arguments: (--[\w-]+)", message)) is not None:
             cure = meant(option[1], self._option_string_actions) + cure
         coded = UsageError("E138", f"{message}.", cure=cure)

@@ -1,9 +1,10 @@
 """Settling a polygon on polygons: down to the least energy, by small linear programs (DESIGN 4.9).
 
-A stone is let go at a pose where it touches nothing.  Step by step it makes the move (shift and
-turn) that goes down most while no gap to what is around it, linearised, falls below a clearance;
-then the true gaps are looked at.  Since turns are not straight, a move may come too near to
-something: it is brought apart again at the least cost, or halved where that gains nothing.
+A stone is let go at a pose where it touches nothing, or overlaps by no more than is allowed.
+Step by step it makes the move (shift and turn) that goes down most while no gap to what is around
+it, linearised, falls below a clearance; then the true gaps are looked at.  Since turns are not
+straight, a move may come too near to something: it is brought apart again at the least cost, or
+halved where that gains nothing.
 Gravity may lean towards the side from which the wall is built, which closes the joints beside the
 stone.  At the end a friction test says whether the stone rests, and how far gravity may lean
 until it moves.

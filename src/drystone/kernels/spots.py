@@ -111,7 +111,9 @@ def best_by_eq12(
     beta: float,
     tries: int,
 ) -> list[Place]:
-    """Return the positions of the largest :func:`eq12_merits`, the best first, so many at most.
+    """Return the positions of the largest merits (Eq. 12a), the best first, so many at most.
+
+    They are :func:`eq12_merits`; rays are counted only where the largest can be.
 
     Of equal ones the lower comes first, then the one further to the left.
     """

@@ -16,7 +16,7 @@ from drystone.planner.laying_settings import LayingSettings
 from drystone.planner.search_settings import UNLIMITED, GoalSettings, SearchSettings
 from drystone.poses import orientation_step_deg
 from drystone.selection.algorithm2 import SelectionSettings
-from drystone.selection.policies.registry import PAPER, RULES
+from drystone.selection.policies.registry import BUILT_IN, PAPER, RULES
 from drystone.selection.policies.settings import PolicySettings
 from drystone.selection.sampling import Sampling
 from drystone.selection.scored import ScoreSettings
@@ -199,10 +199,8 @@ METHODS: Mapping[str, PlannerSettings] = types.MappingProxyType(
 def method_settings(method: str) -> PlannerSettings:
     """Return the settings of a named method; raise UsageError (E124) for an unknown one."""
     if method not in METHODS:
-        raise UsageError(
-            "E124",
-            f"there is no method {method!r}.",
-            where="--method",
-            cure=f"Choose one of {', '.join(METHODS)}.",
-        )
+        cure = f"Choose one of {', '.join(METHODS)}."
+        if method in BUILT_IN:
+            cure = f"It is a policy: --method paper --policy {method}. {cure}"
+        raise UsageError("E124", f"there is no method {method!r}.", where="--method", cure=cure)
     return METHODS[method]

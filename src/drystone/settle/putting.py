@@ -10,11 +10,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from drystone.kernels import settling
 from drystone.kernels.asides import asides
 from drystone.kernels.polygons import Points, Polygons, on_grid, polygon_edges
 from drystone.kernels.raster import turn
 from drystone.kernels.settling import SettlingRules, Status
-from drystone.kernels.settling import settle as let_go
 from drystone.model.builder import Built
 from drystone.poses import wrap_deg
 from drystone.settle.rest import CORNER, GAIN
@@ -53,7 +53,7 @@ def put_down(
         steps = 0
         for lift in LIFTS:
             start = built.x, built.y + lift * size, 0.0
-            found = let_go(corners, edges, start, around, 0.0, rules)
+            found = settling.settle(corners, edges, start, around, 0.0, rules)
             steps += found.steps
             if found.status is Status.RESTS:
                 x, y = on_grid(np.array([found.x, found.y])).tolist()

@@ -39,7 +39,7 @@ def add(command: argparse.ArgumentParser) -> None:
     option("--fixed-order", action="store_true")
     add_writing(command)
     list_only(command, *SHOWN)
-    command.epilog = f"{READING} All settings: drystone settings."
+    command.epilog = f"{READING} All settings, --policy and its like among them: drystone settings."
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:

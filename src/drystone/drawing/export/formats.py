@@ -56,8 +56,8 @@ class ExportSettings:
 class Format:
     """A format: its files, what they are in words, and whether it needs a scale (E131).
 
-    `made_by` names a module of this package and, as the format is called, its function from an
-    assembly and settings to `Files`.  In `writes` a folder ends in ``/``.
+    `made_by` names a module of this package and its function from an assembly and settings to
+    `Files`, called as the format with `_` for `-`.  In `writes` a folder ends in ``/``.
     """
 
     made_by: str
@@ -69,7 +69,7 @@ class Format:
         """Return what is to be written."""
         module, _, function = self.made_by.partition(":")
         if self.metric:
-            assembly.require_scale(f"the format {function!r}")
+            assembly.require_scale(f"the format {function.replace('_', '-')!r}")
         made = import_module(f"drystone.drawing.export.{module}")
         files: Files = getattr(made, function)(assembly, settings)
         return files
