@@ -1,9 +1,16 @@
-"""Columns of the limit analysis: against plain loops."""
+"""Columns of the limit analysis, and figures of its answers: against loops and linear algebra."""
+
+import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from drystone.kernels.cones import GROUND_BODY, cone_edges
+from drystone.kernels.cones import GROUND_BODY, cone_edges, figures
+from drystone.kernels.simplex import Added, Cones
+from tests.naive import columns as naive
+from tests.strategies import repeatable
 
 
 def columns(found, length):
@@ -29,3 +36,71 @@ def test_what_does_not_fit_together_is_refused():
             cone_edges(*parts[:k], parts[k] * 2, *parts[k + 1 :], 1.0)
     with pytest.raises(ValueError, match="points"):
         cone_edges(*parts[:3], [np.zeros((2, 3))], 1.0)
+
+
+def some_cones(rng, count, bodies):
+    first = rng.integers(0, bodies, count).astype(np.int32)
+    second = rng.integers(-1, bodies, count).astype(np.int32)
+    entries = rng.normal(size=(6, count)).round(2)  # what acts on the ground is of no interest
+    return Cones(first, second, np.ascontiguousarray(entries))
+
+
+def some_answer(seed, built, new):
+    """A program and anything that might be an answer; a third of the forces are 0."""
+    rng = np.random.default_rng(seed)
+    wall = some_cones(rng, int(rng.integers(0, 20)) if built else 0, max(built, 1))
+    gone = rng.random(len(wall.first)) < 0.2
+    closed = np.flatnonzero(gone).astype(np.int32)
+    extra = some_cones(rng, int(rng.integers(0, 9)), max(built + new, 1))
+    if not built + new:
+        extra = some_cones(rng, 0, 1)
+    added = Added(rng.random(new) + 0.5, extra, closed)
+    forces = rng.normal(size=len(wall.first) - len(closed) + len(extra.first))
+    forces[rng.random(len(forces)) < 1 / 3] = 0.0
+    velocity = rng.normal(size=3 * (built + new)).round(1)
+    return wall, rng.random(built) + 0.5, added, float(rng.normal()), forces, velocity
+
+
+answers = st.builds(some_answer, st.integers(0, 10**6), st.integers(0, 4), st.integers(0, 3))
+
+
+@repeatable(200)
+@given(answers)
+def test_figures_are_those_of_linear_algebra(answer):
+    *program, forces, velocity = answer
+    for carried in (forces, forces[:0]):
+        found = figures(*program, carried, velocity)
+        assert found == pytest.approx(naive.figures(*program, carried, velocity), abs=1e-12)
+        assert all(type(figure) is float for figure in found)
+
+
+def test_what_is_no_number_is_found_out_wherever_it_is():
+    """By one of the figures that a certificate looks at."""
+    wall, weights, added, alpha, forces, velocity = some_answer(3, 4, 2)
+    touched = set(naive.program(wall, weights, added)[0].any(axis=1).nonzero()[0].tolist())
+    nan = float("nan")
+    for k in range(len(forces)):
+        for wrong in (nan, math.inf, -math.inf):
+            spoilt = forces.copy()
+            spoilt[k] = wrong
+            found = figures(wall, weights, added, alpha, spoilt, velocity)
+            assert not found.residual < math.inf
+            assert not found.total < math.inf
+            assert math.isnan(found.residual) or not math.isnan(wrong)
+    for k in touched:
+        spoilt = velocity.copy()
+        spoilt[k] = nan
+        found = figures(wall, weights, added, alpha, forces, spoilt)
+        assert math.isnan(found.inadmissible)
+        assert math.isnan(found.largest)
+    found = figures(wall, weights, added, nan, forces, velocity)
+    assert math.isnan(found.residual)
+
+
+def test_vectors_of_another_program_are_refused():
+    wall, weights, added, alpha, forces, velocity = some_answer(3, 4, 2)
+    for wrong in (forces[1:], np.append(forces, 0.0)):
+        with pytest.raises(ValueError, match="another program"):
+            figures(wall, weights, added, alpha, wrong, velocity)
+    with pytest.raises(ValueError, match="another program"):
+        figures(wall, weights, added, alpha, forces, velocity[3:])
