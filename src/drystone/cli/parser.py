@@ -18,7 +18,7 @@ _SUMMARY = "Plan dry-stone walls from the stones that you have, and test whether
 STUDIES = ("bench", "reproduce", "fetch")
 """Commands that every installation has, and whose code is not in this package."""
 
-_CHOICE = re.compile(r"argument (.*): invalid choice: '(.*?)'.*\(choose from (.*)\)", re.DOTALL)
+_CHOICE = re.compile(r"argument ([^:]*): invalid choice: '(.*?)'.*\(choose from (.*)\)", re.DOTALL)
 """What argparse says of a command, or a value of an option, that there is not."""
 
 _COMMANDS = {
