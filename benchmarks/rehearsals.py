@@ -9,6 +9,7 @@ tree plan, in a folder of its own; the judge is always this one.  Several folder
 
 import argparse
 import json
+import math
 import os
 import subprocess
 import sys
@@ -21,16 +22,17 @@ from typing import Any
 
 import numpy as np
 
-from drystone.contacts.given import polygons_from_json
+from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.io.walls import read_wall
 from drystone.model.builder import HAND, ROBOT, BuilderErrors
 from drystone.model.steps import grouped, piece_id
 from drystone.search.closed_loop import rehearse_closed, tilt_as_built
 from drystone.search.rehearsal import Groups, mean_size, rehearse, rehearse_in_engine
-from drystone_lab.walls import IR, NOISY, PR_600, UNSEEN, R, chosen
+from drystone.statics.flow.nonassociative import nonassociative_resistance
+from drystone_lab.walls import IR, NOISY, PR_560, PR_600, UNSEEN, R, chosen
 
-WALLS = (R, PR_600, IR, NOISY[4], UNSEEN[3], UNSEEN[2], UNSEEN[0])
-"""R, PR, IR, noise 50, and rubble, polygons and Fourier stones of named generators and seeds."""
+WALLS = (R, PR_600, PR_560, IR, NOISY[4], UNSEEN[3], UNSEEN[2], UNSEEN[0])
+"""R, PR in two sizes, IR, noise 50, and rubble, polygons and Fourier stones of named seeds."""
 
 LEVELS = {"none": 0.0, "robot": ROBOT, "hand": HAND}
 LOOPS = {"open": rehearse, "closed": rehearse_closed, "engine": rehearse_in_engine}
@@ -112,9 +114,15 @@ def rows_of(
 
 
 def figures(folder: Path) -> dict[str, float]:
-    """Return the figures of a plan; F_LR is the smaller of both flow rules."""
+    """Return the figures of a plan; F_LR is the smaller of both flow rules, by this judge.
+
+    Where nothing is found without dilatancy it is the other one, above which none can be.
+    """
     groups, now = groups_in(folder)
-    carried = min(now.F_LR or 0.0, now.F_LR_coulomb or 0.0)
+    blocks = read_wall(folder).blocks
+    assert blocks is not None  # noqa: S101 - our own plan
+    found = nonassociative_resistance(model_from_json(blocks)).carried
+    carried = min(now.F_LR or 0.0, math.inf if found is None else found)
     return {
         "placed": len(groups), "F_AV": now.F_AV or 0.0, "F_AH": now.F_AH or 0.0, "F_LR": carried,
         "seconds": float((folder / "seconds").read_text()),

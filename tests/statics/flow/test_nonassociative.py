@@ -9,7 +9,7 @@ from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
 from drystone.statics.flow import nonassociative
 from drystone.statics.flow.flow_check import FlowCheck, check_flow
-from drystone.statics.flow.flow_search import NonassociativeSettings
+from drystone.statics.flow.flow_search import STARTS, NonassociativeSettings
 from drystone.statics.flow.nonassociative import (
     NonassociativeResult,
     nonassociative_load,
@@ -84,6 +84,15 @@ def test_irregular_walls_are_answered_with_a_check_that_holds(seed, mu):
             )
             assert result.check == again
         assert np.hypot(*result.mechanism.velocity[:, :2].T).max() == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(("seed", "direction"), [(13, "left"), (13, "right"), (24, "left")])
+def test_a_single_start_finds_an_answer_where_equal_steps_need_many_rounds(seed, direction):
+    model = model_from_labels(irregular(seed, 20, 110, 60), 0.75).model
+    one = NonassociativeSettings(rounds=25, starts=STARTS[:1], random_starts=0)
+    result = nonassociative_load(model, direction, settings=one)
+    assert result.success
+    assert result.check.holds
 
 
 def test_the_same_every_time():

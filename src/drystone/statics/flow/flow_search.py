@@ -33,10 +33,17 @@ NOTHING = 1e-9
 RUNAWAY = 1e8
 """Slip rates above this, when the live load does work at a rate of 1, have left for infinity."""
 
+SHORTEST, GOLDEN = 0.3, (5.0**0.5 - 1.0) / 2.0
+"""A round goes 0.3 to 1.3 of the way to the slip rates of the last motion, spread evenly by the
+golden ratio: rounds of equal steps may go round in a circle for ever."""
+
+LEAP, BETWEEN = 30.0, 20
+"""So far goes a round after so many others: some slip rates grow by a few per cent in each."""
+
 
 @dataclass(frozen=True)
 class Start:
-    """Slip rates with which rounds begin, and how far each round goes."""
+    """Slip rates with which rounds begin."""
 
     name: str
     pattern: Pattern
@@ -44,17 +51,15 @@ class Start:
     upright the normal is; "mechanism": those of the associative mechanism; "rest": where that one
     does not slide; "random": powers of random numbers, few of them large."""
     factor: float  # largest rate over the largest one of the associative mechanism
-    step: float
-    """Part of the way to the slip rates of the last motion that a round goes, above 0 to 1."""
 
 
 STARTS = (
-    Start("even slip", "even", 10.0, 0.5),
-    Start("slip in head joints", "head joints", 10.0, 0.5),
-    Start("slip in bed joints", "bed joints", 10.0, 0.5),
-    Start("slip of resting contacts", "rest", 10.0, 0.5),
-    Start("fast associative slip", "mechanism", 50.0, 0.7),
-    Start("no slip", "mechanism", 0.0, 0.3),
+    Start("even slip", "even", 10.0),
+    Start("slip in head joints", "head joints", 10.0),
+    Start("slip in bed joints", "bed joints", 10.0),
+    Start("slip of resting contacts", "rest", 10.0),
+    Start("fast associative slip", "mechanism", 50.0),
+    Start("no slip", "mechanism", 0.0),
 )
 
 
@@ -62,7 +67,7 @@ STARTS = (
 class NonassociativeSettings:
     """How much is tried."""
 
-    rounds: int = 60  # most rounds from each start
+    rounds: int = 100  # most rounds from each start
     patience: int = 5  # steps of descent in a row without a lower load, after which it ends
     starts: tuple[Start, ...] = STARTS  # all are tried, in this order
     random_starts: int = 6  # so many more, from random slip rates
@@ -72,7 +77,7 @@ class NonassociativeSettings:
     @property
     def all_starts(self) -> tuple[Start, ...]:
         """The fixed and the random ones."""
-        more = (Start(f"random {i + 1}", "random", 30.0, 0.5) for i in range(self.random_starts))
+        more = (Start(f"random {i + 1}", "random", 30.0) for i in range(self.random_starts))
         return (*self.starts, *more)
 
 
@@ -238,7 +243,7 @@ class Search:
             mechanism = np.abs(self._slip.T @ first.velocity)
         rng = np.random.default_rng(self._settings.seed)
         for start in self._settings.all_starts:
-            rounds, state = self._rounds(self._rates(start, mechanism, rng), start.step)
+            rounds, state = self._rounds(self._rates(start, mechanism, rng))
             yield start.name, rounds, state and self._descended(state)
 
     def _rates(self, start: Start, mechanism: Floats, rng: np.random.Generator) -> Floats:
@@ -253,7 +258,7 @@ class Search:
         }
         return start.factor * largest * shares[start.pattern]
 
-    def _rounds(self, rates: Floats, step: float) -> tuple[int, FlowState | None]:
+    def _rounds(self, rates: Floats) -> tuple[int, FlowState | None]:
         """Go on until a motion goes with the forces of a round."""
         session = HighsSession(self._program)
         for number in range(1, self._settings.rounds + 1):
@@ -263,7 +268,11 @@ class Search:
             velocity = self._motions.find(state.edges)
             if velocity is not None:
                 return number, FlowState(state.alpha, state.edges, velocity)
-            rates = rates + step * (np.abs(self._slip.T @ state.velocity) - rates)
+            way = np.abs(self._slip.T @ state.velocity) - rates
+            if number % BETWEEN:
+                rates = rates + (SHORTEST + number * GOLDEN % 1.0) * way
+            else:
+                rates = np.maximum(rates + LEAP * way, 0.0)
             if rates.max() > RUNAWAY:
                 return number, None
         return self._settings.rounds, None
