@@ -32,6 +32,9 @@ if not cython.compiled:
 
 GROUND, END = -1, -2
 
+# A little more than 1, for what rounding makes of distances.
+FARTHER = cython.declare(cython.double, 1.0 + 1e-9)
+
 SAME = cython.declare(cython.double, 1e-9)
 INTO = cython.declare(cython.double, 0.03)
 
@@ -233,7 +236,8 @@ def one_way(a, b, out, reach, corner, sign, other):
             if t > edges[3 * e + 2]:
                 continue
             if t < 0.0:
-                if at_corner(a, b, i, e, reach, corner, sign, other, out):
+                # What is farther before an edge than a gap may be is farther from its start, too.
+                if t >= -FARTHER * reach and at_corner(a, b, i, e, reach, corner, sign, other, out):
                     inside = 3
                 continue
             if s >= -SAME:
