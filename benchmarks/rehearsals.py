@@ -120,9 +120,9 @@ def figures(folder: Path) -> dict[str, float]:
     """
     groups, now = groups_in(folder)
     blocks = read_wall(folder).blocks
-    assert blocks is not None  # noqa: S101 - our own plan
+    assert blocks is not None and now.F_LR is not None  # noqa: S101, PT018 - our own plan
     found = nonassociative_resistance(model_from_json(blocks)).carried
-    carried = min(now.F_LR or 0.0, math.inf if found is None else found)
+    carried = min(now.F_LR, math.inf if found is None else found)
     return {
         "placed": len(groups), "F_AV": now.F_AV or 0.0, "F_AH": now.F_AH or 0.0, "F_LR": carried,
         "seconds": float((folder / "seconds").read_text()),

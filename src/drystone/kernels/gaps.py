@@ -236,7 +236,7 @@ def one_way(a, b, out, reach, corner, sign, other):
             if t > edges[3 * e + 2]:
                 continue
             if t < 0.0:
-                # What is farther before an edge than a gap may be is farther from its start, too.
+                # A corner farther before an edge than `reach` has no gap to the edge's start.
                 if t >= -FARTHER * reach and at_corner(a, b, i, e, reach, corner, sign, other, out):
                     inside = 3
                 continue

@@ -14,7 +14,9 @@ optimization, ZAMM 91 (2011) 155-175).  For given slip rates s_i >= 0 solve
 its dual is a motion with live . v = 1 and u_n,i + mu s_i >= mu |u_t,i|.  Where s_i = |u_t,i| all
 conditions hold.  Only costs change from round to round, so the program stays feasible, and
 s = 0 is the associative problem.  The slip rates move towards those of the last motion, or a
-little beyond: each round by another part of the way.
+little beyond: each round by another part of the way, and by a leap now and then.  What lies beyond
+may be below 0.  That led to lower answers on planned walls; where the program has no limit then,
+the start ends without an answer.
 
 **Closing.**  The rounds converge slowly or run away.  But the forces of a round settle early, and
 the motions that go with given forces are the solutions of a linear program, so each round asks it
