@@ -18,7 +18,8 @@ def seats_of(workshop, settings):
 @pytest.fixture(scope="module")
 def careless():
     """A planner that has built without trials."""
-    return finish(Planner(ROUNDED, ROUNDED_SITE, settings=greedy({"settle": {"trials": 0}})))
+    settings = greedy({"settle": {"trials": 0}})
+    return finish(Planner(ROUNDED, ROUNDED_SITE, seed=2, settings=settings))
 
 
 def shares(seats, wall, states):

@@ -143,8 +143,9 @@ def test_the_first_wall_is_wedged_as_the_others_are():
 
 def test_every_other_wall_of_a_search_keeps_open_joints():
     yard = Yard.of(first(2))
-    joints = [yard.jointed(number).settings.settle.joint for number in range(4)]
-    assert joints == [0.0, 0.03, 0.0, 0.03]
+    joints = [yard.jointed(number).settings.settle.joint_px for number in range(4)]
+    open_px = pytest.approx(0.03 * yard.workshop.seats.mean_size)
+    assert joints == [0.0, open_px, 0.0, open_px]
 
 
 @pytest.fixture(scope="module")

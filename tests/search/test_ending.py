@@ -15,7 +15,7 @@ from drystone.planner.planner import Planner
 from drystone.planner.settings import method_settings
 from drystone.planner.solves import Solves
 from drystone.search.chain import _opened
-from drystone.search.goal import LAST_RUNS, FoundWall, falls_of
+from drystone.search.goal import FoundWall
 from drystone.search.packed import PackedWall, found_again
 from drystone.search.plan_wall import plan_wall
 from drystone.search.whole_search import (
@@ -34,6 +34,7 @@ from tests.planner.scenes import (
     RUBBLE_SITE,
     Ticks,
     after_looks,
+    blocks,
     bricks,
     finish,
     greedy,
@@ -44,13 +45,14 @@ FEW = {"search": {"budget": 4, "passes": 4, "chains": 2, "share_every": 2}}
 
 
 def small_search():
-    return plan_wall(rubble(), 100, 36, scale=1.0, seed=1, settings=greedy(FEW), choice=True)
+    return plan_wall(rubble(), 100, 36, scale=1.0, seed=2, settings=greedy(FEW), choice=True)
 
 
 @pytest.fixture
 def planner():
     """One that has built a whole wall."""
-    planner = Planner(rubble(), RUBBLE_SITE, seed=1, settings=greedy({"search": {"budget": 2}}))
+    settings = greedy({"search": {"budget": 2}, "goal": {"fallen": 0.0}})
+    planner = Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
     for _ in planner.steps():
         pass
     return planner
@@ -84,22 +86,34 @@ def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere():
     careless = greedy({"search": {"budget": 2}, "settle": {"trials": 0}})
     planner = finish(Planner(ROUNDED, ROUNDED_SITE, seed=1, settings=careless))
     yard = Yard.of(planner)
-    wall = PackedWall.of(FoundWall.of(planner).judged(yard, THOROUGH))
+    wall = FoundWall.of(planner).judged(yard, THOROUGH)
+    assert wall.falls.first
     better = repaired(planner, wall)
     assert better.merit > wall.merit
     assert better.figures.fallen < wall.figures.fallen
-    found = found_again(better, yard)
+    found = found_again(PackedWall.of(better), yard)
     assert found.judged(yard, THOROUGH).merit == pytest.approx(better.merit)
-    assert repaired(planner, wall).groups == better.groups
-    assert falls_of(planner.build, yard, LAST_RUNS).first
-    # Where nothing falls, and where nothing is better without it, the wall stays.
-    still = repaired(planner, replace(wall, merit=math.inf))
-    assert still.groups == wall.groups
-    flat = finish(Planner(bricks(), Site(60, 20), settings=careless))
-    laid = PackedWall.of(FoundWall.of(flat))
-    assert repaired(flat, laid) is laid
-    nothing = PackedWall.of(FoundWall.of(Planner(bricks(), Site(60, 20), settings=careless)))
-    assert repaired(flat, nothing) is nothing
+    assert PackedWall.of(repaired(planner, wall)).groups == PackedWall.of(better).groups
+    # Where nothing is weak, and where nothing is better without it, the wall stays.
+    best = replace(wall, merit=math.inf)
+    assert repaired(planner, best) is best
+    nothing = FoundWall.of(Planner(bricks(), Site(60, 20), settings=careless))
+    assert repaired(planner, nothing) is nothing
+
+
+def test_stones_that_move_when_the_wall_fails_are_taken_out_or_laid_elsewhere():
+    sizes = {1: (40, 12), 2: (40, 12), 3: (8, 24)}
+    goal = {"fallen": 0.0, "filling": 1.0}  # strength counts for more than a small stone
+    settings = greedy({"search": {"budget": 2}, "orientations": "sf", "goal": goal})
+    planner = finish(Planner(blocks(sizes), Site(42, 60), settings=settings))
+    wall = FoundWall.of(planner).judged(Yard.of(planner), THOROUGH)
+    assert wall.falls is None
+    assert ids(planner) == [1, 2, 3]
+    assert wall.movers == (3,)  # the slender one on top
+    assert wall.figures.F_LR_coulomb == pytest.approx(8 / 24 / 0.58, abs=0.03)
+    better = repaired(planner, wall)
+    assert [action.stone_id for action in better.build.actions] == [1, 2]
+    assert better.figures.F_LR_coulomb == pytest.approx(1.0)
 
 
 def test_a_wall_to_choose_is_as_it_was_found(planner):
@@ -164,11 +178,11 @@ def test_of_walls_that_there_is_no_time_to_judge_the_first_is_taken(planner):
     whole = PackedWall.of(FoundWall.of(planner))
     walls = [replace(half, merit=whole.merit + 2.0), replace(whole, merit=whole.merit + 1.0)]
     best, interrupted = surest(planner, walls, Deadline(math.inf, clock))
-    assert (len(best.groups), interrupted) == (len(whole.groups), False)
-    assert surest(planner, walls, after_looks(0)) == (walls[0], True)
+    assert (len(best.build.actions), interrupted) == (len(whole.groups), False)
+    assert surest(planner, walls, after_looks(0)) == (None, True)
     # The half was judged, and the other one was not.
     judged, interrupted = surest(planner, walls, after_looks(clock.count - 1))
-    assert (len(judged.groups), interrupted) == (len(half.groups), True)
+    assert (len(judged.build.actions), interrupted) == (len(half.groups), True)
     assert judged.merit < walls[0].merit
 
 
@@ -222,7 +236,8 @@ def test_none_of_the_walls_to_choose_is_better_than_another():
     area = sum(stone.area_px for stone in stones)
     width = (area * 1.6) ** 0.5 * 1.3
     search = {"budget": 5, "passes": 5, "chains": 2, "share_every": 2}
-    few = method_settings("best").updated({"skip_too_large": True, "search": search})
+    more = {"skip_too_large": True, "search": search, "goal": {"fallen": 0.0}}
+    few = method_settings("best").updated(more)
     result = plan_wall(
         stones, round(width), round(area * 1.25 / width), seed=14, settings=few, choice=True
     )
@@ -237,14 +252,14 @@ def test_a_wall_that_falls_when_it_is_let_go_gives_way_to_one_that_stays(planner
     walls = sorted((whole, half), key=lambda wall: -wall.merit)
     best, _ = surest(planner, walls)
     assert stays_at_every_step(planner.build)
-    lost = len(best.groups)
+    lost = len(best.build.actions)
 
     def fall(model, *_):
         return len(model.blocks) == lost or None
 
     monkeypatch.setattr("drystone.search.whole_search.fall_of", fall)
     other, _ = surest(planner, walls)
-    assert len(other.groups) != lost
+    assert len(other.build.actions) != lost
     monkeypatch.setattr("drystone.search.whole_search.fall_of", lambda *_: True)
     again, _ = surest(planner, walls)
     assert again.merit == best.merit  # all fall

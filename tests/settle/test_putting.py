@@ -58,6 +58,15 @@ def test_a_brick_that_overlaps_what_is_below_is_lifted():
     assert pushed == {}
 
 
+def test_neighbours_that_lean_over_are_pushed_apart_where_a_lifted_brick_is():
+    left = np.array([[-60.0, 3.0], [-20.0, 3.0], [-15.0, 33.0], [-60.0, 33.0]])
+    right = left[::-1] * (-1.0, 1.0)
+    rest, pushed = put(brick(0.0, 10.0), box(-60.0, -17.0, 120.0), left, right)
+    assert 12.9 < rest.y < 13.8  # the bed is higher than planned; they hold it where they can
+    room = 5.0 * 20.0 / 30.0  # that is missing at the top of the brick where it lies
+    assert pushed == {1: pytest.approx(-room, abs=0.7), 2: pytest.approx(room, abs=0.7)}
+
+
 @pytest.mark.parametrize(
     ("below", "mu"),
     [

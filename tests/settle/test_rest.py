@@ -328,7 +328,7 @@ def test_a_stone_that_falls_where_it_is_laid_is_lost():
 
 @pytest.mark.parametrize("side", SIDES)
 def test_a_stone_keeps_a_joint_to_its_neighbour_where_it_rests_so(side):
-    open_, closed = SettleSettings(joint=0.05), SettleSettings()
+    open_, closed = SettleSettings(joint_px=0.7), SettleSettings()
     scene = scene_of([BRICK + np.array((30.0, 5.0))], side)
     stone = Turned.of(BRICK, 0.0, side, math.sqrt(200.0))
     ends = []
@@ -337,7 +337,7 @@ def test_a_stone_keeps_a_joint_to_its_neighbour_where_it_rests_so(side):
         x = rest.settled.x_px if side == "left" else scene.width_px - rest.settled.x_px
         ends.append(x - 50.0)
         assert rest.settled.y_px == pytest.approx(5.0, abs=0.05)
-    assert ends == pytest.approx([0.0, 0.05 * math.sqrt(200.0)], abs=0.1)
+    assert ends == pytest.approx([0.0, 0.7], abs=0.1)
     # The end of the wall is not a neighbour.
     alone = [come_to_rest(stone, scene_of([], side), (10.0, 6.0), one) for one in (closed, open_)]
     assert alone[0].settled.x_px == alone[1].settled.x_px

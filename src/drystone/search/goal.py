@@ -23,7 +23,7 @@ from drystone.search.rehearsal import errors_of, groups_of, mean_size, put_up
 from drystone.search.yard import Yard
 from drystone.statics.flow.flow_search import STARTS, NonassociativeSettings
 from drystone.statics.flow.nonassociative import nonassociative_resistance
-from drystone.statics.result import LimitStatus
+from drystone.statics.result import LimitStatus, Mechanism
 
 MISSING = 10.0
 """Units of merit that a pinned stone counts which is not in the wall."""
@@ -36,8 +36,11 @@ QUICK = NonassociativeSettings(starts=STARTS[:1], random_starts=0, let_go=False)
 """One start of twelve finds the least load without dilatancy of most walls."""
 
 
-STOPPED = 3
+STOPPED = 6
 """A builder who has to mend a wall loses as much as with so many stones."""
+
+MOVES = 0.5
+"""A stone takes part in a failure when it is at least so fast, over the fastest."""
 
 RUNS, LAST_RUNS = 4, 24
 """So often a wall of a search is rehearsed, and the best ones at the end."""
@@ -161,6 +164,8 @@ class FoundWall:
     solves: Solves = field(default_factory=Solves)  # trouble with it
     courses: Courses | None = None  # None for a wall that was not planned before
     falls: RehearsalFalls | None = None  # in its rehearsals, once it was judged
+    # Stones that move when it fails in its weaker direction, the fastest first, once it was judged.
+    movers: tuple[int, ...] = ()
 
     @classmethod
     def of(
@@ -204,15 +209,24 @@ class FoundWall:
                 return replace(self, merit=-math.inf)
             figures = replace(figures, fallen=falls.share)
         found = nonassociative_resistance(model, settings=flow or QUICK, look=yard.until.look)
-        carried = figures.F_LR
+        carried, movers = figures.F_LR, self.movers
         for end in (found.left, found.right):
-            if end.status is LimitStatus.UNSTABLE:
-                carried = 0.0
-            elif end.alpha is not None:
-                carried = min(carried, end.alpha / found.mu)
+            alpha = 0.0 if end.status is LimitStatus.UNSTABLE else end.alpha
+            if alpha is not None and alpha / found.mu <= carried:
+                carried = alpha / found.mu
+                movers = _movers(self.build, end.mechanism)
         figures = replace(figures, F_LR_coulomb=carried)
         merit = merit_of(figures, possible_filling(yard.workshop), goal)
-        return replace(self, figures=figures, merit=merit, falls=falls)
+        return replace(self, figures=figures, merit=merit, falls=falls, movers=movers)
+
+
+def _movers(build: Build, mechanism: Mechanism | None) -> tuple[int, ...]:
+    if mechanism is None:
+        return ()
+    speeds = dict(zip(mechanism.block_ids, np.hypot(*mechanism.velocity.T[:2]), strict=True))
+    stones = [group.placement.stone_id for group in build.wall.groups]
+    fastest = sorted(stones, key=lambda stone: (-round(speeds[stone], 6), stone))
+    return tuple(s for s in fastest if speeds[s] >= MOVES * speeds[fastest[0]] > 0.0)
 
 
 def falls_of(build: Build, yard: Yard, runs: int, most: float = math.inf) -> RehearsalFalls | None:

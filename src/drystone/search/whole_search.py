@@ -19,7 +19,7 @@ from drystone.planner.sturdy import ROUNDS
 from drystone.planner.vary import REPAIR_DRAWS
 from drystone.search.anytime import searching
 from drystone.search.chain import forget, without
-from drystone.search.goal import LAST_RUNS, FoundWall, WallFigures, falls_of
+from drystone.search.goal import FoundWall, WallFigures
 from drystone.search.interrupts import held
 from drystone.search.packed import PackedWall, archived, found_again
 from drystone.search.state import Progress, SearchState
@@ -36,7 +36,7 @@ THOROUGH = NonassociativeSettings()
 REPAIRS = 8
 """So often the best wall is repaired at most, where its stones fall in rehearsals."""
 
-JUDGED_AGAIN = 4
+JUDGED_AGAIN = 8
 """So many of the best walls of a search are looked at thoroughly at most."""
 
 
@@ -140,15 +140,16 @@ def cut_off(planner: Planner, progress: Progress | None) -> SearchEnd:
 def _ended(planner: Planner, progress: Progress, grace: Deadline, *, lost: bool) -> SearchEnd:
     """Judge the best walls of a search thoroughly, and add what finds a place on the best."""
     kept = progress.kept
-    surer, unsure = surest(planner, kept, grace)
-    best = found = surer or progress.best
+    sure, unsure = surest(planner, kept or [progress.best], grace)
+    best = found = PackedWall.of(sure) if sure else progress.best
     try:
-        best = repaired(planner, found, grace)
+        if sure:
+            best = PackedWall.of(repaired(planner, sure, grace))
     except TimeIsUp:
         unsure = True
     last, stopped, cut = with_the_rest(planner, best, grace)
     planner.solves += last.solves
-    if best is not found or len(last.build.actions) > len(best.groups):
+    if best.groups != found.groups or len(last.build.actions) > len(best.groups):
         kept = archived(kept, [PackedWall.of(FoundWall.of(last))])
     return SearchEnd(last, stopped, progress.walls, kept, lost, unsure or cut)
 
@@ -188,54 +189,57 @@ def _incumbent(progress: Progress) -> Incumbent:
 
 def surest(
     planner: Planner, walls: Iterable[PackedWall], until: Deadline = NEVER
-) -> tuple[PackedWall | None, bool]:
+) -> tuple[FoundWall | None, bool]:
     """Return the best of some walls once their load without dilatancy is looked for thoroughly.
 
-    Walls come the best first; of none there is no best.  A wall that falls when it is let go after
-    some step is taken only where all do.  Says too whether time was up before all were looked at:
-    the best is then one of those that were, and the first where none was.
+    Walls come the best first.  A wall that falls when it is let go after some step is taken only
+    where all do.  Says too whether time was up before all were looked at: the best is then one of
+    those that were, and None where none was.
     """
     yard = Yard.of(planner, until)
-    sound: list[PackedWall] = []
-    fallen: list[PackedWall] = []
-    for wall in islice(walls, JUDGED_AGAIN):
-        if sound and wall.merit <= _best(sound).merit:
-            break
-        try:
-            again = found_again(wall, yard)
-            judged = PackedWall.of(again.judged(yard, THOROUGH))
-            (sound if stays_at_every_step(again.build, until) else fallen).append(judged)
-        except TimeIsUp:
-            return _best(sound or fallen or [wall]), True
+    sound: list[FoundWall] = []
+    fallen: list[FoundWall] = []
+    in_time = True
+    try:
+        for wall in islice(walls, JUDGED_AGAIN):
+            least = _best(sound).merit if sound else -math.inf
+            if wall.merit <= least:
+                break
+            judged = found_again(wall, yard).judged(yard, THOROUGH, least)
+            if judged.merit <= least:
+                continue
+            (sound if stays_at_every_step(judged.build, until) else fallen).append(judged)
+    except TimeIsUp:
+        in_time = False
     looked_at = sound or fallen
-    return _best(looked_at) if looked_at else None, False
+    return _best(looked_at) if looked_at else None, not in_time
 
 
-def repaired(planner: Planner, best: PackedWall, until: Deadline = NEVER) -> PackedWall:
-    """Return a wall without stones that fall first in its rehearsals, where that is better.
+def repaired(planner: Planner, best: FoundWall, until: Deadline = NEVER) -> FoundWall:
+    """Return a wall without what is weak in it, where that is better.
 
-    The one that does most often is taken out, or all are, and what they leave is built up again or
-    stays open; so the best of four walls goes on, at most :data:`REPAIRS` times.
+    Weak are the stones that fall first in its rehearsals, and those that move when it fails.  Of
+    both the weakest one is taken out, or all are, and what they leave is built up again or stays
+    open; so the best of these walls goes on, at most :data:`REPAIRS` times.
     """
     yard = Yard.of(planner, until)
-    now, found = best, found_again(best, yard)
     for turn in range(REPAIRS):
-        falls = found.falls or falls_of(found.build, yard, LAST_RUNS)
-        if falls is None or not falls.first:
-            break
+        first = [stone for stone, _ in best.falls.first.most_common()] if best.falls else []
+        weak = [frozenset(some) for s in (first, best.movers) for some in (s[:1], s) if some]
         walls, rng = [], np.random.default_rng([planner.seed, REPAIR_DRAWS, turn])
-        often = frozenset([falls.first.most_common(1)[0][0]])
-        for chosen in dict.fromkeys((often, frozenset(falls.first))):
-            build, _, solves = without(found.build, chosen, yard)
+        for chosen in dict.fromkeys(weak):
+            build, _, solves = without(best.build, chosen, yard)
             walls += [FoundWall.measured(build, yard, solves)]
             walls += [FoundWall.of(yard.built_up(build, rng), before=solves)]
-        better = max(
-            (one.judged(yard, THOROUGH, now.merit) for one in walls), key=lambda one: one.merit
-        )
-        if better.merit <= now.merit or not stays_at_every_step(better.build, until):
+        better = best
+        for wall in sorted(walls, key=lambda one: -one.merit):
+            judged = wall.judged(yard, THOROUGH, better.merit)
+            if judged.merit > better.merit:
+                better = judged
+        if better is best or not stays_at_every_step(better.build, until):
             break
-        now, found = PackedWall.of(better), better
-    return now
+        best = better
+    return best
 
 
 def stays_at_every_step(build: Build, until: Deadline = NEVER) -> bool:
@@ -250,7 +254,7 @@ def stays_at_every_step(build: Build, until: Deadline = NEVER) -> bool:
     return all(fall_of(m, assemble(m), ROUNDS, until.look) is None for m in models)
 
 
-def _best(walls: Sequence[PackedWall]) -> PackedWall:
+def _best(walls: Sequence[FoundWall]) -> FoundWall:
     return max(walls, key=lambda one: one.merit)
 
 

@@ -40,8 +40,10 @@ class Yard:
 
     def jointed(self, number: int) -> "Yard":
         """Return that of a wall of a search: every other one has open joints."""
-        joint = self.settings.search.joint if number % 2 else self.settings.settle.joint
-        settle = replace(self.settings.settle, joint=joint)
+        if not number % 2:
+            return self
+        joint_px = self.settings.search.joint * self.workshop.seats.mean_size
+        settle = replace(self.settings.settle, joint_px=joint_px)
         return replace(self, settings=replace(self.settings, settle=settle))
 
     def planner(self, seed: int = 0, settings: PlannerSettings | None = None) -> Planner:

@@ -1,8 +1,8 @@
 """Putting a block down where it is not quite as planned, and letting it go (DESIGN 4.10).
 
-It is pressed in between its neighbours: moved aside where there is room, else these are pushed
-apart along their beds.  Then it goes down as friction lets it: it rolls about what carries it, and
-slides only where it does not come to rest so.
+It is lifted until it overlaps nothing below.  There it is pressed in between its neighbours: moved
+aside where there is room, else these are pushed apart along their beds.  Then it goes down as
+friction lets it: it rolls about what carries it, and slides only where it does not come to rest so.
 """
 
 import math
@@ -44,21 +44,28 @@ def put_down(
 
     None, and the others stay, where it rests nowhere near.
     """
-    built, pushed = _squeezed_in(built, around, 2.0 * settle.clearance_px)
-    around = moved(around, pushed)
     size, corners = built.size, turn(built.outline, built.angle_deg)
     edges = polygon_edges(corners)
+    pressed: dict[float, tuple[Built, Polygons, dict[int, float]]] = {}  # by lift
     for sticks in (True, False):
         rules = _rules(size, mu, settle, sticks=sticks)
-        steps = 0
+        steps, least = 0, 0.0
         for lift in LIFTS:
-            start = built.x, built.y + lift * size, 0.0
-            found = settling.settle(corners, edges, start, around, 0.0, rules)
+            if lift < least:
+                continue
+            if lift not in pressed:
+                raised = replace(built, y=built.y + lift * size)
+                pressed[lift] = _squeezed_in(raised, around, 2.0 * settle.clearance_px)
+            held, others, pushed = pressed[lift]
+            start = held.x, held.y, 0.0
+            found = settling.settle(corners, edges, start, others, 0.0, rules)
             steps += found.steps
             if found.status is Status.RESTS:
                 x, y = on_grid(np.array([found.x, found.y])).tolist()
                 angle_deg = wrap_deg(built.angle_deg + math.degrees(found.angle))
                 return Built(built.outline, x, y, angle_deg, size), pushed
+            if not found.steps:
+                least = lift - found.gap / size - OVERLAP  # no lift takes off more than itself
         if not steps:
             break  # it overlaps wherever it is let go
     return None, {}
@@ -97,12 +104,15 @@ def moved(around: Polygons, pushed: dict[int, float]) -> Polygons:
     return Polygons(corners, around.first, boxes, around.edges)
 
 
-def _squeezed_in(built: Built, around: Polygons, gap: float) -> tuple[Built, dict[int, float]]:
+def _squeezed_in(
+    built: Built, around: Polygons, gap: float
+) -> tuple[Built, Polygons, dict[int, float]]:
     """Move a block aside to where it has room between its neighbours, or push these apart.
 
-    What did overlap keeps a gap.
+    What did overlap keeps a gap.  Returned are the block, all others, and who was pushed how far.
     """
-    bottom, top = built.corners[:, 1].min(), built.corners[:, 1].max()
+    corners = built.corners
+    bottom, top = corners[:, 1].min(), corners[:, 1].max()
 
     def neighbours(corners: Points, sign: float) -> list[tuple[int, float]]:
         """List who overlaps it on one side, and by how much; the gap is part of it."""
@@ -111,7 +121,7 @@ def _squeezed_in(built: Built, around: Polygons, gap: float) -> tuple[Built, dic
         return [(i, way) for i, way in found if boxes[i, 1] < top and boxes[i, 3] > bottom]
 
     def aside(shift: float) -> Points:
-        return np.asarray(built.corners + np.array((shift, 0.0)))
+        return np.asarray(corners + np.array((shift, 0.0)))
 
     def most(shift: float, sign: float) -> float:
         ways = neighbours(aside(shift), sign)
@@ -123,9 +133,9 @@ def _squeezed_in(built: Built, around: Polygons, gap: float) -> tuple[Built, dic
         # All the way where there is room, else half of what is missing.
         sign = math.copysign(1.0, shift)
         shift = 2.0 * shift - 0.5 * sign * most(2.0 * shift, sign)
-    if not left + right or abs(shift) > ASIDE * built.size:
-        return built, {}
     pushed: dict[int, float] = {}
+    if not left + right or abs(shift) > ASIDE * built.size:
+        return built, around, pushed
     for sign in (-1.0, 1.0):
         todo = [aside(shift)]
         while todo:
@@ -134,7 +144,7 @@ def _squeezed_in(built: Built, around: Polygons, gap: float) -> tuple[Built, dic
                     around = moved(around, {i: sign * over})
                     pushed[i] = pushed.get(i, 0.0) + sign * over
                     todo.append(around.polygon(i))
-    return replace(built, x=built.x + shift), pushed
+    return replace(built, x=built.x + shift), around, pushed
 
 
 def fallen_share(x: float, y: float, turn_deg: float, size: float) -> float:

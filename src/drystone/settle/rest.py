@@ -112,7 +112,7 @@ def rests(
 
     It keeps a joint to its neighbour where it also rests so.
     """
-    aside = settings.joint * stone.size_px
+    aside = settings.joint_px
     for found in _touching(stone, scene, start, settings, turns=turns):
         rest = found
         if aside and found.x + stone.corners[:, 0].min() > CLEAR_PX:

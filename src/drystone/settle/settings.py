@@ -31,9 +31,9 @@ class SettleSettings(Ranged):
         of the smaller stone (DESIGN 4.8).
     lean : float
         Gravity to the building side over gravity downwards, for ``"energy"``.
-    joint : float
-        Gap to the neighbour on the building side, over the size, that a stone keeps where it rests
-        with it too: in closed joints the errors of a builder add up along a course.
+    joint_px : float
+        Gap to the neighbour on the building side that a stone keeps where it rests with it too: in
+        closed joints the errors of a builder add up along a course.
     margin : float
         How far gravity may lean at least until the settled stone moves on rigid neighbours, over
         mu.
@@ -69,7 +69,7 @@ class SettleSettings(Ranged):
     contact_px: float = ranged(0.1, least=0, most=0.5)
     setback: float = ranged(0.01, least=0, most=0.1)
     lean: float = ranged(0.3, least=0)
-    joint: float = ranged(0.0, least=0, most=0.1)
+    joint_px: float = ranged(0.0, least=0)
     margin: float = ranged(0.2, least=0)
     steep: float = ranged(0.3, least=0, below=1)
     beyond_px: float = ranged(0.25, least=0, most=1)
