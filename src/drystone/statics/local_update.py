@@ -104,6 +104,9 @@ def _mechanism(program: ConeProgram, end: PrimalDual, added: Added) -> PrimalDua
     if governs or answer.status == UNSTABLE:
         velocity = np.concatenate((np.zeros(len(end.velocity)), answer.velocity))
         return PrimalDual(end.sign, answer.alpha, answer.forces, velocity)
+    if not work.any():  # nothing below it moves, and so it rests
+        velocity = np.concatenate((end.velocity, np.zeros(3 * len(added.weights))))
+        return PrimalDual(end.sign, end.alpha, np.empty(0), velocity)
     rhs = np.zeros(3 * len(added.weights))
     rhs[0::3] = -end.alpha * added.weights
     rhs[1::3] = added.weights
