@@ -89,8 +89,7 @@ def finished(rubble, tmp_path_factory):
 @pytest.fixture
 def plan_copy(finished, rubble, tmp_path):
     """A plan in a folder of its own, the stones beside it, to be tampered with."""
-    folder = tmp_path / "copy"
-    shutil.copytree(finished, folder)
+    folder = shutil.copytree(finished, tmp_path / "copy")
     shutil.copy(rubble, folder)
     return folder
 
@@ -110,7 +109,6 @@ def settled(rubble, tmp_path_factory):
 @pytest.fixture
 def settled_copy(settled, rubble, tmp_path):
     """A plan on outlines in a folder of its own, the stones beside it, to be tampered with."""
-    folder = tmp_path / "settled"
-    shutil.copytree(settled, folder)
+    folder = shutil.copytree(settled, tmp_path / "settled")
     shutil.copy(rubble, folder)
     return folder

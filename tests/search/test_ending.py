@@ -107,8 +107,6 @@ def test_stones_that_move_when_the_wall_fails_are_taken_out_or_laid_elsewhere():
     settings = greedy({"search": {"budget": 2}, "orientations": "sf", "goal": goal})
     planner = finish(Planner(blocks(sizes), Site(42, 60), settings=settings))
     wall = FoundWall.of(planner).judged(Yard.of(planner), THOROUGH)
-    assert wall.falls is None
-    assert ids(planner) == [1, 2, 3]
     assert wall.movers == (3,)  # the slender one on top
     assert wall.figures.F_LR_coulomb == pytest.approx(8 / 24 / 0.58, abs=0.03)
     better = repaired(planner, wall)

@@ -73,8 +73,7 @@ class SearchSettings(Ranged):
         Share of the walls of a chain of planned walls that are made by taking down a part of its
         best wall, before anything is known of what helps.
     joint : float
-        Every other wall is built with open joints (`settle.joint_px`), of so much over the mean
-        size of the stones: errors of a builder are as large for small stones.
+        Every other wall has open joints (`settle.joint_px`), so wide over the mean size of stones.
     wedges : int
         How many wedges may be added in the gaps of a wall each time.
     wedge_below : float

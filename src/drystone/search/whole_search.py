@@ -1,7 +1,7 @@
 """A first wall, the search for better ones, and what follows it; an interrupt keeps the best."""
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from concurrent.futures import Executor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
@@ -197,22 +197,21 @@ def surest(
     those that were, and None where none was.
     """
     yard = Yard.of(planner, until)
-    sound: list[FoundWall] = []
-    fallen: list[FoundWall] = []
-    in_time = True
+    best, stays = None, False
     try:
         for wall in islice(walls, JUDGED_AGAIN):
-            least = _best(sound).merit if sound else -math.inf
+            least = best.merit if best and stays else -math.inf
             if wall.merit <= least:
                 break
             judged = found_again(wall, yard).judged(yard, THOROUGH, least)
             if judged.merit <= least:
                 continue
-            (sound if stays_at_every_step(judged.build, until) else fallen).append(judged)
+            found = stays_at_every_step(judged.build, until), judged.merit
+            if best is None or found > (stays, best.merit):
+                best, stays = judged, found[0]
     except TimeIsUp:
-        in_time = False
-    looked_at = sound or fallen
-    return _best(looked_at) if looked_at else None, not in_time
+        return best, True
+    return best, False
 
 
 def repaired(planner: Planner, best: FoundWall, until: Deadline = NEVER) -> FoundWall:
@@ -252,10 +251,6 @@ def stays_at_every_step(build: Build, until: Deadline = NEVER) -> bool:
         return True
     models = (action.model for action in build.actions)
     return all(fall_of(m, assemble(m), ROUNDS, until.look) is None for m in models)
-
-
-def _best(walls: Sequence[FoundWall]) -> FoundWall:
-    return max(walls, key=lambda one: one.merit)
 
 
 def as_found(
