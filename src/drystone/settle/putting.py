@@ -65,7 +65,8 @@ def put_down(
                 angle_deg = wrap_deg(built.angle_deg + math.degrees(found.angle))
                 return Built(built.outline, x, y, angle_deg, size), pushed
             if not found.steps:
-                least = lift - found.gap / size - OVERLAP  # no lift takes off more than itself
+                # A lift takes off no more than itself; that it gives other room aside is rare.
+                least = lift - found.gap / size - OVERLAP
         if not steps:
             break  # it overlaps wherever it is let go
     return None, {}
