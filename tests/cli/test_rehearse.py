@@ -17,7 +17,7 @@ def test_a_wall_that_stands_is_rehearsed(settled, tmp_path, run):
 
 
 def test_errors_can_be_given_as_lengths(settled, run):
-    asked = ("--precision", "2px,1.5deg", "--outline", "0.5px", "--runs", 2, "--json")
+    asked = ("--precision", "2px,1.5deg", "--outline", "0.5px", "--runs", 4, "--json")
     report = run("rehearse", settled, *asked).json()
     assert report["errors"] == {"placement": 2.0, "angle_deg": 1.5, "outline": 0.5}
     assert report == run("rehearse", settled, *asked).json()

@@ -102,10 +102,10 @@ def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere():
 
 
 def test_stones_that_move_when_the_wall_fails_are_taken_out_or_laid_elsewhere():
-    sizes = {1: (40, 12), 2: (40, 12), 3: (8, 24)}
+    stones = blocks({1: (40, 12), 2: (40, 12), 3: (8, 24)})
     goal = {"fallen": 0.0, "filling": 1.0}  # strength counts for more than a small stone
     settings = greedy({"search": {"budget": 2}, "orientations": "sf", "goal": goal})
-    planner = finish(Planner(blocks(sizes), Site(42, 60), settings=settings))
+    planner = finish(Planner(stones, Site(42, 60), settings=settings))
     wall = FoundWall.of(planner).judged(Yard.of(planner), THOROUGH)
     assert wall.movers == (3,)  # the slender one on top
     assert wall.figures.F_LR_coulomb == pytest.approx(8 / 24 / 0.58, abs=0.03)
