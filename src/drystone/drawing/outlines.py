@@ -48,15 +48,14 @@ def label_regions(labels: Labels) -> tuple[Region, ...]:
 
 def polygon_regions(polygons: Mapping[int, Loop]) -> tuple[Region, ...]:
     """Return the regions of polygons, either way round, closed or not, ordered by id."""
-    return tuple(_of_polygon(block, polygons[block]) for block in sorted(polygons))
-
-
-def _of_polygon(block: int, corners: Loop) -> Region:
-    loop = np.asarray(corners, float)
-    if (loop[0] == loop[-1]).all():
-        loop = loop[:-1]
-    area, x, y = area_and_centroid(loop)
-    return Region(block, (loop if area > 0 else loop[::-1],), (x, y))
+    regions = []
+    for block in sorted(polygons):
+        loop = np.asarray(polygons[block], float)
+        if (loop[0] == loop[-1]).all():
+            loop = loop[:-1]
+        area, x, y = area_and_centroid(loop)
+        regions.append(Region(block, (loop if area > 0 else loop[::-1],), (x, y)))
+    return tuple(regions)
 
 
 def wall_regions(wall: Labels | Mapping[int, Loop]) -> tuple[Region, ...]:

@@ -190,12 +190,9 @@ def _check_no_values_of_edges(image: IdImage) -> None:
     if 2 * thin.sum() <= plain.sum() or census.counts[thin].sum() <= few:
         return
     if blended(census, census.of(thin)).mean() >= _BLENDED_SHARE:
-        raise LabelImageError(
-            "E101",
-            f"the ids were blended at the edges of stones: {len(census.values)} values, "
-            f"{int(thin.sum())} of them in edges only; about {max(0, int(plain.sum()) - 1)} are "
-            "stones.",
-            cure=f"{_CLEAN_EXPORT} Scale label images by nearest neighbour.",
+        raise _resampled(
+            f"{len(census.values)} values, {int(thin.sum())} of them in edges only; about "
+            f"{max(0, int(plain.sum()) - 1)} are stones."
         )
 
 
@@ -212,12 +209,15 @@ def _check_no_edges_of_others(image: IdImage) -> None:
         return
     between = int(blended(census, astray).sum())
     if between >= max(1.0, _ASTRAY_SHARE * outline):
-        raise LabelImageError(
-            "E101",
-            f"the ids were blended at the edges of stones: {between} of {outline} px there have "
-            "a value between those on either side, which is the id of another stone.",
-            cure=f"{_CLEAN_EXPORT} Scale label images by nearest neighbour.",
+        raise _resampled(
+            f"{between} of {outline} px there have a value between those on either side, which is "
+            "the id of another stone."
         )
+
+
+def _resampled(why: str) -> LabelImageError:
+    cure = f"{_CLEAN_EXPORT} Scale label images by nearest neighbour."
+    return LabelImageError("E101", f"the ids were blended at the edges of stones: {why}", cure=cure)
 
 
 def astray_px(census: Census) -> NDArray[np.bool_]:

@@ -83,6 +83,11 @@ class IdImage:
         return take_census(self.ids)
 
     @property
+    def said(self) -> tuple[Notice, ...]:
+        """Its notices but for the rule by which colours would be ids: of a mask or a wall."""
+        return tuple(notice for notice in self.notices if notice.code != "W115")
+
+    @property
     def stones(self) -> NDArray[np.bool_]:
         """True where the id is not that of the background, (h, w)."""
         return self.census.of(self.census.values != self.background)

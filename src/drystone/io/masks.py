@@ -13,7 +13,7 @@ from drystone.io.checks import blended
 from drystone.io.file_errors import unfit
 from drystone.io.images import Picture
 from drystone.io.labels import Census, IdImage, take_census
-from drystone.io.outlines_in.nested import Seen, not_stones, of_one_picture, said_of
+from drystone.io.outlines_in.nested import not_stones, of_one_picture, said_of
 from drystone.io.patches import StonePatch
 from drystone.io.read_settings import ReadSettings
 from drystone.kernels.raster import Mask
@@ -140,7 +140,7 @@ def without_others(
     else:
         masks = {p.id: p for p in patches if p.area_px and p.id not in settings.skip}
         size_px = (sizes[0][1], sizes[0][0])
-        left = not_stones(Seen(masks, size_px, frozenset(settings.keep), by_program=True))
+        left = not_stones(masks, size_px, settings.keep, by_program=True)
     for number, error in doubtful.items():
         if number not in {*left, *settings.keep, *settings.skip}:
             raise error

@@ -14,7 +14,7 @@ from scipy import ndimage
 from drystone.errors import LabelImageError, Notice
 from drystone.io.file_errors import MANY, listed, naming, short
 from drystone.io.labels import MAX_ID
-from drystone.io.read_settings import Pieces, ReadSettings
+from drystone.io.read_settings import ReadSettings
 from drystone.kernels.ids import counted
 from drystone.kernels.polygons import Points
 from drystone.kernels.raster import Mask
@@ -158,10 +158,10 @@ def stone_set(
     known = {patch.id for patch in found}.union(*numbers.values())
     skip = set(settings.skip)
     noticed = list(notices)
-    if unknown := sorted(skip - known):
-        noticed.append(Notice("W116", f"no stone {listed(unknown)} to skip.", "Check the ids."))
-    if unknown := sorted(set(settings.keep) - known):
-        noticed.append(Notice("W116", f"no stone {listed(unknown)} to keep.", "Check the ids."))
+    for what, ids in (("skip", skip), ("keep", set(settings.keep))):
+        if unknown := sorted(ids - known):
+            text = f"no stone {listed(unknown)} to {what}."
+            noticed.append(Notice("W116", text, "Check the ids."))
     # One of several numbers stays until it is split.
     patches = [p for p in found if not {p.id, *numbers.get(p.id, ())} <= skip]
     # What is split must not depend on what is skipped.
@@ -274,7 +274,8 @@ def _in_one_piece(
         result.append(largest)
         if not further:
             continue
-        if _is_refused(pieces, settings.pieces):
+        large = sum(piece.area_px for piece in further) >= SMALL_SHARE * patch.area_px
+        if settings.pieces == "error" or (settings.pieces == "auto" and large):
             refused.append(_describe(patch, pieces))
         dropped.append(_describe(patch, further))
         if settings.pieces == "split":
@@ -300,13 +301,6 @@ def _in_one_piece(
     cure = "Use --pieces split (pieces='split' in Python) to make them stones."
     text = f"smaller pieces left out: {listed(dropped, '; ', MANY)}."
     return result, [Notice("W111", text, cure)]
-
-
-def _is_refused(pieces: list[StonePatch], rule: Pieces) -> bool:
-    if rule == "auto":
-        areas = [piece.area_px for piece in pieces]
-        return sum(areas[1:]) >= SMALL_SHARE * sum(areas)
-    return rule == "error"
 
 
 def _describe(patch: StonePatch, pieces: list[StonePatch]) -> str:

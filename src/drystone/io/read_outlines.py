@@ -141,8 +141,11 @@ def stones_and_outlines(
     check_unit(file.unit_m, settings)
     # Outlines say themselves what tells stone from background in pictures.
     mask = "--no-mask" if settings.mask is False else "--mask"
-    _check_not_given(settings.background != 0, "--background", "background")
-    _check_not_given(settings.mask is not None, mask, "mask")
+    for which, option in (("background", "--background"), ("mask", mask)):
+        if which in dict(settings.changed()):
+            what = f"this file says itself what is stone, so {option} has no meaning."
+            cure = f"Leave {option} ({which} in Python) out: it is for pictures of stones."
+            raise unfit(what, cure)
     there = {"image": file.names_images, "up": file.in_space}
     check_not_asked(settings, *(option for option, has in there.items() if not has))
     # Half a character pair can be neither printed nor written.
@@ -191,9 +194,3 @@ def check_not_asked(settings: ReadSettings, *options: str) -> None:
             what, kinds = _ELSEWHERE[option]
             cure = f"Leave --{option} ({option} in Python) out: it is for {kinds}."
             raise unfit(what.format(repr(value)), cure)
-
-
-def _check_not_given(given: bool, option: str, name: str) -> None:
-    if given:
-        what = f"this file says itself what is stone, so {option} has no meaning."
-        raise unfit(what, f"Leave {option} ({name} in Python) out: it is for pictures of stones.")

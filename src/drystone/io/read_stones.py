@@ -172,14 +172,9 @@ def _read_picture(picture: Picture, source: Source, settings: ReadSettings) -> S
             between = f"; {binary.between_px} px of values between them went to the nearer one"
         said = f"{binary.background} background, {binary.stone} stone{between}"
         text = f"read as a binary mask ({said}): {count} components, numbered in row order."
-        notices = (*_not_of_colours(image), Notice("W114", text))
+        notices = (*image.said, Notice("W114", text))
     source = replace(source, width_px=width, height_px=height, reading=reading)
     return stone_set(patches, notices, source, settings)
-
-
-def _not_of_colours(image: IdImage) -> tuple[Notice, ...]:
-    """Return what is said of a mask: by which rule colours would be ids is not."""
-    return tuple(notice for notice in image.notices if notice.code != "W115")
 
 
 def _checked(
@@ -269,9 +264,7 @@ def _mask_of_one(
         return np.full((height, width), full), (notice,) if full else ()
     # mask=False is about pictures of many stones: here every picture is a mask.
     image, binary = _checked(image, picture.lossy, ReadSettings(mask=settings.mask or None))
-    said = tuple(
-        replace(notice, message=f"{where}: {notice.message}") for notice in _not_of_colours(image)
-    )
+    said = tuple(replace(notice, message=f"{where}: {notice.message}") for notice in image.said)
     if binary is not None:
         return binary.mask, said
     values = image.census.values

@@ -1,7 +1,7 @@
 """Reading what `analyse`, `measure` and `craft` are given: a plan, a block model, or stones."""
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -196,7 +196,8 @@ def _outlined(stones: StoneSet, file: OutlineFile) -> GivenWall:
     if outlines is None:
         return _painted(stones)
     below_px = min(stone.bottom_px for stone in stones)
-    notices = not_cut(stones.notices)
+    # That outlines were cut at the edges of their image is of pixels: blocks are not.
+    notices = tuple(n for n in stones.notices if "outside the image, cut off" not in n.message)
     if file.ground is not None:
         tilt = math.degrees(math.atan(np.divide(*(file.ground[1] - file.ground[0])[::-1])))
         buried = listed(sorted({stone.id for stone in stones} - outlines.keys()))
@@ -430,11 +431,6 @@ def outlines_painted(outlines: Mapping[int, Points]) -> Labels:
         top, left, bottom, right = placed.sides
         labels[top:bottom, left:right][placed.mask] = i
     return labels
-
-
-def not_cut(notices: Collection[Notice]) -> tuple[Notice, ...]:
-    """Leave out that outlines were cut at the edges of their image: blocks are not."""
-    return tuple(one for one in notices if "outside the image, cut off" not in one.message)
 
 
 def _on_ground(rings: Mapping[int, Points], ground: Points) -> dict[int, Points]:

@@ -33,7 +33,6 @@ class Shadows:
 
     mask: Mask  # (h, w) where they are
     level: float  # light in them over that beside them; 1 when there are none
-    direction: Vector | None  # (2,) where they fall, rows and columns, of length 1
     alike: Mask  # (h, w) what has the colour of shaded ground, shadow or not
 
 
@@ -60,7 +59,7 @@ def find_shadows(ground: GroundModel, foreground: Mask, usable: Mask) -> Shadows
     square = ndimage.uniform_filter(light**2, WINDOW_PX)
     rough = np.sqrt(np.maximum(square - ndimage.uniform_filter(light, WINDOW_PX) ** 2, 0))
     alike = tinted & (rough < 0.03 + 2.5 * float(np.median(rough[about])))
-    none = Shadows(np.zeros_like(foreground), 1.0, None, alike)
+    none = Shadows(np.zeros_like(foreground), 1.0, alike)
     if alike.sum() < 50:
         return none
     width = 0.08 + 2.5 * noise
@@ -85,7 +84,7 @@ def find_shadows(ground: GroundModel, foreground: Mask, usable: Mask) -> Shadows
     zone = _behind(sure, direction, reach)
     body = _open_ended(body, sure, direction)
     edge &= _grown(body, WINDOW_PX + 3)
-    return Shadows((body | edge) & zone, float(np.exp(level)), direction, alike)
+    return Shadows((body | edge) & zone, float(np.exp(level)), alike)
 
 
 def _grown(mask: Mask, by_px: int) -> Mask:
@@ -93,7 +92,10 @@ def _grown(mask: Mask, by_px: int) -> Mask:
 
 
 def _direction(core: Mask, sure: Mask) -> Vector | None:
-    """Return where shadows fall from what casts them; None when they fall anywhere."""
+    """Return where shadows fall from what casts them: rows and columns (2,), of length 1.
+
+    None when they fall anywhere.
+    """
     labels, count = ndimage.label(sure)
     if count == 0:
         return None

@@ -12,7 +12,7 @@ from io import BytesIO
 import numpy as np
 from PIL import Image, ImageDraw
 
-from drystone.drawing.assembly.parts import Assembly, Part
+from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.drawing import Drawable, Lines, Surface
 from drystone.drawing.export.formats import ExportSettings, Files, load_extra
 from drystone.drawing.lettering import font
@@ -151,11 +151,9 @@ def projector(assembly: Assembly, settings: ExportSettings) -> Files:
     E187 when the wall, marks included, is not in the picture of the projector.
     """
     view = _view(assembly, settings)
-    parts: list[Part | None] = [None, *assembly.parts]
-    numbered = ((part.step if part else 0, part) for part in parts)
     return {
-        f"projector/step_{step:03d}.png": _picture(assembly, settings, view, part)
-        for step, part in numbered
+        f"projector/step_{step:03d}.png": _picture(assembly, settings, view, step)
+        for step in range(len(assembly.parts) + 1)
     }
 
 
@@ -177,20 +175,19 @@ def _view(assembly: Assembly, settings: ExportSettings) -> PixelView:
     )
 
 
-def _picture(
-    assembly: Assembly, settings: ExportSettings, view: PixelView, part: Part | None
-) -> bytes:
+def _picture(assembly: Assembly, settings: ExportSettings, view: PixelView, step: int) -> bytes:
+    """Draw a step; 0 is the empty wall."""
     picture = Image.new("L", settings.projector_px, 0)
-    there = assembly.parts[: part.step - 1 if part else 0]
-    items: list[Drawable] = [_site(assembly, view, DIM if part else BRIGHT)]
-    items += [Surface(p.name, (p.corners,), line=_grey(DIM), width_pt=2.0) for p in there]
-    if part is not None:
+    items: list[Drawable] = [_site(assembly, view, DIM if step else BRIGHT)]
+    if step:
+        *there, part = assembly.parts[:step]
+        items += [Surface(p.name, (p.corners,), line=_grey(DIM), width_pt=2.0) for p in there]
         items.append(Surface(part.name, (part.corners,), line=_grey(BRIGHT), width_pt=4.0))
         reach = min(CROSS_PX / view.per_unit, 0.3 * float(np.ptp(part.corners, axis=0).min()))
         arms = np.array([[(-reach, 0.0), (reach, 0.0)], [(0.0, -reach), (0.0, reach)]])
         items.append(Lines("", [*(part.centroid + arms)], _grey(BRIGHT), 2.0))
     paint(picture, items, view)
-    _words(picture, assembly, view, part)
+    _words(picture, assembly, view, step)
     with BytesIO() as file:
         picture.save(file, format="PNG")
         return file.getvalue()
@@ -208,7 +205,7 @@ def _site(assembly: Assembly, view: PixelView, level: int) -> Lines:
     return Lines("site", lines, _grey(level), 1.0)
 
 
-def _words(picture: Image.Image, assembly: Assembly, view: PixelView, part: Part | None) -> None:
+def _words(picture: Image.Image, assembly: Assembly, view: PixelView, step: int) -> None:
     """Write the step and what it is, and draw the bar, all in the strip below the wall."""
     draw, (wide, high) = ImageDraw.Draw(picture), picture.size
     length = BAR_M * view.per_unit
@@ -218,9 +215,9 @@ def _words(picture: Image.Image, assembly: Assembly, view: PixelView, part: Part
         draw.line([(x, y - 7), (x, y + 7)], WORDS, 1)
     # Beside the bar: at low resolution it is shorter than its name.
     draw.text((right - length - 10, y), "100 mm", WORDS, font(18), anchor="rm")
-    name = f"{part.step if part else 0} / {len(assembly.parts)}"
+    name = f"{step} / {len(assembly.parts)}"
     what = (
-        part.name.replace("_", " ") if part else
+        assembly.parts[step - 1].name.replace("_", " ") if step else
         f"align: the wall's lower left corner is {view.left_px:.0f} px from the left, "
         f"{high - view.ground_px:.0f} px from the lower edge; {view.per_unit:g} px are 1 m"
     )  # fmt: skip

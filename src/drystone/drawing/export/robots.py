@@ -9,6 +9,7 @@ places.  Its meshes are binary STL in metres, named relative to it.
 
 import math
 from collections.abc import Iterable, Iterator
+from dataclasses import asdict
 from typing import Any
 from xml.etree import ElementTree as ET
 
@@ -17,7 +18,6 @@ from drystone.drawing.assembly.parts import Assembly, Part
 from drystone.drawing.export.formats import ExportSettings, Files
 from drystone.drawing.export.solids import (
     Solid,
-    colour,
     inertia,
     material,
     solid_of_part,
@@ -117,12 +117,8 @@ def _names(part: Part) -> dict[str, Any]:
 
 
 def _posed(pose: Pose3d) -> dict[str, Any]:
-    turn = pose.quaternion
-    return {
-        "point": {"x": pose.x_m, "y": pose.y_m, "z": pose.z_m},
-        "quaternion": {"x": turn.x, "y": turn.y, "z": turn.z, "w": turn.w},
-        "matrix": pose.matrix,
-    }
+    point = {"x": pose.x_m, "y": pose.y_m, "z": pose.z_m}
+    return {"point": point, "quaternion": asdict(pose.quaternion), "matrix": pose.matrix}
 
 
 def compas(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
@@ -208,7 +204,7 @@ def yaml_lines(assembly: Assembly) -> Iterator[str]:
         yield f"    - {_yaml_pose(*AT_THE_ORIGIN)}"
     yield "object_colors:"
     for part in assembly.parts:
-        yield f"- {{id: {part.name}, color: {_fields('rgba', (*colour(part), 1.0))}}}"
+        yield f"- {{id: {part.name}, color: {_fields('rgba', (*material(part)[1], 1.0))}}}"
 
 
 def scene_lines(assembly: Assembly) -> Iterator[str]:
@@ -221,13 +217,12 @@ def scene_lines(assembly: Assembly) -> Iterator[str]:
         yield from (_row(*vertex) for vertex in solid.vertices.tolist())
         yield from (f"{a} {b} {c}" for a, b, c in solid.triangles.tolist())
         yield from (_row(*AT_THE_ORIGIN[:3]), _row(*AT_THE_ORIGIN[3:]))
-        yield from (_row(*colour(part), 1.0), "0")
+        yield from (_row(*material(part)[1], 1.0), "0")
     yield "."
 
 
 def _seven(pose: Pose3d) -> tuple[float, ...]:
-    turn = pose.quaternion
-    return pose.x_m, pose.y_m, pose.z_m, turn.x, turn.y, turn.z, turn.w
+    return pose.x_m, pose.y_m, pose.z_m, *asdict(pose.quaternion).values()
 
 
 def _yaml_pose(*seven: float) -> str:
@@ -262,20 +257,19 @@ def urdf(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
 
 
 def _link(root: ET.Element, assembly: Assembly, part: Part) -> None:
-    link, found = ET.SubElement(root, "link", name=part.name), inertia(assembly, part)
+    link, (centre, tensor) = ET.SubElement(root, "link", name=part.name), inertia(assembly, part)
     inertial = ET.SubElement(link, "inertial")
-    ET.SubElement(inertial, "origin", xyz=_row(*found.centre), rpy=_row(0.0, 0.0, 0.0))
-    ET.SubElement(inertial, "mass", value=number(found.mass_kg))
-    tensor = {
-        f"i{'xyz'[i]}{'xyz'[j]}": number(found.tensor[i, j]) for i in range(3) for j in range(i, 3)
-    }
-    ET.SubElement(inertial, "inertia", tensor)
-    for name in ("visual", "collision"):
-        body = ET.SubElement(link, name)
+    ET.SubElement(inertial, "origin", xyz=_row(*centre), rpy=_row(0.0, 0.0, 0.0))
+    ET.SubElement(inertial, "mass", value=number(assembly.mass_kg(part)))
+    said = {f"i{'xyz'[i]}{'xyz'[j]}": number(tensor[i, j]) for i in range(3) for j in range(i, 3)}
+    ET.SubElement(inertial, "inertia", said)
+    for kind in ("visual", "collision"):
+        body = ET.SubElement(link, kind)
         ET.SubElement(ET.SubElement(body, "geometry"), "mesh", filename=_mesh_file(part))
-        if name == "visual":
-            paint = ET.SubElement(body, "material", name=material(part))
-            ET.SubElement(paint, "color", rgba=_row(*colour(part), 1.0))
+        if kind == "visual":
+            name, colour = material(part)
+            paint = ET.SubElement(body, "material", name=name)
+            ET.SubElement(paint, "color", rgba=_row(*colour, 1.0))
 
 
 def _mesh_file(part: Part) -> str:

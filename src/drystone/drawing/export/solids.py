@@ -17,6 +17,7 @@ from drystone.drawing.export.text import number
 from drystone.drawing.palette import PLAIN_COLOUR, WEDGE_COLOUR, Rgb, cluster_colour, linear, rgb
 from drystone.errors import InputError
 from drystone.kernels.polygons import Points, area_and_centroid
+from drystone.model.frames3d import Matrix, Vector
 
 Vertices = NDArray[np.float64]
 Triangles = NDArray[np.int64]
@@ -35,15 +36,6 @@ class Solid:
         first, second, third = (self.vertices[self.triangles[:, i]] for i in range(3))
         across = np.cross(second - first, third - first)
         return np.asarray(across / np.linalg.norm(across, axis=1)[:, None]) + 0.0
-
-
-@dataclass(frozen=True)
-class Inertia:
-    """Mass of a part of one density, its centre in S, and the tensor about it along S, kg m2."""
-
-    mass_kg: float
-    centre: tuple[float, float, float]
-    tensor: NDArray[np.float64]
 
 
 def solid_in_wall(assembly: Assembly, part: Part) -> Solid:
@@ -91,8 +83,8 @@ def triangulated(outline: Points, name: str = "outline") -> Triangles:
     return np.array(flat, dtype=np.int64).reshape(-1, 3)
 
 
-def inertia(assembly: Assembly, part: Part) -> Inertia:
-    """Return mass, centre and inertia of a part, exact for its prism.
+def inertia(assembly: Assembly, part: Part) -> tuple[Vector, Matrix]:
+    """Return the centre of a part in S and its inertia about it along S, kg m2: a prism's.
 
     The centre is that of the outline; of a plan on pixels it is a fraction of a px from the
     origin of S, which is the plan's centroid.
@@ -102,10 +94,10 @@ def inertia(assembly: Assembly, part: Part) -> Inertia:
     xx, zz, xz = second_moments(part.own_corners - np.array([x, z])) * (mass / area)
     yy = mass * assembly.thickness**2 / 12.0
     tensor = np.array([[zz + yy, 0.0, -xz], [0.0, xx + zz, 0.0], [-xz, 0.0, xx + yy]])
-    return Inertia(mass, (x, 0.0, z), tensor + 0.0)
+    return (x, 0.0, z), tensor + 0.0
 
 
-def second_moments(outline: Points) -> NDArray[np.float64]:
+def second_moments(outline: Points) -> Matrix:
     """Return the integrals of x^2, z^2 and x z over the inside of an outline, about the origin."""
     x, z = outline.T
     u, v = np.roll(outline, -1, axis=0).T
@@ -116,23 +108,13 @@ def second_moments(outline: Points) -> NDArray[np.float64]:
     return np.array([xx, zz, xz])
 
 
-def material(part: Part) -> str:
-    """Return the name of a part's material: cluster_3, stone or wedge."""
+def material(part: Part) -> tuple[str, Rgb]:
+    """Return the name of a part's material (cluster_3, stone or wedge) and its colour, sRGB."""
     if part.kind == "wedge":
-        return "wedge"
-    return "stone" if part.cluster is None else f"cluster_{part.cluster}"
-
-
-def colour(part: Part) -> Rgb:
-    """Return the colour of a part's material, sRGB."""
-    if part.kind == "wedge":
-        return rgb(WEDGE_COLOUR)
-    return rgb(PLAIN_COLOUR if part.cluster is None else cluster_colour(part.cluster))
-
-
-def materials(assembly: Assembly) -> dict[str, Rgb]:
-    """Return the materials of an assembly with their colours, by name in the order of use."""
-    return {material(part): colour(part) for part in assembly.parts}
+        return "wedge", rgb(WEDGE_COLOUR)
+    if part.cluster is None:
+        return "stone", rgb(PLAIN_COLOUR)
+    return f"cluster_{part.cluster}", rgb(cluster_colour(part.cluster))
 
 
 _Y_UP = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
@@ -148,13 +130,13 @@ def obj(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
     first = 1
     for part in assembly.parts:
         solid = solid_in_wall(assembly, part)
-        lines += [f"o {part.name}", f"usemtl {material(part)}"]
+        lines += [f"o {part.name}", f"usemtl {material(part)[0]}"]
         lines += ["v " + " ".join(map(number, point)) for point in solid.vertices.tolist()]
         lines += [f"f {a} {b} {c}" for a, b, c in (solid.triangles + first).tolist()]
         first += len(solid.vertices)
     paints = (
         f"newmtl {name}\nKd {' '.join(map(number, colour))}\nillum 1\n"
-        for name, colour in materials(assembly).items()
+        for name, colour in dict(map(material, assembly.parts)).items()
     )
     return {"wall.obj": "\n".join(lines) + "\n", "wall.mtl": "".join(paints)}
 
@@ -169,12 +151,12 @@ def glb(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
             name=name, baseColorFactor=[*map(linear, colour), 1.0], metallicFactor=0.0,
             roughnessFactor=1.0,
         )
-        for name, colour in materials(assembly).items()
+        for name, colour in dict(map(material, assembly.parts)).items()
     }  # fmt: skip
     for part in assembly.parts:
         solid = solid_of_part(assembly, part)
         mesh = trimesh.Trimesh(solid.vertices, solid.triangles, process=False)
-        mesh.visual = trimesh.visual.TextureVisuals(material=paint[material(part)])
+        mesh.visual = trimesh.visual.TextureVisuals(material=paint[material(part)[0]])
         scene.add_geometry(
             mesh, node_name=part.name, geom_name=part.name, parent_node_name="wall",
             transform=assembly.place_pose(part).matrix, metadata={"step": part.step},

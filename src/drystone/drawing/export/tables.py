@@ -4,7 +4,7 @@ import csv as csv_writer
 import io
 from typing import Any, NamedTuple
 
-import numpy as np
+import shapely
 
 from drystone.drawing.assembly import handling
 from drystone.drawing.assembly.parts import Assembly
@@ -117,10 +117,7 @@ def geojson(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG
                 "type": "Feature",
                 "id": part.name,
                 "properties": dict(zip(names, row, strict=True)),
-                "geometry": {
-                    "type": "Polygon",
-                    "coordinates": [np.concatenate([part.corners, part.corners[:1]]).tolist()],
-                },
+                "geometry": shapely.geometry.mapping(shapely.Polygon(part.corners)),
             }
             for part, row in zip(assembly.parts, rows, strict=True)
         ],

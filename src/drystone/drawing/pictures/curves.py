@@ -41,10 +41,10 @@ def plot_scatter(scatter: Scatter, ax: Axes | None = None) -> Axes:
     if alpha.left.alpha is not None and alpha.right.alpha is not None:
         unshaken = min(alpha.left.alpha, alpha.right.alpha)
     panels: list[Callable[[Axes], None]] = []
-    if shaken and scatter.alpha_quantiles is not None:
+    if scatter.alpha_quantiles is not None:
         found = (scatter.alpha, scatter.alpha_quantiles, unshaken)
         panels.append(lambda ax: _histogram(ax, "min alpha", *found))
-    if shaken and scatter.value is not None and scatter.value_quantiles is not None:
+    if scatter.value is not None and scatter.value_quantiles is not None:
         values = (scatter.value, scatter.value_quantiles, alpha.value)
         panels.append(lambda ax: _histogram(ax, "F_LR = min alpha / mu", *values))
     if shaken and np.ptp(scatter.mu) > 0:

@@ -256,17 +256,15 @@ def save_mechanism_animation(
     mechanism: Mechanism,
     direction: Direction | None,
     alpha: float | None = None,
-    *,
-    frames: int = 24,
     **options: Any,
 ) -> None:
-    """Write :func:`mechanism_frames` as a GIF that loops, without a date in the file.
+    """Write :func:`mechanism_frames`, with its options, as a looping GIF without a date in it.
 
     Another ending than ".gif" is a ValueError; E206 when the file cannot be written.
     """
     if Path(path).suffix.lower() != ".gif":
         raise ValueError(f"{path}: animations end in .gif")
-    pictures = mechanism_frames(wall, mechanism, direction, alpha, frames=frames, **options)
+    pictures = mechanism_frames(wall, mechanism, direction, alpha, **options)
     # The same few for every GIF: greys, and the colours of the displacements.
     greys = np.linspace(0.0, 1.0, GREY_COUNT)[:, None].repeat(3, axis=1)
     few = palette_of(np.vstack((greys, COLOURS(np.linspace(0.0, 1.0, COLOUR_COUNT))[:, :3])))

@@ -66,22 +66,19 @@ def _rows(stones: StoneSet) -> dict[int, tuple[float, float]]:
     gap = GAP * float(np.mean([stone.mask.shape[1] for stone in stones]))
     area = sum((s.mask.shape[1] + gap) * (s.mask.shape[0] + gap) for s in stones)
     longest = max(2.0 * area**0.5, *(s.mask.shape[1] + 2 * gap for s in stones), 0.0)
-    rows: list[list[Stone]] = [[]]
+    rows: list[list[tuple[Stone, float]]] = [[]]
     x = gap
     for stone in stones:
         if rows[-1] and x + stone.mask.shape[1] + gap > longest:
             rows.append([])
             x = gap
-        rows[-1].append(stone)
+        rows[-1].append((stone, x))
         x += stone.mask.shape[1] + gap
     corners: dict[int, tuple[float, float]] = {}
     y = gap
     for row in reversed(rows):
-        x = gap
-        for stone in row:
-            corners[stone.id] = (x, y)
-            x += stone.mask.shape[1] + gap
-        y += max(stone.mask.shape[0] for stone in row) + gap
+        corners |= {stone.id: (x, y) for stone, x in row}
+        y += max(stone.mask.shape[0] for stone, _ in row) + gap
     return corners
 
 

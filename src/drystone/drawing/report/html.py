@@ -128,7 +128,7 @@ def joined(modules: Iterable[Path]) -> Markup:
 @cache
 def viewer_style() -> Markup:
     """Return the style sheet of the viewer, to stand in a style element."""
-    return Markup((HERE / "viewer" / "viewer.css").read_text(encoding="utf-8"))  # noqa: S704
+    return joined([HERE / "viewer" / "viewer.css"])
 
 
 def json_in_html(data: Any) -> Markup:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from drystone.drawing.assembly.handling import wedges_after
 from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.assembly.read import assembly_of_result
 from drystone.drawing.outlines import regions_box, wall_regions
@@ -23,7 +24,6 @@ from drystone.drawing.pictures.mechanism import motion_of
 from drystone.drawing.sheet.words import beside_words, step_words, turn_words
 from drystone.drawing.words import content
 from drystone.drawing.words.analysis import STONES, ModelledWall
-from drystone.drawing.words.content import masons_words
 from drystone.drawing.words.wall_verdict import WallVerdict, judge_wall
 from drystone.errors import Notice, counted
 from drystone.io.plan_json import plan_digest
@@ -204,7 +204,7 @@ def _view(
         "notices": [asdict(notice) for notice in wall.notices],
         "index_meanings": {} if plan is None else dict(content.INDICES),
         "metrics": [
-            {**asdict(card), "masons": masons_words(card.symbol, sha256)} for card in cards
+            {**asdict(card), "masons": content.masons_words(card.symbol, sha256)} for card in cards
         ],
         "assumptions": list(said["assumptions"]),
     }
@@ -226,9 +226,6 @@ def _planned_parts(assembly: Assembly, digits: int) -> list[ViewerData]:
     photo = read_photo(assembly) if source.get("width_px") and source.get("height_px") else None
     lying = {part.id: assembly.source_corners(part) for part in assembly.stones}
     crops = photo.viewer_crops(lying) if photo else {}
-    under: dict[int, list[int]] = {}
-    for wedge in assembly.wedges:
-        under.setdefault(wedge.under or 0, []).append(wedge.id)
     made = []
     for part in assembly.parts:
         step = part.plan_step
@@ -237,8 +234,8 @@ def _planned_parts(assembly: Assembly, digits: int) -> list[ViewerData]:
             step=part.step, number=part.step if part.kind == "stone" else None,
             angle_deg=round(part.angle_deg, 3) + 0.0, size=rounded(part.size, digits),
             neighbours=list(assembly.neighbours(part.id)), under=part.under,
-            wedges=under.get(part.id, []), words=step_words(assembly, part),
-            crop=crops.get(part.id),
+            wedges=[wedge.id for wedge in wedges_after(assembly, part)],
+            words=step_words(assembly, part), crop=crops.get(part.id),
             alpha_left=_short(step.alpha_left), alpha_right=_short(step.alpha_right),
         )  # fmt: skip
         if isinstance(step, StoneStep):

@@ -103,8 +103,6 @@ class SheetPage:
             image, extent=(x, x + width, y, y + height), aspect="auto", interpolation="none",
             zorder=1,
         )  # fmt: skip
-        self.ax.set_xlim(0.0, self.width)
-        self.ax.set_ylim(0.0, self.height)
 
     def dimension(
         self, start: Sequence[float], end: Sequence[float], text: str, *, upright: bool = False

@@ -231,9 +231,8 @@ class BuildSheet:
 
     def _row_page(self, stones: Sequence[Part], scale: float, high: float) -> SheetPage:
         page = SheetPage()
-        last = max(step for part in stones for step in
-                   (part.step, *(w.step for w in wedges_after(self.assembly, part))))  # fmt: skip
-        head = f"Steps {stones[0].step} to {last}"
+        last = [stones[-1], *wedges_after(self.assembly, stones[-1])][-1]
+        head = f"Steps {stones[0].step} to {last.step}"
         page.write(EDGE_MM, page.top - 4.5, head, 13.0, weight="bold")
         page.write(
             page.right, page.top - 4.5,

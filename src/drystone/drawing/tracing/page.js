@@ -533,10 +533,10 @@ class Page {
     } else {
       const tool = Object.entries(TOOLS).find(([one, { key }]) => key === name && this.buttons[one]);
       const does = {
-        m: () => this.merge(), Delete: () => this.remove(), Backspace: () => this.back(), a: () => this.accept(this.chosen.length ? this.chosen : this.state.stones.map((stone) => stone.id)),
+        m: () => this.merge(), Delete: () => this.remove(), Backspace: () => (this.line.length ? this.line.pop() : this.remove()), a: () => this.accept(this.chosen.length ? this.chosen : this.state.stones.map((stone) => stone.id)),
         u: () => this.toggleUse(), n: () => this.nextDoubt(1), b: () => this.nextDoubt(-1), f: () => this.lookedAt && this.settle(this.lookedAt), "]": () => this.step(1), "[": () => this.step(-1),
         "+": () => this.zoom(1.4), "=": () => this.zoom(1.4), "-": () => this.zoom(1 / 1.4), 0: () => { this.fit(); this.draw(); },
-        Escape: () => (this.line.length ? this.letGo() : this.choose([])),
+        Escape: () => this.letGo(),
       }[name];
       if (tool) this.take(tool[0]);
       else if (does) does();
@@ -557,12 +557,8 @@ class Page {
     this.hover(this.cursor);
   }
 
-  back() {
-    if (this.line.length) this.line.pop();
-    else this.remove();
-  }
-
   letGo() {
+    if (!this.line.length) return this.choose([]);
     this.line = [];
     this.tell("Let go.");
   }

@@ -292,10 +292,9 @@ export function shifted(image, reach, grow) {
     const result = new Uint8Array(source.length);
     for (let line = 0; line < lines; line++) {
       const base = line * step;
-      let until = -1;
-      // The last place that still sees a pixel of the kind that spreads.
       for (const way of [1, -1]) {
-        until = -1;
+        // The last place that still sees a pixel of the kind that spreads.
+        let until = -1;
         for (let k = 0; k < count; k++) {
           const i = base + (way > 0 ? k : count - 1 - k) * stride;
           if (Boolean(source[i]) === grow) until = k + reach;

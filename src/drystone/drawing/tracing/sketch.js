@@ -184,11 +184,9 @@ export class History {
 
   undo() {
     if (this.at > 0) this.at -= 1;
-    return this.now;
   }
 
   redo() {
     if (this.at + 1 < this.states.length) this.at += 1;
-    return this.now;
   }
 }

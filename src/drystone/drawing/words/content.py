@@ -277,22 +277,17 @@ MASONS_WALLS = {
 has them traced: F_AV and F_AH in per cent.  Stones do not touch there, so there is no F_LR."""
 
 
-def masons_wall(sha256: str | None) -> str | None:
-    """Return the name of the mason's wall of the same stones, known by the hash of their file."""
-    names = {file.sha256: file.name for file in SETS["almeida"].files}
-    found = names.get(sha256 or "")
-    return next((name for name in MASONS_WALLS if found == f"almeida/{name}.png"), None)
-
-
 def masons_words(symbol: str, sha256: str | None) -> str | None:
     """Say what F_SF, F_AV or F_AH is in walls of masons; None for a figure that is not known."""
     if symbol not in ("F_SF", "F_AV", "F_AH"):
         return None
     digits, unit = {"F_SF": (3, ""), "F_AV": (1, " %"), "F_AH": (2, " %")}[symbol]
-    same = masons_wall(sha256)
-    if same is not None:
-        own = MASONS_WALLS[same][symbol]
-        return f"{own:.{digits}f}{unit} in the mason's own wall of these stones ({same})"
+    # The file that was read is known by its hash.
+    names = {file.sha256: file.name for file in SETS["almeida"].files}
+    for name, own in MASONS_WALLS.items():
+        if names.get(sha256 or "") == f"almeida/{name}.png":
+            said = "in the mason's own wall of these stones"
+            return f"{own[symbol]:.{digits}f}{unit} {said} ({name})"
     values = [wall[symbol] for wall in MASONS_WALLS.values()]
     least, most = (f"{value:.{digits}f}" for value in (min(values), max(values)))
     return f"{least} to {most}{unit} in three walls of masons, of other stones"

@@ -104,13 +104,13 @@ class Rehearsed:
             ("loop", "open" if self.again is None else "closed: planned again after every stone"),
             ("as planned", "stands" if self.planned.first_fall is None else self.verdict),
             ("whole", f"{self.whole} of {len(self.runs)}"),
-            ("stones fallen", f"{told['fallen_share']:.1%}"),
         ]
-        if self.again is not None:
-            rows[5:] = [
-                ("stones that found no place", f"{told['fallen_share']:.1%}"),
-                ("fell on the way", f"{self.again:.1f} a wall"),
-            ]
+        fallen = f"{told['fallen_share']:.1%}"
+        if self.again is None:
+            rows.append(("stones fallen", fallen))
+        else:
+            rows.append(("stones that found no place", fallen))
+            rows.append(("fell on the way", f"{self.again:.1f} a wall"))
         for one in told["first_falls"][:NAMED]:
             words = f"stone {one['stone']} (step {one['step']}), {one['runs']} of {len(self.runs)}"
             rows.append(("falls begin with", words))

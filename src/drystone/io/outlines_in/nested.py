@@ -1,9 +1,8 @@
 """The one rule for what is not a stone: frames, the ground, repeats, groups and parts."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass
 
 import numpy as np
 import shapely
@@ -58,21 +57,18 @@ def meeting_boxes(masks: Sequence[PlacedMask]) -> list[tuple[int, int]]:
     return sorted(pairs)
 
 
-@dataclass(frozen=True, eq=False)
-class Seen:
-    """Masks of one picture, by the number of their stone."""
-
-    masks: Mapping[int, PlacedMask]
-    size_px: tuple[int, int]  # width, height of the picture
-    keep: frozenset[int] = frozenset()
-    by_program: bool = False
-    """A program masks whatever it sees: heaps, stones, and spots on stones."""
-
-
-def not_stones(seen: Seen) -> dict[int, str]:
+def not_stones(
+    masks: Mapping[int, PlacedMask],
+    size_px: tuple[int, int],
+    keep: Collection[int],
+    *,
+    by_program: bool,
+) -> dict[int, str]:
     """Say of each mask that is not a stone of its own what it is instead.
 
-    This is the one rule of all readers of outlines and masks, in this order:
+    They are those of one picture, of that width and height, by the number of their stone; a program
+    masks whatever it sees: heaps, stones, and spots on stones.  This is the one rule of all readers
+    of outlines and masks, in this order:
 
     1. a mask in whose holes `INSIDE` of others lies is the ground;
     2. of two masks that share `INSIDE` of their union, the smaller one is the same thing again;
@@ -81,14 +77,16 @@ def not_stones(seen: Seen) -> dict[int, str]:
        some of them in each of its pieces, is a group of those;
     5. a mask of which `INSIDE` lies in a larger one that is kept is a part of it.
     """
-    shares, areas = _Shares(seen), {i: int(m.mask.sum()) for i, m in seen.masks.items()}
-    ground = shares.ground()
+    shares = _Shares(masks, keep)
+    areas = shares.areas
+    # One stone drawn by hand may show in another; a program finds the ground like that.
+    ground = shares.ground(1 if by_program else max(1, min(2, len(masks) - 1)))
     shares.leave(dict.fromkeys(ground, "the ground: others lie in its holes"))
     again = shares.within(lambda i, j, common: areas[i] + areas[j] - common)
     shares.leave({i: f"{whole} again" for i, whole in again.items()})
-    framed = shares.frames()
+    framed = shares.frames(_WHOLE_PICTURE * math.prod(size_px) if by_program else 0.0)
     shares.leave({i: f"a frame around {listed(held, most=3)}" for i, held in framed.items()})
-    groups = shares.groups([seen.masks[i] for i in ground])
+    groups = shares.groups([masks[i] for i in ground])
     shares.leave({i: f"a group of {listed(parts)}" for i, parts in groups.items()})
     wholes = shares.within(lambda i, _j, _common: areas[i])
     return shares.left | {i: f"a part of {whole}" for i, whole in wholes.items()}
@@ -158,20 +156,20 @@ def frames(
 class _Shares:
     """Masks that may be stones, how much of which lies in which, and what is none."""
 
-    def __init__(self, seen: Seen) -> None:
-        self._seen, self._masks = seen, dict(seen.masks)
-        self._areas = {i: int(mask.mask.sum()) for i, mask in seen.masks.items()}
+    def __init__(self, masks: Mapping[int, PlacedMask], keep: Collection[int]) -> None:
+        self._masks, self._keep = dict(masks), frozenset(keep)
+        self.areas = {i: int(mask.mask.sum()) for i, mask in masks.items()}
         self._holes = {
             i: PlacedMask(inside, mask.row, mask.col)
-            for i, mask in seen.masks.items()
-            if i not in seen.keep and (inside := enclosed(mask.mask)).any()
+            for i, mask in masks.items()
+            if i not in self._keep and (inside := enclosed(mask.mask)).any()
         }
         # Also 0, of those that may lie in holes.
         self._common: dict[int, dict[int, int]] = {i: {} for i in self._masks}
         keys = list(self._masks)
-        for one, other in meeting_boxes(list(self._masks.values())):
+        for one, other in meeting_boxes(list(masks.values())):
             i, j = keys[one], keys[other]
-            self._common[i][j] = self._common[j][i] = seen.masks[i].common_px(seen.masks[j])
+            self._common[i][j] = self._common[j][i] = masks[i].common_px(masks[j])
         self.left: dict[int, str] = {}
 
     def leave(self, out: Mapping[int, str]) -> None:
@@ -184,19 +182,15 @@ class _Shares:
 
     def _order(self, i: int) -> tuple[int, int]:
         """Larger first; of equal ones the earlier."""
-        return -self._areas[i], i
+        return -self.areas[i], i
 
-    def ground(self) -> list[int]:
-        """Return the masks in whose holes others lie.
-
-        One stone drawn by hand may show in another; a program finds the ground like that.
-        """
-        least = 1 if self._seen.by_program else max(1, min(2, len(self._masks) - 1))
+    def ground(self, least: int) -> list[int]:
+        """Return the masks in whose holes so many others lie."""
         found = []
         for i, hole in self._holes.items():
             room, held = int(hole.mask.sum()), 0
             for j in self._common[i]:
-                wanted = INSIDE * self._areas[j]
+                wanted = INSIDE * self.areas[j]
                 # Few holes have room for another.
                 held += room >= wanted and hole.common_px(self._masks[j]) >= wanted
             if held >= least:
@@ -210,7 +204,7 @@ class _Shares:
         for i in sorted(self._masks, key=self._order):
             common = self._common[i]
             around = [j for j in common if j in kept and common[j] >= INSIDE * of(i, j, common[j])]
-            if around and i not in self._seen.keep:
+            if around and i not in self._keep:
                 found[i] = min(around, key=self._order)
             else:
                 kept.add(i)
@@ -222,35 +216,34 @@ class _Shares:
         for j, common in self._common[i].items():
             if common and self._order(i) < self._order(j):
                 in_holes = holes.common_px(self._masks[j]) if holes else 0
-                if common + in_holes >= INSIDE * self._areas[j]:
+                if common + in_holes >= INSIDE * self.areas[j]:
                     found.append(j)
         return found
 
-    def frames(self) -> dict[int, list[int]]:
-        """Return for each mask that is drawn around the others which those are."""
-        least = _WHOLE_PICTURE * math.prod(self._seen.size_px) if self._seen.by_program else 0.0
+    def frames(self, least: float) -> dict[int, list[int]]:
+        """Return for each mask of so many px that is drawn around the others which those are."""
         inside: dict[int, set[int]] = {
             i: set(self._inside(i, self._holes.get(i)))
-            if i not in self._seen.keep and self._areas[i] >= least
+            if i not in self._keep and self.areas[i] >= least
             else set()
             for i in self._masks
         }
         plain = {i for i, mask in self._masks.items() if mask.mask.all()}
-        return frames({i: self._areas[i] for i in self._masks}, inside, plain)
+        return frames({i: self.areas[i] for i in self._masks}, inside, plain)
 
     def groups(self, ground: Sequence[PlacedMask]) -> dict[int, list[int]]:
         """Return for each mask that smaller ones cover, but for the ground, which those are."""
         found = {}
-        for i in self._masks.keys() - self._seen.keep:
+        for i in self._masks.keys() - self._keep:
             mask, parts = self._masks[i], list[int]()
             for j in sorted(self._inside(i), key=self._order):
                 # In no other that lies in it.
-                if all(self._common[j].get(k, 0) < INSIDE * self._areas[j] for k in parts):
+                if all(self._common[j].get(k, 0) < INSIDE * self.areas[j] for k in parts):
                     parts.append(j)
             if len(parts) < 2:
                 continue
             others = covered(mask, [*ground, *(self._masks[j] for j in parts)])
-            if mask.common_px(others) >= INSIDE * self._areas[i] or self._in_each_piece(i, parts):
+            if mask.common_px(others) >= INSIDE * self.areas[i] or self._in_each_piece(i, parts):
                 found[i] = sorted(parts)
         return found
 

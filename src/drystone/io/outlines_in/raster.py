@@ -14,7 +14,7 @@ from drystone.io.file_bytes import file_bytes
 from drystone.io.file_errors import listed, naming, short
 from drystone.io.outlines_in.fill import check_reach, covered, pixels_of, trimmed
 from drystone.io.outlines_in.model import OutlinedStone, OutlineFile
-from drystone.io.outlines_in.nested import Seen, meeting_boxes, not_stones, of_one_picture, said_of
+from drystone.io.outlines_in.nested import meeting_boxes, not_stones, of_one_picture, said_of
 from drystone.io.outlines_in.silhouettes import outer_edge
 from drystone.io.patches import PlacedMask, StonePatch
 from drystone.io.pictures import check_size, format_of, opened
@@ -148,8 +148,7 @@ def _not_stones(
     }
     if file.seen_by == "either" and not (masks and of_one_picture(list(masks.values()))):
         return {}
-    by_program = file.seen_by != "people"
-    return not_stones(Seen(masks, size_px, frozenset(settings.keep), by_program))
+    return not_stones(masks, size_px, settings.keep, by_program=file.seen_by != "people")
 
 
 def _usual_scale(file: OutlineFile, unit: float) -> tuple[float, Notice]:

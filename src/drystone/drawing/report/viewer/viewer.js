@@ -12,6 +12,12 @@ const LONGEST_FORCE = 0.22;
 const SWIPE_PX = 50;
 const WIDEST_THRUST = 14;
 const KINDS = { closed: "dot", opening: "ring", sliding: "triangle", "opening and sliding": "square" };
+const MARKS = {
+  dot: "M-2 0a2 2 0 1 0 4 0a2 2 0 1 0 -4 0",
+  ring: "M-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0",
+  triangle: "M0 -5.5L5 3.5H-5Z",
+  square: "M-4 -4H4V4H-4Z",
+};
 const PATTERNS = {
   rising: "M-2 2 2 -2M0 12 12 0M10 14 14 10",
   falling: "M-2 10 2 14M0 0 12 12M10 -2 14 2",
@@ -50,6 +56,10 @@ function sum(values) {
   return values.reduce((total, value) => total + value, 0);
 }
 
+function middleOf(points) {
+  return [0, 1].map((axis) => sum(points.map((p) => p[axis])) / points.length);
+}
+
 function pathOf(loops, x, y) {
   return loops
     .map((loop) => "M" + loop.map((p) => `${x(p[0]).toFixed(1)} ${y(p[1]).toFixed(1)}`).join("L") + "Z")
@@ -59,6 +69,11 @@ function pathOf(loops, x, y) {
 function lineOf([x1, y1], [x2, y2], attributes = {}) {
   const ends = Object.entries({ x1, y1, x2, y2 }).map(([name, value]) => [name, value.toFixed(1)]);
   return draw("line", { ...attributes, ...Object.fromEntries(ends) });
+}
+
+function markAt(name, x, y) {
+  const mark = draw("path", { class: `ds-mark ds-mark-${name}`, d: MARKS[name] });
+  return draw("g", { transform: `translate(${x.toFixed(1)} ${y.toFixed(1)})` }, mark);
 }
 
 // What a legend shows of a mark or a line.
@@ -129,13 +144,18 @@ function displacement([vx, vy, turning], factor) {
   return { x: sine * dx - rest * dy, y: rest * dx + sine * dy, angle };
 }
 
+// Move what is drawn by a transform, or leave it where it was.
+function carry(drawn, way) {
+  if (way) drawn.setAttribute("transform", way);
+  else drawn.removeAttribute("transform");
+}
+
 class Viewer {
   constructor(element, data, options) {
     this.data = data;
     this.options = options;
     this.name = freeName();
     this.parts = new Map(data.parts.map((part) => [part.id, part]));
-    this.order = data.parts.map((part) => part.id);
     this.last = data.steps;
     this.noun = data.noun === "block" ? "Block" : "Stone";
     const [x0, , x1, y1] = data.box;
@@ -156,7 +176,6 @@ class Viewer {
       patterns: true,
       ids: false,
       index: "",
-      theme: "auto",
     };
     this.timer = null;
     this.frame = null;
@@ -166,10 +185,7 @@ class Viewer {
     this.still = window.matchMedia("(prefers-reduced-motion: reduce)");
     this.assemble(element);
     this.show(this.state.step, { quiet: true });
-    if (options.step === undefined) this.overview();
-  }
-
-  overview() {
+    if (options.step !== undefined) return;
     this.select(null);
     this.said.textContent = `Choose a ${this.noun.toLowerCase()} in the drawing${this.last ? ", or go to a step" : ""}.`;
   }
@@ -323,22 +339,22 @@ class Viewer {
     for (const name of ["self", "left", "right"]) if (present.has(name)) cases[name] = name === "self" ? data.dead_load : name;
     const sides = { none: "none" };
     for (const side of ["left", "right"]) if (data.mechanisms[side]?.velocity) sides[side] = side;
-    this.forceScale = this.range("Scale", "ds-force-scale", 0.2, 3, 0.1, 1, (value) => {
+    const forceScale = this.range("Scale", "ds-force-scale", 0.2, 3, 0.1, (value) => {
       this.state.forceScale = value;
       this.drawForces();
     });
-    this.amplitude = this.range("Amplitude", "ds-amplitude", 0, 2, 0.02, 1, (value) => {
+    const amplitude = this.range("Amplitude", "ds-amplitude", 0, 2, 0.02, (value) => {
       this.stopSwing();
       this.state.amplitude = value;
       this.move(value);
     });
     this.swingButton = make("button", { type: "button", class: "ds-animate", "aria-pressed": "false", click: () => this.swing() }, "Animate");
-    this.moving = make("span", { class: "ds-sub", hidden: true }, this.amplitude.label, this.swingButton);
-    this.pushing = make("span", { class: "ds-sub", hidden: true }, this.forceScale.label);
+    this.moving = make("span", { class: "ds-sub", hidden: true }, amplitude, this.swingButton);
+    this.pushing = make("span", { class: "ds-sub", hidden: true }, forceScale);
     const many = Object.keys(cases).length > 1;
     const fails = Object.keys(sides).length > 1;
     this.themeButton = make("button", { type: "button", class: "ds-theme", click: () => this.nextTheme() }, "Theme: auto");
-    const zoom = this.range("Zoom", "ds-zoom", 1, 4, 0.25, 1, (value) => this.zoom(value));
+    const zoom = this.range("Zoom", "ds-zoom", 1, 4, 0.25, (value) => this.zoom(value));
     return make(
       "div",
       { class: "ds-controls" },
@@ -352,15 +368,15 @@ class Viewer {
         fails ? this.check("What joints do", "kinds") : null,
         this.data.parts.some((part) => part.cluster !== null) ? this.check("Patterns", "patterns") : null,
         this.last ? this.check("Ids, not steps", "ids") : null,
-        zoom.label,
+        zoom,
         this.themeButton,
       ),
     );
   }
 
-  range(label, name, min, max, step, value, change) {
-    const input = make("input", { type: "range", class: name, min, max, step, value, input: () => change(Number(input.value)) });
-    return { input, label: make("label", { class: "ds-range" }, `${label} `, input) };
+  range(label, name, min, max, step, change) {
+    const input = make("input", { type: "range", class: name, min, max, step, value: 1, input: () => change(Number(input.value)) });
+    return make("label", { class: "ds-range" }, `${label} `, input);
   }
 
   check(label, name) {
@@ -460,7 +476,6 @@ class Viewer {
       this.pause();
       return;
     }
-    if (!this.last) return;
     this.said.setAttribute("aria-live", "off");
     this.playButton.textContent = "Pause";
     if (this.state.step >= this.last) this.show(0);
@@ -496,7 +511,7 @@ class Viewer {
   }
 
   walk(by) {
-    const seen = this.order.filter((id) => !this.groups.get(id).classList.contains("ds-later"));
+    const seen = [...this.groups.keys()].filter((id) => !this.groups.get(id).classList.contains("ds-later"));
     if (!seen.length) return;
     const at = seen.indexOf(this.state.selected);
     const next = at < 0 ? (by > 0 ? 0 : seen.length - 1) : (at + by + seen.length) % seen.length;
@@ -619,14 +634,15 @@ class Viewer {
     const failing = this.mechanism;
     for (const part of this.data.parts) {
       const velocity = failing?.velocity?.[part.id];
-      for (const one of this.drawnOf(part)) one.classList.toggle("ds-still", failing !== null && !velocity);
-      this.carry(part, velocity, failing, amplitude);
+      const way = velocity ? this.wayOf(part, velocity, amplitude * failing.scale) : "";
+      for (const one of this.drawnOf(part)) {
+        one.classList.toggle("ds-still", failing !== null && !velocity);
+        carry(one, way);
+      }
     }
     // A joint goes with the block that its normal points into.
     for (const joint of this.layers.contacts.children) {
-      const way = this.groups.get(Number(joint.dataset.block))?.getAttribute("transform");
-      if (way) joint.setAttribute("transform", way);
-      else joint.removeAttribute("transform");
+      carry(joint, this.groups.get(Number(joint.dataset.block))?.getAttribute("transform"));
     }
   }
 
@@ -634,16 +650,12 @@ class Viewer {
     return [this.groups.get(part.id), this.labels.get(part.id)?.label].filter(Boolean);
   }
 
-  carry(part, velocity, failing, amplitude) {
-    const drawn = this.drawnOf(part);
-    if (!velocity) drawn.forEach((one) => one.removeAttribute("transform"));
-    else {
-      const { x, y, angle } = displacement(velocity, amplitude * failing.scale);
-      const [cx, cy] = this.at(part.centroid);
-      const shift = `translate(${(x * this.k).toFixed(3)} ${(-y * this.k).toFixed(3)})`;
-      const way = `${shift} rotate(${((-angle * 180) / Math.PI).toFixed(4)} ${cx.toFixed(3)} ${cy.toFixed(3)})`;
-      drawn.forEach((one) => one.setAttribute("transform", way));
-    }
+  // The transform of a part after so much of its velocity.
+  wayOf(part, velocity, factor) {
+    const { x, y, angle } = displacement(velocity, factor);
+    const [cx, cy] = this.at(part.centroid);
+    const shift = `translate(${(x * this.k).toFixed(3)} ${(-y * this.k).toFixed(3)})`;
+    return `${shift} rotate(${((-angle * 180) / Math.PI).toFixed(4)} ${cx.toFixed(3)} ${cy.toFixed(3)})`;
   }
 
   swing() {
@@ -697,20 +709,9 @@ class Viewer {
       shown.push(joint);
       const points = contact.points.map(this.at);
       if (state.contacts) joint.append(lineOf(points[0], points.at(-1), { class: "ds-joint" }));
-      points.forEach(([x, y], at) => joint.append(this.mark(kinds ? KINDS[contact.kinds[this.kindSide]?.[at] ?? "closed"] : "dot", x, y)));
+      points.forEach(([x, y], at) => joint.append(markAt(kinds ? KINDS[contact.kinds[this.kindSide]?.[at] ?? "closed"] : "dot", x, y)));
     }
     this.layers.contacts.replaceChildren(...shown);
-  }
-
-  mark(name, x, y) {
-    const [cx, cy] = [x.toFixed(1), y.toFixed(1)];
-    const paths = {
-      dot: "M-2 0a2 2 0 1 0 4 0a2 2 0 1 0 -4 0",
-      ring: "M-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0",
-      triangle: "M0 -5.5L5 3.5H-5Z",
-      square: "M-4 -4H4V4H-4Z",
-    };
-    return draw("g", { transform: `translate(${cx} ${cy})` }, draw("path", { class: `ds-mark ds-mark-${name}`, d: paths[name] }));
   }
 
   drawForces() {
@@ -766,7 +767,7 @@ class Viewer {
       thrust: () => draw("g", { class: "ds-thrust" }, draw("polyline", { points: "2,7 20,7", "stroke-width": 6 })),
       joint: () => draw("g", { class: "ds-contacts" }, draw("line", { class: "ds-joint", x1: 3, y1: 7, x2: 19, y2: 7 })),
     };
-    return sampleOf(mark in inside ? inside[mark]() : draw("g", { class: "ds-contacts" }, this.mark(mark, 11, 7)));
+    return sampleOf(mark in inside ? inside[mark]() : draw("g", { class: "ds-contacts" }, markAt(mark, 11, 7)));
   }
 
   // --- the stone card -----------------------------------------------------------------------------
@@ -833,7 +834,7 @@ class Viewer {
     const { alpha_left: left, alpha_right: right } = part;
     if (left !== null || right !== null) rows.push(["α then", `left ${text(left)}, right ${text(right)}`, true]);
     return [
-      make("h3", { class: "ds-name" }, make("span", { class: "ds-big" }, part.step === null ? String(part.id) : `${part.step}`), ` ${wedge ? "Wedge" : this.noun} ${part.id}`),
+      make("h3", { class: "ds-name" }, make("span", { class: "ds-big" }, String(part.step ?? part.id)), ` ${wedge ? "Wedge" : this.noun} ${part.id}`),
       make("p", { class: "ds-which" }, under, cluster && make("span", { class: "ds-more" }, `${under && " · "}${cluster}`)),
       this.figure(part),
       part.step === null ? null : this.tickBox(part),
@@ -859,9 +860,8 @@ class Viewer {
 
   links(ids) {
     return ids.map((id) => {
-      if (id === 0) return make("span", { class: "ds-link" }, "the ground");
       const part = this.parts.get(id);
-      if (!part) return make("span", { class: "ds-link" }, String(id));
+      if (!part) return make("span", { class: "ds-link" }, id === 0 ? "the ground" : String(id));
       const step = part.step === null ? "" : ` (step ${part.step})`;
       const click = () => {
         if (part.step !== null && part.step > this.state.step) {
@@ -894,7 +894,7 @@ class Viewer {
     const k = 112 / reach;
     const middle = 8 + 0.5 * Math.max(34, (a[3] - a[1]) * perUnit * k, (b[3] - b[1]) * k);
     const below = 2 * middle + 8;
-    const panel = (loops, box, scale, left, label, crop, angle = null) => {
+    const panel = (loops, box, scale, left, label, angle) => {
       const [mx, my] = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
       const x = (value) => left + 64 + (value - mx) * scale;
       const y = (value) => middle - (value - my) * scale;
@@ -902,42 +902,32 @@ class Viewer {
       const caption = draw("text", { x: left + 64, y: below, class: "ds-caption" }, label);
       // An inner svg cuts off what of the photograph is beside its field.
       const field = { x: left, y: 0, width: 128, height: below - 12, viewBox: `${left} 0 128 ${below - 12}` };
-      const photo = crop ? draw("svg", field, this.photo(part, crop, x, y, scale, angle)) : null;
+      const [cx, cy] = middleOf(loops[0]);
+      const photo = crop ? draw("svg", field, this.photo(part, crop, k * perUnit, [x(cx), y(cy)], angle)) : null;
       return [photo, shape, caption].filter(Boolean);
     };
-    const crop = part.crop && String(part.crop.data).startsWith("data:image/") ? part.crop : null;
+    const crop = part.source && part.crop && String(part.crop.data).startsWith("data:image/") ? part.crop : null;
     const frameOf = (wide) => `0 0 ${wide} ${(below + 6).toFixed(1)}`;
     const words = part.turn ? `${this.nameOf(part)}: ${part.turn}` : this.nameOf(part);
     if (!part.source) {
-      const only = panel(placed, b, k, 0, part.kind === "wedge" ? "to find or to cut" : "", null);
+      const only = panel(placed, b, k, 0, part.kind === "wedge" ? "to find or to cut" : "", 0);
       return draw("svg", { class: "ds-figure ds-one", viewBox: frameOf(128), role: "img", "aria-label": words }, ...only);
     }
     return draw(
       "svg",
       { class: "ds-figure", viewBox: frameOf(316), role: "img", "aria-label": words },
-      ...panel(outline, a, k * perUnit, 0, "as it lies", crop),
+      ...panel(outline, a, k * perUnit, 0, "as it lies", 0),
       ...this.arc(part.angle_deg, middle),
-      ...panel(placed, b, k, 188, "as it stands", crop, part.angle_deg),
+      ...panel(placed, b, k, 188, "as it stands", part.angle_deg),
     );
   }
 
-  // The photograph where the stone lies, or with an angle turned with it to where it stands.
-  photo(part, crop, x, y, scale, angle) {
+  // The photograph of a stone as it lies, turned by an angle about the middle of its outline.
+  photo(part, crop, unit, [cx, cy], angle) {
     const [x0, y0, x1, y1] = crop.box;
-    const known = part.source;
-    const placed = part.points[0];
-    let place;
-    if (angle === null) place = { x: x(x0), y: y(y1), width: (x1 - x0) * scale, height: (y1 - y0) * scale };
-    else {
-      const from = [sum(known.map((p) => p[0])) / known.length, sum(known.map((p) => p[1])) / known.length];
-      const to = [sum(placed.map((p) => p[0])) / placed.length, sum(placed.map((p) => p[1])) / placed.length];
-      const box = boxOf(known);
-      const own = Math.max(box[2] - box[0], box[3] - box[1]);
-      const unit = (scale * Math.max(...part.size)) / own;
-      const [cx, cy] = [x(to[0]), y(to[1])];
-      place = { x: cx + (x0 - from[0]) * unit, y: cy - (y1 - from[1]) * unit, width: (x1 - x0) * unit, height: (y1 - y0) * unit, transform: `rotate(${-angle} ${cx} ${cy})` };
-    }
-    return draw("image", { ...place, href: crop.data, preserveAspectRatio: "none" });
+    const [fx, fy] = middleOf(part.source);
+    const place = { x: cx + (x0 - fx) * unit, y: cy - (y1 - fy) * unit, width: (x1 - x0) * unit, height: (y1 - y0) * unit };
+    return draw("image", { ...place, transform: `rotate(${-angle} ${cx} ${cy})`, href: crop.data, preserveAspectRatio: "none" });
   }
 
   // A dial: from upright by the angle, with the way round.
@@ -1072,9 +1062,9 @@ class Viewer {
 
   nextTheme() {
     const themes = ["auto", "dark", "light"];
-    this.state.theme = themes[(themes.indexOf(this.state.theme) + 1) % themes.length];
-    this.root.dataset.theme = this.state.theme;
-    this.themeButton.textContent = `Theme: ${this.state.theme}`;
-    this.options.onTheme?.(this.state.theme);
+    const theme = themes[(themes.indexOf(this.root.dataset.theme) + 1) % themes.length];
+    this.root.dataset.theme = theme;
+    this.themeButton.textContent = `Theme: ${theme}`;
+    this.options.onTheme?.(theme);
   }
 }
