@@ -3,11 +3,14 @@
 import json
 import shutil
 from collections.abc import Callable
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import pytest
 
 from drystone.cli import main
+from drystone.cli.commands import craft
+from drystone.drawing.files import save, write_pictures
 
 
 @dataclass(frozen=True)
@@ -28,6 +31,22 @@ def _refuse_constant(name):
 
 
 Run = Callable[..., Ran]
+
+
+@contextmanager
+def coarse(dpi=80):
+    """Draw pictures with a sixth of the px: what is in them, and where it goes, is the same."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(write_pictures.__kwdefaults__, "dpi", dpi)
+        patch.setattr(save, "__defaults__", (dpi,))
+        patch.setattr(craft, "SINGLE_DPI", dpi)
+        yield
+
+
+@pytest.fixture(autouse=True)
+def _coarse():
+    with coarse():
+        yield
 
 
 @pytest.fixture
@@ -78,12 +97,17 @@ WALL = ("--wall", "100x36", "--scale", "1", "--method", "paper")
 """A wall for the rubble, planned quickly."""
 
 
+def _planned(stones, tmp_path_factory, *wall):
+    folder = tmp_path_factory.mktemp("plans") / "plan"
+    with coarse():
+        assert main(["plan", str(stones), *wall, "-o", str(folder), "--seed", "1"]) in (0, 4)
+    return folder
+
+
 @pytest.fixture(scope="session")
 def finished(rubble, tmp_path_factory):
     """The folder of a plan of the rubble; not to be changed."""
-    folder = tmp_path_factory.mktemp("plans") / "finished"
-    assert main(["plan", str(rubble), *WALL, "-o", str(folder), "--seed", "1"]) in (0, 4)
-    return folder
+    return _planned(rubble, tmp_path_factory, *WALL)
 
 
 @pytest.fixture
@@ -97,13 +121,21 @@ def plan_copy(finished, rubble, tmp_path):
 EXACT = ("--wall", "100x36", "--scale", "1", "--budget", "1")
 """A wall for the rubble by one pass of `best`, which plans on outlines."""
 
+UNTRIED = ("--set", "settle.trials=0", "--set", "goal.fallen=0")
+"""Settings of `best` for tests that the errors of a builder are nothing to."""
+
 
 @pytest.fixture(scope="session")
 def settled(rubble, tmp_path_factory):
     """The folder of a plan of the rubble on outlines; not to be changed."""
-    folder = tmp_path_factory.mktemp("plans") / "settled"
-    assert main(["plan", str(rubble), *EXACT, "-o", str(folder), "--seed", "1"]) in (0, 4)
-    return folder
+    return _planned(rubble, tmp_path_factory, *EXACT)
+
+
+@pytest.fixture(scope="session")
+def metric(rubble, tmp_path_factory):
+    """The same plan in metres, of 200 px each; not to be changed."""
+    wall = ("--wall", "0.5mx18cm", "--px-per-m", "200", *EXACT[2:])
+    return _planned(rubble, tmp_path_factory, *wall)
 
 
 @pytest.fixture

@@ -3,7 +3,7 @@
 import json
 
 from drystone.io.plan_json import read_plan
-from tests.cli.conftest import EXACT, WALL
+from tests.cli.conftest import EXACT, UNTRIED, WALL
 
 
 def stones_of(folder):
@@ -12,7 +12,7 @@ def stones_of(folder):
 
 def test_the_plan_is_the_same_when_nothing_is_added(settled, rubble, tmp_path, run):
     # Another seed would give another wall.
-    other = ["plan", rubble, *EXACT, "--seed", 5]
+    other = ["plan", rubble, *EXACT, *UNTRIED, "--seed", 5]
     assert run(*other, "-o", tmp_path / "alone").code in (0, 4)
     assert run(*other, "--from", settled, "-o", tmp_path / "out").code in (0, 4)
     assert read_plan(tmp_path / "out").steps == read_plan(settled).steps
@@ -20,7 +20,8 @@ def test_the_plan_is_the_same_when_nothing_is_added(settled, rubble, tmp_path, r
 
 
 def test_a_search_goes_on_from_a_plan(settled, rubble, tmp_path, run):
-    ran = run("plan", rubble, *EXACT, "--budget", 3, "--from", settled, "-o", tmp_path / "out")
+    asked = (*EXACT, *UNTRIED, "--budget", 3, "--from", settled)
+    ran = run("plan", rubble, *asked, "-o", tmp_path / "out")
     assert ran.code in (0, 4)
     assert read_plan(tmp_path / "out").metrics.F_SF >= read_plan(settled).metrics.F_SF - 0.02
     assert run("check", tmp_path / "out", "--stones", rubble).code == 0
@@ -28,7 +29,8 @@ def test_a_search_goes_on_from_a_plan(settled, rubble, tmp_path, run):
 
 def test_what_is_banned_now_is_taken_out(settled, rubble, tmp_path, run):
     first = stones_of(settled)[0]
-    ran = run("plan", rubble, *EXACT, "--from", settled, "--ban", first, "-o", tmp_path / "out")
+    asked = (*EXACT, *UNTRIED, "--from", settled, "--ban", first)
+    ran = run("plan", rubble, *asked, "-o", tmp_path / "out")
     assert ran.code in (0, 4)
     assert f"W121 stones {first}" in ran.err
     assert first not in stones_of(tmp_path / "out")
@@ -47,11 +49,6 @@ def test_single_stones_are_settings(rubble, tmp_path, run):
     assert placed == sorted(placed)
     assert not {2, 5} & set(placed)
     assert run("check", tmp_path / "out", "--stones", rubble).code == 0
-    again = ["--settings", tmp_path / "out" / "settings.toml"]
-    assert run("plan", rubble, *WALL, *again, "-o", tmp_path / "again").code in (0, 4)
-    assert (tmp_path / "again" / "plan.json").read_bytes() == (
-        tmp_path / "out" / "plan.json"
-    ).read_bytes()
 
 
 def test_a_pinned_stone_that_is_missing_is_said(rubble, tmp_path, run):

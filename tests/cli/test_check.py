@@ -13,6 +13,7 @@ import shapely
 from matplotlib.image import imread
 from PIL import Image
 
+from drystone.cli import main
 from drystone.cli.commands import check as check_command
 from drystone.drawing.pictures import check as check_picture
 from drystone.drawing.pictures.check import views_of
@@ -23,7 +24,7 @@ from drystone.physics.scatter import TiltResult
 from drystone.physics.tilt import TiltTrial
 from drystone.verify.check import check_plan
 from drystone.verify.outlines import plan_polygons
-from tests.cli.conftest import WALL, rewrite
+from tests.cli.conftest import WALL, coarse, rewrite
 from tests.verify.exact_examples import hanging_example
 
 NO_ENGINE = "pymunk is not installed (extra `physics`)"
@@ -56,12 +57,13 @@ def test_a_plan_is_checked_from_its_own_folder(plan_copy, run, monkeypatch):
         assert run("check", given).code == 0
 
 
-@pytest.fixture
-def standing(rubble, tmp_path, run):
-    """A plan on pixels whose wall stands in the engine too, the stones beside it."""
-    folder = tmp_path / "standing"
-    assert run("plan", rubble, *WALL, "--seed", 2, "-o", folder).code in (0, 4)
-    shutil.copy(rubble, folder)
+@pytest.fixture(scope="module")
+def standing(bricks, tmp_path_factory):
+    """A plan whose wall stands in the engine too, the stones beside it; not to be changed."""
+    folder = tmp_path_factory.mktemp("plans") / "standing"
+    with coarse():
+        assert main(["plan", str(bricks), "--wall", "60x20", *WALL[2:], "-o", str(folder)]) == 0
+    shutil.copy(bricks, folder)
     return folder
 
 
@@ -107,7 +109,7 @@ def test_a_stone_that_falls_is_named_and_drawn(plan_copy, run, monkeypatch):
     assert (physics["tilt_left"], physics["tilt_right"]) == (None, None)
 
 
-def test_a_claim_that_the_engine_contradicts_fails(standing, run, monkeypatch):
+def test_a_claim_that_the_engine_contradicts_fails(standing, tmp_path, run, monkeypatch):
     """Also when all numbers of the plan are those of its limit analysis."""
     pytest.importorskip("pymunk", reason=NO_ENGINE)
 
@@ -115,6 +117,7 @@ def test_a_claim_that_the_engine_contradicts_fails(standing, run, monkeypatch):
         TiltResult(side, (TiltTrial(side, 0.3, None, (), 0.0, 0.01),)) for side in ("left", "right")
     )
     monkeypatch.setattr(check_command, "tilt_of", lambda _: weak)
+    standing = shutil.copytree(standing, tmp_path / "standing")
     assert run("check", standing).code == 0
     ran = run("check", standing, "--physics")
     assert (ran.code, " is valid, but the engine contradicts it\n" in ran.out) == (5, True)

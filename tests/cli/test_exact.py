@@ -14,7 +14,7 @@ from PIL import Image
 
 from drystone.io.plan_folder import BLOCKS
 from drystone.io.plan_json import read_plan
-from tests.cli.conftest import EXACT, rewrite
+from tests.cli.conftest import EXACT, UNTRIED, rewrite
 from tests.cli.test_plan import FILES, SUMMARY
 
 Tamper = Callable[[dict[str, Any]], Any]
@@ -87,11 +87,8 @@ def test_measure_and_analyse_look_at_the_outlines(settled, tmp_path, run):
     }  # fmt: skip
 
 
-def test_metres(rubble, settled, tmp_path, run):
-    out = tmp_path / "m"
-    ran = run("plan", rubble, "--wall", "0.5mx18cm", "--px-per-m", 200, "--scale", "1", "--budget",
-              "1", "--seed", 1, "-o", out)  # fmt: skip
-    assert ran.code in (0, 4)
+def test_metres(rubble, settled, metric, tmp_path, run):
+    out = shutil.copytree(metric, tmp_path / "m")
     px, metres = read_plan(settled), read_plan(out)
     assert (metres.length_unit, metres.px_per_m) == ("m", 200.0)
     for one, other in zip(metres.stone_steps, px.stone_steps, strict=True):
@@ -155,13 +152,11 @@ def test_a_wedge_in_another_place_is_not_that_of_the_plan(settled_copy, run):
 
 
 def test_files_of_an_earlier_plan_do_not_stay(settled_copy, rubble, tmp_path, run):
-    again = ("-o", settled_copy, "--overwrite", "--seed", 1)
+    again = (*UNTRIED, "-o", settled_copy, "--overwrite", "--seed", 1)
     assert run("plan", rubble, *EXACT, "--geometry", "raster", *again).code in (0, 4)
     assert {path.name for path in settled_copy.iterdir()} == FILES | {"rubble.png"}
     on_pixels = run("analyse", settled_copy, "--json").json()
     assert on_pixels["F_LR"] == pytest.approx(read_plan(settled_copy).metrics.F_LR)
-    assert run("plan", rubble, *EXACT, *again).code in (0, 4)
-    assert {path.name for path in settled_copy.iterdir()} == FILES | {BLOCKS, "rubble.png"}
     # A wall without stones, none of which rests firmly enough, has no mechanism to draw, and no
     # film.
     firm = tmp_path / "firm.toml"

@@ -91,12 +91,10 @@ def test_a_title_of_any_letters_makes_files_that_can_be_read(run, plan):
     assert said in [text.dxf.text for text in texts]
 
 
-def test_exports_of_an_earlier_plan_are_named(run, tmp_path, rubble):
-    folder = tmp_path / "out"
-    again = ("plan", rubble, *WALL, "-o", folder, "--overwrite")
-    assert "W181" not in run(*again).err
+def test_exports_of_an_earlier_plan_are_named(run, plan_copy, rubble):
+    folder = plan_copy
     assert run("export", folder, "--to", "csv", "stl", "--px-per-m", 200).code == 0
-    said = run(*again).err
+    said = run("plan", rubble, *WALL, "-o", folder, "--overwrite").err
     assert f"W181 of an earlier plan: stl/, steps.csv, in {folder}." in said
     assert (folder / "steps.csv").exists()
 

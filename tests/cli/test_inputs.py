@@ -10,7 +10,9 @@ from PIL import Image
 
 from drystone.cli.commands.segment import WRITTEN
 from drystone.io.photo_beside import LABELS, PhotoSidecar, write_sidecar
-from tests.cli.conftest import WALL
+from drystone.io.wall_image import write_labels
+from tests.cli.conftest import EXACT, UNTRIED, WALL
+from tests.statics.walls import stacked
 
 
 @pytest.fixture
@@ -93,15 +95,15 @@ def test_plan_keeps_the_stones_and_settings_that_it_reads(rubble, tmp_path, run)
 
 
 def test_plan_keeps_the_choice_that_it_begins_with(rubble, tmp_path, run):
-    asked = ("plan", rubble, "--wall", "100x36", "--scale", 1, "--seed", 1, "-o", tmp_path)
-    assert run(*asked, "--budget", 4, "--pareto").code in (0, 4)
+    asked = ("plan", rubble, *EXACT, *UNTRIED, "--seed", 1, "-o", tmp_path)
+    assert run(*asked, "--pareto").code in (0, 4)
     first = tmp_path / "pareto" / "01"
     before = (first / "plan.json").read_bytes()
     for given in (first, first / "plan.json"):
-        assert "E129" in run(*asked, "--budget", 2, "--from", given, "--overwrite").err
+        assert "E129" in run(*asked, "--from", given, "--overwrite").err
     assert (first / "plan.json").read_bytes() == before
     # The plan itself is replaced by one that is as good at least.
-    assert run(*asked, "--budget", 2, "--from", tmp_path, "--overwrite").code in (0, 4)
+    assert run(*asked, "--from", tmp_path, "--overwrite").code in (0, 4)
 
 
 @pytest.mark.parametrize("command", ["plan", "demo"])
@@ -214,8 +216,11 @@ def test_nothing_is_drawn_among_masks(masks, tmp_path, run):
         ("rehearse {plan} --runs 1 -o {at}", "risk.png"),
     ],
 )
-def test_a_file_is_replaced_only_when_that_is_said(line, name, rubble, settled, tmp_path, run):
-    at, wall = tmp_path / name, settled / "wall.png"
+def test_a_file_is_replaced_only_when_that_is_said(
+    line, name, rubble, settled, tmp_path_factory, tmp_path, run
+):
+    at, wall = tmp_path / name, tmp_path_factory.mktemp("wall") / "wall.png"
+    write_labels(stacked((30, 10, 0), (20, 10, 5)), wall)
     at.write_bytes(b"mine")
     known = {"at": at, "folder": tmp_path, "rubble": rubble, "plan": settled, "wall": wall}
     words = [word.format(**known) for word in line.split()]

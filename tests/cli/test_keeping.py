@@ -15,10 +15,10 @@ from drystone.planner.events import Callbacks
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import SoFar, plan_wall
 from drystone.search.state import Progress, SearchState
-from tests.cli.conftest import WALL
+from tests.cli.conftest import UNTRIED, WALL
 from tests.planner.scenes import greedy, rubble
 
-SEARCH = ("--wall", "100x36", "--scale", "1", "--seed", "1", "--budget", "7")
+SEARCH = ("--wall", "100x36", "--scale", "1", "--seed", "1", "--budget", "4", *UNTRIED)
 
 
 class Clock:
@@ -173,7 +173,7 @@ def test_the_photograph_is_beside_what_is_kept_too(tmp_path):
     folder.mkdir()
     keeper = Keeper(folder, {}, photo)
     keeper.begin(None)
-    settings = greedy({"search": {"budget": 3}})
-    plan_wall(rubble(), 100, 36, scale=1.0, settings=settings, keep=keeper)
+    changes = {"search": {"budget": 2}, "settle": {"trials": 0}, "goal": {"fallen": 0.0}}
+    plan_wall(rubble(), 100, 36, scale=1.0, settings=greedy(changes), keep=keeper)
     assert (folder / "photo.jpg").read_bytes() == b"a photograph"
     assert read_plan(folder).source["photo"]["name"] == "photo.jpg"

@@ -80,9 +80,9 @@ def test_markers_are_vectors_without_hairlines_beside_a_line_of_100_mm(run, tmp_
 
 def test_single_markers_have_a_page_each(run, tmp_path):
     path = tmp_path / "single.pdf"
-    ran = run("markers", "-o", path, "--single", "--count", 3, "--ids", 5, "--json")
+    ran = run("markers", "-o", path, "--single", "--count", 2, "--ids", 5, "--json")
     told = ran.json()
-    assert told["ids"] == [5, 6, 7]
+    assert told["ids"] == [5, 6]
     assert told["layout"] == "120mm"
     for page, marker_id in enumerate(told["ids"]):
         picture, _, text = rendered(path, page)

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from drystone.cli import main
 from drystone.io.plan_json import read_plan
 from drystone.io.wall_image import write_labels
 
@@ -15,15 +14,6 @@ def tower(tmp_path):
     labels[10:, 5:25] = 9
     write_labels(labels, tmp_path / "tower.png")
     return tmp_path / "tower.png"
-
-
-@pytest.fixture(scope="module")
-def metric(rubble, tmp_path_factory):
-    """The folder of a plan of 200 px a metre; not to be changed."""
-    folder = tmp_path_factory.mktemp("plans") / "metric"
-    asked = ["--wall", ".5mx.18m", "--px-per-m", "200", "--scale", "1", "--method", "paper"]
-    assert main(["plan", str(rubble), *asked, "-o", str(folder), "--seed", "1"]) in (0, 4)
-    return folder
 
 
 def test_a_ruler_lies_in_the_picture_of_a_wall(tower, run):

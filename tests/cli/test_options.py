@@ -166,18 +166,15 @@ def test_those_of_a_settings_file_too(tmp_path):
     assert settings_of("--settings", toml, "--policy", "filter").selection_rule == "filter"
 
 
-RASTER = ("--wall", "100x36", "--scale", "1", "--geometry", "raster", "--quiet")
-
-
 def test_a_plan_repeats_from_its_settings(run, rubble, tmp_path):
     one, two = tmp_path / "one", tmp_path / "two"
     toml = tmp_path / "given.toml"
     toml.write_text("[policy]\nmin_filling = 0.6\n", encoding="utf-8")
     given = ("--policy", "filter", "--settings", toml, "--seed", "4")
-    assert run("plan", rubble, *RASTER, *given, "-o", one).code in (0, 4)
+    assert run("plan", rubble, *WALL, *given, "-o", one).code in (0, 4)
     assert run("check", one, "--stones", rubble).code == 0
     again = ("--settings", one / "settings.toml", "--seed", "4", "--jobs", "2")
-    assert run("plan", rubble, *RASTER, *again, "-o", two).code in (0, 4)
+    assert run("plan", rubble, *WALL, *again, "-o", two).code in (0, 4)
     plans = [(folder / "plan.json").read_bytes() for folder in (one, two)]
     assert plans[0] == plans[1]
     settings = json.loads(plans[0])["settings"]

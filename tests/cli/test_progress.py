@@ -3,21 +3,18 @@
 import pytest
 
 from drystone.cli import progress
-
-BUDGET = "[search]\nbudget = 2\n"
+from tests.cli.conftest import EXACT, UNTRIED, WALL
 
 
 def test_a_terminal_sees_stones_and_walls(rubble, tmp_path, run, monkeypatch):
-    toml = tmp_path / "quick.toml"
-    toml.write_text(BUDGET, encoding="utf-8")
-    plan = ("plan", rubble, "--wall", "100x36", "--scale", "1", "--settings", toml, "--overwrite")
+    plan = ("plan", rubble, "--overwrite", "-o", tmp_path / "out")
     monkeypatch.setenv("FORCE_COLOR", "1")  # the terminal that pytest does not have
-    ran = run(*plan, "-o", tmp_path / "out")
+    ran = run(*plan, *EXACT, *UNTRIED, "--budget", 2)
     assert "filling" in ran.err
     assert "walls; best: " in ran.err
     assert "filling 0" not in ran.out
     for option in ("--quiet", "--json"):
-        assert run(*plan, "-o", tmp_path / "out", option).err == ""
+        assert run(*plan, *WALL, option).err == ""
 
 
 @pytest.mark.parametrize("command", ["check", "measure", "craft"])

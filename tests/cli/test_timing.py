@@ -14,7 +14,8 @@ def searched():
     """A small wall, and three more that are searched."""
     sizes = RubbleSettings(count=8, width_px=100, height_px=36, courses=2)
     stones = rubble_stones(sizes, np.random.default_rng(1))
-    settings = method_settings("best").updated({"search": {"budget": 4}})
+    changes = {"search": {"budget": 4}, "settle": {"trials": 0}, "goal": {"fallen": 0.0}}
+    settings = method_settings("best").updated(changes)
     return plan_wall(stones, 100, 36, settings=settings, scale=1.0)
 
 

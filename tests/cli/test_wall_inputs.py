@@ -12,7 +12,7 @@ from tests.io.test_walls_of_stones import drawn
 QUICK = ["--method", "paper", "--quiet"]
 
 
-@pytest.mark.parametrize("form", ["coco", "svg", "y up"])
+@pytest.mark.parametrize("form", ["coco", "y up"])
 def test_outlines_in_every_command(form, tmp_path, run):
     path = drawn(form, tmp_path)
     told = run("analyse", path, "--json", "--associative-only").json()
