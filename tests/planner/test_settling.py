@@ -309,7 +309,7 @@ def test_wedge_limits_are_in_source_px():
     assert (limits.least_thickness, limits.greatest_height) == (1.6, 10.0)
     assert (limits.greatest_area, limits.room_px) == (320.0, 14.0)
     assert (limits.margin, limits.mu, limits.setback) == (0.1, 0.58, 0.01)
-    assert (limits.contact_px, limits.rest, limits.steep) == (0.05, 0.2, 0.3)
+    assert (limits.contact_px, limits.rest, limits.steep) == (0.05, 0.4, 0.3)
     metres = wedge_limits(settings, stock, Site(100, 50, 0.5, px_per_m=500.0))
     assert (metres.least_thickness, metres.greatest_height) == (2.5, 10.0)
     assert Stock(4.0, 20.0, 400.0, 400.0, 9).least_side_px == 0

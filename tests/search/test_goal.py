@@ -10,13 +10,15 @@ from hypothesis import strategies as st
 
 from drystone.craft.bond import bond_faults
 from drystone.craft.masonry import Masonry
+from drystone.model.builder import BuilderErrors
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import GoalSettings
 from drystone.planner.solves import Solves
 from drystone.search.goal import FoundWall, WallFigures, figures_of, merit_of, possible_filling
 from drystone.search.packed import MOST, STEPS, PackedWall, archived, score_of
+from drystone.search.rehearsal import groups_of, mean_size, rehearse
 from drystone.search.yard import Yard
-from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble
+from tests.planner.scenes import ROUNDED, ROUNDED_SITE, RUBBLE_SITE, finish, greedy, rubble
 from tests.strategies import repeatable
 
 WALL = WallFigures(stones=8, F_SF=0.8, F_LR=0.5, F_AV=20.0, F_AH=2.0, T_LEVEL=0.2, E_FLUSH=0.1)
@@ -66,6 +68,19 @@ def test_what_is_judged_carries_no_more(seed):
     assert 0.0 <= judged.figures.F_LR_coulomb <= judged.figures.F_LR
     assert judged.merit <= found.merit
     assert judged.judged(Yard.of(planner)) is judged
+
+
+def test_what_nearly_falls_in_a_rehearsal_counts_too():
+    careless = greedy({"settle": {"trials": 0}})
+    planner = finish(Planner(ROUNDED, ROUNDED_SITE, seed=1, settings=careless))
+    blocks = groups_of(planner.build.wall)
+    errors = BuilderErrors.of_precision(0.03, mean_size(blocks))
+    runs = [rehearse(blocks, errors, np.random.default_rng(run)).stones for run in range(12)]
+    near = [[1 if e.fallen else max(e.share / 0.25, abs(e.turn_deg) / 12) for e in r] for r in runs]
+    assert min(map(max, near)) < max(map(max, near)) == 1.0
+    lost = [6 * max(shares) ** 4 + shares.count(1) for shares in near]
+    judged = FoundWall.of(planner).judged(Yard.of(planner))
+    assert judged.figures.fallen == pytest.approx(np.mean(lost) / len(blocks))
 
 
 @pytest.mark.parametrize(

@@ -25,6 +25,9 @@ from drystone.settle.wedge import in_order
 NEAR = 1.0
 """What is farther from a stone than this, over its size, takes no part when it is put down."""
 
+MARGIN = 1.25
+"""A place is tried with a hand's errors times this: what is sure by so much stays so in a wall."""
+
 FALL = 4.0
 """A stone that would fall in all trials is laid when it is larger than so many mean stones."""
 
@@ -91,7 +94,7 @@ class Seats:
         self.mean_size = mean_size
         self._settle, self._mu = settle, mu
         self._pinned = pinned
-        self._errors = BuilderErrors.of_precision(HAND, mean_size)
+        self._errors = BuilderErrors.of_precision(MARGIN * HAND, mean_size)
         self._known = RecentlyUsed[tuple[object, ...], SeatTrial](KNOWN_BYTES)
         self._numbers: dict[int, Floats] = {}  # what is drawn for each stone
         self._falls = defaultdict[int, Counter[int]](Counter)  # of each stone: in which trials

@@ -39,10 +39,13 @@ QUICK = NonassociativeSettings(starts=STARTS[:1], random_starts=0, let_go=False)
 STOPPED = 6
 """A builder who has to mend a wall loses as much as with so many stones."""
 
+NEARLY = 4
+"""Power of how near the worst stone of a run came to falling; of few runs that tells more."""
+
 MOVES = 0.5
 """A stone takes part in a failure when it is at least so fast, over the fastest."""
 
-RUNS, LAST_RUNS = 4, 24
+RUNS, LAST_RUNS = 12, 24
 """So often a wall of a search is rehearsed, and the best ones at the end."""
 
 
@@ -141,7 +144,8 @@ def _down(value: float, aim: float, urgent: float) -> float:
 class RehearsalFalls(NamedTuple):
     """What falls in some rehearsals of a wall of outlines."""
 
-    # In the mean, over all its stones; a run that is not whole counts as `STOPPED` more stones.
+    # In the mean, over all its stones; a run that is not whole counts as `STOPPED` more stones, and
+    # one that nearly was not as some of these.
     share: float
     first: Counter[int]  # in how many runs falls begin with which stones
 
@@ -234,14 +238,15 @@ def falls_of(build: Build, yard: Yard, runs: int, most: float = math.inf) -> Reh
     blocks = groups_of(build.wall)
     if not blocks:
         return RehearsalFalls(0.0, Counter())
-    fallen, first, all_stones = 0, Counter[int](), runs * len(blocks)
+    fallen, first, all_stones = 0.0, Counter[int](), runs * len(blocks)
     errors = BuilderErrors.of_precision(HAND, mean_size(blocks))
     for put in errors_of(blocks, errors, [np.random.default_rng(run) for run in range(runs)]):
         yard.until.look()
         run = put_up(blocks, put, yard.settings.mu, yard.settings.settle)
         if run.first_fall is not None:
-            fallen += STOPPED + sum(end.fallen for end in run.stones)
             first[run.first_fall] += 1
+        fallen += sum(end.fallen for end in run.stones)
+        fallen += STOPPED * max(end.nearness for end in run.stones) ** NEARLY
         if fallen > most * all_stones:
             return None
     return RehearsalFalls(fallen / all_stones, first)

@@ -48,6 +48,13 @@ class StoneEnd:
     share: float | None  # distance of its centroid from the plan, over its size; None: not at rest
     turn_deg: float | None
 
+    @property
+    def nearness(self) -> float:
+        """How near it is to having fallen, from 0 to 1."""
+        if self.fallen or self.share is None or self.turn_deg is None:
+            return 1.0
+        return max(self.share / FALLEN_SHARE, abs(self.turn_deg) / FALLEN_DEG)
+
 
 @dataclass(frozen=True, eq=False)
 class RehearsalRun:

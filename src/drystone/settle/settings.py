@@ -59,7 +59,7 @@ class SettleSettings(Ranged):
     per_stone : int
         Most of them of one stone.
     trials : int
-        How often a place is tried again with the errors of a hand
+        How often a place is tried again with a quarter more than the errors of a hand
         (:mod:`drystone.planner.seats`); a stone that falls there is laid elsewhere.
     """
 
@@ -70,7 +70,7 @@ class SettleSettings(Ranged):
     setback: float = ranged(0.01, least=0, most=0.1)
     lean: float = ranged(0.3, least=0)
     joint_px: float = ranged(0.0, least=0)
-    margin: float = ranged(0.2, least=0)
+    margin: float = ranged(0.4, least=0)
     steep: float = ranged(0.3, least=0, below=1)
     beyond_px: float = ranged(0.25, least=0, most=1)
     max_turn_deg: float = ranged(12.0, least=0)
