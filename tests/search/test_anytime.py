@@ -130,7 +130,7 @@ def test_chains_go_on_from_planned_walls_that_promise_more_until_they_are_long()
 
 
 def test_the_first_wall_is_wedged_as_the_others_are():
-    planner = first(2, seed=9)
+    planner = first(2, seed=55)
     start = judged(planner)
     better = wedged(start, Yard.of(planner))
     assert better.merit > start.merit

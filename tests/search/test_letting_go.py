@@ -22,7 +22,7 @@ class Drop:
     """A stone of some rubble over two others."""
 
     def __init__(self, side, settings):
-        plot = Plot(rubble(2, 8), RUBBLE_SITE)
+        plot = Plot(rubble(2, 8), RUBBLE_SITE, {"settle": {"margin": 0.2}})
         outlines = plot.lay(*plot.rows(1)).build.wall.outlines
         self.view = SideView.bare(100.0, side, 0.58, 1.0).grown(outlines.polygons)
         stone = next(s for s in plot.stones if s.id not in dict(outlines.blocks))

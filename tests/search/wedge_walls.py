@@ -16,7 +16,7 @@ LARGE = greedy(
     {
         "wedge": {"thickness": 0.04, "height": 0.5, "area": 0.3},
         "search": {"budget": 2},
-        "settle": {"trials": 0},
+        "settle": {"margin": 0.2, "trials": 0},
     }
 )
 """With larger wedges than usual, of which small walls have some; places need not be sure."""

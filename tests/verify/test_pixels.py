@@ -136,7 +136,7 @@ def test_rings_among_discs_and_bricks_do_not_overlap():
     stones = stones_of_masks(dict(enumerate(shapes, 1)))
     result = planned(stones, 180, 90)
     placed = {step.stone for step in result.plan.stone_steps}
-    assert len(placed) >= 10
+    assert len(placed) >= 9
     assert placed & {1, 2, 3, 4, 5}
     assert deepest_by_pixels(result) < 0.5
     report = check_plan(result.plan, stones, wall_labels=result.wall.labels)
