@@ -274,6 +274,7 @@ FILES = {
         ),
         "E106 .*not a number",
     ),
+    "name.npy": (lambda: npy("(wide, 4)"), r"E106 .*<ast\.Name object>\)"),  # without address
     "negative.npy": (lambda: npy("(-1, 4)"), "E10"),
     "width.npy": (lambda: npy("(2160,)", "|S1000000000"), "E106"),
     "digits.npy": (lambda: npy(f"({'9' * 60}, 0)"), "E106"),

@@ -56,6 +56,9 @@ def dxf_bytes(
         for row, (name, note) in enumerate(drawing.notes.items()):
             _write(space, note, (0.0, height + (6.0 + 1.8 * row) * letter), letter, name)
         doc.set_modelspace_vport(1.4 * max(height, 0.6 * width), (width / 2.0, height / 2.0))
+        # ezdxf adds these in an order that changes from process to process.
+        doc.classes.add_required_classes(doc.dxfversion)
+        doc.classes.classes = dict(sorted(doc.classes.classes.items()))
         with StringIO() as text:
             doc.write(text)
             return text.getvalue().encode(doc.output_encoding)

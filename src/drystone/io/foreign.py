@@ -2,6 +2,7 @@
 
 import logging
 import os
+import re
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -34,8 +35,9 @@ def foreign(failed: Callable[[str], DrystoneError]) -> Iterator[None]:
         where = failed("").where
         raise InputError("E110", what, where=where, cure="Reduce it or crop it.") from error
     except Exception as error:
-        reason = " ".join(str(error).split())[:_LONGEST] or type(error).__name__
-        raise failed(reason) from error
+        # Where an object lies in memory is another place in every run.
+        reason = " ".join(re.sub(r" at 0x[0-9a-f]+", "", str(error)).split())
+        raise failed(reason[:_LONGEST] or type(error).__name__) from error
 
 
 @contextmanager

@@ -141,6 +141,7 @@ def test_the_audit_finds_nothing_and_the_unit_is_the_metre_or_none(doc, tmp_path
     assert not audit.errors
     assert not audit.fixes
     assert doc.dxfversion == "AC1024"  # R2010
+    assert list(doc.classes.classes) == sorted(doc.classes.classes)  # the same in every process
     assert (doc.header["$INSUNITS"], doc.header["$MEASUREMENT"]) == (6, 1)
     ezdxf.options.write_fixed_meta_data_for_testing = False
     (path,) = FORMATS["dxf"].write(assembly(px_per_m=None), tmp_path, SETTINGS)
