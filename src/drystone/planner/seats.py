@@ -26,7 +26,7 @@ NEAR = 1.0
 """What is farther from a stone than this, over its size, takes no part when it is put down."""
 
 MARGIN = 1.25
-"""A place is tried with a hand's errors times this: what is sure by so much stays so in a wall."""
+"""A place is tried with a hand's errors times this, so that it is sure with some to spare."""
 
 FALL = 4.0
 """A stone that would fall in all trials is laid when it is larger than so many mean stones."""

@@ -40,7 +40,7 @@ STOPPED = 6
 """A builder who has to mend a wall loses as much as with so many stones."""
 
 NEARLY = 4
-"""Power of how near the worst stone of a run came to falling; of few runs that tells more."""
+"""Power of how near the worst stone of a run came to falling: so fewer runs tell as much."""
 
 MOVES = 0.5
 """A stone takes part in a failure when it is at least so fast, over the fastest."""
@@ -144,8 +144,8 @@ def _down(value: float, aim: float, urgent: float) -> float:
 class RehearsalFalls(NamedTuple):
     """What falls in some rehearsals of a wall of outlines."""
 
-    # In the mean, over all its stones; a run that is not whole counts as `STOPPED` more stones, and
-    # one that nearly was not as some of these.
+    # In the mean, over all its stones.  A run that is not whole counts as `STOPPED` more stones.
+    # One that is counts as a part of these, the more the nearer a stone came to falling.
     share: float
     first: Counter[int]  # in how many runs falls begin with which stones
 

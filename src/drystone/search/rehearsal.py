@@ -53,7 +53,7 @@ class StoneEnd:
         """How near it is to having fallen, from 0 to 1."""
         if self.fallen or self.share is None or self.turn_deg is None:
             return 1.0
-        return max(self.share / FALLEN_SHARE, abs(self.turn_deg) / FALLEN_DEG)
+        return fallen_share(self.share, 0.0, self.turn_deg, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
