@@ -9,6 +9,8 @@ from tests.settle.test_putting import box
 
 NONE = BuilderErrors(placement=0.0, angle_deg=0.0, outline=0.0)
 
+TURNED = BuilderErrors(placement=0.0, angle_deg=10.0, outline=0.0)
+
 BOND = [
     [(10 * row + k, box(40.0 * k + 20.0 * row, 20.0 * row))]
     for row in range(3)
@@ -25,7 +27,20 @@ def runs(groups, precision, count=8, once=rehearse):
     return [once(groups, errors, np.random.default_rng(seed)) for seed in range(count)]
 
 
-@pytest.mark.parametrize("once", [rehearse, rehearse_in_engine])
+BOTH = pytest.mark.parametrize("once", [rehearse, rehearse_in_engine])
+
+
+@BOTH
+def test_where_a_stone_ends_is_asked_not_how_it_was_put(once):
+    if once is rehearse_in_engine:
+        pytest.importorskip("pymunk")
+    (end,) = once([[(1, box(0.0, 0.0))]], TURNED, np.random.default_rng(1)).stones
+    put = TURNED.built(box(0.0, 0.0), np.random.default_rng(1))
+    assert abs(put.angle_deg) > 5.0
+    assert (end.fallen, end.turn_deg) == (False, pytest.approx(0.0, abs=0.5))
+
+
+@BOTH
 @pytest.mark.parametrize("groups", [BOND, TOWER])
 def test_without_errors_a_wall_stays_as_planned(groups, once):
     if once is rehearse_in_engine:

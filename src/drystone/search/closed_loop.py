@@ -9,13 +9,13 @@ if it rests there now, else to the lowest one on the wall where it rests surely.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
-from drystone.kernels.polygons import Polygons, area_and_centroid, no_polygons
+from drystone.kernels.polygons import area_and_centroid
 from drystone.kernels.profiles import HeightProfile, bare, hanging, raised
 from drystone.model.builder import NUMBERS, BuilderErrors, Built
 from drystone.model.outlines import Outlined
@@ -31,7 +31,8 @@ from drystone.search.rehearsal import (
     errors_of,
     mean_size,
 )
-from drystone.settle.putting import fallen_share, moved, put_down
+from drystone.settle.as_built import BuiltWall
+from drystone.settle.putting import FALLEN_DEG, FALLEN_SHARE, fallen_share
 from drystone.settle.settings import SettleSettings
 
 TRIALS = 8
@@ -55,7 +56,7 @@ SPOTS, APART, COLUMNS = 8, 0.3, 16
 OVER_TOP = 0.25
 """A stone of the heap may stand out over the plan by so much, mean sizes."""
 
-PATIENT = replace(IN_ENGINE, longest_rest=20.0)
+PATIENT = replace(IN_ENGINE, moved_share=FALLEN_SHARE, turned_deg=FALLEN_DEG, longest_rest=20.0)
 TILT = Variation(
     "as built", IN_ENGINE.engine, TiltSettings(coarse=0.13, fine=0.02, longest_hold=20)
 )
@@ -79,30 +80,6 @@ class _Aim(NamedTuple):
     sure: float  # share of the trials in which it rests there
     start: Built
     rest: Built
-
-
-@dataclass(frozen=True, eq=False)
-class _AsBuilt:
-    """A wall as it is."""
-
-    mu: float
-    settle: SettleSettings
-    laid: Mapping[int, Built] = field(default_factory=dict)  # in the order of `polygons`
-    polygons: Polygons = field(default_factory=no_polygons)
-
-    def put(self, pieces: Sequence[tuple[int, Built]]) -> tuple["_AsBuilt", Built | None]:
-        """Put wedges down and the stone last; also return where that rests, None if nowhere."""
-        laid, polygons, rest = dict(self.laid), self.polygons, None
-        for block, built in pieces:
-            rest, pushed = put_down(built, polygons, self.mu, self.settle)
-            if rest is not None:
-                ids = list(laid)
-                for place, shift in pushed.items():
-                    one = laid[ids[place]]
-                    laid[ids[place]] = replace(one, x=one.x + shift)
-                laid[block] = rest
-                polygons = moved(polygons, pushed).added([rest.corners])
-        return replace(self, laid=laid, polygons=polygons), rest
 
 
 class _Stone:
@@ -132,20 +109,21 @@ class _Stone:
         aside, turn = real.x - self.seen.x, real.angle_deg
         return replace(real, x=start.x + aside, y=start.y, angle_deg=start.angle_deg + turn)
 
-    def aim(self, wall: _AsBuilt, start: Built, least: float) -> _Aim | None:
+    def aim(self, wall: BuiltWall, start: Built, least: float) -> _Aim | None:
         """Let it go at a place, and try that; None where it rests less surely than `least`."""
-        rest = wall.put(self.pieces(start))[1]
+        rest = wall.put(self.pieces(start)).laid.get(self.id)
         if rest is None or _astray(rest, start):
             return None
         falls = 0
         for trial in self.trials:
-            found = wall.put(self.pieces(self.missed(start, trial)))[1]
+            put = wall.put(self.pieces(self.missed(start, trial)))
+            found = put.loaded(self.id).laid.get(self.id) if self.id in put.laid else None
             falls += found is None or _astray(found, rest)
             if TRIALS - falls < least * TRIALS:
                 return None
         return _Aim(1.0 - falls / TRIALS, start, rest)
 
-    def surest(self, wall: _AsBuilt, starts: Iterator[Built], least: float) -> _Aim | None:
+    def surest(self, wall: BuiltWall, starts: Iterator[Built], least: float) -> _Aim | None:
         """Return the first sure place of some, or the surest of all; None when all are unsure."""
         best: _Aim | None = None
         for start in starts:
@@ -160,7 +138,9 @@ class _Stone:
         for aside, turn in BESIDE:
             yield replace(self.seen, x=self.seen.x + aside * self.seen.size, angle_deg=turn)
 
-    def anywhere(self, wall: _AsBuilt, box: tuple[float, float, float], cell: float) -> list[Built]:
+    def anywhere(
+        self, wall: BuiltWall, box: tuple[float, float, float], cell: float
+    ) -> list[Built]:
         """List places on top of what is built, the lowest first; box: left, right, top."""
         left, right, top = box
         profile = bare(math.floor((right - left) / cell))
@@ -213,12 +193,16 @@ def rehearse_closed(
     The outlines and the first slip with every stone are those of
     :func:`drystone.search.rehearsal.rehearse` for the same random numbers.
     """
-    work = _Work(groups, errors, rng, _AsBuilt(mu, settle or SettleSettings()))
-    heap = [stone for stone in work.stones if not work.lay(stone, stone.planned(), SURE)]
-    left = len(heap) + 1
-    while heap and len(heap) < left:
+    work = _Work(groups, errors, rng, BuiltWall(mu, settle or SettleSettings()))
+    for stone in work.stones:
+        work.lay(stone, stone.planned(), SURE)
+    left = len(groups) + 1
+    while (heap := [one for one in work.stones if one.id not in work.wall.laid]) and (
+        len(heap) < left
+    ):
         left = len(heap)
-        heap = [stone for stone in heap if not work.lay(stone, work.places(stone), 1 / TRIALS)]
+        for stone in heap:
+            work.lay(stone, work.places(stone), 1 / TRIALS)
     laid, ends = work.wall.laid, []
     for group in groups:
         block, corners = group[0]
@@ -236,7 +220,7 @@ class _Work:
     """A wall that is being built of a plan."""
 
     def __init__(
-        self, groups: Groups, errors: BuilderErrors, rng: np.random.Generator, wall: _AsBuilt
+        self, groups: Groups, errors: BuilderErrors, rng: np.random.Generator, wall: BuiltWall
     ) -> None:
         self.wall, self.again = wall, 0
         self.stones = [_Stone(group, errors) for group in groups]
@@ -254,25 +238,25 @@ class _Work:
         yield from stone.planned()
         yield from stone.anywhere(self.wall, self._box, self._cell)
 
-    def lay(self, stone: _Stone, starts: Iterator[Built], least: float) -> bool:
-        """Put a stone where it rests most surely; False when it goes back into the heap."""
+    def lay(self, stone: _Stone, starts: Iterator[Built], least: float) -> None:
+        """Put a stone where it rests most surely, or back into the heap with all that falls."""
         aim = stone.surest(self.wall, starts, least)
         if aim is None:
-            return False
+            return
         (_, real), *wedges = self._real[stone.id]
         for _ in range(TRIES):
-            put = stone.pieces(stone.missed(aim.start, real), wedges)
-            wall, rest = self.wall.put(put)
+            wall = self.wall.put(stone.pieces(stone.missed(aim.start, real), wedges))
+            rest = wall.laid.get(stone.id)
             if rest is not None:
                 # What lies firmly stays, wherever it is: the rest is planned from there.
-                self.again += _astray(rest, aim.rest)
-                self.wall, self.rested[stone.id] = wall, rest
-                return True
+                before, self.wall = len(wall.laid), wall.loaded(stone.id)
+                self.again += _astray(rest, aim.rest) + before - len(self.wall.laid)
+                self.rested[stone.id] = rest
+                return
             self.again += 1
             aside, turn = self._rng.standard_normal(2).tolist()
             x = stone.seen.x + self._errors.placement * aside
             real = replace(real, x=x, angle_deg=self._errors.angle_deg * turn)
-        return False
 
 
 def tilt_as_built(run: RehearsalRun, mu: float = 0.58) -> float:

@@ -5,19 +5,22 @@ down and let go (:mod:`drystone.settle.putting`).  It has fallen when it ends fa
 not at rest.
 """
 
+import cmath
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from drystone.kernels.polygons import area_and_centroid, no_polygons
+from drystone.kernels.polygons import area_and_centroid
 from drystone.model.builder import NUMBERS, WEDGE_SHARE, BuilderErrors, Built
 from drystone.model.outlines import Outlined
 from drystone.model.wall import Wall, outlined
 from drystone.physics.building import BuildSettings, build_up, tilt_of
 from drystone.physics.scene import EngineSettings
-from drystone.settle.putting import FALLEN_DEG, FALLEN_SHARE, fallen_share, moved, put_down
+from drystone.poses import wrap_deg
+from drystone.settle.as_built import BuiltWall
+from drystone.settle.putting import fallen_share
 from drystone.settle.settings import SettleSettings
 
 Groups = Sequence[Sequence[Outlined]]
@@ -31,8 +34,8 @@ Put = list[list[tuple[int, Built]]]
 
 IN_ENGINE = BuildSettings(
     engine=EngineSettings(iterations=30, slop=3e-3, corner_radius=3e-3),
-    moved_share=FALLEN_SHARE,
-    turned_deg=FALLEN_DEG,
+    moved_share=math.inf,  # where a stone ends is asked, not what it did on the way
+    turned_deg=math.inf,
     resting_time=0.5,
     longest_rest=3.0,
 )
@@ -120,21 +123,16 @@ def rehearse(
 
 def put_up(groups: Groups, put: Put, mu: float, settle: SettleSettings) -> RehearsalRun:
     """Build a wall once of blocks with their errors."""
-    laid: dict[int, Built] = {}
-    polygons = no_polygons()
-    for group in put:
-        for block, built in (*group[1:], group[0]):
-            rest, pushed = put_down(built, polygons, mu, settle)
-            if rest is not None:
-                ids = list(laid)
-                for place, shift in pushed.items():
-                    one = laid[ids[place]]
-                    laid[ids[place]] = replace(one, x=one.x + shift)
-                laid[block] = rest
-                polygons = moved(polygons, pushed).added([rest.corners])
-    ends = tuple(_end(group[0], laid.get(group[0][0])) for group in groups)
+    wall = BuiltWall(mu, settle)
+    for stone, *wedges in put:
+        wall = wall.put((*wedges, stone))
+        if stone[0] in wall.laid:
+            wall = wall.loaded(stone[0])
+    ends = tuple(_end(group[0], wall.laid.get(group[0][0])) for group in groups)
     fallen = {end.stone for end in ends if end.fallen}
-    return RehearsalRun(ends, tuple((i, b.corners) for i, b in laid.items() if i not in fallen))
+    return RehearsalRun(
+        ends, tuple((i, b.corners) for i, b in wall.laid.items() if i not in fallen)
+    )
 
 
 def _end(planned: Outlined, built: Built | None) -> StoneEnd:
@@ -151,13 +149,19 @@ def rehearse_in_engine(
     groups: Groups, errors: BuilderErrors, rng: np.random.Generator, *, mu: float = 0.58
 ) -> RehearsalRun:
     """Build a wall once with the same errors in a rigid-body engine (extra `physics`)."""
-    put = [[(i, one.corners) for i, one in group] for group in errors_of(groups, errors, [rng])[0]]
-    found = build_up(put, mu, IN_ENGINE)
-    moves = {move.id: move for move in found.moves}
-    stones = (moves[group[0][0]] for group in groups)
-    lies = tuple((i, corners) for i, corners in found.outlines.items() if not moves[i].fell)
-    ends = tuple(StoneEnd(m.id, m.fell, m.share, m.turn_deg) for m in stones)
-    if any(end.fallen for end in ends):
-        return RehearsalRun(ends, lies)
+    put = errors_of(groups, errors, [rng])[0]
+    found = build_up([[(i, one.corners) for i, one in group] for group in put], mu, IN_ENGINE)
+    ends = []
+    for (planned, *_), ((block, built), *_) in zip(groups, put, strict=True):
+        corners = found.outlines[block]
+        _, x, y = area_and_centroid(corners)
+        # As complex numbers: the angle between the two outlines about their means.
+        before, after = ((one - one.mean(axis=0)) @ (1, 1j) for one in (built.corners, corners))
+        turn_deg = wrap_deg(built.angle_deg + math.degrees(cmath.phase(np.vdot(before, after))))
+        ends.append(_end(planned, replace(built, x=x, y=y, angle_deg=turn_deg)))
+    fallen = {end.stone for end in ends if end.fallen}
+    lies = tuple((i, corners) for i, corners in found.outlines.items() if i not in fallen)
+    if fallen:
+        return RehearsalRun(tuple(ends), lies)
     alphas = [one.alpha for one in tilt_of(found) or () if one.alpha is not None]
-    return RehearsalRun(ends, lies, min(alphas) / mu if alphas else None)
+    return RehearsalRun(tuple(ends), lies, min(alphas) / mu if alphas else None)

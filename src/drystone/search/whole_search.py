@@ -33,8 +33,8 @@ _FOUND = Stopped("search", "kept as the search found it")
 THOROUGH = NonassociativeSettings()
 """How the load without dilatancy is looked for at the end."""
 
-REPAIRS = 8
-"""So often the best wall is repaired at most, where its stones fall in rehearsals."""
+REPAIRS, WORTH = 8, 0.1
+"""So often the best wall is repaired at most, and no further than that gains so much merit."""
 
 JUDGED_AGAIN = 8
 """So many of the best walls of a search are looked at thoroughly at most."""
@@ -219,7 +219,7 @@ def repaired(planner: Planner, best: FoundWall, until: Deadline = NEVER) -> Foun
 
     Weak are the stones that fall first in its rehearsals, and those that move when it fails.  Of
     both the weakest one is taken out, or all are, and what they leave is built up again or stays
-    open; so the best of these walls goes on, at most :data:`REPAIRS` times.
+    open; so the best of these walls goes on, at most :data:`REPAIRS` times, while it is worth it.
     """
     yard = Yard.of(planner, until)
     for turn in range(REPAIRS):
@@ -237,7 +237,9 @@ def repaired(planner: Planner, best: FoundWall, until: Deadline = NEVER) -> Foun
                 better = judged
         if better is best or not stays_at_every_step(better.build, until):
             break
-        best = better
+        before, best = best.merit, better
+        if best.merit < before + WORTH:
+            break
     return best
 
 

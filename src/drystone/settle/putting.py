@@ -14,7 +14,7 @@ from drystone.kernels import settling
 from drystone.kernels.asides import asides
 from drystone.kernels.polygons import Points, Polygons, on_grid, polygon_edges
 from drystone.kernels.raster import turn
-from drystone.kernels.settling import SettlingRules, Status
+from drystone.kernels.settling import Settling, SettlingRules, Status
 from drystone.model.builder import Built
 from drystone.poses import wrap_deg
 from drystone.settle.rest import CORNER, GAIN
@@ -29,12 +29,12 @@ ASIDE = 0.3
 LIFTS = (0.0, 0.01, 0.02, 0.04, 0.06, 0.08, 0.1, 0.13, 0.16, 0.2)
 """So much higher, over its size, a block is let go where it overlaps others."""
 
-STEP, TOUCHING, OVERLAP = 0.01, 0.003, 0.02
+STEP, TOUCHING, OVERLAP = 0.01, 0.003, 0.05
 """Over the size: first steps of settling, the gap up to which a contact holds, and how deep a
 block may overlap where it is let go.  What is built with errors touches at few points."""
 
-STEPS = 300
-"""Most steps."""
+STEPS = 60
+"""Most steps; what rests took 10 to 30, what overlaps goes on in vain."""
 
 
 def put_down(
@@ -48,7 +48,6 @@ def put_down(
     edges = polygon_edges(corners)
     pressed: dict[float, tuple[Built, Polygons, dict[int, float]]] = {}  # by lift
     for sticks in (True, False):
-        rules = _rules(size, mu, settle, sticks=sticks)
         steps, least = 0, 0.0
         for lift in LIFTS:
             if lift < least:
@@ -57,8 +56,8 @@ def put_down(
                 raised = replace(built, y=built.y + lift * size)
                 pressed[lift] = _squeezed_in(raised, around, 2.0 * settle.clearance_px)
             held, others, pushed = pressed[lift]
-            start = held.x, held.y, 0.0
-            found = settling.settle(corners, edges, start, others, 0.0, rules)
+            at = held.x, held.y
+            found = let_go(corners, edges, at, size, others, mu, settle, sticks=sticks)
             steps += found.steps
             if found.status is Status.RESTS:
                 x, y = on_grid(np.array([found.x, found.y])).tolist()
@@ -72,13 +71,29 @@ def put_down(
     return None, {}
 
 
-def _rules(size: float, mu: float, settle: SettleSettings, *, sticks: bool) -> SettlingRules:
-    return SettlingRules(
+def touching(size: float, settle: SettleSettings) -> float:
+    """Return the gap up to which a block of a size touches what is near."""
+    return max(TOUCHING * size, 2.0 * settle.clearance_px)
+
+
+def let_go(
+    corners: Points,
+    edges: Points,
+    at: tuple[float, float],
+    size: float,
+    around: Polygons,
+    mu: float,
+    settle: SettleSettings,
+    *,
+    sticks: bool,
+) -> Settling:
+    """Let a block go of which the corners are given from the point where gravity acts."""
+    rules = SettlingRules(
         lean=0.0,
         stop=0.0,
         mu=mu,
         clearance=settle.clearance_px,
-        tolerance=max(TOUCHING * size, 2.0 * settle.clearance_px),
+        tolerance=touching(size, settle),
         corner=CORNER * settle.clearance_px,
         near=STEP * size,
         far=2.0 * STEP * size,
@@ -92,6 +107,7 @@ def _rules(size: float, mu: float, settle: SettleSettings, *, sticks: bool) -> S
         turns=True,
         steps=STEPS,
     )
+    return settling.settle(corners, edges, (*at, 0.0), around, 0.0, rules)
 
 
 def moved(around: Polygons, pushed: dict[int, float]) -> Polygons:

@@ -1,0 +1,60 @@
+"""What a block that is put down does to those that carry it."""
+
+import numpy as np
+import pytest
+
+from drystone.model.builder import HAND, BuilderErrors
+from drystone.search.rehearsal import mean_size, rehearse, rehearse_in_engine
+from drystone.settle import as_built
+from drystone.settle.as_built import BuiltWall
+from tests.naive import as_built as naive
+from tests.search.test_rehearsal import BOND, BOTH, NONE
+from tests.settle.test_putting import SETTLE, box
+
+POST, PLANK = [(1, box(0.0, 0.0, 20.0))], [(2, box(-20.0, 20.0, 60.0, 10.0))]
+"""A brick on the ground, and a plank in balance on it."""
+
+
+def built(groups, errors=NONE):
+    wall, rng = BuiltWall(0.58, SETTLE), np.random.default_rng(0)
+    for (block, corners), *_ in groups:
+        wall = wall.put([(block, errors.built(corners, rng))]).loaded(block)
+    return wall
+
+
+@pytest.mark.parametrize(("left", "falls"), [(0.0, False), (24.0, True), (-24.0, True)])
+@BOTH
+def test_a_plank_tips_where_it_and_what_lies_on_it_act_beside_its_post(once, left, falls):
+    if once is rehearse_in_engine:
+        pytest.importorskip("pymunk")
+    brick = [(3, box(left, 30.0, 20.0, 30.0))]  # as heavy as the plank
+    run = once([POST, PLANK, brick], NONE, np.random.default_rng(0))
+    assert {end.stone for end in run.stones if end.fallen} == ({2, 3} if falls else set())
+
+
+def test_a_stone_far_above_tips_what_carries_all():
+    """Each brick has its centroid on the one below; three together hang over the lowest."""
+    stairs = [[(k, box(15.0 * k, 20.0 * k))] for k in range(4)]
+    assert list(built(stairs[:2]).laid) == [0, 1]
+    run = rehearse(stairs, NONE, np.random.default_rng(0))
+    assert sum(end.fallen for end in run.stones) >= 2
+
+
+def test_what_stays_is_not_touched():
+    before = built([POST, PLANK])
+    brick = NONE.built(box(2.0, 30.0, 20.0, 30.0), np.random.default_rng(0))
+    after = before.put([(3, brick)]).loaded(3)
+    assert list(after.laid) == [1, 2, 3]
+    assert all(after.laid[i] is before.laid[i] for i in (1, 2))
+
+
+@pytest.mark.parametrize("precision", [0.0, HAND])
+def test_loads_act_where_they_do_block_by_block(precision):
+    wall = built(BOND, BuilderErrors.of_precision(precision, mean_size(BOND)))
+    loads = as_built._loads(wall)
+    assert len(loads) == len(BOND)
+    for block, place in loads.items():
+        assert place == pytest.approx(naive.load(block, wall.laid, wall.bearings)[1:])
+    # A brick in bond bears on two others.
+    below = {bearing.below for bearing in wall.bearings[20]}
+    assert below == {10, 11}
