@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 from drystone.errors import UsageError
 from drystone.io.published import published_file
 from drystone.io.wall_image import read_wall_image
+from drystone.metrics.frame import reduce_labels
 from drystone.metrics.measure import measure_labels
-from drystone.metrics.reduce import reduce_labels
 from drystone.metrics.second import FINER, finer_labels, second_arrangement
 from drystone.model.wall import Labels
 from drystone.planner.settings import method_settings

@@ -26,11 +26,6 @@ def placed(labels, block_id):
     return Placement(posed, int(rows.min()), int(cols.min()))
 
 
-def as_wedge(labels, block_id, under):
-    place = placed(labels, block_id)
-    return Wedge(block_id, under, place.posed.mask.copy(), place.row, place.col)
-
-
 def told(model):
     """What a model says, in an order that does not depend on construction."""
     interfaces = [
@@ -92,7 +87,8 @@ def test_stone_after_stone_gives_the_model_of_the_whole(labels, order, with_wedg
         first, *wedges = present[: 1 + with_wedge]
         present = present[1 + with_wedge :]
         before = built.copy()
-        parts = tuple(as_wedge(labels, wedge, first) for wedge in wedges)
+        places = [placed(labels, wedge) for wedge in wedges]
+        parts = tuple(Wedge(p.stone_id, first, p.posed.mask, p.row, p.col) for p in places)
         model = model_with(model, built, placed(labels, first), parts)
         assert (built == before).all()
         new = np.isin(labels, [first, *wedges])

@@ -8,12 +8,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from drystone.contacts.blocks import model_from_labels
-from drystone.contacts.gaps import (
-    close_gaps,
-    gap_sweep,
-    model_with_closed_gaps,
-    settle_gaps,
-)
+from drystone.contacts.gaps import close_gaps, gap_sweep, model_with_closed_gaps, settle_gaps
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND
 from tests.naive.gaps import distance, lies_between

@@ -25,6 +25,11 @@ def square(x, y, size=2.0):
     return [[x, y], [x + size, y], [x + size, y + size], [x, y + size]]
 
 
+def model_of(*polygons):
+    """The model of some polygons, numbered from 1."""
+    return model_from_json({"blocks": [{"id": i, "polygon": p} for i, p in enumerate(polygons, 1)]})
+
+
 def test_rectangles_touch_along_bed_and_head_joints():
     model = model_from_json({"blocks_xywh": [[0, 0, 2, 1], [2, 0, 2, 1], [1, 1, 2, 1]], "mu": 0.65})
     assert model.mu == 0.65
@@ -62,9 +67,7 @@ def test_polygons_in_either_sense_with_density_and_fixed():
 
 def test_a_tilted_joint_has_its_own_normal():
     lower, upper = [[0, 0], [4, 0], [4, 3], [0, 1]], [[0, 1], [4, 3], [4, 6], [0, 6]]
-    model = model_from_json(
-        {"blocks": [{"id": i, "polygon": p} for i, p in ((1, lower), (2, upper))]}
-    )
+    model = model_of(lower, upper)
     assert model.interfaces[-1].normal == pytest.approx((-1 / 5**0.5, 2 / 5**0.5))
 
 
@@ -82,7 +85,7 @@ def test_a_corner_that_stands_on_an_edge_is_a_contact_at_a_point():
 
 def test_a_block_on_its_corner_touches_the_ground_at_a_point():
     diamond = [[0, 0], [1, 1], [0, 2], [-1, 1]]
-    model = model_from_json({"blocks": [{"id": 1, "polygon": diamond}]})
+    model = model_of(diamond)
     assert told(model) == [(1, GROUND, [(0, 0)], (0, 1))]
 
 
@@ -100,17 +103,11 @@ def test_gaps_within_the_tolerance_are_contacts_and_wider_ones_are_not():
         assert len(model.interfaces) == count
 
 
-def two_and_a_far_one(gap, far, size=1.0, above=1.0):
-    """A block, one above it with a gap, and one far away; the second may be of another size."""
-    second = [0, size + gap, above, above]
-    return {"blocks_xywh": [[0, 0, size, size], second, [far, 0, size, size]], "mu": 0.58}
-
-
 @pytest.mark.parametrize(("far", "size"), [(5.0, 1.0), (2e6, 1e-3), (1e8, 1e3)])
 def test_a_far_block_changes_no_answer_nearby(far, size):
     for gap, stands in ((0.0, True), (1e-6 * size, True), (1e-3 * size, False)):
-        model = model_from_json(two_and_a_far_one(gap, far * size, size, size))
-        both = lateral_resistance(model)
+        rows = [[0, 0, size, size], [0, size + gap, size, size], [far * size, 0, size, size]]
+        both = lateral_resistance(model_from_json({"blocks_xywh": rows, "mu": 0.58}))
         assert both.stable == stands
         if stands:
             assert both.right.alpha == pytest.approx(0.5, abs=1e-5)
@@ -149,11 +146,7 @@ def test_two_halves_of_a_polygon_touch_and_do_not_overlap(seed, size, far, angle
         into = normal if sides[i + 1] > 0.0 else -normal
         shift = deep * 1e-5 * math.sqrt(min(areas)) * into
         moved = [np.array(halves[0]), np.array(halves[1]) + shift]
-        blocks = [
-            {"id": k, "polygon": (size * half + [size * far, 0.0]).tolist()}
-            for k, half in enumerate(moved, start=1)
-        ]
-        return model_from_json({"blocks": blocks})
+        return model_of(*((size * half + [size * far, 0.0]).tolist() for half in moved))
 
     edge = float(np.hypot(*(second - first)))
     assume(edge > 0.05)
@@ -172,24 +165,20 @@ def test_bars_that_cross_overlap_although_no_corner_is_inside():
 
 
 def test_a_gap_that_opens_along_an_edge_leaves_a_contact_at_a_point():
-    lower = {"id": 1, "polygon": [[0, 0], [2, 0], [2, 1], [0, 1]]}
-    upper = {"id": 2, "polygon": [[0.5, 1], [1.5, 1.0005], [1.5, 2], [0.5, 2]]}
-    model = model_from_json({"blocks": [lower, upper]})
-    assert told(model)[1:] == [(2, 1, [(0.5, 1)], (0, 1))]
+    lower, upper = [[0, 0], [2, 0], [2, 1], [0, 1]], [[0.5, 1], [1.5, 1.0005], [1.5, 2], [0.5, 2]]
+    assert told(model_of(lower, upper))[1:] == [(2, 1, [(0.5, 1)], (0, 1))]
 
 
 def test_a_closed_polygon_and_repeated_corners_are_read():
     polygon = [*square(0, 0), [0, 0]]
     polygon.insert(1, polygon[1])
-    model = model_from_json({"blocks": [{"id": 1, "polygon": polygon}]})
-    assert told(model) == [(1, GROUND, [(0, 0), (2, 0)], (0, 1))]
+    assert told(model_of(polygon)) == [(1, GROUND, [(0, 0), (2, 0)], (0, 1))]
 
 
 @pytest.mark.parametrize("last", [(-1e-17, 0.0), (0.0, 1e-13), (-1e-16, 1e-16)])
 def test_a_closing_corner_but_for_rounding_is_read(last):
     """Each of both was on the line through the other, and the block lost half of its area."""
-    polygon = [*square(0, 0), last]
-    model = model_from_json({"blocks": [{"id": 1, "polygon": polygon}]})
+    model = model_of([*square(0, 0), last])
     assert model.blocks[0].area == pytest.approx(4.0)
     assert lateral_resistance(model).value == pytest.approx(1.0)
 
@@ -307,28 +296,22 @@ def test_blocks_with_a_common_line_do_not_overlap():
     """In floats GEOS finds three of a hundred such pairs to overlap by up to their whole area."""
     rng = np.random.default_rng(3)
     for _ in range(100):
-        pair = outlines_along_a_line(rng)
-        blocks = [{"id": i, "polygon": p.tolist()} for i, p in enumerate(pair, 1)]
-        assert {i.other for i in model_from_json({"blocks": blocks}).interfaces} == {1}
+        pair = (outline.tolist() for outline in outlines_along_a_line(rng))
+        assert {i.other for i in model_of(*pair).interfaces} == {1}
 
 
 def sectors(count):
-    """Blocks that all meet at one point."""
+    """The model of blocks that all meet at one point."""
     angles = np.linspace(0.0, math.pi, count + 1)
     rim = np.column_stack([np.cos(angles), np.sin(angles)])
-    return {
-        "blocks": [
-            {"id": i + 1, "polygon": [[0, 0], rim[i].tolist(), rim[i + 1].tolist()]}
-            for i in range(count)
-        ]
-    }
+    return model_of(*([[0, 0], *rim[i : i + 2].tolist()] for i in range(count)))
 
 
 def test_not_all_of_many_blocks_may_meet_at_one_point(monkeypatch):
-    assert len(model_from_json(sectors(20)).blocks) == 20
+    assert len(sectors(20).blocks) == 20
     monkeypatch.setattr("drystone.contacts.given.MOST_TOUCHING", (20, 8))
     with pytest.raises(InputError, match=r"E303 .*more than 180 pairs of its 20 blocks touch"):
-        model_from_json(sectors(20))
+        sectors(20)
 
 
 def test_rectangles_among_polygons_are_told_where_they_belong():

@@ -24,10 +24,6 @@ def told(interface):
     return interface.block, interface.other, points, interface.normal
 
 
-def picture(*rows):
-    return np.array([[int(c) for c in row.replace(".", "0")] for row in rows], np.uint32)
-
-
 def test_contacts_lie_on_pixel_edges():
     labels = np.zeros((50, 60), np.uint32)
     labels[10:, 20:40] = 3
@@ -37,7 +33,8 @@ def test_contacts_lie_on_pixel_edges():
 
 
 def test_the_normal_points_into_the_larger_id_on_all_four_sides():
-    labels = picture("...4...", ".35556.", "...2...")
+    rows = ("0004000", "0355560", "0002000")
+    labels = np.array([[int(pixel) for pixel in row] for row in rows], np.uint32)
     normals = {(i.block, i.other): i.normal for i in find_interfaces(labels) if i.other != GROUND}
     assert normals == {(5, 2): (0, 1), (5, 3): (1, 0), (5, 4): (0, -1), (6, 5): (1, 0)}
 

@@ -22,23 +22,19 @@ def area(outline):
     return (x[:-1] @ y[1:] - x[1:] @ y[:-1]) / 2
 
 
-def image_of(stones):
-    labels = np.zeros((stones.source.height_px, stones.source.width_px), np.uint32)
-    for stone in stones:
-        bottom = labels.shape[0] - stone.bottom_px
-        rows = slice(bottom - stone.mask.shape[0], bottom)
-        cols = slice(stone.left_px, stone.left_px + stone.mask.shape[1])
-        labels[rows, cols][stone.mask] = stone.id
-    return labels
-
-
 def edges_of(outline):
     return {(tuple(a), tuple(b)) for a, b in pairwise(outline.tolist())}
 
 
 def test_areas_of_published_stones_are_those_of_their_pixels(data_dir):
     stones = read_stones(data_dir / "almeida" / "PR.png")
-    outlines = outlines_of_labels(image_of(stones))
+    labels = np.zeros((stones.source.height_px, stones.source.width_px), np.uint32)
+    for stone in stones:
+        bottom = labels.shape[0] - stone.bottom_px
+        rows = slice(bottom - stone.mask.shape[0], bottom)
+        cols = slice(stone.left_px, stone.left_px + stone.mask.shape[1])
+        labels[rows, cols][stone.mask] = stone.id
+    outlines = outlines_of_labels(labels)
     assert set(outlines) == {stone.id for stone in stones}
     for stone in stones:
         assert area(outlines[stone.id]) == pytest.approx(stone.area_px, rel=1e-3)

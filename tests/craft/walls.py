@@ -4,14 +4,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.craft import RULES, Masonry
+from tests.polygons import box_of as box
 
 Loops = dict[int, NDArray[np.float64]]
 PX = 24
 """Pixels of a unit in label images."""
-
-
-def box(x, y, width, height):
-    return np.array([[x, y], [x + width, y], [x + width, y + height], [x, y + height]], float)
 
 
 def find(rule, wall):

@@ -15,21 +15,16 @@ UNUSED = 40
 WEDGE = 301
 
 
-def _l_shape():
-    mask = np.ones((8, 12), bool)
-    mask[:4, 6:] = False
-    return mask
-
-
 def stone_set():
     masks = {
         3: np.ones((8, 14), bool),
         5: np.ones((6, 16), bool),
         8: np.ones((8, 10), bool),
-        12: _l_shape(),
+        12: np.ones((8, 12), bool),
         300: np.ones((4, 20), bool),
         UNUSED: np.ones((2, 2), bool),
     }
+    masks[12][:4, 6:] = False  # an L
     stones, left = [], 2
     for stone_id, mask in masks.items():
         stones.append(Stone(stone_id, mask, left_px=left, bottom_px=3))

@@ -21,11 +21,6 @@ def result(value, kind="rectanglelabels", **more):
     return {"type": kind, "value": value | {kind: ["stone"]}} | SIZE | more
 
 
-def centre_of(stone, height=HEIGHT):
-    x, y = stone.centroid
-    return x, height - y
-
-
 @pytest.mark.parametrize(
     ("value", "area", "centre"),
     [
@@ -38,7 +33,8 @@ def test_boxes_and_ellipses_of_label_studio(tmp_path, value, area, centre):
     kind = "ellipselabels" if "radiusX" in value else "rectanglelabels"
     (stone,) = read(tmp_path, [task(result(value, kind))])
     assert stone.area_px == pytest.approx(area, rel=0.01)
-    assert centre_of(stone) == pytest.approx(centre, abs=0.5)
+    x, y = stone.centroid
+    assert (x, HEIGHT - y) == pytest.approx(centre, abs=0.5)
 
 
 def test_results_of_label_studio_that_are_no_outlines(tmp_path):

@@ -128,15 +128,10 @@ def test_ids_of_colours(picture):
         np.testing.assert_array_equal(ids, expected)
 
 
-def test_colours_that_would_share_an_id_are_kept_apart():
-    picture = np.array([[[0, 0, 0], [5, 5, 5], [5, 0, 0], [1, 2, 3]]], np.uint8)
+@pytest.mark.parametrize(("grey", "value", "said"), [(5, 5 * 0x010101, 0), (7, 7, 1)])
+def test_greys_among_colours_keep_their_value_unless_a_colour_has_that_id(grey, value, said):
+    picture = np.array([[[0, 0, 0], [grey] * 3, [5, 0, 0], [1, 2, 3]]], np.uint8)
     image = to_ids(Picture(picture), 0)
-    assert image.ids.tolist() == [[0, 5 * 0x010101, 5, 1 + 256 * 2 + 65536 * 3]]
-    assert "greys" not in image.notices[0].message
-
-
-def test_greys_among_colours_keep_their_value():
-    picture = np.array([[[0, 0, 0], [7, 7, 7], [5, 0, 0], [1, 2, 3]]], np.uint8)
-    image = to_ids(Picture(picture), 0)
-    assert image.ids.tolist() == [[0, 7, 5, 1 + 256 * 2 + 65536 * 3]]
-    assert "(greys: their value)" in image.notices[0].message
+    assert image.ids.tolist() == [[0, value, 5, 1 + 256 * 2 + 65536 * 3]]
+    message = image.notices[0].message
+    assert message.count("greys") == message.count("(greys: their value)") == said

@@ -12,13 +12,9 @@ from drystone.io.outlines_in.fill import Room
 from tests.io.test_annotations import runs
 
 
-def room():
-    return Room(10**8)
-
-
 @given(arrays(bool, st.tuples(st.integers(1, 40), st.integers(1, 40))), st.booleans())
 def test_any_mask_comes_back(mask, packed):
-    found = mask_of(runs(mask, packed=packed), room())
+    found = mask_of(runs(mask, packed=packed), Room(10**8))
     whole = np.zeros_like(mask)
     if found is not None:
         height, width = found.mask.shape
@@ -38,26 +34,22 @@ def test_long_runs_come_back(height, width, data):
     text = packed["counts"]
     for given_text in (text, text.decode()):
         assert unpacked(given_text)[:3].tolist() == counts[: len(unpacked(given_text))]
-    assert mask_of({"size": [height, width], "counts": text}, room()).mask.sum() == run
+    assert mask_of({"size": [height, width], "counts": text}, Room(10**8)).mask.sum() == run
 
 
 @pytest.mark.parametrize(
-    ("counts", "text"),
+    ("said", "text"),
     [
-        ([1, 2], "add up to 3"),
-        ([-1, 7], "below 0"),
-        ([1.5, 4.5], "whole numbers"),
-        ("\x01", "does not belong"),
-        ("PPPPPPPPP0", "does not belong"),  # more bits than a count can have
-        ("P", "cut short"),
-        ([[6]], "whole numbers"),
+        ({"counts": [1, 2]}, "add up to 3"),
+        ({"counts": [-1, 7]}, "below 0"),
+        ({"counts": [1.5, 4.5]}, "whole numbers"),
+        ({"counts": "\x01"}, "does not belong"),
+        ({"counts": "PPPPPPPPP0"}, "does not belong"),  # more bits than a count can have
+        ({"counts": "P"}, "cut short"),
+        ({"counts": [[6]]}, "whole numbers"),
+        ({"counts": [6], "size": [3, -2]}, "a picture of -2 x 3 px"),
     ],
 )
-def test_damaged_counts(counts, text):
+def test_damaged_counts_and_sizes(said, text):
     with pytest.raises(ValueError, match=text):
-        mask_of({"size": [2, 3], "counts": counts}, room())
-
-
-def test_sizes_that_are_none():
-    with pytest.raises(ValueError, match="-2 x 3"):
-        mask_of({"size": [3, -2], "counts": [6]}, room())
+        mask_of({"size": [2, 3], **said}, Room(10**8))

@@ -44,16 +44,13 @@ def drawn(form, folder, blocks=BLOCKS):
 OUTLINES = [*labelled.CLASSES, "y up"]
 
 
-def strength(wall):
-    return lateral_resistance(model_of_traced(wall.outlines, 0.6)).value
-
-
 @pytest.mark.parametrize("form", OUTLINES)
 def test_outlines_are_blocks_that_stand_on_their_lowest_point(form, tmp_path):
     wall = read_wall(drawn(form, tmp_path))
     blocks = [{"id": i, "polygon": line} for i, line in upright().items()]
     truth = lateral_resistance(model_from_json({"blocks": blocks, "mu": 0.6})).value
-    assert strength(wall) == pytest.approx(truth, abs=1e-6)
+    found = lateral_resistance(model_of_traced(wall.outlines, 0.6)).value
+    assert found == pytest.approx(truth, abs=1e-6)
     assert wall.drawn is (form == "dxf")
     px_a_mm = (wall.px_per_m or 1000.0) / 1000.0
     left = 0.0 if form in ("dxf", "y up") else 20.0  # of an image x is kept

@@ -37,7 +37,8 @@ def test_masks_rest_where_two_loops_say(occupied, mask):
 def test_rows_of_several_words_and_runs_longer_than_one(stretch, occupied, mask, shift, cut):
     wide = np.roll(np.repeat(occupied, stretch, axis=1), shift, axis=1)
     stone = np.repeat(mask, stretch, axis=1)[:, : mask.shape[1] * stretch - cut]
-    expected = naive.resting_by_areas(wide, stone, slid) if fits(wide, stone) else []
+    fits = stone.shape[0] <= wide.shape[0] and stone.shape[1] <= wide.shape[1]
+    expected = naive.resting_by_areas(wide, stone, slid) if fits else []
     assert resting(wide, stone).tolist() == [list(at) for at in expected]
 
 
@@ -61,10 +62,6 @@ def test_long_masks_between_thin_posts_under_a_roof():
         assert resting(occupied, mask).tolist() == [list(at) for at in expected]
 
     check()
-
-
-def fits(occupied, mask):
-    return mask.shape[0] <= occupied.shape[0] and mask.shape[1] <= occupied.shape[1]
 
 
 def slid(scene, mask):

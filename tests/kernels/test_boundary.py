@@ -12,13 +12,6 @@ pictures = arrays(
 )
 
 
-def cells_of(labels):
-    cells = np.full((labels.shape[0] + 2, labels.shape[1] + 2), EMPTY, np.int64)
-    cells[1:-1, 1:-1] = np.where(labels > 0, labels.astype(np.int64), EMPTY)
-    cells[-1] = 0
-    return cells
-
-
 def chains_of(cells, fresh=None):
     """Both labels and the nodes of each chain."""
     boundary = boundary_of(cells, fresh)
@@ -45,7 +38,9 @@ def test_where_there_is_hardly_anything_nothing_touches(shape):
 @given(labels=pictures | label_images(), ids=st.lists(st.integers(1, 4), max_size=3))
 @repeatable(100)
 def test_chains_and_corners_of_what_is_fresh_are_those_of_all_that_have_it(labels, ids):
-    cells = cells_of(labels)
+    cells = np.full((labels.shape[0] + 2, labels.shape[1] + 2), EMPTY, np.int64)
+    cells[1:-1, 1:-1] = np.where(labels > 0, labels.astype(np.int64), EMPTY)
+    cells[-1] = 0
     every, found = boundary_of(cells), boundary_of(cells, np.isin(cells, ids))
     kept = [(*pair, nodes.tolist()) for *pair, nodes in chains_of(cells) if set(pair) & set(ids)]
     mine = [(*pair, nodes.tolist()) for *pair, nodes in chains_of(cells, np.isin(cells, ids))]

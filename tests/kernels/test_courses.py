@@ -84,21 +84,17 @@ def bits(parts):
     return [(p.dtype.str, p.shape, p.tobytes()) if isinstance(p, np.ndarray) else p for p in parts]
 
 
-def priced(layout, rules):
-    return float((layout.terms * np.array(rules.weights)).sum())
-
-
 @repeatable(120)
 @given(case=cases)
 def test_stones_lie_and_count_as_in_loops_over_columns(case):
-    rules = case[3]
     layout = evaluate(*case)
     places, level, joints, terms = all_terms(*case)
     assert list(zip(layout.x, layout.y, layout.slope, strict=True)) == places
     assert layout.tops.tolist() == level
     assert [tuple(joint) for joint in layout.joints.tolist()] == joints
     assert layout.terms == pytest.approx(np.array(terms), rel=1e-12, abs=1e-12)
-    assert layout.cost == pytest.approx(priced(layout, rules), rel=1e-9)
+    priced = layout.terms * np.array(case[3].weights)
+    assert layout.cost == pytest.approx(priced.sum(), rel=1e-9)
 
 
 @repeatable(25)

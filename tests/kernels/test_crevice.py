@@ -9,14 +9,11 @@ from hypothesis import strategies as st
 from drystone.kernels.crevice import between, crevice, slabs
 from drystone.kernels.polygons import mirrored_polygon, no_polygons
 from tests.naive.crevice import gap_at
+from tests.polygons import box
 from tests.settle.piles import WIDTH, moved, piles
 from tests.strategies import repeatable
 
 CLEARANCE = 0.01
-
-
-def box(left, low, right, high):
-    return np.array([[left, low], [right, low], [right, high], [left, high]])
 
 
 def gap_polygon(stone, around, left, right, clearance):
@@ -34,14 +31,6 @@ def at(chain, x):
     return float(y0 + (y1 - y0) * (x - x0) / (x1 - x0))
 
 
-def away_from_corners(stone, around, share):
-    """An x below the stone that is not that of any corner."""
-    left, right = extent(stone)
-    x = left + share * (right - left)
-    assume(np.abs(np.concatenate([stone, around.corners])[:, 0] - x).min() > 1e-6)
-    return x
-
-
 def bodies(around):
     ground = shapely.box(-100.0, -50.0, 200.0, 0.0)
     return shapely.union_all(
@@ -54,8 +43,10 @@ def bodies(around):
 def test_boundaries_are_what_upright_lines_meet(pile, shares):
     stone, around = pile
     space = crevice(stone, around, 0.0)
+    left, right = extent(stone)
     for share in shares:
-        x = away_from_corners(stone, around, share)
+        x = left + share * (right - left)
+        assume(np.abs(np.concatenate([stone, around.corners])[:, 0] - x).min() > 1e-6)
         floor, lid = gap_at(stone, around, x)
         assert at(space.lid, x) == pytest.approx(lid, abs=1e-9)
         assert at(space.floor, x) == pytest.approx(floor, abs=1e-9)

@@ -7,14 +7,7 @@ from hypothesis import strategies as st
 
 from drystone.kernels import drops as module
 from drystone.kernels.drops import DropTerms, Wanted
-from drystone.kernels.profiles import (
-    HeightProfile,
-    StoneProfile,
-    bare,
-    hanging,
-    in_a_row,
-    raised,
-)
+from drystone.kernels.profiles import HeightProfile, StoneProfile, bare, hanging, in_a_row, raised
 from tests.naive.drops import all_drops
 from tests.polygons import box_of, random_polygon
 from tests.strategies import repeatable

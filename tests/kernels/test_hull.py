@@ -6,13 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.kernels.silhouette import pixel_hull
+from tests.kernels.test_paths import noise
 from tests.strategies import blobs, repeatable
 
 shapes = st.tuples(st.integers(1, 9), st.integers(1, 9))
-
-
-def noise(shape, share, seed):
-    return np.asarray(np.random.default_rng(seed).random(shape) < share)
 
 
 shares = st.sampled_from([0.1, 0.3, 0.8])

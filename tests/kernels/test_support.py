@@ -135,14 +135,6 @@ def test_a_filling_has_the_pixels_of_the_gap_that_is_lowest(data, occupied, mask
     assert pixels[-1].any()
 
 
-def gap_of(*heights):
-    """A landscape under a row of pixels, with free columns of these heights."""
-    occupied = np.zeros((1 + max(heights), len(heights)), bool)
-    for col, height in enumerate(heights):
-        occupied[1 + height :, col] = True
-    return occupied
-
-
 @pytest.mark.parametrize(
     ("heights", "sizes", "columns_taken"),
     [
@@ -161,7 +153,10 @@ def gap_of(*heights):
 )
 def test_the_columns_that_touch_first_are_filled(heights, sizes, columns_taken):
     bar = np.ones((1, len(heights)), bool)
-    filling = gap_filling(gap_of(*heights), bar, 0, 0, (0, len(heights)), sizes)
+    occupied = np.zeros((1 + max(heights), len(heights)), bool)
+    for col, height in enumerate(heights):
+        occupied[1 + height :, col] = True  # below the bar so many are free
+    filling = gap_filling(occupied, bar, 0, 0, (0, len(heights)), sizes)
     if columns_taken is None:
         assert filling is None
     else:

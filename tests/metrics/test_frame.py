@@ -6,9 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.errors import LabelImageError
-from drystone.metrics.frame import frame_wall
+from drystone.metrics.frame import frame_wall, reduce_labels
 from drystone.metrics.joints import joint_mask
-from drystone.metrics.reduce import reduce_labels
 from tests.metrics.walls import walls
 from tests.naive import metrics as naive
 from tests.strategies import repeatable

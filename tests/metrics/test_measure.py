@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from drystone.errors import LabelImageError, UsageError
+from drystone.metrics.frame import reduce_labels
 from drystone.metrics.measure import measure_labels
-from drystone.metrics.reduce import reduce_labels
 from tests.metrics.walls import bricks, walls
 from tests.strategies import repeatable
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import example, given
 
 from drystone.io.wall_image import read_wall_image
-from drystone.metrics.reduce import reduce_labels
+from drystone.metrics.frame import reduce_labels
 from drystone.metrics.second import finer_labels, outlined_labels, second_arrangement
 from drystone.model.site import Site
 from tests.metrics.walls import bricks, walls

@@ -1,13 +1,14 @@
-"""The outlines of a wall, as it grows."""
+"""The outlines of a wall, as it grows, and who covers how much of each cell, cell by cell."""
+
+from collections import defaultdict
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.coverage import coverage
-from drystone.model.outlines import Outlines
-from drystone.model.shares import Shares
+from drystone.kernels.coverage import Grid, coverage
+from drystone.model.outlines import Outlines, Shares
 from drystone.model.site import Site
 from tests.polygons import simple_polygons
 from tests.strategies import repeatable
@@ -73,3 +74,109 @@ def test_shares_are_those_of_every_block_in_the_order_of_placement(polygons, sca
     assert found.ids == tuple(block_id for block_id, _ in blocks)
     with pytest.raises(ValueError, match="read-only"):
         found.shares.labels[0, 0] = 1
+
+
+Block = tuple[int, Grid, int, int]
+
+
+@st.composite
+def blocks(draw, count=5):
+    """Shares of blocks anywhere about a small site, quarters often, so that some are equal."""
+    made = []
+    for block_id in draw(st.permutations(range(1, 1 + count))):
+        rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+        shape = draw(st.tuples(st.integers(1, 5), st.integers(1, 5)))
+        shares = rng.uniform(0.0, 1.0, shape)
+        if draw(st.booleans()):
+            shares = np.floor(5.0 * shares) / 4.0
+        left, bottom = draw(st.integers(-6, 9)), draw(st.integers(-6, 7))
+        made.append((70_000 * block_id, shares, left, bottom))
+    return made
+
+
+def by_cells(made, height, width):
+    """The shares of each cell (x, y) of a site, from its bottom-left corner, by block."""
+    cells = defaultdict(list)
+    for number, (_, shares, left, bottom) in enumerate(made):
+        for (row, col), share in np.ndenumerate(shares):
+            x, y = left + col, bottom + len(shares) - 1 - row
+            if 0 <= x < width and 0 <= y < height:
+                cells[x, y] += [0.0] * (number - len(cells[x, y])) + [float(share)]
+    return cells
+
+
+def built(made, height, width):
+    shares = Shares.empty(height, width)
+    for block in made:
+        shares = shares.added(*block)
+    return shares
+
+
+@repeatable(80)
+@given(made=blocks(), height=st.integers(1, 7), width=st.integers(1, 9))
+def test_each_cell_has_the_sum_the_largest_and_its_owner(made, height, width):
+    shares = built(made, height, width)
+    cells = by_cells(made, height, width)
+    assert shares.total.shape == shares.largest.shape == shares.owners.shape == (height, width)
+    for x in range(width):
+        for y in range(height):
+            at, each = (height - 1 - y, x), cells[x, y]
+            largest = max(each, default=0.0)
+            owner = made[each.index(largest)][0] if largest > 0.0 else 0
+            assert shares.total[at] == pytest.approx(sum(each))
+            assert shares.largest[at] == largest
+            assert shares.owners[at] == owner
+            assert shares.labels[at] == (owner if sum(each) >= 0.5 - 1e-12 else 0)
+
+
+@repeatable(80)
+@given(made=blocks(), height=st.integers(1, 7), width=st.integers(1, 9))
+def test_fresh_cells_are_those_that_become_part_of_the_image(made, height, width):
+    shares = built(made[:-1], height, width)
+    block_id, new, left, bottom = made[-1]
+    appear = (shares.labels == 0) & (shares.added(block_id, new, left, bottom).labels > 0)
+    fresh = shares.fresh(new, left, bottom)
+    if fresh is None:
+        assert not appear.any()
+        return
+    mask, row, col = fresh
+    image = np.zeros((height, width), bool)
+    image[row : row + mask.shape[0], col : col + mask.shape[1]] = mask
+    np.testing.assert_array_equal(image, appear)
+
+
+def test_of_equal_shares_the_first_keeps_the_cell_whatever_the_rounding():
+    first = Shares.empty(1, 2).added(9, np.array([[0.5, 0.3]]), 0, 0)
+    both = first.added(3, np.array([[0.5 + 1e-14, 0.3 + 1e-9]]), 0, 0)
+    assert both.owners.tolist() == [[9, 3]]
+    assert both.labels.tolist() == [[9, 3]]
+
+
+def test_rounding_does_not_empty_a_cell_that_is_half_covered():
+    shares = Shares.empty(1, 2).added(4, np.array([[0.5 - 1e-13, 0.5 - 1e-11]]), 0, 0)
+    assert shares.labels.tolist() == [[4, 0]]
+
+
+def test_shares_do_not_change():
+    empty = Shares.empty(2, 3)
+    one = empty.added(5, np.ones((1, 1)), 1, 0)
+    assert empty.total.sum() == 0.0
+    assert empty.owners.dtype == np.uint32
+    assert one.labels.tolist() == [[0, 0, 0], [0, 5, 0]]
+    for array in (one.total, one.largest, one.owners, one.labels):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0, 0] = 1
+
+
+def test_a_block_beside_the_site_adds_nothing():
+    shares = Shares.empty(2, 3)
+    for left, bottom in ((3, 0), (-2, 0), (0, 2), (0, -1)):
+        beside = shares.added(5, np.ones((1, 2)), left, bottom)
+        assert beside.total.sum() == 0.0
+        assert shares.fresh(np.ones((1, 2)), left, bottom) is None
+
+
+def test_fresh_cells_are_cropped_to_the_site():
+    shares = Shares.empty(2, 3)
+    fresh = shares.fresh(np.array([[0.7, 0.9, 0.8], [0.6, 0.2, 1.0]]), 2, 1)
+    assert (fresh[0].tolist(), fresh[1:]) == ([[True]], (0, 2))

@@ -13,14 +13,11 @@ from drystone.physics.scatter import Variation
 from drystone.physics.scene import EngineScene, EngineSettings
 from drystone.physics.table import TiltingTable
 from drystone.physics.tilt import TiltSettings
+from tests.polygons import box_of as rectangle
 
 pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
 
 Group = list[tuple[int, Points]]
-
-
-def rectangle(x, y, width, height):
-    return np.array([[x, y], [x + width, y], [x + width, y + height], [x, y + height]], float)
 
 
 def single(*rectangles):

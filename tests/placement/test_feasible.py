@@ -14,16 +14,9 @@ from tests.naive import placement as naive
 from tests.strategies import landscapes, masks, repeatable
 
 
-def landscape_of(occupied):
-    return Landscape(occupied, ())
-
-
-def pose_of(mask):
-    return PoseBook().pose(Stone(1, mask), 0.0)
-
-
 def found(occupied, mask, reach="any", clearance=0):
-    positions = feasible_positions(landscape_of(occupied), pose_of(mask), reach, clearance)
+    posed = PoseBook().pose(Stone(1, mask), 0.0)
+    positions = feasible_positions(Landscape(occupied, ()), posed, reach, clearance)
     return [list(at) for at in positions.tolist()]
 
 

@@ -4,12 +4,7 @@ import pytest
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.kernels import simplex
-from drystone.statics.incremental import (
-    LOCAL,
-    SIMPLEX,
-    LocalAnalysis,
-    incremental_analysis,
-)
+from drystone.statics.incremental import LOCAL, SIMPLEX, LocalAnalysis, incremental_analysis
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.lp.highs import WARM, WarmSession
 from drystone.statics.lp.program import Units

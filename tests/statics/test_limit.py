@@ -110,16 +110,10 @@ def test_without_friction_there_is_no_ratio_to_it():
     assert both.value is None
 
 
-def give_up_after(iterations, monkeypatch, *algorithms):
-    options = dict(highs._OPTIONS)
-    for algorithm in algorithms:
-        options[algorithm] = {**highs._SIMPLEX, "simplex_iteration_limit": iterations}
-    monkeypatch.setattr(highs, "_OPTIONS", options)
-
-
 def test_what_all_algorithms_give_up_on_is_failed_and_no_number(monkeypatch):
     model = model_from_labels(coursed(5, 4, 90)).model
-    give_up_after(1, monkeypatch, "simplex", "ipm")
+    brief = {**highs._SIMPLEX, "simplex_iteration_limit": 1}
+    monkeypatch.setattr(highs, "_OPTIONS", {**highs._OPTIONS, "simplex": brief, "ipm": brief})
     settings = clarabel._settings(1e-12)
     settings.max_iter = 1
     monkeypatch.setattr(clarabel, "_settings", lambda _: settings)

@@ -24,6 +24,13 @@ def both(analysis):
     return (analysis.greatest, analysis.least), (analysis.least, analysis.greatest)
 
 
+def first_of(labels, count=1):
+    """The model of a wall, that of its first blocks alone, and what is known of these."""
+    model = model_from_labels(labels).model
+    first = RigidBlockModel(model.blocks[:count], model.interfaces[:count], model.mu)
+    return model, first, LocalAnalysis.of(first, PX)
+
+
 def bound(analysis, added, guess):
     found = figures(
         analysis.program.cones, analysis.program.weights, added,
@@ -57,9 +64,7 @@ def test_guesses_are_proved_and_most_stones_have_one(labels):
 
 def test_a_stone_that_nothing_holds_falls_alone():
     """Its centroid is far beyond the edge of what it lies on, or it touches nothing."""
-    model = model_from_labels(stacked((30, 15, 0), (30, 15, 0))).model
-    first = RigidBlockModel(model.blocks[:1], model.interfaces[:1], model.mu)
-    analysis = LocalAnalysis.of(first, PX)
+    model, first, analysis = first_of(stacked((30, 15, 0), (30, 15, 0)))
     stone = replace(model.blocks[1], centroid=(-40.0, 22.5))
     added = analysis.program.columns_of(Addition(first, (stone,), model.interfaces[1:]), model.mu)
     none = np.empty(0, np.int32)
@@ -131,9 +136,7 @@ def test_contacts_that_closed_carry_nothing():
 
 def test_a_stone_that_changes_the_mechanism_has_one_near_it():
     """A pile of two blocks of which the upper one makes the lower one topple earlier."""
-    model = model_from_labels(stacked((10, 30, 0), (10, 10, 0))).model
-    first = RigidBlockModel(model.blocks[:1], model.interfaces[:1], model.mu)
-    analysis = LocalAnalysis.of(first, PX)
+    model, _, analysis = first_of(stacked((10, 30, 0), (10, 10, 0)))
     whole = with_block(analysis.model, model.blocks[1], whole=model)
     added = analysis.program.columns_of(whole.added, model.mu)
     for end, opposite in both(analysis):
@@ -146,10 +149,7 @@ def test_a_stone_that_raises_alpha_is_for_others():
     """A slender block that a flat one beside it props."""
     labels = np.zeros((40, 60), np.uint32)
     labels[:, 20:30], labels[30:, 30:60] = 1, 2
-    model = model_from_labels(labels).model
-    analysis = LocalAnalysis.of(
-        RigidBlockModel(model.blocks[:1], model.interfaces[:1], model.mu), PX
-    )
+    model, _, analysis = first_of(labels)
     whole = with_block(analysis.model, model.blocks[1], whole=model)
     added = analysis.program.columns_of(whole.added, model.mu)
     assert local_update(analysis.program, *both(analysis)[0], added) is None
@@ -158,10 +158,7 @@ def test_a_stone_that_raises_alpha_is_for_others():
 
 def test_a_wall_near_a_stone_may_fall_with_it():
     """A stone beyond the edge of a slab that a pier carries: both turn, whatever the load."""
-    model = model_from_labels(stacked((10, 10, 20), (60, 10, 0), (10, 20, 50))).model
-    analysis = LocalAnalysis.of(
-        RigidBlockModel(model.blocks[:2], model.interfaces[:2], model.mu), PX
-    )
+    model, _, analysis = first_of(stacked((10, 10, 20), (60, 10, 0), (10, 20, 50)), 2)
     whole = with_block(analysis.model, model.blocks[2], whole=model)
     found = analysis.resistance_with(whole).resistance
     assert {found.left.status, found.right.status} == {LimitStatus.UNSTABLE}
@@ -170,9 +167,7 @@ def test_a_wall_near_a_stone_may_fall_with_it():
 
 def test_a_stone_that_goes_along_leaves_alpha_as_it_is():
     """The lower block slides; the upper one, on a rougher joint, slides with it."""
-    model = model_from_labels(stacked((60, 20, 0), (40, 10, 10))).model
-    first = RigidBlockModel(model.blocks[:1], model.interfaces[:1], model.mu)
-    analysis = LocalAnalysis.of(first, PX)
+    model, first, analysis = first_of(stacked((60, 20, 0), (40, 10, 10)))
     rough = tuple(replace(i, mu=0.8) for i in model.interfaces[1:])
     added = analysis.program.columns_of(Addition(first, model.blocks[1:], rough), model.mu)
     for end, opposite in both(analysis):

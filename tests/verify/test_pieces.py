@@ -13,17 +13,13 @@ from drystone.model.plan import WedgeStep
 from drystone.model.site import Site
 from drystone.settle.wedge import WedgeLimits
 from drystone.verify.pieces import check_settled_wedge, lies_under, swept_upwards
-from tests.polygons import simple_polygons
+from tests.polygons import box, simple_polygons
 from tests.strategies import repeatable
 
 STEP = WedgeStep(3, 9, 7, (), None, None)
 LIMITS = WedgeLimits(least_thickness=1.0, greatest_height=6.0, greatest_area=30.0)
 SLAB = np.array([[0, 8.01], [15, 8.01], [15, 10], [0, 10]])
 WIDTH = 20.0
-
-
-def box(left, bottom, right, top):
-    return np.array([[left, bottom], [right, bottom], [right, top], [left, top]])
 
 
 def model(wedge, *more):

@@ -86,12 +86,6 @@ def test_check_does_not_take_the_word_of_whoever_reads_outlines(monkeypatch, fac
     }
 
 
-def frame():
-    mask = np.ones((40, 40), bool)
-    mask[10:30, 10:30] = False
-    return mask
-
-
 def ring(outer, inner):
     y, x = np.mgrid[: 2 * int(outer) + 1, : 2 * int(outer) + 1] - outer
     return (np.hypot(x, y) <= outer) & (np.hypot(x, y) >= inner)
@@ -117,7 +111,9 @@ def deepest_by_pixels(result):
 
 
 def test_frames_are_laid_as_if_they_were_filled():
-    kept = planned(stones_of_masks({i: frame() for i in range(1, 5)}), 160, 40)
+    frame = np.ones((40, 40), bool)
+    frame[10:30, 10:30] = False
+    kept = planned(stones_of_masks(dict.fromkeys(range(1, 5), frame)), 160, 40)
     whole = planned(stones_of_masks({i: np.ones((40, 40), bool) for i in range(1, 5)}), 160, 40)
     assert len(kept.plan.steps) == 4
     np.testing.assert_array_equal(

@@ -60,12 +60,9 @@ def _called(words: Sequence[str]) -> int:
     """Do what the command line says."""
     _prepare_output()
     if os.environ.get(VARIABLE) and (wrong := fault()) is not None:
-        raise UsageError(
-            "E143",
-            f"the kernels asked for are not there: {wrong}.",
-            where=VARIABLE,
-            cure=f"Set it to one of {', '.join(CHOICES)}, or install with a compiler.",
-        )
+        what = f"the kernels asked for are not there: {wrong}."
+        cure = f"Set it to one of {', '.join(CHOICES)}, or install with a compiler."
+        raise UsageError("E143", what, where=VARIABLE, cure=cure)
     arguments = build_parser(words).parse_args(words)
     code = int(arguments.run(arguments))
     # A reader that went away is noticed here and not when the interpreter ends.
@@ -94,19 +91,13 @@ def _coded(error: Exception, command: str) -> DrystoneError:
     if isinstance(error, OSError) and error.errno in NO_ROOM:
         return not_written(error)
     if isinstance(error, OSError):
-        return InputError(
-            "E141",
-            f"the system refuses this: {error.strerror or error}.",
-            where=str(error.filename or ""),
-            cure="Check the path, your right to write there, and the space that is left.",
-        )
+        what = f"the system refuses this: {error.strerror or error}."
+        cure = "Check the path, your right to write there, and the space that is left."
+        return InputError("E141", what, where=str(error.filename or ""), cure=cure)
     said = " ".join(str(error).split())
-    return OwnFaultError(
-        "E155",
-        f"this is a fault of drystone ({type(error).__name__}{said and f': {said}'}).",
-        where=command,
-        cure="Please report it with the input; --debug shows the traceback.",
-    )
+    what = f"this is a fault of drystone ({type(error).__name__}{said and f': {said}'})."
+    cure = "Please report it with the input; --debug shows the traceback."
+    return OwnFaultError("E155", what, where=command, cure=cure)
 
 
 def _leave_pipe() -> int:

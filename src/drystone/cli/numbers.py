@@ -118,10 +118,8 @@ def parse_wall(text: str, px_per_m: float | None) -> tuple[float, float]:
     # Such a wall in px is smaller than any stone; who means it can say so.
     if not any(units) and 0.0 < min(values) < LEAST_PX:
         w, h = (f"{value:g}" for value in values)
-        raise _no_wall(
-            f"{text!r} has no unit, so it is px of the source image, fewer than {LEAST_PX:g}.",
-            f"Write {w}mx{h}m if it is metres, {w}pxx{h}px if it is px.",
-        )
+        what = f"{text!r} has no unit, so it is px of the source image, fewer than {LEAST_PX:g}."
+        raise _no_wall(what, f"Write {w}mx{h}m if it is metres, {w}pxx{h}px if it is px.")
     if min(values) <= 0:
         raise _no_wall("a wall has a positive width and height.")
     if not metric[0]:
@@ -216,12 +214,9 @@ def refuse_outside(px_per_m: float | None, size_px: tuple[int, int]) -> None:
     width, height = size_px
     for x, y in px_per_m.ends_px:
         if not (0.0 <= x <= width and 0.0 <= y <= height):
-            raise UsageError(
-                "E138",
-                f"the point {x:g},{y:g} is outside the picture, which is {width} x {height} px.",
-                where="--ruler",
-                cure="Give two points of this picture in its full size, x1,y1,x2,y2 in px.",
-            )
+            what = f"the point {x:g},{y:g} is outside the picture, which is {width} x {height} px."
+            cure = "Give two points of this picture in its full size, x1,y1,x2,y2 in px."
+            raise UsageError("E138", what, where="--ruler", cure=cure)
 
 
 def scale_with(
@@ -232,12 +227,9 @@ def scale_with(
         return px_per_m or of_source
     if abs(px_per_m / of_source - 1.0) > 0.01:
         says, or_else = _SAYS[who]
-        raise UsageError(
-            "E131",
-            f"{says} {of_source:.6g} px a metre, the option {px_per_m:.6g}.",
-            where=option_of(px_per_m),
-            cure=f"Leave the option out, {or_else}.",
-        )
+        what = f"{says} {of_source:.6g} px a metre, the option {px_per_m:.6g}."
+        cure = f"Leave the option out, {or_else}."
+        raise UsageError("E131", what, where=option_of(px_per_m), cure=cure)
     return px_per_m
 
 
@@ -253,8 +245,6 @@ def scale_notice(median_px: float, px_per_m: float | None) -> Notice | None:
     if px_per_m is None or LEAST_M <= (length := median_px / px_per_m) <= MOST_M:
         return None
     said = f"{1000 * length:.2g} mm" if length < LEAST_M else f"{length:.3g} m"
-    return Notice(
-        "W123",
-        f"the median stone is {said} long with {px_per_m:g} px in a metre.",
-        "Is that scale right? All lengths go by it; --unit corrects that of a drawing.",
-    )
+    what = f"the median stone is {said} long with {px_per_m:g} px in a metre."
+    cure = "Is that scale right? All lengths go by it; --unit corrects that of a drawing."
+    return Notice("W123", what, cure)

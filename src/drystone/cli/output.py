@@ -49,12 +49,9 @@ def prepare_folder(path: Path, names: Sequence[str], *, overwrite: bool) -> None
     try:
         TemporaryFile(dir=path).close()
     except OSError as error:
-        raise PlanError(
-            "E206",
-            f"no file can be written there ({error.strerror}).",
-            where=str(path),
-            cure="Choose another folder with -o, one that has room and may be written to.",
-        ) from error
+        what = f"no file can be written there ({error.strerror})."
+        cure = "Choose another folder with -o, one that has room and may be written to."
+        raise PlanError("E206", what, where=str(path), cure=cure) from error
 
 
 @contextmanager

@@ -90,12 +90,8 @@ def _broken(name: str, why: str) -> Command:
         command.add_argument("options", nargs="*")
 
     def run(_: argparse.Namespace) -> NoReturn:
-        raise UsageError(
-            "E154",
-            f"the command cannot be loaded: {why}.",
-            where=name,
-            cure="Install drystone again, or the package that the command is of.",
-        )
+        cure = "Install drystone again, or the package that the command is of."
+        raise UsageError("E154", f"the command cannot be loaded: {why}.", where=name, cure=cure)
 
     return Command("(cannot be loaded)", add, run)
 

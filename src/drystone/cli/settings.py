@@ -210,11 +210,8 @@ def _search(settings: PlannerSettings, arguments: argparse.Namespace) -> dict[st
     """Return the changes of the search's settings."""
     if arguments.policy is not None:
         if arguments.time is not None or arguments.budget not in (None, 1):
-            raise UsageError(
-                "E138",
-                "--policy chooses the stones of a single pass, which is not searched.",
-                cure="Leave out --time and --budget, or --policy.",
-            )
+            what = "--policy chooses the stones of a single pass, which is not searched."
+            raise UsageError("E138", what, cure="Leave out --time and --budget, or --policy.")
         return {"budget": 1}
     if arguments.budget is not None:
         return {"budget": arguments.budget}

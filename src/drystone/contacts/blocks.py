@@ -68,13 +68,9 @@ def model_from_labels(labels: Labels, mu: float = 0.58) -> ImageModel:
     height = int(filled[-1]) + 1 if filled.size else labels.shape[0]
     notices = []
     if height < labels.shape[0]:
-        notices.append(
-            Notice(
-                "W301",
-                f"{counted(labels.shape[0] - height, 'empty row')} below the stones left out:"
-                " the wall stands on its lowest stone pixel.",
-            )
-        )
+        rows = counted(labels.shape[0] - height, "empty row")
+        what = f"{rows} below the stones left out: the wall stands on its lowest stone pixel."
+        notices.append(Notice("W301", what))
     above = labels[:height]
     model = RigidBlockModel(_all_blocks(above), find_interfaces(above), mu)
     return ImageModel(model, height, (*notices, *notice_of_pieces(above)))
@@ -109,12 +105,9 @@ def model_with(
 def check_mu(mu: float) -> None:
     """Raise InputError (E302) unless mu is a number >= 0 that forces can be multiplied by."""
     if not 0 <= mu <= LARGEST_MU:
-        raise InputError(
-            "E302",
-            f"a coefficient of friction of {mu} makes no sense.",
-            where="mu",
-            cure="Give a number >= 0; dry stone has about 0.58.",
-        )
+        what = f"a coefficient of friction of {mu} makes no sense."
+        cure = "Give a number >= 0; dry stone has about 0.58."
+        raise InputError("E302", what, where="mu", cure=cure)
 
 
 def pieces_apart(labels: Labels) -> tuple[tuple[int, int], ...]:
@@ -144,23 +137,15 @@ def notice_of_pieces(labels: Labels) -> tuple[Notice, ...]:
         told.append(f"pixels of {len(apart) - NAMED} more")
     one = len(apart) == 1
     verb, them = "lies" if one and apart[0][1] == 1 else "lie", "it" if one else "them"
-    return (
-        Notice(
-            "W304",
-            f"{', '.join(told)} {verb} apart from {them}; all pixels of an id are one rigid block.",
-            "Give every piece an id of its own, or clean the picture.",
-        ),
-    )
+    what = f"{', '.join(told)} {verb} apart from {them}; all pixels of an id are one rigid block."
+    return (Notice("W304", what, "Give every piece an id of its own, or clean the picture."),)
 
 
 def _check_labels(labels: Labels) -> None:
     if labels.ndim != 2 or labels.dtype.kind not in "iu" or (labels.size and labels.min() < 0):
-        raise LabelImageError(
-            "E301",
-            f"an array of shape {labels.shape} and type {labels.dtype} is not a picture of ids.",
-            where="label image",
-            cure="Give a two-dimensional array of integers: 0 for nothing, ids above 0.",
-        )
+        what = f"an array of shape {labels.shape} and type {labels.dtype} is not a picture of ids."
+        cure = "Give a two-dimensional array of integers: 0 for nothing, ids above 0."
+        raise LabelImageError("E301", what, where="label image", cure=cure)
 
 
 def _block(part: Part, sums: tuple[int, int, int], height_px: int) -> Block:

@@ -9,7 +9,6 @@ import numpy as np
 import shapely
 
 from drystone.contacts.blocks import check_mu
-from drystone.contacts.touching import touching_interfaces
 from drystone.errors import InputError
 from drystone.kernels.polygons import Points
 from drystone.model.overlap import overlap_depth
@@ -82,11 +81,9 @@ def model_from_json(data: Mapping[str, Any]) -> RigidBlockModel:
     blocks = tuple(_measured(block, polygon) for block, polygon in given)
     weights = [block.weight for block in blocks if not block.fixed]
     if weights and max(weights) > LARGEST_RATIO * min(weights):
-        raise bad(
-            f"the heaviest block weighs more than {LARGEST_RATIO:g} times the lightest.",
-            "blocks",
-            "What has no weight of its own is a load: see --dead. What does not move is fixed.",
-        )
+        what = f"the heaviest block weighs more than {LARGEST_RATIO:g} times the lightest."
+        cure = "What has no weight of its own is a load: see --dead. What does not move is fixed."
+        raise bad(what, "blocks", cure)
     if "interfaces" in data:
         interfaces = read_interfaces(read_list(data, "interfaces"), ids)
     else:
@@ -141,11 +138,8 @@ def _polygon_block(place: int, entry: Any) -> tuple[Block, Points]:
         raise bad(f"its id is {block_id!r}.", where, "Give a whole number from 1 to 4294967295.")
     density = float(read_numbers(density, (), where))
     if density < SMALLEST or not isinstance(fixed, bool):
-        raise bad(
-            f"density must be above 0 ({SMALLEST:g} or more) and fixed true or false.",
-            where,
-            "Correct it.",
-        )
+        what = f"density must be above 0 ({SMALLEST:g} or more) and fixed true or false."
+        raise bad(what, where, "Correct it.")
     held = entry.get("held", [])
     if not isinstance(held, list | tuple) or not all(one in FREEDOMS for one in held):
         raise bad(f"held is {held!r}.", where, 'List what is held: "x", "y", "turn".')
@@ -167,9 +161,8 @@ def _polygon_block(place: int, entry: Any) -> tuple[Block, Points]:
 def _check_size(size: float, farthest: float, where: str) -> None:
     """Refuse what arithmetic cannot carry; a block without size is refused elsewhere."""
     if 0.0 < size < SMALLEST:
-        raise bad(
-            f"its size, {size:g}, is below {SMALLEST:g}.", where, "Use another unit of length."
-        )
+        what = f"its size, {size:g}, is below {SMALLEST:g}."
+        raise bad(what, where, "Use another unit of length.")
     if 0.0 < size < farthest / FARTHEST:
         raise bad(
             f"it is {farthest / size:.0e} times as far from the origin as it is large: its"
@@ -255,6 +248,81 @@ def _among_blocks(corners: dict[int, Points], sizes: dict[int, float]) -> list[I
                 raise _too_deep(f"blocks {other} and {block} overlap by {depth:g}.")
             found += touching_interfaces(block, corners[block], other, corners[other], tolerance)
     return found
+
+
+def touching_interfaces(
+    block: int, polygon: Points, other: int, neighbour: Points, tolerance: float
+) -> list[Interface]:
+    """Find where two polygons touch; normals point into `block`.
+
+    `polygon` and `neighbour` are (n, 2), counter-clockwise and closed: the first corner is repeated
+    at the end.  A line that is not closed counts as well; its inside is to the left.  Gaps and
+    overlaps up to the tolerance touch.  Straight pieces come in the order of the edges of
+    `polygon`, then contacts at a point.  A corner that touches only a corner has no normal and is
+    not a contact.
+    """
+    found = [
+        Interface(block, other, ends, normal)
+        for ends, normal in _common_pieces(polygon, neighbour, tolerance)
+    ]
+    taken = [interface.points for interface in found]
+    resting = _corners_on_edges(polygon, neighbour, tolerance)
+    carrying = [(p, (-x, -y)) for p, (x, y) in _corners_on_edges(neighbour, polygon, tolerance)]
+    for point, normal in (*resting, *carrying):
+        near = (np.hypot(*(ends - point).T).min() <= 2.0 * tolerance for ends in taken)
+        if not any(near):
+            found.append(Interface(block, other, point[None, :], normal))
+            taken.append(point[None, :])
+    return found
+
+
+def _common_pieces(
+    polygon: Points, neighbour: Points, tolerance: float
+) -> list[tuple[Points, tuple[float, float]]]:
+    """List the pieces on which edges run against each other, with the normal into `polygon`."""
+    along, length, start = _edges(polygon)
+    first_s, first_h = _in_edge_frames(along, start, neighbour[:-1])
+    last_s, last_h = _in_edge_frames(along, start, neighbour[1:])
+    run = last_s - first_s
+    opposite = run < 0.0
+    low, high = np.maximum(last_s, 0.0), np.minimum(first_s, length[:, None])
+    slope = (last_h - first_h) / np.where(opposite, run, 1.0)
+    gap = np.maximum(
+        np.abs(first_h + slope * (low - first_s)), np.abs(first_h + slope * (high - first_s))
+    )
+    pieces = []
+    for i, j in np.argwhere(opposite & (high - low > tolerance) & (gap <= tolerance)):
+        ends = start[i] + np.outer([low[i, j], high[i, j]], along[i])
+        pieces.append((ends, (float(-along[i, 1]), float(along[i, 0]))))
+    return pieces
+
+
+def _corners_on_edges(
+    polygon: Points, neighbour: Points, tolerance: float
+) -> list[tuple[Points, tuple[float, float]]]:
+    """List the corners of `polygon` inside edges of `neighbour`, with the normal into `polygon`."""
+    along, length, start = _edges(neighbour)
+    s, h = _in_edge_frames(along, start, polygon[:-1])
+    inside = (s > tolerance) & (s < length[:, None] - tolerance) & (np.abs(h) <= tolerance)
+    return [
+        (polygon[corner], (float(along[edge, 1]), float(-along[edge, 0])))
+        for edge, corner in np.argwhere(inside)
+    ]
+
+
+def _edges(line: Points) -> tuple[Points, Points, Points]:
+    """Return the unit vectors, lengths and starts of the edges of a line."""
+    step = np.diff(line, axis=0)
+    length = np.hypot(step[:, 0], step[:, 1])
+    return step / length[:, None], length, line[:-1]
+
+
+def _in_edge_frames(along: Points, start: Points, points: Points) -> tuple[Points, Points]:
+    """Coordinates of points along (edges, points) and to the left of each edge."""
+    relative = points[None, :, :] - start[:, None, :]
+    s = relative @ along[:, :, None]
+    h = along[:, None, 0] * relative[:, :, 1] - along[:, None, 1] * relative[:, :, 0]
+    return s[:, :, 0], h
 
 
 def _too_deep(what: str) -> InputError:

@@ -54,16 +54,12 @@ class PointContacts:
     @classmethod
     def of(cls, interfaces: tuple[Interface, ...]) -> "PointContacts":
         """Find the contacts at a point among the interfaces of a wall."""
-        return cls(
-            interfaces,
-            tuple(
-                sorted(
-                    (int(interface.points[0, 0]), int(interface.points[0, 1]), position)
-                    for position, interface in enumerate(interfaces)
-                    if len(interface.points) == 1
-                )
-            ),
+        places = (
+            (int(interface.points[0, 0]), int(interface.points[0, 1]), position)
+            for position, interface in enumerate(interfaces)
+            if len(interface.points) == 1
         )
+        return cls(interfaces, tuple(sorted(places)))
 
     def closed_in(self, patch: Patch) -> tuple[int, ...]:
         """Return the positions of the contacts that new blocks have closed in, ascending.

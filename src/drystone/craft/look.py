@@ -205,11 +205,8 @@ def look(masonry: Masonry, limits: Mapping[str, Limit] | None = None) -> CraftRe
     given = dict(limits or {})
     strangers = sorted(set(given) - set(RULES))
     if strangers:
-        raise UsageError(
-            "E190",
-            f"there is no rule {', '.join(map(repr, strangers))}.",
-            where="limits of craft",
-            cure=f"The rules are {', '.join(RULES)}.",
-        )
+        what = f"there is no rule {', '.join(map(repr, strangers))}."
+        cure = f"The rules are {', '.join(RULES)}."
+        raise UsageError("E190", what, where="limits of craft", cure=cure)
     findings = {name: rule.find(masonry, given.get(name)) for name, rule in RULES.items()}
     return CraftReport(masonry, findings)

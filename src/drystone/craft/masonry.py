@@ -56,12 +56,9 @@ class Masonry:
     def __post_init__(self) -> None:
         strangers = sorted(set(self.wedge_ids) - set(self.outlines))
         if strangers:
-            raise UsageError(
-                "E191",
-                f"the wall has no {', '.join(map(str, strangers))}, said to be wedges.",
-                where="wedges",
-                cure="Name ids of the label image or block model.",
-            )
+            what = f"the wall has no {', '.join(map(str, strangers))}, said to be wedges."
+            cure = "Name ids of the label image or block model."
+            raise UsageError("E191", what, where="wedges", cure=cure)
 
     @classmethod
     def from_labels(

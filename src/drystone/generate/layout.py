@@ -26,12 +26,9 @@ def check_room(
     """Refuse stones that no image has room for, before any is made."""
     width, height = (side + GAP_PX for side in size_px)
     if not count * width * height <= LARGEST_PX:
-        raise UsageError(
-            "E130",
-            f"the stones would fill an image of more than {LARGEST_PX // 1_000_000} million px.",
-            where=f"generate {where}",
-            cure=f"Make {', '.join(settings[:-1])} or {settings[-1]} smaller.",
-        )
+        what = f"the stones would fill an image of more than {LARGEST_PX // 1_000_000} million px."
+        cure = f"Make {', '.join(settings[:-1])} or {settings[-1]} smaller."
+        raise UsageError("E130", what, where=f"generate {where}", cure=cure)
 
 
 def lay_out(stones: StoneSet) -> Labels:

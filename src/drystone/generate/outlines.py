@@ -57,12 +57,9 @@ def draw_stone(draws: Iterable[Outline | None], what: str) -> Mask:
 
 def no_stone(what: str) -> UsageError:
     """Return the error (E130) of a generator whose draws are all rejected."""
-    return UsageError(
-        "E130",
-        f"no stone in {ATTEMPTS} draws is one piece: the settings allow none.",
-        where=f"generate {what}",
-        cure="Ask for larger stones or for less irregular ones.",
-    )
+    why = f"no stone in {ATTEMPTS} draws is one piece: the settings allow none."
+    cure = "Ask for larger stones or for less irregular ones."
+    return UsageError("E130", why, where=f"generate {what}", cure=cure)
 
 
 def check_setting(ok: bool, what: str, where: str) -> None:

@@ -1,4 +1,4 @@
-"""Cut an image of labels down to the wall that is measured (DESIGN 5)."""
+"""Bring an image of labels down to the wall and the resolution that are measured (DESIGN 5)."""
 
 import math
 from dataclasses import dataclass
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from drystone.errors import LabelImageError
+from drystone.model.site import working_px
 from drystone.model.wall import Labels
 
 
@@ -32,11 +33,9 @@ def frame_wall(labels: Labels, width_px: float | None = None) -> WallFrame:
     filled = labels > 0
     rows = np.flatnonzero(filled.any(axis=1))
     if not rows.size:
-        raise LabelImageError(
-            "E104",
-            f"no stones: all {labels.shape[1]}x{labels.shape[0]} px are 0 (background).",
-            cure="Give an image of labels in which stones have positive ids.",
-        )
+        what = f"no stones: all {labels.shape[1]}x{labels.shape[0]} px are 0 (background)."
+        cure = "Give an image of labels in which stones have positive ids."
+        raise LabelImageError("E104", what, cure=cure)
     wall = labels[rows[0] : rows[-1] + 1]
     ends = np.flatnonzero((wall > 0).any(axis=0))
     stones = wall[:, ends[0] : ends[-1] + 1]
@@ -51,3 +50,21 @@ def frame_wall(labels: Labels, width_px: float | None = None) -> WallFrame:
     padded = np.pad(stones, ((0, 0), (before, max(0, room) - before)))
     overhang = max(0, -room) / 2
     return WallFrame(padded, overhang, padded.shape[1] - overhang)
+
+
+def reduce_labels(labels: Labels, scale: float) -> Labels:
+    """Reduce an image of labels by nearest sampling.
+
+    Pixel i of the result takes source pixel floor(i * source size / size), so the first row and
+    column stay what they are.  This is the sampling with which the published figures of the
+    masons' walls were measured; other choices of the sample point move F_AV by up to two points.
+    Each side becomes floor(size * scale + 0.5) px, at least one; the result is a copy.
+    """
+    if not scale > 0:
+        raise ValueError(f"scale must be positive, not {scale}")
+    height, width = labels.shape
+    rows, cols = (max(1, working_px(size, scale)) for size in (height, width))
+    # Whole numbers: a product with a float would miss the source pixel on some sizes.
+    source_rows = np.arange(rows) * height // rows
+    source_cols = np.arange(cols) * width // cols
+    return labels[np.ix_(source_rows, source_cols)]

@@ -96,12 +96,9 @@ def measure_labels(
     (1.0, 0.0, 0.0, 4)
     """
     if wall_px is not None and not all(0 < side < math.inf for side in wall_px):
-        raise UsageError(
-            "E121",
-            f"a wall of {wall_px[0]:g} x {wall_px[1]:g} px has no room.",
-            where="--wall",
-            cure="Give a wall with a positive, finite width and height.",
-        )
+        what = f"a wall of {wall_px[0]:g} x {wall_px[1]:g} px has no room."
+        cure = "Give a wall with a positive, finite width and height."
+        raise UsageError("E121", what, where="--wall", cure=cure)
     labels = _ids(labels)
     if wall_px is not None and wall_px[0] * labels.shape[0] > MOST_PX:
         raise UsageError(
@@ -135,10 +132,7 @@ def _ids(labels: Labels) -> Labels:
     ids = np.asarray(labels)
     signed = ids.dtype.kind == "i"  # what the planner measures again and again is not
     if ids.ndim != 2 or ids.dtype.kind not in "iu" or (signed and ids.size and ids.min() < 0):
-        raise LabelImageError(
-            "E301",
-            f"an array of shape {ids.shape} and type {ids.dtype} is not a picture of ids.",
-            where="labels",
-            cure="Give a two-dimensional array of whole numbers: 0 for nothing, ids above 0.",
-        )
+        what = f"an array of shape {ids.shape} and type {ids.dtype} is not a picture of ids."
+        cure = "Give a two-dimensional array of whole numbers: 0 for nothing, ids above 0."
+        raise LabelImageError("E301", what, where="labels", cure=cure)
     return ids

@@ -30,19 +30,13 @@ def stone_sizes(labels: Labels, wedge_ids: Collection[int] = frozenset()) -> Sto
     areas = counted(index, len(ids))[1:]
     stones = [i for i, stone in enumerate(ids.tolist()) if stone and stone not in wedge_ids]
     if not stones:
-        raise LabelImageError(
-            "E104",
-            f"no stones: all {labels.shape[1]}x{labels.shape[0]} px are background or wedges.",
-            cure="Give an image of labels in which stones have positive ids.",
-        )
+        what = f"no stones: all {labels.shape[1]}x{labels.shape[0]} px are background or wedges."
+        cure = "Give an image of labels in which stones have positive ids."
+        raise LabelImageError("E104", what, cure=cure)
     heights = [boxes[i][0].stop - boxes[i][0].start for i in stones]
     widths = [boxes[i][1].stop - boxes[i][1].start for i in stones]
-    return StoneSizes(
-        count=len(stones),
-        area_px=int(areas[stones].sum()),
-        mean_height_px=sum(heights) / len(stones),
-        mean_width_px=sum(widths) / len(stones),
-    )
+    count, area_px = len(stones), int(areas[stones].sum())
+    return StoneSizes(count, area_px, sum(heights) / count, sum(widths) / count)
 
 
 def top_profile(labels: Labels) -> NDArray[np.intp]:

@@ -79,13 +79,7 @@ class BuilderErrors:
         waves = numbers[:, :-2].reshape(-1, 2, len(MODES))
         outlines = misjudged(corners - (x, y), self.outline, waves)
         return [
-            Built(
-                outline,
-                x + self.placement * shift,
-                y,
-                self.angle_deg * angle,
-                math.sqrt(area),
-            )
+            Built(outline, x + self.placement * shift, y, self.angle_deg * angle, math.sqrt(area))
             for outline, (shift, angle) in zip(outlines, numbers[:, -2:].tolist(), strict=True)
         ]
 

@@ -67,10 +67,5 @@ class PosedStone:
     @cached_property
     def mirrored(self) -> "PosedStone":
         """The mirror image; for views of a mirrored site only, never for placing."""
-        return PosedStone(
-            self.stone,
-            self.angle_deg,
-            self.scale,
-            mirrored(self.mask),
-            (self.width_px - self.anchor[0], self.anchor[1]),
-        )
+        anchor = self.width_px - self.anchor[0], self.anchor[1]
+        return PosedStone(self.stone, self.angle_deg, self.scale, mirrored(self.mask), anchor)

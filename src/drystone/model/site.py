@@ -41,20 +41,15 @@ class Site:
 
     def __post_init__(self) -> None:
         if self.width_px < 1 or self.height_px < 1:
-            raise UsageError(
-                "E121",
-                f"a wall of {self.width_px} x {self.height_px} working pixels has no room.",
-                where="--wall",
-                cure="Give a larger wall or a larger --scale.",
-            )
+            what = f"a wall of {self.width_px} x {self.height_px} working pixels has no room."
+            cure = "Give a larger wall or a larger --scale."
+            raise UsageError("E121", what, where="--wall", cure=cure)
         if self.width_px * self.height_px > MAX_SITE_PX:
-            raise UsageError(
-                "E121",
+            what = (
                 f"a wall of {self.width_px} x {self.height_px} working pixels is too large; "
-                f"{MAX_SITE_PX} are the most.",
-                where="--wall",
-                cure="Give a smaller --scale.",
+                f"{MAX_SITE_PX} are the most."
             )
+            raise UsageError("E121", what, where="--wall", cure="Give a smaller --scale.")
 
     @classmethod
     def from_source(
@@ -66,19 +61,13 @@ class Site:
         number; E138: the px in a metre are not positive.
         """
         if not (math.isfinite(width) and math.isfinite(height)):
-            raise UsageError(
-                "E127",
-                f"{width} x {height} px is not a wall size.",
-                where="--wall",
-                cure="Give a positive, finite width and height.",
-            )
+            what = f"{width} x {height} px is not a wall size."
+            cure = "Give a positive, finite width and height."
+            raise UsageError("E127", what, where="--wall", cure=cure)
         if px_per_m is not None and not 0 < px_per_m < math.inf:
-            raise UsageError(
-                "E138",
-                f"{px_per_m} px in a metre is not a scale.",
-                where="--px-per-m",
-                cure="Give a positive number, or none for a wall in px.",
-            )
+            what = f"{px_per_m} px in a metre is not a scale."
+            cure = "Give a positive number, or none for a wall in px."
+            raise UsageError("E138", what, where="--px-per-m", cure=cure)
         size = working_px(width, scale), working_px(height, scale)
         return cls(*size, scale, px_per_m, (width, height))
 

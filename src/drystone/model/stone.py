@@ -219,12 +219,9 @@ class StoneSet:
         try:
             return self._by_id[stone_id]
         except KeyError:
-            raise PlanError(
-                "E201",
-                f"there is no stone {stone_id} among the {len(self)} stones.",
-                where=self.source.path,
-                cure="Give the stones that the plan was made from.",
-            ) from None
+            what = f"there is no stone {stone_id} among the {len(self)} stones."
+            cure = "Give the stones that the plan was made from."
+            raise PlanError("E201", what, where=self.source.path, cure=cure) from None
 
     @cached_property
     def total_area_px(self) -> int:

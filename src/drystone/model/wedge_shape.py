@@ -93,15 +93,9 @@ class WedgeShape(NamedTuple):
         ends = faces[0, 0], faces[-1, 1]
         bed, top = ((ends[1] - ends[0]) / width).tolist()
         bent = np.abs(faces - (ends[0] + along * (ends[1] - ends[0]))).max()
-        return cls(
-            width,
-            float(high.max() - low.min()),
-            float(thick.min()),
-            float(0.5 * thick.sum(axis=1) @ (x[1:] - x[:-1])),
-            bed,
-            top,
-            float(bent) / width,
-        )
+        height, area = high.max() - low.min(), 0.5 * thick.sum(axis=1) @ (x[1:] - x[:-1])
+        thinnest, bend = float(thick.min()), float(bent) / width
+        return cls(width, float(height), thinnest, float(area), bed, top, bend)
 
     @classmethod
     def of(cls, corners: Points) -> "WedgeShape":

@@ -26,12 +26,8 @@ class EngineScene:
         check_mu(self.mu)
         for block, shape in self.shapes.items():
             if shape.is_empty or not shape.is_valid:
-                raise InputError(
-                    "E303",
-                    "its outline has no area or crosses itself.",
-                    where=f"block {block}",
-                    cure="Correct its corners.",
-                )
+                what = "its outline has no area or crosses itself."
+                raise InputError("E303", what, where=f"block {block}", cure="Correct its corners.")
         if not set(self.shapes) - self.fixed:
             raise InputError(
                 "E303", "there is no free block.", where="scene", cure="Give one to tilt."

@@ -155,9 +155,6 @@ def load_engine() -> Any:
     try:
         return import_module("pymunk")
     except ImportError as error:
-        raise UsageError(
-            "E305",
-            "pymunk is not installed, and the tilt test runs in it.",
-            where="tilt test",
-            cure="Install it with `pip install drystone[physics]`.",
-        ) from error
+        what = "pymunk is not installed, and the tilt test runs in it."
+        cure = "Install it with `pip install drystone[physics]`."
+        raise UsageError("E305", what, where="tilt test", cure=cure) from error

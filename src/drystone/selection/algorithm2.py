@@ -82,7 +82,6 @@ def select_action(
     if not pool:
         return None
     survivors = [tuple(pool)]
-    used = 0
     for used in range(1, 6):
         kept = _at_least_mean(actions, pool, used - 1)
         survivors.append(tuple(kept))
@@ -90,13 +89,8 @@ def select_action(
             break
         pool = kept
 
-    best = min(
-        pool,
-        key=lambda k: (
-            -round(weighted_sum(actions[k], settings, used), TIE_DIGITS),
-            actions[k].stone_id,
-        ),
-    )
+    sums = {k: round(weighted_sum(actions[k], settings, used), TIE_DIGITS) for k in pool}
+    best = min(pool, key=lambda k: (-sums[k], actions[k].stone_id))
     return Selected(best, tuple(survivors))
 
 

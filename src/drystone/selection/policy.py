@@ -138,9 +138,5 @@ def choice_of(
 
 def broken(name: str, what: str) -> UsageError:
     """Return the error (E147) of a policy that cannot be used."""
-    return UsageError(
-        "E147",
-        f"the policy {name!r} {what}.",
-        where="--policy",
-        cure="Choose another policy, or tell who made it.",
-    )
+    cure = "Choose another policy, or tell who made it."
+    return UsageError("E147", f"the policy {name!r} {what}.", where="--policy", cure=cure)

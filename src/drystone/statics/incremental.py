@@ -191,14 +191,8 @@ class SimplexAnalysis(ConeAnalysis):
         optimal = greatest.status == simplex.OPTIMAL and least.status == simplex.OPTIMAL
         if not (certified and optimal) or len(program.weights) > self.most:
             return replace(LocalAnalysis.of(model, program.units), result=result)
-        return SimplexAnalysis(
-            model,
-            result,
-            program,
-            self.greatest.extended(added, greatest),
-            self.least.extended(added, least),
-            self.most,
-        )
+        ends = self.greatest.extended(added, greatest), self.least.extended(added, least)
+        return SimplexAnalysis(model, result, program, *ends, self.most)
 
     def _bound(self, optimum: Optimum, added: Added) -> "tuple[Answer, Bound | None]":
         """Solve for one end; no bound without a certificate that holds."""

@@ -67,12 +67,8 @@ def growing_with_height(model: RigidBlockModel) -> Loads:
     free = np.array([not block.fixed for block in model.blocks], bool)
     push = -dead[:, 1] * np.maximum(heights, 0.0)
     if not push[free].sum() > 0:
-        raise InputError(
-            "E307",
-            "no free block lies above the ground, so no load can grow with height.",
-            where="load case",
-            cure="Use the tilting table.",
-        )
+        what = "no free block lies above the ground, so no load can grow with height."
+        raise InputError("E307", what, where="load case", cure="Use the tilting table.")
     push *= -dead[free, 1].sum() / push[free].sum()
     zeros = np.zeros(len(push))
     return Loads(dead, np.column_stack((push, zeros, zeros)), "growing with height")
@@ -115,12 +111,9 @@ def support_settlement(model: RigidBlockModel, block: int) -> tuple[RigidBlockMo
     """
     row, found = _block(model, block)
     if not found.fixed:
-        raise InputError(
-            "E306",
-            f"block {block} is not fixed, so it is not a support that can settle.",
-            where="load case",
-            cure=f"Name a fixed one: {_listed(b for b in model.blocks if b.fixed)}.",
-        )
+        what = f"block {block} is not fixed, so it is not a support that can settle."
+        cure = f"Name a fixed one: {_listed(b for b in model.blocks if b.fixed)}."
+        raise InputError("E306", what, where="load case", cure=cure)
     carried = [other.weight for other in model.blocks if not other.fixed]
     # Weightless in this case: as heavy as the others, so that it does not spoil their units.
     usual = float(np.mean(carried)) if carried else found.area
@@ -147,12 +140,8 @@ def _block(model: RigidBlockModel, block: int) -> tuple[int, Block]:
     for row, found in enumerate(model.blocks):
         if found.id == block:
             return row, found
-    raise InputError(
-        "E306",
-        f"there is no block {block}.",
-        where="load case",
-        cure=f"There are {_listed(model.blocks)}.",
-    )
+    cure = f"There are {_listed(model.blocks)}."
+    raise InputError("E306", f"there is no block {block}.", where="load case", cure=cure)
 
 
 def _listed(blocks: Iterable[Block]) -> str:
@@ -231,12 +220,8 @@ def _points(model: RigidBlockModel, case: LoadCase) -> Loads:
 def _parsed(text: str, option: str) -> tuple[int, tuple[float, float], tuple[float, float]]:
     found = _POINT_LOAD.fullmatch(text)
     if found is None:
-        raise UsageError(
-            "E138",
-            f"{text!r} is not a force at a point.",
-            where=option,
-            cure="Write ID@X,Y:FX,FY, as in 7@120,85:0,-200.",
-        )
+        cure = "Write ID@X,Y:FX,FY, as in 7@120,85:0,-200."
+        raise UsageError("E138", f"{text!r} is not a force at a point.", where=option, cure=cure)
     x, y, fx, fy = (float(part) for part in found.groups()[1:])
     if not all(isfinite(number) for number in (x, y, fx, fy)):
         raise UsageError("E138", f"{text!r} is not finite.", where=option)

@@ -146,13 +146,8 @@ class Reference:
         """Compute it from the input stones."""
         book = PoseBook(scale)
         initial = [book.pose(stone, book.initial_angle(stone)) for stone in stones]
-        return cls(
-            stones,
-            settings,
-            book,
-            cluster_stones(stones, book, settings.clusters),
-            Stock.of(initial) if initial else Stock(0.0, 0.0, 0.0, 0.0, 0),
-        )
+        stock = Stock.of(initial) if initial else Stock(0.0, 0.0, 0.0, 0.0, 0)
+        return cls(stones, settings, book, cluster_stones(stones, book, settings.clusters), stock)
 
 
 def check_source(plan: Plan, stones: StoneSet) -> list[Problem]:
@@ -162,14 +157,11 @@ def check_source(plan: Plan, stones: StoneSet) -> list[Problem]:
     # No file has the bytes of an array that a program made; the stones are compared themselves.
     known = claimed["path"] and claimed["sha256"] and source.sha256
     if known and claimed["sha256"] != source.sha256:
-        problems.append(
-            Problem(
-                "E210",
-                None,
-                f"the stones were read from other bytes (sha256 {source.sha256[:12]}...) than the "
-                f"plan's ({claimed['sha256'][:12]}...).",
-            )
+        message = (
+            f"the stones were read from other bytes (sha256 {source.sha256[:12]}...) than the "
+            f"plan's ({claimed['sha256'][:12]}...)."
         )
+        problems.append(Problem("E210", None, message))
     facts = {"stones": len(stones), "width_px": source.width_px, "height_px": source.height_px}
     if source.files or "files" in claimed:
         facts["files"] = list(source.files)  # type: ignore[assignment]

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from drystone.drawing.pictures.stones import plot_joint_paths
 from drystone.io.published import published_file
 from drystone.io.wall_image import read_wall_image
-from drystone.metrics.frame import frame_wall
+from drystone.metrics.frame import frame_wall, reduce_labels
 from drystone.metrics.joints import PAD_LEFT, PAD_TOP, joint_mask
 from drystone.metrics.paths import (
     SHORTEST,
@@ -18,7 +18,6 @@ from drystone.metrics.paths import (
     mean_excess,
     vertical_paths,
 )
-from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
 from drystone_lab.reproduce.cells import rounded
 from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows

@@ -14,8 +14,8 @@ from drystone.clusters import cluster_stones
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.gaps import model_with_closed_gaps, settle_gaps
 from drystone.drawing.pictures.stones import plot_stones
+from drystone.metrics.frame import reduce_labels
 from drystone.metrics.measure import WallMetrics, measure_labels
-from drystone.metrics.reduce import reduce_labels
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
 from drystone.poses import PoseBook

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from scipy.stats import binomtest
 
 from drystone.contacts.gaps import model_with_closed_gaps
+from drystone.metrics.frame import reduce_labels
 from drystone.metrics.measure import measure_labels
-from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
 from drystone_lab.pictures.charts import (

@@ -68,22 +68,12 @@ def test_one_scale_only_and_a_thickness_needs_one(tmp_path):
     assert read_assembly(px, thickness_m=0.3, px_per_m=100.0).thickness == 0.3
 
 
-def renumbered(steps):
-    for number, step in enumerate(steps, 1):
-        step["step"] = number
-
-
 def twice(steps):
-    steps.append(dict(steps[-1]))
-    renumbered(steps)
+    steps.append(steps[-1] | {"step": len(steps) + 1})
 
 
 def without_its_stone(steps):
     next(step for step in steps if step["kind"] == "wedge")["under"] = 9999
-
-
-def backwards(steps):
-    steps.reverse()
 
 
 def from_two(steps):
@@ -96,7 +86,7 @@ def from_two(steps):
     [
         ("exact", twice, "E213", "was placed before"),
         ("exact", without_its_stone, "E214", "does not follow stone 9999"),
-        ("raster", backwards, "E214", "this is step 1 of the plan"),
+        ("raster", list.reverse, "E214", "this is step 1 of the plan"),
         ("raster", from_two, "E214", "this is step 1 of the plan"),
     ],
 )

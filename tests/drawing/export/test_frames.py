@@ -34,10 +34,6 @@ def spot(part, film):
     return round(row - 0.5), round(column - 0.5)
 
 
-def near(colour, name):
-    return np.abs(colour / 255 - np.array(rgb(name))).max() < 0.03
-
-
 def test_every_part_is_white_then_bright_and_then_stays(tmp_path):
     wall = assembly()
     (path,) = FORMATS["gif"].write(wall, tmp_path, SETTINGS)
@@ -52,7 +48,8 @@ def test_every_part_is_white_then_bright_and_then_stays(tmp_path):
         for frame, (picture, _) in enumerate(read):
             fresh = PLACING_COLOUR if part.kind == "stone" else after
             seen = "#ffffff" if frame < place else fresh if frame == place else after
-            assert near(picture[row, column], seen), (part.name, frame)
+            away = np.abs(picture[row, column] / 255 - np.array(rgb(seen)))
+            assert away.max() < 0.03, (part.name, frame)
 
 
 def test_tall_walls_keep_their_shape():

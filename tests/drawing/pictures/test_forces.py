@@ -113,11 +113,6 @@ def solved(labels, direction="right"):
     return model, limit_load(model, direction, mechanism=True).forces
 
 
-def widths(ax, gid):
-    (found,) = [collection for collection in ax.collections if collection.get_gid() == gid]
-    return np.array(found.get_linewidths())
-
-
 @pytest.mark.parametrize("direction", ["left", "right"])
 def test_the_thrust_of_a_tall_block_passes_its_toe(direction):
     """Rocking at alpha = .5: weight 800 down and 400 sideways through the toe."""
@@ -183,12 +178,11 @@ def test_resultants_are_drawn_to_scale_through_their_points(empty_rows):
     spans = drawn[:, 1] - drawn[:, 0]
     scale = LONGEST_SHARE * 40 / largest  # the wall is 40 px high
     np.testing.assert_allclose(spans, [scale * one.force for one in acting])
-    np.testing.assert_allclose(
-        widths(ax, "thrust"), [WIDEST_PT * one.size / largest for one in acting]
-    )
     np.testing.assert_allclose(dots(ax, "points-of-action")[:, 1], [0, 20])
 
     (found,) = [c for c in ax.collections if c.get_gid() == "thrust"]
+    widths = [WIDEST_PT * one.size / largest for one in acting]
+    np.testing.assert_allclose(found.get_linewidths(), widths)
     ground, joint = found.get_segments()
     np.testing.assert_allclose(ground, [(20, 10), acting[0].point])
     np.testing.assert_allclose(joint, [(20, 30), acting[1].point, (20, 10)])

@@ -39,7 +39,10 @@ def polygon(part):
 
 def unbalanced(shown, case, load):
     """Return the largest force and moment that is left on a block, in weights of the wall."""
-    blocks = result_blocks(shown)
+    blocks = {
+        part["id"]: (polygon(part).area, np.array(polygon(part).centroid.coords[0]))
+        for part in shown["parts"]
+    }
     weight = sum(area for area, _ in blocks.values())
     size = max(shown["size"])
     worst = 0.0
@@ -58,13 +61,6 @@ def unbalanced(shown, case, load):
                 moment += arm[0] * force[1] - arm[1] * force[0]
         worst = max(worst, *np.abs(total), abs(moment) / size)
     return worst
-
-
-def result_blocks(shown):
-    return {
-        part["id"]: (polygon(part).area, np.array(polygon(part).centroid.coords[0]))
-        for part in shown["parts"]
-    }
 
 
 def test_forces_are_in_equilibrium_with_weight_and_load():

@@ -3,8 +3,8 @@ import math
 import pytest
 
 from drystone.io.wall_image import read_wall_image
+from drystone.metrics.frame import reduce_labels
 from drystone.metrics.measure import measure_labels
-from drystone.metrics.reduce import reduce_labels
 from drystone_lab.reproduce import fig17
 from drystone_lab.walls import PR
 from tests.lab.reproduce.small_walls import RUBBLE, context, gids, of, rows

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from drystone.cli.inputs import files_of_wall, refuse_inputs, refuse_plans_own
+from drystone.cli.inputs import files_of_plan, files_of_wall, refuse_inputs, refuse_plans_own
 from drystone.cli.numbers import (
     add_scale,
     finite,
@@ -130,7 +130,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         wall = replace(wall, remarks={**wall.remarks, "size": size})
     folder = _prepare(arguments)
     model, loads = load_case(case, wall.model)
-    wall, solver, sha256 = replace(wall, model=model), arguments.solver, _sha256(path)
+    wall, solver = replace(wall, model=model), arguments.solver
+    sha256 = hashlib.sha256(files_of_plan(path)[0].read_bytes()).hexdigest()
     counts = counted(len(model.blocks), "block")
     card: RangeCard
     if case.is_range:
@@ -168,11 +169,6 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         what = "no solver found an answer that can be certified."
         note(Notice("E140", what, f"Please report it with {program}, the linear program."))
     return ExitCode.DONE if card.stands and not card.failed else ExitCode.CHECK_FAILED
-
-
-def _sha256(path: Path) -> str:
-    file = path / "plan.json" if path.is_dir() else path
-    return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
 def _metres_per_unit(wall: GivenWall, arguments: argparse.Namespace) -> float | None:

@@ -7,13 +7,7 @@ from pathlib import Path
 from statistics import median
 
 from drystone.cli.inputs import files_of_wall, refuse_inputs
-from drystone.cli.numbers import (
-    add_scale,
-    picture_size_px,
-    positive,
-    refuse_outside,
-    scale_notice,
-)
+from drystone.cli.numbers import add_scale, picture_size_px, positive, refuse_outside, scale_notice
 from drystone.cli.output import make_folder, note, prepare_files, print_json
 from drystone.cli.progress import busy
 from drystone.drawing.assembly.read import read_assembly

@@ -23,8 +23,8 @@ from drystone.contacts.given import model_from_json
 from drystone.drawing.words.content import figure_rows, number
 from drystone.errors import ExitCode, UsageError, counted
 from drystone.io.walls import GivenWall, read_wall, unsupported
+from drystone.metrics.frame import frame_wall, reduce_labels
 from drystone.metrics.measure import WallMetrics, measure_labels
-from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
 
@@ -77,12 +77,9 @@ def _refuse_idle_scale(arguments: argparse.Namespace) -> None:
     asked = arguments.wall
     # Only a wall in metres is another one at another scale.
     if asked is None or parse_wall(asked, 1.0) == parse_wall(asked, 2.0):
-        raise UsageError(
-            "E138",
-            "would do nothing: no wall in metres is asked for, and no figure has a length.",
-            where=option_of(arguments.px_per_m),
-            cure="Leave it out, or give --wall in metres, as in 1.4mx0.4m.",
-        )
+        what = "would do nothing: no wall in metres is asked for, and no figure has a length."
+        cure = "Leave it out, or give --wall in metres, as in 1.4mx0.4m."
+        raise UsageError("E138", what, where=option_of(arguments.px_per_m), cure=cure)
 
 
 def _measured(wall: GivenWall, labels: Labels, arguments: argparse.Namespace) -> WallMetrics:
@@ -130,7 +127,6 @@ def _reduced(size_px: tuple[float, float], factor: float) -> tuple[float, float]
 
 def _draw(labels: Labels, width_px: float | None, arguments: argparse.Namespace) -> None:
     from drystone.drawing import plot_joint_paths, save  # noqa: PLC0415 - slow import
-    from drystone.metrics.frame import frame_wall  # noqa: PLC0415
     from drystone.metrics.joints import joint_mask  # noqa: PLC0415
     from drystone.metrics.paths import horizontal_paths, vertical_paths  # noqa: PLC0415
 

@@ -103,12 +103,9 @@ def _planned(wall: GivenWall, name: str) -> tuple[Plan, Groups]:
     """Return a plan, and its stones with their wedges, source px, in the order of placement."""
     plan = wall.plan
     if plan is None or wall.blocks is None or not plan.steps:
-        raise UsageError(
-            "E138",
-            "only a plan on outlines, with stones, can be rehearsed.",
-            where=name,
-            cure="Give a plan.json of `drystone plan`, with the blocks.json beside it.",
-        )
+        what = "only a plan on outlines, with stones, can be rehearsed."
+        cure = "Give a plan.json of `drystone plan`, with the blocks.json beside it."
+        raise UsageError("E138", what, where=name, cure=cure)
     outlines, px = polygons_from_json(wall.blocks), plan.px_per_m or 1.0
     groups = [[piece_id(step) for step in steps] for steps in grouped(plan.steps)[0]]
     missing = [str(i) for ids in groups for i in ids if i not in outlines]

@@ -172,9 +172,5 @@ def _digest(content: Mapping[str, Any]) -> str:
 
 
 def _broken(what: str, where: str) -> UsageError:
-    return UsageError(
-        "E152",
-        f"the file of weights {what}.",
-        where=where,
-        cure="Install the package again, or train again with `python -m drystone_lab.rl.train`.",
-    )
+    cure = "Install the package again, or train again with `python -m drystone_lab.rl.train`."
+    return UsageError("E152", f"the file of weights {what}.", where=where, cure=cure)

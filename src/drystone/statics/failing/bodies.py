@@ -236,15 +236,9 @@ class _Border:
         is_first = first[contact] == number
         pairs = np.where(is_first[:, None], kin.blocks[contact], kin.blocks[contact, ::-1])
         sign = np.where(is_first, 1.0, -1.0)
-        return cls(
-            kin,
-            contact,
-            pairs[:, 0],
-            pairs[:, 1],
-            body[pairs[:, 1]],
-            sign * kin.turning[contact],
-            sign * kin.normal[contact, 1] > BED,
-        )
+        inside, outside = pairs.T
+        turning, bears = sign * kin.turning[contact], sign * kin.normal[contact, 1] > BED
+        return cls(kin, contact, inside, outside, body[outside], turning, bears)
 
     def motion(self, *, down: bool, turning: bool) -> tuple[MotionKind, Ints]:
         """Tell how the body moves, and at which of the contact points.

@@ -52,14 +52,8 @@ def optimum_of(found: Figures, alpha: float, sign: float) -> Certificate:
     if power > 0.0:
         upper = sign * found.rhs / power
         slack = found.inadmissible * found.total / power
-    return Certificate(
-        found.residual,
-        found.violation,
-        found.inadmissible / max(1.0, found.largest),
-        alpha,
-        upper,
-        slack,
-    )
+    inadmissible = found.inadmissible / max(1.0, found.largest)
+    return Certificate(found.residual, found.violation, inadmissible, alpha, upper, slack)
 
 
 def certified_fall(found: Figures, live: float = 0.0) -> Certificate:
@@ -88,15 +82,9 @@ def _figures(program: EquilibriumProgram, columns: Floats | None, velocity: Floa
         violation = _largest(-columns[1:])
         total = float(np.abs(columns[1:]).sum())
     powers = program.matrix.T @ velocity
-    return Figures(
-        residual,
-        violation,
-        total,
-        _largest(np.abs(velocity)),
-        _largest(-powers[1:]),
-        float(powers[0]),
-        float(program.rhs @ velocity),
-    )
+    largest, inadmissible = _largest(np.abs(velocity)), _largest(-powers[1:])
+    live, rhs = float(powers[0]), float(program.rhs @ velocity)
+    return Figures(residual, violation, total, largest, inadmissible, live, rhs)
 
 
 def _of_growth(program: EquilibriumProgram, ray: Floats, sign: float) -> Certificate | None:

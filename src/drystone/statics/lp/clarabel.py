@@ -78,14 +78,9 @@ def least_constraint(
     the constraints, the columns of the matrix, do to them.  Returned are x and the multipliers;
     None when Clarabel gives up.
     """
-    solver = clarabel.DefaultSolver(
-        csc_matrix(diags_array(masses)),
-        -forces,
-        csc_matrix(-matrix.T),
-        -least,
-        [clarabel.NonnegativeConeT(len(least))],
-        _settings(_QUADRATIC),
-    )
+    quadratic, above = csc_matrix(diags_array(masses)), csc_matrix(-matrix.T)
+    cones, settings = [clarabel.NonnegativeConeT(len(least))], _settings(_QUADRATIC)
+    solver = clarabel.DefaultSolver(quadratic, -forces, above, -least, cones, settings)
     found = solver.solve()
     if _STATUS.get(str(found.status)) is not LimitStatus.OPTIMAL:
         return None

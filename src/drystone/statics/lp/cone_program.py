@@ -66,13 +66,10 @@ class ConeProgram:
         """Return the program with a stone and its wedges, as :meth:`columns_of` has them."""
         bodies = self._new_bodies(addition.blocks)
         assert bodies is not None  # noqa: S101 - or there would be no columns
-        return ConeProgram(
-            self.units,
-            {**self.bodies, **bodies},
-            np.concatenate((self.weights, added.weights)),
-            added.joined(self.cones),
-            self._appended_interfaces(addition, added.closed),
-        )
+        weights = np.concatenate((self.weights, added.weights))
+        bodies, cones = {**self.bodies, **bodies}, added.joined(self.cones)
+        interfaces = self._appended_interfaces(addition, added.closed)
+        return ConeProgram(self.units, bodies, weights, cones, interfaces)
 
     def _new_bodies(self, blocks: tuple[Block, ...]) -> dict[int, Body] | None:
         place = len(self.weights)

@@ -50,12 +50,9 @@ class ScatterSettings:
 
     def __post_init__(self) -> None:
         if self.mu is not None and not 0 <= self.mu[0] <= self.mu[1] < np.inf:
-            raise InputError(
-                "E302",
-                f"friction between {self.mu[0]} and {self.mu[1]} makes no sense.",
-                where="mu",
-                cure="Give two numbers >= 0, the least first; dry stone has about 0.4 to 0.8.",
-            )
+            what = f"friction between {self.mu[0]} and {self.mu[1]} makes no sense."
+            cure = "Give two numbers >= 0, the least first; dry stone has about 0.4 to 0.8."
+            raise InputError("E302", what, where="mu", cure=cure)
         if self.samples < 1:
             raise _nonsense("samples", self.samples, "1 or more")
         for name in ("outline_noise", "placement_noise"):
