@@ -1,5 +1,7 @@
 """Walls that are built again with a builder's errors."""
 
+from importlib.util import find_spec
+
 import numpy as np
 import pytest
 
@@ -8,7 +10,6 @@ from drystone.search.rehearsal import mean_size, rehearse, rehearse_in_engine
 from tests.settle.test_putting import box
 
 NONE = BuilderErrors(placement=0.0, angle_deg=0.0, outline=0.0)
-
 TURNED = BuilderErrors(placement=0.0, angle_deg=10.0, outline=0.0)
 
 BOND = [
@@ -27,13 +28,14 @@ def runs(groups, precision, count=8, once=rehearse):
     return [once(groups, errors, np.random.default_rng(seed)) for seed in range(count)]
 
 
-BOTH = pytest.mark.parametrize("once", [rehearse, rehearse_in_engine])
+NO_ENGINE = pytest.mark.skipif(find_spec("pymunk") is None, reason="pymunk is not installed")
+BOTH = pytest.mark.parametrize(
+    "once", [rehearse, pytest.param(rehearse_in_engine, marks=NO_ENGINE)]
+)
 
 
 @BOTH
 def test_where_a_stone_ends_is_asked_not_how_it_was_put(once):
-    if once is rehearse_in_engine:
-        pytest.importorskip("pymunk")
     (end,) = once([[(1, box(0.0, 0.0))]], TURNED, np.random.default_rng(1)).stones
     put = TURNED.built(box(0.0, 0.0), np.random.default_rng(1))
     assert abs(put.angle_deg) > 5.0
@@ -43,8 +45,6 @@ def test_where_a_stone_ends_is_asked_not_how_it_was_put(once):
 @BOTH
 @pytest.mark.parametrize("groups", [BOND, TOWER])
 def test_without_errors_a_wall_stays_as_planned(groups, once):
-    if once is rehearse_in_engine:
-        pytest.importorskip("pymunk")
     run = once(groups, NONE, np.random.default_rng(0))
     assert run.first_fall is None
     assert [end.stone for end in run.stones] == [group[0][0] for group in groups]

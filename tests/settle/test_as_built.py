@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from drystone.model.builder import HAND, BuilderErrors
-from drystone.search.rehearsal import mean_size, rehearse, rehearse_in_engine
+from drystone.search.rehearsal import mean_size, rehearse
 from drystone.settle import as_built
 from drystone.settle.as_built import BuiltWall
 from tests.naive import as_built as naive
@@ -25,8 +25,6 @@ def built(groups, errors=NONE):
 @pytest.mark.parametrize(("left", "falls"), [(0.0, False), (24.0, True), (-24.0, True)])
 @BOTH
 def test_a_plank_tips_where_it_and_what_lies_on_it_act_beside_its_post(once, left, falls):
-    if once is rehearse_in_engine:
-        pytest.importorskip("pymunk")
     brick = [(3, box(left, 30.0, 20.0, 30.0))]  # as heavy as the plank
     run = once([POST, PLANK, brick], NONE, np.random.default_rng(0))
     assert {end.stone for end in run.stones if end.fallen} == ({2, 3} if falls else set())
@@ -46,6 +44,12 @@ def test_what_stays_is_not_touched():
     after = before.put([(3, brick)]).loaded(3)
     assert list(after.laid) == [1, 2, 3]
     assert all(after.laid[i] is before.laid[i] for i in (1, 2))
+
+
+def test_a_wedge_that_waits_for_its_stone_is_not_put_down_again():
+    wedge, aside = (NONE.built(box(x, 0.0), np.random.default_rng(0)) for x in (0.0, 90.0))
+    wall = BuiltWall(0.58, SETTLE).put([(5, wedge)]).put([(5, aside)])
+    assert (wall.laid[5].x, len(wall.polygons)) == (pytest.approx(20.0, abs=0.1), 1)
 
 
 @pytest.mark.parametrize("precision", [0.0, HAND])

@@ -48,9 +48,14 @@ class BuiltWall:
     bearings: Mapping[int, Sequence[Bearing]] = field(default_factory=dict)
 
     def put(self, pieces: Iterable[tuple[int, Built]]) -> "BuiltWall":
-        """Put blocks down on what does not move; those that rest nowhere are left out."""
+        """Put blocks down on what does not move; those that rest nowhere are left out.
+
+        What is there stays as it is: a wedge whose stone has fallen waits for it.
+        """
         laid, polygons, bearings = dict(self.laid), self.polygons, dict(self.bearings)
         for block, built in pieces:
+            if block in laid:
+                continue
             rest, pushed = put_down(built, polygons, self.mu, self.settle)
             if rest is None:
                 continue
@@ -72,12 +77,12 @@ class BuiltWall:
         for one in reversed(list(wall.laid)):
             if one in beneath:
                 beneath |= {bearing.below for bearing in wall.bearings[one]}
-        before, loads = wall, _loads(wall)
+        loads = _loads(wall)
         for one in [one for one in wall.laid if one in beneath and one != block]:
             if one in wall.laid:  # it may have fallen with another
-                wall = _rolled(wall, one, loads[one])
-            if wall is not before:
-                before, loads = wall, _loads(wall)
+                after = _rolled(wall, one, loads[one])
+                if after is not wall:
+                    wall, loads = after, _loads(after)
         return wall
 
 
@@ -132,7 +137,7 @@ def _rolled(wall: BuiltWall, block: int, load: tuple[float, float]) -> BuiltWall
             above.add(one)
     left = [place for place, one in enumerate(wall.laid) if one not in above]
     below = in_order(wall.polygons, left)
-    corners = built.corners - load
+    corners = built.corners - load  # gravity acts there
     edges = polygon_edges(corners)
     laid = {i: one for i, one in wall.laid.items() if i not in above}
     for sticks in (True, False):
