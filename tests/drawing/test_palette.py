@@ -5,15 +5,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from drystone.drawing.palette import (
-    CLUSTER_COLOURS,
-    PLAIN_COLOUR,
-    WEDGE_COLOUR,
-    cluster_colour,
-    relative_luminance,
-    rgb,
-    text_colour,
-)
+from drystone.drawing import palette
 
 # Machado, Oliveira and Fernandes 2009, full severity, on linear RGB.
 VISION = {
@@ -30,7 +22,7 @@ XYZ = np.array([[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721
 
 
 def _lab(colour, vision):
-    part = np.array(rgb(colour))
+    part = np.array(palette.rgb(colour))
     linear = np.where(part <= 0.04045, part / 12.92, ((part + 0.055) / 1.055) ** 2.4)
     seen = np.clip(VISION[vision] @ linear, 0, 1)
     ratio = XYZ @ seen / XYZ.sum(axis=1)
@@ -41,29 +33,36 @@ def _lab(colour, vision):
 
 @pytest.mark.parametrize("vision", VISION)
 def test_clusters_and_wedges_stay_apart_for_every_kind_of_vision(vision):
-    colours = (*CLUSTER_COLOURS, WEDGE_COLOUR)
+    colours = (*palette.CLUSTER_COLOURS, palette.WEDGE_COLOUR)
     gaps = [
         np.linalg.norm(_lab(one, vision) - _lab(other, vision))
         for one, other in combinations(colours, 2)
     ]
-    assert len(CLUSTER_COLOURS) == 16
+    assert len(palette.CLUSTER_COLOURS) == 16
     assert min(gaps) > 16
 
 
 def test_second_tone_follows_after_sixteen_clusters():
-    colours = [cluster_colour(number) for number in range(1, 33)]
+    colours = [palette.cluster_colour(number) for number in range(1, 33)]
     assert len(set(colours)) == 32
     for light, dark in zip(colours[:16], colours[16:], strict=True):
-        assert relative_luminance(dark) < relative_luminance(light)
-    assert cluster_colour(33) == cluster_colour(1)
+        assert palette.relative_luminance(dark) < palette.relative_luminance(light)
+    assert palette.cluster_colour(33) == palette.cluster_colour(1)
     with pytest.raises(ValueError, match="from 1, not 0"):
-        cluster_colour(0)
+        palette.cluster_colour(0)
 
 
-@pytest.mark.parametrize("colour", [*map(cluster_colour, range(1, 33)), WEDGE_COLOUR, PLAIN_COLOUR])
+@pytest.mark.parametrize(
+    "colour",
+    [*map(palette.cluster_colour, range(1, 33)), palette.WEDGE_COLOUR, palette.PLAIN_COLOUR],
+)
 def test_numbers_are_readable_on_every_colour(colour):
     # WCAG 2 level AA asks for 4.5.
     light, dark = sorted(
-        (relative_luminance(colour), relative_luminance(text_colour(colour))), reverse=True
+        (
+            palette.relative_luminance(colour),
+            palette.relative_luminance(palette.text_colour(colour)),
+        ),
+        reverse=True,
     )
     assert (light + 0.05) / (dark + 0.05) >= 4.5

@@ -15,30 +15,12 @@ from drystone.planner.settings import method_settings
 from drystone.search.plan_wall import plan_wall
 from drystone_lab import search_runs
 from drystone_lab.runs.spec import generated
-from drystone_lab.search_runs import (
-    BETWEEN_SEEDS,
-    COLUMNS,
-    FIGURES,
-    SPENT,
-    WAYS,
-    SearchRun,
-    SearchTask,
-    SearchWay,
-    WayState,
-    append_results,
-    chosen_ways,
-    in_words,
-    looked_at_times,
-    read_results,
-    searched,
-    tries,
-)
 from drystone_lab.table import BenchSettings
 from drystone_lab.walls import BRICKS, Target
 
 STONES = brick_stones(BrickSettings(count=4), np.random.default_rng(1))
 WALL = Target("bricks", generated("brick", 1, count=4), 72, 24, 1.0)
-BY_NAME = {way.name: way for way in WAYS}
+BY_NAME = {way.name: way for way in search_runs.WAYS}
 
 
 def ticking():
@@ -48,7 +30,7 @@ def ticking():
 
 
 def looked_for(way, stones, target, seconds, seed, clock):
-    return looked_at_times(way, stones, target, (seconds,), seed, clock)[0]
+    return search_runs.looked_at_times(way, stones, target, (seconds,), seed, clock)[0]
 
 
 def clock_of(*times):
@@ -76,7 +58,7 @@ def test_what_is_begun_in_time_counts(name, seconds, walls):
 
 def test_the_search_is_that_of_a_plan_with_the_same_budget():
     looked = looked_for(BY_NAME["search"], STONES, WALL, 50, 1, ticking())
-    plan = plan_wall(STONES, 72, 24, seed=1, settings=tries(looked.walls), scale=1.0)
+    plan = plan_wall(STONES, 72, 24, seed=1, settings=search_runs.tries(looked.walls), scale=1.0)
     np.testing.assert_array_equal(looked.found.build.wall.labels, plan.wall.labels)
     assert looked.found.figures.F_LR == pytest.approx(plan.metrics.F_LR, abs=1e-12)
 
@@ -98,9 +80,9 @@ def test_the_time_is_counted_from_the_start():
     def states(*_):
         for number in count(1):
             asked.append(number)
-            yield WayState(number, lambda number=number: number)
+            yield search_runs.WayState(number, lambda number=number: number)
 
-    way = SearchWay("by hand", states)
+    way = search_runs.SearchWay("by hand", states)
     looked = looked_for(way, STONES, WALL, 5, 1, clock_of(10, 14.9, 15, 15.1))
     assert (looked.found, looked.walls) == (3, 3)
     assert asked == [1, 2, 3]  # the third was begun in time, and finished after it
@@ -145,7 +127,7 @@ def test_restarts_keep_the_best_of_different_seeds(worth):
     found = [next(states) for _ in range(4)]
     assert [state.walls for state in found] == [1, 2, 3, 4]
     assert [state.best().merit for state in found] == [1.0, 3.0, 3.0, 4.0]
-    assert Fake.seeds == [3 + BETWEEN_SEEDS * k for k in (1, 2, 3)]
+    assert Fake.seeds == [3 + search_runs.BETWEEN_SEEDS * k for k in (1, 2, 3)]
 
 
 def test_wedges_go_into_walls_that_are_nearly_the_best(worth, monkeypatch):
@@ -162,11 +144,11 @@ def test_wedges_go_into_walls_that_are_nearly_the_best(worth, monkeypatch):
 
 
 def test_of_earlier_times_what_was_finished_by_then_counts():
-    walls = [WayState(n, lambda n=n: n) for n in range(1, 6)]
-    way = SearchWay("five walls", lambda *_: iter(walls))
+    walls = [search_runs.WayState(n, lambda n=n: n) for n in range(1, 6)]
+    way = search_runs.SearchWay("five walls", lambda *_: iter(walls))
     # Started at 10; the walls are finished at 14, 15, 17, 17.5 and 21.
     clock = clock_of(10, 14, 15, 17, 17.5, 21)
-    found = looked_at_times(way, STONES, WALL, (2, 6, 7, 10), 1, clock)
+    found = search_runs.looked_at_times(way, STONES, WALL, (2, 6, 7, 10), 1, clock)
     # Nothing was there after 2 s, so it is the first wall, when it is finished.
     assert [(one.found, one.walls, one.seconds) for one in found] == [
         (1, 1, 4), (2, 2, 5), (3, 3, 7), (5, 5, 11)
@@ -175,7 +157,7 @@ def test_of_earlier_times_what_was_finished_by_then_counts():
 
 @pytest.mark.parametrize(("name", "times"), [("restarts", (2, 4, 9)), ("search", (40, 80, 150))])
 def test_what_is_asked_on_the_way_changes_nothing(name, times):
-    asked = looked_at_times(BY_NAME[name], STONES, WALL, times, 1, ticking())
+    asked = search_runs.looked_at_times(BY_NAME[name], STONES, WALL, times, 1, ticking())
     alone = looked_for(BY_NAME[name], STONES, WALL, times[-1], 1, ticking())
     assert [one.walls for one in asked] == sorted(one.walls for one in asked)
     assert (asked[-1].walls, asked[-1].seconds) == (alone.walls, alone.seconds)
@@ -194,7 +176,9 @@ def done(monkeypatch):
 
     def do(task):
         tasks.append(task)
-        figures = dict.fromkeys((*FIGURES, *SPENT), 0.5) | {"placed": task.seed}
+        figures = dict.fromkeys((*search_runs.FIGURES, *search_runs.SPENT), 0.5) | {
+            "placed": task.seed
+        }
         return [{**figures, "CPU s": seconds} for seconds in task.times]
 
     monkeypatch.setattr(search_runs, "do", do)
@@ -205,26 +189,26 @@ def test_what_the_table_holds_is_not_done_again(done, tmp_path):
     said = []
     kept = replace(ONE_WAY, runs=tmp_path / "runs.csv", say=said.append)
     walls = [(TARGET, NINE)]
-    first = searched(walls, [1, 2], (1.0, 3.0), kept)
+    first = search_runs.searched(walls, [1, 2], (1.0, 3.0), kept)
     assert [(task.seed, task.times) for task in done] == [(1, (1.0, 3.0)), (2, (1.0, 3.0))]
     assert first.keys() == {
-        SearchRun(TARGET.name, "restarts", seed, seconds)
+        search_runs.SearchRun(TARGET.name, "restarts", seed, seconds)
         for seed in (1, 2)
         for seconds in (1.0, 3.0)
     }
-    again = searched(walls, [2, 1], (3.0,), kept)
+    again = search_runs.searched(walls, [2, 1], (3.0,), kept)
     assert len(done) == 2
     assert [(run.seed, one["placed"]) for run, one in again.items()] == [(2, 2), (1, 1)]
     # A time that is not there is looked for anew; what was there stays.
-    searched(walls, [1], (2.0, 3.0), kept)
-    assert done[2:] == [SearchTask(TARGET.name, "restarts", 1, (2.0, 3.0), None, True)]
-    assert len(read_results(tmp_path / "runs.csv")) == len(said) == 5
+    search_runs.searched(walls, [1], (2.0, 3.0), kept)
+    assert done[2:] == [search_runs.SearchTask(TARGET.name, "restarts", 1, (2.0, 3.0), None, True)]
+    assert len(search_runs.read_results(tmp_path / "runs.csv")) == len(said) == 5
     assert said[-1].startswith("bricks, restarts, seed 1, 2 s: 1 of 9 stones, ")
 
 
 def test_seeds_are_outermost_and_ways_take_turns(done):
     both = replace(ONE_WAY, policies=("restarts", "search"))
-    searched([(TARGET, NINE)], [5, 6], (1.0,), both)
+    search_runs.searched([(TARGET, NINE)], [5, 6], (1.0,), both)
     assert [(task.seed, task.way) for task in done] == [
         (5, "restarts"), (5, "search"), (6, "restarts"), (6, "search")
     ]  # fmt: skip
@@ -234,17 +218,19 @@ def test_runs_with_other_settings_are_others(done, tmp_path):
     plain = replace(ONE_WAY, runs=tmp_path / "runs.csv")
     aimed = replace(plain, changes=(("goal.F_AH", 1.5), ("goal.F_AV", 40)))
     walls = [(TARGET, NINE)]
-    searched(walls, [1], (1.0,), plain)
-    (run,) = searched(walls, [1], (1.0,), aimed)
-    assert run == SearchRun(TARGET.name, "restarts, goal.F_AH = 1.5, goal.F_AV = 40", 1, 1.0)
+    search_runs.searched(walls, [1], (1.0,), plain)
+    (run,) = search_runs.searched(walls, [1], (1.0,), aimed)
+    assert run == search_runs.SearchRun(
+        TARGET.name, "restarts, goal.F_AH = 1.5, goal.F_AV = 40", 1, 1.0
+    )
     assert [task.changes for task in done] == [(), aimed.changes]
-    searched(walls, [1], (1.0,), aimed)
+    search_runs.searched(walls, [1], (1.0,), aimed)
     assert len(done) == 2
-    assert len(read_results(tmp_path / "runs.csv")) == 2
+    assert len(search_runs.read_results(tmp_path / "runs.csv")) == 2
 
 
 def test_settings_are_what_a_way_goes_by():
-    task = SearchTask(TARGET.name, "restarts", 1, (1e-6,), None, True)
+    task = search_runs.SearchTask(TARGET.name, "restarts", 1, (1e-6,), None, True)
     (plain,) = search_runs.do(task)
     (halved,) = search_runs.do(replace(task, changes=(("goal.filling", 0.0),)))
     weight = method_settings("best").goal.filling
@@ -264,54 +250,54 @@ class Deadly(str):
 def test_processes_do_what_one_does_and_what_ended_is_kept_when_one_dies(tmp_path, monkeypatch):
     # The first wall is always finished, and here none is begun after it.
     walls, times = [(TARGET, NINE)], (1e-6,)
-    one = searched(walls, [1], times, ONE_WAY)
-    last = SearchWay(Deadly("unknown"), WAYS[0].states)
-    monkeypatch.setattr(search_runs, "chosen_ways", lambda _: (WAYS[0], last))
+    one = search_runs.searched(walls, [1], times, ONE_WAY)
+    last = search_runs.SearchWay(Deadly("unknown"), search_runs.WAYS[0].states)
+    monkeypatch.setattr(search_runs, "chosen_ways", lambda _: (search_runs.WAYS[0], last))
     settings = replace(ONE_WAY, runs=tmp_path / "runs.csv", jobs=2)
     with pytest.raises(DrystoneError, match="E402") as caught:
-        searched(walls, [1], times, settings)
+        search_runs.searched(walls, [1], times, settings)
     assert caught.value.where == "bricks, unknown, seed 1"
-    found = read_results(tmp_path / "runs.csv")
+    found = search_runs.read_results(tmp_path / "runs.csv")
     timeless = [{run: {**r, "CPU s": 0} for run, r in each.items()} for each in (one, found)]
     assert timeless[0] == timeless[1]
 
 
 def test_ways_are_chosen_by_name():
-    assert chosen_ways(()) == WAYS
-    chosen = chosen_ways(("search", "restarts with wedges"))
+    assert search_runs.chosen_ways(()) == search_runs.WAYS
+    chosen = search_runs.chosen_ways(("search", "restarts with wedges"))
     assert [way.name for way in chosen] == ["restarts with wedges", "search"]
     with pytest.raises(UsageError, match="E138"):
-        chosen_ways(("search", "annealing"))
+        search_runs.chosen_ways(("search", "annealing"))
 
 
 def result(*values):
-    return dict(zip((*FIGURES, *SPENT), values, strict=True))
+    return dict(zip((*search_runs.FIGURES, *search_runs.SPENT), values, strict=True))
 
 
 RUNS = {
-    SearchRun("rubble, 60, exact", "restarts with wedges", 3, 60.0): result(
+    search_runs.SearchRun("rubble, 60, exact", "restarts with wedges", 3, 60.0): result(
         58, 0.1 + 0.2, None, 1e-7, 1.0, 2.5, 3.0, 0.0, 0.5, -1.25, 0.8, 17, 60.123
     ),
-    SearchRun("R, raster", "search", 4, 0.5): result(34, *[0.25] * 9, 1, 1, 1.5),
+    search_runs.SearchRun("R, raster", "search", 4, 0.5): result(34, *[0.25] * 9, 1, 1, 1.5),
 }
 
 
 def test_what_is_read_is_what_was_written(tmp_path):
     path = tmp_path / "runs.csv"
-    assert read_results(path) == {}
+    assert search_runs.read_results(path) == {}
     for one in RUNS.items():
-        append_results(path, [one])
-    assert read_results(path) == RUNS
+        search_runs.append_results(path, [one])
+    assert search_runs.read_results(path) == RUNS
     lines = path.read_text(encoding="utf-8").splitlines()
-    assert lines[0] == ",".join(COLUMNS)
+    assert lines[0] == ",".join(search_runs.COLUMNS)
     assert len(lines) == 3
 
 
 def test_the_last_of_two_equal_runs_counts(tmp_path):
     path = tmp_path / "runs.csv"
     (run, first), (_, second) = RUNS.items()
-    append_results(path, [(run, first), (run, second)])
-    assert read_results(path)[run] == second
+    search_runs.append_results(path, [(run, first), (run, second)])
+    assert search_runs.read_results(path)[run] == second
 
 
 @pytest.mark.parametrize(
@@ -325,14 +311,14 @@ def test_the_last_of_two_equal_runs_counts(tmp_path):
 )
 def test_other_files_are_not_taken_for_tables(change, line, tmp_path):
     path = tmp_path / "runs.csv"
-    append_results(path, RUNS.items())
+    search_runs.append_results(path, RUNS.items())
     path.write_text(change(path.read_text(encoding="utf-8")), encoding="utf-8")
     with pytest.raises(UsageError, match="E148") as caught:
-        read_results(path)
+        search_runs.read_results(path)
     assert caught.value.where == f"{path}:{line}"
 
 
 def test_a_result_in_words():
-    words = in_words(next(iter(RUNS.values())), 60)
+    words = search_runs.in_words(next(iter(RUNS.values())), 60)
     assert words.startswith("58 of 60 stones, F_SF 0.3, F_AV -, F_AH 1e-07, ")
     assert words.endswith("merit -1.25, 17 walls")

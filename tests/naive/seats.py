@@ -2,33 +2,31 @@
 
 import numpy as np
 
-from drystone.kernels.polygons import area_and_centroid, no_polygons
-from drystone.settle.putting import fallen_share, put_down
+from drystone.model.builder import as_planned
+from drystone.settle.as_built import BuiltWall
+from drystone.settle.putting import astray
 
 
-def falls(steps, errors, trial, mu, settle, near):
-    """Say of each step whether its stone falls, in one wall that is built with errors.
+def falls(steps, errors, trial, mu, settle):
+    """Say of each step whether something falls, in one wall that is built with errors.
 
-    Steps are the id of a stone, its corners as planned, and corners of its wedges.
+    Steps are blocks, ids and corners as planned, of a stone and its wedges.
     """
-    built, fallen = [], []
-    for stone, planned, wedges in steps:
-        area, x, y = area_and_centroid(planned)
-        low, high, far = planned.min(axis=0), planned.max(axis=0), near * area**0.5
-        some = [
-            k for k, one in enumerate(built)
-            if one[:, 0].min() <= high[0] + far and one[:, 0].max() >= low[0] - far
-            and one[:, 1].min() <= high[1] + far and one[:, 1].max() >= low[1] - far
-        ]  # fmt: skip
-        around = no_polygons().added([*(built[k] for k in some), *wedges])
-        put = errors.built(planned, np.random.default_rng([7, trial, stone]))
-        rest, pushed = put_down(put, around, mu, settle)
-        fell = rest is None
-        if rest is not None:
-            fell = fallen_share(rest.x - x, rest.y - y, rest.angle_deg, rest.size) > 1
-        for i, way in pushed.items():
-            if not fell and i < len(some):
-                built[some[i]] = built[some[i]] + (way, 0.0)
-        built += [*wedges, planned if fell or rest is None else rest.corners]
-        fallen.append(fell)
+    wall, fallen = BuiltWall(mu, settle), []
+    for (stone, corners), *wedges in steps:
+        rng = np.random.default_rng([7, trial, stone])
+        put = [(stone, errors.built(corners, rng))]
+        put += [(i, errors.times(1 / 3).built(cut, rng)) for i, cut in wedges]
+        planned = {i: as_planned(cut) for i, cut in [(stone, corners), *wedges]}
+        before = wall.put([*put[1:][::-1], put[0]])
+        lost = {}
+        if stone in before.laid and not astray(before.laid[stone], planned[stone]):
+            after = before.loaded(stone)
+            now = after.laid
+            lost = {i: b for i, b in before.laid.items() if i not in now or astray(now[i], b)}
+            wall = before.held(lost) if lost else after
+        else:
+            lost = planned
+            wall = wall.held(planned)
+        fallen.append(bool(lost))
     return fallen

@@ -153,10 +153,11 @@ class _Falling:
     def __init__(self, falls):
         self.falls_of, self.asked = falls, []
 
-    def falls(self, group, _):
+    def falls(self, group, _, least):
         stone = group.placement.stone_id
         self.asked.append(stone)
-        return self.falls_of.get(stone, 0.5)
+        share = self.falls_of.get(stone, 0.5)
+        return share if share < least else None
 
 
 def _chosen(falls):

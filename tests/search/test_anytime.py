@@ -17,21 +17,6 @@ from drystone.planner.search_settings import UNLIMITED, SearchSettings
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search import anytime, chain
-from drystone.search.anytime import (
-    BATCH,
-    PROMISE,
-    PROMISING,
-    SHARE,
-    STALE,
-    WEIGHT,
-    _links,
-    _shared,
-    next_batch,
-    planned_share,
-    promised,
-    searching,
-    stale,
-)
 from drystone.search.chain import in_cycle, planned_first, recreated, wedged
 from drystone.search.courses import CoursePlan
 from drystone.search.goal import Courses, FoundWall
@@ -75,7 +60,9 @@ def first(*asked, **more):
 
 
 def searched(planner, executor=None, until=NEVER):
-    return list(searching(FoundWall.of(planner), Yard.of(planner, until), planner.seed, executor))
+    return list(
+        anytime.searching(FoundWall.of(planner), Yard.of(planner, until), planner.seed, executor)
+    )
 
 
 def judged(planner):
@@ -117,16 +104,18 @@ def test_walls_get_better_and_are_complete():
 
 def test_chains_go_on_from_planned_walls_that_promise_more_until_they_are_long():
     alone, planned = packed(1.0, planned=False), packed(0.9, planned=True)
-    links = _links([alone, planned, packed(0.2, planned=True)], 0, 2)
+    links = anytime._links([alone, planned, packed(0.2, planned=True)], 0, 2)
     assert [link.best for link in links] == [planned, alone]
-    assert _shared(list(links))[1].now is planned
-    long = [replace(link, done=PROMISING) for link in links]
-    assert _shared(long)[0].now is alone
+    assert anytime._shared(list(links))[1].now is planned
+    long = [replace(link, done=anytime.PROMISING) for link in links]
+    assert anytime._shared(long)[0].now is alone
     # Half of the promise is as much as they are apart, and a little more.
-    nearly = packed(1.0 - 0.4 * PROMISE, planned=True)
-    half = [replace(link, done=PROMISING // 2) for link in _links([alone, nearly], 0, 2)]
-    assert _shared(half)[1].best is nearly
-    assert _shared(half[:1] * 2) == half[:1] * 2
+    nearly = packed(1.0 - 0.4 * anytime.PROMISE, planned=True)
+    half = [
+        replace(link, done=anytime.PROMISING // 2) for link in anytime._links([alone, nearly], 0, 2)
+    ]
+    assert anytime._shared(half)[1].best is nearly
+    assert anytime._shared(half[:1] * 2) == half[:1] * 2
 
 
 def test_the_first_wall_is_wedged_as_the_others_are():
@@ -280,14 +269,14 @@ def test_a_search_goes_on_from_where_it_stood_to_the_walls_that_it_would_have_fo
     assert set(range(len(whole))) - set(stood) <= {0, len(whole) - 1}
     yard = Yard.of(planner)
     for k in late.values():
-        again = list(searching(whole[k].state, yard, planner.seed))
+        again = list(anytime.searching(whole[k].state, yard, planner.seed))
         assert whole[k].state.walls == whole[k].walls
         assert all(alike(one, other) for one, other in zip(again, whole[k:], strict=True))
     # One that goes on with a smaller budget ends.
     last = whole[stood[-1]]
     assert last.state.before is not None
     less = planner.settings.updated({"search": {"budget": 1}})
-    (only,) = searching(last.state, Yard(planner.workshop, less), planner.seed)
+    (only,) = anytime.searching(last.state, Yard(planner.workshop, less), planner.seed)
     assert (only.walls, only.best) == (last.walls, last.best)
 
 
@@ -356,7 +345,7 @@ def packed(merit, planned):
 def numbers(search):
     """Batches of a search each of whose walls is better than the one before it."""
     found, batches = [packed(0.0, planned=True)], []
-    while (batch := next_batch(found, search)) is not None:
+    while (batch := anytime.next_batch(found, search)) is not None:
         batches.append(list(batch[0]))
         found += [packed(float(number), planned=True) for number in batch[0]]
     return batches
@@ -367,57 +356,60 @@ def test_batches_number_every_wall_but_the_very_first(count):
     listed = numbers(SearchSettings(budget=count, passes=24))
     assert [n for batch in listed for n in batch] == list(range(1, count))
     # A smaller budget cuts the last batch, and changes no other: it repeats a part of a search.
-    whole = numbers(SearchSettings(budget=count + BATCH, passes=24))
+    whole = numbers(SearchSettings(budget=count + anytime.BATCH, passes=24))
     assert all(set(a) <= set(b) for a, b in zip(listed, whole, strict=False))
     # So do fewer passes.
     assert numbers(SearchSettings(budget=60, passes=count)) == listed
 
 
 def test_a_batch_goes_on_as_it_began():
-    found = [packed(float(k % 3), planned=k % 2 > 0) for k in range(3 * BATCH)]
+    found = [packed(float(k % 3), planned=k % 2 > 0) for k in range(3 * anytime.BATCH)]
     search = SearchSettings(budget=60)
-    for begun in range(0, len(found), BATCH):
-        numbers, share = next_batch(found[:begun], search) or (range(0), 0.0)
-        for done in range(begun + 1, begun + BATCH):
+    for begun in range(0, len(found), anytime.BATCH):
+        numbers, share = anytime.next_batch(found[:begun], search) or (range(0), 0.0)
+        for done in range(begun + 1, begun + anytime.BATCH):
             rest = range(done, numbers.stop)
-            assert next_batch(found[:done], search) == (rest, share)
+            assert anytime.next_batch(found[:done], search) == (rest, share)
 
 
 def test_the_share_follows_the_better_half():
     planned_win = [packed(k, planned=k >= 4) for k in range(8)]
     greedy_win = [packed(k, planned=k < 4) for k in range(8)]
-    usual = SHARE * WEIGHT
-    assert planned_share([packed(1.0, planned=False)]) == SHARE
-    assert planned_share(planned_win) == (4 + usual) / (4 + WEIGHT)
-    assert planned_share(greedy_win) == usual / (4 + WEIGHT)
-    assert planned_share(planned_win[::-1]) == planned_share(planned_win)
+    usual = anytime.SHARE * anytime.WEIGHT
+    assert anytime.planned_share([packed(1.0, planned=False)]) == anytime.SHARE
+    assert anytime.planned_share(planned_win) == (4 + usual) / (4 + anytime.WEIGHT)
+    assert anytime.planned_share(greedy_win) == usual / (4 + anytime.WEIGHT)
+    assert anytime.planned_share(planned_win[::-1]) == anytime.planned_share(planned_win)
 
 
 def test_planned_walls_are_worth_more_than_they_are_yet():
     one, other = packed(1.0, planned=True), packed(1.0, planned=False)
-    assert [promised(one), promised(one, 0.5), promised(one, 0.0)] == [
-        1 + PROMISE, 1 + 0.5 * PROMISE, 1.0,
+    assert [anytime.promised(one), anytime.promised(one, 0.5), anytime.promised(one, 0.0)] == [
+        1 + anytime.PROMISE, 1 + 0.5 * anytime.PROMISE, 1.0,
     ]  # fmt: skip
-    assert promised(other) == promised(other, 0.5) == 1.0
+    assert anytime.promised(other) == anytime.promised(other, 0.5) == 1.0
     # In the better half by their promise alone.
-    behind = [packed(1.0, planned=False), packed(1.1 - PROMISE, planned=True)] * 4
-    assert planned_share(behind) > SHARE
+    behind = [packed(1.0, planned=False), packed(1.1 - anytime.PROMISE, planned=True)] * 4
+    assert anytime.planned_share(behind) > anytime.SHARE
 
 
 def test_first_walls_end_when_they_beat_none_that_was_not_planned():
     rising = [packed(float(k), planned=False) for k in range(20)]
-    assert not any(stale(rising[: k + 1]) for k in range(20))
-    level = [packed(1.0, planned=False), *(packed(0.3, planned=k % 2 > 0) for k in range(STALE))]
-    assert stale(level)
-    assert not stale(level[:-1])
+    assert not any(anytime.stale(rising[: k + 1]) for k in range(20))
+    level = [
+        packed(1.0, planned=False),
+        *(packed(0.3, planned=k % 2 > 0) for k in range(anytime.STALE)),
+    ]
+    assert anytime.stale(level)
+    assert not anytime.stale(level[:-1])
     # It is looked at when a batch begins; one that is begun is built to its end.
-    more = [packed(0.3, planned=False)] * (BATCH - len(level) % BATCH)
-    assert next_batch(level, SearchSettings(budget=60)) is not None
-    assert next_batch([*level, *more], SearchSettings(budget=60)) is None
-    assert not stale([*level, packed(2.0, planned=False)])
-    assert not stale([*level, packed(2.0, planned=True), *level[1:]])
+    more = [packed(0.3, planned=False)] * (anytime.BATCH - len(level) % anytime.BATCH)
+    assert anytime.next_batch(level, SearchSettings(budget=60)) is not None
+    assert anytime.next_batch([*level, *more], SearchSettings(budget=60)) is None
+    assert not anytime.stale([*level, packed(2.0, planned=False)])
+    assert not anytime.stale([*level, packed(2.0, planned=True), *level[1:]])
     # A planned wall that is a little behind promises more.
-    assert not stale([packed(1.0 - PROMISE / 2, planned=True), *level])
+    assert not anytime.stale([packed(1.0 - anytime.PROMISE / 2, planned=True), *level])
 
 
 def test_what_none_beats_is_kept_and_becomes_plans_that_hold():

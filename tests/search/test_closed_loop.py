@@ -8,6 +8,7 @@ from drystone.model.builder import HAND, BuilderErrors
 from drystone.search.closed_loop import rehearse_closed, tilt_as_built
 from drystone.search.rehearsal import mean_size, rehearse
 from tests.search.test_rehearsal import BOND, NONE, TOWER
+from tests.settle.test_as_built import PLANK, POST
 from tests.settle.test_putting import box
 
 
@@ -48,6 +49,16 @@ def test_a_stone_whose_place_is_gone_comes_to_lie_on_the_wall():
     # What lies in the wall overlaps nothing.
     shapes = [shapely.Polygon(corners) for _, corners in run.blocks]
     assert sum(one.area for one in shapes) == pytest.approx(shapely.union_all(shapes).area)
+
+
+def test_what_another_throws_down_or_pushes_away_is_taken_up_and_laid_again():
+    """A brick comes onto the end of a plank, or in between two bricks that leave no room."""
+    tipped = [POST, PLANK, [(3, box(24.0, 30.0, 20.0, 30.0))]]
+    pushed = [[(k, box(x, 0.0))] for k, x in [(1, 0.0), (2, 64.0), (3, 32.0)]]
+    assert rehearse(tipped, NONE, np.random.default_rng(0)).first_fall is not None
+    for groups, again in ((tipped, 0), (pushed, 2)):
+        run = rehearse_closed(groups, NONE, np.random.default_rng(0))
+        assert (sorted(i for i, _ in run.blocks), run.again) == ([1, 2, 3], again)
 
 
 def test_a_stone_without_any_place_is_not_in_the_wall():

@@ -179,10 +179,11 @@ def test_of_places_that_do_not_stand_sturdily_the_next_best_is_taken(monkeypatch
 def test_of_places_that_stand_the_one_that_falls_least_is_taken(monkeypatch, shares, taken, status):
     asked = []
 
-    def falls(_, group, wall):
+    def falls(_, group, wall, least):
         assert not wall.groups
         asked.append(float(group.placement.exact.corners[:, 0].min()))
-        return shares[len(asked) - 1] if len(asked) <= len(shares) else 0.7
+        share = shares[len(asked) - 1] if len(asked) <= len(shares) else 0.7
+        return share if share is not None and share < least else None
 
     monkeypatch.setattr(Seats, "falls", falls)
     plot = bricks()
@@ -209,7 +210,7 @@ def test_a_stone_on_its_tip_is_turned_by_half():
 def test_a_stone_that_does_not_rest_is_wedged():
     stones, site = blocks({1: (10, 10), 2: (10, 8), 3: (30, 10)}), Site(38, 30)
     for method, status, wedges in (("wedge", "as planned", [(3, 4)]), ("none", "no rest", [])):
-        plot = Plot(stones, site, {"stabilise": {"method": method}})
+        plot = Plot(stones, site, {"stabilise": {"method": method}, "settle": {"trials": 0}})
         laid = plot.lay([plot.planned(1, 0, 0), plot.planned(2, 20, 0)], [plot.planned(3, 0, 10)])
         assert statuses(laid)[1] == [status]
         assert [(wedge.under, wedge.id) for wedge in laid.build.wall.wedges] == wedges
@@ -261,7 +262,8 @@ def test_an_action_is_what_is_judged_of_its_place():
 
 
 def test_a_stone_goes_where_the_wall_resists_more():
-    plot = Plot(blocks({1: (22, 10), 2: (40, 10), 3: (12, 10)}), Site(50, 40))
+    settings = {"settle": {"trials": 0}}
+    plot = Plot(blocks({1: (22, 10), 2: (40, 10), 3: (12, 10)}), Site(50, 40), settings)
     free = LayingSettings(
         starts=30, enough=99, reach=3.0, width=0.0, top=0.0, turn=0.0, rest=0.0, judged=30
     )

@@ -14,6 +14,9 @@ from tests.settle.test_putting import SETTLE, box
 POST, PLANK = [(1, box(0.0, 0.0, 20.0))], [(2, box(-20.0, 20.0, 60.0, 10.0))]
 """A brick on the ground, and a plank in balance on it."""
 
+RNG = np.random.default_rng(0)
+"""What is drawn is multiplied by no errors."""
+
 
 def built(groups, errors=NONE):
     wall, rng = BuiltWall(0.58, SETTLE), np.random.default_rng(0)
@@ -40,14 +43,34 @@ def test_a_stone_far_above_tips_what_carries_all():
 
 def test_what_stays_is_not_touched():
     before = built([POST, PLANK])
-    brick = NONE.built(box(2.0, 30.0, 20.0, 30.0), np.random.default_rng(0))
+    brick = NONE.built(box(2.0, 30.0, 20.0, 30.0), RNG)
     after = before.put([(3, brick)]).loaded(3)
     assert list(after.laid) == [1, 2, 3]
     assert all(after.laid[i] is before.laid[i] for i in (1, 2))
 
 
+def test_what_is_held_stays_and_carries_what_comes():
+    before = built([POST, PLANK])
+    brick, aside = (NONE.built(box(x, 30.0, 20.0, 30.0), RNG) for x in (24.0, 200.0))
+    assert sorted(before.put([(3, brick)]).loaded(3).lost(before)) == [2]
+    held = before.held({2: before.laid[2], 4: aside})
+    after = held.put([(3, brick)]).loaded(3)
+    assert list(after.laid) == [1, 2, 4, 3]
+    assert not after.lost(held)
+    assert after.laid[4] is aside  # in the air
+
+
+def test_what_is_taken_up_takes_along_what_lies_on_it():
+    wall = built([POST, PLANK, [(3, box(90.0, 0.0))], [(4, box(90.0, 20.0))]])
+    assert list(wall.without([1]).laid) == [3, 4]
+    left = wall.without([4])
+    assert list(left.laid) == [1, 2, 3]
+    assert left.polygons.corners.tolist() == wall.polygons.leading(3).corners.tolist()
+    assert sorted(left.lost(wall)) == [4]
+
+
 def test_a_wedge_that_waits_for_its_stone_is_not_put_down_again():
-    wedge, aside = (NONE.built(box(x, 0.0), np.random.default_rng(0)) for x in (0.0, 90.0))
+    wedge, aside = (NONE.built(box(x, 0.0), RNG) for x in (0.0, 90.0))
     wall = BuiltWall(0.58, SETTLE).put([(5, wedge)]).put([(5, aside)])
     assert (wall.laid[5].x, len(wall.polygons)) == (pytest.approx(20.0, abs=0.1), 1)
 

@@ -100,6 +100,12 @@ class Built:
         return np.asarray(turn(self.outline, self.angle_deg) + (self.x, self.y))  # noqa: RUF005
 
 
+def as_planned(corners: Points) -> Built:
+    """Return a block where it is planned, as it was seen."""
+    area, x, y = area_and_centroid(corners)
+    return Built(corners - (x, y), x, y, 0.0, math.sqrt(area))
+
+
 def misjudged(outline: Points, sigma: float, waves: Floats) -> list[Points]:
     """Return an outline about its centroid as it may really be: smooth errors of what was seen.
 
@@ -129,10 +135,8 @@ def misjudged(outline: Points, sigma: float, waves: Floats) -> list[Points]:
 
 def _refined(outline: Points, longest: float) -> Points:
     """Return an outline with corners added so that no edge is longer."""
-    after = np.roll(outline, -1, axis=0)
-    counts = np.maximum(1, np.ceil(np.hypot(*(after - outline).T) / longest)).astype(int)
-    pieces = [
-        a + (b - a) * (np.arange(count) / count)[:, None]
-        for a, b, count in zip(outline, after, counts, strict=True)
-    ]
-    return np.concatenate(pieces)
+    way = np.roll(outline, -1, axis=0) - outline
+    counts = np.maximum(1, np.ceil(np.hypot(*way.T) / longest)).astype(int)
+    edge = np.repeat(np.arange(len(outline)), counts)
+    step = np.arange(len(edge)) - (np.cumsum(counts) - counts)[edge]
+    return np.asarray(outline[edge] + way[edge] * (step / counts[edge])[:, None])

@@ -147,7 +147,8 @@ class Attempt:
             return True
         self._until.look()
         with self._profile.part("stabilisation"):
-            falls = self._workshop.seats.falls(candidate.stabilised, wall)
+            least = min((falls for falls, _ in self._unsure), default=math.inf)
+            falls = self._workshop.seats.falls(candidate.stabilised, wall, least)
         if falls:
             self._unsure.append((falls, candidate))
         self._refused |= falls != 0.0

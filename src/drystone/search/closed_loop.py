@@ -4,8 +4,9 @@ The builder knows where everything lies, but not what he misses by next: neither
 stone in his hand nor his own slip.  So the rest is planned again after every stone.  Only the next
 stone of a plan is ever laid, so only that one is: it is let go where it was planned, and tried
 there with errors that he may make.  Where it would fall he tries beside it and turned a little.  A
-stone without a sure place, or that fell, goes back into the heap; it comes last, to its own place
-if it rests there now, else to the lowest one on the wall where it rests surely.
+stone without a sure place, or that fell, is taken up, with what lies on it, and goes back into the
+heap; it comes last, to its own place if it rests there now, else to the lowest one on the wall
+where it rests surely.
 """
 
 import math
@@ -17,7 +18,7 @@ import numpy as np
 
 from drystone.kernels.polygons import area_and_centroid
 from drystone.kernels.profiles import HeightProfile, bare, hanging, raised
-from drystone.model.builder import NUMBERS, BuilderErrors, Built
+from drystone.model.builder import NUMBERS, BuilderErrors, Built, as_planned
 from drystone.model.outlines import Outlined
 from drystone.physics.building import build_up, tilt_of
 from drystone.physics.scatter import Variation
@@ -32,7 +33,7 @@ from drystone.search.rehearsal import (
     mean_size,
 )
 from drystone.settle.as_built import BuiltWall
-from drystone.settle.putting import FALLEN_DEG, FALLEN_SHARE, fallen_share
+from drystone.settle.putting import FALLEN_DEG, FALLEN_SHARE, astray
 from drystone.settle.settings import SettleSettings
 
 TRIALS = 8
@@ -41,11 +42,17 @@ TRIALS = 8
 SURE = 0.75
 """A planned place is used when the stone rests there in this share of the trials; others wait."""
 
+OTHERS = 0.5
+"""A trial in which others fall counts as so much of one in which the stone itself falls."""
+
 TRIES = 3
 """So often a stone that falls is put down again before it goes back into the heap."""
 
 BESIDE = [(aside, turn) for turn in (0.0, -5.0, 5.0) for aside in (0.0, -0.1, 0.1, -0.2, 0.2)]
 """Places that are tried for a stone: from the planned one, over its size, and degrees."""
+
+ROUNDS = 4
+"""So often the heap is gone through."""
 
 QUARTERS = (0.0, 180.0, 90.0, 270.0)
 """Turns in which a stone of the heap is tried, degrees."""
@@ -71,7 +78,7 @@ class ClosedRun(RehearsalRun):
     A stone is fallen when it does not lie in the finished wall.
     """
 
-    again: int = 0  # how often a stone fell on the way, and was taken up or left where it lay
+    again: int = 0  # how often a stone fell on the way, and was taken up
 
 
 class _Aim(NamedTuple):
@@ -87,9 +94,8 @@ class _Stone:
 
     def __init__(self, group: Sequence[Outlined], errors: BuilderErrors) -> None:
         rng = np.random.default_rng([TRIAL_DRAWS, group[0][0]])
-        nothing = errors.times(0.0)
         self.id = group[0][0]
-        self.seen, *wedges = [nothing.built(corners, rng) for _, corners in group]
+        self.seen, *wedges = [as_planned(corners) for _, corners in group]
         self.wedges = [(i, one) for (i, _), one in zip(group[1:], wedges, strict=True)]
         # How it may be put down, the same wherever that is.
         self.trials = errors.all_built(group[0][1], rng.standard_normal((TRIALS, NUMBERS)))
@@ -112,13 +118,16 @@ class _Stone:
     def aim(self, wall: BuiltWall, start: Built, least: float) -> _Aim | None:
         """Let it go at a place, and try that; None where it rests less surely than `least`."""
         rest = wall.put(self.pieces(start)).laid.get(self.id)
-        if rest is None or _astray(rest, start):
+        if rest is None or astray(rest, start):
             return None
-        falls = 0
+        falls = 0.0
         for trial in self.trials:
             put = wall.put(self.pieces(self.missed(start, trial)))
-            found = put.loaded(self.id).laid.get(self.id) if self.id in put.laid else None
-            falls += found is None or _astray(found, rest)
+            after = put.loaded(self.id) if self.id in put.laid else put
+            if self.id not in after.laid or astray(after.laid[self.id], rest):
+                falls += 1.0
+            elif after.lost(put):
+                falls += OTHERS
             if TRIALS - falls < least * TRIALS:
                 return None
         return _Aim(1.0 - falls / TRIALS, start, rest)
@@ -174,12 +183,6 @@ def _lowest(
         free[max(0, at - apart + 1) : at + apart] = np.inf
 
 
-def _astray(one: Built, other: Built) -> bool:
-    """Say whether a block has fallen from one place to the other."""
-    way = one.x - other.x, one.y - other.y, one.angle_deg - other.angle_deg
-    return fallen_share(*way, one.size) > 1.0
-
-
 def rehearse_closed(
     groups: Groups,
     errors: BuilderErrors,
@@ -196,18 +199,15 @@ def rehearse_closed(
     work = _Work(groups, errors, rng, BuiltWall(mu, settle or SettleSettings()))
     for stone in work.stones:
         work.lay(stone, stone.planned(), SURE)
-    left = len(groups) + 1
-    while (heap := [one for one in work.stones if one.id not in work.wall.laid]) and (
-        len(heap) < left
-    ):
-        left = len(heap)
+    for _ in range(ROUNDS):
+        heap = [one for one in work.stones if one.id not in work.wall.laid]
         for stone in heap:
             work.lay(stone, work.places(stone), 1 / TRIALS)
     laid, ends = work.wall.laid, []
     for group in groups:
         block, corners = group[0]
         built = laid.get(block)
-        if built is None or _astray(built, work.rested[block]):
+        if built is None:
             ends.append(StoneEnd(block, True, None, None))
             continue
         _, x, y = area_and_centroid(corners)
@@ -249,9 +249,11 @@ class _Work:
             rest = wall.laid.get(stone.id)
             if rest is not None:
                 # What lies firmly stays, wherever it is: the rest is planned from there.
-                before, self.wall = len(wall.laid), wall.loaded(stone.id)
-                self.again += _astray(rest, aim.rest) + before - len(self.wall.laid)
-                self.rested[stone.id] = rest
+                after = wall.loaded(stone.id)
+                self.rested[stone.id], now = rest, after.laid
+                fallen = [i for i, at in self.rested.items() if i in now and astray(now[i], at)]
+                self.again += astray(rest, aim.rest) + len(wall.laid) - len(now) + len(fallen)
+                self.wall = after.without(fallen)
                 return
             self.again += 1
             aside, turn = self._rng.standard_normal(2).tolist()

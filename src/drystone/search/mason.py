@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain
-from operator import attrgetter, itemgetter
+from operator import attrgetter
 from typing import Literal
 
 from drystone.model.landscape import Landscape
@@ -167,7 +167,7 @@ class Mason:
         highest_px = site.extent_px[1] + self.yard.settings.settle.beyond_px
         stone = workshop.stones.by_id(planned.stone_id)
         reasons: list[Status] = []
-        unsure: list[tuple[float, StoneLaying]] = []
+        least, surest = math.inf, None
         solves = Solves()
         for status, half_deg in HALVES:
             angle_deg = wrap_deg(planned.angle_deg + half_deg)
@@ -175,28 +175,29 @@ class Mason:
             aim = Aim(left, planned.top_px, angle_deg, highest_px, unit_px)
             starts = self.hand.starts(turned, view, aim)
             resting = self.hand.resting(turned, view, aim, starts)
-            falls, action, trouble = self._surest(build, stone, angle_deg, side, resting)
+            least, action, trouble = self._surest(build, stone, angle_deg, side, resting, least)
             solves += trouble
             if action is not None:
-                unsure.append((falls, StoneLaying(planned, status, action, solves)))
-                if not falls:
+                surest = StoneLaying(planned, status, action)
+                if not least:
                     break
             reasons.append("falls" if resting else "no rest" if starts else "no place")
-        if unsure:
-            return replace(min(unsure, key=itemgetter(0))[1], solves=solves)
+        if surest is not None:
+            return replace(surest, solves=solves)
         # Why not: how far the pose came that came furthest.
         order: tuple[Status, ...] = ("falls", "no rest", "no place")
         return StoneLaying(planned, min(reasons, key=order.index), None, solves)
 
     def _surest(
-        self, build: Build, stone: Stone, angle_deg: float, side: Side, resting: Sequence[Resting]
-    ) -> tuple[float, Candidate | None, Solves]:
+        self, build: Build, stone: Stone, angle_deg: float, side: Side,
+        resting: Sequence[Resting], least: float,
+    ) -> tuple[float, Candidate | None, Solves]:  # fmt: skip
         """Compare the cheapest places after which the wall stands.
 
-        Return the best in which the stone falls in no trial, or the one in which it falls least,
-        and in which share of the trials.
+        Return in which share of the trials the stone falls in the best of which that is nothing,
+        or in that of the least such share, if it is below `least`.
         """
-        surest: tuple[float, Candidate | None] = math.inf, None
+        surest: tuple[float, Candidate | None] = least, None
         places, seats = list(enumerate(resting[: self.laying.judged])), self.yard.workshop.seats
         solves = Solves()
         while places:
@@ -222,8 +223,8 @@ class Mason:
                 proposal = Proposal(stabilised, angle_deg, cost=place.cost, spot=one.spot)
                 landscape = Landscape.of(build.wall, side)
                 action = self.evaluator.candidate(landscape, proposal, one.loaded, sturdy)
-                falls = seats.falls(stabilised, build.wall) if action.sturdy else None
-                if falls is not None and falls < surest[0]:
+                falls = seats.falls(stabilised, build.wall, surest[0]) if action.sturdy else None
+                if falls is not None:
                     surest = falls, action
                 if not surest[0]:
                     return *surest, solves

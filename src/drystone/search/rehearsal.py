@@ -13,14 +13,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from drystone.kernels.polygons import area_and_centroid
-from drystone.model.builder import NUMBERS, WEDGE_SHARE, BuilderErrors, Built
+from drystone.model.builder import NUMBERS, WEDGE_SHARE, BuilderErrors, Built, as_planned
 from drystone.model.outlines import Outlined
 from drystone.model.wall import Wall, outlined
 from drystone.physics.building import BuildSettings, build_up, tilt_of
 from drystone.physics.scene import EngineSettings
 from drystone.poses import wrap_deg
 from drystone.settle.as_built import BuiltWall
-from drystone.settle.putting import fallen_share
+from drystone.settle.putting import astray, fallen_share
 from drystone.settle.settings import SettleSettings
 
 Groups = Sequence[Sequence[Outlined]]
@@ -139,10 +139,9 @@ def _end(planned: Outlined, built: Built | None) -> StoneEnd:
     block, corners = planned
     if built is None:
         return StoneEnd(block, True, None, None)
-    _, x, y = area_and_centroid(corners)
-    way = built.x - x, built.y - y
-    fallen = fallen_share(*way, built.angle_deg, built.size) > 1.0
-    return StoneEnd(block, fallen, math.hypot(*way) / built.size, built.angle_deg)
+    at = as_planned(corners)
+    share = math.hypot(built.x - at.x, built.y - at.y) / built.size
+    return StoneEnd(block, astray(built, at), share, built.angle_deg)
 
 
 def rehearse_in_engine(

@@ -20,7 +20,7 @@ from drystone.kernels.raster import turn
 from drystone.kernels.settling import Status
 from drystone.model.builder import Built
 from drystone.poses import wrap_deg
-from drystone.settle.putting import let_go, moved, put_down, touching
+from drystone.settle.putting import astray, let_go, moved, put_down, touching
 from drystone.settle.settings import SettleSettings
 from drystone.settle.wedge import in_order
 
@@ -34,6 +34,10 @@ class Bearing(NamedTuple):
     x: float
     y: float
     below: int  # whose it is; -1 is the ground
+
+
+HELD = (Bearing(-math.inf, 0.0, -1), Bearing(math.inf, 0.0, -1))
+"""What a block bears on that stays, whatever comes onto it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,11 +68,35 @@ class BuiltWall:
             for one, shift in shifts.items():
                 laid[one] = replace(laid[one], x=laid[one].x + shift)
             for one, on in list(bearings.items()) if shifts else ():
-                if not shifts.keys().isdisjoint((one, *(bearing.below for bearing in on))):
+                both = {one, *(bearing.below for bearing in on)}
+                if on is not HELD and not both.isdisjoint(shifts):
                     del bearings[one]
             laid[block] = rest
             polygons = moved(polygons, pushed).added([rest.corners])
         return replace(self, laid=laid, polygons=polygons, bearings=bearings)
+
+    def held(self, blocks: Mapping[int, Built]) -> "BuiltWall":
+        """Hold blocks where they are, whatever they bear on."""
+        new = {i: built for i, built in blocks.items() if i not in self.laid}
+        polygons = self.polygons.added(built.corners for built in new.values())
+        bearings = {**self.bearings, **dict.fromkeys(blocks, HELD)}
+        return replace(self, laid={**self.laid, **new}, polygons=polygons, bearings=bearings)
+
+    def without(self, blocks: Iterable[int]) -> "BuiltWall":
+        """Take up blocks, and all that lies on them; what all bear on is known."""
+        out = set(blocks)
+        for one in self.laid:
+            if not out.isdisjoint(bearing.below for bearing in self.bearings[one]):
+                out.add(one)
+        left = [place for place, one in enumerate(self.laid) if one not in out]
+        laid = {i: one for i, one in self.laid.items() if i not in out}
+        bearings = {i: self.bearings[i] for i in laid}
+        return replace(self, laid=laid, polygons=in_order(self.polygons, left), bearings=bearings)
+
+    def lost(self, before: "BuiltWall") -> list[int]:
+        """List the blocks of a wall before that have fallen since."""
+        now = self.laid
+        return [i for i, one in before.laid.items() if i not in now or astray(now[i], one)]
 
     def loaded(self, block: int) -> "BuiltWall":
         """Let what carries a block move under it, each at most once."""
@@ -131,17 +159,14 @@ def _rolled(wall: BuiltWall, block: int, load: tuple[float, float]) -> BuiltWall
     x, y = load
     if on and on[0].x <= x <= on[-1].x:
         return wall
-    above = {block}
-    for one in wall.laid:
-        if not above.isdisjoint(bearing.below for bearing in wall.bearings[one]):
-            above.add(one)
-    left = [place for place, one in enumerate(wall.laid) if one not in above]
-    below = in_order(wall.polygons, left)
+    below = wall.without([block])
+    again = [i for i in wall.laid if i not in below.laid and i != block]
     corners = built.corners - load  # gravity acts there
     edges = polygon_edges(corners)
-    laid = {i: one for i, one in wall.laid.items() if i not in above}
     for sticks in (True, False):
-        found = let_go(corners, edges, load, built.size, below, wall.mu, wall.settle, sticks=sticks)
+        found = let_go(
+            corners, edges, load, built.size, below.polygons, wall.mu, wall.settle, sticks=sticks
+        )
         if found.status is Status.RESTS:
             if (found.x, found.y, found.angle) == (*load, 0.0):
                 return wall
@@ -149,10 +174,8 @@ def _rolled(wall: BuiltWall, block: int, load: tuple[float, float]) -> BuiltWall
             (way,) = turn(np.array([(built.x - x, built.y - y)]), turn_deg)
             x, y = on_grid(way + (found.x, found.y)).tolist()  # noqa: RUF005 - an array
             angle_deg = wrap_deg(built.angle_deg + turn_deg)
-            laid[block] = Built(built.outline, x, y, angle_deg, built.size)
-            below = below.added([laid[block].corners])
+            rest = Built(built.outline, x, y, angle_deg, built.size)
+            polygons = below.polygons.added([rest.corners])
+            below = replace(below, laid={**below.laid, block: rest}, polygons=polygons)
             break
-    bearings = {i: wall.bearings[i] for i in laid if i != block}
-    wall_below = replace(wall, laid=laid, polygons=below, bearings=bearings)
-    again = ((i, one) for i, one in wall.laid.items() if i in above and i != block)
-    return _with_bearings(wall_below.put(again))
+    return _with_bearings(below.put((i, wall.laid[i]) for i in again))

@@ -167,3 +167,9 @@ def _squeezed_in(
 def fallen_share(x: float, y: float, turn_deg: float, size: float) -> float:
     """Return how near a block is to having fallen, from its way from the plan; from 1 on it has."""
     return max(math.hypot(x, y) / size / FALLEN_SHARE, abs(wrap_deg(turn_deg)) / FALLEN_DEG)
+
+
+def astray(one: Built, other: Built) -> bool:
+    """Say whether a block has fallen from one place to the other."""
+    way = one.x - other.x, one.y - other.y, one.angle_deg - other.angle_deg
+    return fallen_share(*way, one.size) > 1.0

@@ -8,25 +8,12 @@ import pytest
 from drystone.errors import ExitCode, UsageError
 from drystone.model.site import Site
 from drystone.selection.policies.learned import FEATURES, learned, model_from_json, shipped_model
+from drystone_lab.rl import train
 from drystone_lab.rl.draw import DrawSettings, draw_wall
 from drystone_lab.rl.episode import Episode, prepared
-from drystone_lab.rl.train import (
-    HELD_OUT,
-    TRAINED_ON,
-    Branching,
-    TrainSettings,
-    at_random,
-    branching,
-    finished,
-    fitted,
-    main,
-    mean_merit,
-    spread_of,
-    train,
-)
 from tests.lab.rl.walls import SMALL, bricks
 
-TINY = TrainSettings(
+TINY = train.TrainSettings(
     seed=3, rounds=1, walls=12, validation=6, strength=10.0,
     draw=DrawSettings(kinds=("rubble",), stones=8, size_px=10.0),
 )  # fmt: skip
@@ -34,7 +21,7 @@ TINY = TrainSettings(
 
 def test_better_than_random_on_other_walls():
     said = []
-    model = train(TINY, said.append)
+    model = train.train(TINY, said.append)
     assert model.trained["merit_learned"] > model.trained["merit_random"] + 0.5
     assert model.trained["finished"] > 2 * TINY.rounds * TINY.walls
     assert len(said) == TINY.rounds + 1
@@ -42,29 +29,29 @@ def test_better_than_random_on_other_walls():
 
 def test_equal_seeds_equal_bytes():
     short = replace(TINY, rounds=2, walls=2, validation=1)
-    text = train(short).to_json()
-    assert train(short).to_json() == text
-    assert train(replace(short, seed=4)).to_json() != text
+    text = train.train(short).to_json()
+    assert train.train(short).to_json() == text
+    assert train.train(replace(short, seed=4)).to_json() != text
 
 
 def test_time_cuts_it_short_and_says_so():
-    model = train(replace(TINY, validation=1), seconds=-1.0)
+    model = train.train(replace(TINY, validation=1), seconds=-1.0)
     assert model.trained["rounds"] == model.trained["finished"] == 0
     assert model.weights == (0.0,) * len(FEATURES)
 
 
 def test_shipped_weights_beat_random_on_walls_that_were_not_trained_on():
-    draw = DrawSettings(kinds=TRAINED_ON, stones=9, size_px=12.0)
+    draw = DrawSettings(kinds=train.TRAINED_ON, stones=9, size_px=12.0)
     walls = [prepared(*draw_wall(draw, np.random.default_rng([9, k]))) for k in range(6)]
-    by_value = mean_merit(learned().choose, walls)
-    assert by_value > mean_merit(at_random, walls) + 0.3
+    by_value = train.mean_merit(learned().choose, walls)
+    assert by_value > train.mean_merit(train.at_random, walls) + 0.3
 
 
 def test_shipped_weights_are_of_the_settings_of_today():
-    trained, settings = shipped_model().trained, TrainSettings()
+    trained, settings = shipped_model().trained, train.TrainSettings()
     for name in ("seed", "rounds", "walls", "strength"):
         assert trained[name] == getattr(settings, name)
-    assert trained["kinds"] == list(TRAINED_ON)
+    assert trained["kinds"] == list(train.TRAINED_ON)
     assert trained["stones"] == settings.draw.stones
     assert trained["merit_learned"] > trained["merit_random"]
 
@@ -72,7 +59,7 @@ def test_shipped_weights_are_of_the_settings_of_today():
 def test_command_writes_the_file(tmp_path, capsys):
     path = tmp_path / "weights.json"
     few = ["--walls", "1", "--validation", "1", "--stones", "4", "--minutes", "-1"]
-    assert main(["-o", str(path), *few]) == 0
+    assert train.main(["-o", str(path), *few]) == 0
     model = model_from_json(path.read_text("utf-8"), path.name)
     assert model.trained["rounds"] == 0
     out, err = capsys.readouterr()
@@ -83,18 +70,19 @@ def test_command_writes_the_file(tmp_path, capsys):
 def test_walls_without_a_choice_teach_nothing(tmp_path):
     full = DrawSettings(kinds=("brick",), stones=3, size_px=12.0, surplus=60.0)
     with pytest.raises(UsageError, match="no stone of these walls has a choice") as caught:
-        train(replace(TINY, walls=2, draw=full))
+        train.train(replace(TINY, walls=2, draw=full))
     assert caught.value.code == "E123"
     few = ["-o", str(tmp_path / "w.json"), "--stones", "2"]
-    assert main(few) == ExitCode.USAGE
+    assert train.main(few) == ExitCode.USAGE
 
 
 @pytest.mark.parametrize(
-    "wrong", [["--walls", "0"], ["--seed", "-1"], ["--seed", str(HELD_OUT)], ["--rounds", "0"]]
+    "wrong",
+    [["--walls", "0"], ["--seed", "-1"], ["--seed", str(train.HELD_OUT)], ["--rounds", "0"]],
 )
 def test_command_refuses(wrong, tmp_path):
     with pytest.raises(SystemExit) as caught:
-        main(["-o", str(tmp_path / "w.json"), *wrong])
+        train.main(["-o", str(tmp_path / "w.json"), *wrong])
     assert caught.value.code == 2
 
 
@@ -105,42 +93,42 @@ def made(count, weights, noise=0.0):
     for _ in range(count):
         features = rng.normal(size=(4, len(weights)))
         merits = features @ np.array(weights) + rng.normal() + noise * rng.normal(size=4)
-        found.append(Branching(features, merits))
+        found.append(train.Branching(features, merits))
     return found
 
 
 def test_fit_finds_the_weights_whatever_the_walls_are_worth():
     weights = [1.0, -2.0, 0.0]
     ones = np.ones(3)
-    assert fitted(made(50, weights), ones, 1e-9) == pytest.approx(weights, abs=1e-6)
-    noisy = fitted(made(2000, weights, noise=1.0), ones, 1e-9)
+    assert train.fitted(made(50, weights), ones, 1e-9) == pytest.approx(weights, abs=1e-6)
+    noisy = train.fitted(made(2000, weights, noise=1.0), ones, 1e-9)
     assert noisy == pytest.approx(weights, abs=0.06)
 
 
 def test_fit_is_of_features_over_their_scale():
     scale = np.array([2.0, 0.5, 1.0])
-    found = fitted(made(50, [1.0, -2.0, 0.0]), scale, 1e-9)
+    found = train.fitted(made(50, [1.0, -2.0, 0.0]), scale, 1e-9)
     assert found / scale == pytest.approx([1.0, -2.0, 0.0], abs=1e-6)
 
 
 def test_fit_is_drawn_to_zero():
     data = made(50, [1.0, -2.0, 0.0])
-    assert fitted(data, np.ones(3), 1e9) == pytest.approx(np.zeros(3), abs=1e-4)
+    assert train.fitted(data, np.ones(3), 1e9) == pytest.approx(np.zeros(3), abs=1e-4)
     # 50 times 4 places less their mean: as many zeros halve them.
-    assert fitted(data, np.ones(3), 150.0)[1] == pytest.approx(-1.0, abs=0.2)
+    assert train.fitted(data, np.ones(3), 150.0)[1] == pytest.approx(-1.0, abs=0.2)
 
 
 def test_spread_is_within_branchings():
     rows = np.array([[1.0, 5.0], [3.0, 5.0]])
-    two = [Branching(rows, np.zeros(2)), Branching(rows + 10.0, np.zeros(2))]
-    assert spread_of(two).tolist() == [1.0, 1.0]
-    assert spread_of([Branching(2 * rows, np.zeros(2))]).tolist() == [2.0, 1.0]
+    two = [train.Branching(rows, np.zeros(2)), train.Branching(rows + 10.0, np.zeros(2))]
+    assert train.spread_of(two).tolist() == [1.0, 1.0]
+    assert train.spread_of([train.Branching(2 * rows, np.zeros(2))]).tolist() == [2.0, 1.0]
 
 
 def test_branching_finishes_the_wall_from_every_place():
     workshop = prepared(*draw_wall(SMALL, np.random.default_rng(2)))
-    one = branching(workshop, at_random, (1, 2))
-    again = branching(workshop, at_random, (1, 2))
+    one = train.branching(workshop, train.at_random, (1, 2))
+    again = train.branching(workshop, train.at_random, (1, 2))
     assert one.features.shape == (len(one.merits), len(FEATURES))
     assert len(one.merits) > 1
     assert one.merits.tolist() == again.merits.tolist()
@@ -150,5 +138,5 @@ def test_branching_finishes_the_wall_from_every_place():
 def test_no_branching_where_no_stone_fits():
     stones, _ = bricks(3)
     workshop = prepared(stones, Site(5, 5))
-    assert branching(workshop, at_random, (1,)) is None
-    assert finished(Episode(workshop), at_random, np.random.default_rng(0)) == 0.0
+    assert train.branching(workshop, train.at_random, (1,)) is None
+    assert train.finished(Episode(workshop), train.at_random, np.random.default_rng(0)) == 0.0
