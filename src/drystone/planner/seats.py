@@ -142,5 +142,5 @@ def _digest(before: bytes, group: Group) -> bytes:
     """Return what tells some steps of construction from others, after one more."""
     placement, at = group.placement, group.placement.exact
     place = np.array([placement.stone_id, placement.posed.angle_deg, at.x_px, at.y_px])
-    wedges = [corners.tobytes() for _, corners in outlined(placement, group.wedges)[1:]]
+    wedges = [b"%d" % i + cut.tobytes() for i, cut in outlined(placement, group.wedges)[1:]]
     return blake2b(b"".join([before, place.tobytes(), *wedges]), digest_size=16).digest()
