@@ -4,9 +4,9 @@ The builder knows where everything lies, but not what he misses by next: neither
 stone in his hand nor his own slip.  So the rest is planned again after every stone.  Only the next
 stone of a plan is ever laid, so only that one is: it is let go where it was planned, and tried
 there with errors that he may make.  Where it would fall he tries beside it and turned a little.  A
-stone without a sure place, or that fell, is taken up, with what lies on it, and goes back into the
-heap; it comes last, to its own place if it rests there now, else to the lowest one on the wall
-where it rests surely.
+stone without a sure place stays in the heap, and what falls goes back there with what lies on it.
+The heap comes last: each stone goes to its own place if it rests there now, else to the lowest one
+on the wall where it rests surely.
 """
 
 import math
@@ -200,14 +200,14 @@ def rehearse_closed(
     for stone in work.stones:
         work.lay(stone, stone.planned(), SURE)
     for _ in range(ROUNDS):
-        heap = [one for one in work.stones if one.id not in work.wall.laid]
-        for stone in heap:
+        before = work.wall, work.again
+        for stone in [one for one in work.stones if one.id not in work.wall.laid]:
             work.lay(stone, work.places(stone), 1 / TRIALS)
+        if (work.wall, work.again) == before:
+            break
     laid, ends = work.wall.laid, []
-    for group in groups:
-        block, corners = group[0]
-        built = laid.get(block)
-        if built is None:
+    for (block, corners), *_ in groups:
+        if (built := laid.get(block)) is None:
             ends.append(StoneEnd(block, True, None, None))
             continue
         _, x, y = area_and_centroid(corners)
@@ -248,7 +248,7 @@ class _Work:
             wall = self.wall.put(stone.pieces(stone.missed(aim.start, real), wedges))
             rest = wall.laid.get(stone.id)
             if rest is not None:
-                # What lies firmly stays, wherever it is: the rest is planned from there.
+                # What lies near to where it came to rest stays: the rest is planned from there.
                 after = wall.loaded(stone.id)
                 self.rested[stone.id], now = rest, after.laid
                 fallen = [i for i, at in self.rested.items() if i in now and astray(now[i], at)]

@@ -194,8 +194,8 @@ class Mason:
     ) -> tuple[float, Candidate | None, Solves]:  # fmt: skip
         """Compare the cheapest places after which the wall stands.
 
-        Return in which share of the trials the stone falls in the best of which that is nothing,
-        or in that of the least such share, if it is below `least`.
+        Return one of them, and in which share of the trials something falls there: the best where
+        nothing does, else that of the least share, if it is below `least`.
         """
         surest: tuple[float, Candidate | None] = least, None
         places, seats = list(enumerate(resting[: self.laying.judged])), self.yard.workshop.seats

@@ -60,7 +60,7 @@ class SettleSettings(Ranged):
         Most of them of one stone.
     trials : int
         How often a place is tried again with a quarter more than the errors of a hand
-        (:mod:`drystone.planner.seats`); a stone that falls there is laid elsewhere.
+        (:mod:`drystone.planner.seats`); where something falls, a stone is laid elsewhere.
     """
 
     method: Method = "energy"
