@@ -2,22 +2,24 @@
 
 import numpy as np
 import pytest
-from tests.naive import asides as naive_asides
 from tests.naive import coverage as naive_coverage
 from tests.naive import crevice as naive_crevice
 from tests.naive import drops as naive_drops
 from tests.naive import meetings as naive_meetings
+from tests.naive import putting as naive_putting
 
 from benchmarks.conftest import Row, Timer
 from benchmarks.outlines import CELL, OutlineScene, outline_scene
 from benchmarks.scenes import Stock
-from drystone.kernels.asides import asides
+from drystone.kernels import putting
 from drystone.kernels.coverage import coverage
 from drystone.kernels.crevice import crevice
 from drystone.kernels.drops import Wanted, drops
 from drystone.kernels.meetings import meetings
 from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import HeightProfile, bare, extremes, in_a_row, raised
+from drystone.model.builder import as_planned
+from drystone.settle.putting import put_down as put_down_built
 
 SHARES = "share of every pixel that an outline covers"
 PROFILE = "lowest and highest point of an outline over every column"
@@ -25,7 +27,7 @@ DROPS = "a stone dropped onto every column"
 SETTLE = "settling of a dropped stone"
 MEETINGS = "where a stone touches the wall"
 CREVICE = "free space under a stone"
-ASIDES = "which stones a stone that is pressed in pushes how far"
+PUT = "a stone put down a little aside"
 
 ROUNDS = 20
 
@@ -178,22 +180,23 @@ def test_crevice_slowly(timer: Timer, wall: OutlineScene, resting: list[Points])
     timer.times(1, row(wall, CREVICE, len(resting), "an upright line each px"), call)
 
 
-def test_asides(timer: Timer, wall: OutlineScene, resting: list[Points]) -> None:
-    """Press stones in, a little aside."""
-    pressed = [corners + np.array((4.0 * CELL, 0.0)) for corners in resting]
-    timer.times(
-        ROUNDS,
-        row(wall, ASIDES, len(pressed)),
-        lambda: [asides(one, wall.polygons, 0.0, 1.0) for one in pressed],
-    )
+def put_down(wall: OutlineScene, resting: list[Points]) -> None:
+    """Put stones down a little aside of where they came to rest."""
+    for corners in resting:
+        built = as_planned(corners + np.array((4.0 * CELL, 0.0)))
+        put_down_built(built, wall.polygons, 0.58, wall.settings)
+
+
+def test_put_down(timer: Timer, wall: OutlineScene, resting: list[Points]) -> None:
+    """Press stones in between their neighbours, and let them go."""
+    timer.times(ROUNDS, row(wall, PUT, len(resting)), lambda: put_down(wall, resting))
 
 
 @pytest.mark.slow
-def test_asides_slowly(timer: Timer, wall: OutlineScene, resting: list[Points]) -> None:
-    """The same line by line."""
-    pressed = [corners + np.array((4.0 * CELL, 0.0)) for corners in resting]
-    timer.times(
-        1,
-        row(wall, ASIDES, len(pressed), "Shapely, line by line"),
-        lambda: [naive_asides.asides(one, wall.outlines, 0.0, 1.0) for one in pressed],
-    )
+def test_put_down_slowly(
+    timer: Timer, wall: OutlineScene, resting: list[Points], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The same lift by lift, and line by line beside each other."""
+    monkeypatch.setattr(putting, "put_down", naive_putting.put_down)
+    twin = "Shapely, lift by lift"
+    timer.times(1, row(wall, PUT, len(resting), twin), lambda: put_down(wall, resting))

@@ -51,6 +51,15 @@ def test_it_does_not_move_aside_without_a_reason():
     assert 20 <= found.steps <= 28
 
 
+def test_what_overlaps_comes_apart_or_is_soon_given_up():
+    how = {"lean": 0.0, "near": 0.1, "far": 0.4, "overlap": 0.8}
+    for room, status, steps in ((20.5, Status.RESTS, 30), (19.6, Status.OVERLAPS, 12)):
+        beside = [at(box(20.0, 40.0), x, 10.0) for x in (40.0, 60.0 + room)]
+        found = let_go(BRICK, (60.2 + room - 19.6, 5.1, 0.0), beside, **how)
+        assert found.status == status
+        assert found.steps <= steps
+
+
 def test_leaning_gravity_closes_the_joint_beside_it():
     left = at(BRICK, 40.0, 5.01)
     found = let_go(BRICK, (62.0, 12.0, 0.05), [left])

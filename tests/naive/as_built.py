@@ -1,14 +1,14 @@
 """Where loads act, found from the top of a wall downwards for each block alone."""
 
 
-def load(block, laid, bearings):
+def load(block, laid, beds):
     """Return the weight of a block with its share of all that lies on it, and where that acts."""
     size = laid[block].size
     parts = [(size**2, laid[block].x, laid[block].y)]
-    for one, on in bearings.items():
+    for one, (on, _) in beds.items():
         if all(bearing.below != block for bearing in on):
             continue
-        weight, x, _ = load(one, laid, bearings)
+        weight, x, _ = load(one, laid, beds)
         left = max((b for b in on if b.x <= x), key=lambda b: b.x, default=None)
         right = min((b for b in on if b.x > x), key=lambda b: b.x, default=None)
         if left and right:

@@ -78,10 +78,9 @@ def test_a_wedge_that_waits_for_its_stone_is_not_put_down_again():
 @pytest.mark.parametrize("precision", [0.0, HAND])
 def test_loads_act_where_they_do_block_by_block(precision):
     wall = built(BOND, BuilderErrors.of_precision(precision, mean_size(BOND)))
-    loads = as_built._loads(wall)
+    loads = as_built._loads(wall, wall.laid)
     assert len(loads) == len(BOND)
     for block, place in loads.items():
-        assert place == pytest.approx(naive.load(block, wall.laid, wall.bearings)[1:])
+        assert place == pytest.approx(naive.load(block, wall.laid, wall.beds)[1:])
     # A brick in bond bears on two others.
-    below = {bearing.below for bearing in wall.bearings[20]}
-    assert below == {10, 11}
+    assert wall.beds[20].below == {10, 11}

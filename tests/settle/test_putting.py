@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
+from drystone.kernels import putting
 from drystone.kernels.polygons import no_polygons
 from drystone.model.builder import Built
 from drystone.settle.putting import fallen_share, put_down
 from drystone.settle.settings import SettleSettings
+from tests.naive import putting as naive
 
 SETTLE = SettleSettings()
 
@@ -70,6 +72,28 @@ def test_neighbours_that_lean_over_are_pushed_apart_where_a_lifted_brick_is():
 )
 def test_what_finds_no_rest_falls(below, mu):
     assert put(brick(0.0, 30.0), below, mu=mu) == (None, {})
+
+
+def test_blocks_come_to_rest_and_push_as_by_the_twin(monkeypatch):
+    """All that is asked of the kernel is asked of the twin, lift by lift."""
+    rng, rests = np.random.default_rng(3), [0, 0, 0]
+
+    def both(*block, **how):
+        (found, pushed), (told, moved) = kernel(*block, **how), naive.put_down(*block, **how)
+        assert (found and found[1:4]) == (told and pytest.approx(told[1:4], abs=1e-3))
+        assert pushed == pytest.approx(moved, abs=1e-3)
+        rests[0 if found is None else 2 if pushed else 1] += 1
+        return found, pushed
+
+    kernel = putting.put_down
+    monkeypatch.setattr(putting, "put_down", both)
+    for _ in range(20):
+        left, right, aside = rng.normal(0.0, 2.0, 3).tolist()
+        tilts = rng.normal(0.0, 3.0, 3).tolist()
+        around = [brick(left - 41.0, 14.0, tilts[0]), brick(right + 41.0, 14.0, tilts[1])]
+        bed = box(-90.0, rng.uniform(-20.0, -16.0), 180.0)
+        put(brick(4.0 * aside, 13.0, tilts[2]), bed, *(one.corners for one in around))
+    assert min(rests) > 2, rests
 
 
 def test_how_near_to_a_fall_a_stone_is():

@@ -9,6 +9,7 @@ cdef class Work:
     cdef p_double corners, bottoms, tops, low, high
 
 
+cdef Work work_for(list room, Py_ssize_t count)
 cdef double aside(MovingStone one, Body other, double sign, Work work) except -2.0
 cdef double depth(
     MovingStone one, Body other, Py_ssize_t axis, double start, double end, double sign, Work work

@@ -29,10 +29,7 @@ def asides(corners: Points, around: Polygons, gap: float, sign: float) -> list[t
     one: MovingStone = stone_of(corners, corners)
     heap: Heap = heap_of(around, 0.0)
     room: list = []
-    work: Work = Work()
-    work.corners = kept_doubles(room, 2 * (len(corners) + len(around.corners)))
-    work.bottoms, work.tops = kept_doubles(room, LINES), kept_doubles(room, LINES)
-    work.low, work.high = kept_doubles(room, LINES), kept_doubles(room, LINES)
+    work: Work = work_for(room, len(corners) + len(around.corners))
     found = []
     for i in range(heap.size):
         select(heap, i)
@@ -45,6 +42,15 @@ def asides(corners: Points, around: Polygons, gap: float, sign: float) -> list[t
 @cython.cclass
 class Work:
     """Corners of a polygon, and the ends of two polygons along all lines."""
+
+
+def work_for(room, count):
+    """Return room for polygons of so many corners, as long as a list is there."""
+    work: Work = Work()
+    work.corners = kept_doubles(room, 2 * count)
+    work.bottoms, work.tops = kept_doubles(room, LINES), kept_doubles(room, LINES)
+    work.low, work.high = kept_doubles(room, LINES), kept_doubles(room, LINES)
+    return work
 
 
 def aside(one, other, sign, work):

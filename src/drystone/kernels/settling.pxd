@@ -7,26 +7,29 @@ from libc.math cimport cos, isfinite, sin
 ctypedef double *p_double
 
 
-cdef class Way:
-    cdef p_double corners, edges
-    cdef Py_ssize_t count
-    cdef double arm, lean, stop, mu, clearance, tolerance, corner, near, far, most_turn, most_shift
-    cdef double gain, overlap, steep, beyond
-    cdef bint sticks, turns
-    cdef Py_ssize_t steps
-
-
 cdef class State(MovingStone):
     cdef double x, y, turn, least
 
 
+cdef class Way:
+    cdef p_double corners, edges
+    cdef State here, there
+    cdef LpRows work
+    cdef Py_ssize_t count, made, touching
+    cdef double arm, lean, stop, mu, clearance, tolerance, corner, near, far, most_turn, most_shift
+    cdef double gain, overlap, steep, beyond, margin
+    cdef bint sticks, turns
+    cdef Py_ssize_t steps
+
+
+cdef Way way_of(object outline, object edges, object rules)
+cdef object settling_of(Way way, int status)
+cdef int let_go(Way way, Heap heap, double x, double y, double turn) except -1
 cdef State state_of(Way way)
 cdef int look(State state, Way way, Heap heap) except -1 nogil
 cdef void exchange(State a, State b) noexcept nogil
 cdef double margin_of(Way way, State here, LpRows work) except -2.0 nogil
-cdef int descend(
-    Way way, Heap heap, State here, State there, LpRows work, Py_ssize_t *made
-) except -1 nogil
+cdef int descend(Way way, Heap heap, State here, State there, LpRows work) except -1 nogil
 cdef int tried(
     Way way, Heap heap, State here, State there, LpRows work, double *move, double radius,
     double gained

@@ -51,6 +51,9 @@ SPREAD = cython.declare(cython.double, 2.5)
 # Settling ends when the radius has shrunk to this share of the first one.
 SMALLEST = cython.declare(cython.double, 1e-6)
 
+# An overlap that grows less so slowly that it would last for more steps does not come apart.
+APART = cython.declare(cython.double, 24.0)
+
 # A contact with a normal steeper than this supports.
 UPWARD = cython.declare(cython.double, 0.3)
 
@@ -110,7 +113,7 @@ class Settling(NamedTuple):
 
 @cython.cclass
 class Way:
-    """What is let go, and by which rules."""
+    """What is let go, by which rules, and what became of it."""
 
 
 @cython.cclass
@@ -135,6 +138,17 @@ def settle(
     Corners of the outline are relative to the centroid, counter-clockwise.  The ends of the wall at
     x = 0 and `width` stop the stone, but carry nothing.
     """
+    way: Way = way_of(outline, edges, rules)
+    heap: Heap = heap_of(around, width)
+    x: cython.double = pose[0]
+    y: cython.double = pose[1]
+    turn: cython.double = pose[2]
+    heap.beyond = way.beyond
+    return settling_of(way, let_go(way, heap, x, y, turn))
+
+
+def way_of(outline, edges, rules):
+    """Return what is let go, of which both arrays have to outlive it."""
     require_friction(rules.mu)
     way: Way = Way()
     way.corners, way.edges, way.count = doubles(outline), doubles(edges), len(outline)
@@ -144,34 +158,42 @@ def settle(
         way.most_turn, way.most_shift, way.gain, way.overlap, way.steep, way.beyond, way.sticks,
         way.turns, way.steps,
     ) = rules  # fmt: skip
-    heap: Heap = heap_of(around, width)
-    heap.beyond = way.beyond
-    here: State = state_of(way)
-    there: State = state_of(way)
-    here.x, here.y, here.turn = pose
-    work: LpRows = LpRows()
-    made: cython.Py_ssize_t[1] = [0]
+    way.here, way.there, way.work = state_of(way), state_of(way), LpRows()
+    return way
+
+
+def settling_of(way, status):
+    """Return where what was let go has come to."""
+    here: State = way.here
+    return Settling(
+        Status(status), here.x, here.y, here.turn, here.least, way.margin, way.made, way.touching
+    )
+
+
+def let_go(way, heap, x, y, turn):
+    """Let a stone go at a pose, and return how that ended."""
+    here: State = way.here
+    there: State = way.there
+    work: LpRows = way.work
     status: cython.int = OVERLAPS
-    margin: cython.double = -1.0
-    touching: cython.Py_ssize_t = 0
+    way.made, way.margin, way.touching = 0, -1.0, 0
+    here.x, here.y, here.turn = x, y, turn
     with cython.nogil:
         look(here, way, heap)
-        if here.least >= -way.overlap and isfinite(way.arm + here.x + here.y + here.turn):
-            status = descend(way, heap, here, there, work, made)
+        if here.least >= -way.overlap and isfinite(way.arm + x + y + turn):
+            status = descend(way, heap, here, there, work)
             if status != FAR:
                 if not here.least >= 0.5 * way.clearance or crosses(here, heap):
                     status = OVERLAPS
                 else:
                     # Whatever stopped it: does the stone rest?
-                    margin = margin_of(way, here, work)
+                    way.margin = margin_of(way, here, work)
                     for k in range(0, 7 * here.found, 7):
                         if here.gaps[k + 5] <= way.tolerance and here.gaps[k + 6] != END:
-                            touching += 1
-                    if margin >= 0.0:
+                            way.touching += 1
+                    if way.margin >= 0.0:
                         status = RESTS
-    return Settling(
-        Status(status), here.x, here.y, here.turn, here.least, margin, made[0], touching
-    )
+    return status
 
 
 def state_of(way):
@@ -220,18 +242,21 @@ def margin_of(way, here, work):
     return firmness(here, here.x, here.y, way.arm, way.mu, way.tolerance, way.steep, work)
 
 
-def descend(way, heap, here, there, work, made):
+def descend(way, heap, here, there, work):
     """Go down step by step until nothing is gained; say why it stopped."""
     start_x: cython.double = here.x
     start_turn: cython.double = here.turn
+    start_least: cython.double = here.least
     better: cython.bint
     radius: cython.double = way.near
     half: cython.double = 0.5 * way.clearance
     move: cython.double[3] = [0.0, 0.0, 0.0]
-    while made[0] < way.steps:
+    while way.made < way.steps:
         if way.stop >= 0.0 and here.least >= half and margin_of(way, here, work) >= way.stop:
             return RESTS
-        made[0] += 1
+        if here.least < half and here.least < start_least * (1.0 - way.made / APART):
+            return UNFINISHED
+        way.made += 1
         better = False
         if best_move(here, way, radius, work, move):
             gained = -way.lean * move[0] - move[1]

@@ -36,8 +36,18 @@ class Bearing(NamedTuple):
     below: int  # whose it is; -1 is the ground
 
 
-HELD = (Bearing(-math.inf, 0.0, -1), Bearing(math.inf, 0.0, -1))
-"""What a block bears on that stays, whatever comes onto it."""
+class Bed(NamedTuple):
+    """What a block bears on."""
+
+    points: Sequence[Bearing]  # from left to right
+    below: frozenset[int]  # the blocks among those whose they are
+
+
+HELD = Bed((Bearing(-math.inf, 0.0, -1), Bearing(math.inf, 0.0, -1)), frozenset())
+"""The bed of a block that stays, whatever comes onto it."""
+
+NOWHERE = (math.inf, math.inf, -math.inf, -math.inf)
+"""A box that meets no other."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,15 +58,14 @@ class BuiltWall:
     settle: SettleSettings
     laid: Mapping[int, Built] = field(default_factory=dict)  # in the order of `polygons`
     polygons: Polygons = field(default_factory=no_polygons)
-    # What blocks bear on, from left to right, where it is known.
-    bearings: Mapping[int, Sequence[Bearing]] = field(default_factory=dict)
+    beds: Mapping[int, Bed] = field(default_factory=dict)  # where they are known
 
     def put(self, pieces: Iterable[tuple[int, Built]]) -> "BuiltWall":
         """Put blocks down on what does not move; those that rest nowhere are left out.
 
         What is there stays as it is: a wedge whose stone has fallen waits for it.
         """
-        laid, polygons, bearings = dict(self.laid), self.polygons, dict(self.bearings)
+        laid, polygons, beds = dict(self.laid), self.polygons, dict(self.beds)
         for block, built in pieces:
             if block in laid:
                 continue
@@ -67,105 +76,120 @@ class BuiltWall:
             shifts = {ids[place]: shift for place, shift in pushed.items()}
             for one, shift in shifts.items():
                 laid[one] = replace(laid[one], x=laid[one].x + shift)
-            for one, on in list(bearings.items()) if shifts else ():
-                both = {one, *(bearing.below for bearing in on)}
-                if on is not HELD and not both.isdisjoint(shifts):
-                    del bearings[one]
+            for one, bed in list(beds.items()) if shifts else ():
+                if bed is not HELD and (one in shifts or not bed.below.isdisjoint(shifts)):
+                    del beds[one]
             laid[block] = rest
             polygons = moved(polygons, pushed).added([rest.corners])
-        return replace(self, laid=laid, polygons=polygons, bearings=bearings)
+        return replace(self, laid=laid, polygons=polygons, beds=beds)
 
     def held(self, blocks: Mapping[int, Built]) -> "BuiltWall":
         """Hold blocks where they are, whatever they bear on."""
         new = {i: built for i, built in blocks.items() if i not in self.laid}
         polygons = self.polygons.added(built.corners for built in new.values())
-        bearings = {**self.bearings, **dict.fromkeys(blocks, HELD)}
-        return replace(self, laid={**self.laid, **new}, polygons=polygons, bearings=bearings)
+        beds = {**self.beds, **dict.fromkeys(blocks, HELD)}
+        return replace(self, laid={**self.laid, **new}, polygons=polygons, beds=beds)
+
+    def with_burden(self, blocks: Iterable[int]) -> set[int]:
+        """Return blocks and all that lies on them; all beds are known."""
+        some = set(blocks)
+        for one in self.laid:
+            if not some.isdisjoint(self.beds[one].below):
+                some.add(one)
+        return some
 
     def without(self, blocks: Iterable[int]) -> "BuiltWall":
-        """Take up blocks, and all that lies on them; what all bear on is known."""
-        out = set(blocks)
-        for one in self.laid:
-            if not out.isdisjoint(bearing.below for bearing in self.bearings[one]):
-                out.add(one)
+        """Take up blocks, and all that lies on them; all beds are known."""
+        out = self.with_burden(blocks)
         left = [place for place, one in enumerate(self.laid) if one not in out]
         laid = {i: one for i, one in self.laid.items() if i not in out}
-        bearings = {i: self.bearings[i] for i in laid}
-        return replace(self, laid=laid, polygons=in_order(self.polygons, left), bearings=bearings)
+        beds = {i: self.beds[i] for i in laid}
+        return replace(self, laid=laid, polygons=in_order(self.polygons, left), beds=beds)
 
     def lost(self, before: "BuiltWall") -> list[int]:
         """List the blocks of a wall before that have fallen since."""
-        now = self.laid
-        return [i for i, one in before.laid.items() if i not in now or astray(now[i], one)]
+        known = ((i, one, self.laid.get(i)) for i, one in before.laid.items())
+        return [i for i, one, now in known if now is not one and (not now or astray(now, one))]
 
     def loaded(self, block: int) -> "BuiltWall":
         """Let what carries a block move under it, each at most once."""
-        wall = _with_bearings(self)
+        wall = _with_beds(self)
         beneath = {block}
         for one in reversed(list(wall.laid)):
             if one in beneath:
-                beneath |= {bearing.below for bearing in wall.bearings[one]}
-        loads = _loads(wall)
+                beneath |= wall.beds[one].below
+        loads = _loads(wall, beneath)
         for one in [one for one in wall.laid if one in beneath and one != block]:
             if one in wall.laid:  # it may have fallen with another
                 after = _rolled(wall, one, loads[one])
                 if after is not wall:
-                    wall, loads = after, _loads(after)
+                    wall, loads = after, _loads(after, beneath)
         return wall
 
 
-def _with_bearings(wall: BuiltWall) -> BuiltWall:
+def _with_beds(wall: BuiltWall) -> BuiltWall:
     """Look for what blocks bear on where it is not known."""
-    ids, bearings = list(wall.laid), dict(wall.bearings)
+    ids, beds = list(wall.laid), dict(wall.beds)
     for place, (block, built) in enumerate(wall.laid.items()):
-        if block in bearings:
+        if block in beds:
             continue
-        below = wall.polygons.leading(place)
-        found = meetings(built.corners, below, touching(built.size, wall.settle))
+        around = wall.polygons.leading(place)
+        found = meetings(built.corners, around, touching(built.size, wall.settle))
         told = zip(found.others, found.counts, found.points, found.normals, strict=True)
-        bearings[block] = sorted(
+        points = sorted(
             Bearing(x, y, ids[other] if other >= 0 else -1)
             for other, count, points, normal in told
             if normal[1] >= UPWARD
             for x, y in points[:count].tolist()
         )
-    return replace(wall, bearings=bearings)
+        beds[block] = Bed(points, frozenset(point.below for point in points if point.below >= 0))
+    return replace(wall, beds=beds)
 
 
-def _loads(wall: BuiltWall) -> dict[int, tuple[float, float]]:
-    """Return where the weight of each block and of what lies on it acts."""
-    sums = {i: [b.size**2, b.size**2 * b.x, b.size**2 * b.y] for i, b in wall.laid.items()}
-    loads = {}
-    for one in reversed(list(wall.laid)):
+def _loads(wall: BuiltWall, blocks: Iterable[int]) -> dict[int, tuple[float, float]]:
+    """Return where the weight of blocks, and of what lies on them, acts; of each with its own."""
+    burden = wall.with_burden(blocks)
+    sums, loads = {}, {}
+    for block in [one for one in wall.laid if one in burden]:
+        built = wall.laid[block]
+        weight = built.size**2
+        sums[block] = [weight, weight * built.x, weight * built.y]
+    for one in reversed(list(sums)):
         weight, x, y = sums[one]
         x, y = loads[one] = x / weight, y / weight
-        on = wall.bearings[one]
+        on = wall.beds[one].points
         if not on:
             continue
         # What acts beside all that it bears on hangs on the last point.
         i = bisect(on, (x,))
         left, right = on[max(i - 1, 0)], on[min(i, len(on) - 1)]
         share = (x - left.x) / (right.x - left.x) if right.x > left.x else 0.0
-        for bearing, part in ((left, 1.0 - share), (right, share)):
-            if bearing.below >= 0:
-                for k, value in enumerate((1.0, bearing.x, bearing.y)):
-                    sums[bearing.below][k] += weight * part * value
+        for bearing, part in ((left, weight * (1.0 - share)), (right, weight * share)):
+            below = sums.get(bearing.below)
+            if below is not None:
+                below[0] += part
+                below[1] += part * bearing.x
+                below[2] += part * bearing.y
     return loads
 
 
 def _rolled(wall: BuiltWall, block: int, load: tuple[float, float]) -> BuiltWall:
     """Let a block go under its load, and put down again what lies on it, if it does not stay."""
-    built, on = wall.laid[block], wall.bearings[block]
+    built, on = wall.laid[block], wall.beds[block].points
     x, y = load
     if on and on[0].x <= x <= on[-1].x:
         return wall
-    below = wall.without([block])
-    again = [i for i in wall.laid if i not in below.laid and i != block]
+    out = wall.with_burden([block])
+    # Nothing touches what has no box.
+    boxes = wall.polygons.boxes.copy()
+    boxes[[place for place, one in enumerate(wall.laid) if one in out]] = NOWHERE
+    around = Polygons(wall.polygons.corners, wall.polygons.first, boxes, wall.polygons.edges)
+    rest = None
     corners = built.corners - load  # gravity acts there
     edges = polygon_edges(corners)
     for sticks in (True, False):
         found = let_go(
-            corners, edges, load, built.size, below.polygons, wall.mu, wall.settle, sticks=sticks
+            corners, edges, load, built.size, around, wall.mu, wall.settle, sticks=sticks
         )
         if found.status is Status.RESTS:
             if (found.x, found.y, found.angle) == (*load, 0.0):
@@ -175,7 +199,10 @@ def _rolled(wall: BuiltWall, block: int, load: tuple[float, float]) -> BuiltWall
             x, y = on_grid(way + (found.x, found.y)).tolist()  # noqa: RUF005 - an array
             angle_deg = wrap_deg(built.angle_deg + turn_deg)
             rest = Built(built.outline, x, y, angle_deg, built.size)
-            polygons = below.polygons.added([rest.corners])
-            below = replace(below, laid={**below.laid, block: rest}, polygons=polygons)
             break
-    return _with_bearings(below.put((i, wall.laid[i]) for i in again))
+    below = wall.without(out)
+    if rest is not None:
+        polygons = below.polygons.added([rest.corners])
+        below = replace(below, laid={**below.laid, block: rest}, polygons=polygons)
+    again = [(i, one) for i, one in wall.laid.items() if i in out and i != block]
+    return _with_beds(below.put(again))

@@ -6,15 +6,13 @@ friction lets it: it rolls about what carries it, and slides only where it does 
 """
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
-from drystone.kernels import settling
-from drystone.kernels.asides import asides
+from drystone.kernels import putting, settling
 from drystone.kernels.polygons import Points, Polygons, on_grid, polygon_edges
 from drystone.kernels.raster import turn
-from drystone.kernels.settling import Settling, SettlingRules, Status
+from drystone.kernels.settling import Settling, SettlingRules
 from drystone.model.builder import Built
 from drystone.poses import wrap_deg
 from drystone.settle.rest import CORNER, GAIN
@@ -45,30 +43,21 @@ def put_down(
     None, and the others stay, where it rests nowhere near.
     """
     size, corners = built.size, turn(built.outline, built.angle_deg)
-    edges = polygon_edges(corners)
-    pressed: dict[float, tuple[Built, Polygons, dict[int, float]]] = {}  # by lift
-    for sticks in (True, False):
-        steps, least = 0, 0.0
-        for lift in LIFTS:
-            if lift < least:
-                continue
-            if lift not in pressed:
-                raised = replace(built, y=built.y + lift * size)
-                pressed[lift] = _squeezed_in(raised, around, 2.0 * settle.clearance_px)
-            held, others, pushed = pressed[lift]
-            at = held.x, held.y
-            found = let_go(corners, edges, at, size, others, mu, settle, sticks=sticks)
-            steps += found.steps
-            if found.status is Status.RESTS:
-                x, y = on_grid(np.array([found.x, found.y])).tolist()
-                angle_deg = wrap_deg(built.angle_deg + math.degrees(found.angle))
-                return Built(built.outline, x, y, angle_deg, size), pushed
-            if not found.steps:
-                # A lift takes off no more than itself; that it gives other room aside is rare.
-                least = lift - found.gap / size - OVERLAP
-        if not steps:
-            break  # it overlaps wherever it is let go
-    return None, {}
+    found, pushed = putting.put_down(
+        corners,
+        polygon_edges(corners),
+        (built.x, built.y),
+        around,
+        _rules(size, mu, settle),
+        lifts=[lift * size for lift in LIFTS],
+        most=ASIDE * size,
+        gap=2.0 * settle.clearance_px,
+    )
+    if found is None:
+        return None, {}
+    x, y = on_grid(np.array([found.x, found.y])).tolist()
+    angle_deg = wrap_deg(built.angle_deg + math.degrees(found.angle))
+    return Built(built.outline, x, y, angle_deg, size), pushed
 
 
 def touching(size: float, settle: SettleSettings) -> float:
@@ -88,7 +77,12 @@ def let_go(
     sticks: bool,
 ) -> Settling:
     """Let a block go of which the corners are given from the point where gravity acts."""
-    rules = SettlingRules(
+    rules = _rules(size, mu, settle)._replace(sticks=sticks)
+    return settling.settle(corners, edges, (*at, 0.0), around, 0.0, rules)
+
+
+def _rules(size: float, mu: float, settle: SettleSettings) -> SettlingRules:
+    return SettlingRules(
         lean=0.0,
         stop=0.0,
         mu=mu,
@@ -103,11 +97,10 @@ def let_go(
         overlap=OVERLAP * size,
         steep=-1.0,  # what is pressed in is held by upright faces too
         beyond=math.inf,  # the ends of a wall are lines on the ground
-        sticks=sticks,
+        sticks=True,
         turns=True,
         steps=STEPS,
     )
-    return settling.settle(corners, edges, (*at, 0.0), around, 0.0, rules)
 
 
 def moved(around: Polygons, pushed: dict[int, float]) -> Polygons:
@@ -119,49 +112,6 @@ def moved(around: Polygons, pushed: dict[int, float]) -> Polygons:
         corners[around.first[i] : around.first[i + 1], 0] += x
         boxes[i, ::2] += x
     return Polygons(corners, around.first, boxes, around.edges)
-
-
-def _squeezed_in(
-    built: Built, around: Polygons, gap: float
-) -> tuple[Built, Polygons, dict[int, float]]:
-    """Move a block aside to where it has room between its neighbours, or push these apart.
-
-    What did overlap keeps a gap.  Returned are the block, all others, and who was pushed how far.
-    """
-    corners = built.corners
-    bottom, top = corners[:, 1].min(), corners[:, 1].max()
-
-    def neighbours(corners: Points, sign: float) -> list[tuple[int, float]]:
-        """List who overlaps it on one side, and by how much; the gap is part of it."""
-        boxes = around.boxes
-        found = asides(corners, around, gap, sign)
-        return [(i, way) for i, way in found if boxes[i, 1] < top and boxes[i, 3] > bottom]
-
-    def aside(shift: float) -> Points:
-        return np.asarray(corners + np.array((shift, 0.0)))
-
-    def most(shift: float, sign: float) -> float:
-        ways = neighbours(aside(shift), sign)
-        return max((way for _, way in ways), default=0.0)
-
-    left, right = most(0.0, -1.0), most(0.0, 1.0)
-    shift = 0.5 * (left - right)
-    if bool(left) != bool(right):
-        # All the way where there is room, else half of what is missing.
-        sign = math.copysign(1.0, shift)
-        shift = 2.0 * shift - 0.5 * sign * most(2.0 * shift, sign)
-    pushed: dict[int, float] = {}
-    if not left + right or abs(shift) > ASIDE * built.size:
-        return built, around, pushed
-    for sign in (-1.0, 1.0):
-        todo = [aside(shift)]
-        while todo:
-            for i, over in neighbours(todo.pop(), sign):
-                if over < ASIDE * built.size:
-                    around = moved(around, {i: sign * over})
-                    pushed[i] = pushed.get(i, 0.0) + sign * over
-                    todo.append(around.polygon(i))
-    return replace(built, x=built.x + shift), around, pushed
 
 
 def fallen_share(x: float, y: float, turn_deg: float, size: float) -> float:

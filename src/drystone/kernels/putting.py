@@ -1,0 +1,195 @@
+"""Putting a block down between others (DESIGN 4.10).
+
+It is lifted until it overlaps nothing below.  There it is pressed in between its neighbours: moved
+aside where there is room, else these are pushed apart along their beds.  Then it is let go.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from drystone.kernels.polygons import Points, Polygons
+from drystone.kernels.settling import Settling, SettlingRules
+
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
+
+if not cython.compiled:
+    from drystone.kernels.asides import aside, work_for
+    from drystone.kernels.gaps import Heap, MovingStone, heap_of, measure, select
+    from drystone.kernels.lists import doubles, kept_doubles
+    from drystone.kernels.settling import Way, let_go, settling_of, way_of
+
+RESTS = cython.declare(cython.int, 0)
+
+
+def put_down(
+    outline: Points,
+    edges: Points,
+    at: tuple[float, float],
+    around: Polygons,
+    rules: SettlingRules,
+    lifts: Sequence[float],
+    most: float,
+    gap: float,
+) -> tuple[Settling | None, dict[int, float]]:
+    """Return where a block comes to rest, and by how much which others are pushed along x.
+
+    Corners of the outline are relative to the centroid, which is put at a place, and lifted by the
+    least of some ways with which it rests; None where it does with none.  It first rolls about what
+    carries it, and slides only where it does not come to rest so.  It is moved and pushed by no
+    more than `most`, and what overlapped it keeps a gap.
+    """
+    way: Way = way_of(outline, edges, rules)
+    corners, first, boxes, sides = around
+    lying = Polygons(corners.copy(), first, boxes.copy(), sides)
+    press: Press = press_of(way, around, lying)
+    press.most, press.gap = most, gap
+    x: cython.double = at[0]
+    pressed: dict = {}
+    now: dict = {}
+    for sticks in (True, False):
+        way.sticks = sticks
+        steps, least = 0, 0.0
+        for lift in lifts:
+            if lift < least:
+                continue
+            y: cython.double = at[1] + lift
+            if lift not in pressed:
+                lie(press, now, {})
+                pressed[lift] = squeezed_in(press, x, y)
+            else:
+                lie(press, now, pressed[lift][1])
+            shift: cython.double = pressed[lift][0]
+            now = pressed[lift][1]
+            status: cython.int = let_go(way, press.heap, x + shift, y, 0.0)
+            if status == RESTS:
+                return settling_of(way, status), now
+            steps += way.made
+            if not way.made:
+                # A lift takes off no more than itself; that it gives other room aside is rare.
+                least = lift - way.here.least - way.overlap
+        if not steps:
+            break  # it overlaps wherever it is let go
+    return None, {}
+
+
+@cython.cclass
+class Press:
+    """A block, and what lies around it."""
+
+
+def press_of(way, around, lying):
+    """Return a block, and what lies around it: as it did, and as it does."""
+    press: Press = Press()
+    press.room, press.block, press.one = [], way, MovingStone()
+    press.heap = heap_of(lying, 0.0)
+    press.heap.beyond = way.beyond
+    press.corners, press.boxes = doubles(around.corners), doubles(around.boxes)
+    press.work = work_for(press.room, way.count + len(around.corners))
+    press.one.corners = kept_doubles(press.room, 2 * (way.count + len(around.corners)))
+    press.one.first = 0
+    return press
+
+
+def lie(press, before, now):
+    """Let all others lie so far from where they lay."""
+    for i in before:
+        if i not in now:
+            move(press, i, 0.0)
+    for i, shift in now.items():
+        move(press, i, shift)
+
+
+def move(press, i, shift):
+    """Let one of the others lie so far from where it lay."""
+    heap: Heap = press.heap
+    for k in range(2 * heap.starts[i], 2 * heap.starts[i + 1], 2):
+        heap.corners[k] = press.corners[k] + shift
+    heap.boxes[4 * i] = press.boxes[4 * i] + shift
+    heap.boxes[4 * i + 2] = press.boxes[4 * i + 2] + shift
+
+
+def squeezed_in(press, x, y):
+    """Move a block aside to where it has room between its neighbours, or push these apart.
+
+    Returned are how far it goes aside, and who was pushed how far.
+    """
+    stand(press, x, y, 0.0)
+    press.bottom, press.top = press.one.low, press.one.high
+    left: cython.double = deepest(press, -1.0)
+    right: cython.double = deepest(press, 1.0)
+    shift: cython.double = 0.5 * (left - right)
+    if (left > 0.0) != (right > 0.0):
+        # All the way where there is room, else half of what is missing.
+        sign: cython.double = 1.0 if shift > 0.0 else -1.0
+        stand(press, x, y, 2.0 * shift)
+        shift = 2.0 * shift - 0.5 * sign * deepest(press, sign)
+    pushed: dict = {}
+    if not left + right > 0.0 or abs(shift) > press.most:
+        return 0.0, pushed
+    for sign in (-1.0, 1.0):
+        todo = [-1]
+        while todo:
+            k: cython.Py_ssize_t = todo.pop()
+            if k < 0:
+                stand(press, x, y, shift)
+            else:
+                take(press, k)
+            for i, over in neighbours(press, sign):
+                if over < press.most:
+                    pushed[i] = pushed.get(i, 0.0) + sign * over
+                    move(press, i, pushed[i])
+                    todo.append(i)
+    return shift, pushed
+
+
+def stand(press, x, y, shift):
+    """Let the block stand at a place, moved aside."""
+    one: MovingStone = press.one
+    block: Way = press.block
+    one.count = block.count
+    for k in range(block.count):
+        one.corners[2 * k] = block.corners[2 * k] + x + shift
+        one.corners[2 * k + 1] = block.corners[2 * k + 1] + y
+    measure(one)
+
+
+def take(press, i):
+    """Look at one of the others instead of the block."""
+    one: MovingStone = press.one
+    select(press.heap, i)
+    one.count = press.heap.count
+    for k in range(2 * one.count):
+        one.corners[k] = press.heap.corners[2 * press.heap.first + k]
+    measure(one)
+
+
+def neighbours(press, sign):
+    """List who overlaps it on one side, and by how much; the gap is part of it."""
+    found = []
+    for i in range(press.heap.size):
+        over: cython.double = overlap(press, i, sign)
+        if over > 0.0:
+            found.append((i, over))
+    return found
+
+
+def deepest(press, sign):
+    """Return by how much it overlaps others on one side at most."""
+    most: cython.double = 0.0
+    for i in range(press.heap.size):
+        most = max(most, overlap(press, i, sign))
+    return most
+
+
+def overlap(press, i, sign):
+    """Return by how much it overlaps another on one side, with a gap; 0 where it does not."""
+    heap: Heap = press.heap
+    if not (heap.boxes[4 * i + 1] < press.top and heap.boxes[4 * i + 3] > press.bottom):
+        return 0.0
+    select(heap, i)
+    over: cython.double = aside(press.one, heap, sign, press.work)
+    return over + press.gap if over >= 0.0 else 0.0

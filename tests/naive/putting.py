@@ -1,0 +1,58 @@
+"""A block that is put down, lift by lift, with shapely for what overlaps beside it."""
+
+import math
+
+import numpy as np
+
+from drystone.kernels.polygons import no_polygons
+from drystone.kernels.settling import Status, settle
+from tests.naive.asides import asides
+
+ALONG = np.array((1.0, 0.0))
+
+
+def put_down(outline, edges, at, around, rules, lifts, most, gap):
+    """Return how it rests, or None, and by how much others are pushed."""
+    others = [around.polygon(i) for i in range(len(around))]
+    for sticks in (True, False):
+        for lift in lifts:
+            x, y = at[0], at[1] + lift
+            shift, moved, pushed = squeezed_in(outline + np.array((x, y)), others, most, gap)
+            pose, heap = (x + shift, y, 0.0), no_polygons().added(moved)
+            found = settle(outline, edges, pose, heap, 0.0, rules._replace(sticks=sticks))
+            if found.status is Status.RESTS:
+                return found, pushed
+    return None, {}
+
+
+def squeezed_in(corners, others, most, gap):
+    """Return how far a block goes aside, where all others lie then, and who is pushed how far."""
+    others, (bottom, top) = list(others), (corners[:, 1].min(), corners[:, 1].max())
+
+    def beside(one, sign):
+        found = asides(one, others, gap, sign)
+        return {
+            i: way
+            for i, way in found.items()
+            if others[i][:, 1].min() < top and others[i][:, 1].max() > bottom
+        }
+
+    def deepest(shift, sign):
+        return max(beside(corners + shift * ALONG, sign).values(), default=0.0)
+
+    left, right = deepest(0.0, -1.0), deepest(0.0, 1.0)
+    shift, pushed = (left - right) / 2, {}
+    if bool(left) != bool(right):
+        sign = math.copysign(1.0, shift)
+        shift = 2 * shift - sign * deepest(2 * shift, sign) / 2
+    if not left + right or abs(shift) > most:
+        return 0.0, others, pushed
+    for sign in (-1.0, 1.0):
+        todo = [corners + shift * ALONG]
+        while todo:
+            for i, way in beside(todo.pop(), sign).items():
+                if way < most:
+                    others[i] = others[i] + sign * way * ALONG
+                    pushed[i] = pushed.get(i, 0.0) + sign * way
+                    todo.append(others[i])
+    return shift, others, pushed
