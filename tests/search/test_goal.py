@@ -78,7 +78,7 @@ def test_what_nearly_falls_in_a_rehearsal_counts_too():
     runs = [rehearse(blocks, errors, np.random.default_rng(run)).stones for run in range(12)]
     near = [[1 if e.fallen else max(e.share / 0.25, abs(e.turn_deg) / 12) for e in r] for r in runs]
     assert min(map(max, near)) < max(map(max, near)) == 1.0
-    lost = [6 * max(shares) ** 4 + shares.count(1) for shares in near]
+    lost = [14 * max(shares) ** 4 + shares.count(1) for shares in near]
     judged = FoundWall.of(planner).judged(Yard.of(planner))
     assert judged.figures.fallen == pytest.approx(np.mean(lost) / len(blocks))
 

@@ -34,7 +34,7 @@ class GoalSettings(Ranged):
     """
 
     filling: float = 15.0
-    resistance: float = 1.0
+    resistance: float = 2.0
     vertical: float = 0.01
     horizontal: float = 0.25
     level: float = 0.5

@@ -7,9 +7,9 @@ there, or under which others fall, is laid elsewhere; what fell all the same is 
 
 import math
 from collections import Counter, defaultdict
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from hashlib import blake2b
-from itertools import accumulate
+from itertools import accumulate, takewhile
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from drystone.settle.settings import SettleSettings
 MARGIN = 1.25
 """A place is tried with a hand's errors times this, so that it is sure with some to spare."""
 
-FALL = 4.0
+FALL = 8.0
 """A stone that would fall in all trials is laid when it is larger than so many mean stones."""
 
 KNOWN_BYTES = 1 << 27
@@ -52,6 +52,7 @@ class Seats:
         self._errors = BuilderErrors.of_precision(MARGIN * HAND, mean_size)
         self._bare = [BuiltWall(mu, settle)] * settle.trials
         self._known = RecentlyUsed[bytes, list[BuiltWall]](KNOWN_BYTES)  # by what was laid
+        self._last: tuple[Sequence[Group], list[bytes]] = (), [b""]  # steps, and their digests
         self._numbers: dict[tuple[int, int], Floats] = {}  # what is drawn for a stone and wedges
         self._falls = defaultdict[int, Counter[int]](Counter)  # of each stone: in which trials
 
@@ -73,10 +74,10 @@ class Seats:
         laid, walls = self._laid(wall.groups)
         stone, trials, fallen = group.placement.posed.stone, len(walls), 0
         most, falls = self.bearable(stone) * trials, self._falls[stone.id]
-        after, pieces = list(walls), self._pieces(group)
+        after, pieces, planned = list(walls), self._pieces(group), _planned(group)
         # Where it fell elsewhere it may fall here: the sooner it is known that it falls too often.
         for k in sorted(range(trials), key=falls.__getitem__, reverse=True):
-            fell, after[k] = _tried(walls[k], pieces[k], group)
+            fell, after[k] = _tried(walls[k], pieces[k], stone.id, planned)
             fallen += fell
             falls[k] += fell
             if fallen > most or fallen / trials >= least:
@@ -86,7 +87,11 @@ class Seats:
 
     def _laid(self, groups: Sequence[Group]) -> tuple[bytes, list[BuiltWall]]:
         """Return what tells some steps from others, and the walls of all trials after them."""
-        digests = list(accumulate(groups, _digest, initial=b""))
+        before, digests = self._last
+        pairs = zip(groups, before, strict=False)
+        same = sum(1 for _ in takewhile(lambda two: two[0] is two[1], pairs))
+        digests = digests[:same] + list(accumulate(groups[same:], _digest, initial=digests[same]))
+        self._last = groups, digests
         walls, known = self._bare, 0
         for done in range(len(groups), 0, -1):
             found = self._known.get(digests[done])
@@ -94,8 +99,9 @@ class Seats:
                 walls, known = found, done
                 break
         for group, digest in zip(groups[known:], digests[known + 1 :], strict=True):
-            put = zip(walls, self._pieces(group), strict=True)
-            walls = self._keep(digest, [_tried(built, pieces, group)[1] for built, pieces in put])
+            put, planned = zip(walls, self._pieces(group), strict=True), _planned(group)
+            tried = [_tried(*one, group.placement.stone_id, planned)[1] for one in put]
+            walls = self._keep(digest, tried)
         return digests[-1], walls
 
     def _keep(self, digest: bytes, walls: list[BuiltWall]) -> list[BuiltWall]:
@@ -124,12 +130,14 @@ class Seats:
         return [list(pieces[::-1]) for pieces in zip(*put, strict=True)]
 
 
+def _planned(group: Group) -> dict[int, Built]:
+    return {i: as_planned(corners) for i, corners in outlined(group.placement, group.wedges)}
+
+
 def _tried(
-    wall: BuiltWall, pieces: list[tuple[int, Built]], group: Group
+    wall: BuiltWall, pieces: list[tuple[int, Built]], stone: int, planned: Mapping[int, Built]
 ) -> tuple[bool, BuiltWall]:
     """Lay a stone in the wall of a trial, and say whether something falls."""
-    planned = {i: as_planned(corners) for i, corners in outlined(group.placement, group.wedges)}
-    stone = group.placement.stone_id
     put = wall.put(pieces)
     if stone not in put.laid or astray(put.laid[stone], planned[stone]):
         return True, wall.held(planned)

@@ -36,7 +36,7 @@ QUICK = NonassociativeSettings(starts=STARTS[:1], random_starts=0, let_go=False)
 """One start of twelve finds the least load without dilatancy of most walls."""
 
 
-STOPPED = 6
+STOPPED = 14
 """A builder who has to mend a wall loses as much as with so many stones."""
 
 NEARLY = 4
