@@ -18,18 +18,11 @@ import pytest
 from PIL import Image
 
 import drystone
+from drystone import generate
 from drystone.cli.commands.settings import entries, explained_rows, plain_fields, planner_tables
 from drystone.cli.parser import build_parser
 from drystone.drawing.export.formats import FORMATS
 from drystone.errors import CODES
-from drystone.generate import (
-    BrickSettings,
-    FourierSettings,
-    PolygonSettings,
-    RubbleSettings,
-    brick_stones,
-    lay_out,
-)
 from drystone.indices import INDEX_NAMES
 from drystone.io.plan_json import plan_from_json, plan_schema
 from drystone.io.read_settings import ReadSettings
@@ -55,10 +48,10 @@ TABLE = re.compile(r"<!-- table (\w+) -->\n(.*?)<!-- end -->", re.DOTALL)
 
 SOURCES = {
     "read": ReadSettings,
-    "fourier": FourierSettings,
-    "polygon": PolygonSettings,
-    "brick": BrickSettings,
-    "rubble": RubbleSettings,
+    "fourier": generate.FourierSettings,
+    "polygon": generate.PolygonSettings,
+    "brick": generate.BrickSettings,
+    "rubble": generate.RubbleSettings,
 }
 """Settings outside the planner, by the name of their table."""
 
@@ -222,8 +215,10 @@ def test_the_readme_shows_every_command():
 
 
 def test_the_python_of_the_readme_runs(tmp_path, monkeypatch):
-    made = brick_stones(BrickSettings(count=6, height_px=10, aspect=2), np.random.default_rng(1))
-    write_labels(lay_out(made), tmp_path / "stones.png")
+    made = generate.brick_stones(
+        generate.BrickSettings(count=6, height_px=10, aspect=2), np.random.default_rng(1)
+    )
+    write_labels(generate.lay_out(made), tmp_path / "stones.png")
     monkeypatch.chdir(tmp_path)
     programs = blocks(ROOT / "README.md", "python")
     assert programs
@@ -233,8 +228,10 @@ def test_the_python_of_the_readme_runs(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name.startswith("docs/for-")])
 def test_the_python_of_the_pages_for_users_runs(name, tmp_path, monkeypatch):
-    made = brick_stones(BrickSettings(count=6, height_px=10, aspect=2), np.random.default_rng(1))
-    write_labels(lay_out(made), tmp_path / "stones.png")
+    made = generate.brick_stones(
+        generate.BrickSettings(count=6, height_px=10, aspect=2), np.random.default_rng(1)
+    )
+    write_labels(generate.lay_out(made), tmp_path / "stones.png")
     monkeypatch.chdir(tmp_path)
     for program in blocks(ROOT / name, "python"):
         exec(compile(program, name, "exec"), {})  # noqa: S102 - our own document

@@ -5,13 +5,7 @@ from argparse import ArgumentTypeError
 
 import pytest
 
-from drystone.cli.numbers import (
-    picture_size_px,
-    refuse_outside,
-    ruler,
-    scale_notice,
-    scale_with,
-)
+from drystone.cli.numbers import picture_size_px, refuse_outside, ruler, scale_notice, scale_with
 from drystone.errors import UsageError
 from drystone.model.stone import Source
 

@@ -5,13 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from drystone.kernels.polygons import (
-    Points,
-    Polygons,
-    area_and_centroid,
-    no_polygons,
-    polygon_edges,
-)
+from drystone.kernels import polygons
 from drystone.kernels.settling import SettlingRules, Status, settle
 from tests.naive.settling import Pose, placed
 from tests.polygons import centred, convex, random_polygon
@@ -22,13 +16,13 @@ WIDTH = 160.0
 class Drop(NamedTuple):
     """A stone that is let go."""
 
-    outline: Points
+    outline: polygons.Points
     pose: Pose
-    around: Polygons
+    around: polygons.Polygons
     rules: SettlingRules
 
     def settled(self):
-        edges = polygon_edges(self.outline)
+        edges = polygons.polygon_edges(self.outline)
         return settle(self.outline, edges, self.pose, self.around, WIDTH, self.rules)
 
 
@@ -85,10 +79,10 @@ def random_outline(rng):
 def drops(seed, count):
     """Stones let go one after the other; those that rest stay."""
     rng = np.random.default_rng(seed)
-    around = no_polygons()
+    around = polygons.no_polygons()
     for _ in range(count):
         outline = placed(random_outline(rng), (0.0, 0.0, float(rng.uniform(-3.0, 3.0))))
-        size = math.sqrt(area_and_centroid(outline)[0])
+        size = math.sqrt(polygons.area_and_centroid(outline)[0])
         (left, low), (right, _) = outline.min(axis=0), outline.max(axis=0)
         x = float(rng.uniform(0.1 - left, WIDTH - right - 0.1))
         under = (around.boxes[:, 0] < x + right) & (around.boxes[:, 2] > x + left)

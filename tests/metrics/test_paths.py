@@ -6,15 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from skimage.graph import MCP_Geometric
 
+from drystone.metrics import paths
 from drystone.metrics.joints import joint_mask
-from drystone.metrics.paths import (
-    horizontal_arrangement,
-    horizontal_lengths,
-    horizontal_paths,
-    mean_excess,
-    vertical_arrangement,
-    vertical_paths,
-)
 from tests.metrics.walls import bricks, walls
 from tests.naive import metrics as naive
 from tests.strategies import repeatable
@@ -36,17 +29,19 @@ JOINTS = st.builds(
 @given(JOINTS)
 def test_lengths_are_those_of_the_slow_twin(joint):
     expected = pytest.approx(naive.vertical_lengths(joint), abs=1e-9)
-    assert [path.length_px for path in vertical_paths(joint)] == expected
+    assert [path.length_px for path in paths.vertical_paths(joint)] == expected
     turned = joint.T
-    assert [path.length_px for path in horizontal_paths(turned)] == expected
-    assert horizontal_lengths(turned) == tuple(path.length_px for path in horizontal_paths(turned))
+    assert [path.length_px for path in paths.horizontal_paths(turned)] == expected
+    assert paths.horizontal_lengths(turned) == tuple(
+        path.length_px for path in paths.horizontal_paths(turned)
+    )
 
 
 @repeatable()
 @given(walls())
 def test_pixels_lead_along_the_joints_from_top_to_bottom(labels):
     joint = joint_mask(labels)
-    for path in vertical_paths(joint):
+    for path in paths.vertical_paths(joint):
         rows, cols = path.pixels.T
         assert joint[rows, cols].all()
         assert (rows[0], rows[-1]) == (0, joint.shape[0] - 1)
@@ -54,7 +49,7 @@ def test_pixels_lead_along_the_joints_from_top_to_bottom(labels):
         steps = np.abs(np.diff(path.pixels, axis=0))
         assert (steps.max(axis=1) == 1).all()
         assert path.length_px == pytest.approx(np.hypot(*steps.T).sum())
-    for path in horizontal_paths(joint):
+    for path in paths.horizontal_paths(joint):
         rows, cols = path.pixels.T
         assert joint[rows, cols].all()
         assert (cols[0], cols[-1]) == (0, joint.shape[1] - 1)
@@ -68,20 +63,20 @@ def test_an_independent_solver_finds_the_same_lengths():
         solver = MCP_Geometric(np.where(joint, 1.0, -1.0))
         costs = solver.find_costs([(0, column)], [(joint.shape[0] - 1, column)])[0]
         lengths.append(costs[-1, column])
-    found = [path.length_px for path in vertical_paths(joint)]
+    found = [path.length_px for path in paths.vertical_paths(joint)]
     assert found == pytest.approx(sorted(lengths), abs=1e-9)
 
 
 def test_starts_stand_ten_pixels_from_the_ends_and_a_tenth_of_the_width_apart():
-    columns = [path.pixels[0, 1] for path in vertical_paths(np.ones((5, 57), bool))]
+    columns = [path.pixels[0, 1] for path in paths.vertical_paths(np.ones((5, 57), bool))]
     assert columns == [10, 15, 20, 25, 30, 35, 40, 45]
-    assert vertical_paths(np.ones((5, 20), bool)) == ()
+    assert paths.vertical_paths(np.ones((5, 20), bool)) == ()
 
 
 def test_a_detour_takes_the_diagonals():
     joint = np.ones((5, 21), bool)
     joint[2, 10] = False
-    (path,) = vertical_paths(joint)
+    (path,) = paths.vertical_paths(joint)
     assert path.length_px == 2 + 2 * math.sqrt(2)
 
 
@@ -89,17 +84,17 @@ def test_a_detour_takes_the_diagonals():
 def test_where_a_stone_is_in_the_way_there_is_no_path(stone):
     joint = np.ones((5, 21), bool)
     joint[stone] = False
-    assert vertical_paths(joint) == horizontal_paths(joint.T) == ()
-    assert vertical_arrangement(joint) is None
+    assert paths.vertical_paths(joint) == paths.horizontal_paths(joint.T) == ()
+    assert paths.vertical_arrangement(joint) is None
 
 
 @repeatable()
 @given(walls(max_px=40))
 def test_arrangements_are_their_slow_twins(labels):
     joint = joint_mask(labels)
-    vertical = vertical_arrangement(joint)
+    vertical = paths.vertical_arrangement(joint)
     assert vertical == pytest.approx(naive.vertical_arrangement(joint), abs=1e-9)
-    horizontal = horizontal_arrangement(joint)
+    horizontal = paths.horizontal_arrangement(joint)
     assert horizontal == pytest.approx(naive.vertical_arrangement(joint.T), abs=1e-9)
 
 
@@ -107,7 +102,7 @@ def test_only_the_five_shortest_count():
     # Five of eight starts lead straight down; from the others a stone is in the way.
     joint = np.ones((5, 57), bool)
     joint[2, [10, 15, 20]] = False
-    assert vertical_arrangement(joint) == 0.0
+    assert paths.vertical_arrangement(joint) == 0.0
     joint[2, 25] = False
-    assert vertical_arrangement(joint) == pytest.approx(100 * (np.sqrt(2) - 1) / 2 / 5)
-    assert mean_excess([2.0, 2 * math.sqrt(2)], 2) == pytest.approx(50 * (np.sqrt(2) - 1))
+    assert paths.vertical_arrangement(joint) == pytest.approx(100 * (np.sqrt(2) - 1) / 2 / 5)
+    assert paths.mean_excess([2.0, 2 * math.sqrt(2)], 2) == pytest.approx(50 * (np.sqrt(2) - 1))

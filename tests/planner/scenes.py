@@ -2,14 +2,7 @@
 
 import numpy as np
 
-from drystone.generate import (
-    BrickSettings,
-    FourierSettings,
-    RubbleSettings,
-    brick_stones,
-    fourier_stones,
-    rubble_stones,
-)
+from drystone import generate
 from drystone.model.site import Site
 from drystone.model.stone import Source, Stone, StoneSet
 from drystone.model.wall import outlined
@@ -19,8 +12,8 @@ from drystone.planner.settings import method_settings
 RUBBLE_SITE = Site(100, 36)
 """What :func:`rubble` is for."""
 
-ROUNDED = fourier_stones(
-    FourierSettings(count=16, smallest_radius_px=9, largest_radius_px=36, D2=0.15),
+ROUNDED = generate.fourier_stones(
+    generate.FourierSettings(count=16, smallest_radius_px=9, largest_radius_px=36, D2=0.15),
     np.random.default_rng(2),
 )
 ROUNDED_SITE = Site.from_source(330, 130, 0.5)
@@ -37,20 +30,20 @@ WITH_WEDGES = {
 
 def rubble(seed=0, count=8):
     """Rubble of two courses."""
-    settings = RubbleSettings(count=count, width_px=100, height_px=36, courses=2)
-    return rubble_stones(settings, np.random.default_rng(seed))
+    settings = generate.RubbleSettings(count=count, width_px=100, height_px=36, courses=2)
+    return generate.rubble_stones(settings, np.random.default_rng(seed))
 
 
 def few_stones():
     """Some of these get wedges with :data:`WITH_WEDGES`."""
-    size = RubbleSettings(count=5, width_px=90, height_px=30, courses=2)
-    return rubble_stones(size, np.random.default_rng(4))
+    size = generate.RubbleSettings(count=5, width_px=90, height_px=30, courses=2)
+    return generate.rubble_stones(size, np.random.default_rng(4))
 
 
 def bricks(count=6, halves=0):
     """Bricks of 20 x 10 px."""
-    settings = BrickSettings(count=count, height_px=10, aspect=2, halves=halves)
-    return brick_stones(settings, np.random.default_rng(0))
+    settings = generate.BrickSettings(count=count, height_px=10, aspect=2, halves=halves)
+    return generate.brick_stones(settings, np.random.default_rng(0))
 
 
 def stones_of_masks(masks):

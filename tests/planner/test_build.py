@@ -12,11 +12,7 @@ from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
 from drystone.search.whole_search import run_to_end
-from drystone.statics.incremental import (
-    SIMPLEX,
-    HighsAnalysis,
-    IncrementalAnalysis,
-)
+from drystone.statics.incremental import SIMPLEX, HighsAnalysis, IncrementalAnalysis
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.lp.highs import WARM
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble

@@ -16,19 +16,11 @@ from drystone.planner.planner import Planner
 from drystone.planner.replay import judged, replayed
 from drystone.settle.placing import settled_placement
 from drystone.settle.rest import placed_outline
-from tests.planner.scenes import (
-    RUBBLE_SITE,
-    WITH_WEDGES,
-    blocks,
-    few_stones,
-    finish,
-    greedy,
-    rubble,
-)
+from tests.planner import scenes
 
-EXACT = greedy(WITH_WEDGES)
+EXACT = scenes.greedy(scenes.WITH_WEDGES)
 PLAIN = pytest.mark.parametrize(
-    "settings", [greedy(), greedy({"geometry": "raster"})], ids=["exact", "raster"]
+    "settings", [scenes.greedy(), scenes.greedy({"geometry": "raster"})], ids=["exact", "raster"]
 )
 
 
@@ -36,7 +28,7 @@ def wedged_wall():
     """A wall with wedges, and all states on the way."""
     settings = EXACT.updated({"search": {"budget": 2}})
     site = Site.from_source(84.0, 34.0, 0.5)
-    return finish(Planner(few_stones(), site, seed=3, settings=settings))
+    return scenes.finish(Planner(scenes.few_stones(), site, seed=3, settings=settings))
 
 
 def heights(build):
@@ -82,8 +74,11 @@ def test_what_is_taken_down_is_built_again_as_it_was(kept):
 
 @PLAIN
 def test_turned_stones_of_both_sides_are_built_again_as_they_were(settings):
-    planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
-    build, start = planner.build, Planner(rubble(), RUBBLE_SITE, settings=settings).build
+    planner = scenes.finish(Planner(scenes.rubble(), scenes.RUBBLE_SITE, seed=1, settings=settings))
+    build, start = (
+        planner.build,
+        Planner(scenes.rubble(), scenes.RUBBLE_SITE, settings=settings).build,
+    )
     assert {action.side for action in build.actions} == {"left", "right"}
     assert any(p.rotation_moves for p in build.wall.placements)
     again, left_out, _ = replayed(
@@ -117,7 +112,7 @@ def test_wedges_are_numbered_in_the_order_in_which_they_come_now():
     assert planner.workshop.next_wedge(again) == max(w.id for w in wall.wedges) + 1
 
 
-STONES = blocks({1: (20, 10), 2: (20, 10), 3: (20, 10), 4: (20, 10)})
+STONES = scenes.blocks({1: (20, 10), 2: (20, 10), 3: (20, 10), 4: (20, 10)})
 
 
 def laid(planner, stone_id, left, level):
@@ -193,7 +188,7 @@ def test_a_wedge_that_nothing_would_be_beside_is_not_taken_again():
     corners = np.array([[25.01, 0.01], [29.0, 0.01], [29.0, 10.01], [25.01, 10.01]])
     wedge = Wedge(9, 2, np.ones((10, 4), bool), 30, 25, on_grid(corners))
     for width, beside, room in ((80, False, True), (38, True, True), (38, False, False)):
-        planner = Planner(STONES, Site(width, 40), settings=greedy())
+        planner = Planner(STONES, Site(width, 40), settings=scenes.greedy())
         steps = [laid(planner, 1, 5, 0), Group(laid(planner, 2, 10, 1).placement, (wedge,))]
         steps[1:1] = [laid(planner, 3, width - 8.0, 0)] if beside else []
         _, left_out, _ = replayed(planner.build, steps, {}, planner.workshop, planner.settings)
@@ -201,7 +196,7 @@ def test_a_wedge_that_nothing_would_be_beside_is_not_taken_again():
 
 
 def test_what_needs_the_friction_of_upright_faces_is_left_out():
-    planner, _ = scene(greedy())
+    planner, _ = scene(scenes.greedy())
     steps = [laid(planner, 1, 0.0, 0), laid(planner, 2, 40.02, 0), laid(planner, 3, 20.01, 0.4)]
     evaluator = Evaluator(planner.settings, planner.workshop.stock)
     piers, left_out, _ = replayed(planner.build, steps, {}, planner.workshop, planner.settings)
@@ -211,7 +206,7 @@ def test_what_needs_the_friction_of_upright_faces_is_left_out():
 
 def test_pixels_are_those_that_a_stone_fills_now():
     """Of a pixel that two stones share the one that comes second makes it more than half full."""
-    planner = Planner(STONES, Site.from_source(60, 40, 0.1), settings=greedy())
+    planner = Planner(STONES, Site.from_source(60, 40, 0.1), settings=scenes.greedy())
     one, other = laid(planner, 1, 4, 0), laid(planner, 2, 26, 0)
     first, _, _ = replayed(planner.build, [one, other], {}, planner.workshop, planner.settings)
     second, _, _ = replayed(planner.build, [other, one], {}, planner.workshop, planner.settings)
@@ -223,9 +218,9 @@ def test_pixels_are_those_that_a_stone_fills_now():
 
 
 def test_what_fills_no_pixel_is_left_out():
-    planner = Planner(STONES, Site.from_source(60, 40, 0.1), settings=greedy())
+    planner = Planner(STONES, Site.from_source(60, 40, 0.1), settings=scenes.greedy())
     one = laid(planner, 1, 5, 0)
-    small = Planner(STONES, Site.from_source(60, 40, 0.02), settings=greedy())
+    small = Planner(STONES, Site.from_source(60, 40, 0.02), settings=scenes.greedy())
     build, left_out, _ = replayed(small.build, [one], {}, small.workshop, small.settings)
     assert left_out == (1,)
     assert build is small.build
@@ -241,7 +236,7 @@ def test_a_course_is_begun_with_the_height_it_was_begun_with(settings):
 
 
 def test_what_stands_stands_in_both_models_and_carries_a_load():
-    planner, groups = scene(greedy())
+    planner, groups = scene(scenes.greedy())
     build, _, _ = replayed(
         planner.build, [groups["ground"]], {}, planner.workshop, planner.settings
     )

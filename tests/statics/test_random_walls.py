@@ -16,17 +16,8 @@ from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND
 from drystone.statics.result import LimitStatus
+from tests import strategies
 from tests.naive.statics import limit_alphas
-from tests.strategies import (
-    brick_labels,
-    dust_labels,
-    floating_labels,
-    hanging_labels,
-    holed_labels,
-    label_images,
-    repeatable,
-    stacked_labels,
-)
 
 FRICTIONS = st.sampled_from([0.58, 0.3, 0.1, 0.0, 0.9, 1.0, 50.0])
 ALLOWED = 1e-7
@@ -132,23 +123,23 @@ def assert_proved(labels, mu):
 
 @given(
     st.one_of(
-        brick_labels(),
-        stacked_labels(),
-        dust_labels(),
-        holed_labels(),
-        hanging_labels(),
-        floating_labels(),
+        strategies.brick_labels(),
+        strategies.stacked_labels(),
+        strategies.dust_labels(),
+        strategies.holed_labels(),
+        strategies.hanging_labels(),
+        strategies.floating_labels(),
     ),
     FRICTIONS,
 )
-@repeatable(200)
+@strategies.repeatable(200)
 def test_answers_are_proved(labels, mu):
     """Bricks, stacks, single pixels, ids in pieces, holes, stones that hang or float."""
     assert_proved(labels, mu)
 
 
-@given(label_images(), st.sampled_from([0.58, 0.3, 0.9]))
-@repeatable(50)
+@given(strategies.label_images(), st.sampled_from([0.58, 0.3, 0.9]))
+@strategies.repeatable(50)
 def test_random_walls_equal_their_twin(labels, mu):
     model = model_from_labels(labels, mu).model
     both = lateral_resistance(model)
@@ -158,8 +149,8 @@ def test_random_walls_equal_their_twin(labels, mu):
         assert (both.left.alpha, both.right.alpha) == pytest.approx(expected, abs=1e-6)
 
 
-@given(label_images(), FRICTIONS)
-@repeatable(20)
+@given(strategies.label_images(), FRICTIONS)
+@strategies.repeatable(20)
 def test_without_dilatancy_random_walls_carry_no_more(labels, mu):
     model = model_from_labels(labels, mu).model
     associative, both = lateral_resistance(model), nonassociative_resistance(model)

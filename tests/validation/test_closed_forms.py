@@ -13,13 +13,7 @@ from drystone.contacts.given import model_from_json
 from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.squeeze import held_by_upright_faces
-from drystone_lab.statics_cases import (
-    closed_forms,
-    offset_stack,
-    running_bond,
-    single_block,
-    two_equal_blocks,
-)
+from drystone_lab import statics_cases
 from tests.strategies import repeatable
 
 TOLERANCE = 1e-8
@@ -44,7 +38,7 @@ def alphas(case):
 )
 def test_single_block(width, height, mu, expected):
     """min(mu, b/h)."""
-    found = alphas(single_block(width, height, mu))
+    found = alphas(statics_cases.single_block(width, height, mu))
     assert found == pytest.approx((expected, expected), abs=TOLERANCE)
 
 
@@ -52,7 +46,7 @@ def test_single_block(width, height, mu, expected):
 def test_two_equal_blocks(width, height, mu):
     """min(mu, b/(2h)): both overturn as one."""
     expected = min(mu, width / (2 * height))
-    found = alphas(two_equal_blocks(width, height, mu))
+    found = alphas(statics_cases.two_equal_blocks(width, height, mu))
     assert found == pytest.approx((expected, expected), abs=TOLERANCE)
 
 
@@ -67,7 +61,7 @@ def test_offset_stack(shift, mu):
     """
     right = min(mu, (0.5 - shift) / 0.5, (1.0 - shift) / 2.0)
     left = min(mu, 1.0, (1.0 + shift) / 2.0)
-    found = alphas(offset_stack(shift, mu))
+    found = alphas(statics_cases.offset_stack(shift, mu))
     assert found == pytest.approx((left, right), abs=TOLERANCE)
 
 
@@ -76,11 +70,13 @@ def test_running_bond_of_four_courses_slides():
 
     No closed form; the value that a public program for block assemblies prints for this wall.
     """
-    assert len(running_bond().rectangles) == 10
-    assert alphas(running_bond()) == pytest.approx((0.58, 0.58), abs=TOLERANCE)
+    assert len(statics_cases.running_bond().rectangles) == 10
+    assert alphas(statics_cases.running_bond()) == pytest.approx((0.58, 0.58), abs=TOLERANCE)
 
 
-@pytest.mark.parametrize("case", closed_forms(), ids=lambda case: f"{case.name}, mu {case.mu}")
+@pytest.mark.parametrize(
+    "case", statics_cases.closed_forms(), ids=lambda case: f"{case.name}, mu {case.mu}"
+)
 def test_what_the_cases_expect(case):
     assert alphas(case) == pytest.approx((case.left, case.right), abs=TOLERANCE)
 

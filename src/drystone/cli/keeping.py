@@ -9,7 +9,7 @@ from typing import Any
 from drystone.cli.choice import clear_choice
 from drystone.cli.output import note
 from drystone.errors import DrystoneError, Notice
-from drystone.io.checkpoint import Checkpoint, remove_checkpoint, write_checkpoint
+from drystone.io.checkpoint import CHECKPOINT, Checkpoint, write_checkpoint
 from drystone.io.photo_beside import place_photo
 from drystone.io.plan_folder import WRITTEN as WITH_PLAN
 from drystone.io.plan_folder import write_plan_folder
@@ -82,7 +82,7 @@ class Keeper:
         if result.plan.stopped in UNFINISHED and self._state is not None:
             self._keep_search()
         else:
-            remove_checkpoint(self._folder)
+            (self._folder / CHECKPOINT).unlink(missing_ok=True)
 
     def _keep_search(self) -> None:
         with self._search:

@@ -42,7 +42,11 @@ def main(argv: Sequence[str] | None = None) -> int:
             stopped = code == ExitCode.INTERRUPTED and came() == signal.SIGTERM
             return int(ExitCode.TERMINATED) if stopped else code
         except BrokenPipeError:
-            return _leave_pipe()
+            # The reader is gone, as in `drystone stones X | head`: the rest is thrown away.
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, sys.stdout.fileno())
+            os.close(nowhere)
+            return int(ExitCode.DONE)
         except (Exception, KeyboardInterrupt) as error:
             # A module that is being imported may turn an interrupt into an error of its own.
             if isinstance(error, KeyboardInterrupt) or came():
@@ -57,7 +61,6 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _called(words: Sequence[str]) -> int:
-    """Do what the command line says."""
     _prepare_output()
     if os.environ.get(VARIABLE) and (wrong := fault()) is not None:
         what = f"the kernels asked for are not there: {wrong}."
@@ -98,11 +101,3 @@ def _coded(error: Exception, command: str) -> DrystoneError:
     what = f"this is a fault of drystone ({type(error).__name__}{said and f': {said}'})."
     cure = "Please report it with the input; --debug shows the traceback."
     return OwnFaultError("E155", what, where=command, cure=cure)
-
-
-def _leave_pipe() -> int:
-    """Throw the rest of the output away: its reader is gone, as in `drystone stones X | head`."""
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, sys.stdout.fileno())
-    os.close(nowhere)
-    return int(ExitCode.DONE)

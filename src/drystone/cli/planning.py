@@ -6,14 +6,7 @@ from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 
-from drystone.cli.choice import (
-    PLACES,
-    choice_summary,
-    clear_choice,
-    prepare_choice,
-    print_choice,
-    write_choice,
-)
+from drystone.cli import choice
 from drystone.cli.keeping import WRITTEN, Keeper
 from drystone.cli.numbers import picture_size_px, refuse_outside, scale_notice
 from drystone.cli.output import note, print_json, print_table, working_in
@@ -64,7 +57,7 @@ def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:
     if earlier.plan is not None and earlier.finished:
         # A run that was killed at its very end has left its lock, which goes with this one.
         left = (folder / LOCK).exists() and not prepared
-        with locked(folder, PLACES) if left else nullcontext():
+        with locked(folder, choice.PLACES) if left else nullcontext():
             return _EXIT[tell_finished(earlier.plan, request)]
     earlier.tell()
     begin = plan_to_begin_with(request)
@@ -75,9 +68,9 @@ def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:
     if photo is not None:
         read_photo_picture(photo, (stones.source.width_px, stones.source.height_px))
     if request.pareto:
-        prepare_choice(folder)
+        choice.prepare_choice(folder)
     overwrite = request.overwrite or earlier.begun
-    ready = working_in(folder, (*WRITTEN, CHECKPOINT), overwrite=overwrite, within=PLACES)
+    ready = working_in(folder, (*WRITTEN, CHECKPOINT), overwrite=overwrite, within=choice.PLACES)
     with nullcontext() if prepared else ready:
         keeper = Keeper(folder, made_of(request), photo)
         keeper.begin(earlier.state)
@@ -190,12 +183,12 @@ def _written_and_told(result: PlanResult, request: PlanRequest, keeper: Keeper) 
     if request.json:
         told = summary(result, folder)
         if request.pareto:
-            told["pareto"] = choice_summary(result, folder)
+            told["pareto"] = choice.choice_summary(result, folder)
         print_json(told | ({} if profile is None else {"profile": profile}))
     else:
         print_table(ending(result), rows(result, folder))
         if request.pareto:
-            print_choice(result)
+            choice.print_choice(result)
         if profile is not None:
             title = "\nwhere the time went, and microseconds a candidate"
             print_table(title, profile_rows(profile))
@@ -228,9 +221,9 @@ def _write(result: PlanResult, request: PlanRequest) -> PlanResult:
     write_report(folder / "report.html", view, pictures=folder)
     write_film(result, folder)
     if request.pareto:
-        write_choice(result, folder)
+        choice.write_choice(result, folder)
     else:
-        clear_choice(folder)
+        choice.clear_choice(folder)
     note(_exports_notice(folder))
     return result
 

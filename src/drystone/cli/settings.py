@@ -207,7 +207,6 @@ def _changes(settings: PlannerSettings, arguments: argparse.Namespace) -> Iterat
 
 
 def _search(settings: PlannerSettings, arguments: argparse.Namespace) -> dict[str, Any]:
-    """Return the changes of the search's settings."""
     if arguments.policy is not None:
         if arguments.time is not None or arguments.budget not in (None, 1):
             what = "--policy chooses the stones of a single pass, which is not searched."
@@ -215,7 +214,10 @@ def _search(settings: PlannerSettings, arguments: argparse.Namespace) -> dict[st
         return {"budget": 1}
     if arguments.budget is not None:
         return {"budget": arguments.budget}
-    searched = settings.search.budget > 1 and not _has_budget(arguments)
+    file = {} if arguments.settings is None else read_toml(Path(arguments.settings))
+    search = _together((file, *arguments.changes)).get("search", {})
+    has_budget = isinstance(search, dict) and "budget" in search
+    searched = settings.search.budget > 1 and not has_budget
     exact = (arguments.geometry or settings.geometry) == "exact"
     return {"budget": UNLIMITED} if exact and (searched or arguments.time is not None) else {}
 
@@ -234,13 +236,6 @@ def limited(
         return settings, None
     budget = {"budget": usual_budget(stones)}
     return settings.updated({"search": budget}), max(GUARD_S, stones * GUARD_S_A_STONE)
-
-
-def _has_budget(arguments: argparse.Namespace) -> bool:
-    """Tell whether a file or `--set` says how many walls are built."""
-    file = {} if arguments.settings is None else read_toml(Path(arguments.settings))
-    search = _together((file, *arguments.changes)).get("search", {})
-    return isinstance(search, dict) and "budget" in search
 
 
 def _check_geometry(geometry: str, arguments: argparse.Namespace) -> None:

@@ -62,7 +62,10 @@ def model_from_labels(labels: Labels, mu: float = 0.58) -> ImageModel:
     >>> picture.model.blocks[0].centroid, picture.ground_row, picture.notices[0].code
     ((1.0, 1.0), 2, 'W301')
     """
-    _check_labels(labels)
+    if labels.ndim != 2 or labels.dtype.kind not in "iu" or (labels.size and labels.min() < 0):
+        what = f"an array of shape {labels.shape} and type {labels.dtype} is not a picture of ids."
+        cure = "Give a two-dimensional array of integers: 0 for nothing, ids above 0."
+        raise LabelImageError("E301", what, where="label image", cure=cure)
     check_mu(mu)
     filled = np.flatnonzero((labels > 0).any(axis=1))
     height = int(filled[-1]) + 1 if filled.size else labels.shape[0]
@@ -139,13 +142,6 @@ def notice_of_pieces(labels: Labels) -> tuple[Notice, ...]:
     verb, them = "lies" if one and apart[0][1] == 1 else "lie", "it" if one else "them"
     what = f"{', '.join(told)} {verb} apart from {them}; all pixels of an id are one rigid block."
     return (Notice("W304", what, "Give every piece an id of its own, or clean the picture."),)
-
-
-def _check_labels(labels: Labels) -> None:
-    if labels.ndim != 2 or labels.dtype.kind not in "iu" or (labels.size and labels.min() < 0):
-        what = f"an array of shape {labels.shape} and type {labels.dtype} is not a picture of ids."
-        cure = "Give a two-dimensional array of integers: 0 for nothing, ids above 0."
-        raise LabelImageError("E301", what, where="label image", cure=cure)
 
 
 def _block(part: Part, sums: tuple[int, int, int], height_px: int) -> Block:

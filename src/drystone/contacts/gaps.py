@@ -55,7 +55,11 @@ def close_gaps(labels: Labels, reach_px: float) -> Labels:
     grown = np.where(gap, nearest, cells)
     # By what grew beside them: a stone itself would bulge into a joint that meets it.
     grown = _filled(grown, ground, _holes_between(cells, gap, reach_px))
-    _drop_islands(cells, grown)
+    # Pixels that are not connected with the stone they were given to are taken back.
+    for block in np.unique(grown[grown != cells]).tolist():
+        pieces, _ = ndimage.label(grown == block)
+        own = np.unique(pieces[cells == block])
+        grown[(pieces > 0) & ~np.isin(pieces, own)] = 0
     _part_strangers(cells, grown, reach_px)
     closed = labels.copy()
     stones = np.where(grown[:-1] == ground, 0, grown[:-1])
@@ -143,14 +147,6 @@ def _filled(cells: NDArray[np.int64], ground: int, holes: Mask) -> NDArray[np.in
     filled = cells.copy()
     filled[holes] = cells[tuple(rim[nearest].T)]
     return filled
-
-
-def _drop_islands(cells: NDArray[np.int64], grown: NDArray[np.int64]) -> None:
-    """Take back pixels that are not connected with the stone they were given to."""
-    for block in np.unique(grown[grown != cells]).tolist():
-        pieces, _ = ndimage.label(grown == block)
-        own = np.unique(pieces[cells == block])
-        grown[(pieces > 0) & ~np.isin(pieces, own)] = 0
 
 
 def _part_strangers(cells: NDArray[np.int64], grown: NDArray[np.int64], reach_px: float) -> None:

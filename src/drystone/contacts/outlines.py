@@ -157,7 +157,10 @@ def _drawn(pieces: Iterable[RingPiece], fits: Mapping[RingPiece, Fit]) -> dict[R
     for piece in pieces:
         nodes = np.array(piece, float)
         if piece not in fits:
-            drawn[piece] = _bends(nodes)
+            # Without the pixel corners that lie between two others on one line.
+            step = np.diff(nodes, axis=0)
+            turns = (step[1:] != step[:-1]).any(axis=1)
+            drawn[piece] = nodes[np.concatenate([[True], turns, [True]])]
             continue
         cuts, lines = fits[piece]
         first, last = (
@@ -189,13 +192,6 @@ def _is_sound(outline: Points, ring: RingPiece) -> bool:
     # Pixel edges that pass one corner twice make no valid area; a hair's breadth inside is one.
     common = sum(part.area for part in common_parts(pixels.buffer(-1e-6), shape))
     return bool(away <= OUTLINE_TOLERANCE_PX + REACH_PX and common >= SAME_SHARE * pixels.area)
-
-
-def _bends(nodes: Points) -> Points:
-    """Leave out the pixel corners that lie between two others on one line."""
-    step = np.diff(nodes, axis=0)
-    turns = (step[1:] != step[:-1]).any(axis=1)
-    return np.asarray(nodes[np.concatenate([[True], turns, [True]])])
 
 
 def _area(polygon: Points) -> float:

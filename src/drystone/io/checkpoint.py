@@ -75,11 +75,6 @@ def read_checkpoint(
     return Checkpoint(data["made_of"], state)
 
 
-def remove_checkpoint(folder: Path) -> None:
-    """Remove the checkpoint of a plan that is finished."""
-    (folder / CHECKPOINT).unlink(missing_ok=True)
-
-
 def _digest(text: str) -> str:
     return sha256(text.encode()).hexdigest()
 
@@ -132,7 +127,6 @@ def _possible(chains: Chains, search: SearchSettings) -> bool:
 
 
 def _walls(state: SearchState) -> Iterator[PackedWall]:
-    """Iterate over all walls of a search."""
     chains = state.chains
     yield from state.found
     for reached in (state.before, chains.reached if chains else None):

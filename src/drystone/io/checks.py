@@ -104,7 +104,12 @@ def check_not_lossy(image: IdImage) -> None:
     if equal.size and len(ids.values) > _MANY_VALUES and equal.mean() < _PLAIN_SHARE_LOSSY:
         raise _photo(ids)
     rare = int((ids.counts < RARE_PX).sum())
-    plain = _plain_areas(brightness)
+    # Areas that were of one value before compression blurred them.
+    level = brightness.astype(np.int32)
+    spread = ndimage.maximum_filter(level, 3) - ndimage.minimum_filter(level, 3)
+    background = int(np.bincount(level.ravel()).argmax())
+    areas, found = ndimage.label((spread <= 16) & (np.abs(level - background) > 16))
+    plain = int((np.bincount(areas.ravel(), minlength=found + 1)[1:] >= RARE_PX).sum())
     guess = f" Its plain areas look like {plain} stones." if plain else ""
     raise LabelImageError(
         "E101",
@@ -116,15 +121,6 @@ def check_not_lossy(image: IdImage) -> None:
     )
 
 
-def _plain_areas(brightness: NDArray[Any]) -> int:
-    """Count areas that were of one value before compression blurred them: a guess."""
-    level = brightness.astype(np.int32)
-    spread = ndimage.maximum_filter(level, 3) - ndimage.minimum_filter(level, 3)
-    background = int(np.bincount(level.ravel()).argmax())
-    plain, found = ndimage.label((spread <= 16) & (np.abs(level - background) > 16))
-    return int((np.bincount(plain.ravel(), minlength=found + 1)[1:] >= RARE_PX).sum())
-
-
 def check_not_photo(census: Census) -> None:
     """Refuse a picture whose neighbouring pixels mostly differ (E102).
 
@@ -133,7 +129,8 @@ def check_not_photo(census: Census) -> None:
     """
     if len(census.values) <= _MANY_VALUES:
         return
-    left, right, common = census.index[:, :-1], census.index[:, 1:], census.commonest + 1
+    left, right = census.index[:, :-1], census.index[:, 1:]
+    common = int(np.argmax(census.counts)) + 1
     pairs = (left != common) | (right != common)
     equal = int(((left == right) & pairs).sum())
     if equal < _PLAIN_SHARE * int(pairs.sum()):

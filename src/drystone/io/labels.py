@@ -36,11 +36,6 @@ class Census:
         """Number of pixels of each value."""
         return counted(self.index, len(self.values))[1:]
 
-    @property
-    def commonest(self) -> int:
-        """Position of the most frequent value."""
-        return int(np.argmax(self.counts))
-
     @cached_property
     def solid(self) -> NDArray[np.bool_]:
         """True where the 3 x 3 px around a pixel all have its value; (h, w), the rim is False."""

@@ -103,6 +103,5 @@ def _float(data: float) -> float:
 
 @cache
 def _types(kind: type) -> dict[str, Any]:
-    """Return the types of the fields of a dataclass, by name."""
     hints = get_type_hints(kind)
     return {field.name: hints[field.name] for field in dataclasses.fields(kind)}

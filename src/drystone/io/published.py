@@ -184,6 +184,5 @@ def _other_contents(path: Path, cure: str, url: str) -> InputError:
 
 
 def _extra_missing(where: str, cure: str) -> InputError:
-    """Return the error for the missing library."""
     what = "pooch, which downloads, is not installed."
     return InputError("E162", what, where=where, cure=f"`pip install 'drystone[fetch]'`. {cure}")

@@ -15,19 +15,10 @@ from drystone.io.file_errors import listed, short, too_large, unfit
 from drystone.io.foreign import foreign
 from drystone.io.images import BEGINNING
 from drystone.io.json_text import json_of
+from drystone.io.outlines_in import exports
 from drystone.io.outlines_in.annotations import read_coco, read_labelme, read_sam
 from drystone.io.outlines_in.classes import of_classes
 from drystone.io.outlines_in.dxf import is_dxf, read_dxf
-from drystone.io.outlines_in.exports import (
-    is_cvat,
-    is_label_studio,
-    is_via,
-    is_yolo,
-    read_cvat,
-    read_label_studio,
-    read_via,
-    read_yolo,
-)
 from drystone.io.outlines_in.geojson import is_geojson, read_geojson
 from drystone.io.outlines_in.meshes import mesh_kind, read_mesh
 from drystone.io.outlines_in.model import METRES, OutlineFile, numbered, without_wedges
@@ -65,11 +56,11 @@ def _is_sam(content: Any) -> bool:
 # The first of these that a file is; an empty list is one of masks.
 _KINDS: tuple[tuple[Callable[[Any], bool], Callable[[Any, ReadSettings], OutlineFile]], ...] = (
     (_is_sam, read_sam),
-    (is_label_studio, read_label_studio),
+    (exports.is_label_studio, exports.read_label_studio),
     (_holds("shapes"), read_labelme),
     (_holds("annotations"), read_coco),
     (is_geojson, read_geojson),
-    (is_via, read_via),
+    (exports.is_via, exports.read_via),
     (is_nesting, read_nesting),
 )
 
@@ -85,8 +76,8 @@ def outline_reader(data: bytes, name: str) -> Reader | None:
         return _read_json
     # A drawing names itself; the text of an OBJ is told by its lines, so it comes last.
     readers: tuple[tuple[bool, Reader], ...] = (
-        (suffix == ".txt" and is_yolo(data), read_yolo),
-        (begins == b"<" and is_cvat(data), read_cvat),
+        (suffix == ".txt" and exports.is_yolo(data), exports.read_yolo),
+        (begins == b"<" and exports.is_cvat(data), exports.read_cvat),
         (is_svg(data, suffix), read_svg),
         (suffix != ".bmp" and is_dxf(data, suffix), read_dxf),
     )

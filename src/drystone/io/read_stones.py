@@ -10,16 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.errors import InputError, LabelImageError, Notice
-from drystone.io.checks import (
-    check_background,
-    check_no_plan,
-    check_not_lossy,
-    check_not_photo,
-    check_not_resampled,
-    check_not_uniform,
-    without_blends,
-    without_net,
-)
+from drystone.io import checks, read_outlines
 from drystone.io.file_bytes import given_bytes
 from drystone.io.file_errors import listed, naming
 from drystone.io.images import FORMATS, SUFFIXES, Picture, decode
@@ -36,12 +27,6 @@ from drystone.io.patches import (
     stone_set,
 )
 from drystone.io.photo_beside import LABELS, PAGE, read_sidecar, scale_beside
-from drystone.io.read_outlines import (
-    check_not_asked,
-    check_unit,
-    outline_reader,
-    stones_and_outlines,
-)
 from drystone.io.read_settings import ReadSettings
 from drystone.model.stone import Source, StoneSet, writable
 
@@ -99,14 +84,14 @@ def read_stones(
         path = labels
     data, name = given_bytes(path), writable(path.name)
     with naming(name):
-        reader = outline_reader(data, name)
+        reader = read_outlines.outline_reader(data, name)
         if reader is not None:
-            return stones_and_outlines(reader, data, name, settings)[0]
+            return read_outlines.stones_and_outlines(reader, data, name, settings)[0]
         sidecar = read_sidecar(path)
         if is_npz(data):
             arrays = read_npz(data, _max_px(settings))
             if isinstance(arrays, OutlineFile):
-                return stones_and_outlines(lambda *_: arrays, data, name, settings)[0]
+                return read_outlines.stones_and_outlines(lambda *_: arrays, data, name, settings)[0]
             picture = Picture(arrays)
         else:
             picture = decode(data, _max_px(settings))
@@ -126,8 +111,8 @@ def read_stones(
 
 def _of_px(settings: ReadSettings) -> tuple[tuple[str, Any], ...]:
     """Return what a plan must keep of the settings with which a picture was read."""
-    check_unit(None, settings)
-    check_not_asked(settings, "image", "label", "up")
+    read_outlines.check_unit(None, settings)
+    read_outlines.check_not_asked(settings, "image", "label", "up")
     return replace(settings, px_per_m=None).changed()
 
 
@@ -181,29 +166,31 @@ def _checked(
     image: IdImage, lossy: bool, settings: ReadSettings
 ) -> tuple[IdImage, BinaryMask | None]:
     """Refuse what is no picture of stones; return it repaired, and the mask if it is one."""
-    check_not_uniform(image)
+    checks.check_not_uniform(image)
     if lossy and not settings.mask:
-        check_not_lossy(image)
+        checks.check_not_lossy(image)
     binary = find_mask(image, settings.mask, lossy=lossy)
     if binary is None:
-        check_not_photo(image.census)
-        if settings.mask is None and (net := without_net(image)) is not image:
+        checks.check_not_photo(image.census)
+        if settings.mask is None and (net := checks.without_net(image)) is not image:
             image = net
-            check_not_uniform(image)
+            checks.check_not_uniform(image)
             binary = find_mask(image, None)
     if binary is None:
-        check_background(image.census, image.background, rim_px=int(image.has_edges))
-        image = without_blends(image, settings.min_area_px or MIN_AREA_PX)
-        check_not_resampled(image)
+        checks.check_background(image.census, image.background, rim_px=int(image.has_edges))
+        image = checks.without_blends(image, settings.min_area_px or MIN_AREA_PX)
+        checks.check_not_resampled(image)
     else:
         ends = np.array([binary.background, binary.stone])
-        check_background(Census(binary.mask.view(np.uint8) + np.uint8(1), ends), binary.background)
+        checks.check_background(
+            Census(binary.mask.view(np.uint8) + np.uint8(1), ends), binary.background
+        )
     return image, binary
 
 
 def _read_folder(folder: Path, name: str, settings: ReadSettings) -> StoneSet:
     """Read one-stone masks, numbered from 1 in natural file order."""
-    check_no_plan(folder)
+    checks.check_no_plan(folder)
     entries = [entry for entry in folder.iterdir() if not entry.name.startswith(".")]
     files = [entry for entry in entries if entry.is_file() and entry.suffix.lower() in SUFFIXES]
     if not files:

@@ -190,7 +190,14 @@ def _unpacked(page: Any, piece: bytes, shape: tuple[int, int, int]) -> bytes:
     if compression in _DEFLATE | {1}:
         # 2 has the bits of every byte the other way round.
         piece = piece.translate(_REVERSED) if order == 2 else piece
-        return piece if compression == 1 else _inflated(piece, rows * row_bytes)
+        if compression == 1:
+            return piece
+        # As far as it is wanted; what holds far more is refused.
+        decoder, want = zlib.decompressobj(), rows * row_bytes
+        found = decoder.decompress(piece, want)
+        if len(found) == want and len(decoder.decompress(decoder.unconsumed_tail, _ROOM)) == _ROOM:
+            raise damaged("its strips are larger than the picture")
+        return found
     # A TIFF of one strip, whose bytes are wanted, or bits of fax codes.
     bits = 1 if compression in _FAX else 8
     tags = {256: width if bits == 1 else row_bytes, 257: rows, 258: bits, 259: compression, 262: 1}
@@ -201,8 +208,8 @@ def _unpacked(page: Any, piece: bytes, shape: tuple[int, int, int]) -> bytes:
     head = (struct.pack("<2sHI", b"II", 42, place) + piece).ljust(place, b"\0")
     data = head + struct.pack("<H", len(tags)) + entries + b"\0" * 4
     with opened(data, lambda *_: None) as image:
-        found = np.asarray(image)
-    return bytes((found if bits == 8 else np.packbits(found, axis=1)).data)
+        values = np.asarray(image)
+    return bytes((values if bits == 8 else np.packbits(values, axis=1)).data)
 
 
 def _numbers(
@@ -227,15 +234,6 @@ def _numbers(
     whole = np.dtype(f"u{kind.itemsize}")
     steps = table.view(whole.newbyteorder(kind.byteorder)).reshape(rows, -1, channels)
     return np.cumsum(steps, axis=1, dtype=whole).view(kind.newbyteorder("="))
-
-
-def _inflated(piece: bytes, want: int) -> bytes:
-    """Return what deflate holds, as far as it is wanted; refuse what holds far more (E106)."""
-    decoder = zlib.decompressobj()
-    found = decoder.decompress(piece, want)
-    if len(found) == want and len(decoder.decompress(decoder.unconsumed_tail, _ROOM)) == _ROOM:
-        raise damaged("its strips are larger than the picture")
-    return found
 
 
 def turned(values: NDArray[Any], orientation: int) -> NDArray[Any]:

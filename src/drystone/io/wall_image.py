@@ -8,15 +8,7 @@ import tifffile
 from PIL import Image
 
 from drystone.errors import Notice, UsageError
-from drystone.io.checks import (
-    check_background,
-    check_not_lossy,
-    check_not_photo,
-    check_not_resampled,
-    check_not_uniform,
-    without_blends,
-    without_net,
-)
+from drystone.io import checks
 from drystone.io.file_bytes import given_bytes
 from drystone.io.file_errors import naming
 from drystone.io.images import decode
@@ -125,18 +117,18 @@ def read_wall_picture(
         picture = decode(given_bytes(path), int(max_image_mpx * 1e6))
         image = to_ids(picture, background)
         if picture.lossy:
-            check_not_lossy(image)
+            checks.check_not_lossy(image)
         if len(image.census.values) > 1:
             if not planned:
-                image = without_net(image, wall=True)
-            check_background(image.census, image.background, _CURE, int(image.has_edges))
-            check_not_photo(image.census)
+                image = checks.without_net(image, wall=True)
+            checks.check_background(image.census, image.background, _CURE, int(image.has_edges))
+            checks.check_not_photo(image.census)
             if not planned:
-                image = without_blends(image, _BLENDED_PX, wall=True)
-                check_not_resampled(image)
+                image = checks.without_blends(image, _BLENDED_PX, wall=True)
+                checks.check_not_resampled(image)
         elif int(image.census.values[0]) == image.background:
             # One stone may fill the whole image; no stone may not.
-            check_not_uniform(image)
+            checks.check_not_uniform(image)
         check_no_zero(image)
     labels = image.ids.astype(np.uint32)
     labels[labels == image.background] = 0

@@ -178,7 +178,6 @@ def _without_straight_ones(corners: Points) -> Points:
 
 
 def _cross(first: Points, second: Points) -> Points:
-    """Return the cross products of vectors."""
     return np.asarray(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
 
 

@@ -77,10 +77,14 @@ def sheet_positions_m(page: str, size_m: float) -> NDArray[np.float64]:
         raise _no_sheet(f"markers of {size:g} mm are too small", f"{LEAST_SIZE_MM:g} mm or more")
     # Two markers may not come nearer to each other than to the edge: that is their quiet zone.
     if 2 * size + 3 * margin > width or 2 * size + 4 * margin + MIDDLE_MM > height:
-        largest = _largest_mm(width, height)
-        raise _no_sheet(
-            f"four markers of {size:g} mm do not fit on {page}", f"{largest:g} mm or less"
+        largest = max(
+            size_mm
+            for size_mm in range(int(LEAST_SIZE_MM), int(width))
+            if 2 * size_mm <= width - 3 * margin_mm(size_mm)
+            and 2 * size_mm <= height - 4 * margin_mm(size_mm) - MIDDLE_MM
         )
+        what = f"four markers of {size:g} mm do not fit on {page}"
+        raise _no_sheet(what, f"{largest:g} mm or less")
     left, right = margin, width - margin - size
     top, bottom = margin, height - margin - size
     return np.array([[left, top], [right, top], [right, bottom], [left, bottom]]) / 1000.0
@@ -138,16 +142,6 @@ def parse_layout(
     size_m = parse_size_m(size or "50mm")
     sheet_positions_m(named, size_m)
     return MarkerLayout(size_m, named, FIRST_SHEET if ids is None else ids, printed)
-
-
-def _largest_mm(width: float, height: float) -> int:
-    """Return the largest size of a sheet of four that leaves the margins, whole millimetres."""
-    sizes = range(int(LEAST_SIZE_MM), int(width))
-    rooms = (
-        (size, min(width - 3 * margin_mm(size), height - 4 * margin_mm(size) - MIDDLE_MM))
-        for size in sizes
-    )
-    return max(size for size, room in rooms if 2 * size <= room)
 
 
 def _no_sheet(what: str, instead: str) -> UsageError:

@@ -55,9 +55,7 @@ on it is no noise."""
 
 
 def scale_and_view(
-    found: tuple[FoundMarker, ...],
-    layout: MarkerLayout,
-    size_px: tuple[int, int],
+    found: tuple[FoundMarker, ...], layout: MarkerLayout, size_px: tuple[int, int]
 ) -> View:
     """Find the scale and the perspective of a photograph from at least two markers.
 
@@ -194,9 +192,7 @@ def _too_few(
 
 
 def _believed(
-    papers: Sequence[Sequence[FoundMarker]],
-    plane: CommonPlane,
-    layout: MarkerLayout,
+    papers: Sequence[Sequence[FoundMarker]], plane: CommonPlane, layout: MarkerLayout
 ) -> float:
     """Return the residual of all corners, metres; refuse markers that disagree (E172)."""
     # Perspective can hide from the residual that sizes differ.

@@ -72,7 +72,9 @@ def fit_ground(image: NDArray[np.uint8], usable: Mask, ground: Ground) -> Ground
     `usable` is what may be ground or stone: not the markers, nor what the photograph does not show.
     E176 when no colour is frequent enough to be a ground, or nothing may be one.
     """
-    light = linear_light(image)
+    value = np.arange(256) / 255  # of sRGB
+    table = np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
+    light = table.astype(np.float32)[image]
     smooth = np.stack([ndimage.gaussian_filter(light[..., k], 1.0) for k in range(3)], axis=-1)
     step = max(1, round(np.sqrt(usable.size / 15_000)))
     coarse = np.stack(
@@ -105,13 +107,6 @@ def _no_ground(share: float) -> InputError:
         cure="Lay the stones on a plain sheet of another colour than theirs, and photograph "
         "nothing else; or say --ground light or --ground dark.",
     )
-
-
-def linear_light(image: NDArray[np.uint8]) -> Planes:
-    """Return the linear light of sRGB values, 0 to 1."""
-    value = np.arange(256) / 255
-    table = np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
-    return np.asarray(table.astype(np.float32)[image])
 
 
 def lab_of(light: NDArray[Any]) -> Planes:

@@ -37,7 +37,11 @@ class TiltingTable:
         self._reaches: Floats = np.zeros(0)
         for block in scene.shapes if placed is None else placed:
             self.place(scene, block)
-        self._add_ground(scene)
+        left, _, right, _ = shapely.GeometryCollection(list(scene.shapes.values())).bounds
+        left, right = (2 * left - right) / scene.length, (2 * right - left) / scene.length
+        low = -GROUND_THICKNESS
+        ground = np.array([[left, low], [right, low], [right, 0.0], [left, 0.0]])
+        self._add_shape(self._space.static_body, ground, scene.mu)
 
     def place(self, scene: EngineScene, block: int) -> float:
         """Put a block where its scene has it, whatever the others have done since.
@@ -88,14 +92,6 @@ class TiltingTable:
         shape.friction = sqrt(mu)
         shape.elasticity = 0.0
         self._space.add(shape)
-
-    def _add_ground(self, scene: EngineScene) -> None:
-        left, _, right, _ = shapely.GeometryCollection(list(scene.shapes.values())).bounds
-        left, right = (2 * left - right) / scene.length, (2 * right - left) / scene.length
-        ground = np.array(
-            [[left, -GROUND_THICKNESS], [right, -GROUND_THICKNESS], [right, 0.0], [left, 0.0]]
-        )
-        self._add_shape(self._space.static_body, ground, scene.mu)
 
     def tilt(self, alpha: float) -> None:
         """Turn gravity so that its horizontal share (towards +x) is alpha times the vertical."""

@@ -257,7 +257,12 @@ def _on_outlines(
             yield from taken_in(*found)
     for start in starts:
         if not crosses_any(turned.corners + np.array(start), scene.polygons):
-            yield from taken_in(_as_it_is(turned, scene, start), None)
+            # Where it was let go it does not rest.
+            x = start[0] if scene.side == "left" else scene.width_px - start[0]
+            x, y = on_grid(np.array([x, start[1]])).tolist()
+            there = Settled(x, y, placed_outline(turned.outline, turned.angle_deg, x, y))
+            repose = Repose(there, turned.angle_deg, turned=False, margin=-1.0)
+            yield from taken_in(repose, None)
             return
 
 
@@ -287,14 +292,6 @@ def _starts(
         for dx, dy in moves
     )
     return list(dict.fromkeys(inside))
-
-
-def _as_it_is(turned: Turned, scene: SettlingScene, start: tuple[float, float]) -> Repose:
-    """Return a stone where it was let go, which does not rest there."""
-    x = start[0] if scene.side == "left" else scene.width_px - start[0]
-    x, y = on_grid(np.array([x, start[1]])).tolist()
-    corners = placed_outline(turned.outline, turned.angle_deg, x, y)
-    return Repose(Settled(x, y, corners), turned.angle_deg, turned=False, margin=-1.0)
 
 
 def _on_pixels(

@@ -15,13 +15,8 @@ import numpy as np
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Side
 from drystone.model.pose import PosedStone
+from drystone.planner import choose
 from drystone.planner.build import Build, Candidate, Proposal
-from drystone.planner.choose import (
-    better_side,
-    choose_by_algorithm2,
-    choose_by_policy,
-    choose_by_score,
-)
 from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.profile import Profile
@@ -126,7 +121,7 @@ class Attempt:
             return best(tuple(self._landscapes.values()))
         winners = [best([landscape]) for landscape in self._landscapes.values()]
         found = [winner for winner in winners if winner is not None]
-        return better_side(found, self.build, self._settings.selection)
+        return choose.better_side(found, self.build, self._settings.selection)
 
     def _select(
         self, landscapes: Sequence[Landscape], stones: Sequence[int], rng: np.random.Generator
@@ -157,13 +152,13 @@ class Attempt:
     def _best(self, proposals: Sequence[Proposal], rng: np.random.Generator) -> Candidate | None:
         if self._policy is not None:
             name, settings = self._settings.selection_rule, self._settings.policy
-            return choose_by_policy(
+            return choose.choose_by_policy(
                 proposals, self._judge, self._policy, name=name, build=self.build,
                 settings=settings, rng=rng,
             )  # fmt: skip
         if self._settings.selection_rule == "score":
-            return choose_by_score(proposals, self._judge, self._settings.score, self._sure)
-        return choose_by_algorithm2(proposals, self._judge, self._settings.selection)
+            return choose.choose_by_score(proposals, self._judge, self._settings.score, self._sure)
+        return choose.choose_by_algorithm2(proposals, self._judge, self._settings.selection)
 
     def _proposals(
         self, landscapes: Sequence[Landscape], stones: Sequence[int]

@@ -129,7 +129,12 @@ def places_in(
         there = MeasuredPlace(
             x / wall.site.scale, y / wall.site.scale, placement.posed.angle_deg, True
         )
-        if _rim_share(seen, np.asarray(expected == stone_id)) <= SAME:
+        planned_px = np.asarray(expected == stone_id)
+        # How many pixels differ, over how many are at the rim of what was planned.
+        padded = np.pad(planned_px, 1)
+        inner = padded[:-2, 1:-1] & padded[2:, 1:-1] & padded[1:-1, :-2] & padded[1:-1, 2:]
+        rim = int((planned_px & ~inner).sum())
+        if int((seen ^ planned_px).sum()) / max(rim, 1) <= SAME:
             found[stone_id] = there
         else:
             found[stone_id] = fitted(seen, stone.outline, scale, there.angle_deg)
@@ -254,14 +259,6 @@ def _expected(wall: Wall, scale: float) -> Labels:
         inside = (rows >= 0) & (rows < len(labels)) & (cols >= 0) & (cols < labels.shape[1])
         labels[rows[inside], cols[inside]] = placement.stone_id
     return labels
-
-
-def _rim_share(seen: Mask, expected: Mask) -> float:
-    """Return how many pixels differ, over how many are at the rim of what was expected."""
-    padded = np.pad(expected, 1)
-    inner = padded[:-2, 1:-1] & padded[2:, 1:-1] & padded[1:-1, :-2] & padded[1:-1, 2:]
-    rim = int((expected & ~inner).sum())
-    return int((seen ^ expected).sum()) / max(rim, 1)
 
 
 def _require_seen(stone: Stone, seen_px: float) -> None:

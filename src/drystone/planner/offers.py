@@ -34,6 +34,8 @@ def offer(candidate: Candidate, site: Site, wedge_ids: frozenset[int] = frozense
     # The model of outlines is in source px.
     scale = 1.0 if settled is None else site.scale
     block = next(b for b in reversed(candidate.model.blocks) if b.id == candidate.stone_id)
+    pairs = [{i.block, i.other} for i in _new_interfaces(candidate.model)]
+    touched = set().union(*(pair for pair in pairs if candidate.stone_id in pair))
     return Offer(
         stone_id=candidate.stone_id,
         angle_deg=candidate.proposal.trial_angle_deg,
@@ -47,7 +49,7 @@ def offer(candidate: Candidate, site: Site, wedge_ids: frozenset[int] = frozense
         top_px=top,
         centroid_px=placement.centroid(site.height_px),
         support_px=support_px(candidate.model, candidate.stone_id, scale),
-        touches=_touched(candidate.model, candidate.stone_id, wedge_ids),
+        touches=tuple(sorted(touched - {candidate.stone_id, GROUND} - wedge_ids)),
         wedges=len(candidate.stabilised.wedges),
         wall_width_px=site.width_px,
         wall_height_px=site.height_px,
@@ -82,10 +84,3 @@ def support_px(
 
 def _new_interfaces(model: RigidBlockModel) -> Sequence[Interface]:
     return model.interfaces if model.added is None else model.added.interfaces
-
-
-def _touched(model: RigidBlockModel, stone_id: int, others: frozenset[int]) -> tuple[int, ...]:
-    """Return the ids of the stones that the last one touches; `others` are wedges."""
-    pairs = [{i.block, i.other} for i in _new_interfaces(model)]
-    touched = set().union(*(pair for pair in pairs if stone_id in pair))
-    return tuple(sorted(touched - {stone_id, GROUND} - others))

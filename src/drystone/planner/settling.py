@@ -52,7 +52,11 @@ class ExactProposer(Proposer):
         """See :class:`drystone.planner.proposing.Proposer`."""
         if self.settings.selection_rule == "score":
             for batch in self.batches(trials, apply):
-                yield self._all_settled(batch, apply)
+                new = [drop for drop in batch if drop.key not in self._settled]
+                groups = [new[k : k + TOGETHER] for k in range(0, len(new), TOGETHER)]
+                settled = apply(partial(one_by_one, self._settle), groups)
+                self._settled.update(zip([drop.key for drop in new], chain(*settled), strict=True))
+                yield [found for drop in batch if (found := self._settled[drop.key]) is not None]
         else:
             drops = self.drops(trials, apply)
             yield [proposal for proposal in apply(self._first, drops) if proposal is not None]
@@ -132,13 +136,6 @@ class ExactProposer(Proposer):
         return [
             Dropped(trial, tuple(islice(next_ones, len(trial.poses))), limit) for trial in trials
         ]
-
-    def _all_settled(self, drops: Sequence[Drop], apply: Apply) -> list[Proposal]:
-        new = [drop for drop in drops if drop.key not in self._settled]
-        groups = [new[k : k + TOGETHER] for k in range(0, len(new), TOGETHER)]
-        settled = apply(partial(one_by_one, self._settle), groups)
-        self._settled.update(zip([drop.key for drop in new], chain(*settled), strict=True))
-        return [found for drop in drops if (found := self._settled[drop.key]) is not None]
 
     def _first(self, drops: Sequence[Drop]) -> Proposal | None:
         """Settle the drops of a trial until one rests."""

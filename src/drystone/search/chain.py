@@ -17,7 +17,6 @@ from numpy.random import Generator
 from drystone.planner.build import Build
 from drystone.planner.deadline import Deadline, TimeIsUp
 from drystone.planner.replay import Replayed
-from drystone.planner.search_settings import SearchSettings
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
 from drystone.planner.vary import CHAIN_DRAWS, FIRST_DRAWS
@@ -120,7 +119,10 @@ def _lengthened(link: Link, now: FoundWall, seed: int, yard: Yard) -> tuple[Link
     aside = planned and operator == RECREATED
     base = found_again(link.best, yard) if aside else now
     found = _changed(base, operator, yard, rng)
-    floor = math.inf if aside else _floor(now, position / length, search, rng)
+    floor = math.inf
+    if not aside:  # from that merit on the chain goes on from what it finds (Metropolis)
+        temperature = search.warm * (search.cold / search.warm) ** (position / length)
+        floor = float(now.merit + temperature * math.log(1.0 - rng.random()))
     worth_wedges = link.best.merit - search.wedge_below
     # What a wall carries without dilatancy takes long to find, and only lowers its merit.
     if found.merit > min(floor, worth_wedges):
@@ -146,12 +148,6 @@ def in_cycle(done: int, first: int) -> tuple[int, int]:
         done -= length
         length *= 2
     return done, length
-
-
-def _floor(now: FoundWall, share: float, search: SearchSettings, rng: Generator) -> float:
-    """Draw the merit from which on a chain goes on from a wall that it finds (Metropolis)."""
-    temperature = search.warm * (search.cold / search.warm) ** share
-    return float(now.merit + temperature * math.log(1.0 - rng.random()))
 
 
 def _changed(base: FoundWall, operator: str, yard: Yard, rng: Generator) -> FoundWall:

@@ -130,7 +130,6 @@ def task_of(
 
 
 def _rules_of(settings: CourseSettings, poses: Poses, height: int) -> Rules:
-    """Return settings in units."""
     area = float(poses.area.mean()) * COLUMN_UNITS
     size = math.sqrt(area)
     part = size * poses.peaks.shape[1]

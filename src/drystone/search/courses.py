@@ -144,17 +144,13 @@ def resumed(task: CourseTask, courses: Sequence[Sequence[PlannedStone]]) -> Arra
         if there:
             sizes.append(len(there))
             from_left = sum(stone.side == "left" for stone in there)
-            gaps.append(-1 - from_left if _keeps_away(there, width_px) else from_left)
+            free = width_px - sum(stone.right_px - stone.left_px for stone in there)
+            ends = there[0].left_px, width_px - there[-1].right_px
+            keeps_away = min(ends) > 0.5 * INSET[0] / INSET[1] * free > 0.0
+            gaps.append(-1 - from_left if keeps_away else from_left)
     if not sizes:
         return None
     return _arrangement(order + sorted({*range(len(number))} - {*order}), turns, sizes, gaps)
-
-
-def _keeps_away(course: Sequence[PlannedStone], width_px: float) -> bool:
-    """Say whether a course, from left to right, keeps away from both ends of the wall."""
-    free = width_px - sum(stone.right_px - stone.left_px for stone in course)
-    ends = course[0].left_px, width_px - course[-1].right_px
-    return min(ends) > 0.5 * INSET[0] / INSET[1] * free > 0.0
 
 
 def placed(task: CourseTask, plan: Arrangement, layout: Layout) -> CoursePlan:

@@ -137,9 +137,11 @@ class Hand:
         near: dict[tuple[int, int, int], Resting] = {}
         for of_start in found:
             for one in of_start:
-                cost = self._cost(one, view, aim)
+                cost, at = self._cost(one, view, aim), one.settled
                 if cost < math.inf:
-                    near.setdefault(_place(one), Resting(one, None, cost))
+                    x, y = round(at.x_px / SAME_PX), round(at.y_px / SAME_PX)
+                    like = x, y, round(one.angle_deg / SAME_DEG)
+                    near.setdefault(like, Resting(one, None, cost))
             if len(near) >= enough:
                 break
         # Costs that differ by rounding are equal; then the earlier start goes first.
@@ -166,13 +168,3 @@ class Hand:
         turn = abs(wrap_deg(found.angle_deg - aim.angle_deg)) / 10.0
         unsure = max(0.0, 1.0 - found.margin)
         return math.fsum([float(place[0]), settings.turn * turn, settings.rest * unsure])
-
-
-def _place(found: Repose) -> tuple[int, int, int]:
-    """Return what is the same for stones that rest alike."""
-    settled = found.settled
-    return (
-        round(settled.x_px / SAME_PX),
-        round(settled.y_px / SAME_PX),
-        round(found.angle_deg / SAME_DEG),
-    )

@@ -81,7 +81,12 @@ class StabiliseMemory:
                 if outcome is None:
                     book, stock, settings = self._book, self._stock, self._settings
                     outcome = make_stable(window, trial, side, book, stock, settings)
-                found = self._outcomes.keep(key, outcome, _memory_bytes(key, outcome))
+                # About what it takes, with the pose, which the book may forget.
+                size = len(key[-1]) + 1000
+                if outcome.stabilised is not None:
+                    size += memory_bytes(outcome.stabilised.placement.posed)
+                    size += sum(wedge.mask.nbytes + 500 for wedge in outcome.stabilised.wedges)
+                found = self._outcomes.keep(key, outcome, size)
             if found.depth <= depth or len(window) < depth:
                 return found
             depth = found.depth
@@ -90,15 +95,6 @@ class StabiliseMemory:
 def _reach_px(posed: PosedStone) -> int:
     """Return how far around a stone the window goes: a third of its size and a little."""
     return math.ceil(max(posed.width_px, posed.height_px) / 3) + 6
-
-
-def _memory_bytes(key: Key, outcome: Outcome) -> int:
-    """Return about how much memory an outcome takes; with the pose, which the book may forget."""
-    size = len(key[-1]) + 1000
-    if outcome.stabilised is not None:
-        size += memory_bytes(outcome.stabilised.placement.posed)
-        size += sum(wedge.mask.nbytes + 500 for wedge in outcome.stabilised.wedges)
-    return size
 
 
 def _moved(

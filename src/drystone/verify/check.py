@@ -12,28 +12,11 @@ from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
 from drystone.planner.dropping import wedge_limits
 from drystone.statics.model import RigidBlockModel
+from drystone.verify import claims, pieces
 from drystone.verify.blocks import check_blocks
-from drystone.verify.claims import (
-    Reference,
-    Stability,
-    check_choice,
-    check_indices,
-    check_metrics,
-    check_source,
-    check_stability,
-    check_stone_claims,
-    check_unused,
-    recompute_metrics,
-)
+from drystone.verify.claims import Reference, Stability
 from drystone.verify.lengths import source_points
 from drystone.verify.outlines import real_outline
-from drystone.verify.pieces import (
-    check_outline,
-    check_polygon,
-    check_settled_wedge,
-    check_wedge,
-    is_buried,
-)
 from drystone.verify.replay import Replay, replay_plan
 from drystone.verify.report import CheckReport, Problem
 
@@ -60,9 +43,13 @@ def check_plan(
     """
     replay = replay_plan(plan, stones)
     reference = Reference.of(stones, replay.settings, plan.working_scale)
-    stability = check_stability(replay.stages, replay.settings)
-    problems = [*check_source(plan, stones), *check_unused(plan, stones), *replay.problems]
-    problems += check_choice(plan, replay.settings)
+    stability = claims.check_stability(replay.stages, replay.settings)
+    problems = [
+        *claims.check_source(plan, stones),
+        *claims.check_unused(plan, stones),
+        *replay.problems,
+    ]
+    problems += claims.check_choice(plan, replay.settings)
     problems += _check_pieces(replay, reference)
     problems += stability.problems + tuple(_check_stages(replay, stability, reference))
     if wall_labels is not None:
@@ -73,15 +60,15 @@ def check_plan(
     if blocks is not None and replay.exact:
         problems += check_blocks(blocks, plan, replay, model)
     if whole:
-        metrics = recompute_metrics(plan, replay, model)
-        problems += check_metrics(plan.metrics, metrics)
+        metrics = claims.recompute_metrics(plan, replay, model)
+        problems += claims.check_metrics(plan.metrics, metrics)
     depth, depth_at = deepest_overlap(_outlines(replay))
     area_error, area_error_at = _worst_area(replay)
     return CheckReport(
         problems=tuple(sorted(problems, key=lambda p: (p.step is not None, p.step or 0, p.code))),
         overlap_depth=depth,
         overlap_depth_at=depth_at,
-        buried=tuple(stage.stone.stone for stage in replay.stages if is_buried(stage)),
+        buried=tuple(stage.stone.stone for stage in replay.stages if pieces.is_buried(stage)),
         area_error=area_error,
         area_error_at=area_error_at,
         prefixes=stability.prefixes,
@@ -96,14 +83,16 @@ def _check_pieces(replay: Replay, reference: Reference) -> list[Problem]:
     problems = []
     for piece in replay.pieces:
         if piece.step.kind == "stone":
-            problems += check_stone_claims(piece.step, reference)
+            problems += claims.check_stone_claims(piece.step, reference)
             if piece.corners is not None:
                 stone = reference.stones.by_id(piece.step.stone)
                 centroid_px = source_points([piece.step.centroid], replay.site)[0]
                 within_px = replay.settings.settle.outline_px
-                problems += check_outline(piece.step, stone, centroid_px, piece.corners, within_px)
+                problems += pieces.check_outline(
+                    piece.step, stone, centroid_px, piece.corners, within_px
+                )
         elif isinstance(piece.item, Wedge) and not replay.exact:
-            problems += check_polygon(piece.step, piece.item, replay.site)
+            problems += pieces.check_polygon(piece.step, piece.item, replay.site)
     return problems
 
 
@@ -116,15 +105,15 @@ def _check_stages(replay: Replay, stability: Stability, reference: Reference) ->
     stages = zip(replay.stages, stability.resistances, stability.models, strict=True)
     for stage, resistance, model in stages:
         if resistance is not None:
-            problems += check_indices(stage, resistance, reference, unit)
+            problems += claims.check_indices(stage, resistance, reference, unit)
         for wedge in stage.group.wedges:
             step, settled = steps[wedge.id], stage.group.placement.settled
             if wedge.corners is None or settled is None or wall.outlines is None:
-                problems += check_wedge(
+                problems += pieces.check_wedge(
                     step, wedge, stage.after.labels, settings.stabilise, stock.mean_height_px
                 )
                 continue
-            problems += check_settled_wedge(
+            problems += pieces.check_settled_wedge(
                 step,
                 wedge.corners,
                 model or RigidBlockModel((), (), settings.mu),

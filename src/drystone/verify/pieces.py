@@ -129,8 +129,13 @@ def check_wedge(
     mean_height_px: float,
 ) -> list[Problem]:
     """Verify the rules of wedging on the wall with the stone: contact (E223) and size (E224)."""
-    above, below = _neighbours(wedge, labels)
-    holds = bool((above == wedge.under).any())
+    # With what is right above and right below its pixels; the ground is 2^32-1.
+    framed = np.pad(labels, ((1, 0), (0, 0)))
+    framed = np.pad(framed, ((0, 1), (0, 0)), constant_values=np.iinfo(np.uint32).max)
+    rows, cols = np.nonzero(wedge.mask)
+    rows, cols = rows + wedge.row + 1, cols + wedge.col
+    holds = bool((framed[rows - 1, cols] == wedge.under).any())
+    below = framed[rows + 1, cols]
     stands = bool(np.isin(below, (0, wedge.id, wedge.under), invert=True).any())
     problems = _touching(step, holds=holds, stands=stands)
     heights = wedge.mask.sum(axis=0)
@@ -208,13 +213,3 @@ def _supports(block: int, model: RigidBlockModel) -> tuple[set[int], set[int]]:
         elif up < 0.0:
             above.add(other)
     return above, below
-
-
-def _neighbours(wedge: Wedge, labels: Labels) -> tuple[Labels, Labels]:
-    """Return the labels right above and right below the wedge's pixels; the ground is 2^32-1."""
-    ground = np.iinfo(np.uint32).max
-    framed = np.pad(labels, ((1, 0), (0, 0)))
-    framed = np.pad(framed, ((0, 1), (0, 0)), constant_values=ground)
-    rows, cols = np.nonzero(wedge.mask)
-    rows, cols = rows + wedge.row + 1, cols + wedge.col
-    return framed[rows - 1, cols], framed[rows + 1, cols]

@@ -7,14 +7,7 @@ import pypdfium2
 import pytest
 
 from drystone.drawing.export.formats import FORMATS, ExportSettings
-from drystone.drawing.sheet.pages import (
-    DRAWING_MM,
-    BuildSheet,
-    Scale,
-    drawn_factor,
-    in_photo_order,
-    paper_scale,
-)
+from drystone.drawing.sheet import pages
 from drystone.drawing.sheet.words import (
     beside,
     beside_words,
@@ -88,10 +81,10 @@ def test_the_wall_is_drawn_one_to_ten_beside_a_ruler_of_100_mm(wall, first_page)
 ])  # fmt: skip
 def test_the_next_usual_scale_is_taken_where_the_wall_does_not_fit(columns, wished, drawn):
     wall = assembly(columns=columns, rows=1)
-    scale = paper_scale(wall, wished)
+    scale = pages.paper_scale(wall, wished)
     assert scale.denominator == drawn
     assert scale.mm_per_unit == pytest.approx(1000.0 / drawn)
-    assert wall.size[0] * scale.mm_per_unit <= DRAWING_MM[0]
+    assert wall.size[0] * scale.mm_per_unit <= pages.DRAWING_MM[0]
 
 
 def test_every_stone_is_said_with_what_to_do(wall, words):
@@ -114,7 +107,7 @@ def test_the_title_block_says_what_the_plan_is(wall, words):
 
 def test_the_fetch_list_is_sorted_as_the_stones_lie(wall, words):
     # They lie in rows of four from the top left, in the order of their steps.
-    assert [part.step for part in in_photo_order(wall)] == [1, *range(3, 14)]
+    assert [part.step for part in pages.in_photo_order(wall)] == [1, *range(3, 14)]
     rows = [line.split() for line in words[3].splitlines()]
     listed = [line[0] for line in rows if len(line) == 8 and line[-1] == "cm"]
     assert listed == [str(step) for step in (1, *range(3, 14))]
@@ -151,9 +144,9 @@ def test_no_words_of_the_first_page_lie_over_others_or_the_wall(px_per_m):
     # As high as its frame may be, with a title that is much too long.
     wall = assembly(columns=6, rows=5, px_per_m=px_per_m)
     width, height = wall.size
-    scale = Scale(None, min(DRAWING_MM[0] / width, DRAWING_MM[1] / height))
+    scale = pages.Scale(None, min(pages.DRAWING_MM[0] / width, pages.DRAWING_MM[1] / height))
     settings = ExportSettings(title=300 * "W", paper_scale=1000.0 / scale.mm_per_unit)
-    page = BuildSheet(wall, settings, None).pages()[0]
+    page = pages.BuildSheet(wall, settings, None).pages()[0]
     frame = next(patch for patch in page.ax.patches if patch.get_gid() == "frame")
     inside, paper = frame.get_window_extent(), page.ax.get_window_extent()
     # Numbers of steps alone have a halo, and stand in the frame.
@@ -210,9 +203,9 @@ def test_sizes_and_places_have_units(small):
     assert size_words(px, 12.3, 4.0) == "12 \N{MULTIPLICATION SIGN} 4 px"
     # The left one of two that are as low.
     assert lowest_corner(part(small, 3)) == pytest.approx((0.3, 0.0))
-    assert drawn_factor(small, wedge) == 1 / 5  # 150 mm x 30 mm in 44 mm x 25 mm
+    assert pages.drawn_factor(small, wedge) == 1 / 5  # 150 mm x 30 mm in 44 mm x 25 mm
     fine = assembly(px_per_m=3000.0)
-    assert drawn_factor(fine, next(fine.wedges)) == 1.0  # 10 mm x 2 mm
+    assert pages.drawn_factor(fine, next(fine.wedges)) == 1.0  # 10 mm x 2 mm
 
 
 def test_it_does_not_matter_which_part_of_a_pair_an_interface_names_first(small):

@@ -11,15 +11,7 @@ from PIL import Image
 from drystone.craft import RULES, Masonry, look
 from drystone.drawing import save
 from drystone.drawing.palette import PALE
-from drystone.drawing.pictures.check import (
-    COMMON,
-    CONCERNED,
-    PLANNED,
-    PLANNED_PALE,
-    FailureView,
-    plot_failure,
-    plot_failures,
-)
+from drystone.drawing.pictures import check
 from drystone.drawing.pictures.craft import BESIDE, FAULT, plot_craft, plot_finding
 from tests.craft.walls import box, courses, stack_bond
 from tests.drawing.pictures.test_forces import lines
@@ -88,7 +80,7 @@ def at(x, y):
 
 PLANNED_BLOCKS = {3: SQUARE, 5: at(20, 0), 8: at(10, 20)}
 FALLEN = {3: at(0, -0.05), 5: at(21, 0), 8: at(55, 0)}
-VIEW = FailureView("8 falls", PLANNED_BLOCKS, (8,), FALLEN, size=(60.0, 50.0))
+VIEW = check.FailureView("8 falls", PLANNED_BLOCKS, (8,), FALLEN, size=(60.0, 50.0))
 
 
 def vertices(patch):
@@ -101,31 +93,31 @@ def meanings(ax):
 
 
 def test_blocks_are_drawn_where_they_ended():
-    ax = plot_failure(VIEW)
+    ax = check.plot_failure(VIEW)
     drawn = patches(ax)
     assert ax.get_title(loc="left") == "8 falls"
     for block, corners in FALLEN.items():
         np.testing.assert_allclose(vertices(drawn[f"block-{block}"]), corners)
     colours = {b: to_hex(drawn[f"block-{b}"].get_facecolor()) for b in FALLEN}
-    assert colours == {3: PALE, 5: PALE, 8: CONCERNED}
+    assert colours == {3: PALE, 5: PALE, 8: check.CONCERNED}
     # Those without an end are where they were planned.
-    drawn = patches(plot_failure(FailureView("", PLANNED_BLOCKS, (5,))))
+    drawn = patches(check.plot_failure(check.FailureView("", PLANNED_BLOCKS, (5,))))
     np.testing.assert_allclose(vertices(drawn["block-8"]), PLANNED_BLOCKS[8])
     assert not [gid for gid in drawn if gid.startswith("planned-")]
 
 
 def test_dashes_show_where_those_that_moved_were_planned():
-    drawn = patches(plot_failure(VIEW))
+    drawn = patches(check.plot_failure(VIEW))
     assert "planned-3" not in drawn  # it has hardly moved
     np.testing.assert_allclose(vertices(drawn["planned-8"]), PLANNED_BLOCKS[8])
-    assert to_hex(drawn["planned-8"].get_edgecolor()) == PLANNED
-    assert to_hex(drawn["planned-5"].get_edgecolor()) == PLANNED_PALE
+    assert to_hex(drawn["planned-8"].get_edgecolor()) == check.PLANNED
+    assert to_hex(drawn["planned-5"].get_edgecolor()) == check.PLANNED_PALE
     assert drawn["planned-8"].get_linestyle() not in ("-", "solid")
     assert not drawn["planned-8"].get_fill() or drawn["planned-8"].get_facecolor()[3] == 0
 
 
 def test_what_fails_lies_over_the_others_and_hides_their_numbers():
-    ax = plot_failure(VIEW)
+    ax = check.plot_failure(VIEW)
     drawn, written = patches(ax), numbers(ax)
     assert set(written) == {"3", "5", "8"}
     over = drawn["block-8"].get_zorder()
@@ -135,19 +127,19 @@ def test_what_fails_lies_over_the_others_and_hides_their_numbers():
 
 def test_areas_claimed_by_two_are_shown_and_only_what_is_there_is_explained():
     area = np.array([[5, 5], [9, 5], [9, 9]], float)
-    ax = plot_failure(FailureView("", PLANNED_BLOCKS, (3,), common=[area, area + 20]))
+    ax = check.plot_failure(check.FailureView("", PLANNED_BLOCKS, (3,), common=[area, area + 20]))
     drawn = patches(ax)
-    assert to_hex(drawn["common-0"].get_facecolor()) == COMMON
+    assert to_hex(drawn["common-0"].get_facecolor()) == check.COMMON
     np.testing.assert_allclose(drawn["common-1"].get_path().vertices[:3], area + 20)
     assert drawn["common-0"].get_zorder() > drawn["block-3"].get_zorder()
     assert meanings(ax) == ["fails", "claimed by two"]
     asked = ["fails", "where it was planned", "wall that was to be built"]
-    assert meanings(plot_failure(VIEW)) == asked
-    assert meanings(plot_failure(FailureView("", PLANNED_BLOCKS))) == []
+    assert meanings(check.plot_failure(VIEW)) == asked
+    assert meanings(check.plot_failure(check.FailureView("", PLANNED_BLOCKS))) == []
 
 
 def test_everything_is_in_view():
-    for view in (VIEW, FailureView("", PLANNED_BLOCKS, ended={3: at(0, -9)})):
+    for view in (VIEW, check.FailureView("", PLANNED_BLOCKS, ended={3: at(0, -9)})):
         x0, y0, x1, y1 = view.box
         for corners in (
             *view.planned.values(),
@@ -157,14 +149,14 @@ def test_everything_is_in_view():
             inside = np.asarray(corners)
             assert (inside > (x0, y0)).all()
             assert (inside < (x1, y1)).all()
-        ax = plot_failure(view)
+        ax = check.plot_failure(view)
         assert ax.get_xlim() == (x0, x1)
         assert ax.get_ylim() == (y0, y1)
 
 
 @pytest.mark.parametrize("count", [1, 3])
 def test_views_stand_under_each_other(count, tmp_path):
-    figure = plot_failures([VIEW] * count)
+    figure = check.plot_failures([VIEW] * count)
     assert len(figure.axes) == count
     places = [ax.get_position() for ax in figure.axes]
     for above, below in pairwise(places):

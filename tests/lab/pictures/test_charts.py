@@ -7,15 +7,8 @@ import pytest
 from matplotlib.figure import Figure
 
 from drystone.planner.profile import StepTime
+from drystone_lab.pictures import growth
 from drystone_lab.pictures.charts import group_panels, plot_groups, plot_history, plot_two_figures
-from drystone_lab.pictures.growth import (
-    LINES,
-    PART_COLOURS,
-    REST,
-    plot_growth,
-    plot_step_times,
-    step_time_panels,
-)
 from drystone_lab.pictures.validation import COLOURS, MARKERS, Prediction, plot_predictions
 
 VALUES = {"both": [0.8, 0.7, 0.9, 0.75, 0.72, 0.71], "none": [0.5, None, 0.4], "empty": [None]}
@@ -72,38 +65,38 @@ CLAIMS = [("paper: wall", "x", 20.0, 9.0), ("paper: step", "v", 90.0, 25.0)]
 
 def test_parts_stand_on_top_of_each_other_and_reach_the_time_of_the_step():
     ax = Figure().add_subplot()
-    plot_step_times(ax, STEPS)
+    growth.plot_step_times(ax, STEPS)
     by_part = {bars.get_label(): bars.patches for bars in ax.containers}
-    assert list(by_part) == [*PART_COLOURS, REST]
+    assert list(by_part) == [*growth.PART_COLOURS, growth.REST]
     for k, step in enumerate(STEPS):
         foot = 0.0
         for part, bars in by_part.items():
             assert bars[k].get_y() == pytest.approx(foot)
-            if part != REST:
+            if part != growth.REST:
                 assert bars[k].get_height() == pytest.approx(1e3 * step.parts.get(part, 0.0))
             foot += bars[k].get_height()
         assert foot == pytest.approx(1e3 * step.seconds)
 
 
 def test_panels_have_the_walls_beside_each_other_and_one_legend():
-    figure = step_time_panels({"variant": STEPS, "full": STEPS[:1]})
+    figure = growth.step_time_panels({"variant": STEPS, "full": STEPS[:1]})
     left, right = figure.axes
     assert (left.get_title(), right.get_title()) == ("variant", "full")
     (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()] == [*PART_COLOURS, REST]
+    assert [text.get_text() for text in legend.get_texts()] == [*growth.PART_COLOURS, growth.REST]
     assert left.get_legend() is right.get_legend() is None
 
 
 def test_points_laws_and_claims_are_drawn_where_they_are():
     ax = Figure().add_subplot()
-    plot_growth(ax, SERIES, CLAIMS)
+    growth.plot_growth(ax, SERIES, CLAIMS)
     points, line, bare, wall, step = ax.get_lines()
     assert points.get_xydata().tolist() == [[10.0, 1.0], [100.0, 10.0]]
     np.testing.assert_allclose(line.get_xydata(), [[10.0, 1.0], [100.0, 10.0]])
     assert bare.get_xydata().tolist() == [[10.0, 0.5]]
     assert [wall.get_marker(), step.get_marker()] == ["x", "v"]
     assert step.get_xydata().tolist() == [[90.0, 25.0]]
-    assert [points.get_color(), bare.get_color()] == [colour for colour, _ in LINES[:2]]
+    assert [points.get_color(), bare.get_color()] == [colour for colour, _ in growth.LINES[:2]]
     words = [text.get_text() for text in ax.get_legend().get_texts()]
     assert words == ["wall", "exponent 1.00", "step", "paper: wall", "paper: step"]
     assert (ax.get_xscale(), ax.get_yscale(), ax.get_xlabel()) == (

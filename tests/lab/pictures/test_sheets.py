@@ -5,25 +5,17 @@ import pytest
 
 from drystone.drawing import plot_wall
 from drystone.drawing.palette import PLAIN_COLOUR, cluster_colour
-from drystone_lab.pictures.walls import (
-    EMPTY,
-    Panel,
-    masonry_panel,
-    plot_masonry,
-    plot_walls,
-    sheet_of,
-    wall_aspect,
-)
+from drystone_lab.pictures import walls
 from tests.drawing.examples import CLUSTERS, WEDGE, wall
 
 
 def _panel(title, aspect):
-    return Panel(title, aspect, lambda ax: ax.plot([0, 1], [0, 1], label="line"))
+    return walls.Panel(title, aspect, lambda ax: ax.plot([0, 1], [0, 1], label="line"))
 
 
 def test_panels_go_from_left_to_right_and_down_and_never_overlap():
-    panels = [_panel("a", 0.2), _panel("b\nsecond", 0.5), EMPTY, _panel("d", 0.3)]
-    figure = sheet_of(panels, 2)
+    panels = [_panel("a", 0.2), _panel("b\nsecond", 0.5), walls.EMPTY, _panel("d", 0.3)]
+    figure = walls.sheet_of(panels, 2)
     a, b, d = figure.axes
     boxes = [ax.get_position(original=True) for ax in (a, b, d)]
     assert [ax.get_title(loc="left") for ax in (a, b, d)] == ["a", "b\nsecond", "d"]
@@ -35,21 +27,21 @@ def test_panels_go_from_left_to_right_and_down_and_never_overlap():
 
 
 def test_a_panel_has_the_height_of_the_tallest_of_its_row():
-    figure = sheet_of([_panel("", 0.2), _panel("", 0.5), _panel("", 0.3)], 2)
+    figure = walls.sheet_of([_panel("", 0.2), _panel("", 0.5), _panel("", 0.3)], 2)
     inches = figure.get_size_inches()
     sizes = [ax.get_position(original=True).size * inches for ax in figure.axes]
     assert [high / wide for wide, high in sizes] == pytest.approx([0.5, 0.5, 0.3])
     assert {round(wide, 6) for wide, _ in sizes} == {round(sizes[0][0], 6)}
 
 
-@pytest.mark.parametrize(("panels", "columns"), [([], 1), ([EMPTY], 0)])
+@pytest.mark.parametrize(("panels", "columns"), [([], 1), ([walls.EMPTY], 0)])
 def test_there_must_be_something(panels, columns):
     with pytest.raises(ValueError, match="a panel and a column"):
-        sheet_of(panels, columns)
+        walls.sheet_of(panels, columns)
 
 
 def test_every_wall_is_drawn_whole_under_its_title():
-    figure = plot_walls([("one", wall(), CLUSTERS), ("two\nlines", wall(), None)], 2)
+    figure = walls.plot_walls([("one", wall(), CLUSTERS), ("two\nlines", wall(), None)], 2)
     assert [ax.get_title(loc="left") for ax in figure.axes] == ["one", "two\nlines"]
     for ax in figure.axes:
         gids = {patch.get_gid() for patch in ax.patches}
@@ -62,18 +54,18 @@ def test_a_panel_has_the_shape_of_its_picture():
     site = wall().site
     ax = plot_wall(wall())
     (x0, x1), (y0, y1) = ax.get_xlim(), ax.get_ylim()
-    assert wall_aspect(site.height_px / site.width_px) == pytest.approx((y1 - y0) / (x1 - x0))
+    assert walls.wall_aspect(site.height_px / site.width_px) == pytest.approx((y1 - y0) / (x1 - x0))
 
 
 def test_masonry_is_coloured_by_cluster_and_in_source_px():
     labels = np.kron([[1, 2], [7, 7]], np.ones((4, 10), int)).astype(np.uint32)
-    ax = plot_masonry(labels, {1: 2, 7: 1}, units_per_px=5.0)
+    ax = walls.plot_masonry(labels, {1: 2, 7: 1}, units_per_px=5.0)
     colours = {p.get_gid(): p.get_facecolor() for p in ax.patches if p.get_gid() != "ground"}
     expected = {"stone-1": cluster_colour(2), "stone-2": PLAIN_COLOUR, "stone-7": cluster_colour(1)}
     assert {gid: _hex(colour) for gid, colour in colours.items()} == expected
     seven = next(p for p in ax.patches if p.get_gid() == "stone-7").get_path().vertices
     assert seven.max(axis=0).tolist() == [100.0, 20.0]
-    (panel,) = sheet_of([masonry_panel("masons", labels, None, 5.0)], 1).axes
+    (panel,) = walls.sheet_of([walls.masonry_panel("masons", labels, None, 5.0)], 1).axes
     assert panel.get_xlim() == ax.get_xlim()
 
 

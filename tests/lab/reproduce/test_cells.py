@@ -3,13 +3,7 @@
 import numpy as np
 import pytest
 
-from drystone_lab.reproduce.cells import (
-    COLUMNS,
-    figures_of,
-    summary,
-    trend,
-    wins,
-)
+from drystone_lab.reproduce.cells import COLUMNS, figures_of, summary, trend, wins
 from drystone_lab.reproduce.item import claims_table, sentences
 from tests.lab.reproduce.made_outcomes import outcome
 

@@ -1,12 +1,6 @@
 """Bricks in courses: laid by hand, and planned."""
 
-from drystone_lab.reproduce.other_stones import (
-    BRICKS,
-    Brick,
-    bricks_of,
-    courses_of,
-    head_joints,
-)
+from drystone_lab.reproduce.other_stones import BRICKS, Brick, bricks_of, courses_of, head_joints
 from tests.lab.reproduce.small_walls import context, of, rows
 
 

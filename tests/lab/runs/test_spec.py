@@ -22,12 +22,7 @@ OTHERS = {
     "changes": (("placement.beta", 0.5),),
     "seed": 1,
 }
-OTHER_SOURCES = {
-    "kind": "rubble",
-    "name": "a.png",
-    "seed": 2,
-    "settings": (("count", 7),),
-}
+OTHER_SOURCES = {"kind": "rubble", "name": "a.png", "seed": 2, "settings": (("count", 7),)}
 
 
 def test_every_field_is_tried():

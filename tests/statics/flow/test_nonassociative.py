@@ -45,10 +45,7 @@ def test_a_stack_rocks_where_its_lines_of_thrust_leave_it():
     assert both.value == pytest.approx(0.4 / 0.9, abs=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("seed", "count", "mu"),
-    [(7, 2, 0.7), (8, 2, 0.4), (3, 3, 0.7)],
-)
+@pytest.mark.parametrize(("seed", "count", "mu"), [(7, 2, 0.7), (8, 2, 0.4), (3, 3, 0.7)])
 @pytest.mark.parametrize("direction", DIRECTIONS)
 def test_the_least_of_all_sets_of_contact_states(seed, count, mu, direction):
     model = model_from_labels(irregular(seed, count, 24, 18), mu).model

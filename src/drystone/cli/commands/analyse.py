@@ -9,36 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
+from drystone.cli import numbers
 from drystone.cli.inputs import files_of_plan, files_of_wall, refuse_inputs, refuse_plans_own
-from drystone.cli.numbers import (
-    add_scale,
-    finite,
-    friction,
-    not_negative,
-    refuse_outside,
-    wall_picture_px,
-    wall_scale,
-    whole_from,
-)
 from drystone.cli.output import note, prepare_files, print_json, print_table
 from drystone.cli.progress import busy, counting_bar
 from drystone.cli.reading import add_wall, reading_from
-from drystone.drawing.words.analysis import (
-    SCATTER,
-    WRITTEN,
-    ModelledWall,
-    RangeCard,
-    ScatterCard,
-    analysis_of,
-    noise_unit,
-)
-from drystone.drawing.words.modelling import (
-    ModelRequest,
-    modelled,
-    scarcity,
-    size_words,
-    sweep_report,
-)
+from drystone.drawing.words import analysis, modelling
 from drystone.errors import ExitCode, Notice, UsageError, counted
 from drystone.io.walls import GivenWall, read_wall, unsupported
 from drystone.model.builder import BuilderErrors
@@ -54,12 +30,13 @@ SAMPLES = 200
 def add(command: argparse.ArgumentParser) -> None:
     """Add what touches what and how rough it is, the loads, and the scatter of F_LR."""
     add_wall(command)
-    add_scale(command)
+    numbers.add_scale(command)
     # fmt: off
     option = command.add_argument_group("model").add_argument
-    option("--mu", type=friction, metavar="MU",
+    option("--mu", type=numbers.friction, metavar="MU",
            help="coefficient of friction (default 0.58); LOW:HIGH for a random one in between")
-    option("--mu-head", type=not_negative, metavar="MU", help="of upright joints, 0 for open ones")
+    option("--mu-head", type=numbers.not_negative, metavar="MU",
+           help="of upright joints, 0 for open ones")
     option("--contacts", choices=["pixels", "outlines"], default="pixels",
            help="find contacts on pixels (default) or on smooth outlines")
     option("--close-gaps", metavar="PX|auto|settle",
@@ -71,11 +48,12 @@ def add(command: argparse.ArgumentParser) -> None:
            help="skip the load multiplier without dilatancy, which takes longer")
     group = command.add_argument_group("loads (the wall bears its weight, and alpha times ...)")
     option = group.add_argument
-    option("--load", type=_load, choices=["tilting", "height", "points", "gravity"],
-           default="tilting",
+    # A table may be called by its motion.
+    option("--load", type=lambda text: "tilting" if text == "tilt" else text, default="tilting",
+           choices=["tilting", "height", "points", "gravity"],
            help="sideways as on a tilting table (default), growing with height, the --live forces, "
            "or more weight with the --dead forces held")
-    option("--tilt", type=finite, default=0.0, metavar="DEG",
+    option("--tilt", type=numbers.finite, default=0.0, metavar="DEG",
            help="turn gravity by this towards the right first")
     for name, text in (("--dead", "constant force"), ("--live", "force that grows with alpha")):
         option(name, action="append", default=[], metavar="ID@X,Y:FX,FY",
@@ -83,27 +61,23 @@ def add(command: argparse.ArgumentParser) -> None:
     option("--settle", type=int, metavar="ID", help="lower the fixed block ID: its reaction")
     group = command.add_argument_group("scatter of the load multiplier (Monte Carlo)")
     option = group.add_argument
-    option("--scatter", type=whole_from(1), metavar="N", help="samples (default 200)")
+    option("--scatter", type=numbers.whole_from(1), metavar="N", help="samples (default 200)")
     option("--precision", type=_precision, metavar="P%",
            help="noise of a builder: outlines P/2, places P of the mean stone size (a robot 1.5%%, "
            "a hand 3%%)")
     for name, text in (("outline", "the outlines"), ("placement", "where stones lie")):
-        option(f"--{name}-noise", type=not_negative, default=0.0, metavar="PX",
+        option(f"--{name}-noise", type=numbers.not_negative, default=0.0, metavar="PX",
                help=f"standard deviation of {text} (of a block model: in its lengths)")
-    option("--seed", type=whole_from(0), default=0, help="of the random choices (default 0)")
-    option("--jobs", type=whole_from(1), default=1, metavar="N", help="number of processes")
+    option("--seed", type=numbers.whole_from(0), default=0,
+           help="of the random choices (default 0)")
+    option("--jobs", type=numbers.whole_from(1), default=1, metavar="N", help="number of processes")
 
 
 def _precision(text: str) -> float:
     """Read a share of the mean stone size, such as 1.5%."""
     if not text.endswith("%"):
         raise argparse.ArgumentTypeError(f"{text!r} is not a precision such as 1.5%")
-    return not_negative(text[:-1]) / 100
-
-
-def _load(text: str) -> str:
-    """Read `--load`; a table may be called by its motion."""
-    return "tilting" if text == "tilt" else text
+    return numbers.not_negative(text[:-1]) / 100
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
@@ -111,7 +85,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     case = LoadCase(
         arguments.load, arguments.tilt, arguments.dead, arguments.live, arguments.settle
     )
-    asked = ModelRequest(
+    asked = modelling.ModelRequest(
         arguments.mu, arguments.mu_head, arguments.contacts, arguments.close_gaps, case
     )
     shaken = _wants_scatter(arguments)
@@ -119,13 +93,13 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         raise UsageError("E138", "the scatter is that of the tilting table; leave loads out.")
     path = Path(arguments.wall_path)
     given = read_wall(path, reading_from(arguments))
-    wall = modelled(given, asked, arguments.wall_path)
+    wall = modelling.modelled(given, asked, arguments.wall_path)
     per_unit_m = _metres_per_unit(given, arguments)
-    few = scarcity(wall, per_unit_m)
+    few = modelling.scarcity(wall, per_unit_m)
     if few is not None:
         wall = replace(wall, notices=(*wall.notices, few))
     note(*wall.notices)
-    size = size_words(wall.shapes, per_unit_m)
+    size = modelling.size_words(wall.shapes, per_unit_m)
     if size is not None:
         wall = replace(wall, remarks={**wall.remarks, "size": size})
     folder = _prepare(arguments)
@@ -133,10 +107,10 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     wall, solver = replace(wall, model=model), arguments.solver
     sha256 = hashlib.sha256(files_of_plan(path)[0].read_bytes()).hexdigest()
     counts = counted(len(model.blocks), "block")
-    card: RangeCard
+    card: analysis.RangeCard
     if case.is_range:
         found = load_range(model, loads, mechanism=True, solver=solver)
-        card = RangeCard(
+        card = analysis.RangeCard(
             wall, loads.name, {"least": found.least, "greatest": found.greatest}, sha256
         )
     else:
@@ -144,7 +118,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         resistance = lateral_resistance(model, loads, mechanism=True, solver=solver)
         swept = wall.sweep is not None
         note(None if resistance.stable else unsupported(model, given, swept=swept))
-        card = analysis_of(
+        card = analysis.analysis_of(
             wall, loads, resistance, sha256, associative_only=arguments.associative_only,
             solver=solver,
         )  # fmt: skip
@@ -155,7 +129,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             write_analysis(folder, card, loads, per_unit_m)
     report, rows = card.report(), card.rows()
     if wall.sweep is not None:
-        report["gaps"] = sweep_report(wall.sweep)
+        report["gaps"] = modelling.sweep_report(wall.sweep)
     if shaken:
         scattered = _scatter_of(wall, arguments, given)
         report, rows = {**report, "scatter": scattered.report()}, rows + scattered.rows()
@@ -177,8 +151,8 @@ def _metres_per_unit(wall: GivenWall, arguments: argparse.Namespace) -> float | 
     E131 when the options give another scale than the plan has; E138 for a ruler that lies beyond
     the picture.
     """
-    refuse_outside(arguments.px_per_m, wall_picture_px(wall))
-    plan, px_per_m = wall.plan, wall_scale(arguments.px_per_m, wall)
+    numbers.refuse_outside(arguments.px_per_m, numbers.wall_picture_px(wall))
+    plan, px_per_m = wall.plan, numbers.wall_scale(arguments.px_per_m, wall)
     if px_per_m is None:
         return None
     if plan is None:
@@ -204,9 +178,11 @@ def _wants_scatter(arguments: argparse.Namespace) -> bool:
     return varied
 
 
-def _scatter_of(wall: ModelledWall, arguments: argparse.Namespace, given: GivenWall) -> ScatterCard:
+def _scatter_of(
+    wall: analysis.ModelledWall, arguments: argparse.Namespace, given: GivenWall
+) -> analysis.ScatterCard:
     """Shake the wall and analyse it each time; draw the distribution into the folder."""
-    unit = noise_unit(given)
+    unit = analysis.noise_unit(given)
     lengths = unit[1]
     areas = (b.area for b in wall.model.blocks if b.id not in given.wedge_ids)
     size = float(np.mean(np.sqrt(list(areas))))
@@ -217,7 +193,7 @@ def _scatter_of(wall: ModelledWall, arguments: argparse.Namespace, given: GivenW
         outline_noise=arguments.outline_noise * lengths or errors.outline,
         placement_noise=arguments.placement_noise * lengths or errors.placement,
     )
-    path = None if arguments.output is None else Path(arguments.output) / SCATTER
+    path = None if arguments.output is None else Path(arguments.output) / analysis.SCATTER
     if path is not None:
         prepare_files([path], overwrite=arguments.overwrite)
     jobs = arguments.jobs
@@ -230,7 +206,7 @@ def _scatter_of(wall: ModelledWall, arguments: argparse.Namespace, given: GivenW
         from drystone.drawing import plot_scatter, save  # noqa: PLC0415 - slow import
 
         save(plot_scatter(found).figure, path)
-    return ScatterCard(found, unit)
+    return analysis.ScatterCard(found, unit)
 
 
 def _prepare(arguments: argparse.Namespace) -> Path | None:
@@ -238,7 +214,7 @@ def _prepare(arguments: argparse.Namespace) -> Path | None:
     if arguments.output is None:
         return None
     wall, folder = Path(arguments.wall_path), Path(arguments.output)
-    written = [folder / name for name in WRITTEN]
+    written = [folder / name for name in analysis.WRITTEN]
     refuse_inputs(files_of_wall(wall), written)
     refuse_plans_own(wall, written)
     prepare_files(written, overwrite=arguments.overwrite)

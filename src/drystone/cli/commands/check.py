@@ -56,7 +56,10 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         refuse_among_masks(source, [asked_picture])
     # The image of a plan without stones is no picture of stones.
     labels = read_image_of(plan, folder) if plan.steps else None
-    blocks = _blocks_beside(plan, folder)
+    try:
+        blocks: Any = read_blocks_of(plan, folder)
+    except InputError as error:
+        blocks = error.what  # of a damaged file; words are no block model
     stones = read_stones(source, settings=reading_of(plan.source))
     with busy("checking every step", quiet=arguments.json, after_s=2.0):
         report = check_plan(plan, stones, wall_labels=labels, blocks=blocks)
@@ -89,14 +92,6 @@ def _physics_of(checked: Checked, *, quiet: bool) -> PhysicsCard | None:
         built = build_up(groups, settings.mu, on_group=on_group)
     report = checked.report
     return PhysicsCard(plan, built, tilt_of(built), report.metrics, report.overlap_depth)
-
-
-def _blocks_beside(plan: Plan, folder: Path) -> Any:
-    """Return what blocks.json holds; words of one that is damaged, which are no block model."""
-    try:
-        return read_blocks_of(plan, folder)
-    except InputError as error:
-        return error.what
 
 
 def _find_stones(plan: Plan, folder: Path) -> Path:

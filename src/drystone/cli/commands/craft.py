@@ -61,7 +61,12 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         pictures = [Path(arguments.output) / f"{name}.png" for name in names]
         refuse_inputs(files_of_wall(path), pictures)
         prepare_files(pictures, overwrite=arguments.overwrite)
-        _draw(report, pictures)
+        from drystone.drawing.files import save  # noqa: PLC0415 - slow, as the next
+        from drystone.drawing.pictures.craft import plot_craft, plot_finding  # noqa: PLC0415
+
+        save(plot_craft(report), pictures[0], dpi=SHEET_DPI)
+        for name, picture in zip(report.findings, pictures[1:], strict=True):
+            save(plot_finding(report, name).figure, picture, dpi=SINGLE_DPI)
     if arguments.json:
         print_json(report.report())
     else:
@@ -111,13 +116,3 @@ def _number(finding: Finding, *, explain: bool) -> str:
     sign = ">=" if rule.higher_is_better else "<="
     good, fair = f"good {sign} {limit.good:g}", f"fair {sign} {limit.fair:g}"
     return f"{finding.amount} ({good}, {fair}): {rule.meaning}"
-
-
-def _draw(report: CraftReport, pictures: list[Path]) -> None:
-    """Draw the sheet of all, and every rule."""
-    from drystone.drawing.files import save  # noqa: PLC0415
-    from drystone.drawing.pictures.craft import plot_craft, plot_finding  # noqa: PLC0415 - slow import
-
-    save(plot_craft(report), pictures[0], dpi=SHEET_DPI)
-    for name, path in zip(report.findings, pictures[1:], strict=True):
-        save(plot_finding(report, name).figure, path, dpi=SINGLE_DPI)

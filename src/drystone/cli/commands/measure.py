@@ -4,17 +4,8 @@ import argparse
 from dataclasses import asdict, replace
 from pathlib import Path
 
+from drystone.cli import numbers
 from drystone.cli.inputs import files_of_wall, refuse_inputs
-from drystone.cli.numbers import (
-    add_scale,
-    not_negative,
-    option_of,
-    parse_wall,
-    refuse_outside,
-    share,
-    wall_picture_px,
-    wall_scale,
-)
 from drystone.cli.output import note, prepare_files, print_json, print_table
 from drystone.cli.progress import busy
 from drystone.cli.reading import add_wall, reading_from
@@ -34,11 +25,11 @@ def add(command: argparse.ArgumentParser) -> None:
     add_wall(command)
     # fmt: off
     option = command.add_argument
-    option("--mu", type=not_negative, help="coefficient of friction (default 0.58)")
+    option("--mu", type=numbers.not_negative, help="coefficient of friction (default 0.58)")
     option("--wall", metavar="WxH", help="size that the wall was to have: 280x80 (px) or 1.4mx0.4m")
-    option("--scale", type=share, default=1.0, metavar="S",
+    option("--scale", type=numbers.share, default=1.0, metavar="S",
            help="reduce the image by S first, 0 to 1")
-    add_scale(command)
+    numbers.add_scale(command)
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
@@ -48,7 +39,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         _refuse_idle_scale(arguments)
     if wall.labels is None:
         raise UsageError("E134", "a block model has no pixels to measure.", where="measure")
-    refuse_outside(arguments.px_per_m, wall_picture_px(wall))
+    numbers.refuse_outside(arguments.px_per_m, numbers.wall_picture_px(wall))
     # Of the picture as it was given: reducing it may part what hangs together.
     pixels = wall.blocks is None and wall.outlines is None
     note(*wall.notices, *(notice_of_pieces(wall.labels) if pixels else ()))
@@ -76,10 +67,10 @@ def _refuse_idle_scale(arguments: argparse.Namespace) -> None:
         return
     asked = arguments.wall
     # Only a wall in metres is another one at another scale.
-    if asked is None or parse_wall(asked, 1.0) == parse_wall(asked, 2.0):
+    if asked is None or numbers.parse_wall(asked, 1.0) == numbers.parse_wall(asked, 2.0):
         what = "would do nothing: no wall in metres is asked for, and no figure has a length."
         cure = "Leave it out, or give --wall in metres, as in 1.4mx0.4m."
-        raise UsageError("E138", what, where=option_of(arguments.px_per_m), cure=cure)
+        raise UsageError("E138", what, where=numbers.option_of(arguments.px_per_m), cure=cure)
 
 
 def _measured(wall: GivenWall, labels: Labels, arguments: argparse.Namespace) -> WallMetrics:
@@ -109,8 +100,8 @@ def _size(
     None is what the picture says itself.
     """
     plan = wall.plan
-    scale = wall_scale(arguments.px_per_m, wall)
-    asked = None if arguments.wall is None else parse_wall(arguments.wall, scale)
+    scale = numbers.wall_scale(arguments.px_per_m, wall)
+    asked = None if arguments.wall is None else numbers.parse_wall(arguments.wall, scale)
     if plan is None:
         return None if asked is None else _reduced(asked, arguments.scale), None
     to_source = plan.px_per_m or 1.0

@@ -89,7 +89,11 @@ def explained_rows(table: str, described: type[Any]) -> Iterator[tuple[tuple[str
     if table == "score":  # its weights are those of the costs, which are explained at the costs
         known |= entries(Craft)
     for entry, together in groupby(plain_fields(described), key=lambda field: known[field]):
-        yield tuple(together), _meaning(entry)
+        choices = re.findall(r'"[^"]+"', entry.kind) if entry.kind.startswith("{") else []
+        # What values there are, unless the text says so, then what they do.
+        told = all(choice in entry.text for choice in choices)
+        values = "" if told else f"{', '.join(f'`{choice}`' for choice in choices)}. "
+        yield tuple(together), values + entry.text
 
 
 def entries(described: type[Any]) -> dict[str, Entry]:
@@ -110,11 +114,3 @@ def _plain(text: str) -> str:
     text = re.sub(r":\w+:`~?([^`]+)`", r"`\1`", text)
     text = re.sub(r" \(DESIGN [\d.]+\)", "", text)
     return text.replace("``", "`").replace("|", "\\|")
-
-
-def _meaning(entry: Entry) -> str:
-    """Say what values there are, unless the text does, then what they do."""
-    choices = re.findall(r'"[^"]+"', entry.kind) if entry.kind.startswith("{") else []
-    if all(choice in entry.text for choice in choices):
-        return entry.text
-    return f"{', '.join(f'`{choice}`' for choice in choices)}. {entry.text}"

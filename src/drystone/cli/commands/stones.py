@@ -4,14 +4,8 @@ import argparse
 import statistics
 from pathlib import Path
 
+from drystone.cli import numbers
 from drystone.cli.inputs import files_of, refuse_among_masks, refuse_inputs
-from drystone.cli.numbers import (
-    add_scale,
-    picture_size_px,
-    refuse_outside,
-    scale_notice,
-    scale_with,
-)
 from drystone.cli.output import prepare_files, prepare_picture, print_json, print_table
 from drystone.cli.parser import Renamed
 from drystone.cli.reading import STONES, add_reading, reading_from
@@ -37,7 +31,7 @@ def add(command: argparse.ArgumentParser) -> None:
     )
     command.add_argument("--overwrite", action="store_true", help="replace what is written")
     add_reading(command)
-    add_scale(command)
+    numbers.add_scale(command)
     command.add_argument("--json", action="store_true", help="print as JSON")
 
 
@@ -57,8 +51,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         prepare_picture(picture, overwrite=arguments.overwrite)
     stones = read_stones(path, settings=reading_from(arguments))
     source = stones.source
-    refuse_outside(arguments.px_per_m, picture_size_px(source))
-    px_per_m = scale_with(arguments.px_per_m, source.px_per_m)
+    numbers.refuse_outside(arguments.px_per_m, numbers.picture_size_px(source))
+    px_per_m = numbers.scale_with(arguments.px_per_m, source.px_per_m)
     converted = () if to is None else write_stones(stones, to, px_per_m)
     clusters = cluster_stones(stones, PoseBook())
     median_area = statistics.median(stone.area_px for stone in stones)
@@ -69,7 +63,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
 
         save(plot_stones(stones, clusters).figure, picture)
     median = median_sides(sides.values())
-    odd = scale_notice(median[0], px_per_m)
+    odd = numbers.scale_notice(median[0], px_per_m)
     notices = [str(notice) for notice in (*stones.notices, *converted, odd) if notice is not None]
     if arguments.json:
         print_json(

@@ -150,9 +150,9 @@ def _ids(checked: Checked, steps: set[int | None]) -> list[int]:
     return [block for block in dict.fromkeys(map(piece_id, chosen)) if block in planned]
 
 
-def _short(problem: Problem, most: int = 100) -> str:
+def _short(problem: Problem) -> str:
     text = str(problem)
-    return text if len(text) <= most else f"{text[:most].rstrip()} ..."
+    return text if len(text) <= 100 else f"{text[:100].rstrip()} ..."
 
 
 def plot_failures(views: Sequence[FailureView]) -> Figure:

@@ -11,15 +11,7 @@ from drystone.drawing.drawing import Surface
 from drystone.drawing.files import pdf_bytes
 from drystone.drawing.outlines import pixel_loops
 from drystone.drawing.sheet.page import SheetPage
-from drystone.photo.layout import (
-    CHECK_LINE_MM,
-    MIDDLE_MM,
-    ON_A_SHEET,
-    margin_mm,
-    page_mm,
-    sheet_positions_m,
-    single_position_m,
-)
+from drystone.photo import layout
 from drystone.photo.markers import FAMILIES, marker_modules
 from drystone.whole_files import write_whole
 
@@ -41,7 +33,7 @@ class MarkerSheets:
     @property
     def pages(self) -> tuple[tuple[int, ...], ...]:
         """Ids by page."""
-        each = 1 if self.single else ON_A_SHEET
+        each = 1 if self.single else layout.ON_A_SHEET
         return tuple(self.ids[i : i + each] for i in range(0, len(self.ids), each))
 
 
@@ -56,11 +48,11 @@ def write_marker_sheets(sheets: MarkerSheets, path: str | Path) -> None:
 
 def marker_page(sheets: MarkerSheets, ids: Sequence[int]) -> SheetPage:
     """Draw one page; places of markers are mm from its upper left corner, y down."""
-    page, size = SheetPage(page_mm(sheets.page)), sheets.size_m * 1000.0
+    page, size = SheetPage(layout.page_mm(sheets.page)), sheets.size_m * 1000.0
     if sheets.single:
-        places = single_position_m(sheets.page, sheets.size_m)[None] * 1000.0
+        places = layout.single_position_m(sheets.page, sheets.size_m)[None] * 1000.0
     else:
-        places = sheet_positions_m(sheets.page, sheets.size_m) * 1000.0
+        places = layout.sheet_positions_m(sheets.page, sheets.size_m) * 1000.0
     for marker_id, (x, y) in zip(ids, places.tolist(), strict=True):
         black = marker_modules(sheets.dictionary, marker_id)
         # One area: printers and viewers leave hairlines between squares.
@@ -68,19 +60,19 @@ def marker_page(sheets: MarkerSheets, ids: Sequence[int]) -> SheetPage:
         loops = tuple(loop * step + corner for loop in pixel_loops(black))
         page.draw(Surface("", loops, "#000000", "none", width_pt=0.0))
         # Its number is beyond its white border, toward the page's middle.
-        upper, away = y + size / 2 < page.height / 2, margin_mm(size) * 0.92
+        upper, away = y + size / 2 < page.height / 2, layout.margin_mm(size) * 0.92
         below = y + size + away if upper else y - away
         page.write(x + size / 2, page.height - below, f"marker {marker_id}", 8.0, color="#444444",
                    ha="center", va="top" if upper else "bottom")  # fmt: skip
-    below = places[0, 1] + size + margin_mm(size)
-    lower = page.height if sheets.single else places[-1, 1] - margin_mm(size)
-    middle = below + MIDDLE_MM / 2 if sheets.single else (below + lower) / 2
-    x, top = page.width / 2, page.height - middle + MIDDLE_MM / 2 - 10.0
-    left, right = x - CHECK_LINE_MM / 2, x + CHECK_LINE_MM / 2
+    below = places[0, 1] + size + layout.margin_mm(size)
+    lower = page.height if sheets.single else places[-1, 1] - layout.margin_mm(size)
+    middle = below + layout.MIDDLE_MM / 2 if sheets.single else (below + lower) / 2
+    x, top = page.width / 2, page.height - middle + layout.MIDDLE_MM / 2 - 10.0
+    left, right = x - layout.CHECK_LINE_MM / 2, x + layout.CHECK_LINE_MM / 2
     page.line([(left, top), (right, top)], colour="#000000")
     for end in (left, right):
         page.line([(end, top - 2.5), (end, top + 2.5)], colour="#000000")
-    said = f"measure me: {CHECK_LINE_MM:g} mm"
+    said = f"measure me: {layout.CHECK_LINE_MM:g} mm"
     page.write(x, top + 1.5, said, 9.0, ha="center", va="bottom", color="black")
     for i, line in enumerate(_lines(sheets, ids, places, size)):
         weight = "bold" if i == 0 else "normal"

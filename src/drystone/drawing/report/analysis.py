@@ -15,14 +15,7 @@ from drystone.drawing.pictures.mechanism import plot_mechanism, save_mechanism_a
 from drystone.drawing.report.html import write_report
 from drystone.drawing.report.viewer_data import view_of_wall
 from drystone.drawing.words import content
-from drystone.drawing.words.analysis import (
-    FRICTION,
-    REPORT,
-    WRITTEN,
-    Card,
-    RangeCard,
-    Shapes,
-)
+from drystone.drawing.words.analysis import FRICTION, REPORT, WRITTEN, Card, RangeCard, Shapes
 from drystone.drawing.words.tables import write_tables
 from drystone.kernels.polygons import area_and_centroid
 from drystone.statics.loads import Loads

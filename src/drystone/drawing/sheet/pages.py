@@ -41,7 +41,6 @@ from drystone.drawing.sheet.words import (
 from drystone.drawing.wall import FRAME_DASHES, drawing_of_assembly
 from drystone.drawing.words.content import source_name
 from drystone.io.plan_json import plan_digest
-from drystone.kernels.polygons import Points
 from drystone.model.plan import Point, StoneStep
 
 USUAL_SCALES = (1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 50.0, 100.0, 200.0, 250.0, 500.0, 1000.0)
@@ -286,7 +285,11 @@ class BuildSheet:
             Surface("", (own + lying,), "#f4f1ec", GREY),
             Surface("", (placed + standing,), PLAIN_COLOUR),
         )
-        reach = _reach_up(own)
+        # How far the outline reaches straight up from the origin.
+        after = np.roll(own, -1, axis=0)
+        crossing = (own[:, 0] <= 0.0) != (after[:, 0] <= 0.0)
+        (x0, y0), (x1, y1) = own[crossing].T, after[crossing].T
+        reach = float((y0 - x0 * (y1 - y0) / (x1 - x0)).max(initial=1.0))
         for centre, turned in ((lying, 0.0), (standing, angle)):
             up = np.radians(90.0 + turned)
             out = np.array([np.cos(up), np.sin(up)])
@@ -418,10 +421,14 @@ class BuildSheet:
             across, up = _place(part)
             down = (height - up) / assembly.px_per_unit
             page.tick_box(x + 1.0, base - 0.8, 3.6)
+            # Length and least width, which do not depend on how it lies.
+            width, across_deg = part.grip
+            along = np.radians(across_deg + 90.0)
+            length = np.ptp(part.own_corners @ np.array([np.cos(along), np.sin(along)]))
             texts = (
                 str(part.step), str(part.id),
                 length_words(assembly, across / assembly.px_per_unit, down),
-                length_words(assembly, *_sides(part)),
+                length_words(assembly, float(length), width),
             )  # fmt: skip
             for place, text, weight in zip(columns, texts, ("bold", "normal", "normal", "normal"),
                                            strict=True):  # fmt: skip
@@ -471,15 +478,6 @@ class BuildSheet:
             page.write(x + CARD_MM[0] - 2.0, y + 2.0, f"drawn {scale}", SMALL_PT, ha="right")
 
 
-def _reach_up(outline: Points) -> float:
-    """Return how far an outline reaches straight up from the origin."""
-    following = np.roll(outline, -1, axis=0)
-    crossing = (outline[:, 0] <= 0.0) != (following[:, 0] <= 0.0)
-    (x0, y0), (x1, y1) = outline[crossing].T, following[crossing].T
-    heights = y0 - x0 * (y1 - y0) / (x1 - x0)
-    return float(heights.max(initial=1.0))
-
-
 def in_photo_order(assembly: Assembly) -> list[Part]:
     """Return the stones as they lie: rows of the photograph from the top, each from the left.
 
@@ -501,14 +499,6 @@ def in_photo_order(assembly: Assembly) -> list[Part]:
 def _place(part: Part) -> tuple[float, float]:
     step = part.plan_step
     return step.source_centroid if isinstance(step, StoneStep) else (0.0, 0.0)
-
-
-def _sides(part: Part) -> tuple[float, float]:
-    """Return length and least width of a part, which do not depend on how it lies."""
-    width, across_deg = part.grip
-    along = np.radians(across_deg + 90.0)
-    length = np.ptp(part.own_corners @ np.array([np.cos(along), np.sin(along)]))
-    return float(length), width
 
 
 def drawn_factor(assembly: Assembly, wedge: Part) -> float:

@@ -11,12 +11,7 @@ import numpy as np
 from scipy import ndimage
 
 from drystone.contacts.blocks import ImageModel, model_from_labels
-from drystone.contacts.gaps import (
-    GapSweep,
-    gap_sweep,
-    model_with_closed_gaps,
-    settle_gaps,
-)
+from drystone.contacts.gaps import GapSweep, gap_sweep, model_with_closed_gaps, settle_gaps
 from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.contacts.outlines import model_of_traced, outlines_of_labels
 from drystone.contacts.scarce import scarce_contacts
@@ -191,7 +186,6 @@ def _with_swept_gaps(
 
 
 def _sides_px(labels: Labels) -> Iterator[tuple[float, float]]:
-    """Yield the sides of every stone."""
     ids, place = np.unique(labels, return_inverse=True)
     place = place.reshape(labels.shape)
     for index, window in enumerate(ndimage.find_objects(place + 1)):

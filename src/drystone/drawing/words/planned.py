@@ -56,7 +56,6 @@ def summary_of_plan(plan: Plan, folder: Path) -> dict[str, Any]:
 
 
 def _craft(result: PlanResult) -> CraftReport:
-    """Judge the wall by the masons' rules."""
     wedges = {wedge.id for wedge in result.wall.wedges}
     if result.wall.outlines is None:
         return look(Masonry.from_labels(result.wall.labels, wedges))

@@ -129,8 +129,6 @@ def read_dxf(data: bytes, settings: ReadSettings) -> OutlineFile:
 
 
 class _Outline(NamedTuple):
-    """A closed outline where it is drawn."""
-
     corners: Vector  # (n, 3)
     facing: Vector | None  # (3,), away from which it was drawn; None for a line in space
     name: str

@@ -187,8 +187,13 @@ def _obj_bodies(data: bytes) -> list[MeshBody]:
             if words[:1] == ["v"]:
                 points.append([float(word) for word in words[1:4]])
             elif words[:1] == ["f"]:
+                corners = np.array([int(word.split("/")[0]) for word in words[1:]])
+                # Negative ones count from the last.
+                corners = np.where(corners < 0, corners + len(points), corners - 1)
+                if len(corners) < 3 or corners.min() < 0 or corners.max() >= len(points):
+                    raise ValueError(f"a face of {len(corners)} corners, or of unknown vertices")
                 faces, said = parts.setdefault(part, ([], {}))
-                faces.append(_face(words[1:], len(points)))
+                faces.append(corners)
                 said[title] = None
             elif words[:1] == ["o"] or (words[:1] == ["g"] and part[0] != "o"):
                 title = " ".join(words[1:])
@@ -222,15 +227,6 @@ def _name(kind: str, *words: str) -> str:
     if number_in(numbered) is not None:
         return numbered
     return title if kind == "o" or not words else words[0]
-
-
-def _face(words: list[str], count: int) -> NDArray[np.int64]:
-    """Return the corners of a face after `count` vertices; negative ones count from the last."""
-    corners = np.array([int(word.split("/")[0]) for word in words])
-    corners = np.where(corners < 0, corners + count, corners - 1)
-    if len(corners) < 3 or corners.min() < 0 or corners.max() >= count:
-        raise ValueError(f"a face of {len(words)} corners, or of unknown vertices")
-    return corners
 
 
 def _welded(

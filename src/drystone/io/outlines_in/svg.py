@@ -13,6 +13,7 @@ import shapely
 from drystone.errors import InputError, Notice
 from drystone.io.file_errors import entry, listed, too_large, unusable
 from drystone.io.foreign import foreign
+from drystone.io.outlines_in import svg_shapes
 from drystone.io.outlines_in.classes import layer
 from drystone.io.outlines_in.model import (
     Area,
@@ -24,18 +25,7 @@ from drystone.io.outlines_in.model import (
     xml_root,
 )
 from drystone.io.outlines_in.silhouettes import areas_of, region
-from drystone.io.outlines_in.svg_shapes import (
-    PLAIN,
-    SHAPES,
-    Matrix,
-    Page,
-    View,
-    lines_of,
-    moved,
-    page_of,
-    transform,
-    user_units,
-)
+from drystone.io.outlines_in.svg_shapes import PLAIN, SHAPES, Matrix, Page, View
 from drystone.io.outlines_in.svg_style import NOTHING, Styles, tag
 from drystone.io.read_settings import ReadSettings
 
@@ -94,8 +84,6 @@ class _Place:
 
 @dataclass(frozen=True, eq=False)
 class _Shape:
-    """A shape that is drawn."""
-
     area: Area
     place: _Place
     kind: str
@@ -118,7 +106,7 @@ def read_svg(data: bytes, settings: ReadSettings) -> OutlineFile:
     if tag(root) != "svg":
         raise unusable(f"its root element is {tag(root)[:40]}, not svg")
     with entry("the element svg"):
-        page = page_of(root.attrib, settings)
+        page = svg_shapes.page_of(root.attrib, settings)
         walk = _Walk(root, page.view, _MOST_TEXT + 2 * len(data))
     shapes = list(walk.shapes(page))
     if any(shape.place.stones for shape in shapes):
@@ -277,14 +265,16 @@ class _Walk:
             raise too_large(what, release if what == _CLIPPED else _FEWER)
 
     def _within(self, element: ET.Element, place: _Place, style: Style) -> _Place:
-        turn = transform(element.get("transform", ""))
+        turn = svg_shapes.transform(element.get("transform", ""))
         origin = style.get("transform-origin") or element.get("transform-origin", "")
         if origin and (turn[:2, :2] != np.eye(2)).any():
             raise ValueError("its transform-origin is not read")
         matrix = place.matrix @ turn
         if tag(element) == "use":
             shift = np.eye(3)
-            shift[:2, 2] = [user_units(element.attrib, name, self.view) for name in ("x", "y")]
+            shift[:2, 2] = [
+                svg_shapes.user_units(element.attrib, name, self.view) for name in ("x", "y")
+            ]
             matrix = matrix @ shift
         own = (element.get("id", ""), element.get(_LABEL, ""))
         words = {word.lower() for word in (*own, *element.get("class", "").split())}
@@ -309,13 +299,13 @@ class _Walk:
         if not place.visible or not (filled or place.stroke not in _UNPAINTED):
             self.aside[_UNSEEN] += 1
             return
-        lines = lines_of(kind, element.attrib, self.view)
+        lines = svg_shapes.lines_of(kind, element.attrib, self.view)
         # What is filled is closed by that.
         closed = [one.points for one in lines if (one.closed or filled) and len(one.points) > 2]
         if len(closed) < len(lines):
             self.aside[f"open lines in {kind}"] += len(lines) - len(closed)
         self._spend(_CORNERS, sum(map(len, closed)))
-        rings = tuple(within_reach(moved(place.matrix, points)) for points in closed)
+        rings = tuple(within_reach(svg_shapes.moved(place.matrix, points)) for points in closed)
         if not rings:
             return
         area: Area | None = Area(rings, "evenodd" if place.rule == "evenodd" else "nonzero")

@@ -199,18 +199,12 @@ def _nonassociative(
     for method, needed, found in search.attempts():
         rounds += needed
         if found is not None:
-            state = replace(found, alpha=_without_noise(found.alpha, associative.alpha))
+            alpha = 0.0 if -STANDING <= found.alpha < 0.0 else found.alpha
+            # The forces are admissible with associated flow too: what is above is rounding.
+            most = alpha if associative.alpha is None else associative.alpha
+            state = replace(found, alpha=min(alpha, most))
             answers.append(_answer(model, loads, direction, program, state, method))
     return _least_verified(direction, associative.alpha, rounds, answers)
-
-
-def _without_noise(alpha: float, associative: float | None) -> float:
-    """Take off what can only be rounding, at 0 and at the associative load; it is checked after.
-
-    The forces are admissible in the associative problem, so alpha cannot be greater.
-    """
-    alpha = 0.0 if -STANDING <= alpha < 0.0 else alpha
-    return alpha if associative is None else min(alpha, associative)
 
 
 def _answer(

@@ -68,7 +68,12 @@ class ConeProgram:
         assert bodies is not None  # noqa: S101 - or there would be no columns
         weights = np.concatenate((self.weights, added.weights))
         bodies, cones = {**self.bodies, **bodies}, added.joined(self.cones)
-        interfaces = self._appended_interfaces(addition, added.closed)
+        left = np.delete(self.interfaces, added.closed)
+        left -= np.searchsorted(addition.closed, left).astype(np.int32)
+        first = len(addition.base.interfaces) - len(addition.closed)
+        new = np.arange(first, first + len(addition.interfaces), dtype=np.int32)
+        counts = [2 * len(interface.points) for interface in addition.interfaces]
+        interfaces = np.concatenate((left, np.repeat(new, counts)))
         return ConeProgram(self.units, bodies, weights, cones, interfaces)
 
     def _new_bodies(self, blocks: tuple[Block, ...]) -> dict[int, Body] | None:
@@ -98,11 +103,3 @@ class ConeProgram:
             frictions.append(min(mu if interface.mu is None else interface.mu, NO_SLIP))
             points.append(interface.points)
         return Cones(*cone_edges(bodies, normals, frictions, points, self.units.length))
-
-    def _appended_interfaces(self, addition: Addition, closed: Ints) -> Ints:
-        left = np.delete(self.interfaces, closed)
-        left -= np.searchsorted(addition.closed, left).astype(np.int32)
-        first = len(addition.base.interfaces) - len(addition.closed)
-        new = np.arange(first, first + len(addition.interfaces), dtype=np.int32)
-        counts = [2 * len(interface.points) for interface in addition.interfaces]
-        return np.concatenate((left, np.repeat(new, counts)))

@@ -169,9 +169,11 @@ class HighsSession:
         self.highs.run()
         found = self.highs.getModelStatus()
         name = self.name
-        if found == highspy.HighsModelStatus.kInfeasible and not self._has_ray():
-            name = self._find_ray()
-            found = self.highs.getModelStatus()
+        if found == highspy.HighsModelStatus.kInfeasible:
+            _, ray = self.highs.getDualRayExist()  # type: ignore[attr-defined]  # not in its types
+            if not ray:
+                name = self._find_ray()
+                found = self.highs.getModelStatus()
         status = _STATUS.get(found, LimitStatus.FAILED)
         said = self.highs.modelStatusToString(found)
         columns, duals = self._vectors(status)
@@ -192,10 +194,6 @@ class HighsSession:
         set_options(self.highs, _SIMPLEX)
         self.highs.run()
         return f"{self.name}, then simplex"
-
-    def _has_ray(self) -> bool:
-        _, there = self.highs.getDualRayExist()  # type: ignore[attr-defined]  # missing in its types
-        return bool(there)
 
     def _vectors(self, status: LimitStatus) -> tuple[Floats | None, Floats | None]:
         if status is LimitStatus.OPTIMAL:

@@ -27,7 +27,6 @@ from dataclasses import dataclass, replace
 from math import isfinite
 
 import numpy as np
-from numpy.typing import NDArray
 
 from drystone.errors import InputError
 from drystone.statics.lp.program import Floats
@@ -113,7 +112,12 @@ def _shaken_interfaces(
     is_line = length > 0
     along = np.column_stack((normal[:, 1], -normal[:, 0]))
     along[is_line] = (ends[is_line, 1] - ends[is_line, 0]) / length[is_line, None]
-    step, stays, endless = _of_both_stones(model, steps)
+    # Of both stones of each: the first is the one that the normal points into.
+    place = {block.id: row for row, block in enumerate(model.blocks)} | {GROUND: -1}
+    pairs = np.array([(place[i.block], place[i.other]) for i in model.interfaces])
+    step, endless = np.append(steps, [(0.0, 0.0)], axis=0)[pairs], pairs < 0
+    fixed = np.array([*(block.fixed for block in model.blocks), True])
+    stays = fixed[pairs].any(axis=1)
 
     reach = np.einsum("kij,kj->ki", step, along)[:, :, None] + errors
     reach[endless] = (-np.inf, np.inf)
@@ -133,21 +137,6 @@ def _shaken_interfaces(
             zip(model.interfaces, normal.tolist(), strict=True)
         )
     )
-
-
-def _of_both_stones(
-    model: RigidBlockModel, steps: Floats
-) -> tuple[Floats, NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return what the stones at every interface do: steps (k, 2, 2), and (k,) and (k, 2) flags.
-
-    The first stone is the one that the normal points into.  The flags say that one of the two
-    cannot move, and which of them is the ground.
-    """
-    place = {block.id: row for row, block in enumerate(model.blocks)} | {GROUND: -1}
-    pairs = np.array([(place[i.block], place[i.other]) for i in model.interfaces])
-    endless = pairs < 0
-    fixed = np.array([*(block.fixed for block in model.blocks), True])
-    return np.append(steps, [(0.0, 0.0)], axis=0)[pairs], fixed[pairs].any(axis=1), endless
 
 
 def _turned(vectors: Floats, angle: Floats) -> Floats:
