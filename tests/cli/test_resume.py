@@ -181,7 +181,7 @@ def same(folder, whole):
 
 @pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize(
-    ("sent", "walls", "stood"), [(signal.SIGINT, 1, None), (signal.SIGTERM, 9, 7)]
+    ("sent", "walls", "stood"), [(signal.SIGINT, 1, None), (signal.SIGTERM, 9, 9)]
 )
 def test_a_search_that_is_interrupted_goes_on_to_the_same_plan(
     sent, walls, stood, search, tmp_path, monkeypatch
@@ -225,16 +225,13 @@ def test_signals_while_the_end_is_written_lose_nothing(
     assert not (tmp_path / CHECKPOINT).exists()
 
 
-@pytest.mark.parametrize(("walls", "stood"), [(2, None), (7, 5)])
-def test_a_search_that_is_killed_goes_on_from_its_checkpoint(
-    walls, stood, search, tmp_path, monkeypatch
-):
-    part = kill(search, tmp_path, walls, monkeypatch)
+@pytest.mark.parametrize("walls", [2, 7])
+def test_a_search_that_is_killed_goes_on_from_its_checkpoint(walls, search, tmp_path, monkeypatch):
+    kill(search, tmp_path, walls, monkeypatch)
     assert search.holds(tmp_path)
     assert "E129" in search(tmp_path).err
     ran = search(tmp_path, "--resume")
-    after = f"{len(part.stone_steps)} stones" if stood is None else f"{stood} walls"
-    assert ran.err.startswith(f"drystone: going on after {after}\n")
+    assert ran.err.startswith(f"drystone: going on after {walls} walls\n")
     assert same(tmp_path, search.whole)
 
 
@@ -244,8 +241,8 @@ def test_a_search_that_was_cut_off_ends_where_it_is_with_a_smaller_budget(
     kill(search, tmp_path / "killed", 7, monkeypatch)
     ran = search(tmp_path / "killed", "--resume", "--budget", 1)
     assert ran.code in (0, 4)
-    assert search(tmp_path / "five", "--budget", 5).code == ran.code
-    assert same(tmp_path / "killed", tmp_path / "five")
+    assert search(tmp_path / "seven", "--budget", 7).code == ran.code
+    assert same(tmp_path / "killed", tmp_path / "seven")
 
 
 def test_of_a_plan_that_was_killed_before_anything_was_kept_there_is_nothing_to_go_on_with(

@@ -195,6 +195,12 @@ def test_the_result_in_one_call():
     assert check_plan(result.plan, stones, wall_labels=result.wall.labels).ok
 
 
+def test_what_is_just_too_low_does_not_read_as_high_enough(monkeypatch):
+    monkeypatch.setattr("drystone.search.plan_result.mean_top", lambda _: 0.8999)
+    result = plan_wall(bricks(3), 60, 20, scale=1.0, method="paper")
+    assert "at 0.899 of the wall's height on average, less than 0.9" in result.shortfall
+
+
 def test_what_is_incomplete():
     # Half of the wall's height with all stones: not filled, and its top is too low.
     result = plan_wall(bricks(3), 60, 20, scale=1.0, method="paper")

@@ -28,31 +28,22 @@ from drystone.search.whole_search import (
     with_the_rest,
 )
 from drystone.search.yard import Yard
-from tests.planner.scenes import (
-    ROUNDED,
-    ROUNDED_SITE,
-    RUBBLE_SITE,
-    Ticks,
-    after_looks,
-    blocks,
-    bricks,
-    finish,
-    greedy,
-    rubble,
-)
+from tests.planner import scenes
 
 FEW = {"search": {"budget": 4, "passes": 4, "chains": 2, "share_every": 2}}
 
 
 def small_search():
-    return plan_wall(rubble(), 100, 36, scale=1.0, seed=2, settings=greedy(FEW), choice=True)
+    return plan_wall(
+        scenes.rubble(), 100, 36, scale=1.0, seed=2, settings=scenes.greedy(FEW), choice=True
+    )
 
 
 @pytest.fixture
 def planner():
     """One that has built a whole wall."""
-    settings = greedy({"search": {"budget": 2}, "goal": {"fallen": 0.0}})
-    planner = Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
+    settings = scenes.greedy({"search": {"budget": 2}, "goal": {"fallen": 0.0}})
+    planner = Planner(scenes.rubble(), scenes.RUBBLE_SITE, seed=1, settings=settings)
     for _ in planner.steps():
         pass
     return planner
@@ -60,7 +51,7 @@ def planner():
 
 def half_of(planner):
     """A wall on which there is room."""
-    half = Planner(rubble(), RUBBLE_SITE, settings=planner.settings)
+    half = Planner(scenes.rubble(), scenes.RUBBLE_SITE, settings=planner.settings)
     half.build = planner.build.states()[len(planner.build.actions) // 2]
     return PackedWall.of(FoundWall.of(half))
 
@@ -83,8 +74,8 @@ def test_stones_that_find_a_place_stay_where_that_is_better(planner):
 
 
 def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere():
-    careless = greedy({"search": {"budget": 2}, "settle": {"trials": 0}})
-    planner = finish(Planner(ROUNDED, ROUNDED_SITE, seed=1, settings=careless))
+    careless = scenes.greedy({"search": {"budget": 2}, "settle": {"trials": 0}})
+    planner = scenes.finish(Planner(scenes.ROUNDED, scenes.ROUNDED_SITE, seed=1, settings=careless))
     yard = Yard.of(planner)
     wall = FoundWall.of(planner).judged(yard, THOROUGH)
     assert wall.falls.first
@@ -97,15 +88,16 @@ def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere():
     # Where nothing is weak, and where nothing is better without it, the wall stays.
     best = replace(wall, merit=math.inf)
     assert repaired(planner, best) is best
-    nothing = FoundWall.of(Planner(bricks(), Site(60, 20), settings=careless))
+    nothing = FoundWall.of(Planner(scenes.bricks(), Site(60, 20), settings=careless))
     assert repaired(planner, nothing) is nothing
 
 
 def test_stones_that_move_when_the_wall_fails_are_taken_out_or_laid_elsewhere():
-    stones = blocks({1: (40, 12), 2: (40, 12), 3: (8, 24)})
+    stones = scenes.blocks({1: (40, 12), 2: (40, 12), 3: (8, 24)})
     goal = {"fallen": 0.0, "filling": 1.0}  # strength counts for more than a small stone
-    settings = greedy({"search": {"budget": 2}, "orientations": "sf", "goal": goal})
-    planner = finish(Planner(stones, Site(42, 60), settings=settings))
+    careless = {"settle": {"trials": 0}, "orientations": "sf"}
+    settings = scenes.greedy({"search": {"budget": 2}, "goal": goal, **careless})
+    planner = scenes.finish(Planner(stones, Site(42, 60), settings=settings))
     wall = FoundWall.of(planner).judged(Yard.of(planner), THOROUGH)
     assert wall.movers == (3,)  # the slender one on top
     assert wall.figures.F_LR_coulomb == pytest.approx(8 / 24 / 0.58, abs=0.03)
@@ -120,7 +112,7 @@ def test_a_wall_to_choose_is_as_it_was_found(planner):
     assert ids(found) == [group.stone_id for group in half.groups]
     assert why.reason == "search"
     filled = planner.settings.updated({"stop": {"filling": 0.1}})
-    full = Planner(rubble(), RUBBLE_SITE, settings=filled)
+    full = Planner(scenes.rubble(), scenes.RUBBLE_SITE, settings=filled)
     assert as_found(full, half)[1] == Stopped("filled", "filling above 0.1")
 
 
@@ -149,14 +141,14 @@ def test_a_repair_that_time_cuts_off_is_said(planner, monkeypatch):
 
 
 def test_time_that_is_up_at_the_end_loses_nothing(planner):
-    half, clock = half_of(planner), Ticks()
+    half, clock = half_of(planner), scenes.Ticks()
     before = [group.stone_id for group in half.groups]
     whole, _, interrupted = with_the_rest(planner, half, Deadline(math.inf, clock))
     assert not interrupted
     placed = set()
     for share in (0.0, 0.5, 0.9):
         found, why, interrupted = with_the_rest(
-            planner, half, after_looks(int(share * clock.count))
+            planner, half, scenes.after_looks(int(share * clock.count))
         )
         assert interrupted
         assert why.reason == "search"
@@ -165,27 +157,27 @@ def test_time_that_is_up_at_the_end_loses_nothing(planner):
         placed.add(len(ids(found)))
     assert len(placed) > 1
     # Nor is there time for stones that do not make the wall better.
-    assert with_the_rest(planner, replace(half, merit=math.inf), after_looks(0))[2]
+    assert with_the_rest(planner, replace(half, merit=math.inf), scenes.after_looks(0))[2]
     with pytest.raises(TimeIsUp):
-        as_found(planner, half, after_looks(0))
+        as_found(planner, half, scenes.after_looks(0))
 
 
 def test_of_walls_that_there_is_no_time_to_judge_the_first_is_taken(planner):
-    half, clock = half_of(planner), Ticks()
+    half, clock = half_of(planner), scenes.Ticks()
     # Nobody knows yet that it carries less than it seems to.
     whole = PackedWall.of(FoundWall.of(planner))
     walls = [replace(half, merit=whole.merit + 2.0), replace(whole, merit=whole.merit + 1.0)]
     best, interrupted = surest(planner, walls, Deadline(math.inf, clock))
     assert (len(best.build.actions), interrupted) == (len(whole.groups), False)
-    assert surest(planner, walls, after_looks(0)) == (None, True)
+    assert surest(planner, walls, scenes.after_looks(0)) == (None, True)
     # The half was judged, and the other one was not.
-    judged, interrupted = surest(planner, walls, after_looks(clock.count - 1))
+    judged, interrupted = surest(planner, walls, scenes.after_looks(clock.count - 1))
     assert (len(judged.build.actions), interrupted) == (len(half.groups), True)
     assert judged.merit < walls[0].merit
 
 
 def test_walls_to_choose_that_there_is_no_time_for_are_left_out(monkeypatch):
-    limits = iter([Deadline(), Deadline(), after_looks(0)])
+    limits = iter([Deadline(), Deadline(), scenes.after_looks(0)])
     monkeypatch.setattr(Deadline, "after", lambda *_: next(limits))
     result = small_search()
     assert [one.plan for one in result.choice] == [result.plan]

@@ -1,5 +1,6 @@
 """What planning gave, and whether the wall counts as complete."""
 
+import math
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -191,7 +192,10 @@ def _shortfall(planner: Planner, metrics: PlanMetrics) -> str:
         return "stones that are pinned are missing"
     top = mean_top(planner.build.wall)
     if metrics.F_SF < FILLED and top < FILLED_TOP:
-        return f"the top is at {top:.3f} of the wall's height on average, less than {FILLED_TOP:g}"
+        below = math.floor(1e3 * top) / 1e3  # 0.8999 must not read 0.900
+        return (
+            f"the top is at {below:.3f} of the wall's height on average, less than {FILLED_TOP:g}"
+        )
     return ""
 
 

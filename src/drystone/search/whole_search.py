@@ -110,8 +110,9 @@ def _improved(
         with planner.profile.part("search"):
             for progress in searching(begun, yard, planner.seed, executor):
                 planner.solves = progress.solves
-                planner.callbacks.on_walls(_incumbent(progress))
+                # First, so that who is interrupted in a callback goes on from this wall.
                 told(progress)
+                planner.callbacks.on_walls(_incumbent(progress))
     except BrokenProcessPool:
         lost = True
     except KeyboardInterrupt:
