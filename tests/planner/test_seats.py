@@ -64,6 +64,17 @@ def test_what_was_asked_before_changes_nothing(careless):
         assert seats_of(careless.workshop, settings).falls(wall.groups[k], before[k]) == asked[k]
 
 
+def test_a_wall_of_many_stones_is_finished_though_it_is_not_sure(careless):
+    stone, settings = next(iter(ROUNDED)), greedy()
+    few, many = (
+        Seats(careless.workshop.seats.mean_size, settings.settle, 0.58, stones=count).bearable(
+            stone
+        )
+        for count in (80, 81)
+    )
+    assert many == 2.0 * few
+
+
 def test_no_stone_is_laid_where_it_falls_more_often_than_is_bearable(careless):
     assert None in shares(
         seats_of(careless.workshop, greedy()), careless.build.wall, walls_of(careless)

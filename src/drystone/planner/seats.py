@@ -29,6 +29,9 @@ MARGIN = 1.25
 FALL = 8.0
 """A stone that would fall in all trials is laid when it is larger than so many mean stones."""
 
+MANY = 80
+"""From more stones a wall hardly ever stays whole: then `FALL` is half, so that it is finished."""
+
 KNOWN_BYTES = 1 << 27
 """Walls of trials that are remembered at most, about: those of fifty to a hundred steps."""
 
@@ -36,7 +39,7 @@ KNOWN_BYTES = 1 << 27
 class Seats:
     """Tries places; every stone has errors of its own, the same wherever it is laid.
 
-    `mean_size` is the mean over the stones of the set of the root of their area, source px.  What
+    `mean_size` is the mean over so many stones of a set of the root of their area, source px.  What
     is remembered makes it quicker and changes nothing.
     """
 
@@ -46,9 +49,11 @@ class Seats:
         settle: SettleSettings,
         mu: float,
         pinned: Collection[int] = (),
+        stones: int = 0,
     ) -> None:
         self.mean_size = mean_size
         self._pinned = pinned
+        self._fall = FALL if stones <= MANY else 0.5 * FALL
         self._errors = BuilderErrors.of_precision(MARGIN * HAND, mean_size)
         self._bare = [BuiltWall(mu, settle)] * settle.trials
         self._known = RecentlyUsed[bytes, list[BuiltWall]](KNOWN_BYTES)  # by what was laid
@@ -63,7 +68,7 @@ class Seats:
         """
         if stone.id in self._pinned:
             return 1.0
-        return stone.area_px / self.mean_size**2 / FALL
+        return stone.area_px / self.mean_size**2 / self._fall
 
     def falls(self, group: Group, wall: Wall, least: float = math.inf) -> float | None:
         """Return in which share of the trials something falls when a stone is laid next.

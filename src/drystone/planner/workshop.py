@@ -55,7 +55,7 @@ class Workshop:
         return cls(
             stones, site, book, clusters, settings.orientations, fitting, stock, sides, memory,
             outlines, PoseCosts(stock, frozenset(settings.pin)), Views(site),
-            Seats(mean_size, settings.settle, settings.mu, settings.pin),
+            Seats(mean_size, settings.settle, settings.mu, settings.pin, len(stones)),
         )  # fmt: skip
 
     def poses(self, stone_id: int) -> tuple[PosedStone, ...]:
