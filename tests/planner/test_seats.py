@@ -67,9 +67,7 @@ def test_what_was_asked_before_changes_nothing(careless):
 def test_a_wall_of_many_stones_is_finished_though_it_is_not_sure(careless):
     stone, settings = next(iter(ROUNDED)), greedy()
     few, many = (
-        Seats(careless.workshop.seats.mean_size, settings.settle, 0.58, stones=count).bearable(
-            stone
-        )
+        Seats(careless.workshop.seats.mean_size, settings.settle, 0.58, count=count).bearable(stone)
         for count in (80, 81)
     )
     assert many == 2.0 * few

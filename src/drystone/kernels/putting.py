@@ -1,7 +1,8 @@
 """Putting a block down between others (DESIGN 4.10).
 
 It is lifted until it overlaps nothing below.  There it is pressed in between its neighbours: moved
-aside where there is room, else these are pushed apart along their beds.  Then it is let go.
+aside where there is room, else these are pushed apart along their beds.  Then it goes down as
+friction lets it: it rolls about what carries it, and slides only where it does not come to rest so.
 """
 
 from __future__ import annotations
@@ -38,9 +39,8 @@ def put_down(
     """Return where a block comes to rest, and by how much which others are pushed along x.
 
     Corners of the outline are relative to the centroid, which is put at a place, and lifted by the
-    least of some ways with which it rests; None where it does with none.  It first rolls about what
-    carries it, and slides only where it does not come to rest so.  It is moved and pushed by no
-    more than `most`, and what overlapped it keeps a gap.
+    least of some ways with which it rests; None where it does with none.  It is moved and pushed by
+    no more than `most`, and what overlapped it keeps a gap.
     """
     way: Way = way_of(outline, edges, rules)
     corners, first, boxes, sides = around

@@ -51,7 +51,7 @@ SPREAD = cython.declare(cython.double, 2.5)
 # Settling ends when the radius has shrunk to this share of the first one.
 SMALLEST = cython.declare(cython.double, 1e-6)
 
-# An overlap that grows less so slowly that it would last for more steps does not come apart.
+# An overlap that shrinks so slowly that it would last for more steps is given up.
 APART = cython.declare(cython.double, 24.0)
 
 # A contact with a normal steeper than this supports.

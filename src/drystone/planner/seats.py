@@ -30,7 +30,7 @@ FALL = 8.0
 """A stone that would fall in all trials is laid when it is larger than so many mean stones."""
 
 MANY = 80
-"""From more stones a wall hardly ever stays whole: then `FALL` is half, so that it is finished."""
+"""A wall of more stones hardly ever stays whole: for it `FALL` is half, so that it is finished."""
 
 KNOWN_BYTES = 1 << 27
 """Walls of trials that are remembered at most, about: those of fifty to a hundred steps."""
@@ -39,8 +39,8 @@ KNOWN_BYTES = 1 << 27
 class Seats:
     """Tries places; every stone has errors of its own, the same wherever it is laid.
 
-    `mean_size` is the mean over so many stones of a set of the root of their area, source px.  What
-    is remembered makes it quicker and changes nothing.
+    `mean_size` is the mean over the stones of the set of the root of their area, source px, and
+    `count` says how many they are.  What is remembered makes it quicker and changes nothing.
     """
 
     def __init__(
@@ -49,11 +49,11 @@ class Seats:
         settle: SettleSettings,
         mu: float,
         pinned: Collection[int] = (),
-        stones: int = 0,
+        count: int = 0,
     ) -> None:
         self.mean_size = mean_size
         self._pinned = pinned
-        self._fall = FALL if stones <= MANY else 0.5 * FALL
+        self._fall = FALL if count <= MANY else 0.5 * FALL
         self._errors = BuilderErrors.of_precision(MARGIN * HAND, mean_size)
         self._bare = [BuiltWall(mu, settle)] * settle.trials
         self._known = RecentlyUsed[bytes, list[BuiltWall]](KNOWN_BYTES)  # by what was laid

@@ -1,8 +1,6 @@
-"""Putting a block down where it is not quite as planned, and letting it go (DESIGN 4.10).
+"""How far a block that is not quite as planned is lifted, moved and let fall (DESIGN 4.10).
 
-It is lifted until it overlaps nothing below.  There it is pressed in between its neighbours: moved
-aside where there is room, else these are pushed apart along their beds.  Then it goes down as
-friction lets it: it rolls about what carries it, and slides only where it does not come to rest so.
+:mod:`drystone.kernels.putting` says how it is put down.
 """
 
 import math
