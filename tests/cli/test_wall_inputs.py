@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from drystone.io.wall_image import read_wall_image
-from tests.io.test_walls_of_stones import drawn
+from tests.io.test_walls import drawn
 
 QUICK = ["--method", "paper", "--quiet"]
 

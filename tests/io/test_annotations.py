@@ -7,10 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 from PIL import Image
 from pycocotools import mask as coco_mask
 
-from drystone.errors import InputError
+from drystone.errors import InputError, UsageError
+from drystone.io.outlines_in.annotations import mask_of, unpacked
+from drystone.io.outlines_in.fill import Room
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.known_stones import HEIGHT, PIECES, STONES, WIDTH, compare, masks
 from tests.io.pictures import codes
@@ -281,3 +286,138 @@ def test_geojson_kinds_that_are_no_stones(tmp_path):
     assert "1 Points, 1 features without a geometry" in stones.notices[0].message
     bare = geojson()["features"][0]["geometry"]
     assert read_stones(written(tmp_path, bare)).by_id(1).area_px == masks()[3].sum()
+
+
+@given(arrays(bool, st.tuples(st.integers(1, 40), st.integers(1, 40))), st.booleans())
+def test_any_mask_comes_back(mask, packed):
+    found = mask_of(runs(mask, packed=packed), Room(10**8))
+    whole = np.zeros_like(mask)
+    if found is not None:
+        height, width = found.mask.shape
+        whole[found.row : found.row + height, found.col : found.col + width] = found.mask
+        assert found.mask.any(axis=0)[[0, -1]].all()  # cut to its box
+        assert found.mask.any(axis=1)[[0, -1]].all()
+    np.testing.assert_array_equal(whole, mask)
+
+
+@given(st.integers(1, 3000), st.integers(1, 3000), st.data())
+def test_long_runs_come_back(height, width, data):
+    size = height * width
+    first = data.draw(st.integers(0, size - 1))
+    run = data.draw(st.integers(1, size - first))
+    counts = [first, run, size - first - run]
+    packed = coco_mask.frPyObjects({"size": [height, width], "counts": counts}, height, width)
+    text = packed["counts"]
+    for given_text in (text, text.decode()):
+        assert unpacked(given_text)[:3].tolist() == counts[: len(unpacked(given_text))]
+    assert mask_of({"size": [height, width], "counts": text}, Room(10**8)).mask.sum() == run
+
+
+@pytest.mark.parametrize(
+    ("said", "text"),
+    [
+        ({"counts": [1, 2]}, "add up to 3"),
+        ({"counts": [-1, 7]}, "below 0"),
+        ({"counts": [1.5, 4.5]}, "whole numbers"),
+        ({"counts": "\x01"}, "does not belong"),
+        ({"counts": "PPPPPPPPP0"}, "does not belong"),  # more bits than a count can have
+        ({"counts": "P"}, "cut short"),
+        ({"counts": [[6]]}, "whole numbers"),
+        ({"counts": [6], "size": [3, -2]}, "a picture of -2 x 3 px"),
+    ],
+)
+def test_damaged_counts_and_sizes(said, text):
+    with pytest.raises(ValueError, match=text):
+        mask_of({"size": [2, 3], **said}, Room(10**8))
+
+
+SQUARES = [[[x, 10], [x + 20, 10], [x + 20, 30], [x, 30]] for x in (10, 40, 70)]
+
+
+def of_coco(ids):
+    flat = [[v for point in square for v in point] for square in SQUARES]
+    content = coco({})
+    content["annotations"] = [
+        {"id": i, "image_id": 7, "category_id": 1, "iscrowd": 0, "segmentation": [s]}
+        for i, s in zip(ids, flat, strict=False)
+    ]
+    return content
+
+
+def of_labelme(labels):
+    shapes = [{"label": i, "points": s} for i, s in zip(labels, SQUARES, strict=False)]
+    return labelme(shapes=shapes)
+
+
+def read(tmp_path, content):
+    stones = read_stones(written(tmp_path, content))
+    return [stone.id for stone in stones], [n.message for n in stones.notices if n.code == "W119"]
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (of_coco([0, 1, 2]), "0 cannot be the number of a stone: all are numbered in order "
+         "(0 is now 1, 1 is now 2, 2 is now 3)."),
+        (of_coco([0]), "0 cannot be the number of a stone: all are numbered in order (0 is now "
+         "1)."),
+        (of_coco([5, 2**32, None]), "4294967296 cannot be the number of a stone, 1 of 3 stones "
+         "without a number: all are numbered in order (5 is now 1, 4294967296 is now 2)."),
+        (of_coco([-3, 10**15, 10**15 + 1]), "-3, 1000000000000000, 1000000000000001 cannot be the "
+         "number of a stone: all are numbered in order (-3 is now 1, 1000000000000000 is now 2, "
+         "1000000000000001 is now 3)."),
+        (of_labelme(["5", "7", "Stone A"]), "1 of 3 stones without a number: all are numbered in "
+         "order (5 is now 1, 7 is now 2)."),
+        (of_labelme(["1", "stone 2", "Stone A"]), "1 of 3 stones without a number: all are "
+         "numbered in order."),
+        (of_labelme(["5", "5", "Stone A"]), "the numbers of the file are not different (5), "
+         "1 of 3 stones without a number: all are numbered in order."),
+    ],
+)  # fmt: skip
+def test_numbers_that_are_not_kept_are_said(tmp_path, content, said):
+    ids, messages = read(tmp_path, content)
+    assert ids == list(range(1, len(ids) + 1))
+    assert messages == [said]
+
+
+@pytest.mark.parametrize(
+    ("content", "ids"),
+    [
+        (of_coco([1, 2, 3]), [1, 2, 3]),
+        (of_coco([7, 2**32 - 1, 3]), [3, 7, 2**32 - 1]),
+        (of_coco([None, None, None]), [1, 2, 3]),
+        (of_labelme(["a", "b", "c"]), [1, 2, 3]),
+        (of_labelme(["0", "0", "0"]), [1, 2, 3]),  # labels of a class
+        (of_labelme(["stone 9", "8", "07"]), [7, 8, 9]),
+    ],
+)
+def test_numbers_that_are_kept_or_were_never_there_are_not_spoken_of(tmp_path, content, ids):
+    assert read(tmp_path, content) == (ids, [])
+
+
+SVG = '<svg xmlns="http://www.w3.org/2000/svg"><rect id="1" width="30" height="30"/></svg>'
+FILES = {
+    "labelme.json": json.dumps(of_labelme(["1", "2"])),
+    "coco.json": json.dumps(of_coco([1, 2])),
+    "sam.json": json.dumps([{"segmentation": [[1, 1, 30, 1, 30, 30]]}]),
+    "stones.geojson": json.dumps(geojson()),
+    "stones.svg": SVG,
+}
+
+
+@pytest.mark.parametrize("name", [*FILES, "masks.npz"])
+def test_outlines_say_themselves_what_is_stone(tmp_path, name):
+    path = tmp_path / name
+    if name in FILES:
+        path.write_text(FILES[name])
+    else:
+        np.savez(path, a=np.eye(20) > 0, b=np.tri(20) > 0)
+    plain = ReadSettings(pieces="keep-largest")
+    for option, value in (("background", 255), ("mask", True), ("no-mask", False)):
+        key = option.removeprefix("no-")
+        cure = rf"Leave --{option} \({key} in Python\) out"
+        with pytest.raises(UsageError, match=rf"E118 {name}: this file says itself.*{cure}"):
+            read_stones(path, settings=replace(plain, **{key: value}))
+    # What is left of the options is for both.
+    also = replace(plain, holes="keep", min_area_px=1, skip=(99,))
+    assert len(read_stones(path, settings=also)) >= 1

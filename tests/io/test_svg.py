@@ -1,5 +1,9 @@
 """SVG by hand: its page, what style hides and fills, and what clip paths leave."""
 
+import math
+import re
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,6 +11,9 @@ from drystone.errors import InputError
 from drystone.io.outlines_in.silhouettes import region
 from drystone.io.outlines_in.svg import read_svg
 from drystone.io.read_stones import ReadSettings, read_stones
+from tests.io.known_stones import HEIGHT, METRIC, PX_PER_M, STONES, WIDTH, close, compare
+
+MM = 1000.0 / PX_PER_M
 
 RECT = '<rect x="1" y="1" width="8" height="4"/>'
 
@@ -303,3 +310,154 @@ def test_a_wrong_unit_of_a_drawing_is_corrected(tmp_path, own, unit):
     assert stones.by_id(1).area_px / scale**2 == pytest.approx(
         (40 * shares * metres) ** 2, rel=0.02
     )
+
+
+def svg(body, width=f"{WIDTH * MM}mm", height=f"{HEIGHT * MM}mm", box=f"0 0 {WIDTH} {HEIGHT}"):
+    return (
+        f'<?xml version="1.0"?>\n<svg xmlns="http://www.w3.org/2000/svg" width="{width}" '
+        f'height="{height}" viewBox="{box}" xmlns:xlink="http://www.w3.org/1999/xlink">\n'
+        f"{body}\n</svg>\n"
+    )
+
+
+def data_of(polygons):
+    return " ".join(
+        "M" + "L".join(f"{x} {y}" for x, y in ring) + "Z" for rings in polygons for ring in rings
+    )
+
+
+def paths():
+    return "\n".join(
+        f'<path id="stone-{i}" fill-rule="evenodd" d="{data_of(polygons)}"/>'
+        for i, polygons in STONES.items()
+    )
+
+
+def kept(text, tmp_path, settings=METRIC):
+    (tmp_path / "stones.svg").write_text(text)
+    return read_stones(tmp_path / "stones.svg", settings=settings)
+
+
+@pytest.mark.parametrize(
+    ("width", "height"),
+    [
+        (f"{WIDTH * MM}mm", f"{HEIGHT * MM}mm"),
+        (f"{WIDTH * MM / 10} cm", f"{HEIGHT * MM / 25.4 * 72}pt"),
+        (f"{WIDTH * MM}mm", f"{HEIGHT * MM / 25.4}in"),
+    ],
+)
+def test_svg_to_scale(tmp_path, width, height):
+    stones = kept(svg(paths(), width, height), tmp_path)
+    close(stones)
+    assert stones.source.px_per_m == PX_PER_M
+    assert stones.by_id(300).name == "stone-300"
+
+
+@pytest.mark.parametrize(("width", "box"), [("320", "0 0 320 200"), ("320px", "0 0 320 200")])
+def test_svg_in_px_is_an_image(tmp_path, width, box):
+    stones = kept(svg(paths(), width, "200", box), tmp_path)
+    assert compare(stones) == (1.0, 0.0, 0.0)
+    assert stones.source.px_per_m is None
+    assert (stones.source.width_px, stones.source.height_px) == (WIDTH, HEIGHT)
+    assert dict(stones.source.reading) == {"pieces": "keep-largest", "holes": "keep"}
+
+
+def test_svg_in_px_with_a_unit_that_is_told(tmp_path):
+    told = replace(METRIC, unit="cm")
+    text = svg(paths(), "100%", "100%").replace("<path ", f'<path transform="scale({MM / 10})" ')
+    close(kept(text, tmp_path, told))
+
+
+def test_stones_that_lie_far_apart_are_drawn_smaller(tmp_path):
+    """Most of their picture would be empty: at 160 px a stone it would have 100 million px."""
+    places = ((0, 0), (500, 0), (9, 700))
+    three = "".join(f'<rect x="{x}" y="{y}" width="9" height="9"/>' for x, y in places)
+    stones = kept(svg(three, "509mm", "709mm", "0 0 509 709"), tmp_path, ReadSettings())
+    assert len(stones) == 3
+    assert stones.source.width_px * stones.source.height_px < 3_000_000
+    (notice,) = [n for n in stones.notices if "median stone" in n.message]
+    assert int(re.search(r"it is (\d+) px", notice.message)[1]) < 160
+
+
+def test_svg_definitions_are_used_under_nested_transforms(tmp_path):
+    """Every stone is defined turned and mirrored, and put back by the transforms around it."""
+    defined, used = [], []
+    for number, (i, polygons) in enumerate(STONES.items()):
+        cos, sin = math.cos(math.radians(17 * number)), math.sin(math.radians(17 * number))
+        turned = [
+            [[(x * cos - y * sin, x * sin + y * cos) for x, y in ring] for ring in rings]
+            for rings in polygons
+        ]
+        href = "href" if number % 2 else "xlink:href"
+        defined.append(f'<path id="stone_{i}" style="fill-rule: evenodd" d="{data_of(turned)}"/>')
+        used.append(f'<use {href}="#stone_{i}" transform="rotate({-17 * number})" id="u{i}"/>')
+    body = (
+        f"<defs>{''.join(defined)}</defs>"
+        f'<g transform="matrix(2 0 0 -2 30 {HEIGHT})"><g transform="scale(.5 -.5)">'
+        f'<a transform="translate(-25 {HEIGHT})"><g transform="translate(-5,{-HEIGHT})">'
+        f'<g transform="translate(0 {HEIGHT})">{"".join(used)}</g></g></a></g></g>'
+    )
+    close(kept(svg(body), tmp_path))
+
+
+def test_svg_shapes_by_closed_forms(tmp_path):
+    body = """
+      <rect width="320" height="200" fill="white"/>
+      <rect id="stone1" x="10" y="10" width="60" height="40"/>
+      <rect id="stone2" x="80" y="10" width="60" height="40" rx="10"/>
+      <rect id="stone3" x="150" y="10" width="60" height="40" rx="10" ry="90"/>
+      <circle id="stone4" cx="250" cy="40" r="30"/>
+      <ellipse id="stone5" cx="60" cy="110" rx="40" ry="25" transform="rotate(30 60 110)"/>
+      <polygon id="stone6" points="120,90 180,90 180,140 120,140"/>
+      <polyline id="stone7" points="200 90 260 90 260 140 200 140 200 90"/>
+      <defs><circle id="s" cx="10" cy="10" r="10"/></defs>
+      <use href="#s" id="stone8" x="20" y="150"/>
+      <path id="stone9" d="M100 150h60v40h-60zM110 160v20h40v-20z"/>
+      <path id="stone10" d="M180 150h60v40h-60zM190 160h40v20h-40z"/>
+      <polyline points="0 0 5 5 9 0" fill="none" stroke="red"/> <text>stone</text> <line x2="4"/>
+      <path d="M0 0 L9 9 L4 9" fill="none" stroke="red"/> <circle r="5" display="none"/>
+      <g style="visibility:hidden"><circle r="5"/></g>
+      <clipPath><rect width="9" height="9"/></clipPath>
+    """
+    stones = kept(svg(body, "320", "200"), tmp_path, ReadSettings(holes="keep"))
+    areas = {stone.id: stone.area_px for stone in stones}
+    corner = 4 - math.pi  # of a square of 2, what its circle leaves
+    known = [
+        2400, 2400 - corner * 100, 2400 - corner * 200, math.pi * 900, math.pi * 1000, 3000, 3000,
+        math.pi * 100,
+        2400 - 800,  # the hole turns the other way
+        2400,  # and here it does not
+    ]  # fmt: skip
+    assert areas == pytest.approx(dict(enumerate(known, start=1)), rel=6e-3)
+    (notice,) = [n for n in stones.notices if "left aside" in n.message]
+    for kind in ("1 text", "1 line,", "1 open lines in path", "1 open lines in polyline",
+                 "1 rectangles over the whole page"):  # fmt: skip
+        assert kind in notice.message
+
+
+def test_svg_layer_of_stones_is_all_that_counts(tmp_path):
+    body = f'<rect x="3" y="3" width="90" height="90"/><g id="STONES">{paths()}</g>'
+    stones = kept(svg(body), tmp_path)
+    close(stones)
+    assert "1 shapes outside the group STONES" in stones.notices[0].message
+
+
+@pytest.mark.parametrize(
+    ("body", "text"),
+    [
+        ('<path id="a" d="M0 0 L5"/>', r"E114 .*the path 'a' cannot be used \(L has 1 numbers"),
+        ('<use href="#nothing"/>', r"E114 .*'#nothing', which is not there"),
+        ('<g id="a"><use href="#a"/></g>', r"E114 .*use each other too often or too deeply"),
+        ('<circle r="1%"/>', r"E114 .*a circle cannot be used \(r in %"),
+        ('<circle r="1em"/>', r"E114 .*a circle cannot be used \(r in em"),
+        ('<rect width="9em" height="9%"/>', r"E114 .*a rect .*width in em"),
+        ('<use href="#a" x="1em"/><g id="a"/>', r"E114 .*a use .*x in em"),
+        ('<polygon points="1 2 3"/>', r"E114 .*a polygon cannot be used"),
+        ('<g transform="turn(3)"/>', r"E114 .*not a transform"),
+        ("<text>nothing</text>", r"E104 .*no stones in it.*1 text"),
+        ("<g>", r"E106 .*damaged or cut short \(mismatched tag"),
+    ],
+)
+def test_damaged_svg(tmp_path, body, text):
+    with pytest.raises(InputError, match=text):
+        kept(svg(body), tmp_path)

@@ -3,16 +3,27 @@
 import math
 from dataclasses import replace
 
+import ezdxf
 import numpy as np
 import pytest
+from ezdxf import units
 from hypothesis import given
 from hypothesis import strategies as st
+from PIL import Image
 
 import drystone as ds
-from drystone.errors import InputError
+from drystone.contacts.given import model_from_json
+from drystone.contacts.outlines import model_of_traced
+from drystone.errors import DrystoneError, InputError
+from drystone.io.photo_beside import PhotoSidecar, write_sidecar
+from drystone.io.read_settings import ReadSettings
+from drystone.io.read_stones import read_stones
 from drystone.io.wall_image import write_labels, write_wall_image
-from drystone.io.walls import _seen, read_wall, shows
+from drystone.io.walls import _seen, outlines_painted, read_wall, shows
+from drystone.io.write_stones import write_stones
 from drystone.poses import PoseBook
+from drystone.statics.limit import lateral_resistance
+from tests.io import labelled
 from tests.strategies import repeatable, stones
 from tests.verify.examples import L_STONE, SLAB, WEDGE, example
 from tests.verify.tampering import moved, reshaped, swapped
@@ -109,3 +120,181 @@ def test_centroids_are_those_of_pixel_squares():
     square = np.zeros((40, 50), np.uint32)
     square[5:25, 8:28] = 1
     assert _seen(square)[1][1] == pytest.approx(0.5 + 4 / 6)
+
+
+HEIGHT, WIDTH, FOOT = 90, 130, 80
+"""Of the image, px, and where the wall stands in it."""
+
+BLOCKS = {
+    3: [(20.0, 80.0), (70.0, 80.0), (70.0, 55.0), (20.0, 55.0)],
+    5: [(70.0, 80.0), (120.0, 80.0), (120.0, 55.0), (70.0, 55.0)],
+    8: [(30.0, 55.0), (100.0, 55.0), (95.0, 30.0), (42.0, 30.0)],
+}
+"""Corners by id, px, y down."""
+
+
+def upright(scale=1.0):
+    """The same corners, y up from the foot."""
+    return {i: [(x * scale, (FOOT - y) * scale) for x, y in line] for i, line in BLOCKS.items()}
+
+
+def drawn(form, folder, blocks=BLOCKS):
+    """Blocks as a form has them; "y up" is that of a map."""
+    sign = -1.0 if form == "y up" else 1.0
+    shapes = [(str(i), [(x, sign * y) for x, y in line]) for i, line in blocks.items()]
+    return labelled.written(folder, "qupath" if form == "y up" else form, shapes)
+
+
+OUTLINES = [*labelled.CLASSES, "y up"]
+
+
+@pytest.mark.parametrize("form", OUTLINES)
+def test_outlines_are_blocks_that_stand_on_their_lowest_point(form, tmp_path):
+    wall = read_wall(drawn(form, tmp_path))
+    blocks = [{"id": i, "polygon": line} for i, line in upright().items()]
+    truth = lateral_resistance(model_from_json({"blocks": blocks, "mu": 0.6})).value
+    found = lateral_resistance(model_of_traced(wall.outlines, 0.6)).value
+    assert found == pytest.approx(truth, abs=1e-6)
+    assert wall.drawn is (form == "dxf")
+    px_a_mm = (wall.px_per_m or 1000.0) / 1000.0
+    left = 0.0 if form in ("dxf", "y up") else 20.0  # of an image x is kept
+    shift = (left - 20.0, 0.0)
+    for (_, line), found in zip(sorted(upright().items()), wall.outlines.values(), strict=True):
+        want = {tuple(np.round((np.array(corner) + shift) * px_a_mm, 3)) for corner in line}
+        assert {tuple(corner) for corner in np.round(found, 3).tolist()} == want
+    if form == "labelme":
+        assert list(wall.outlines) == [3, 5, 8]
+
+
+@pytest.mark.parametrize("form", OUTLINES)
+def test_their_label_image_is_that_of_the_stones(form, tmp_path):
+    """Edges lie on pixel edges, so every rule for them gives the same pixels."""
+    path = drawn(form, tmp_path)
+    wall = read_wall(path, ReadSettings(px_per_m=1000.0))
+    found = {i: int((wall.labels == i).sum()) for i in np.unique(wall.labels[wall.labels > 0])}
+    stones = read_stones(path, settings=ReadSettings(px_per_m=1000.0))
+    assert list(found.values()) == [stone.area_px for stone in sorted(stones, key=lambda s: s.id)]
+    assert wall.labels[-1].any()
+
+
+def test_options_of_reading_leave_out_blocks(tmp_path):
+    wall = read_wall(drawn("labelme", tmp_path), ReadSettings(skip=(8,)))
+    assert list(wall.outlines) == [3, 5]
+    with pytest.raises(DrystoneError, match="background has no meaning"):
+        read_wall(drawn("labelme", tmp_path), ReadSettings(background=255))
+
+
+def test_what_reaches_beyond_its_image_is_whole_and_may_not_fill_the_memory(tmp_path):
+    def reaching(far):
+        outside = [(-far, 50.0), (20.0, 50.0), (20.0, 40.0), (-far, 40.0)]
+        return drawn("labelme", tmp_path, {**BLOCKS, 9: outside})
+
+    wall = read_wall(reaching(12.0))
+    assert wall.outlines[9][:, 0].min() == 0.0
+    assert not any("cut off" in notice.message for notice in wall.notices)
+    with pytest.raises(DrystoneError, match="E110"):
+        read_wall(reaching(4.5e6))
+
+
+def test_a_wall_in_units_that_dwarf_its_stones_is_that_in_px(tmp_path):
+    """Corners of a stone in astronomical units are nearer to each other than 1e-9."""
+    small = {i: np.array(line) / 149_597_870_700_000 for i, line in BLOCKS.items()}
+    found = []
+    for blocks, unit in ((BLOCKS, units.MM), (small, 18)):
+        document = ezdxf.new(units=unit)
+        for line in blocks.values():
+            document.modelspace().add_lwpolyline(line, close=True)
+        document.saveas(tmp_path / "wall.dxf")
+        found.append(read_wall(tmp_path / "wall.dxf").outlines)
+    for one, other in zip(*(wall.values() for wall in found), strict=True):
+        np.testing.assert_allclose(one, other, atol=1e-6)
+
+
+@pytest.mark.parametrize("thickness", [1e-10, 1e-13])
+def test_a_line_that_fills_pixels_is_known_by_them(tmp_path, thickness):
+    low, high = 10.5, 10.5 + thickness
+    line = [(1.0, low), (30.0, low), (30.0, high), (1.0, high)]
+    path = drawn("labelme", tmp_path, {**BLOCKS, 9: line})
+    assert read_stones(path).by_id(9).drawn is None
+    wall = read_wall(path)
+    assert wall.outlines is None
+    assert (wall.labels == 9).sum() == 29
+
+
+def image():
+    wall = {i: np.array([*line, line[0]]) for i, line in upright().items()}
+    return np.pad(outlines_painted(wall), ((30, HEIGHT - FOOT), (0, WIDTH - 120)))
+
+
+def test_pixels_of_every_form_are_a_label_image(tmp_path):
+    labels = image()
+    folder, npz, segmented = tmp_path / "masks", tmp_path / "wall.npz", tmp_path / "segmented"
+    folder.mkdir()
+    segmented.mkdir()
+    for number, i in enumerate((3, 5, 8), start=1):
+        mask = (np.where(labels == i, 255, 0)).astype(np.uint8)
+        Image.fromarray(mask).save(folder / f"{number}.png")
+    np.savez(npz, labels)
+    write_labels(labels, segmented / "stones.png")
+    write_sidecar(PhotoSidecar(130, 90, 250.0), segmented)
+    for path, ids in ((folder, [1, 2, 3]), (npz, [3, 5, 8]), (segmented, [3, 5, 8])):
+        wall = read_wall(path)
+        assert np.unique(wall.labels).tolist() == [0, *ids]
+        assert ((wall.labels > 0) == (labels > 0)).all()
+        assert wall.px_per_m == (250.0 if path == segmented else None)
+    assert read_wall(segmented / "stones.png").px_per_m == 250.0
+
+
+def test_cropped_masks_are_refused_as_nothing_says_where_they_lie(tmp_path):
+    for number in (1, 2, 3):
+        mask = np.full((20 + number, 30), 255, np.uint8)
+        mask[:2] = 0
+        Image.fromarray(mask).save(tmp_path / f"{number}.png")
+    with pytest.raises(DrystoneError, match="masks were cropped") as caught:
+        read_wall(tmp_path)
+    assert caught.value.code == "E304"
+
+
+@pytest.mark.parametrize("ending", [".png", ".tif", ".npy", ".json"])
+def test_what_is_converted_is_read_again(ending, tmp_path):
+    stones = read_stones(drawn("dxf", tmp_path), settings=ReadSettings(px_per_m=1000.0))
+    path = tmp_path / f"wall-labels{ending}"
+    said = write_stones(stones, path, 1000.0)
+    again = read_stones(path)
+    assert [(s.id, s.area_px) for s in again] == [(s.id, s.area_px) for s in stones]
+    assert again.source.px_per_m == 1000.0
+    assert said == ()
+    if ending != ".json":
+        assert read_wall(path).px_per_m == 1000.0
+        write_stones(stones, path, None)  # the scale of another picture does not stay
+        assert read_stones(path).source.px_per_m is None
+
+
+def test_a_sidecar_is_of_the_image_that_it_names(tmp_path):
+    write_labels(image(), tmp_path / "one.png")
+    write_labels(image(), tmp_path / "other.png")
+    write_sidecar(PhotoSidecar(130, 90, 250.0, labels="one.png"), tmp_path)
+    scales = [read_stones(tmp_path / name).source.px_per_m for name in ("one.png", "other.png")]
+    assert scales == [250.0, None]
+    (tmp_path / "stones.json").write_text("{")
+    assert read_stones(tmp_path / "other.png").source.px_per_m is None
+
+
+def test_a_photograph_of_a_wall_is_told_how_walls_are_traced(tmp_path):
+    noise = np.random.default_rng(1).integers(0, 256, (80, 90, 3), np.uint8)
+    smooth = np.full((80, 90, 3), 200, np.uint8)
+    smooth[40:] = noise[40:]
+    made = (("a.png", noise, "E102"), ("a.jpg", noise, "E102"), ("b.jpg", smooth, "E101"))
+    for name, values, code in made:
+        Image.fromarray(values).save(tmp_path / name)
+        with pytest.raises(DrystoneError, match="#from-a-photograph-of-a-wall") as caught:
+            read_wall(tmp_path / name)
+        assert caught.value.code == code
+        assert "segment" not in caught.value.cure
+
+
+def test_other_cures_stay(tmp_path):
+    write_sidecar(PhotoSidecar(130, 90, 250.0), tmp_path)
+    with pytest.raises(DrystoneError, match="stands beside the label image") as caught:
+        read_wall(tmp_path / "stones.json")
+    assert "Give stones.png" in caught.value.cure

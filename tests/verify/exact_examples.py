@@ -1,6 +1,7 @@
 """A small wall of outlines made by hand, with a plan that claims what is true of it."""
 
 import json
+from functools import cache
 
 import numpy as np
 
@@ -29,6 +30,7 @@ SETTINGS = PlannerSettings(
 )
 
 
+@cache
 def exact_example(scale=1.0, px_per_m=None, *, count=5):
     """Return a slab on two pillars with a wedge on the lower one, an L beside them turned by 90.
 

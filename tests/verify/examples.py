@@ -1,6 +1,7 @@
 """Small walls made by hand, with plans that claim what is true of them."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -48,6 +49,7 @@ def stone_set():
     return StoneSet(tuple(stones), Source("stones.png", "ab" * 32, left, 30))
 
 
+@cache
 def example(scale=1.0, px_per_m=None):
     """Return a slab on two pillars with a wedge on the lower one, an L beside them turned by 90.
 

@@ -1,21 +1,20 @@
-"""DXF and SVG of the known stones, written by ezdxf and by hand."""
+"""DXF of the known stones, written by ezdxf: curves, blocks, layers and what is hidden."""
 
 import io
 import math
-import re
 from dataclasses import replace
 
 import ezdxf
 import numpy as np
 import pytest
-from ezdxf import units
+import shapely
+from ezdxf import units, xref
 
 from drystone.errors import InputError, UsageError
+from drystone.io.outlines_in.dxf import read_dxf
 from drystone.io.read_stones import ReadSettings, read_stones
-from tests.io.known_stones import HEIGHT, METRIC, PIECES, PX_PER_M, STONES, WIDTH, close, compare
+from tests.io.known_stones import METRIC, PIECES, PX_PER_M, close
 from tests.io.test_planes import drawn
-
-MM = 1000.0 / PX_PER_M
 
 
 def saved(document, tmp_path, name="stones.dxf", **options):
@@ -182,157 +181,6 @@ def test_resolution_of_a_drawing_makes_the_median_stone_160_px_long(tmp_path):
     assert "px_per_m" not in dict(stones.source.reading)
 
 
-def svg(body, width=f"{WIDTH * MM}mm", height=f"{HEIGHT * MM}mm", box=f"0 0 {WIDTH} {HEIGHT}"):
-    return (
-        f'<?xml version="1.0"?>\n<svg xmlns="http://www.w3.org/2000/svg" width="{width}" '
-        f'height="{height}" viewBox="{box}" xmlns:xlink="http://www.w3.org/1999/xlink">\n'
-        f"{body}\n</svg>\n"
-    )
-
-
-def data_of(polygons):
-    return " ".join(
-        "M" + "L".join(f"{x} {y}" for x, y in ring) + "Z" for rings in polygons for ring in rings
-    )
-
-
-def paths():
-    return "\n".join(
-        f'<path id="stone-{i}" fill-rule="evenodd" d="{data_of(polygons)}"/>'
-        for i, polygons in STONES.items()
-    )
-
-
-def kept(text, tmp_path, settings=METRIC):
-    (tmp_path / "stones.svg").write_text(text)
-    return read_stones(tmp_path / "stones.svg", settings=settings)
-
-
-@pytest.mark.parametrize(
-    ("width", "height"),
-    [
-        (f"{WIDTH * MM}mm", f"{HEIGHT * MM}mm"),
-        (f"{WIDTH * MM / 10} cm", f"{HEIGHT * MM / 25.4 * 72}pt"),
-        (f"{WIDTH * MM}mm", f"{HEIGHT * MM / 25.4}in"),
-    ],
-)
-def test_svg_to_scale(tmp_path, width, height):
-    stones = kept(svg(paths(), width, height), tmp_path)
-    close(stones)
-    assert stones.source.px_per_m == PX_PER_M
-    assert stones.by_id(300).name == "stone-300"
-
-
-@pytest.mark.parametrize(("width", "box"), [("320", "0 0 320 200"), ("320px", "0 0 320 200")])
-def test_svg_in_px_is_an_image(tmp_path, width, box):
-    stones = kept(svg(paths(), width, "200", box), tmp_path)
-    assert compare(stones) == (1.0, 0.0, 0.0)
-    assert stones.source.px_per_m is None
-    assert (stones.source.width_px, stones.source.height_px) == (WIDTH, HEIGHT)
-    assert dict(stones.source.reading) == {"pieces": "keep-largest", "holes": "keep"}
-
-
-def test_svg_in_px_with_a_unit_that_is_told(tmp_path):
-    told = replace(METRIC, unit="cm")
-    text = svg(paths(), "100%", "100%").replace("<path ", f'<path transform="scale({MM / 10})" ')
-    close(kept(text, tmp_path, told))
-
-
-def test_stones_that_lie_far_apart_are_drawn_smaller(tmp_path):
-    """Most of their picture would be empty: at 160 px a stone it would have 100 million px."""
-    places = ((0, 0), (500, 0), (9, 700))
-    three = "".join(f'<rect x="{x}" y="{y}" width="9" height="9"/>' for x, y in places)
-    stones = kept(svg(three, "509mm", "709mm", "0 0 509 709"), tmp_path, ReadSettings())
-    assert len(stones) == 3
-    assert stones.source.width_px * stones.source.height_px < 3_000_000
-    (notice,) = [n for n in stones.notices if "median stone" in n.message]
-    assert int(re.search(r"it is (\d+) px", notice.message)[1]) < 160
-
-
-def test_svg_definitions_are_used_under_nested_transforms(tmp_path):
-    """Every stone is defined turned and mirrored, and put back by the transforms around it."""
-    defined, used = [], []
-    for number, (i, polygons) in enumerate(STONES.items()):
-        cos, sin = math.cos(math.radians(17 * number)), math.sin(math.radians(17 * number))
-        turned = [
-            [[(x * cos - y * sin, x * sin + y * cos) for x, y in ring] for ring in rings]
-            for rings in polygons
-        ]
-        href = "href" if number % 2 else "xlink:href"
-        defined.append(f'<path id="stone_{i}" style="fill-rule: evenodd" d="{data_of(turned)}"/>')
-        used.append(f'<use {href}="#stone_{i}" transform="rotate({-17 * number})" id="u{i}"/>')
-    body = (
-        f"<defs>{''.join(defined)}</defs>"
-        f'<g transform="matrix(2 0 0 -2 30 {HEIGHT})"><g transform="scale(.5 -.5)">'
-        f'<a transform="translate(-25 {HEIGHT})"><g transform="translate(-5,{-HEIGHT})">'
-        f'<g transform="translate(0 {HEIGHT})">{"".join(used)}</g></g></a></g></g>'
-    )
-    close(kept(svg(body), tmp_path))
-
-
-def test_svg_shapes_by_closed_forms(tmp_path):
-    body = """
-      <rect width="320" height="200" fill="white"/>
-      <rect id="stone1" x="10" y="10" width="60" height="40"/>
-      <rect id="stone2" x="80" y="10" width="60" height="40" rx="10"/>
-      <rect id="stone3" x="150" y="10" width="60" height="40" rx="10" ry="90"/>
-      <circle id="stone4" cx="250" cy="40" r="30"/>
-      <ellipse id="stone5" cx="60" cy="110" rx="40" ry="25" transform="rotate(30 60 110)"/>
-      <polygon id="stone6" points="120,90 180,90 180,140 120,140"/>
-      <polyline id="stone7" points="200 90 260 90 260 140 200 140 200 90"/>
-      <defs><circle id="s" cx="10" cy="10" r="10"/></defs>
-      <use href="#s" id="stone8" x="20" y="150"/>
-      <path id="stone9" d="M100 150h60v40h-60zM110 160v20h40v-20z"/>
-      <path id="stone10" d="M180 150h60v40h-60zM190 160h40v20h-40z"/>
-      <polyline points="0 0 5 5 9 0" fill="none" stroke="red"/> <text>stone</text> <line x2="4"/>
-      <path d="M0 0 L9 9 L4 9" fill="none" stroke="red"/> <circle r="5" display="none"/>
-      <g style="visibility:hidden"><circle r="5"/></g>
-      <clipPath><rect width="9" height="9"/></clipPath>
-    """
-    stones = kept(svg(body, "320", "200"), tmp_path, ReadSettings(holes="keep"))
-    areas = {stone.id: stone.area_px for stone in stones}
-    corner = 4 - math.pi  # of a square of 2, what its circle leaves
-    known = [
-        2400, 2400 - corner * 100, 2400 - corner * 200, math.pi * 900, math.pi * 1000, 3000, 3000,
-        math.pi * 100,
-        2400 - 800,  # the hole turns the other way
-        2400,  # and here it does not
-    ]  # fmt: skip
-    assert areas == pytest.approx(dict(enumerate(known, start=1)), rel=6e-3)
-    (notice,) = [n for n in stones.notices if "left aside" in n.message]
-    for kind in ("1 text", "1 line,", "1 open lines in path", "1 open lines in polyline",
-                 "1 rectangles over the whole page"):  # fmt: skip
-        assert kind in notice.message
-
-
-def test_svg_layer_of_stones_is_all_that_counts(tmp_path):
-    body = f'<rect x="3" y="3" width="90" height="90"/><g id="STONES">{paths()}</g>'
-    stones = kept(svg(body), tmp_path)
-    close(stones)
-    assert "1 shapes outside the group STONES" in stones.notices[0].message
-
-
-@pytest.mark.parametrize(
-    ("body", "text"),
-    [
-        ('<path id="a" d="M0 0 L5"/>', r"E114 .*the path 'a' cannot be used \(L has 1 numbers"),
-        ('<use href="#nothing"/>', r"E114 .*'#nothing', which is not there"),
-        ('<g id="a"><use href="#a"/></g>', r"E114 .*use each other too often or too deeply"),
-        ('<circle r="1%"/>', r"E114 .*a circle cannot be used \(r in %"),
-        ('<circle r="1em"/>', r"E114 .*a circle cannot be used \(r in em"),
-        ('<rect width="9em" height="9%"/>', r"E114 .*a rect .*width in em"),
-        ('<use href="#a" x="1em"/><g id="a"/>', r"E114 .*a use .*x in em"),
-        ('<polygon points="1 2 3"/>', r"E114 .*a polygon cannot be used"),
-        ('<g transform="turn(3)"/>', r"E114 .*not a transform"),
-        ("<text>nothing</text>", r"E104 .*no stones in it.*1 text"),
-        ("<g>", r"E106 .*damaged or cut short \(mismatched tag"),
-    ],
-)
-def test_damaged_svg(tmp_path, body, text):
-    with pytest.raises(InputError, match=text):
-        kept(svg(body), tmp_path)
-
-
 def test_damaged_dxf(tmp_path):
     text = io.StringIO()
     drawn().write(text)
@@ -352,3 +200,113 @@ def test_a_stray_outline_far_away_is_too_large_a_picture(tmp_path):
     document.modelspace().add_circle((1e3, 1e3), 0.005)
     with pytest.raises(InputError, match=r"E110.*far away"):
         read_stones(saved(document, tmp_path), settings=METRIC)
+
+
+def outlines(document):
+    """What is read of a drawing: the polygon of every stone by its name."""
+    text = io.StringIO()
+    document.write(text)
+    found = read_dxf(text.getvalue().encode(), ReadSettings())
+    shapes = {s.name: shapely.Polygon(s.areas[0].rings[0]) for s in found.stones}
+    assert len(shapes) == len(found.stones)
+    return shapes, " ".join(notice.message for notice in found.notices)
+
+
+def with_blocks():
+    """A box on layer 0 and one on a layer of its own, in a block of its own each."""
+    document = ezdxf.new("R2010", units=units.MM)
+    for name, layer in (("BOX", "0"), ("OWN", "own")):
+        block = document.blocks.new(name)
+        block.add_lwpolyline([(0, 0), (4, 0), (4, 3), (0, 3)], close=True,
+                             dxfattribs={"layer": layer})  # fmt: skip
+    return document, document.modelspace()
+
+
+def test_dxf_layer_0_in_a_block_is_the_layer_of_its_insert(tmp_path):
+    document, space = with_blocks()
+    for number in (7, 3):
+        space.add_blockref("BOX", (10 * number, 0), dxfattribs={"layer": f"stone {number}"})
+    group = document.blocks.new("GROUP")
+    group.add_blockref("BOX", (0, 20))  # on layer 0, so on that of what inserts the group
+    group.add_blockref("BOX", (0, 30), dxfattribs={"layer": "stone 9"})
+    space.add_blockref("GROUP", (0, 0), dxfattribs={"layer": "stone 5"})
+    stones = read_stones(saved(document, tmp_path))
+    assert [stone.id for stone in stones] == [3, 5, 7, 9]
+    assert outlines(document)[0]["stone 5"].bounds == (0, 20, 4, 23)
+
+
+def test_dxf_inserts_on_hidden_layers_do_not_count():
+    """Frozen hides all of a block; off only what has its layer from the insert."""
+    document, space = with_blocks()
+    document.layers.add("off").off()
+    document.layers.add("frozen").freeze()
+    for i, layer in enumerate(("off", "frozen")):
+        space.add_blockref("BOX", (0, 10 * i), dxfattribs={"layer": layer})
+        space.add_blockref("OWN", (10, 10 * i), dxfattribs={"layer": layer})
+    space.add_blockref("BOX", (20, 0), dxfattribs={"layer": "seen", "invisible": 1})
+    for style in ({"layer": "off"}, {"layer": "frozen"}, {"layer": "seen", "invisible": 1}):
+        space.add_circle((60, 0), 3, dxfattribs=style)
+    document.blocks.new("GROUP").add_blockref("BOX", (30, 0))
+    space.add_blockref("GROUP", (0, 0), dxfattribs={"layer": "off"})
+    space.add_blockref("BOX", (40, 0), dxfattribs={"layer": "seen"})
+    space.add_blockref("NONE", (50, 0))
+    shapes, said = outlines(document)
+    assert {name: shape.bounds[0] for name, shape in shapes.items()} == {"own": 10, "seen": 40}
+    assert "8 entities that are hidden" in said
+    assert "1 INSERT of a block that is not there" in said
+
+
+def test_dxf_blocks_in_rows_mirrored_and_stretched():
+    document, space = with_blocks()
+    space.add_blockref("BOX", (0, 0), dxfattribs={"layer": "mirrored", "xscale": -2})
+    grid = {"row_count": 2, "column_count": 3, "row_spacing": 10, "column_spacing": 20}
+    inner = document.blocks.new("GRID", base_point=(1, 1))
+    inner.add_blockref("BOX", (1, 1), dxfattribs=grid)
+    turned = {"layer": "grid", "rotation": 90, "yscale": -1}
+    text = io.StringIO()
+    space.add_blockref("GRID", (100, 0), dxfattribs=turned)
+    # Half a disk, turned and stretched in a block that is stretched another way.
+    disk = document.blocks.new("DISK")
+    disk.add_lwpolyline([(-1, 0, 1), (1, 0, 0)], "xyb", close=True)
+    lens = document.blocks.new("LENS")
+    lens.add_blockref("DISK", (3, 0), dxfattribs={"rotation": 30, "xscale": 2})
+    space.add_blockref("LENS", (10, 50), dxfattribs={"layer": "lens", "rotation": 90, "yscale": -3})
+    document.write(text)
+    found = read_dxf(text.getvalue().encode(), ReadSettings()).stones
+    shapes = [(s.name, shapely.Polygon(s.areas[0].rings[0])) for s in found]
+    assert [shape.bounds for name, shape in shapes if name == "mirrored"] == [(-8, 0, 0, 3)]
+    # Mirrored in x axis of the block, then turned: x and y change places.
+    boxes = {tuple(np.round(shape.bounds, 9)) for name, shape in shapes if name == "grid"}
+    assert boxes == {
+        (100 + y, x, 103 + y, x + 4) for x in (0, 20, 40) for y in (0, 10)
+    }  # fmt: skip
+    (half,) = (shape for name, shape in shapes if name == "lens")
+    assert half.area == pytest.approx(math.pi / 2 * 2 * 3, rel=2e-3)
+    angle = np.radians(180 + np.linspace(0, 180, 500))
+    x, y = 2 * np.cos(angle), np.sin(angle)
+    cos, sin = math.cos(math.radians(30)), math.sin(math.radians(30))
+    x, y = 3 + x * cos - y * sin, -3 * (x * sin + y * cos)
+    known = shapely.Polygon(np.column_stack([10 - y, 50 + x]))
+    assert half.symmetric_difference(known).area < 2e-3 * known.area
+
+
+def test_dxf_external_references_are_named():
+    """Attached or laid over, with or without what some program kept of the other drawing."""
+    document, space = with_blocks()
+    space.add_blockref("BOX", (40, 0))
+    for name, overlay in (("plan", False), ("sheet", True)):
+        flags = xref.const.BLK_XREF_OVERLAY if overlay else xref.const.BLK_XREF
+        document.add_xref_def(f"{name}.dxf", name, flags | xref.const.BLK_EXTERNAL)
+        space.add_blockref(name, (0, 0), dxfattribs={"row_count": 2, "row_spacing": 9})
+    document.blocks.get("sheet").add_circle((9, 9), 5)
+    shapes, said = outlines(document)
+    assert [shape.bounds for shape in shapes.values()] == [(40, 0, 44, 3)]
+    assert "left aside: 2 INSERT of an external reference." in said
+
+
+def test_dxf_blocks_in_each_other_are_refused():
+    document, space = with_blocks()
+    document.blocks.get("BOX").add_blockref("BOX", (1, 1))
+    space.add_blockref("BOX", (0, 0))
+    with pytest.raises(InputError, match=r"E114 .*blocks are in each other"):
+        outlines(document)
