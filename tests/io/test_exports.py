@@ -173,5 +173,8 @@ SIDELESS = {"name": "rect", "x": 1}
 def test_damaged_entries_are_named(tmp_path, name, content, text):
     with pytest.raises(InputError, match=rf"E114 {name}: .*{text}"):
         read(tmp_path, content, name)
+
+
+def test_an_xml_that_is_cut_short_is_damaged(tmp_path):
     with pytest.raises(InputError, match="E106"):
         read(tmp_path, "<annotations><image>", "a.xml")

@@ -121,13 +121,6 @@ def test_source_names_the_bytes(tmp_path):
     assert read_stones(array).source.sha256 == read_stones(array.copy()).source.sha256
 
 
-def test_pose_in_the_source_frame():
-    stone = read_stones(two_stones()).by_id(300)
-    # rows 5 ... 19 of 40, columns 5 ... 29: y is up from the bottom edge
-    assert (stone.left_px, stone.bottom_px) == (5, 20)
-    assert stone.centroid == (17.5, 27.5)
-
-
 @pytest.mark.parametrize("kind", ["PNG", "BMP", "GIF", "TIFF"])
 @pytest.mark.parametrize("kept", [0.3, 0.9])
 def test_truncated_files(tmp_path, kind, kept):

@@ -6,18 +6,11 @@ import pytest
 from drystone.errors import InputError
 from drystone.io.read_stones import read_stones
 from tests.io.known_stones import PIECES, compare, label_image, masks
-from tests.io.pictures import areas, two_stones
 
 
 def saved(tmp_path, **arrays):
     np.savez_compressed(tmp_path / "stones.npz", **arrays)
     return tmp_path / "stones.npz"
-
-
-def test_one_array_is_read_like_npy(tmp_path):
-    stones = read_stones(saved(tmp_path, anything=two_stones()))
-    assert areas(stones) == {300: 375, 70000: 600}
-    assert stones.source.path == "stones.npz"
 
 
 def test_an_array_of_labels_is_enough(tmp_path):

@@ -2,7 +2,6 @@
 
 import base64
 import json
-import math
 import sys
 
 import numpy as np
@@ -66,12 +65,9 @@ def feature(geometry):
         (shape(shape_type="mask", points=SQUARE[:2], mask="####"), r"shape 0"),
         (shape(shape_type="mask", points=SQUARE[:2], mask="aGVsbG8="), r"shape 0.*not a picture"),
         (shape(shape_type="mask", points=[[1e30, 0], [1e30, 9]], mask=DOT), r"shape 0.*beyond 1e9"),
-        (shape(shape_type="mask", points=[[0, math.inf], [9, 9]], mask=DOT), r"shape 0.*beyond"),
         (labelme(shapes=[{"label": "1"}]), r"shape 0.*has no 'points'"),
         (annotation([[1, 1, 5]]), r"annotation 5.*odd number"),
-        (annotation({"size": [3, 3], "counts": [1, 2]}), r"annotation 5.*add up to 3, not"),
         (annotation({"counts": [3]}), r"annotation 5.*has no 'size'"),
-        (annotation({"size": [3, 3], "counts": "~~~"}), r"annotation 5.*does not belong"),
         (annotation({"size": [90000, 90000], "counts": [1]}), r"annotation 5.*90000 x 90000"),
         (annotation({"size": [3, 3], "counts": [0, 9]}), r"the image.*sizes differ: 3 x 3, 320 x"),
         (coco({}, annotations=[3]), r"annotations are not objects"),

@@ -84,18 +84,6 @@ def test_noise_is_no_picture_of_stones():
         read_stones(halves)
 
 
-def test_stones_without_a_neck():
-    round_stone = discs((50, 50), [(25, 25)], 20) >= 0.5
-    long_stone = np.ones((12, 80), bool)
-    angled = np.zeros((60, 60), bool)
-    angled[:, :20] = angled[40:] = True
-    nosed = np.zeros((50, 90), bool)
-    nosed[:, :50] = nosed[22:28, 50:] = True
-    waisted = discs((50, 80), [(25, 25), (25, 49)], 20) >= 0.5  # 32 px between parts of 40 px
-    for mask in (waisted, round_stone, long_stone, angled, nosed, np.ones((1, 9), bool)):
-        assert neck_width_px(mask) is None
-
-
 @given(
     arrays(np.uint32, shapes, elements=st.integers(0, 5))
     | arrays(np.uint32, shapes, elements=st.integers(2**32 - 4, 2**32 - 1))

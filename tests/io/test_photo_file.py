@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 import tifffile
-from PIL import Image
+from PIL import Image, ImageOps
 
 from drystone.errors import InputError
 from drystone.io.photo_file import MAX_SIDE_PX, read_photo
@@ -34,27 +34,18 @@ def test_values_are_kept(tmp_path, name):
 def test_photos_are_turned_as_opencv_does(tmp_path, ending, orientation):
     smooth = np.zeros((24, 32, 3), dtype=np.uint8)
     smooth[:12, :16], smooth[12:, :16] = (250, 20, 20), (20, 20, 250)
-    exif = Image.Exif()
-    exif[0x0112] = orientation
-    options = {"quality": 95} if ending == "jpg" else {}
+    lying = Image.fromarray(smooth)
+    lying.getexif()[0x0112] = orientation
     path = tmp_path / f"photo.{ending}"
     if ending == "tif":
         tifffile.imwrite(path, smooth, photometric="rgb",
                          extratags=[(274, "H", 1, orientation, True)])  # fmt: skip
+        theirs = np.asarray(ImageOps.exif_transpose(lying))
     else:
-        Image.fromarray(smooth).save(path, exif=exif, **options)
-    photo = read_photo(path)
-    if ending != "tif":
+        lying.save(path, exif=lying.getexif(), quality=95)
         theirs = cv2.imread(str(path), cv2.IMREAD_COLOR_RGB)
-        assert np.abs(photo.values.astype(int) - theirs).max() < 12
-    with Image.open(path) as image:
-        image.load()
-        upright = smooth.shape[:2] if orientation < 5 else smooth.shape[1::-1]
-    assert photo.values.shape[:2] == upright
-    corner = {2: (0, -1), 3: (-1, -1), 4: (-1, 0), 5: (0, 0), 6: (0, -1), 7: (-1, -1), 8: (-1, 0)}
-    red = photo.values[corner[orientation]]
-    assert red[0] > 200
-    assert red[2] < 60
+    photo = read_photo(path)
+    assert np.abs(photo.values.astype(int) - theirs).max() < 12
     assert [notice.code for notice in photo.notices] == ["W173"]
     assert path.name in photo.notices[0].message
 
@@ -107,10 +98,8 @@ def test_grey_palette_and_cmyk_become_rgb(tmp_path):
 def test_files_that_are_no_photographs(tmp_path, data, code):
     path = tmp_path / "photo.jpg"
     path.write_bytes(data)
-    with pytest.raises(InputError) as caught:
+    with pytest.raises(InputError, match=f"{code} {path}"):
         read_photo(path)
-    assert caught.value.code == code
-    assert str(path) in str(caught.value)
 
 
 def test_cut_short_missing_large_and_several(tmp_path):
@@ -121,20 +110,13 @@ def test_cut_short_missing_large_and_several(tmp_path):
     tifffile.imwrite(pages, np.stack([PICTURE, PICTURE]), photometric="rgb")
     real = tmp_path / "real.tif"
     tifffile.imwrite(real, PICTURE.astype(np.float32), photometric="rgb")
-    for path, code in (
-        (cut, "E106"),
-        (tmp_path / "none.jpg", "E100"),
-        (pages, "E109"),
-        (real, "E107"),
-    ):
-        with pytest.raises(InputError) as caught:
+    missing = tmp_path / "none.jpg"
+    for path, code in ((cut, "E106"), (missing, "E100"), (pages, "E109"), (real, "E107")):
+        with pytest.raises(InputError, match=code):
             read_photo(path)
-        assert caught.value.code == code, path
-    with pytest.raises(InputError) as caught:
+    with pytest.raises(InputError, match=r"E110 .*only in Python .*\(max_px\)") as caught:
         read_photo(whole, max_px=1000)
-    assert caught.value.code == "E110"
     assert "nearest neighbour" not in str(caught.value)
-    assert "only in Python can the limit be raised (max_px)" in str(caught.value)
 
 
 def test_a_side_too_long_for_opencv_is_refused(tmp_path):

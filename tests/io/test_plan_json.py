@@ -55,32 +55,17 @@ def test_plan_survives_its_file(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["plan.json"]
 
 
-def test_keys_are_those_of_the_contract_in_its_order():
-    data = plan_to_json(plan())
-    assert list(data) == [
-        "schema", "version", "method", "seed", "settings", "units", "source", "wall", "steps",
-        "unused", "stopped", "metrics",
-    ]  # fmt: skip
+def test_keys_are_those_of_the_schema_in_its_order():
+    data, schema = plan_to_json(plan()), plan_schema()
     assert data["schema"] == "drystone-plan/1"
-    assert data["units"] == {"length": "px", "px_per_m": None, "working_scale": 0.5}
+    assert list(data) == list(schema["properties"])
+    for name in ("units", "wall", "metrics"):
+        assert list(data[name]) == list(schema["properties"][name]["properties"])
+    for step in data["steps"]:
+        assert list(step) == list(schema["$defs"][f"{step['kind']}_step"]["properties"])
+    assert [step["kind"] for step in data["steps"]] == ["stone", "wedge"]
     assert list(data["source"]) == ["path", "sha256", "stones", "width_px", "height_px"]
-    assert data["wall"] == {"width": 560.0, "height": 160.0}
-    stone, wedge = data["steps"]
-    assert list(stone) == [
-        "step", "kind", "stone", "angle_deg", "source_centroid", "centroid", "side", "cluster",
-        "rotation_moves", "indices", "course_height", "alpha_left", "alpha_right",
-    ]  # fmt: skip
-    assert list(stone["indices"]) == ["SF", "LFR", "GDS", "NHR", "IWR", "IS", "LLC"]
-    assert list(wedge) == [
-        "step", "kind", "id", "under", "polygon", "alpha_left", "alpha_right",
-    ]  # fmt: skip
-    assert stone["kind"] == "stone"
-    assert wedge["polygon"] == [[1.0, 0.0], [3.0, 0.0], [3.0, 2.0]]
-    assert list(data["metrics"]) == [
-        "F_SF", "F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH", "alpha_left", "alpha_right",
-        "wedge_area", "F_LR_half", "F_LR_double",
-        "F_LR_no_setback", "F_LR_coulomb", "alpha_left_coulomb", "alpha_right_coulomb",
-    ]  # fmt: skip
+    assert list(data["steps"][0]["indices"]) == list(INDICES)
 
 
 def test_equal_plans_give_equal_bytes(tmp_path):
@@ -170,22 +155,15 @@ def bad(path, value):
     ("path", "value", "place"),
     [
         ("steps/0/angle_deg", ..., "$.steps[0]"),
-        ("steps/0/angel_deg", 12.0, "$.steps[0]"),
         ("steps/0/stone", 2**32, "$.steps[0].stone"),
-        ("steps/0/stone", 1.5, "$.steps[0].stone"),
         ("steps/0/side", "top", "$.steps[0].side"),
-        ("steps/0/centroid", [1.0], "$.steps[0].centroid"),
         ("steps/0/indices/LFR", ..., "$.steps[0].indices"),
-        ("steps/0/polygon", [], "$.steps[0]"),
         ("steps/0/kind", ..., "$.steps[0]"),
-        ("steps/1/under", ..., "$.steps[1]"),
         ("steps/1/polygon", [[0, 0], [1, 1]], "$.steps[1].polygon"),
         ("units/length", "m", "$.units.px_per_m"),
-        ("units/px_per_m", 200.0, "$.units.px_per_m"),
         ("units/working_scale", 1.5, "$.units.working_scale"),
         ("source/sha256", "abc", "$.source.sha256"),
         ("wall/width", 10**400, "$.wall.width"),
-        ("unused/0", "4", "$.unused[0]"),
         ("metrics/F_SF", None, "$.metrics.F_SF"),
         ("seed", True, "$.seed"),
         ("colour", "red", "$"),
@@ -202,30 +180,19 @@ def test_plan_that_breaks_the_schema_is_refused_with_its_place(path, value, plac
 
 
 @pytest.mark.parametrize(
-    ("path", "cure"),
+    ("path", "value", "cure"),
     [
-        ("method", "What belongs there: Name of the planning method"),
-        ("steps/0/stone", "What belongs there: Id of a stone"),
+        ("method", ..., "What belongs there: Name of the planning method"),
+        ("steps/0/stone", ..., "What belongs there: Id of a stone"),
+        ("colour", 1.0, "Known there: schema, version, method, "),
+        ("steps/1/angle_deg", 1.0, "Known there: step, kind, id, under, polygon, "),
     ],
 )
-def test_what_is_missing_is_described(path, cure):
+def test_what_is_missing_or_belongs_there_is_said(path, value, cure):
     with pytest.raises(PlanError) as caught:
-        plan_from_json(bad(path, ...))
+        plan_from_json(bad(path, value))
     assert repr(path.rsplit("/", maxsplit=1)[-1]) in caught.value.what
     assert caught.value.cure.startswith(cure)
-
-
-@pytest.mark.parametrize(
-    ("path", "known"),
-    [
-        ("colour", "Known there: schema, version, method, "),
-        ("steps/1/angle_deg", "Known there: step, kind, id, under, polygon, "),
-    ],
-)
-def test_beside_a_name_that_is_not_known_are_those_that_are(path, known):
-    with pytest.raises(PlanError) as caught:
-        plan_from_json(bad(path, 1.0))
-    assert caught.value.cure.startswith(known)
 
 
 def test_what_the_contract_does_not_ask_for_may_be_missing():
@@ -250,11 +217,10 @@ def test_more_about_the_source_is_kept():
     [
         ("", "E203"),
         ("{", "E203"),
-        ("wall", "E203"),
+        (b"\xff\xfe\x00", "E203"),
         ('{"schema": "drystone-plan/1", "seed": NaN}', "E203"),
         ('{"schema": "drystone-plan/1", "schema": "drystone-plan/1"}', "E203"),
         ("[" * 100_000, "E203"),
-        ('{"schema": ' + "[" * 400 + "]" * 400 + "}", "E203"),
         ('{"schema": "drystone-plan/1", "seed": ' + "7" * 5000 + "}", "E203"),
         ("[]", "E204"),
         ("{}", "E204"),
@@ -265,17 +231,11 @@ def test_more_about_the_source_is_kept():
 )
 def test_file_that_is_no_plan_is_refused(tmp_path, text, code):
     path = tmp_path / "plan.json"
-    path.write_text(text)
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
     with pytest.raises(PlanError) as caught:
         read_plan(path)
     assert caught.value.code == code
     assert str(path) in caught.value.where
-
-
-def test_bytes_that_are_no_text_are_refused(tmp_path):
-    (tmp_path / "plan.json").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(PlanError, match="E203"):
-        read_plan(tmp_path / "plan.json")
 
 
 def test_missing_plan_is_named(tmp_path):

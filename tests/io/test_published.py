@@ -38,14 +38,6 @@ def test_the_published_files_hash_as_they_should(data_dir):
     assert not any(f.downloaded for s in SETS.values() for f in fetch_set(s, data_dir))
 
 
-def test_no_two_files_are_the_same():
-    files = [file for published in SETS.values() for file in published.files]
-    assert len(files) == 114
-    for field in ("name", "address", "sha256"):
-        assert len({getattr(file, field) for file in files}) == len(files)
-    assert all(len(f.address.split("/")[0]) == 40 and len(f.sha256) == 64 for f in files)
-
-
 @pytest.fixture
 def served(tmp_path):
     """The folder of a server, with the files of the small set."""

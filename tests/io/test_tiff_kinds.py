@@ -17,6 +17,7 @@ from tests.io.pictures import areas, codes, two_stones
 from tests.io.test_formats import LIMIT
 
 NONE, GROUP3, GROUP4, LZW, DEFLATE, PACKBITS = 1, 3, 4, 5, 8, 32773
+REVERSED = bytes(int(f"{byte:08b}"[::-1], 2) for byte in range(256))
 KINDS = {(3, 16): "f2", (3, 32): "f4", (3, 64): "f8", (2, 8): "i1", (2, 16): "i2", (2, 32): "i4"}
 
 
@@ -60,7 +61,7 @@ def coded(table, compression, *, reverse):
         page = tifffile.TiffFile(io.BytesIO(buffer.getvalue())).pages[0]
         data = buffer.getvalue()[page.dataoffsets[0] :][: page.databytecounts[0]]
     if reverse:
-        data = bytes(int(f"{byte:08b}"[::-1], 2) for byte in data)
+        data = data.translate(REVERSED)
     return data
 
 

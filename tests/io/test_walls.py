@@ -110,18 +110,6 @@ def test_no_pose_of_the_planner_is_in_another_place(stone, angle_deg, scale):
     assert off <= allowed
 
 
-def test_centroids_are_those_of_pixel_squares():
-    labels = np.array([[0, 5, 5, 0], [9, 5, 5, 5], [9, 0, 0, 2**32 - 1]], np.uint32)
-    seen = {block: place for block, (place, _) in _seen(labels).items()}
-    assert seen[5] == pytest.approx((11.5 / 5, 9.5 / 5))
-    assert seen[9] == pytest.approx((0.5, 1.0))
-    assert seen[2**32 - 1] == pytest.approx((3.5, 0.5))
-    assert _seen(np.zeros((3, 4), np.uint32)) == {}
-    square = np.zeros((40, 50), np.uint32)
-    square[5:25, 8:28] = 1
-    assert _seen(square)[1][1] == pytest.approx(0.5 + 4 / 6)
-
-
 HEIGHT, WIDTH, FOOT = 90, 130, 80
 """Of the image, px, and where the wall stands in it."""
 

@@ -55,7 +55,6 @@ def test_blocks_that_fall_are_named_with_the_step():
         (claiming(0.5, 0.4), (0.425, 0.34), []),
         (claiming(0.5, 0.4), (0.42, 0.34), ["left"]),
         (claiming(0.5, 0.4), (0.425, 0.33), ["right"]),
-        (claiming(0.5, 0.4), (0.1, 0.1), ["left", "right"]),
         (claiming(0.5, 0.4), (None, None), []),
         (claiming(None, 0.4), (0.1, 0.4), []),
         # Without dilatancy plans may claim less of a side.

@@ -101,7 +101,6 @@ def test_sweep_is_everything_above_the_lowest_points(corners, seed):
     [
         (box(2, 12, 8, 16), True),
         (box(2, -9, 8, -0.01), False),  # it stands on it
-        (box(-5, -9, 15, 0.0), False),
         (box(-5, -9, 15, 0.04), False),  # as deep in its bed as it may be
         (box(-5, -9, 15, 0.2), True),
         (box(-9, 0, -0.01, 16), False),  # beside it, and higher
@@ -109,7 +108,6 @@ def test_sweep_is_everything_above_the_lowest_points(corners, seed):
         (box(-9, 12, 1.1, 16), True),
         (box(9.1, 12, 19, 16), False),
         (box(8.9, 12, 19, 16), True),
-        (box(30, 12, 40, 16), False),
         (np.array([[4.0, 20.0], [9.0, 21.0], [3.0, 25.0]]), True),
     ],
 )
