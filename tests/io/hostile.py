@@ -15,6 +15,7 @@ import numpy as np
 from PIL import Image
 
 from drystone.io.read_settings import ReadSettings
+from tests.io import test_annotations
 from tests.io.pictures import png_of, two_stones
 
 EPS = b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 60 36\n%%EndComments\n(x) print\n%%EOF\n"
@@ -104,16 +105,13 @@ def svg(body, **attributes):
 def labelme(mask):
     shape = {"label": "1", "points": [[0, 0], [9, 9]], "shape_type": "mask"}
     shape["mask"] = base64.b64encode(mask).decode()
-    return json.dumps({"shapes": [shape], "imageWidth": 60, "imageHeight": 36}).encode()
+    return json.dumps(test_annotations.labelme(shapes=[shape])).encode()
 
 
 def coco(*segmentations, side=60):
-    annotations = [
-        {"id": i, "image_id": 1, "iscrowd": 0, "segmentation": one}
-        for i, one in enumerate(segmentations, start=1)
-    ]
-    image = {"id": 1, "width": side, "height": side}
-    return json.dumps({"images": [image], "annotations": annotations}).encode()
+    found = dict(enumerate(segmentations, start=1))
+    images = [{"id": 7, "width": side, "height": side}]
+    return json.dumps(test_annotations.coco(found, images=images)).encode()
 
 
 def runs(side):

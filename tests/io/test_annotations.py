@@ -1,4 +1,4 @@
-"""labelme, COCO, SAM and GeoJSON give the very pixels of the known stones."""
+"""labelme, COCO, SAM and GeoJSON: pixels, run lengths and numbers of the known stones."""
 
 import base64
 import io

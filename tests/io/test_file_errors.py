@@ -1,4 +1,4 @@
-"""Messages stay short, whatever is in a file."""
+"""Messages stay short whatever is in a file, and names of files are whatever a system takes."""
 
 import os
 import sys

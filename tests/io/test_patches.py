@@ -1,4 +1,4 @@
-"""Cutting out, holes, pieces and necks against slow twins."""
+"""Cutting out, holes and necks against slow twins, and the numbers of pieces that are split off."""
 
 from itertools import combinations
 

@@ -196,9 +196,3 @@ def test_another_picture_than_the_one_that_was_measured(tmp_path):
     measured(tmp_path, width=600, height=400)
     with pytest.raises(InputError, match=r"E117 .*60 x 40 px.*600 x 400.*drystone segment"):
         read_stones(tmp_path)
-
-
-def test_other_names_and_other_files_have_no_scale(tmp_path):
-    measured(tmp_path)
-    (tmp_path / "stones.png").rename(tmp_path / "other.png")
-    assert read_stones(tmp_path / "other.png").source.px_per_m is None

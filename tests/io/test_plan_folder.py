@@ -1,4 +1,4 @@
-"""A plan from Python is a folder that every command reads."""
+"""A plan from Python is a folder that every command reads, with the blocks of its outlines."""
 
 import json
 from dataclasses import replace

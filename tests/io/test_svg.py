@@ -1,4 +1,4 @@
-"""SVG by hand: its page, what style hides and fills, and what clip paths leave."""
+"""SVG: the known stones, the page, what style hides and fills, and what clip paths leave."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""Images of walls beside their plans."""
+"""Walls: images beside their plans, and all that stones are read from; blocks from outlines."""
 
 import math
 from dataclasses import replace
