@@ -244,6 +244,7 @@ def with_value(value, dtype=float):
         (np.zeros((0, 5), int), {}, r"E104.*no pixels"),
         (WHITE, {}, r"E105.*value 255 fills.*Use --background 255 "),
         (np.where(WHITE == 255, 255, 5), {}, r"E105.*Use --background 255 "),
+        (np.where(WHITE == 255, 255, 0), {}, r"E105.*Use --background 255 "),
         (np.where(WHITE == 5, 0, WHITE), {"background": 255}, r"E108.*value 0 .*background 255"),
         (with_value(np.inf), {}, r"E108.*1 px are not finite.*column 9, row 7"),
         (with_value(2.5), {}, r"E108.*1 px are not whole numbers.*column 9, row 7"),

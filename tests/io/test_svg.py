@@ -282,6 +282,7 @@ def test_regions_by_both_rules(rule, area):
         ("mm", "px"),
         ("in", "m"),
         ("pt", "cm"),
+        ("pc", "ft"),
         ("q", "mm"),
     ],
 )

@@ -103,6 +103,7 @@ def test_damaged_path_data(data, text):
         ("translate(5 6)", (8, 10)),
         ("scale(2,-1)", (6, -4)),
         ("rotate(90, 3, 5)", (4, 5)),
+        ("skewX(45)", (7, 4)),
         ("skewY(45)", (3, 7)),
         ("matrix(1 2 3 4 5 6)", (3 + 12 + 5, 6 + 16 + 6)),
         ("translate(10,0) rotate(90)", (6, 3)),

@@ -96,6 +96,7 @@ ONLY_RASTER = {
     "another digest": (lambda p: replace(p, source={**p.source, "sha256": "0" * 64}), {"E210"}),
     "number of stones": (lambda p: replace(p, source={**p.source, "stones": 7}), {"E211"}),
     "image height": (lambda p: replace(p, source={**p.source, "height_px": 7}), {"E211"}),
+    "image width": (lambda p: replace(p, source={**p.source, "width_px": 7}), {"E211"}),
     "file names": (lambda p: replace(p, source={**p.source, "files": ["a.png"]}), {"E211"}),
     "step number": (lambda p: changed(p, SLAB, step=9), {"E214"}),
     "alpha before the wedge": (lambda p: changed(p, SLAB, alpha_left=0.5), {"E214"}),
