@@ -114,3 +114,32 @@ def close(stones, settings=PIECES):
     assert iou > 0.998
     assert area < 2e-3
     assert centroid < 0.02
+
+
+S = np.sqrt(0.5)
+PLACES = {
+    "top": ((1, 0, 0), (0, 1, 0), "z"),
+    "below": ((-1, 0, 0), (0, 1, 0), "z-back"),
+    "front": ((1, 0, 0), (0, 0, 1), "z"),
+    "back": ((-1, 0, 0), (0, 0, 1), "z-back"),
+    "right": ((0, 1, 0), (0, 0, 1), "z"),
+    "left": ((0, -1, 0), (0, 0, 1), "z-back"),
+    "slanting": ((S, S, 0), (0, 0, 1), "z"),
+    "y, top": ((1, 0, 0), (0, 0, -1), "y"),
+    "y, below": ((-1, 0, 0), (0, 0, -1), "y-back"),
+    "y, front": ((1, 0, 0), (0, 1, 0), "y"),
+    "y, back": ((-1, 0, 0), (0, 1, 0), "y-back"),
+    "y, right": ((0, 0, -1), (0, 1, 0), "y"),
+    "y, left": ((0, 0, 1), (0, 1, 0), "y-back"),
+}
+"""What points right and up in a picture of the stones, and the option that says so."""
+
+
+def turn(place):
+    right, up, _ = PLACES[place]
+    return np.column_stack([right, up, np.cross(right, up)])
+
+
+def corners(points, place="top", unit=1.0):
+    flat = [(x, HEIGHT - y, 0.0) for x, y in points]
+    return np.array(flat) @ turn(place).T / PX_PER_M / unit

@@ -83,18 +83,17 @@ def test_what_comes_down_on_the_level_table_carries_nothing():
     assert "alpha = 0.000 in the engine, 0% of the 0.500" in problems[0].message
 
 
-@pytest.mark.parametrize("courses", [2, 4])
-def test_a_stack_that_claims_full_interlock_is_found_out(courses):
+def test_a_stack_that_claims_full_interlock_is_found_out():
     """Bricks in a stack tip at width over height, whatever a plan claims of them."""
     pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
     brick = np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]])
-    groups = [[(IDS[k], brick + np.array([0.0, k * 20.0]))] for k in range(courses)]
+    groups = [[(IDS[k], brick + np.array([0.0, k * 20.0]))] for k in range(2)]
     stack = build_up(groups, 0.9)
     assert stack.stands
     tilted = tilt_of(stack)
     wall = PlacedPolygons.of(block for group in groups for block in group)
     honest = lateral_resistance(model_of_outlines(wall, 0.9))
-    assert honest.left.alpha == pytest.approx(1.0 / courses, rel=0.05)
+    assert honest.left.alpha == pytest.approx(0.5, rel=0.05)
     claimed = claiming(honest.left.alpha, honest.right.alpha)
     assert check_engine(claimed, stack, tilted) == []
     assert codes(check_engine(claiming(0.9, 0.9), stack, tilted)) == ["E242"] * 2

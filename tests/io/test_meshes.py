@@ -4,23 +4,142 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import shapely
 import trimesh
 
 from drystone.errors import InputError
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.hostile import PLY
-from tests.io.known_stones import METRIC, PX_PER_M, STONES, close, masks
+from tests.io.known_stones import METRIC, PLACES, PX_PER_M, STONES, close, corners, masks, turn
 from tests.io.pictures import codes
-from tests.io.test_planes import APART, KINDS, scene, solid
 
-PLACE = {"x": "right", "y": "front", "z": "top"}
-"""Where the stones are that one sees looking along an axis."""
+
+def solid(polygons, place, hand=1):
+    """A stone of 2 cm as a closed mesh that faces outwards, or of a left hand."""
+    outer, *holes = (corners(ring)[:, :2] for ring in polygons[0])
+    triangles = shapely.constrained_delaunay_triangles(shapely.Polygon(outer, holes))
+    flat = shapely.get_coordinates(shapely.orient_polygons(triangles)).reshape(-1, 4, 2)[:, :3]
+    vertices, faces = np.unique(flat.reshape(-1, 2), axis=0, return_inverse=True)
+    mesh = trimesh.creation.extrude_triangulation(vertices, faces.reshape(-1, 3), 0.02)
+    mesh.vertices = mesh.vertices @ turn(place).T
+    return trimesh.Trimesh(mesh.vertices, mesh.faces[:, ::hand], process=False)
+
+
+APART = [stone for stone in STONES if stone not in (13, 21)]
+KINDS = [("stl", {}), ("stl_ascii", {}), ("ply", {}), ("ply", {"encoding": "ascii"}), ("obj", {})]
 
 
 def saved(tmp_path, data, name):
     path = tmp_path / name
     path.write_bytes(data if isinstance(data, bytes) else data.encode())
     return path
+
+
+def scanned(tmp_path, mesh, kind="obj", options=None):
+    data = mesh.export(file_type=kind, **(options or {}))
+    return saved(tmp_path, data, f"s.{kind.removesuffix('_ascii')}")
+
+
+def scene(place, hand=1):
+    found = trimesh.Scene()
+    for stone, polygons in STONES.items():
+        found.add_geometry(solid(polygons, place, hand), geom_name=f"stone_{stone}")
+    return found
+
+
+@pytest.mark.parametrize(
+    "place", ["top", "below", "front", "right", "y, top", "y, back", "y, left"]
+)
+def test_meshes_in_every_plane(tmp_path, place):
+    path = scanned(tmp_path, scene(place))
+    close(read_stones(path, settings=replace(METRIC, up=PLACES[place][2])))
+    standing = PLACES[place][2].removesuffix("-back")
+    if "back" in PLACES[place][2]:  # the same file from its other side
+        path = scanned(tmp_path, scene(place.replace("below", "top").replace("back", "front")
+                                       .replace("left", "right")))  # fmt: skip
+        close(read_stones(path, settings=replace(METRIC, up=standing)))
+
+
+@pytest.mark.parametrize(
+    ("place", "asks", "kind"),
+    [
+        ("top", False, "stl"),
+        ("front", True, "stl_ascii"),
+        ("right", False, "ply"),
+        ("y, top", True, "obj"),
+        ("y, front", False, "obj"),
+    ],
+)
+def test_meshes_that_may_be_mirrored_are_asked_about(tmp_path, place, asks, kind):
+    path = scanned(tmp_path, solid(STONES[5], place), kind)
+    if not asks:
+        notice = read_stones(path, settings=METRIC).notices[0]
+        assert "seen along" in notice.message
+        assert "--up" in notice.cure
+        return
+    with pytest.raises(InputError, match=r"E116 .*which axis is up.*--up y .*or --up z"):
+        read_stones(path, settings=METRIC)
+
+
+@pytest.mark.parametrize("place", ["front", "right", "top"])
+def test_meshes_of_a_left_hand_are_named(tmp_path, place):
+    for hand in (1, -1):
+        stones = read_stones(
+            scanned(tmp_path, scene(place, hand)), settings=replace(METRIC, up="z")
+        )
+        said = any("left hand" in notice.message for notice in stones.notices)
+        assert said == (hand == -1 and place != "top")
+
+
+def torn(mesh, way):
+    """Every corner of a face by itself, as normals, textures and rounding make them."""
+    vertices = mesh.vertices[mesh.faces].reshape(-1, 3).astype(np.float32)
+    if way == "noise":
+        ends = np.random.default_rng(5).choice([-np.inf, np.inf], vertices.shape)
+        vertices = np.nextafter(vertices, ends.astype(np.float32))
+    faces = np.arange(len(vertices)).reshape(-1, 3)
+    normals = np.repeat(mesh.face_normals, 3, axis=0) if way == "normals" else None
+    found = trimesh.Trimesh(vertices, faces, process=False, vertex_normals=normals)
+    if way == "texture":
+        uv = np.random.default_rng(6).random((len(vertices), 2))
+        found.visual = trimesh.visual.TextureVisuals(uv=uv)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("way", "shift", "kind"),
+    [
+        ("normals", 0.0, "obj"),
+        ("texture", 40.0, "obj"),
+        ("noise", 0.0, "stl"),
+        ("noise", 40.0, "ply"),
+        ("noise", 40.0, "stl_ascii"),
+    ],
+)
+def test_corners_in_one_place_are_one(tmp_path, way, shift, kind):
+    names = [stone for stone in APART if stone != 34]
+    whole = trimesh.util.concatenate([solid(STONES[stone], "top") for stone in names])
+    whole.vertices += (shift, shift, 0)
+    path = scanned(tmp_path, torn(whole, way), kind)
+    stones = read_stones(path, settings=METRIC)
+    areas = [stone.area_px for stone in stones]
+    want = [shapely.Polygon(STONES[stone][0][0], STONES[stone][0][1:]).area for stone in names]
+    assert areas == pytest.approx(want, rel=1e-2)
+
+
+def test_fine_meshes_far_from_the_origin_are_not_welded_together(tmp_path):
+    near = [trimesh.creation.box((0.2, 0.1, 0.02)) for _ in range(2)]
+    near[1].apply_translation((0.201, 0, 0))
+    whole = trimesh.util.concatenate(near)
+    whole.apply_translation((5e5, 5e6, 0))
+    text = "".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in whole.vertices.tolist())
+    text += "".join(f"f {a} {b} {c}\n" for a, b, c in (whole.faces + 1).tolist())
+    (tmp_path / "s.obj").write_text(text)
+    assert len(read_stones(tmp_path / "s.obj", settings=METRIC)) == 2
+
+
+PLACE = {"x": "right", "y": "front", "z": "top"}
+"""Where the stones are that one sees looking along an axis."""
 
 
 def apart(axis="z", unit=1.0):
@@ -31,7 +150,7 @@ def apart(axis="z", unit=1.0):
 
 @pytest.mark.parametrize("axis", ["x", "y"])
 def test_obj_with_named_objects(tmp_path, axis):
-    path = saved(tmp_path, scene(PLACE[axis]).export(file_type="obj"), "s.obj")
+    path = scanned(tmp_path, scene(PLACE[axis]))
     stones = read_stones(path, settings=replace(METRIC, up="z"))
     close(stones)
     assert stones.source.px_per_m == PX_PER_M
@@ -44,8 +163,7 @@ def test_obj_with_named_objects(tmp_path, axis):
 @pytest.mark.parametrize(("kind", "options"), KINDS)
 def test_bodies_without_names(tmp_path, kind, options):
     mesh, names = apart("y", unit=0.001)
-    suffix = kind.removesuffix("_ascii")
-    path = saved(tmp_path, mesh.export(file_type=kind, **options), f"stones.{suffix}")
+    path = scanned(tmp_path, mesh, kind, options)
     settings = replace(METRIC, unit="mm", up="z")
     stones = read_stones(path, settings=settings)
     assert [stone.id for stone in stones] == list(range(1, len(names) + 1))
@@ -54,7 +172,7 @@ def test_bodies_without_names(tmp_path, kind, options):
         largest = masks()[known].sum() if known != 34 else 50 * 40
         assert stone.area_px == pytest.approx(largest, rel=3e-3)
     assert not any("taken as metres" in notice.message for notice in stones.notices)
-    unnamed = saved(tmp_path, mesh.export(file_type=kind, **options), "stones")
+    unnamed = path.rename(tmp_path / "stones")
     assert len(read_stones(unnamed, settings=settings)) == len(names)  # by the content alone
 
 
@@ -125,7 +243,7 @@ def test_obj_with_an_empty_object_at_its_end(tmp_path):
 def test_a_sphere_shows_its_circle(tmp_path):
     sphere = trimesh.creation.icosphere(subdivisions=4, radius=0.3)
     sphere.apply_scale((1, 1, 0.5))
-    stones = read_stones(saved(tmp_path, sphere.export(file_type="stl"), "a.stl"))
+    stones = read_stones(scanned(tmp_path, sphere, "stl"))
     (stone,) = stones
     scale = stones.source.px_per_m
     assert stone.area_px / scale**2 == pytest.approx(np.pi * 0.09, rel=5e-3)
