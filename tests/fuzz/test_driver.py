@@ -1,4 +1,4 @@
-"""The fuzzer finds every kind of defect, names its place, and goes on."""
+"""The fuzzer finds every kind of defect, names its place and goes on; readers have none."""
 
 import io
 import json
@@ -104,3 +104,16 @@ def test_pixels_are_those_of_the_header(kind):
     data = io.BytesIO()
     Image.new("L", (70, 30)).save(data, kind)
     assert pixels_of({"a": data.getvalue(), "b": b"of nothing that has pixels, and long"}) == 2100
+
+
+SEED, EXECUTIONS = 20261125, 5_970
+"""Always the same files, by number and not by time; `make fuzz` draws others.  One round."""
+
+
+@pytest.mark.fuzz
+@pytest.mark.timeout(1200)
+def test_damaged_files_of_all_formats(tmp_path):
+    words = ("--seed", SEED, "--count", EXECUTIONS, "--jobs", 1, "--keep", tmp_path)
+    ran = run(*words, module="fuzz")
+    assert ran.returncode == 0, f"{ran.stdout}{ran.stderr}"
+    assert f"{EXECUTIONS:,}" in ran.stdout
