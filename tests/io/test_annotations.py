@@ -110,6 +110,7 @@ def test_coco_polygons(tmp_path):
     settings = ReadSettings(pieces="keep-largest")
     stones = read_stones(written(tmp_path, coco(flat_polygons())), settings=settings)
     assert compare(stones, settings) == EXACT
+    assert (stones.source.width_px, stones.source.height_px) == (WIDTH, HEIGHT)
 
 
 def test_coco_of_several_images_needs_a_name(tmp_path):

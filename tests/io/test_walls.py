@@ -110,6 +110,13 @@ def test_no_pose_of_the_planner_is_in_another_place(stone, angle_deg, scale):
     assert off <= allowed
 
 
+def test_how_far_off_a_square_may_be():
+    square = np.zeros((40, 50), np.uint32)
+    square[5:25, 8:28] = 2**32 - 1
+    assert _seen(square) == {2**32 - 1: (pytest.approx((18, 25)), pytest.approx(0.5 + 4 / 6))}
+    assert _seen(np.zeros((3, 4), np.uint32)) == {}
+
+
 HEIGHT, WIDTH, FOOT = 90, 130, 80
 """Of the image, px, and where the wall stands in it."""
 
