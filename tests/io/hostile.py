@@ -177,14 +177,6 @@ def inflated():
     return tiff_of({259: 8, 273: 200, 279: len(strip)}).ljust(200, b"\0") + strip
 
 
-def parens(depth):
-    return "(" * depth + ")" * depth
-
-
-def groups(selectors):
-    return svg(f"<style>{selectors}{{opacity:0}}</style>{'<g>' * 50}{STONE}{'</g>' * 50}")
-
-
 def used(length):
     return svg(f"<defs><path id='p' class='{'x' * length}'/></defs>" + "<use href='#p'/>" * 999)
 
@@ -203,7 +195,12 @@ FILES = {
     # no end
     "circle.tif": (lambda: tiff_of(following=8), "E106 .*in a circle"),
     "circle_big.tif": (lambda: tiff_of(following=16, big=True), "E106 .*in a circle"),
-    "selectors.svg": (lambda: groups(".z " + "g " * 12 + "rect"), "E114 .*style sheet"),
+    "selectors.svg": (
+        lambda: svg(
+            f"<style>.z {'g ' * 12}rect{{opacity:0}}</style>{'<g>' * 50}{STONE}{'</g>' * 50}"
+        ),
+        "E114 .*style sheet",
+    ),
     "rules.svg": (
         lambda: svg(f"<style>{'*{opacity:1}' * 3000}</style>{STONE * 3000}"),
         "E110 .*lie over each other",
@@ -212,7 +209,7 @@ FILES = {
     "spaces.svg": (lambda: svg(f'<path d="M1 1{" " * 60_000}!"/>'), "E114 .*not a number"),
     "turn.svg": (lambda: svg(f'<g transform="{" " * 60_000}!"/>'), "E114 .*not a transform"),
     "not.svg": (
-        lambda: svg(f"<style>rect:not({parens(60_000)}){{x:1}}</style>{STONE}"),
+        lambda: svg(f"<style>rect:not({'(' * 60_000}{')' * 60_000}){{x:1}}</style>{STONE}"),
         "E114 .*sheet",
     ),
     "crossing.dxf": (lambda: dxf(polygon(*CROSSING)), "E114 .*cross themselves more than"),

@@ -10,7 +10,6 @@ import sys
 import tempfile
 import time
 from dataclasses import asdict
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -42,7 +41,7 @@ def main(argv=None):
             rng = np.random.default_rng([asked.seed, number])
             at, group = seconds * rng.uniform(0.05, 1.0), bool(rng.integers(2)) and sent != "KILL"
             here, end = folder / f"kill{number}", time.monotonic() + at
-            one = killed(case, sent, here, partial(passed, end), group=group)
+            one = killed(case, sent, here, lambda end=end: time.monotonic() >= end, group=group)
             one.faults += lost(case, here, result)
             done.append(one)
             if asked.keep:
@@ -54,11 +53,6 @@ def main(argv=None):
     bad = sum(bool(one.faults) for one in done)
     say(f"{bad} of {len(done)} kills left something that runs, is half or is lost")
     return int(bad > 0)
-
-
-def passed(end):
-    """Say whether it is later than that."""
-    return time.monotonic() >= end
 
 
 def say(text):

@@ -57,14 +57,6 @@ def test_true_plan_passes_in_any_unit_and_at_any_scale(make, scale, px_per_m):
         assert report.metrics.F_LR_half == pytest.approx(1.0)  # blocks slide before they tip
 
 
-def lowered_top(polygon, by):
-    return polygon - (polygon == polygon.max(axis=0)) * (0, by)
-
-
-def raised_floor(polygon, by):
-    return polygon + (polygon == polygon.min(axis=0)) * (0, by)
-
-
 # What is changed in plans of either geometry, and the codes that name it: exactly these.
 ONLY_BOTH = {
     "unused stone missing": (lambda p: replace(p, unused=()), {"E216"}),
@@ -166,8 +158,10 @@ AMONG_EXACT = {
     "stone turned by 1 degree": (lambda p: changed(p, 3, angle_deg=1.0), {"E235"}),
     "stone turned further than it may": (
         lambda p: changed(p, 3, angle_deg=12.1, rotation_moves=1), {"E235"}),
-    "wedge too low": (lambda p: reshaped(p, lambda w: lowered_top(w, 0.2)), {"E223", "E230"}),
-    "wedge hanging": (lambda p: reshaped(p, lambda w: raised_floor(w, 0.2)), {"E223"}),
+    "wedge too low": (lambda p: reshaped(p, lambda w: w - (w == w.max(axis=0)) * (0, 0.2)),
+                      {"E223", "E230"}),
+    "wedge hanging": (lambda p: reshaped(p, lambda w: w + (w == w.min(axis=0)) * (0, 0.2)),
+                      {"E223"}),
     "wedge elsewhere": (lambda p: reshaped(p, lambda w: w - (12, 0)), {"E223", "E230", "E236"}),
     "contact tolerance": (
         lambda p: with_setting(p, "settle", contact_px=GAP_PX / 2, clearance_px=GAP_PX / 8),
