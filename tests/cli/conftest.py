@@ -6,7 +6,9 @@ from collections.abc import Callable
 from contextlib import contextmanager
 from dataclasses import dataclass
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from drystone.cli import main
 from drystone.cli.commands import craft
@@ -24,6 +26,12 @@ class Ran:
     def json(self):
         """The one JSON object on stdout; NaN and infinities are none."""
         return json.loads(self.out, parse_constant=_refuse_constant)
+
+    def refused(self, *said, exit_code=2):
+        """Nothing was printed but an error, in which there are a code or some words."""
+        assert (self.code, self.out) == (exit_code, ""), self.err
+        for words in said:
+            assert words in self.err
 
 
 def _refuse_constant(name):
@@ -62,6 +70,15 @@ def run(capsys):
         return Ran(code, *capsys.readouterr())
 
     return call
+
+
+def masks_in(folder):
+    """Write four masks of 20 x 10 px into a new folder."""
+    folder.mkdir()
+    for number in range(4):
+        mask = np.pad(np.full((10, 20), 255, np.uint8), 3)
+        Image.fromarray(mask).save(folder / f"{number}.png")
+    return folder
 
 
 def rewrite(path, tamper):

@@ -15,10 +15,10 @@ from PIL import Image
 
 from drystone.cli import main
 from drystone.cli.commands import check as check_command
-from drystone.drawing.pictures import check as check_picture
 from drystone.drawing.pictures.check import views_of
 from drystone.drawing.words.checked import NOTEWORTHY_PX, Checked, PhysicsCard
 from drystone.io.plan_json import read_plan
+from drystone.io.read_stones import read_stones
 from drystone.physics.building import BlockMove, BuildSettings, BuildUp, build_up
 from drystone.physics.scatter import TiltResult
 from drystone.physics.tilt import TiltTrial
@@ -139,9 +139,7 @@ def test_a_wall_with_a_stone_missing_is_not_built(plan_copy, run):
 
 def test_without_the_engine(plan_copy, run, monkeypatch):
     monkeypatch.setitem(sys.modules, "pymunk", None)
-    ran = run("check", plan_copy, "--physics")
-    assert (ran.code, "E305" in ran.err) == (2, True)
-    assert ran.out == ""
+    run("check", plan_copy, "--physics").refused("E305")
     assert run("check", plan_copy).code == 0
 
 
@@ -157,42 +155,39 @@ def test_what_fails_is_drawn(tamper, code, plan_copy, run):
     )
 
 
-def test_views_of_an_overlap(plan_copy, run, monkeypatch):
-    views = _views(plan_copy, push, run, monkeypatch)
-    second = json.loads((plan_copy / "plan.json").read_text())["steps"]
-    assert views[0].title.startswith("E221 step ")
+def views(plan, stones):
+    """What a check draws of a plan that fails."""
+    checked = Checked(plan, stones, check_plan(plan, stones), plan_polygons(plan, stones))
+    return views_of(checked)
+
+
+def tampered_views(folder, tamper):
+    """The plan in a folder after it was changed, and what a check draws of it."""
+    rewrite(folder / "plan.json", tamper)
+    plan = read_plan(folder)
+    return plan, views(plan, read_stones(folder / "rubble.png"))
+
+
+def test_views_of_an_overlap(plan_copy):
+    plan, (view, *_) = tampered_views(plan_copy, push)
+    assert view.title.startswith("E221 step ")
     # What is named by the problem, with what it has in common with its neighbours.
-    assert set(views[0].concerned) < {step["stone"] for step in second}
-    assert views[0].concerned
-    assert views[0].common
-    assert views[0].size == (100.0, 36.0)
-    assert len(views[0].planned) == len(second)
+    assert set(view.concerned) < {step.stone for step in plan.stone_steps}
+    assert view.concerned
+    assert view.common
+    assert view.size == (100.0, 36.0)
+    assert len(view.planned) == len(plan.steps)
 
 
-def test_views_of_a_wall_that_does_not_stand(plan_copy, run, monkeypatch):
-    views = _views(plan_copy, lift, run, monkeypatch)
-    last = json.loads((plan_copy / "plan.json").read_text())["steps"][-1]["stone"]
-    view = next(view for view in views if view.title.startswith("E230 step "))
+def test_views_of_a_wall_that_does_not_stand(plan_copy):
+    plan, drawn = tampered_views(plan_copy, lift)
+    last = plan.stone_steps[-1].stone
+    view = next(view for view in drawn if view.title.startswith("E230 step "))
     # An unstable wall may fall in many ways; in any of them this stone goes down.
     assert last in view.concerned
     down = view.ended[last] - view.planned[last]
     assert (down[:, 1] < -1.0).all()
     assert "begins to fall" in view.title
-
-
-def _views(folder, tamper, run, monkeypatch):
-    """Return what a check draws of a tampered plan."""
-    seen = []
-    draw = check_picture.plot_failures
-
-    def keep(views):
-        seen.extend(views)
-        return draw(views)
-
-    monkeypatch.setattr(check_picture, "plot_failures", keep)
-    rewrite(folder / "plan.json", tamper)
-    assert run("check", folder).code == 5
-    return seen
 
 
 def test_claims_that_cannot_be_seen_are_not_drawn(plan_copy, run):
@@ -252,11 +247,6 @@ def test_another_block_model_beside_the_plan_is_found(settled_copy, run):
     assert f"the outline of stone {block['id']} in blocks.json is" in ran.out
     (problem,) = run("check", settled_copy, "--json").json()["problems"]
     assert problem["code"] == "E238"
-    for damaged in ("null", "{"):
-        path.write_text(damaged, "utf-8")
-        ran = run("check", settled_copy)
-        assert (ran.code, "E238 blocks.json is not a block model" in ran.out) == (5, True)
-    assert "or plan again" in run("analyse", settled_copy).err
     path.unlink()
     ran = run("check", settled_copy)
     assert ran.code == 0
@@ -269,9 +259,8 @@ def test_stones_with_other_bytes_are_named_as_such(plan_copy, run):
     path = plan_copy / "rubble.png"
     with Image.open(path) as opened:
         opened.copy().save(path, compress_level=1)
-    ran = run("check", plan_copy)
-    assert ran.code == 3
-    assert f"E202 {plan_copy}: {path} is another file than the 'rubble.png'" in ran.err
+    other = f"E202 {plan_copy}: {path} is another file than the 'rubble.png'"
+    run("check", plan_copy).refused(other, exit_code=3)
     ran = run("check", plan_copy, "--stones", path)
     assert (ran.code, "E210" in ran.out) == (5, True)
     rewrite(plan_copy / "plan.json", lambda plan: plan["source"].update(sha256=""))
@@ -300,9 +289,7 @@ def test_words_of_the_engine(plan_copy):
 
 def test_a_stone_that_hangs_by_friction_is_drawn_where_it_hangs():
     hanging = hanging_example()
-    report = check_plan(hanging.plan, hanging.stones)
-    groups = plan_polygons(hanging.plan, hanging.stones)
-    (view,) = views_of(Checked(hanging.plan, hanging.stones, report, groups))
+    (view,) = views(hanging.plan, hanging.stones)
     assert ("E237" in view.title, list(view.concerned), bool(view.ended)) == (True, [3], False)
 
 

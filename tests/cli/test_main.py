@@ -20,11 +20,7 @@ from tests.statics.walls import stacked
 @pytest.mark.parametrize(
     ("raised", "code", "said"),
     [
-        (
-            UsageError("E999", "is wrong.", where="--x", cure="Do y."),
-            2,
-            "E999 --x: is wrong. Do y.",
-        ),
+        (UsageError("E999", "is odd.", where="--x", cure="Do y."), 2, "E999 --x: is odd. Do y."),
         (PermissionError(13, "Permission denied", "/there"), 3, "E141 /there: the system refuses"),
         (OSError("odd"), 3, "E141 the system refuses this: odd."),
         (OSError(28, "No space left on device", "a.png"), 3, "E206 a.png: the file cannot be"),
@@ -121,16 +117,16 @@ def test_names_are_printed_where_there_are_no_such_letters(rubble, monkeypatch, 
     assert "Stäine \\u77f3.png".encode("cp1252") in out.getvalue()
 
 
+def drystone(*words, stdout):
+    """Run a command in a process of its own."""
+    command = [sys.executable, "-m", "drystone", *map(str, words)]
+    return subprocess.run(command, stdout=stdout, stderr=subprocess.PIPE, text=True, check=False)  # noqa: S603 - our own code
+
+
 def test_a_reader_that_goes_away_is_no_error(rubble):
     read, write = os.pipe()
     os.close(read)
-    done = subprocess.run(  # noqa: S603 - our own code
-        [sys.executable, "-m", "drystone", "stones", str(rubble)],
-        stdout=write,
-        stderr=subprocess.PIPE,
-        text=True,
-        check=False,
-    )
+    done = drystone("stones", rubble, stdout=write)
     os.close(write)
     assert (done.returncode, done.stderr) == (0, "")
 
@@ -138,16 +134,18 @@ def test_a_reader_that_goes_away_is_no_error(rubble):
 def test_libraries_that_print_by_themselves_are_silent(tmp_path):
     wall = tmp_path / "wall.npy"
     np.save(wall, stacked((20, 8, 0), (20, 8, 5), (20, 8, 2)))
-    done = subprocess.run(  # noqa: S603 - our own code
-        [sys.executable, "-m", "drystone", "analyse", str(wall), "--json"],
-        stdout=subprocess.PIPE,
-        check=True,
-    )
+    done = drystone("analyse", wall, "--json", stdout=subprocess.PIPE)
     assert json.loads(done.stdout)["F_LR"] is not None
 
 
-@pytest.mark.parametrize(("sent", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_a_signal_that_a_module_turns_into_an_error_is_still_a_signal(sent, code, run, monkeypatch):
+@pytest.mark.usefixtures("interruptible")
+@pytest.mark.parametrize(
+    ("sent", "code", "said"),
+    [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")],
+)
+def test_a_signal_that_a_module_turns_into_an_error_is_still_a_signal(
+    sent, code, said, run, monkeypatch
+):
     def imported(_):
         try:
             signal.raise_signal(sent)
@@ -156,16 +154,8 @@ def test_a_signal_that_a_module_turns_into_an_error_is_still_a_signal(sent, code
         return ExitCode.DONE
 
     monkeypatch.setattr(command, "run", imported)
-    # A shell lets what runs in the background ignore Ctrl-C.
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
-        ran = run("stones", "x.png")
-    finally:
-        signal.signal(signal.SIGINT, before)
-    assert (ran.code, ran.err) == (
-        code,
-        f"drystone: {'terminated' if code == 143 else 'interrupted'}\n",
-    )
+    ran = run("stones", "x.png")
+    assert (ran.code, ran.err) == (code, f"drystone: {said}\n")
 
 
 def test_a_signal_that_comes_while_a_command_is_loaded(run, monkeypatch):

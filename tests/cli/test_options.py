@@ -78,12 +78,13 @@ def test_what_is_said_of_single_stones_wins_over_the_file(tmp_path):
 
 def test_any_setting_can_be_set_by_its_name(tmp_path):
     toml = tmp_path / "mine.toml"
-    toml.write_text("mu = 0.4\n[settle]\nmethod = 'energy'\n", encoding="utf-8")
+    # A byte order mark is no fault.
+    toml.write_text("mu = 0.4\n[settle]\nmethod = 'energy'\n", encoding="utf-8-sig")
     given = ("--set", "mu=.7", "--set", "settle.method=pivot", "--set", "ban=[3, 4]")
     settings = settings_of("--settings", toml, *given, "--set", "search.budget=3")
     assert (settings.mu, settings.settle.method, settings.ban) == (0.7, "pivot", (3, 4))
     assert settings.search.budget == 3  # the clock does not end this search
-    assert settings_of("--set", "mu=.7", "--mu", ".6").mu == 0.6
+    assert settings_of("--settings", toml, "--set", "mu=.7", "--mu", ".6").mu == 0.6
     # Two that only make sense together.
     raster = settings_of("--set", "search.budget=1", "--set", "geometry=raster")
     assert (raster.geometry, raster.search.budget) == ("raster", 1)

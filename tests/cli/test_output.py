@@ -39,10 +39,7 @@ def test_what_is_in_the_way_is_said_before_the_search(
         (out / name).write_bytes(b"mine")
     before = sorted(out.rglob("*"))
     monkeypatch.setattr(planning, "plan_wall", refuse_to_work)
-    ran = run("plan", rubble, *WALL, "--pareto", "-o", out, "--overwrite")
-    assert (ran.code, ran.out) == (2, "")
-    assert "E129" in ran.err
-    assert said in ran.err
+    run("plan", rubble, *WALL, "--pareto", "-o", out, "--overwrite").refused("E129", said)
     assert sorted(out.rglob("*")) == before
 
 
@@ -55,9 +52,8 @@ def test_a_folder_that_cannot_be_written_into_is_said_before_the_search(
     monkeypatch.setattr(output, "TemporaryFile", read_only)
     monkeypatch.setattr(planning, "plan_wall", refuse_to_work)
     out = tmp_path / "out"
-    ran = run("plan", rubble, *WALL, "-o", out)
-    assert ran.code == 3
-    assert f"E206 {out}: no file can be written there (Read-only file system)" in ran.err
+    said = f"E206 {out}: no file can be written there (Read-only file system)"
+    run("plan", rubble, *WALL, "-o", out).refused(said, exit_code=3)
     assert list(out.iterdir()) == []
 
 
@@ -67,7 +63,7 @@ def test_segment_looks_at_its_folder_before_the_photograph(tmp_path, run, monkey
     (tmp_path / "out" / "stones.json").mkdir(parents=True)
     monkeypatch.setattr(segment, "segment_photo", refuse_to_work)
     ran = run("segment", photo, "-o", tmp_path / "out", "--overwrite")
-    assert (ran.code, "stones.json: is a folder" in ran.err) == (2, True)
+    ran.refused("stones.json: is a folder")
 
 
 @pytest.mark.parametrize("encoding", ["cp1252", "utf-8", "ascii", "utf-16"])

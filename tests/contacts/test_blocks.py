@@ -4,14 +4,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from drystone.contacts.blocks import model_from_labels, model_with
+from drystone.contacts.blocks import (
+    model_from_labels,
+    model_with,
+    notice_of_pieces,
+    pieces_apart,
+)
 from drystone.contacts.interfaces import PointContacts, find_interfaces
 from drystone.errors import InputError, LabelImageError
 from drystone.model.placement import Placement, Wedge
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
 from drystone.statics.model import GROUND, Block, RigidBlockModel
-from tests.strategies import repeatable
+from tests.naive import contacts as naive
+from tests.strategies import dust_labels, label_images, repeatable
 
 pictures = arrays(
     np.uint32, st.tuples(st.integers(1, 10), st.integers(1, 10)), elements=st.integers(0, 4)
@@ -118,3 +124,23 @@ def test_points_known_before_change_nothing(labels, first):
     assert told_exactly(model_with(model, wall, new, points=points)) == anew
     others = PointContacts.of(find_interfaces(labels))
     assert told_exactly(model_with(model, wall, new, points=others)) == anew
+
+
+@given(labels=label_images() | dust_labels())
+@repeatable(80)
+def test_pieces_apart_are_those_of_every_stone_alone(labels):
+    assert pieces_apart(labels) == tuple(sorted(naive.pieces_apart(labels).items()))
+
+
+def test_the_notice_names_five_stones_and_counts_the_others():
+    labels = np.zeros((3, 28), np.uint32)
+    labels[0, ::4], labels[2, ::4] = range(1, 8), range(1, 8)
+    (notice,) = notice_of_pieces(labels)
+    assert notice.code == "W304"
+    assert notice.message.startswith("1 pixel of stone 1, 1 pixel of stone 2, ")
+    assert "1 pixel of stone 5, pixels of 2 more lie apart from them" in notice.message
+
+
+def test_an_empty_image_has_no_pieces():
+    assert pieces_apart(np.zeros((0, 0), np.uint32)) == ()
+    assert pieces_apart(np.zeros((2, 3), np.uint32)) == ()

@@ -53,13 +53,9 @@ def test_corners_that_meet_only_at_a_corner_are_no_contact():
 
 
 def test_polygons_in_either_sense_with_density_and_fixed():
-    data = {
-        "blocks": [
-            {"id": 7, "polygon": square(0, 0), "fixed": True},
-            {"id": 3, "polygon": square(0, 2)[::-1], "density": 2.5},
-        ]
-    }
-    model = model_from_json(data)
+    fixed = {"id": 7, "polygon": square(0, 0), "fixed": True}
+    dense = {"id": 3, "polygon": square(0, 2)[::-1], "density": 2.5}
+    model = model_from_json({"blocks": [fixed, dense]})
     assert model.mu == 0.58
     assert [(b.id, b.weight, b.fixed) for b in model.blocks] == [(7, 4, True), (3, 10, False)]
     assert told(model) == [(7, GROUND, [(0, 0), (2, 0)], (0, 1)), (7, 3, [(2, 2), (0, 2)], (0, -1))]
@@ -74,13 +70,10 @@ def test_a_tilted_joint_has_its_own_normal():
 def test_a_corner_that_stands_on_an_edge_is_a_contact_at_a_point():
     roof = [[0, 0], [4, 0], [2, 2]]
     beam = [[0, 2], [4, 2], [4, 3], [0, 3]]
-    for ids in ((1, 2), (2, 1)):
-        model = model_from_json(
-            {"blocks": [{"id": i, "polygon": p} for i, p in zip(ids, (roof, beam), strict=True)]}
-        )
-        (contact,) = (i for i in model.interfaces if i.other != GROUND)
+    for polygons, upper in (((roof, beam), 2), ((beam, roof), 1)):
+        (contact,) = (i for i in model_of(*polygons).interfaces if i.other != GROUND)
         assert contact.points.tolist() == [[2, 2]]
-        assert contact.normal == (0, 1 if contact.block == ids[1] else -1)
+        assert contact.normal == (0, 1 if contact.block == upper else -1)
 
 
 def test_a_block_on_its_corner_touches_the_ground_at_a_point():
@@ -196,65 +189,55 @@ def one_block(**parts):
     return {"blocks": [{"id": 1, "polygon": square(0, 0), **parts}]}
 
 
+MALFORMED = [
+    {},
+    {"blocks_xywh": 3},
+    {"blocks_xywh": [[0, 0, 1]]},
+    {"blocks_xywh": [[0, 0, 1, "wide"]]},
+    {"blocks_xywh": [[0, 0, 1, math.nan]]},
+    {"blocks_xywh": [[0, 0, 1, 0]]},
+    {"blocks_xywh": [[0, 0, 1, 10**400]]},
+    {"blocks": [{"id": 1}]},
+    {"blocks": [7]},
+    {"blocks": [{"polygon": square(0, 0)}]},
+    {"blocks": [{"id": 1, "polygon": square(x, 0)} for x in (0, 2)]},
+    one_block(id=0),
+    one_block(id=True),
+    one_block(polygon=square(0, 0)[:2]),
+    one_block(polygon=[[0, 0], [2, 2], [2, 0], [0, 2]]),
+    one_block(fixed="yes"),
+    *(one_block(density=wrong) for wrong in (0, 1e60, 1e-60)),
+    {**PAIR, "mu": "rough"},
+    {**PAIR, "mu": True},
+    {**PAIR, "mu_head": "none"},
+    {**PAIR, "friction": 3},
+    {**PAIR, "friction": [7]},
+    *({**PAIR, "friction": [{"between": pair, "mu": 0.3}]} for pair in ([1, 9], [1, 1], [[1], 0])),
+    {**PAIR, "friction": [{"between": [1, 2], "mu": True}]},
+    {**PAIR, "interfaces": [{"between": [0, 1], "points": [[0, 0]], "normal": [0, 1]}]},
+    {**PAIR, "interfaces": [{"between": [1, 0], "points": [], "normal": [0, 1]}]},
+    {**PAIR, "interfaces": [{"between": [1, 0], "points": [[0, 0]], "normal": [0, 0]}]},
+    {**PAIR, "interfaces": [{"between": [1, 0], "points": [[0, 0]]}]},
+]
+
+
 @pytest.mark.parametrize(
     ("data", "code", "cure"),
     [
-        ({}, "E303", ""),
-        ({"blocks_xywh": 3}, "E303", ""),
-        ({"blocks_xywh": [[0, 0, 1]]}, "E303", ""),
-        ({"blocks_xywh": [[0, 0, 1, "wide"]]}, "E303", ""),
-        ({"blocks_xywh": [[0, 0, 1, math.nan]]}, "E303", ""),
-        ({"blocks_xywh": [[0, 0, 1, 0]]}, "E303", ""),
-        ({"blocks_xywh": [[0, 0, 1, 1]], "mu": "rough"}, "E303", ""),
-        ({"blocks_xywh": [[0, 0, 1, 1]], "mu": -1}, "E302", ""),
-        ({"blocks_xywh": [[0, -1, 1, 3]]}, "E304", ""),
-        ({"blocks_xywh": [[0, 0, 2, 2], [1, 1, 2, 2]]}, "E304", ""),
-        ({"blocks": [{"id": 1}]}, "E303", ""),
-        ({"blocks": [7]}, "E303", ""),
-        ({"blocks": [{"polygon": square(0, 0)}]}, "E303", ""),
-        ({"blocks": [{"id": 0, "polygon": square(0, 0)}]}, "E303", ""),
-        ({"blocks": [{"id": True, "polygon": square(0, 0)}]}, "E303", ""),
-        ({"blocks": [{"id": 1, "polygon": square(0, 0)[:2]}]}, "E303", ""),
-        ({"blocks": [{"id": 1, "polygon": [[0, 0], [2, 2], [2, 0], [0, 2]]}]}, "E303", ""),
-        ({"blocks": [{"id": 1, "polygon": square(0, 0), "density": 0}]}, "E303", ""),
-        ({"blocks": [{"id": 1, "polygon": square(0, 0), "fixed": "yes"}]}, "E303", ""),
-        ({"blocks": [{"id": 1, "polygon": square(x, 0)} for x in (0, 2)]}, "E303", ""),
-        ({**PAIR, "mu_head": "none"}, "E303", ""),
-        ({**PAIR, "friction": 3}, "E303", ""),
-        ({**PAIR, "friction": [{"between": [1, 9], "mu": 0.3}]}, "E303", ""),
-        ({**PAIR, "friction": [{"between": [1, 1], "mu": 0.3}]}, "E303", ""),
-        ({**PAIR, "friction": [7]}, "E303", ""),
-        ({**PAIR, "friction": [{"between": [[1], 0], "mu": 0.3}]}, "E303", ""),
-        ({**PAIR, "friction": [{"between": [1, 2], "mu": True}]}, "E303", ""),
-        ({**PAIR, "mu": True}, "E303", ""),
-        (
-            {**PAIR, "interfaces": [{"between": [0, 1], "points": [[0, 0]], "normal": [0, 1]}]},
-            "E303",
-            "",
-        ),
-        ({**PAIR, "interfaces": [{"between": [1, 0], "points": [], "normal": [0, 1]}]}, "E303", ""),
-        (
-            {**PAIR, "interfaces": [{"between": [1, 0], "points": [[0, 0]], "normal": [0, 0]}]},
-            "E303",
-            "",
-        ),
-        ({**PAIR, "interfaces": [{"between": [1, 0], "points": [[0, 0]]}]}, "E303", ""),
-        (one_block(held=["up"]), "E303", "what is held"),
-        (one_block(held=[["x"]]), "E303", "what is held"),
-        (one_block(held="x, y"), "E303", "what is held"),
-        (one_block(held=3), "E303", "what is held"),
+        *((data, "E303", "") for data in MALFORMED),
+        *((one_block(held=held), "E303", "what is held") for held in (["up"], [["x"]], "x, y", 3)),
         ({"blocks_xywh": [[0, 0, 1e150, 1e150]]}, "E303", "another unit"),
         ({"blocks_xywh": [[0, 0, 1e60, 1]]}, "E303", "another unit"),
         ({"blocks_xywh": [[1e308, 0, 1e308, 1]]}, "E303", "another unit"),
         ({"blocks_xywh": [[0, 0, 1, 1e-60]]}, "E303", "another unit"),
-        ({"blocks_xywh": [[1e17, 0, 1, 1]]}, "E303", "origin"),
         (one_block(polygon=square(0, 0, 1e150)), "E303", "another unit"),
         (one_block(polygon=square(0, 0, 1e-150)), "E303", "another unit"),
+        ({"blocks_xywh": [[1e17, 0, 1, 1]]}, "E303", "origin"),
         (one_block(polygon=square(0, 1e10, 1)), "E303", "origin"),
-        (one_block(density=1e60), "E303", ""),
-        (one_block(density=1e-60), "E303", ""),
-        ({"blocks_xywh": [[0, 0, 1, 10**400]]}, "E303", ""),
-        ({"blocks_xywh": [[0, 0, 1, 1]], "mu": 10**400}, "E302", ""),
+        ({**PAIR, "mu": -1}, "E302", ""),
+        ({**PAIR, "mu": 10**400}, "E302", ""),
+        ({"blocks_xywh": [[0, -1, 1, 3]]}, "E304", ""),
+        ({"blocks_xywh": [[0, 0, 2, 2], [1, 1, 2, 2]]}, "E304", ""),
     ],
 )
 def test_what_is_no_block_model_is_refused(data, code, cure):
@@ -267,14 +250,13 @@ def test_what_is_no_block_model_is_refused(data, code, cure):
 
 
 def test_a_corner_at_which_an_edge_goes_straight_on_is_none():
-    feet = {"id": 2, "polygon": [[1, 1], [3, 2], [5, 1], [5, 4], [1, 4]]}
+    feet = [[1, 1], [3, 2], [5, 1], [5, 4], [1, 4]]
     for step in (0, 1e-13, -1e-13):
-        slab = [[0, 0], [6, 0], [6, 1], [5, 1 + step], [1, 1], [0, 1]]
-        model = model_from_json({"blocks": [{"id": 1, "polygon": slab}, feet]})
+        model = model_of([[0, 0], [6, 0], [6, 1], [5, 1 + step], [1, 1], [0, 1]], feet)
         assert [p.tolist() for i in model.interfaces[1:] for p in i.points] == [[1, 1], [5, 1]]
     # A turn of a thousandth is a corner.
     bent = [[0, 0], [6, 0], [6, 1], [3, 1.001], [0, 1]]
-    assert len(polygons_from_json({"blocks": [{"id": 1, "polygon": bent}]})[1]) == 6
+    assert len(polygons_from_json(one_block(polygon=bent))[1]) == 6
 
 
 def test_points_of_an_interface_run_along_it():

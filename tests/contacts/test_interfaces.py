@@ -24,14 +24,6 @@ def told(interface):
     return interface.block, interface.other, points, interface.normal
 
 
-def test_contacts_lie_on_pixel_edges():
-    labels = np.zeros((50, 60), np.uint32)
-    labels[10:, 20:40] = 3
-    (ground,) = find_interfaces(labels)
-    assert told(ground) == (3, GROUND, [(20, 0), (40, 0)], (0.0, 1.0))
-    assert ground.length == 20
-
-
 def test_the_normal_points_into_the_larger_id_on_all_four_sides():
     rows = ("0004000", "0355560", "0002000")
     labels = np.array([[int(pixel) for pixel in row] for row in rows], np.uint32)
@@ -53,14 +45,6 @@ def test_a_tilted_joint_is_one_run_with_a_bounded_error_of_its_normal(angle_deg,
     assert error * run.length < 1.6
     away = run.points - size / 2
     assert np.abs(away @ normal - offset).max() <= 0.5**0.5 + 1e-9
-
-
-def test_stones_that_touch_at_a_corner_have_a_contact_at_a_point():
-    labels = np.zeros((20, 20), np.uint32)
-    labels[:10, :10], labels[10:, 10:] = 1, 2
-    (contact,) = between(labels, 2, 1)
-    # Stone 1 stands on stone 2; the normal points into the larger id.
-    assert told(contact) == (2, 1, [(10, 10)], (0.0, -1.0))
 
 
 pictures = arrays(

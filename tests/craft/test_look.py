@@ -15,7 +15,7 @@ from drystone.craft import RULES, CraftSettings, Limit, Masonry, look
 from drystone.craft.joints import scan
 from drystone.errors import InputError, UsageError
 from drystone.io.walls import read_wall
-from tests.craft.walls import both, box, courses, painted, running_bond, stack_bond
+from tests.craft.walls import box, courses, painted, running_bond, stack_bond
 
 
 @pytest.mark.parametrize(
@@ -65,15 +65,6 @@ def test_numbers_have_no_scale(factor):
         assert found.verdict == scaled.verdict
         assert [case.stones for case in found.cases] == [case.stones for case in scaled.cases]
         assert [case.words for case in found.cases] == [case.words for case in scaled.cases]
-
-
-def test_polygons_and_pixels_are_judged_alike():
-    for loops in (stack_bond(), running_bond()):
-        drawn, painted_wall = (look(wall) for wall in both(loops))
-        for name in RULES:
-            one, other = drawn.findings[name], painted_wall.findings[name]
-            assert one.verdict == other.verdict, name
-            assert [c.stones for c in one.cases] == [c.stones for c in other.cases], name
 
 
 def test_limits_are_settings():

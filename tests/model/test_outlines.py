@@ -10,18 +10,8 @@ from hypothesis import strategies as st
 from drystone.kernels.coverage import Grid, coverage
 from drystone.model.outlines import Outlines, Shares
 from drystone.model.site import Site
-from tests.polygons import simple_polygons
+from tests.polygons import box, simple_polygons
 from tests.strategies import repeatable
-
-
-def box(left, low, right, high):
-    return np.array([[left, low], [right, low], [right, high], [left, high]], float)
-
-
-def test_nothing_is_there_yet():
-    empty = Outlines.empty(Site(6, 4, 0.5))
-    assert (len(empty.polygons), empty.ids, empty.blocks) == (0, (), [])
-    assert empty.shares.labels.tolist() == [[0] * 6] * 4
 
 
 def test_adding_keeps_the_old_ones():
@@ -166,17 +156,3 @@ def test_shares_do_not_change():
     for array in (one.total, one.largest, one.owners, one.labels):
         with pytest.raises(ValueError, match="read-only"):
             array[0, 0] = 1
-
-
-def test_a_block_beside_the_site_adds_nothing():
-    shares = Shares.empty(2, 3)
-    for left, bottom in ((3, 0), (-2, 0), (0, 2), (0, -1)):
-        beside = shares.added(5, np.ones((1, 2)), left, bottom)
-        assert beside.total.sum() == 0.0
-        assert shares.fresh(np.ones((1, 2)), left, bottom) is None
-
-
-def test_fresh_cells_are_cropped_to_the_site():
-    shares = Shares.empty(2, 3)
-    fresh = shares.fresh(np.array([[0.7, 0.9, 0.8], [0.6, 0.2, 1.0]]), 2, 1)
-    assert (fresh[0].tolist(), fresh[1:]) == ([[True]], (0, 2))

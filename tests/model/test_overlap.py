@@ -12,15 +12,15 @@ from drystone.kernels.polygons import Points
 from drystone.kernels.raster import turn
 from drystone.model.overlap import CIRCLE, common_parts, deepest_overlap, overlap_depth, shape_of
 from tests.naive import overlap as naive
-from tests.polygons import simple_polygons
+from tests.polygons import box_of, simple_polygons
 from tests.strategies import repeatable
 
 RIGHT = 1e-6
 """Of the size: no overlap is seen or missed above it."""
 
 
-def box(x, y, width, height):
-    return shapely.box(x, y, x + width, y + height)
+def box(*sides):
+    return shapely.Polygon(box_of(*sides))
 
 
 @pytest.mark.parametrize(

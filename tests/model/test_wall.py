@@ -9,6 +9,7 @@ from drystone.model.site import Site
 from drystone.model.stone import Stone
 from drystone.model.wall import Wall, outlined
 from drystone.poses import PoseBook
+from tests.polygons import box
 from tests.strategies import repeatable, walls
 
 POSED = PoseBook().pose(Stone(70_000, np.ones((2, 3), bool)), 0.0)
@@ -73,7 +74,7 @@ def test_labels_are_those_of_the_placements(wall):
 def _settled(stone_id, left, low, right, high):
     """A box in source px; its pixels are of no account for a wall of outlines."""
     posed = PoseBook(0.5).pose(Stone(stone_id, np.ones((4, 4), bool)), 0.0)
-    corners = np.array([[left, low], [right, low], [right, high], [left, high]])
+    corners = box(left, low, right, high)
     centre = Settled((left + right) / 2.0, (low + high) / 2.0, corners)
     return Placement(posed, 0, 0, settled=centre)
 

@@ -29,13 +29,8 @@ def camera(focal_px, size_px, *, tilt_deg=0.0, turn_deg=0.0, distance_m=1.0):
         [[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]]
     )
     turned = about_x @ about_z
-    return intrinsics(focal_px, size_px) @ np.column_stack(
-        [turned[:, 0], turned[:, 1], [0, 0, distance_m]]
-    )
-
-
-def intrinsics(focal_px, size_px):
-    return np.array([[focal_px, 0, size_px[0] / 2], [0, focal_px, size_px[1] / 2], [0, 0, 1]])
+    inside = np.array([[focal_px, 0, size_px[0] / 2], [0, focal_px, size_px[1] / 2], [0, 0, 1]])
+    return inside @ np.column_stack([turned[:, 0], turned[:, 1], [0, 0, distance_m]])
 
 
 def outline(angle_deg, x, y, side):

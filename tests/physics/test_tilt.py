@@ -9,16 +9,14 @@ from drystone.physics.scene import EngineScene, EngineSettings
 from drystone.physics.table import TiltingTable
 from drystone.physics.tilt import TiltSettings, TiltTrial, tilt_once
 from drystone_lab.statics_cases import MU, WALLS
+from tests.polygons import box_of
 
 pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
 
 
 def scene_of(*rectangles, mu, fixed=()):
     """Rectangles x, y, width, height, numbered from 1."""
-    corners = {
-        number: np.array([[x, y], [x + w, y], [x + w, y + h], [x, y + h]])
-        for number, (x, y, w, h) in enumerate(rectangles, 1)
-    }
+    corners = {number: box_of(*sides) for number, sides in enumerate(rectangles, 1)}
     return EngineScene(corners, mu, fixed=frozenset(fixed))
 
 

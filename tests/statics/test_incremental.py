@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given
 
 from drystone.contacts.blocks import model_from_labels, model_with
-from drystone.contacts.given import model_from_json
 from drystone.kernels.cones import Figures
 from drystone.kernels.simplex import Optimum
 from drystone.statics import incremental
@@ -18,13 +17,11 @@ from drystone.statics.incremental import (
     LocalAnalysis,
     SimplexAnalysis,
     certified_bound,
-    highs_bound,
     incremental_analysis,
 )
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.lp.highs import WARM, WarmSession
 from drystone.statics.lp.program import Units
-from drystone.statics.model import Interface, RigidBlockModel
 from drystone.statics.result import LimitStatus
 from tests.kernels.simplex_walls import needs_kernel
 from tests.statics.growth import (
@@ -40,7 +37,7 @@ from tests.statics.growth import (
     wall_and_candidates,
     with_block,
 )
-from tests.statics.walls import coursed, irregular, stacked
+from tests.statics.walls import boxes, coursed, irregular, stacked
 from tests.strategies import repeatable, walls
 
 
@@ -172,25 +169,22 @@ def test_any_other_model_is_answered_too(begin):
 
 
 def test_nothing_free_carries_anything(begin):
-    fixed = {"id": 7, "polygon": [[0, 0], [2, 0], [2, 1], [0, 1]], "fixed": True}
-    base = model_from_json({"blocks": [fixed], "mu": 0.58})
+    base = boxes([0, 0, 2, 1], fixed=(1,))
     analysis = begin(empty(), PX)
     assert analysis.result.resistance.right.status is LimitStatus.UNBOUNDED
     for model in (empty(), base, empty().with_added((), ()), analysis.model.with_added((), ())):
         assert analysis.resistance_with(model).resistance.right.status is LimitStatus.UNBOUNDED
         assert not analysis.resistance_with(model).solved_cold
         assert analysis.extended(model).result.resistance.left.status is LimitStatus.UNBOUNDED
-    upright = {"id": 8, "polygon": [[0, 1], [1, 1], [1, 3], [0, 3]]}
-    both = model_from_json({"blocks": [fixed, upright], "mu": 0.58})
+    both = boxes([0, 0, 2, 1], [0, 1, 1, 2], fixed=(1,))
     assert both.blocks[:1] == base.blocks
-    assert analysis.extended(base).resistance_with(both).resistance.right.alpha == pytest.approx(
-        0.5
-    )
+    grown = analysis.extended(base).resistance_with(both).resistance
+    assert grown.right.alpha == pytest.approx(0.5)
 
 
 def test_no_load_brings_down_what_is_wedged_between_pins(begin):
     """A block on pins of the ground to both sides: alpha has no end, and that is no failure."""
-    pinned = model_from_json({"blocks_xywh": [[0, 0, 2, 1]], "mu": 0.58})
+    pinned = boxes([0, 0, 2, 1])
     block, (floor,) = pinned.blocks, pinned.interfaces
     sides = [((0.0, 0.5), (1.0, 0.0)), ((2.0, 0.5), (-1.0, 0.0))]
     pins = [replace(floor, points=np.array([at]), normal=normal) for at, normal in sides]
@@ -364,30 +358,6 @@ def test_a_wall_that_outgrows_the_kernel_goes_on():
     at_once = incremental_analysis(analysis.model, PX, most=9)
     assert isinstance(at_once, LocalAnalysis)
     assert_same(at_once.result, analysis.model, {WARM})
-
-
-def test_an_end_beyond_0_is_a_fall():
-    """The upper block lies over the edge by more than half: it needs a push to the left."""
-    model = model_from_labels(stacked((20, 20, 0), (20, 20, 12)), 0.9).model
-    first = RigidBlockModel(model.blocks[:1], model.interfaces[:1], model.mu)
-    analysis = HighsAnalysis.of(first, PX)
-    over = analysis.model.with_added(model.blocks[1:], model.interfaces[1:])
-    greatest = highs_bound(*analysis.prepared(over), 1)
-    assert greatest.alpha == pytest.approx(-0.2)
-    assert greatest.fall.holds
-    assert greatest.fall.fall_work > 0
-    assert highs_bound(*analysis.prepared(over), -1).fall is None
-
-
-def test_no_end_is_none():
-    """Between pins of the ground alpha has no end."""
-    floor = model_from_labels(stacked((20, 20, 0))).model
-    analysis = HighsAnalysis.of(empty(), PX)
-    pins = [
-        Interface(1, 0, np.array([[x, 10.0]]), (side, 0.0)) for x, side in ((0, 1.0), (20, -1.0))
-    ]
-    pinned = analysis.model.with_added(floor.blocks, (*floor.interfaces, *pins))
-    assert highs_bound(*analysis.prepared(pinned), 1) is None
 
 
 @pytest.mark.parametrize("closed", [False, True])

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 from drystone.contacts.blocks import model_from_labels
-from drystone.contacts.given import model_from_json
 from drystone.errors import InputError
 from drystone.statics.failing.mechanism import describe_mechanism
 from drystone.statics.limit import lateral_resistance, load_range
@@ -21,12 +20,12 @@ from drystone.statics.loads import (
 )
 from drystone.statics.model import GROUND, Block, RigidBlockModel
 from drystone.statics.result import LimitStatus
-from tests.statics.walls import coursed, limit_load, stacked
+from tests.statics.walls import boxes, coursed, limit_load, stacked
 
 
 def tower(mu=0.9):
     """Two blocks 1 x 2 on top of each other."""
-    return model_from_json({"blocks_xywh": [[0, 0, 1, 2], [0, 2, 1, 2]], "mu": mu})
+    return boxes([0, 0, 1, 2], [0, 2, 1, 2], mu=mu)
 
 
 def test_the_tilting_table_is_the_default():
@@ -37,7 +36,7 @@ def test_the_tilting_table_is_the_default():
 @pytest.mark.parametrize("angle_deg", [3.0, 9.0])
 def test_what_a_tilted_base_leaves_is_the_rest_of_the_angle(angle_deg):
     """Block 1 x 4: it falls at tan = .25; gravity has the share cos of it left downwards."""
-    block = model_from_json({"blocks_xywh": [[0, 0, 1, 4]]})
+    block = boxes([0, 0, 1, 4])
     _, loads = load_case(LoadCase("tilting", angle_deg, (), (), None), block)
     left, right = (limit_load(block, d, loads) for d in ("left", "right"))
     angle = math.radians(angle_deg)
@@ -64,18 +63,13 @@ def test_fixed_blocks_do_not_count_in_a_load_that_grows_with_height():
     pushed = growing_with_height(fixed).live
     assert pushed[1, 0] == pytest.approx(model.blocks[1].weight)
     assert limit_load(fixed, "right", growing_with_height(fixed)).alpha == pytest.approx(0.5)
-
-
-def test_a_load_cannot_grow_with_height_where_nothing_stands():
-    fixed = tower()
-    fixed = replace(fixed, blocks=tuple(replace(b, fixed=True) for b in fixed.blocks))
     with pytest.raises(InputError, match="E307"):
-        growing_with_height(fixed)
+        growing_with_height(boxes([0, 0, 1, 2], fixed=(1,)))
 
 
 def test_a_point_load_holds_the_block_down_it_acts_on():
     """A weight P at the top centre: (W + P) b / 2 = alpha W h / 2."""
-    block = model_from_json({"blocks_xywh": [[0, 0, 1, 4]]})
+    block = boxes([0, 0, 1, 4])
     table = tilting_table(block)
     pressed = Loads(table.dead + point_load(block, 1, (0.5, 4), (0, -2)), table.live)
     assert limit_load(block, "right", pressed).alpha == pytest.approx((4 + 2) * 0.5 / (4 * 2))
@@ -83,7 +77,7 @@ def test_a_point_load_holds_the_block_down_it_acts_on():
 
 def test_a_live_point_load_overturns_at_its_lever():
     """Force alpha at height 3 against W b / 2."""
-    block = model_from_json({"blocks_xywh": [[0, 0, 1, 4]]})
+    block = boxes([0, 0, 1, 4])
     pull = point_load(block, 1, (0, 3), (1, 0))
     both = lateral_resistance(block, Loads(weight(block), pull))
     assert both.right.alpha == pytest.approx(4 * 0.5 / 3)
@@ -91,7 +85,7 @@ def test_a_live_point_load_overturns_at_its_lever():
 
 
 def test_the_gravity_factor_says_how_light_a_wall_may_be():
-    block = model_from_json({"blocks_xywh": [[0, 0, 1, 4]]})
+    block = boxes([0, 0, 1, 4])
     _, loads = load_case(LoadCase("gravity", 0.0, ("1@0,3:0.5,0",), (), None), block)
     carried = load_range(block, loads, mechanism=True)
     assert carried.least.alpha == pytest.approx(0.5 * 3 / (4 * 0.5))
@@ -102,14 +96,8 @@ def test_the_gravity_factor_says_how_light_a_wall_may_be():
 
 def test_a_settling_support_is_held_up_by_its_share():
     """A beam of weight 4 on two supports; the right one gives way below half of it."""
-    data = {
-        "blocks": [
-            {"id": 1, "polygon": [[0, 0], [1, 0], [1, 1], [0, 1]], "fixed": True},
-            {"id": 2, "polygon": [[3, 0], [4, 0], [4, 1], [3, 1]], "fixed": True},
-            {"id": 3, "polygon": [[0, 1], [4, 1], [4, 2], [0, 2]]},
-        ]
-    }
-    model, loads = support_settlement(model_from_json(data), 2)
+    bridge = boxes([0, 0, 1, 1], [3, 0, 1, 1], [0, 1, 4, 1], fixed=(1, 2))
+    model, loads = support_settlement(bridge, 2)
     assert not [i for i in model.interfaces if {i.block, i.other} == {2, GROUND}]
     carried = load_range(model, loads, mechanism=True)
     # The beam turns about the inner edge of the left support; the right one bears at x = 4.
@@ -125,15 +113,8 @@ def test_a_settling_support_is_held_up_by_its_share():
 
 
 def test_a_support_much_larger_than_the_wall_may_settle():
-    def square(x, y, width, height):
-        return [[x, y], [x + width, y], [x + width, y + height], [x, y + height]]
-
-    piers = [
-        {"id": i, "polygon": square(x, 0, width, 1000), "fixed": True}
-        for i, x, width in ((1, 0, 1), (2, 3, 10_000))
-    ]
-    slab = {"id": 3, "polygon": square(0, 1000, 4, 1)}
-    carried = load_range(*support_settlement(model_from_json({"blocks": [*piers, slab]}), 2))
+    wall = boxes([0, 0, 1, 1000], [3, 0, 10_000, 1000], [0, 1000, 4, 1], fixed=(1, 2))
+    carried = load_range(*support_settlement(wall, 2))
     ends = carried.least.alpha, carried.greatest.alpha
     assert ends == pytest.approx((1 / 3, 2 / 3))
 

@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.statics.loads import Loads, growing_with_height, weight
-from drystone.statics.sensitivity import friction_sensitivity
-from tests.statics.walls import brick_model, coursed, irregular, limit_load, stacked
+from drystone.statics.sensitivity import friction_curve, friction_sensitivity
+from tests.statics.walls import boxes, brick_model, coursed, irregular, limit_load, stacked
 from tests.strategies import repeatable
 
 STEP = 1e-5
@@ -104,3 +104,14 @@ def test_a_result_without_mechanism_has_no_sensitivity():
     falls = model_from_labels(stacked((20, 20, 0), (20, 20, 12))).model
     with pytest.raises(ValueError, match="optimal"):
         friction_sensitivity(falls, limit_load(falls, "right", mechanism=True))
+
+
+def test_a_block_slides_and_then_rocks_along_the_curve():
+    for at in friction_curve(boxes([0, 0, 1, 2])):
+        assert at.alpha_left == pytest.approx(min(at.mu, 0.5))
+        assert at.alpha_right == pytest.approx(min(at.mu, 0.5))
+
+
+def test_a_wall_that_does_not_stand_has_no_number_on_the_curve():
+    leaning = boxes([0, 0, 1, 1], [0.8, 1, 1, 1])
+    assert {at.alpha_left for at in friction_curve(leaning)} == {None}

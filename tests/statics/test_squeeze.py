@@ -10,7 +10,7 @@ from drystone.statics.loads import Loads, tilting_table
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.statics.squeeze import held_by_upright_faces
 from drystone_lab.statics_cases import arch
-from tests.statics.walls import JAMS, between_piers, brick_model, slot, under_a_roof
+from tests.statics.walls import JAMS, between_piers, boxes, brick_model, slot, under_a_roof
 from tests.strategies import repeatable
 
 
@@ -45,8 +45,8 @@ def test_an_arch_stands_by_friction_near_its_crown():
 
 
 def test_blocks_in_two_places_are_all_named():
-    rows = [[x, 0, 1, 4] for x in (0, 2, 4)] + [[1, 1, 1, 1], [3, 2, 1, 1]]
-    assert held_by_upright_faces(model_from_json({"blocks_xywh": rows})) == (4, 5)
+    piers = ([x, 0, 1, 4] for x in (0, 2, 4))
+    assert held_by_upright_faces(boxes(*piers, [1, 1, 1, 1], [3, 2, 1, 1])) == (4, 5)
 
 
 def test_the_dead_load_of_the_case_counts():

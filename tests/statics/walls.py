@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from drystone.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
+from tests.polygons import box_of
 
 Labels = NDArray[np.uint32]
 
@@ -52,6 +53,15 @@ def coursed(seed, courses, length_px, gap_px=0):
     return labels
 
 
+def boxes(*rows, fixed=(), mu=0.58):
+    """The model of boxes x, y, width, height, numbered from 1; some are fixed."""
+    blocks = [
+        {"id": i, "polygon": box_of(*row).tolist(), "fixed": i in fixed}
+        for i, row in enumerate(rows, start=1)
+    ]
+    return model_from_json({"blocks": blocks, "mu": mu})
+
+
 def brick_model(courses, bricks, height, mu):
     """Running bond of bricks 2 x `height` with half bricks at the ends of every other course."""
     rows = []
@@ -61,7 +71,7 @@ def brick_model(courses, bricks, height, mu):
             edges = [0.0, *(edge + 1.0 for edge in edges[:-1]), edges[-1]]
         y = course * height
         rows += [[left, y, right - left, height] for left, right in pairwise(edges)]
-    return model_from_json({"blocks_xywh": rows, "mu": mu})
+    return boxes(*rows, mu=mu)
 
 
 def between_piers(pier, height, gap, mu, *, covered=False):
@@ -69,7 +79,7 @@ def between_piers(pier, height, gap, mu, *, covered=False):
     rows = [[0, 0, pier, height], [pier + gap, 0, pier, height], [pier, 1, gap, 1]]
     if covered:
         rows.append([0, height, 2 * pier + gap, 1])
-    return model_from_json({"blocks_xywh": rows, "mu": mu})
+    return boxes(*rows, mu=mu)
 
 
 def slot(left, right, mu):

@@ -9,7 +9,7 @@ from drystone.statics.failing.mechanism import Names, describe_mechanism
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND
 from drystone.statics.result import LimitStatus, Mechanism
-from tests.statics.walls import brick_model, coursed, irregular, limit_load, stacked
+from tests.statics.walls import boxes, brick_model, coursed, irregular, limit_load, stacked
 from tests.strategies import repeatable
 
 
@@ -111,7 +111,7 @@ TOWER, STAIR = [[0, 0, 10, 40], [0, 40, 10, 10]], [[0, 0, 3, 1], [0, 1, 1, 1], [
     ],
 )
 def test_motions_in_words(rows, velocity, words):
-    assert moved(model_from_json({"blocks_xywh": rows}), velocity).words == words
+    assert moved(boxes(*rows), velocity).words == words
 
 
 FLOATING = np.zeros((9, 9), np.uint32)
@@ -141,7 +141,7 @@ def test_falls_and_wedges_in_words(labels, mu, words):
 @pytest.mark.parametrize("direction", ["left", "right"])
 def test_it_does_not_matter_which_block_the_normal_points_into(direction):
     rows = [[2, 1, 1, 2], [0, 0, 6, 1]]  # the upper block has the lower id
-    failure = told(model_from_json({"blocks_xywh": rows}), direction)
+    failure = told(boxes(*rows), direction)
     assert failure.words == f"Rocking of block 1 about its {direction} toe, on 2."
     toe = failure.groups[0].toe
     assert (toe.point, toe.other) == ((3.0 if direction == "right" else 2.0, 1.0), 2)
@@ -149,7 +149,7 @@ def test_it_does_not_matter_which_block_the_normal_points_into(direction):
 
 def test_a_bed_comes_before_a_moving_side_that_it_turns_on():
     """The upper end of the joint of two pillars stays closed; the right one drags its left toe."""
-    model = model_from_json({"blocks_xywh": [[0, 0, 1, 4], [1, 0, 1, 4]]})
+    model = boxes([0, 0, 1, 4], [1, 0, 1, 4])
     failure = moved(model, {1: (0.6, 0.58, 0), 2: (0.8, 0.63, 0.1)})
     (group,) = [group for group in failure.groups if group.blocks == (2,)]
     assert (group.motion, group.against, group.on_bed) == ("mixed", (GROUND,), True)
@@ -162,14 +162,14 @@ def test_a_block_that_turns_about_its_centroid_moves():
 
 def test_largest_momentum_comes_first():
     rows = [[0, 0, 1, 1], [5, 0, 2, 1], [9, 0, 3, 1]]
-    model = model_from_json({"blocks_xywh": rows})
+    model = boxes(*rows)
     slides = {i: np.array([1, 0.58, 0]) * speed for i, speed in ((1, 1.0), (2, 0.9), (3, 0.1))}
     assert [group.blocks for group in moved(model, slides).groups] == [(2,), (1,), (3,)]
 
 
 def test_creeping_blocks_stand_still_and_slow_ones_are_left_out_of_the_words():
     rows = [[0, 0, 1, 1], [5, 0, 1, 1], [9, 0, 1, 1]]
-    model = model_from_json({"blocks_xywh": rows})
+    model = boxes(*rows)
     slides = {i: np.array([1, 0.58, 0]) * speed for i, speed in ((1, 1.0), (2, 5e-3), (3, 5e-5))}
     failure = moved(model, slides)
     assert failure.moving == (1, 2)
@@ -186,7 +186,7 @@ def test_no_motion_no_groups():
 
 def test_blocks_that_turn_about_a_shared_point_are_not_one_body():
     """The joint between two pillars shears; a contact at a point holds no angle."""
-    pillars = told(model_from_json({"blocks_xywh": [[0, 0, 1, 4], [1, 0, 1, 4]]}))
+    pillars = told(boxes([0, 0, 1, 4], [1, 0, 1, 4]))
     assert sorted(group.blocks for group in pillars.groups) == [(1,), (2,)]
     point = model_from_json(
         {

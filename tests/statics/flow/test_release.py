@@ -24,6 +24,7 @@ from tests.naive.release import greatest_power_of_a_fall
 from tests.statics.walls import (
     JAMS,
     between_piers,
+    boxes,
     brick_model,
     irregular,
     slot,
@@ -160,7 +161,7 @@ def test_a_solver_that_gives_up_tells_no_fall(monkeypatch):
 @pytest.mark.parametrize(("unit", "density"), [(1e-3, 2500.0), (1e3, 1e-3)])
 def test_what_falls_is_the_same_in_any_unit_and_density(unit, density):
     rows = [[unit * v for v in row] for row in ([0, 0, 1, 4], [2, 0, 1, 4], [1, 1.5, 1, 1])]
-    model = model_from_json({"blocks_xywh": rows})
+    model = boxes(*rows)
     heavy = tuple(replace(block, density=density) for block in model.blocks)
     result = nonassociative_load(replace(model, blocks=heavy), "right")
     assert (result.status, moving(result)) == (LimitStatus.UNSTABLE, [3])

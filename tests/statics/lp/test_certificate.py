@@ -7,14 +7,13 @@ import pytest
 from scipy.optimize import nnls
 
 from drystone.contacts.blocks import model_from_labels
-from drystone.contacts.given import model_from_json
 from drystone.statics.limit import resistance_between
 from drystone.statics.lp.certificate import certify, in_equilibrium
 from drystone.statics.lp.extremes import Extreme, certified_extreme
 from drystone.statics.lp.highs import HighsSession
 from drystone.statics.lp.program import Solution, assemble
 from drystone.statics.result import CERTIFIED, Certificate, LimitStatus
-from tests.statics.walls import coursed, stacked
+from tests.statics.walls import boxes, coursed, stacked
 
 MODEL = model_from_labels(coursed(5, 4, 90)).model
 PROGRAM = assemble(MODEL)
@@ -39,12 +38,15 @@ def test_the_other_end_is_no_proof_where_alpha_is_0():
     assert not certify(balanced, stale, -1.0).holds
 
 
+FLAT = assemble(model_from_labels(stacked((40, 20, 0))).model)
+
+
 def test_forces_that_leave_their_cone():
-    right = solution()
+    right = solution(1.0, FLAT)
     columns = right.columns.copy()
-    null = np.linalg.svd(PROGRAM.matrix.toarray()[:, 1:])[2][-1]  # a state of self-stress
+    null = np.linalg.svd(FLAT.matrix.toarray()[:, 1:])[2][-1]  # a state of self-stress
     columns[1:] -= 1e3 * null * np.sign(null[np.abs(null).argmax()])
-    spoilt = certify(PROGRAM, replace(right, columns=columns), 1.0)
+    spoilt = certify(FLAT, replace(right, columns=columns), 1.0)
     assert spoilt.residual < CERTIFIED
     assert spoilt.violation > CERTIFIED
     assert not spoilt.holds
@@ -60,11 +62,10 @@ def test_forces_out_of_balance():
 
 
 def test_a_mechanism_that_closes_a_contact():
-    flat = assemble(model_from_labels(stacked((40, 20, 0))).model)
-    right = solution(1.0, flat)
+    right = solution(1.0, FLAT)
     duals = right.duals.copy()
     duals[2] += 1e-4  # it turns into the ground, and no load does work on that
-    spoilt = certify(flat, replace(right, duals=duals), 1.0)
+    spoilt = certify(FLAT, replace(right, duals=duals), 1.0)
     assert spoilt.gap < CERTIFIED
     assert spoilt.inadmissible > CERTIFIED
     assert spoilt.slack > CERTIFIED
@@ -72,13 +73,12 @@ def test_a_mechanism_that_closes_a_contact():
 
 
 def test_forces_below_the_best():
-    flat = assemble(model_from_labels(stacked((40, 20, 0))).model)
-    right = solution(1.0, flat)
+    right = solution(1.0, FLAT)
     less = right.columns.copy()
     less[0] -= 0.1
-    matrix = flat.matrix.toarray()
-    less[1:], _ = nnls(matrix[:, 1:], flat.rhs - matrix[:, 0] * less[0])
-    weak = certify(flat, replace(right, columns=less), 1.0)
+    matrix = FLAT.matrix.toarray()
+    less[1:], _ = nnls(matrix[:, 1:], FLAT.rhs - matrix[:, 0] * less[0])
+    weak = certify(FLAT, replace(right, columns=less), 1.0)
     assert weak.residual < CERTIFIED
     assert weak.gap == pytest.approx(0.1)
     assert not weak.holds
@@ -117,8 +117,7 @@ def test_a_wall_is_not_called_unstable_on_a_false_proof():
 
 def test_no_alpha_needs_a_mechanism_that_no_live_load_holds():
     """A stone in the air falls whatever the push; an overhanging one does not."""
-    air = {"blocks_xywh": [[0, 0, 1, 1], [3, 5, 1, 1]]}
-    floating = assemble(model_from_json(air))
+    floating = assemble(boxes([0, 0, 1, 1], [3, 5, 1, 1]))
     found = solution(1.0, floating)
     assert found.status is LimitStatus.UNSTABLE
     assert certify(floating, found, 1.0).holds
@@ -130,13 +129,7 @@ def test_no_alpha_needs_a_mechanism_that_no_live_load_holds():
 
 
 def test_self_stress_must_balance_press_and_grow_to_the_right_side():
-    wedged = {
-        "blocks": [
-            {"id": 1, "polygon": [[0, 0], [1, 0], [1, 2], [0, 2]], "fixed": True},
-            {"id": 2, "polygon": [[1, 0], [2, 0], [2, 1], [1, 1]]},
-        ]
-    }
-    program = assemble(model_from_json(wedged))
+    program = assemble(boxes([0, 0, 1, 2], [1, 0, 1, 1], fixed=(1,)))
     found = solution(-1.0, program)
     assert found.status is LimitStatus.UNBOUNDED
     assert certify(program, found, -1.0).holds
@@ -152,12 +145,7 @@ def test_self_stress_must_balance_press_and_grow_to_the_right_side():
 
 def hanging(mu=0.58):
     """A block that touches a fixed ceiling and a fixed wall to its right."""
-    boxes = (((0, 2, 3, 1), True), ((2, 0.5, 1, 1.5), True), ((1, 1, 1, 1), False))
-    blocks = [
-        {"id": i, "fixed": fixed, "polygon": [[x, y], [x + w, y], [x + w, y + h], [x, y + h]]}
-        for i, ((x, y, w, h), fixed) in enumerate(boxes, start=1)
-    ]
-    return model_from_json({"blocks": blocks, "mu": mu})
+    return boxes([0, 2, 3, 1], [2, 0.5, 1, 1.5], [1, 1, 1, 1], fixed=(1, 2), mu=mu)
 
 
 class Claims:

@@ -13,7 +13,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.lp.extremes import units_of_light_blocks
 from drystone.statics.lp.program import assemble
 from drystone.statics.result import LimitStatus
-from tests.statics.walls import coursed
+from tests.statics.walls import boxes, coursed
 from tests.strategies import repeatable
 
 
@@ -52,11 +52,7 @@ def test_slivers_under_a_heavy_block_have_an_answer(count):
 
 
 def test_what_weighs_nothing_falls_at_no_load_of_its_own():
-    blocks = [
-        {"id": 1, "polygon": [[0, 0], [9, 0], [9, 9], [0, 9]]},
-        {"id": 2, "polygon": [[8, 9], [10, 9], [10, 11], [8, 11]]},
-    ]
-    model = model_from_json({"blocks": blocks})
+    model = boxes([0, 0, 9, 9], [8, 9, 2, 2])
     for density in (0.0, 1e-12):
         weightless = replace(model.blocks[1], density=density)
         both = lateral_resistance(replace(model, blocks=(model.blocks[0], weightless)))

@@ -7,14 +7,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.contacts.blocks import model_from_labels
-from drystone.contacts.given import model_from_json
 from drystone.errors import InputError
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LimitStatus
 from drystone.statics.scatter import scatter as scatter_module
 from drystone.statics.scatter.scatter import scatter
 from drystone.statics.scatter.shaking import ScatterSettings, shaken
-from tests.statics.walls import brick_model, coursed, irregular, stacked
+from tests.statics.walls import boxes, brick_model, coursed, irregular, stacked
 from tests.strategies import label_images, repeatable
 
 FLAT = model_from_labels(stacked((40, 10, 0))).model
@@ -155,10 +154,8 @@ def test_a_contact_at_a_point_moves_to_both_sides_alike():
 
 
 def test_what_is_fixed_stays_and_so_does_the_joint_across():
-    below = [[0, 0], [4, 0], [4, 1], [0, 1]]
-    above = [[0, 1], [4, 1], [4, 2], [0, 2]]
-    blocks = [{"id": 1, "polygon": below, "fixed": True}, {"id": 2, "polygon": above}]
-    wall = shaken(model_from_json({"blocks": blocks}), ScatterSettings(placement_noise=0.3), rng())
+    pair = boxes([0, 0, 4, 1], [0, 1, 4, 1], fixed=(1,))
+    wall = shaken(pair, ScatterSettings(placement_noise=0.3), rng())
     assert wall.blocks[0].centroid == (2.0, 0.5)
     joint = next(i for i in wall.interfaces if {i.block, i.other} == {1, 2})
     assert joint.points[:, 1] == pytest.approx([1, 1])
@@ -206,12 +203,7 @@ def test_a_wall_that_never_stands_is_a_result():
 
 
 def test_walls_that_carry_any_load_stand():
-    fixed = [
-        {"id": 1, "polygon": [[0, 0], [1, 0], [1, 2], [0, 2]], "fixed": True},
-        {"id": 3, "polygon": [[2, 0], [3, 0], [3, 2], [2, 2]], "fixed": True},
-    ]
-    between = {"id": 2, "polygon": [[1, 1], [2, 1], [2, 2], [1, 2]]}
-    model = model_from_json({"blocks": [*fixed, between]})
+    model = boxes([0, 0, 1, 2], [1, 1, 1, 1], [2, 0, 1, 2], fixed=(1, 3))
     found = scatter(model, ScatterSettings(samples=60, mu=(0.0, 0.05), outline_noise=0.05))
     fallen = found.counts[LimitStatus.UNSTABLE]
     assert fallen > 0

@@ -1,11 +1,14 @@
-"""Help, version and wrong options: quick, short, and with a code."""
+"""Help, version, settings, and commands of other packages by their entry points."""
 
 import argparse
 import subprocess
 import sys
-from importlib.metadata import version
+from importlib import metadata
+from importlib.metadata import EntryPoint, EntryPoints, version
 
-from drystone.cli.parser import build_parser
+import pytest
+
+from drystone.cli.parser import GROUP, STUDIES, build_parser, found_commands
 from drystone.cli.settings import settings_from
 from drystone.kernels.backend import describe
 
@@ -100,8 +103,7 @@ def test_version_says_which_kernels_run(run, monkeypatch):
     said = f"drystone {version('drystone')} (kernels: {describe()})\n"
     assert run("--version").out == said
     monkeypatch.setenv("DRYSTONE_KERNELS", "fortran")
-    told = run("--version")
-    assert (told.code, "E143" in told.err, "fortran" in told.err) == (2, True, True)
+    run("--version").refused("E143", "fortran")
     monkeypatch.setenv("DRYSTONE_KERNELS", "")
     assert run("--version").code == 0
 
@@ -113,3 +115,46 @@ def test_without_a_command_help_is_printed_and_every_command_has_its_own(run):
         ran = run(command, "--help")
         assert (ran.code, ran.err) == (0, "")
         assert f"usage: drystone {command}" in ran.out
+
+
+def offer(monkeypatch, **values):
+    """Make these the only entry points."""
+    found = EntryPoints(EntryPoint(name, value, GROUP) for name, value in values.items())
+    monkeypatch.setattr(metadata, "entry_points", found.select)
+
+
+def test_the_lab_offers_the_studies():
+    commands = found_commands()
+    assert list(commands) == list(STUDIES)
+    assert all(command.text.endswith(".") for command in commands.values())
+
+
+def test_commands_of_the_package_come_first_and_look_for_no_others(monkeypatch):
+    offer(monkeypatch, plan="drystone_lab.commands:FETCH")
+    assert build_parser().parse_args(["plan", "s", "--wall", "5x5", "-o", "x"]).wall == "5x5"
+
+    def fail(**_):
+        pytest.fail("all installed packages are looked through")
+
+    monkeypatch.setattr(metadata, "entry_points", fail)
+    words = ["stones", "picture.png"]
+    assert build_parser(words).parse_args(words).command == "stones"
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({}, "bench: the command cannot be loaded: it is not installed."),
+        ({"bench": "gone_lab:BENCH"}, "gone_lab:BENCH: ModuleNotFoundError: No module named"),
+        ({"bench": "drystone_lab.commands:NONE"}, "NONE: AttributeError: "),
+    ],
+)
+def test_a_lab_that_is_missing_or_broken(values, said, run, monkeypatch):
+    offer(monkeypatch, **values)
+    ran = run("bench", "--list", "statics")
+    assert (ran.code, ran.out) == (2, "")
+    assert ran.err.startswith("drystone: E154 bench: the command cannot be loaded: ")
+    assert said in ran.err
+    listed = run("--help")
+    assert (listed.code, listed.err) == (0, "")
+    assert "bench" in listed.out

@@ -1,0 +1,219 @@
+"""What commands read: outlines and drawings as pictures, and bad input refused by its code."""
+
+import json
+import os
+import sys
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from drystone.io.photo_beside import PhotoSidecar, write_sidecar
+from drystone.io.plan_json import read_plan
+from drystone.io.wall_image import read_wall_image
+from tests.cli.conftest import WALL, masks_in
+from tests.io import labelled
+from tests.io.test_walls import drawn
+
+SIZES = [(90, 40), (70, 42), (84, 38), (60, 44), (96, 36), (72, 40)]
+"""Of six blocks, px or mm."""
+QUICK = ["--method", "paper", "--quiet"]
+
+
+def boxes():
+    """The outlines of the six blocks, side by side in two rows."""
+    places = [(10 + 110 * (k % 3), 10 + 60 * (k // 3)) for k in range(len(SIZES))]
+    return [
+        labelled.box(x, y, x + width, y + height)
+        for (x, y), (width, height) in zip(places, SIZES, strict=True)
+    ]
+
+
+def planned(run, path, out, *options):
+    """Plan a wall of the six blocks, check it, and read the plan."""
+    ran = run("plan", path, *options, *QUICK, "-o", out)
+    assert ran.code in (0, 4), ran.err
+    assert run("check", out, "--stones", path, "--json").json()["ok"]
+    return read_plan(out)
+
+
+@pytest.mark.parametrize(
+    "reading", [{}, {"px_per_m": 800.0, "unit": "mm", "up": "z-back"}], ids=["plain", "told"]
+)
+def test_a_drawing_has_a_scale_and_its_plan_holds(tmp_path, run, reading):
+    path = labelled.written(tmp_path, "dxf", [("stones", ring) for ring in boxes()])
+    said = run("stones", path).out
+    assert "2100 px a metre" in said
+    assert "W119 the longer side of the median stone is 0.078 m" in said
+    options = [word for n, value in reading.items() for word in (f"--{n.replace('_', '-')}", value)]
+    plan = planned(run, path, tmp_path / "out", "--wall", "0.25mx0.12m", *options)
+    assert (plan.length_unit, plan.px_per_m) == ("m", reading.get("px_per_m", 2100.0))
+    assert plan.source.get("reading", {}) == reading
+    assert run("check", tmp_path / "out", "--json").json()["ok"]
+
+
+def test_px_of_an_image_are_not_drawn_again(tmp_path, run):
+    two = labelled.coco([("stone", ring) for ring in boxes()])
+    two["images"].append({"id": 2, "file_name": "2.jpg", "width": 340, "height": 130})
+    for stone in two["annotations"][2:]:
+        stone["image_id"] = 2
+    path = tmp_path / "coco.json"
+    path.write_text(json.dumps(two))
+    options = ("--image", "2.jpg", "--px-per-m", "1000", "--wall", "0.25mx0.12m")
+    plan = planned(run, path, tmp_path / "out", *options)
+    assert plan.px_per_m == 1000.0
+    assert plan.source["reading"] == {"image": "2.jpg"}
+    assert (plan.source["width_px"], plan.source["stones"]) == (340, 4)
+    assert {step.stone for step in plan.stone_steps} <= {3, 4, 5, 6}
+
+
+def test_classes_and_frames_are_chosen_and_kept_in_the_plan(tmp_path, run):
+    frame = labelled.box(2, 2, 338, 128)
+    labels = [*["granite"] * 4, *["slate"] * 2, "granite"]
+    path = labelled.written(tmp_path, "labelme", zip(labels, [*boxes(), frame], strict=True))
+    for options, count in (
+        ((), 6),
+        (("--label", "slate"), 2),
+        (("--label", "slate", "Granite"), 6),
+        (("--label", "granite", "--keep", 5, "--skip", 1), 1),
+    ):
+        assert run("stones", path, *options, "--json").json()["stones"] == count
+    run("stones", path, "--label", "marble").refused("granite, slate")
+    plan = planned(run, path, tmp_path / "out", "--label", "granite", "--wall", "300x120")
+    assert plan.source["reading"] == {"label": ["granite"]}
+
+
+def test_a_photograph_has_its_scale_beside_it(tmp_path, run):
+    folder, out = tmp_path / "photo", tmp_path / "out"
+    folder.mkdir()
+    labels = np.zeros((130, 340), np.uint8)
+    for number, ((left, top), _, (right, bottom), _) in enumerate(boxes(), start=1):
+        labels[top:bottom, left:right] = number
+    Image.fromarray(labels).save(folder / "stones.png")
+    write_sidecar(PhotoSidecar(340, 130, 1000.0), folder)
+    wall = ("--wall", "0.25mx0.12m")
+    assert planned(run, folder, out, *wall).px_per_m == 1000.0
+    shown = run("stones", folder, "--json").json()
+    assert (shown["stones"], shown["px_per_m"]) == (6, 1000.0)
+    run("plan", folder, *wall, "--px-per-m", "900", *QUICK, "-o", out).refused("E131")
+
+
+@pytest.mark.parametrize("form", ["coco", "y up"])
+def test_outlines_are_analysed_measured_and_looked_at(form, tmp_path, run):
+    path = drawn(form, tmp_path)
+    told = run("analyse", path, "--json", "--associative-only").json()
+    assert (told["blocks"], told["stands"]) == (3, True)
+    measured = run("measure", path, "--json")
+    assert measured.json()["stones"] == 3
+    assert measured.json()["F_LR"] == pytest.approx(told["F_LR"], abs=0.05)
+    assert "3 stones" in run("craft", path).out
+
+
+def test_the_scale_of_a_drawing_is_kept(tmp_path, run):
+    path = drawn("dxf", tmp_path)
+    assert "0.1 m wide, 0.05 m high" in run("analyse", path, "--mu", "1:2").out
+    assert "0.1 m wide, 0.05 m high" in run("analyse", path, "--px-per-m", "3000").out
+    assert run("measure", path, "--px-per-m", "3000").code == 0
+    wall = run("measure", path, "--wall", "110x60mm", "--json").json()
+    assert wall["F_SF"] < 0.7
+    run("measure", drawn("labelme", tmp_path), "--px-per-m", "3000").refused("would do nothing")
+
+
+@pytest.mark.parametrize("command", ["analyse", "measure", "craft"])
+def test_options_of_reading_are_those_of_stones(command, tmp_path, run):
+    for form, last in (("labelme", 8), ("coco", 3)):
+        path = drawn(form, tmp_path)
+        less = run(command, path, "--skip", last, "--json")
+        assert less.code == 0
+        assert less.out != run(command, path, "--json").out
+    run(command, drawn("labelme", tmp_path), "--mask").refused("E118")
+    blocks = tmp_path / "blocks.json"
+    blocks.write_text(json.dumps({"blocks_xywh": [[0, 0, 2, 1]]}))
+    for options in (["--skip", "1"], ["--background", "255"], ["--holes", "keep"]):
+        run(command, blocks, *options).refused(f"{options[0]} has no meaning")
+
+
+@pytest.mark.parametrize(
+    ("form", "ending"), [("labelme", ".png"), ("dxf", ".tif"), ("y up", ".npy"), ("dxf", ".json")]
+)
+def test_stones_are_converted_with_their_ids_and_scale(form, ending, tmp_path, run):
+    path, to = drawn(form, tmp_path), tmp_path / "to" / f"labels{ending}"
+    first = run("stones", path, "--to", to, "--json").json()
+    again = run("stones", to, "--json").json()
+    for name in ("stones", "total_area_px", "width_px", "height_px", "clusters", "px_per_m"):
+        assert again[name] == first[name]
+    assert run("stones", path, "--to", to).code == 2  # never over a file unasked
+    assert run("stones", path, "--to", to, "--overwrite").code == 0
+    if first["px_per_m"] is not None:
+        assert "m high" in run("analyse", to, "--close-gaps", "1", "--associative-only").out
+
+
+def test_what_cannot_be_converted_is_refused_before_anything_is_written(tmp_path, run):
+    for name in ("labels.bmp", "stones.json", "labels"):
+        run("stones", drawn("labelme", tmp_path), "--to", tmp_path / "to" / name).refused("E139")
+    assert not (tmp_path / "to").exists()
+    masks = tmp_path / "masks"
+    masks.mkdir()
+    for number in (1, 2):
+        mask = np.zeros((30, 40), np.uint8)
+        mask[5:20, 10 * number : 10 * number + 12] = 255
+        Image.fromarray(mask).save(masks / f"{number}.png")
+    run("stones", masks, "--to", masks / "all.png").refused("E129")
+    told = run("stones", masks, "--to", tmp_path / "all.png")
+    assert "in common went to the smaller one, from: 1 (30 px)" in told.out
+    assert np.unique(read_wall_image(tmp_path / "all.png")).tolist() == [0, 1, 2]
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "code"),
+    [
+        (("wall", "width"), 1e308, "E205"),
+        (("wall", "width"), 1e9, "E121"),
+        (("steps", 0, "centroid"), [1e308, 1e308], "E205"),
+        (("settings", "mu"), "x", "E205"),
+        (("settings", "mu"), 1e308, "E205"),
+        (("settings", "settle"), 3, "E205"),
+        (("metrics", "F_SF"), 1e308, "E205"),
+        (("stopped",), ["deep"], "E132"),
+    ],
+)
+def test_numbers_of_a_plan_that_none_can_have(path, value, code, plan_copy, run):
+    plan = json.loads((plan_copy / "plan.json").read_text())
+    at = plan
+    for name in path[:-1]:
+        at = at[name]
+    at[path[-1]] = value
+    text = json.dumps(plan).replace('["deep"]', "[" * 900 + "]" * 900)
+    (plan_copy / "plan.json").write_text(text)
+    ran = run("measure", plan_copy)
+    ran.refused(f"drystone: {code} ", exit_code=2 if code == "E121" else 3)
+    checked = run("check", plan_copy, "--stones", plan_copy / "rubble.png")
+    assert checked.err.startswith(f"drystone: {'E203' if code == 'E132' else 'E2'}")
+    assert "Warning" not in ran.err + checked.err
+
+
+@pytest.mark.parametrize("command", ["stones", "measure", "segment", "check", "plan"])
+def test_pipes_are_not_waited_for(command, tmp_path, run, rubble):
+    pipe, out = tmp_path / "pipe.png", ("-o", tmp_path / "out")
+    os.mkfifo(pipe)
+    given = {"plan": (*WALL, *out), "segment": out}.get(command, ())
+    run(command, pipe, *given).refused("it is a pipe, and no regular file", exit_code=3)
+    if command == "plan":
+        run(command, rubble, *given, "--settings", pipe).refused("E128", exit_code=3)
+
+
+def test_a_byte_order_mark_is_no_fault(settled_copy, run):
+    for path in settled_copy.glob("*.json"):
+        path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
+    for command in ("check", "measure"):
+        ran = run(command, settled_copy)
+        assert ran.code == 0, ran.err
+
+
+@pytest.mark.skipif(sys.platform in {"win32", "darwin"}, reason="names are Unicode there")
+def test_names_of_files_that_are_no_utf_8_do_not_end_the_work_after_it_is_done(tmp_path, run):
+    masks, out = masks_in(tmp_path / "masks"), tmp_path / "out"
+    (masks / os.fsdecode(b"\xdcbersicht.txt")).write_bytes(b"")
+    ran = run("plan", masks, "--wall", "40x20", "--scale", "1", "--method", "paper", "-o", out)
+    assert ran.code in (0, 4)
+    assert "W117" in (out / "report.html").read_text("utf-8")
