@@ -115,19 +115,19 @@ def foreign(path):
 
 
 @pytest.mark.parametrize(
-    ("spoil", "code", "said"),
+    ("spoil", "said"),
     [
-        (Path.unlink, "E133", "there is no blocks.json beside the plan"),
-        (foreign, "E133", "has other stones than the plan"),
-        (lambda path: path.write_text("[1]"), "E133", "is not a block model"),
-        (lambda path: path.write_text("{}"), "E303", "there is neither"),
-        (lambda path: path.write_text("{"), "E132", "is not valid JSON"),
+        (Path.unlink, ("E133", "there is no blocks.json beside the plan")),
+        (foreign, ("E133", "has other stones than the plan")),
+        (lambda path: path.write_text("[1]"), ("E133", "is not a block model")),
+        (lambda path: path.write_text("{}"), ("E303", "there is neither")),
+        (lambda path: path.write_text("{"), ("E132", "is not valid JSON", "or plan again")),
     ],
 )
-def test_a_plan_needs_its_own_blocks(spoil, code, said, settled_copy, run):
+def test_a_plan_needs_its_own_blocks(spoil, said, settled_copy, run):
     spoil(settled_copy / BLOCKS)
     for command in ("measure", "analyse"):
-        run(command, settled_copy).refused(code, said, exit_code=3)
+        run(command, settled_copy).refused(*said, exit_code=3)
     ran = run("check", settled_copy)  # it takes the outlines from the stones, and compares these
     there = (settled_copy / BLOCKS).exists()
     assert (ran.code, "E238" in ran.out) == ((5, True) if there else (0, False))

@@ -8,10 +8,7 @@ import pytest
 import tifffile
 from PIL import Image
 
-from drystone.cli.commands import plan as plan_command
-from drystone.errors import Notice
 from drystone.io.plan_json import read_plan
-from drystone.io.read_stones import read_stones
 from drystone.io.wall_image import read_wall_image, write_labels
 from drystone.planner.profile import PARTS
 from tests.cli.conftest import WALL
@@ -51,25 +48,6 @@ def test_the_contract_of_plan_json(finished):
     stones = [step for step in plan["steps"] if step["kind"] == "stone"]
     assert sorted([step["stone"] for step in stones] + plan["unused"]) == list(range(1, 9))
     assert [step["step"] for step in plan["steps"]] == list(range(1, len(plan["steps"]) + 1))
-
-
-def test_stdout_is_a_table_and_stderr_the_notices(rubble, tmp_path, run, monkeypatch):
-    def read_with_notice(path, *, settings):
-        stones = read_stones(path, settings=settings)
-        notice = Notice("W110", "stone 1 may be two.")
-        return type(stones)(stones.stones, stones.source, (notice,))
-
-    monkeypatch.setattr(plan_command, "read_stones", read_with_notice)
-    ran = run("plan", rubble, *WALL, "-o", tmp_path / "out")
-    notice, read, wrote = ran.err.splitlines()
-    assert notice == "drystone: W110 stone 1 may be two."
-    assert read.startswith("drystone: Read 8 stones (largest ")
-    assert wrote.startswith(f"drystone: wrote to {tmp_path / 'out'}: plan.json report.html ")
-    lines = ran.out.splitlines()
-    assert lines[0].startswith(("complete: ", "incomplete: "))
-    names = [line.split()[0] for line in lines[1:]]
-    assert {"stones", "F_SF", "F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH"} <= set(names)
-    assert lines[-1].split()[-1] == str(tmp_path / "out" / "report.html")
 
 
 def test_json_has_the_summary_and_where_the_time_went(rubble, tmp_path, run):

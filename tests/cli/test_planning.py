@@ -38,6 +38,7 @@ def test_sizes_are_metres_centimetres_or_px():
 
 
 def test_a_plan_begins_and_ends_with_what_is_read_and_written(rubble, tmp_path, run):
+    """On stderr; stdout is a table."""
     out = tmp_path / "out"
     scaled = ("--px-per-m", 5000, *WALL[2:], "--wall", "100x36")
     ran = run("plan", rubble, *scaled, "-o", out)
@@ -46,6 +47,11 @@ def test_a_plan_begins_and_ends_with_what_is_read_and_written(rubble, tmp_path, 
     assert "W123" in odd
     written = last.removeprefix(f"drystone: wrote to {out}: ").split()
     assert set(written) == {path.name for path in out.iterdir()}
+    title, *rows = ran.out.splitlines()
+    assert title.startswith(("complete: ", "incomplete: "))
+    names = {row.split()[0] for row in rows}
+    assert {"stones", "F_SF", "F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH"} <= names
+    assert rows[-1].split()[-1] == str(out / "report.html")
     with Image.open(out / "build.gif") as film:
         assert film.n_frames == len(read_plan(out).steps) + 1
     quiet = run("plan", rubble, *scaled, "-o", out, "--overwrite", "--json")

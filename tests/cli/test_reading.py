@@ -215,5 +215,5 @@ def test_names_of_files_that_are_no_utf_8_do_not_end_the_work_after_it_is_done(t
     masks, out = masks_in(tmp_path / "masks"), tmp_path / "out"
     (masks / os.fsdecode(b"\xdcbersicht.txt")).write_bytes(b"")
     ran = run("plan", masks, "--wall", "40x20", "--scale", "1", "--method", "paper", "-o", out)
-    assert ran.code in (0, 4)
+    assert (ran.code in (0, 4), "drystone: W117 " in ran.err) == (True, True)
     assert "W117" in (out / "report.html").read_text("utf-8")

@@ -82,20 +82,6 @@ def test_a_block_on_its_corner_touches_the_ground_at_a_point():
     assert told(model) == [(1, GROUND, [(0, 0)], (0, 1))]
 
 
-def test_the_density_is_the_weight():
-    """A heavy cap moves the common centre of mass: b/h of the whole, not of the blocks."""
-    blocks = [{"id": 1, "polygon": square(0, 0)}, {"id": 2, "polygon": square(0, 2), "density": 3}]
-    both = lateral_resistance(model_from_json({"blocks": blocks, "mu": 2.0}))
-    centre = (1 * 1 + 3 * 3) / 4
-    assert both.right.alpha == pytest.approx(1 / centre)
-
-
-def test_gaps_within_the_tolerance_are_contacts_and_wider_ones_are_not():
-    for gap, count in ((1e-7, 2), (1e-4, 1)):
-        model = model_from_json({"blocks_xywh": [[0, 0, 2, 1], [0, 1 + gap, 2, 1]]})
-        assert len(model.interfaces) == count
-
-
 @pytest.mark.parametrize(("far", "size"), [(5.0, 1.0), (2e6, 1e-3), (1e8, 1e3)])
 def test_a_far_block_changes_no_answer_nearby(far, size):
     for gap, stands in ((0.0, True), (1e-6 * size, True), (1e-3 * size, False)):

@@ -14,23 +14,6 @@ from tests.polygons import box, simple_polygons
 from tests.strategies import repeatable
 
 
-def test_adding_keeps_the_old_ones():
-    site = Site(6, 4, 0.5)
-    stone, wedge = box(0.0, 0.0, 8.0, 4.0), box(8.0, 0.0, 12.0, 2.0)
-    one = Outlines.empty(site).added([(70_000, stone)], site.scale)
-    two = one.added([(3, box(0.0, 4.0, 2.0, 8.0)), (4_000_000_000, wedge)], site.scale)
-    assert (one.ids, two.ids) == ((70_000,), (70_000, 3, 4_000_000_000))
-    assert len(one.polygons) == 1
-    assert one.shares.labels.tolist()[2:] == [[70_000] * 4 + [0] * 2] * 2
-    assert two.shares.labels.tolist() == [
-        [3, 0, 0, 0, 0, 0],
-        [3, 0, 0, 0, 0, 0],
-        [70_000] * 4 + [0] * 2,
-        [70_000] * 4 + [4_000_000_000] * 2,
-    ]
-    assert two.added([], site.scale).ids == two.ids
-
-
 def test_blocks_are_the_corners_in_source_px():
     corners = [box(0.0, 0.0, 8.0, 4.0), np.array([[9.0, 0.0], [12.0, 0.0], [9.0, 2.5]])]
     outlines = Outlines.empty(Site(6, 4, 0.5)).added(list(zip((5, 2), corners, strict=True)), 0.5)
