@@ -44,18 +44,24 @@ PLAN = f"plan {{at}} {' '.join(WALL)} -o {{folder}}"
         (PLAN, "picture.png"),
         (f"{PLAN.replace('{at}', '{rubble}')} --settings {{at}}", "settings.toml"),
         ("demo --settings {at} -o {folder}", "settings.toml"),
-        ("export {at} --to csv poses --px-per-m 100", "poses.json"),
     ],
 )
 def test_what_is_read_is_not_written_over(line, name, rubble, finished, tmp_path, run):
     at = tmp_path / name
-    sources = {".json": finished / "plan.json", ".toml": finished / "settings.toml"}
-    shutil.copy(sources.get(at.suffix, rubble), at)
+    shutil.copy(finished / name if at.suffix == ".toml" else rubble, at)
     known = {"at": at, "folder": tmp_path, "rubble": rubble, "plan": finished}
     before = contents(tmp_path)
     ran = run(*(word.format(**known) for word in line.split()), "--overwrite")
     ran.refused(f"E129 {at}: is read here")
     assert contents(tmp_path) == before
+
+
+def test_export_keeps_what_it_reads(plan_copy, run):
+    plan = (plan_copy / "plan.json").rename(plan_copy / "poses.json")
+    before = contents(plan_copy)
+    ran = run("export", plan, "--to", "csv", "poses", "--px-per-m", 100, "--overwrite")
+    ran.refused(f"E129 {plan}: is read here")
+    assert contents(plan_copy) == before
 
 
 def test_check_keeps_the_wall_of_a_plan(rubble, plan_copy, run):

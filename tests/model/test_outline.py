@@ -66,7 +66,7 @@ def check(corners, mask):
     assert np.abs(sine).min() > 1e-9
 
 
-@repeatable(150)
+@repeatable(80)
 @given(
     mask=st.one_of(masks(max_px=9), joined_masks(), blobs()), tolerance=st.sampled_from(TOLERANCES)
 )
@@ -116,7 +116,7 @@ def test_corners_are_put_back_where_two_sides_meet_not_on_slopes():
     assert {tuple(point) for point in _mended(contour).tolist()} >= {(0.0, 0.0), (30.0, 0.0)}
 
 
-@repeatable(200)
+@repeatable(100)
 @given(mask=holed(), tolerance=st.sampled_from([0.0, 0.1, TOLERANCE, 0.5, 1.0, 4.0]))
 def test_outlines_stay_near_the_rim_of_the_pixels(mask, tolerance):
     """The middle of every pixel edge around a stone is near its outline, holes or not."""
@@ -136,7 +136,7 @@ def test_outlines_go_nowhere_else(mask, tolerance):
     assert squares.hausdorff_distance(outline) <= 2.0**0.5 / 4 + reach_px(tolerance)
 
 
-@repeatable(100)
+@repeatable(50)
 @given(mask=holed())
 def test_a_hole_moves_the_centroid_and_nothing_else(mask):
     stone, filled = Stone(1, mask), Stone(1, naive.filled(mask))

@@ -92,7 +92,7 @@ def stacked(draw):
 ANYWHERE = st.tuples(st.floats(-180, 180), st.floats(-1, 1), st.sampled_from([0.0, 1.0, 1e3, 1e8]))
 
 
-@repeatable(400)
+@repeatable(200)
 @given(stacked(), ANYWHERE, st.sampled_from([0.0, 1e-16, 1e-15, 1e-13, 1e-11, 1e-9]), st.booleans())
 def test_what_touches_does_not_overlap(pair, seen, gap, into):
     """Rounding, and up to 1e-9 of the size between both, make no overlap."""
@@ -103,7 +103,7 @@ def test_what_touches_does_not_overlap(pair, seen, gap, into):
         assert sum(part.area for part in common_parts(one, other)) <= RIGHT * pair.size**2
 
 
-@repeatable(200)
+@repeatable(100)
 @given(stacked(), ANYWHERE, st.floats(-5.5, -1.0))
 def test_what_is_pushed_in_overlaps(pair, seen, exponent):
     """By no more than it was pushed, and no less than exact arithmetic finds at some points."""
