@@ -67,12 +67,7 @@ def test_functions_stand_beside_every_twin_of_their_size(first, numpy):
         ("overlap", "20 x 20", "4 ms", "8 ms", "-", "", "-", "2.0"),
         ("overlap", "exponent", "1.00", "0.50", "-", "", "-", "-"),
     )
-
-
-def test_without_other_kernels_there_is_no_second_column(first):
-    rows = table.function_table(first, None).rows
-    assert [row[3] for row in rows] == ["-"] * 4
-    assert len(table.part_table(first, None).rows) == 1
+    assert [row[3] for row in table.function_table(first, None).rows] == ["-"] * 4
 
 
 def test_walls_stand_beside_the_slow_planner(first, numpy):
@@ -81,14 +76,12 @@ def test_walls_stand_beside_the_slow_planner(first, numpy):
     assert row[3:] == ("3 s", "30 s", "slow planner", "20", "2.0")
 
 
-def test_parts_and_the_rest_add_up(first, numpy):
+def test_parts_and_the_rest_add_up_and_memory_is_told_in_megabytes(first, numpy):
     rows = table.part_table(first, numpy).rows
     assert [row[1] for row in rows] == ["compiled", "NumPy"]
     assert rows[0][2:4] == (3, 12)
     assert rows[0][4:] == ("250 ms",) * 8 + ("2 s",)
-
-
-def test_memory_is_told_in_megabytes(first):
+    assert len(table.part_table(first, None).rows) == 1
     assert table.memory_table(first).rows == (("paper", "80.0", "90.0", "3.2"),)
 
 

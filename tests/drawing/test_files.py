@@ -126,9 +126,8 @@ def test_a_file_is_whole_or_as_it_was(name, tmp_path, monkeypatch):
     path = tmp_path / name
     path.write_bytes(b"good")
     monkeypatch.setattr(os, "replace", full)
-    with pytest.raises(PlanError, match=r"E206.*No space left") as caught:
+    with pytest.raises(PlanError, match=f"^E206 {path}: .*No space left"):
         WRITERS[name](path)
-    assert caught.value.where == str(path)
     assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [(name, b"good")]
 
 
@@ -138,7 +137,7 @@ def coordinates(width, height):
     return Image.fromarray(np.dstack([red, green, 0 * red]).astype(np.uint8))
 
 
-@pytest.mark.parametrize("zoom", [0.5, 1, 4, 20])
+@pytest.mark.parametrize("zoom", [0.5, 1, 8])
 def test_a_piece_shows_its_box_at_any_resolution(zoom):
     photo = StonePhoto(coordinates(round(200 * zoom), round(100 * zoom)), 200.0, 100.0)
     piece = photo.crop((50.0, 20.0, 110.0, 60.0)).astype(float)

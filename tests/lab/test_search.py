@@ -1,6 +1,5 @@
 """The comparison of methods: bricks, of which all is known, and results made by hand."""
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -40,7 +39,7 @@ def quick():
 
 
 def test_bricks_fill_their_wall_by_every_method(quick):
-    (walls, _, _), said = quick
+    (walls, differences, masons), said = quick
     assert [(row["wall"], row["method"]) for row in walls.records()] == [
         ("bricks", "restarts"),
         ("bricks", "restarts with wedges"),
@@ -53,46 +52,69 @@ def test_bricks_fill_their_wall_by_every_method(quick):
             assert row[name] == pytest.approx(1.0, abs=1e-3)
         assert row["2nd F_AV"] > row["F_AV"] > 0
         assert row["walls"] >= 1
-    assert len(said) == 4
-    assert said[2].startswith("bricks, search, seed 0, 0.02 s: 9 of 9 stones, F_SF 1, F_AV ")
-
-
-def test_methods_are_compared_with_the_search(quick):
-    (_, differences, masons), _ = quick
-    rows = [(row["wall"], row["more than"]) for row in differences.records()]
-    assert rows == [
+    others = [(row["wall"], row["more than"]) for row in differences.records()]
+    assert others == [
         ("bricks", "restarts"),
         ("bricks", "restarts with wedges"),
         ("bricks", "without courses"),
     ]
     assert differences.records()[0]["placed"] == "+0 (+0 to +0)"
     assert masons.rows == ()
+    assert len(said) == 4
+    assert said[2].startswith("bricks, search, seed 0, 0.02 s: 9 of 9 stones, F_SF 1, F_AV ")
 
 
-def test_rows_are_medians_of_the_seeds():
-    found = [result(5, placed=7, F_AV=None), result(8, placed=9, F_AV=3.0), result(6)]
-    (row,) = search._rows("bricks", 9, {"search": found})
-    columns = ("wall", "method", "range", *FIGURES[:2], "possible F_SF", *FIGURES[2:], "walls", "s")
-    found = dict(zip(columns, row, strict=True))
-    assert (found["wall"], found["range"], found["placed"]) == ("bricks", "1.0-9 of 9", 7)
-    assert (found["F_AV"], found["possible F_SF"], found["walls"], found["s"]) == (
-        2.0,
-        0.75,
-        6,
-        2.5,
-    )
-
-
-def test_differences_are_those_of_the_search_over_the_other():
-    by_way = {
-        "restarts": [result(merit=1.0, F_AH=4.0), result(merit=3.0, F_AH=4.0)],
-        "search": [result(merit=2.0, F_AH=1.0), result(merit=3.0, F_AH=3.0)],
+def kept_tables(path, by_method, **asked):
+    """Return the tables of results that are kept: of the seeds from 3 after each of the times."""
+    runs = {
+        SearchRun("bricks", method, 3 + k, seconds): one
+        for (method, seconds), found in by_method.items()
+        for k, one in enumerate(found)
     }
-    (row,) = search._differences("bricks", by_way)
-    found = dict(zip(("wall", "more than", "merit higher", *FIGURES), row, strict=True))
-    assert (found["more than"], found["merit higher"]) == ("restarts", "1 of 2")
-    assert found["merit"] == "+0.5 (+0 to +1)"
-    assert found["F_AH"] == "-2 (-3 to -1)"
+    append_results(path, runs.items())
+    seeds = max(map(len, by_method.values()))
+    usual = {"quick": True, "seed": 3, "seeds": seeds, "only": ("bricks",), "runs": path}
+    return search.run(BenchSettings(**(usual | asked)))
+
+
+def test_each_time_has_its_medians_and_differences(tmp_path):
+    by_method = {
+        ("restarts", 1.0): [result(merit=1.0, F_AH=4.0), result(merit=3.0, F_AH=4.0)],
+        ("search", 1.0): [result(merit=2.0, F_AH=1.0), result(merit=3.0, F_AH=3.0)],
+        ("restarts", 2.0): [result(5, placed=7, F_AV=None), result(8, placed=9, F_AV=3.0)],
+        ("search", 2.0): [result(merit=9.0)] * 2,
+    }
+    ways = ("search", "restarts")
+    tables = kept_tables(tmp_path / "runs.csv", by_method, seconds=(2.0, 1.0, 2.0), policies=ways)
+    assert [table.title.split(",")[0] for table in tables[:4]] == [
+        "Best walls after 1 s of CPU time",
+        "What the search has more after 1 s",
+        "Best walls after 2 s of CPU time",
+        "What the search has more after 2 s",
+    ]
+    (difference,) = tables[1].records()
+    assert (difference["more than"], difference["merit higher"]) == ("restarts", "1 of 2")
+    assert difference["merit"] == "+0.5 (+0 to +1)"
+    assert difference["F_AH"] == "-2 (-3 to -1)"
+    restarts, _ = tables[2].records()
+    told = ("wall", "method", "range", "placed", "F_AV", "possible F_SF", "walls")
+    found = ("bricks", "restarts", "7-9 of 9", 8, 3.0, 0.75, 6.5)
+    assert tuple(restarts[name] for name in told) == found
+
+
+def test_results_with_settings_are_in_the_tables_that_say_so(tmp_path):
+    by_method = {
+        ("search", 1.0): [result(merit=1.0)],
+        ("search, goal.F_AV = 24.0", 1.0): [result(merit=2.0)],
+    }
+    for changes, merit in (((("goal.F_AV", 24.0),), 2.0), ((), 1.0)):
+        table, differences, _ = kept_tables(
+            tmp_path / f"{merit}.csv", by_method,
+            seconds=(1.0,), policies=("search",), changes=changes,
+        )  # fmt: skip
+        (row,) = table.records()
+        assert (row["method"], row["merit"], differences.rows) == ("search", merit, ())
+        assert ("With goal.F_AV = 24.0." in table.notes) == bool(changes)
 
 
 def test_a_result_holds_the_figures_by_both_definitions():
@@ -108,67 +130,17 @@ def test_a_result_holds_the_figures_by_both_definitions():
         "2nd F_AV": second.F_AV, "2nd F_AH": second.F_AH, "T_LEVEL": 0.1, "E_FLUSH": 0.2,
         "merit": 12.0, "possible F_SF": 0.9, "walls": 4, "CPU s": 20.5,
     }  # fmt: skip
-    found.figures = None
-    with pytest.raises(ValueError, match="no stone"):
-        result_of(SimpleNamespace(found=found, walls=4, possible=0.9, seconds=20.5))
-
-
-def test_a_wall_of_outlines_is_looked_at_on_its_outlines():
+    # A wall of outlines is looked at on its outlines; here all are on whole pixels.
     wall = exact_example().wall
     found = second_of(wall)
-    assert found == second_arrangement(finer_labels(wall.labels))  # all on whole pixels
+    assert found == second_arrangement(finer_labels(wall.labels))
     assert found == second_of(Wall(wall.site, np.zeros((1, 1), np.uint32), (), wall.outlines))
 
 
-def test_the_effort_is_what_is_asked_for():
-    assert search._effort(BenchSettings()) == ((search.SECONDS,), range(search.SEEDS))
-    quick = BenchSettings(quick=True)
-    assert search._effort(quick) == ((search.QUICK_SECONDS,), range(search.QUICK_SEEDS))
-    asked = BenchSettings(quick=True, seconds=(7.5, 2.0, 7.5), seed=4, seeds=3)
-    assert search._effort(asked) == ((2.0, 7.5), range(4, 7))
-
-
-def test_each_time_has_its_tables_of_the_methods_that_were_asked_for(tmp_path):
-    times, kept = (1.0, 2.0), tmp_path / "runs.csv"
-    runs = {
-        SearchRun("bricks", "search", seed, seconds): result(merit=10 * seconds + seed)
-        for seed in (3, 4, 5)
-        for seconds in times
-    }
-    append_results(kept, runs.items())
-    asked = BenchSettings(
-        quick=True, seconds=times, seed=3, seeds=3, only=("bricks",), policies=("search",),
-        runs=kept,
-    )  # fmt: skip
-    *tables, masons = search.run(asked)
-    assert [table.title.split(",")[0] for table in tables] == [
-        "Best walls after 1 s of CPU time",
-        "What the search has more after 1 s",
-        "Best walls after 2 s of CPU time",
-        "What the search has more after 2 s",
-    ]
-    for table, merit in ((tables[0], 14.0), (tables[2], 24.0)):
-        (row,) = table.records()
-        assert (row["wall"], row["method"], row["merit"]) == ("bricks", "search", merit)
-    assert tables[1].rows == tables[3].rows == masons.rows == ()
-
-
-def test_results_with_settings_are_in_the_tables_that_say_so(tmp_path):
-    kept, aim = tmp_path / "runs.csv", (("goal.F_AV", 24.0),)
-    found = {
-        SearchRun("bricks", "search", 3, 1.0): result(merit=1.0),
-        SearchRun("bricks", "search, goal.F_AV = 24.0", 3, 1.0): result(merit=2.0),
-    }
-    append_results(kept, found.items())
-    asked = BenchSettings(
-        quick=True, seconds=(1.0,), seed=3, seeds=1, only=("bricks",), policies=("search",),
-        runs=kept, changes=aim,
-    )  # fmt: skip
-    table, *_ = search.run(asked)
-    (row,) = table.records()
-    assert (row["method"], row["merit"]) == ("search", 2.0)
-    assert "With goal.F_AV = 24.0." in table.notes
-    assert not any("goal" in note for note in search.run(replace(asked, changes=()))[0].notes)
+def test_a_run_without_a_stone_has_no_result():
+    found = SimpleNamespace(figures=None)
+    with pytest.raises(ValueError, match="no stone"):
+        result_of(SimpleNamespace(found=found, walls=4, possible=0.9, seconds=20.5))
 
 
 @pytest.mark.parametrize(

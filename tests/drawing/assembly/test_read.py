@@ -13,13 +13,6 @@ from drystone.statics.limit import lateral_resistance
 from tests.drawing.export.robot_plans import PX_PER_M, assembly, write_plan_folder
 
 
-def refused(code, path, **options):
-    with pytest.raises(DrystoneError) as caught:
-        read_assembly(path, **options)
-    assert caught.value.code == code
-    return caught.value
-
-
 def test_folder_and_file_are_the_same_plan(tmp_path):
     write_plan_folder("exact", tmp_path)
     one, other = read_assembly(tmp_path), read_assembly(tmp_path / "plan.json")
@@ -32,7 +25,8 @@ def test_folder_and_file_are_the_same_plan(tmp_path):
     assert len(sides) % 2 == 0
     assert one.thickness == pytest.approx((sides[middle - 1] + sides[middle]) / 2)
     (tmp_path / "blocks.json").unlink()
-    refused("E133", tmp_path)
+    with pytest.raises(DrystoneError, match="E133"):
+        read_assembly(tmp_path)
 
 
 def test_areas_of_outlines_are_those_of_the_blocks():
@@ -63,41 +57,34 @@ def test_one_scale_only_and_a_thickness_needs_one(tmp_path):
         write_plan_folder(name, tmp_path / name)
     metric, px = tmp_path / "exact-m", tmp_path / "raster"
     assert read_assembly(metric, px_per_m=PX_PER_M).px_per_m == PX_PER_M
-    assert "137 px a metre, not 200" in refused("E131", metric, px_per_m=200.0).what
-    refused("E131", px, thickness_m=0.3)
+    with pytest.raises(DrystoneError, match=r"E131 .*137 px a metre, not 200"):
+        read_assembly(metric, px_per_m=200.0)
+    with pytest.raises(DrystoneError, match="E131"):
+        read_assembly(px, thickness_m=0.3)
     assert read_assembly(px, thickness_m=0.3, px_per_m=100.0).thickness == 0.3
 
 
-def twice(steps):
-    steps.append(steps[-1] | {"step": len(steps) + 1})
-
-
-def without_its_stone(steps):
-    next(step for step in steps if step["kind"] == "wedge")["under"] = 9999
-
-
-def from_two(steps):
-    for step in steps:
-        step["step"] += 1
+def under(step, stone):
+    return step | ({"under": stone} if step["kind"] == "wedge" else {})
 
 
 @pytest.mark.parametrize(
-    ("name", "tamper", "code", "said"),
+    ("name", "tampered", "code", "said"),
     [
-        ("exact", twice, "E213", "was placed before"),
-        ("exact", without_its_stone, "E214", "does not follow stone 9999"),
-        ("raster", list.reverse, "E214", "this is step 1 of the plan"),
-        ("raster", from_two, "E214", "this is step 1 of the plan"),
+        ("exact", lambda s: [*s, s[-1] | {"step": len(s) + 1}], "E213", "was placed before"),
+        ("exact", lambda s: [under(one, 9999) for one in s], "E214", "does not follow stone 9999"),
+        ("raster", lambda s: s[::-1], "E214", "this is step 1 of the plan"),
+        ("raster", lambda s: [one | {"step": one["step"] + 1} for one in s], "E214",
+         "this is step 1 of the plan"),
     ],
-)
-def test_steps_that_nobody_can_build_by_are_refused(name, tamper, code, said, tmp_path):
+)  # fmt: skip
+def test_steps_that_nobody_can_build_by_are_refused(name, tampered, code, said, tmp_path):
     path = write_plan_folder(name, tmp_path) / "plan.json"
     plan = json.loads(path.read_text("utf-8"))
-    tamper(plan["steps"])
+    plan["steps"] = tampered(plan["steps"])
     path.write_text(json.dumps(plan), "utf-8")
-    error = refused(code, tmp_path)
-    assert said in error.what
-    assert "`drystone check`" in error.cure
+    with pytest.raises(DrystoneError, match=f"{code} .*{said}.*`drystone check`"):
+        read_assembly(tmp_path)
 
 
 def test_a_pit_that_meets_the_outside_at_a_corner_is_filled():

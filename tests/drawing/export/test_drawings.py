@@ -143,6 +143,10 @@ def test_the_audit_finds_nothing_and_the_unit_is_the_metre_or_none(doc, tmp_path
     assert doc.dxfversion == "AC1024"  # R2010
     assert list(doc.classes.classes) == sorted(doc.classes.classes)  # the same in every process
     assert (doc.header["$INSUNITS"], doc.header["$MEASUREMENT"]) == (6, 1)
+    shown = {layer.dxf.name for layer in doc.layers if layer.is_on()}
+    layers = {layer.dxf.name for layer in doc.layers}
+    assert {"STONES", "WEDGES", "NUMBERS", "SITE"} <= shown
+    assert layers - shown == {"FORCES", "MECHANISM", "CONTACTS", *LAYERS[4:8]}
     ezdxf.options.write_fixed_meta_data_for_testing = False
     (path,) = FORMATS["dxf"].write(assembly(px_per_m=None), tmp_path, SETTINGS)
     assert not ezdxf.options.write_fixed_meta_data_for_testing
@@ -152,7 +156,9 @@ def test_the_audit_finds_nothing_and_the_unit_is_the_metre_or_none(doc, tmp_path
     assert "Not to scale: the unit is 1 px" in words
 
 
-def test_outlines_are_closed_and_those_of_the_plan(doc, wall):
+def test_outlines_are_closed_and_those_of_the_plan_with_steps_at_centroids(doc, wall):
+    texts = {text.dxf.text: text for text in on_layer(doc, "NUMBERS", "TEXT")}
+    assert set(texts) == {str(part.step) for part in wall.parts}
     drawn = {told(e)[0]: e for layer in ("STONES", "WEDGES") for e in on_layer(doc, layer)}
     assert set(drawn) == {part.name for part in wall.parts}
     for part in wall.parts:
@@ -162,20 +168,12 @@ def test_outlines_are_closed_and_those_of_the_plan(doc, wall):
         assert told(outline) == [part.name, part.step, part.angle_deg]
         points = np.array([(x, y) for x, y, *_ in outline.get_points()])
         assert np.abs(points - part.corners).max() < 1e-9
+        _, place, _ = texts[str(part.step)].get_placement()
+        assert (place.x, place.y) == pytest.approx(part.centroid)
     total = sum(polygon(e).area for e in drawn.values())
     # Bricks of .3 m x .15 m with two bevels each of 5, 10 or 15 mm: half their squares.
     bevels = sum((0.005 * (1 + place % 3)) ** 2 / 2 for place in range(6))
     assert total == pytest.approx(6 * 0.3 * 0.15 - bevels, rel=1e-9)
-
-
-def test_layers_and_what_is_shown(doc):
-    shown = {layer.dxf.name for layer in doc.layers if layer.is_on()}
-    layers = {layer.dxf.name for layer in doc.layers}
-    assert {"STONES", "WEDGES", "NUMBERS", "SITE"} <= shown
-    assert layers - shown == {
-        "CONTACTS", "FORCES", "FORCES-LEFT", "FORCES-RIGHT", "MECHANISM", "MECHANISM-LEFT",
-        "MECHANISM-RIGHT",
-    }  # fmt: skip
 
 
 def test_contacts_are_lines_as_long_as_the_interfaces(doc, wall):
@@ -200,14 +198,6 @@ def test_forces_on_the_ground_carry_the_wall(doc, wall):
         assert weights[1] == pytest.approx(7.0, rel=0.02)
         result = wall.resistance.left if sign < 0 else wall.resistance.right
         assert weights[0] == pytest.approx(-sign * result.alpha * 7.0, rel=0.04)
-
-
-def test_numbers_are_the_steps_at_the_centroids(doc, wall):
-    texts = {text.dxf.text: text for text in on_layer(doc, "NUMBERS", "TEXT")}
-    assert set(texts) == {str(part.step) for part in wall.parts}
-    for part in wall.parts:
-        _, place, _ = texts[str(part.step)].get_placement()
-        assert (place.x, place.y) == pytest.approx(part.centroid)
 
 
 def test_every_step_is_written_those_of_wedges_above_the_ground():

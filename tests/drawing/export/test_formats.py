@@ -53,10 +53,8 @@ def test_there_is_none_in_metres_without_a_scale(name, tmp_path):
 ])  # fmt: skip
 def test_an_extra_that_is_missing_is_named(name, module, code, extra, monkeypatch):
     monkeypatch.setitem(sys.modules, module, None)
-    with pytest.raises(UsageError, match="not installed") as caught:
+    with pytest.raises(UsageError, match=rf"{code} .*not installed.*drystone\[{extra}\]"):
         FORMATS[name].files(assembly(), SETTINGS)
-    assert caught.value.code == code
-    assert f"drystone[{extra}]" in caught.value.cure
 
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "for-robotics.md"

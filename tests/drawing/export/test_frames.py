@@ -141,19 +141,16 @@ def test_what_stands_is_dim_and_what_is_to_come_dark(scene):
     assert around[5:] == [DIM] * 3
 
 
-def test_the_bar_is_as_long_as_it_says(scene):
-    strip = scene[1][1][600 - 30 :, 400:]
+def test_the_bar_is_as_long_as_it_says_and_the_wall_begins_where_it_is_told_to(scene, tmp_path):
+    wall, images = scene
+    strip = images[1][600 - 30 :, 400:]
     longest = max(int(run) for row in strip for run in runs(row > 0))
     assert longest == pytest.approx(0.1 * 500, abs=2)
-
-
-def test_the_wall_begins_where_it_is_told_to(tmp_path):
     settings = replace(PROJECTOR, projector_offset_px=(20, 200))
-    wall = assembly()
     image = picture(FORMATS["projector"].write(wall, tmp_path, settings)[1])
-    part = wall.parts[0]
     x0, y0, *_ = bright_box(image)
-    assert (x0, y0) == pytest.approx((20 + part.corners[:, 0].min() * 500, 200), abs=3)
+    left = 20 + wall.parts[0].corners[:, 0].min() * 500
+    assert (x0, y0) == pytest.approx((left, 200), abs=3)
 
 
 @pytest.mark.parametrize("settings", [
@@ -161,9 +158,8 @@ def test_the_wall_begins_where_it_is_told_to(tmp_path):
     replace(PROJECTOR, projector_offset_px=(400, 84)),
 ])  # fmt: skip
 def test_a_wall_that_is_not_in_the_picture_is_refused_with_the_cure(tmp_path, settings):
-    with pytest.raises(UsageError) as caught:
+    with pytest.raises(UsageError, match="E187") as caught:
         FORMATS["projector"].write(assembly(), tmp_path, settings)
-    assert caught.value.code == "E187"
     assert list(tmp_path.iterdir()) == []
     found = float(caught.value.cure.split("@")[1].split()[0])
     for per_m, fits in ((found, True), (found + 1, False)):

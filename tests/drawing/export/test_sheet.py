@@ -165,10 +165,6 @@ def small():
     return assembly()
 
 
-def part(small, step):
-    return small.parts[step - 1]
-
-
 @pytest.mark.parametrize(("angle_deg", "words"), [
     (0.0, "as it lies"), (-2.4, "as it lies"), (362.0, "as it lies"), (3.0, "turn left 3°"),
     (97.4, "turn left 97°"), (-97.4, "turn right 97°"), (262.6, "turn right 97°"),
@@ -181,8 +177,8 @@ def test_turns_are_the_short_way_round(angle_deg, words):
 
 
 def test_neighbours_are_those_that_stand_already(small):
-    assert beside(small, part(small, 1)) == {"on": [GROUND]}
-    assert beside(small, part(small, 7)) == {"on": [4], "right of": [6]}
+    assert beside(small, small.parts[0]) == {"on": [GROUND]}
+    assert beside(small, small.parts[6]) == {"on": [4], "right of": [6]}
     for step, words in (
         (1, "on the ground"),
         (2, "on the ground, under 1"),
@@ -191,18 +187,18 @@ def test_neighbours_are_those_that_stand_already(small):
         # The wedge touches it too, and nobody sets a stone by a wedge beside it.
         (3, "on the ground, right of 1"),
     ):
-        assert beside_words(small, part(small, step)) == words
+        assert beside_words(small, small.parts[step - 1]) == words
 
 
 def test_sizes_and_places_have_units(small):
-    wedge, px = part(small, 2), assembly(px_per_m=None)
+    wedge, px = small.parts[1], assembly(px_per_m=None)
     said = "wedge 2: 150 \N{MULTIPLICATION SIGN} 30 mm, under its right end"
     assert wedge_words(small, wedge) == said
     assert length_words(small, 0.1234, 2.0) == "12.3, 200.0 cm"
     assert length_words(px, 12.3) == "12 px"
     assert size_words(px, 12.3, 4.0) == "12 \N{MULTIPLICATION SIGN} 4 px"
     # The left one of two that are as low.
-    assert lowest_corner(part(small, 3)) == pytest.approx((0.3, 0.0))
+    assert lowest_corner(small.parts[2]) == pytest.approx((0.3, 0.0))
     assert pages.drawn_factor(small, wedge) == 1 / 5  # 150 mm x 30 mm in 44 mm x 25 mm
     fine = assembly(px_per_m=3000.0)
     assert pages.drawn_factor(fine, next(fine.wedges)) == 1.0  # 10 mm x 2 mm
@@ -221,7 +217,7 @@ def test_it_does_not_matter_which_part_of_a_pair_an_interface_names_first(small)
 
 
 def test_stones_side_by_side_that_meet_at_a_corner_are_not_upon_each_other(small):
-    left, right = part(small, 3), part(small, 4)
+    left, right = small.parts[2], small.parts[3]
     normal = {True: (0.8, 0.6), False: (-0.8, -0.6)}
     for first in (True, False):
         pair = (right.id, left.id) if first else (left.id, right.id)
@@ -229,7 +225,7 @@ def test_stones_side_by_side_that_meet_at_a_corner_are_not_upon_each_other(small
         meeting = replace(small, model=RigidBlockModel(small.model.blocks, (corner,)))
         assert beside(meeting, right) == {"right of": [left.step]}
     # A stone that a contact of the same slope carries over its width is on it.
-    above = part(small, 6)
+    above = small.parts[5]
     slope = Interface(above.id, left.id, np.array([[0.4, 0.15]]), (0.8, 0.6))
     carried = replace(small, model=RigidBlockModel(small.model.blocks, (slope,)))
     assert beside(carried, above) == {"on": [left.step]}

@@ -42,10 +42,8 @@ def test_a_prism_is_closed_and_faces_outward(name):
     ids=["crosses itself", "touches itself", "flat"],
 )
 def test_an_outline_that_bounds_no_solid_is_refused(corners):
-    with pytest.raises(InputError) as caught:
+    with pytest.raises(InputError, match=r"E180 .*stone_012"):
         solids.extruded(np.array(corners, float), 0.0, 1.0, "stone_012")
-    assert caught.value.code == "E180"
-    assert "stone_012" in str(caught.value)
 
 
 def test_second_moments_of_a_shifted_and_turned_box():
@@ -53,11 +51,7 @@ def test_second_moments_of_a_shifted_and_turned_box():
     box = np.array([[-1.0, -2.0], [1.0, -2.0], [1.0, 2.0], [-1.0, 2.0]])
     xx, zz, xz = solids.second_moments(box + np.array([3.0, 5.0]))
     assert (xx, zz, xz) == pytest.approx((8 / 3 + 8 * 9, 32 / 3 + 8 * 25, 8 * 15))
-    turned = box @ np.array([[0.6, 0.8], [-0.8, 0.6]])
-    xx, zz, xz = solids.second_moments(turned)
-    main = (
-        np.array([[0.6, -0.8], [0.8, 0.6]])
-        @ np.diag([8 / 3, 32 / 3])
-        @ np.array([[0.6, 0.8], [-0.8, 0.6]])
-    )
+    turn = np.array([[0.6, 0.8], [-0.8, 0.6]])
+    xx, zz, xz = solids.second_moments(box @ turn)
+    main = turn.T @ np.diag([8 / 3, 32 / 3]) @ turn
     assert (xx, zz, xz) == pytest.approx((main[0, 0], main[1, 1], main[0, 1]))

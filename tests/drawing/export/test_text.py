@@ -39,12 +39,9 @@ def test_numbers_are_floats_for_every_reader(value):
     assert not number(value + 0.0).startswith("-0.0")
 
 
-def test_a_line_is_one_line():
+def test_a_line_is_one_line_and_letters_that_the_typeface_lacks_are_boxes():
     assert one_line("a\nb\tc\x01d\u2028e\ud800f") == "a b c d e f"
     assert one_line("<é 漢>") == "<é 漢>"
-
-
-def test_letters_that_the_typeface_lacks_are_boxes():
     assert drawable("Mäuer → 漢字\n") == f"Mäuer → {MISSING}{MISSING} "
 
 
@@ -58,8 +55,5 @@ def test_what_is_too_wide_is_cut_and_no_more(text, weight):
     typeface = FontProperties(family="DejaVu Sans", weight=weight)
     width = TextPath((0, 0), said, size=9.5, prop=typeface).get_extents().x1
     assert 165.0 < width <= 181.0
-
-
-def test_what_fits_stays():
     assert fitted("Build sheet", 9.5, 180.0) == "Build sheet"
     assert fitted("", 9.5, 0.0) == ""

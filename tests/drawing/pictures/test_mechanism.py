@@ -101,10 +101,14 @@ def test_the_arrow_points_where_the_load_goes(direction, load, way, said):
     assert [text.get_text() for text in ax.texts if text.get_text()] == [said]
 
 
-def test_what_stays_is_drawn_without_a_multiplier():
+def test_what_stays_has_no_multiplier_and_polygons_above_the_ground_have_none():
     still = plot_mechanism(labels(), slide((0, 0, 0)), "left")
     assert not any("None" in t.get_text() or "=" in t.get_text() for t in still.texts)
     np.testing.assert_allclose(vertices(still, "moved-12"), L_CORNERS)
+    assert "ground" in patches(still)
+    corners = np.array([[0, 3], [2, 3], [2, 4], [0, 4]])
+    ax = plot_mechanism({1: corners}, Mechanism((1,), np.array([[1.0, 0, 0]])), "right")
+    assert "ground" not in patches(ax)
 
 
 def test_everything_drawn_is_in_view():
@@ -115,13 +119,6 @@ def test_everything_drawn_is_in_view():
     assert points[:, 0].max() < x1
     assert y0 < 0
     assert points[:, 1].max() < y1
-
-
-def test_polygons_above_the_ground_have_none():
-    corners = np.array([[0, 3], [2, 3], [2, 4], [0, 4]])
-    ax = plot_mechanism({1: corners}, Mechanism((1,), np.array([[1.0, 0, 0]])), "right")
-    assert "ground" not in patches(ax)
-    assert "ground" in patches(plot_mechanism(labels(), slide((1, 0, 0)), "right"))
 
 
 def test_numbers_move_with_their_blocks():
@@ -186,23 +183,17 @@ def test_it_goes_from_rest_to_the_largest_displacement_and_back():
     assert max(areas) < 1.02 * min(areas)
 
 
-def test_the_last_picture_is_that_of_the_mechanism():
-    """Nothing is cut off: the outermost pixels are white in all frames."""
-    frames = arrays(mechanism_frames(TALL, rocking(), "right", 0.5, frames=4, numbers=True))
-    for frame in frames:
+def test_numbers_move_along_and_nothing_is_cut_off():
+    """The outermost pixels are white in all frames."""
+    plain, numbered = (
+        arrays(mechanism_frames(TALL, rocking(), "right", 0.5, frames=4, numbers=n)) for n in (0, 1)
+    )
+    for frame in numbered:
         edges = (frame[0], frame[-1], frame[:, 0], frame[:, -1])
         assert all((edge == 255).all() for edge in edges)
         assert abs(max(frame.shape) - LONGER_SIDE_PX) <= 1
-
-
-def test_numbers_move_along():
-    drawn = [
-        arrays(mechanism_frames(TALL, rocking(), "right", frames=4, numbers=n)) for n in (0, 1)
-    ]
-    plain, numbered = (np.array(frames[:3]) for frames in drawn)
-    places = [
-        np.nonzero((a != b).any(axis=2))[1].mean() for a, b in zip(plain, numbered, strict=True)
-    ]
+    pairs = zip(plain[:3], numbered, strict=False)
+    places = [np.nonzero((a != b).any(axis=2))[1].mean() for a, b in pairs]
     assert places[0] + 5 < places[1] < places[2] - 5
 
 

@@ -10,7 +10,6 @@ import pytest
 import shapely
 from PIL import Image, ImageDraw
 
-import drystone as ds
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
 from drystone.drawing import view_of_assembly, view_of_result, view_of_wall, write_report
@@ -118,10 +117,8 @@ def test_parts_are_the_steps_of_the_plan(method, px_per_m):
         assert polygon(part).is_valid
         assert part["neighbours"] == sorted(set(part["neighbours"]) - {part["id"]})
         if isinstance(step, StoneStep):
-            assert (part["id"], part["angle_deg"]) == (
-                step.stone,
-                pytest.approx(step.angle_deg, abs=6e-4),
-            )
+            assert part["id"] == step.stone
+            assert part["angle_deg"] == pytest.approx(step.angle_deg, abs=6e-4)
             assert part["colour"] == cluster_colour(step.cluster)
             assert part["pattern"] in PATTERNS
             assert part["indices"] == pytest.approx(step.indices, abs=6e-5)
@@ -169,9 +166,8 @@ def test_a_scale_told_afterwards_makes_metres(tmp_path):
     assert (px["unit"], m["unit"], m["size"]) == ("px", "m", [2.6, 1.0])
     assert m["parts"][0]["centroid"] == pytest.approx([v / 50 for v in px["parts"][0]["centroid"]])
     assert m["parts"][0]["source"] == px["parts"][0]["source"]
-    assert m["contacts"][3]["forces"]["left"] == pytest.approx(
-        np.array(px["contacts"][3]["forces"]["left"]), abs=1e-4
-    )
+    ours, theirs = (np.array(v["contacts"][3]["forces"]["left"]) for v in (m, px))
+    assert ours == pytest.approx(theirs, abs=1e-4)
 
 
 def test_what_is_not_planned_is_shown_too():
@@ -238,8 +234,8 @@ def test_only_a_tilting_table_is_called_one(load_case, said, horizontal):
     shown = view_of_wall(wall, model, resistance, unit="units", load_case=load_case)
     assert shown["mechanisms"]["left"]["load"] == said
     plain = load_case == "tilting table"
-    assert any("as on a tilting table" in one for one in shown["assumptions"]) == plain
-    assert any(load_case in one for one in shown["assumptions"])
+    assert ("as on a tilting table" in shown["assumptions"][-1]) == plain
+    assert load_case in shown["assumptions"][-1]
     assert shown["dead_load"] == ("dead load" if "tilted" in load_case else "own weight")
     assert f"under {shown['dead_load']} alone" in shown["forces_words"]
     cards = {card["symbol"]: card["sentence"] for card in shown["metrics"]}
@@ -256,15 +252,11 @@ def test_what_is_fixed_and_what_has_its_own_friction_is_said():
         {"id": 3, "polygon": [[0, 3], [4, 3], [4, 4], [0, 4]], "density": 2.4},
     ]
     wall = {block["id"]: np.array(block["polygon"], float) for block in blocks}
-    plain = model_from_json({"blocks_xywh": [[0, 0, 1, 2]]})
     owned = model_from_json({"blocks": blocks, "friction": [{"between": [2, 1], "mu": 0.4}]})
     said = view_of_wall(wall, owned, lateral_resistance(owned, mechanism=True))["assumptions"]
     assert said[-4:-2] == ["Fixed like the ground: 1.", "Held by guides: 2 (turn)."]
     assert "densities" in said[-2]
     assert "of their own" in said[-1]
-    one = {1: np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]])}
-    said = view_of_wall(one, plain, lateral_resistance(plain, mechanism=True))["assumptions"]
-    assert "tilting table" in said[-1]
 
 
 def test_a_scaled_analysis_is_that_of_the_scaled_wall():
@@ -329,10 +321,3 @@ def test_a_plan_with_a_photo_has_a_crop_for_every_stone(tmp_path):
     shown = view_of_result(result(), photo=tmp_path / "photo.jpg")
     assert all(part["crop"]["data"].startswith("data:image/jpeg") for part in shown["parts"])
     assert all(part["crop"] is None for part in view()["parts"])
-
-
-def test_a_result_shows_itself_in_a_notebook():
-    shown = result()._repr_html_()
-    assert shown.startswith('<iframe title="Dry-stone wall from ')
-    assert "\n" not in shown
-    assert ds.view(result())._repr_html_() == shown

@@ -34,11 +34,6 @@ function isSimple(ring) {
   return ring.every((a, i) => ring.every((c, j) => apart(a, next(i), c, next(j))));
 }
 
-test("no ring that crosses itself is simple", () => {
-  assert.ok(isSimple(square(0, 0)));
-  assert.ok(!isSimple([[0, 0], [10, 10], [10, 0], [0, 10]]));
-});
-
 test("area, centroid and sides of a rectangle that is turned", () => {
   const turned = [[0, 0], [4, 3], [1, 7], [-3, 4]];
   assert.equal(area(turned), 25);
@@ -60,9 +55,7 @@ test("a stroke through both legs of a horseshoe makes three", () => {
   const shoe = [[0, 0], [30, 0], [30, 30], [20, 30], [20, 10], [10, 10], [10, 30], [0, 30]];
   const parts = cut(shoe, [[-5, 20], [40, 20]]);
   assert.deepEqual(parts.map((part) => Math.round(area(part))).sort((a, b) => a - b), [100, 100, 500]);
-});
-
-test("a stroke that ends inside, or passes by, cuts nothing", () => {
+  // A stroke that ends inside, or passes by, cuts nothing.
   assert.equal(cut(square(0, 0), [[-5, 4], [5, 4]]).length, 1);
   assert.equal(cut(square(0, 0), [[-5, -4], [15, -4]]).length, 1);
 });
@@ -152,10 +145,6 @@ test("what is saved is read again as it was", () => {
   assert.equal(file.drystone.px_per_m, 200);
   assert.deepEqual(file.drystone.not_used, [2]);
   assert.deepEqual(sketch.stateOf(JSON.parse(JSON.stringify(file))), state);
-});
-
-test("two stones never share a number", () => {
-  let state = sketch.withStone(sketch.withStone(sketch.stateOf({}), square(0, 0)), square(20, 0));
-  state = sketch.withNumber(state, 1, 2);
-  assert.deepEqual(state.stones.map((stone) => stone.id), [2, 1]);
+  // Two stones never share a number.
+  assert.deepEqual(sketch.withNumber(state, 1, 2).stones.map((stone) => stone.id), [2, 1]);
 });

@@ -4,20 +4,8 @@ import pytest
 
 from drystone_lab import shear
 from drystone_lab.commands import bench
-from drystone_lab.suites import GOES_BY, HISTORY, PUBLIC, SUITES
+from drystone_lab.suites import GOES_BY, HISTORY, PUBLIC
 from drystone_lab.table import Table
-
-
-def test_suites_are_named_one_a_line(run):
-    lines = run("bench", "--list").out.splitlines()
-    assert [line.split(":")[0] for line in lines][: len(SUITES)] == list(SUITES)
-
-
-@pytest.mark.parametrize("suite", [(), ("speed",)])
-def test_a_suite_that_is_none(suite, run):
-    ran = run("bench", *suite)
-    assert ran.code == 2
-    assert "E138" in ran.err
 
 
 def test_a_suite_is_printed_and_has_a_folder_for_pictures(tmp_path, run, monkeypatch):
@@ -27,14 +15,6 @@ def test_a_suite_is_printed_and_has_a_folder_for_pictures(tmp_path, run, monkeyp
     assert "predicted over measured" in ran.out
     assert (tmp_path / "new").is_dir()
     assert "E129" in run("bench", "shear", "--quick", "-o", __file__).err
-
-
-def test_a_suite_without_pictures_makes_no_folder_for_them(tmp_path, run):
-    ran = run("bench", "photos", "--quick", "-o", tmp_path / "new")
-    assert ran.code == 2
-    assert "E138 -o: the suite 'photos' draws no pictures." in ran.err
-    assert "it is for shear" in ran.err
-    assert not (tmp_path / "new").exists()
 
 
 def test_walls_say_that_data_is_missing(tmp_path, run, monkeypatch):
@@ -89,19 +69,11 @@ def test_options_that_a_suite_does_not_go_by(who, given, run, tmp_path, monkeypa
     assert not any(tmp_path.iterdir())
 
 
-def test_who_goes_by_what():
-    """`--seeds` and `--only` are no options of suites that have their own cases."""
-    own = {name: set(names) - {"quick", "seed"} for name, names in GOES_BY.items()}
-    assert {name for name, names in own.items() if names} == {
-        "shear", "search", "packing", PUBLIC, HISTORY
-    }  # fmt: skip
-    assert own["packing"] == {"seconds", "only"}
-    assert own[PUBLIC] & own["search"] == {"seeds", "only", "policy", "settings", "jobs"}
-
-
 @pytest.mark.parametrize(
     ("options", "named"),
     [
+        ((), "suite"),
+        (("speed",), "'speed'"),
         (("search", "--policy", "annealing"), "--policy"),
         (("search", "--only", "Q"), "--only"),
         (("search", "--seconds", "0"), "--seconds"),

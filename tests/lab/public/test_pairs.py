@@ -24,6 +24,10 @@ def result(wall, method, seed, **figures):
     )  # fmt: skip
 
 
+def f_sf_table(found):
+    return next(table for table in pair_tables(found) if table.title.startswith("F_SF"))
+
+
 def results(values):
     """Results of F_SF by method: seed after seed on the first wall, then on the second."""
     return BenchResults(
@@ -71,24 +75,22 @@ def test_many_signed_ranks_go_by_the_normal_distribution():
     assert more == pytest.approx(wilcoxon([*noise.tolist(), 0.1], method="asymptotic").pvalue)
 
 
-def test_rounding_errors_are_no_differences():
-    tiny = compared([0.1 + 0.2, 0.5], [0.3, 0.5])
-    assert (tiny.won, tiny.p, tiny.mean) == (0.5, 1.0, 0.0)
-    ranking = pair_tables(results({"a": [0.1 + 0.2, 0.5], "b": [0.3, 0.5]}))[-1].records()
-    assert [row["F_SF"] for row in ranking] == [1.5, 1.5]
-
-
-def test_lower_may_be_better():
-    lower = compared([1.0, 2.0, 2.0, 5.0], [2.0, 3.0, 2.0, 4.0], higher=False)
-    higher = compared([1.0, 2.0, 2.0, 5.0], [2.0, 3.0, 2.0, 4.0])
-    assert (lower.won, higher.won) == (0.625, 0.375)
-    assert lower.mean == higher.mean == -0.25
-
-
-def test_pairs_without_a_value_are_counted_not_zero():
-    found = compared([0.9, None, 0.7, None], [0.5, 0.5, None, None])
-    assert (found.pairs, found.left_out) == (1, 3)
-    assert found.mean == pytest.approx(0.4)
+@pytest.mark.parametrize(
+    ("first", "second", "higher", "won", "mean", "pairs"),
+    [
+        # Rounding errors are no differences.
+        ([0.1 + 0.2, 0.5], [0.3, 0.5], True, 0.5, 0.0, 2),
+        ([1.0, 2.0, 2.0, 5.0], [2.0, 3.0, 2.0, 4.0], False, 0.625, -0.25, 4),
+        ([1.0, 2.0, 2.0, 5.0], [2.0, 3.0, 2.0, 4.0], True, 0.375, -0.25, 4),
+        # Pairs without a value are counted, and are not zero.
+        ([0.75, None, 0.7, None], [0.5, 0.5, None, None], True, 1.0, 0.25, 1),
+    ],
+)
+def test_pairs_are_won_and_have_a_mean(first, second, higher, won, mean, pairs):
+    found = compared(first, second, higher=higher)
+    assert (found.won, found.mean, found.pairs) == (won, mean, pairs)
+    assert found.left_out == len(first) - pairs
+    assert found.p == 1.0
     assert compared([None], [1.0]) is None
 
 
@@ -115,10 +117,6 @@ def test_few_pairs_show_nothing_and_it_is_said():
     assert any("no p can be below 0.62" in note for note in table.notes)
     apart = ranking.records()[0]["not told apart from the next in"]
     assert apart == "placed, F_SF, F_AV, F_AH, F_LR"
-
-
-def f_sf_table(found):
-    return next(table for table in pair_tables(found) if table.title.startswith("F_SF"))
 
 
 def test_copies_are_no_evidence():
@@ -155,13 +153,17 @@ def test_ties_of_one_figure_are_pairs():
     assert not any("depend on the seed" in note for note in table.notes)
 
 
-def test_undefined_values_rank_last():
-    found = results({"a": [None, 0.2], "b": [0.1, 0.1]})
-    ranking = {row["method"]: row["F_SF"] for row in pair_tables(found)[-1].records()}
-    assert ranking == {"a": 1.5, "b": 1.5}
-    alone = results({"a": [None, None], "b": [0.1, 0.1], "c": [0.0, 0.0]})
-    ranking = {row["method"]: row["F_SF"] for row in pair_tables(alone)[-1].records()}
-    assert ranking == {"b": 1.0, "c": 2.0, "a": 3.0}
+@pytest.mark.parametrize(
+    ("values", "ranks"),
+    [
+        ({"a": [0.1 + 0.2, 0.5], "b": [0.3, 0.5]}, {"a": 1.5, "b": 1.5}),
+        ({"a": [None, 0.2], "b": [0.1, 0.1]}, {"a": 1.5, "b": 1.5}),
+        ({"a": [None, None], "b": [0.1, 0.1], "c": [0.0, 0.0]}, {"b": 1.0, "c": 2.0, "a": 3.0}),
+    ],
+)
+def test_equal_values_share_a_rank_and_undefined_ones_are_last(values, ranks):
+    ranking = pair_tables(results(values))[-1].records()
+    assert {row["method"]: row["F_SF"] for row in ranking} == ranks
 
 
 def made(**columns):

@@ -93,6 +93,13 @@ ITEMS = {
 }  # fmt: skip
 
 
+def lay_needed(data):
+    """Lay empty files in a folder in the place of the published stones."""
+    for name in NEEDY.needs:
+        (data / name).parent.mkdir(parents=True)
+        (data / name).touch()
+
+
 def counted(item):
     """An item, and the contexts that it is made with."""
     contexts = []

@@ -5,7 +5,7 @@ import pytest
 
 from drystone_lab.reproduce.cells import COLUMNS, figures_of, summary, trend, wins
 from drystone_lab.reproduce.item import claims_table, sentences
-from tests.lab.reproduce.made_outcomes import outcome
+from tests.lab.reproduce.small_walls import outcome
 
 
 def test_medians_and_ranges():
@@ -21,12 +21,10 @@ def test_medians_and_ranges():
     assert (cells["F_SF median"], cells["F_SF range"]) == (0.75, "0.700 to 0.900")
     assert (cells["F_LR median"], cells["F_LR range"]) == (0.5, "0.25 to 0.75")
     assert cells["F_AV median"] == 1.0
-
-
-def test_a_figure_that_no_wall_has():
+    # A figure that no wall has.
     cells = dict(zip(COLUMNS, summary([outcome(F_LR=None)] * 2), strict=True))
     assert (cells["F_LR median"], cells["F_LR range"]) == (None, None)
-    assert figures_of([outcome(F_LR=None), outcome(F_LR=0.5)], "F_LR") == [0.5]
+    assert figures_of(walls, "F_LR") == [0.25, 0.75]
 
 
 @pytest.mark.parametrize("figure", ["F_SF", "F_AH"])
@@ -37,9 +35,7 @@ def test_counts_are_those_of_all_pairs(figure):
     found = wins(list(first), list(second), figure)
     better, worse = (less, more) if figure == "F_AH" else (more, less)
     assert found == (figure, better, 40 - better - worse, worse, np.median(first - second))
-
-
-def test_what_is_missing_makes_no_pair():
+    # What is missing makes no pair.
     assert wins([None, 1.0], [2.0, None], "F_LR") == ("F_LR", 0, 0, 0, None)
     assert wins([0.5, 0.5], [0.5 + 1e-12, None], "F_LR")[2] == 1
 
@@ -54,9 +50,7 @@ def test_a_trend_is_the_correlation_of_the_ranks():
     falling = trend([(n, -n) for n in range(8)])
     mixed = trend(list(enumerate([3.0, 1.0, 4.0, 1.0, 5.0, 2.0, 6.0, 0.0])))
     assert (falling.rho, falling.clear, mixed.clear) == (-1, True, False)
-
-
-def test_there_is_no_trend_of_few_or_equal_values():
+    # There is none of few or equal values.
     assert trend([(1, 1.0), (2, 2.0), (3, 3.0), (4, None)]) is None
     assert trend([(n, 1.0) for n in range(9)]) is None
     assert trend([(1, float(n)) for n in range(9)]) is None

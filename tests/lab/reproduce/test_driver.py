@@ -150,11 +150,8 @@ def test_published_stones_that_are_not_there(tmp_path):
     assert "almeida/PR.png" in page
     assert "published stones" in page
 
-    data = tmp_path / "data"
-    for name in fakes.NEEDY.needs:
-        (data / name).parent.mkdir(parents=True)
-        (data / name).touch()
-    given = replace(OPTIONS, data=data)
+    fakes.lay_needed(tmp_path / "data")
+    given = replace(OPTIONS, data=tmp_path / "data")
     assert make(tmp_path / "out", "fig13", options=given)[0].status == "made"
     assert "Not made" not in (tmp_path / "out" / "index.html").read_text("utf-8")
     # What was made with them stays when they are gone, unless something else is asked for.

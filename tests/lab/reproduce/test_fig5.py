@@ -1,8 +1,12 @@
 import math
 
+import numpy as np
 import pytest
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
 
 from drystone.clusters import stone_features
+from drystone.drawing.palette import cluster_colour
 from drystone.poses import PoseBook
 from drystone_lab.reproduce import fig5
 from tests.lab.reproduce.small_walls import RUBBLE, context, gids, of, rows
@@ -74,3 +78,17 @@ def test_the_stones_pr_fall_into_the_paper_s_clusters(tmp_path, data_dir):
     assert len(rows(output, "clusters")) == fig5.PAPER_CLUSTERS
     assert [row["stones"] for row in rows(output, "thresholds")] == ["PR", "R", "IR"]
     assert [row["count"] for row in rows(output, "thresholds")] == [32, 34, 61]
+
+
+FEATURES = np.array([[0.2, 1.0], [0.8, 0.5], [0.81, 0.5]])
+
+
+def test_stones_are_at_their_features_in_the_colour_of_their_cluster():
+    ax = Figure().add_subplot()
+    fig5.plot_features(ax, FEATURES, [3, 5, 8], {3: 1, 5: 2, 8: 2})
+    lines = {line.get_gid(): line for line in ax.lines}
+    assert list(lines) == ["stone-3", "stone-5", "stone-8"]
+    for line, at, cluster in zip(lines.values(), FEATURES, (1, 2, 2), strict=True):
+        np.testing.assert_allclose(line.get_xydata(), [at])
+        assert to_hex(line.get_markerfacecolor()) == cluster_colour(cluster)
+    assert lines["stone-3"].get_marker() != lines["stone-5"].get_marker()

@@ -22,8 +22,7 @@ from drystone_lab.reproduce.masons import (
 )
 from drystone_lab.runs.spec import published
 from drystone_lab.walls import Target
-from tests.lab.reproduce.made_outcomes import outcome as made
-from tests.lab.reproduce.small_walls import RUBBLE, context, of, on, rows
+from tests.lab.reproduce.small_walls import RUBBLE, context, of, on, outcome, rows
 
 BLOCKS = Target("blocks", published("blocks.png"), 66, 32, 1.0, 1)
 SEEDS = (1, 2)
@@ -70,7 +69,7 @@ def test_fig13(here, masons):
     assert traced["F_SF"] == pytest.approx(measured.F_SF, abs=1e-4)
     assert traced["F_AV"] == pytest.approx(measured.F_AV, abs=1e-4)
     assert traced["F_LR"] is None
-    assert float(str(closed["F_SF"])) > float(str(traced["F_SF"]))
+    assert closed["F_SF"] > traced["F_SF"]
     assert (papers["F_SF"], papers["F_LR"]) == (0.837, 0.64)
     assert len(rows(output, "fig13_resistance")) == 11
     assert len(output.pictures[0].figure.axes) == 2
@@ -80,7 +79,7 @@ def test_base_case(here):
     output = on(base_case.BASE_CASE, RUBBLE).make(here)
     outcomes = here.run([RUBBLE.run(seed) for seed in SEEDS])
     (row,) = rows(output, "fig14")
-    over = [float(outcome.figures["alpha_left"] or 0) / 0.58 for outcome in outcomes]
+    over = [outcome.figures["alpha_left"] / 0.58 for outcome in outcomes]
     assert row["alpha left / mu median"] == pytest.approx(sum(over) / len(over), abs=1e-4)
     rules = rows(output, "fig15")
     by_rule = {(row["towards"], row["flow rule"]): row["alpha"] for row in rules}
@@ -88,7 +87,7 @@ def test_base_case(here):
         alpha = outcomes[0].figures[f"alpha_{side}"]
         assert by_rule[side, "associative"] == pytest.approx(alpha, abs=1e-4)
         loose = by_rule[side, "without dilatancy"]
-        assert loose is None or float(str(loose)) <= float(alpha or 0) + 1e-4
+        assert loose is None or loose <= alpha + 1e-4
     names = {picture.name for picture in output.pictures}
     assert {"fig14", "fig15_left", "fig15_right", "fig14_seeds"} <= names
 
@@ -97,14 +96,14 @@ def test_table2(here):
     stand_in = replace(RUBBLE, name="other", number=4, stand_in=True)
     output = on(TABLE2, BLOCKS, stand_in).make(here)
     outcomes = here.run([BLOCKS.run(seed) for seed in SEEDS])
-    mine = {str(row["what"]).split(",")[0]: row for row in rows(output, "table2")
+    mine = {row["what"].split(",")[0]: row for row in rows(output, "table2")
             if row["wall"] == 1}  # fmt: skip
     best = outcomes[best_trial(outcomes)]
     assert mine["best of 2"]["F_SF"] == pytest.approx(best.figures["F_SF"], abs=1e-4)
     assert mine["best of 2"]["paper F_SF"] == 0.974
     assert mine["fixed seed"]["F_SF"] == pytest.approx(outcomes[0].figures["F_SF"], abs=1e-4)
     assert mine["masons"]["paper F_AV"] == 39.78
-    fullest = max(float(outcome.figures["F_SF"] or 0) for outcome in outcomes)
+    fullest = max(outcome.figures["F_SF"] for outcome in outcomes)
     assert mine["fullest of 2"]["F_SF"] == pytest.approx(fullest, abs=1e-4)
     image = np.asarray(Image.open(here.data / "blocks.png")) if here.data else np.zeros((1, 1))
     most = (image > 0).sum() / (66 * 32)
@@ -117,30 +116,24 @@ def test_table2(here):
     assert len(output.pictures[0].figure.axes) == 4 + 3
 
 
-def _wall(resistance, filled):
-    return made(F_LR=resistance, F_SF=filled)
-
-
 @pytest.mark.parametrize(
     ("walls", "best"),
     [
         # Filling to one decimal first, however strong the others are.
-        ([_wall(0.38, 0.9), _wall(0.98, 0.7)], 0),
+        ([(0.38, 0.9), (0.98, 0.7)], 0),
         # .78 and .82 are both .8: the multiplier decides.
-        ([_wall(0.38, 0.82), _wall(0.46, 0.78)], 1),
+        ([(0.38, 0.82), (0.46, 0.78)], 1),
         # .42 and .38 are both .4 too: the fuller one.
-        ([_wall(0.42, 0.78), _wall(0.38, 0.8)], 1),
+        ([(0.42, 0.78), (0.38, 0.8)], 1),
         # Equal in filling: the larger multiplier, then the earlier trial.
-        ([_wall(0.38, 0.8), _wall(0.42, 0.8), _wall(0.42, 0.8)], 1),
+        ([(0.38, 0.8), (0.42, 0.8), (0.42, 0.8)], 1),
         # Among equally full walls those without a multiplier are last.
-        ([_wall(None, 0.84), _wall(0.01, 0.76)], 1),
+        ([(None, 0.84), (0.01, 0.76)], 1),
     ],
 )
 def test_the_best_trial(walls, best):
-    assert best_trial(walls) == best
-
-
-def test_halves_are_rounded_up_whatever_the_solver_leaves():
+    assert best_trial([outcome(F_LR=value, F_SF=filled) for value, filled in walls]) == best
+    # Halves are rounded up whatever the solver leaves.
     assert [tenths(value) for value in (0.05, 0.15, 0.25, 0.35, 0.45, 0.55)] == [1, 2, 3, 4, 5, 6]
     assert tenths(0.35 - 1e-12) == tenths(0.35 + 1e-12) == 4
 
@@ -154,19 +147,16 @@ def _blocks():
     return labels
 
 
-def _distance(labels, block):
-    row, col = np.argwhere(labels == block).mean(axis=0)
-    return float(np.hypot(labels.shape[0] - 0.5 - row, col + 0.5))
-
-
 def test_stones_keep_their_shape_and_come_nearer_until_they_are_stopped():
     before = _blocks()
     after = drawn_together(before)
     assert after.dtype == before.dtype
+    corner = (before.shape[0] - 0.5, -0.5)
     for block in (5, 2, 9, 300):
         old, new = np.argwhere(before == block), np.argwhere(after == block)
         assert np.array_equal(old - old.min(axis=0), new - new.min(axis=0))
-        assert _distance(after, block) <= _distance(before, block)
+        was, now = (np.hypot(*(pixels.mean(axis=0) - corner)) for pixels in (old, new))
+        assert now <= was
     # The first goes into the corner, the second on top of it; the third ends beside that one.
     assert np.argwhere(after == 5).min(axis=0).tolist() == [8, 0]
     assert np.argwhere(after == 9).min(axis=0).tolist() == [5, 0]

@@ -49,4 +49,4 @@ def test_forces_on_two_stones_are_in_balance(tmp_path):
     table = rows(method.RIGID.make(context(tmp_path)), "forces")
     ground = [row for row in table if row["on"] == "the ground"]
     weight = int((found.labels > 0).sum())
-    assert sum(float(str(r["normal force"])) for r in ground) == pytest.approx(weight, abs=1e-3)
+    assert sum(r["normal force"] for r in ground) == pytest.approx(weight, abs=1e-3)

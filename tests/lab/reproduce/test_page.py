@@ -63,18 +63,19 @@ def test_it_says_what_it_was_made_with(page):
     assert "E100 R.png: is not there." in page.text
 
 
-def test_files_are_linked_where_they_are(page):
+def test_files_are_linked_where_they_are_and_pictures_have_texts(page, tmp_path):
     assert [image["src"] for image in page.all("img")] == ["fig5/p.png", "table2/p.png"]
+    for image in page.all("img"):
+        assert "Walls of 'R'." in image["alt"]
+        assert (image["width"], image["height"]) == ("1000", "500")
     links = {attributes["href"] for attributes in page.all("a")}
     files = ("p.png", "p.svg", "short.csv", "long.csv", "t_times.csv", "fig5.json")
     assert {f"fig5/{file}" for file in files} <= links
     assert not any("://" in link for link in links)
-
-
-def test_pictures_have_texts(page):
-    for image in page.all("img"):
-        assert "Walls of 'R'." in image["alt"]
-        assert (image["width"], image["height"]) == ("1000", "500")
+    path = write_item_page(tmp_path / "one.html", record("fig5"))
+    one = Page(path.read_text(encoding="utf-8"))
+    assert one.all("a")[0]["href"] == "../index.html#fig5"
+    assert [image["src"] for image in one.all("img")] == ["p.png"]
 
 
 def test_long_tables_are_folded(page):
@@ -84,20 +85,9 @@ def test_long_tables_are_folded(page):
     assert "0.123456789" not in page.text
 
 
-def test_a_page_of_one(tmp_path):
-    path = write_item_page(tmp_path / "index.html", record("fig5"))
-    page = Page(path.read_text(encoding="utf-8"))
-    assert page.all("a")[0]["href"] == "../index.html#fig5"
-    assert [image["src"] for image in page.all("img")] == ["p.png"]
-
-
 def test_a_page_of_nothing(tmp_path):
-    path = write_page(
-        tmp_path / "index.html",
-        [],
-        {"fig5": {"title": "t", "section": "s", "error": "E100"}},
-        ORDER,
-    )
+    misses = {"fig5": {"title": "t", "section": "s", "error": "E100"}}
+    path = write_page(tmp_path / "index.html", [], misses, ORDER)
     assert "None of 3 was made so far." in path.read_text(encoding="utf-8")
 
 

@@ -42,6 +42,5 @@ def test_order_keeps_every_stone():
      {"aspect": 0.0}],
 )  # fmt: skip
 def test_refuses(wrong):
-    with pytest.raises(UsageError) as caught:
+    with pytest.raises(UsageError, match="E123"):
         DrawSettings(**wrong)
-    assert caught.value.code == "E123"

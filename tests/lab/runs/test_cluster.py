@@ -79,17 +79,15 @@ def test_a_killed_worker_loses_nothing(work, tmp_path):
 
 def test_a_run_that_kills_workers_is_given_up(work, cluster, tmp_path, monkeypatch):
     monkeypatch.setattr(cluster.scheduler, "allowed_failures", 0)
-    with pytest.raises(DrystoneError) as caught:
+    with pytest.raises(DrystoneError, match=f"^E402 {deadly(1)}: "):
         Runner(RunStore(tmp_path), work=work).run([deadly(1)])
-    assert (caught.value.code, caught.value.where) == ("E402", str(deadly(1)))
 
 
 def test_a_run_that_fails_is_told(thread, tmp_path):
     store = RunStore(tmp_path)
     with cluster_at_work(thread.scheduler_address) as work:
-        with pytest.raises(DrystoneError) as caught:
+        with pytest.raises(DrystoneError, match="E130"):
             Runner(store, work=work).run([run(1), run(2, NOT_SIX)])
-        assert caught.value.code == "E130"
         assert list(work([], None)) == []
         assert Runner(store, work=work).run([run(3)])
     assert kept(store, run(1))
@@ -114,17 +112,11 @@ def test_what_ended_is_given_before_an_interrupt(thread):
 
 def test_a_cluster_that_goes_away(thread, tmp_path):
     specs, store = [run(seed) for seed in range(100)], RunStore(tmp_path)
-
-    def end(_):
-        thread.close()
-
     with (
         cluster_at_work(thread.scheduler_address, patience_s=2.0) as work,
-        pytest.raises(DrystoneError) as caught,
+        pytest.raises(DrystoneError, match=r"E404 .*lost"),
     ):
-        Runner(store, work=work, say=end).run(specs)
-    assert caught.value.code == "E404"
-    assert "lost" in caught.value.what
+        Runner(store, work=work, say=lambda _: thread.close()).run(specs)
     assert 1 <= sum(kept(store, spec) for spec in specs) < len(specs)
 
 
@@ -139,9 +131,8 @@ class Newer(RunSpec):
 def test_a_worker_of_another_version_that_came_later(thread):
     spec = Newer(source=SOURCE, width=60, height=20)
     at_work = cluster_at_work(thread.scheduler_address)
-    with at_work as work, pytest.raises(UsageError) as caught:
+    with at_work as work, pytest.raises(UsageError, match="E405"):
         next(work([spec], None))
-    assert caught.value.code == "E405"
 
 
 def test_published_stones_where_the_worker_has_them(tmp_path, monkeypatch):
@@ -152,9 +143,8 @@ def test_published_stones_where_the_worker_has_them(tmp_path, monkeypatch):
     assert execute_there(spec, tmp_path / "six").figures["stones"] == 6
     assert execute_there(spec, tmp_path / "elsewhere").figures["stones"] == 5
     monkeypatch.delenv("DRYSTONE_DATA")
-    with pytest.raises(DrystoneError, match="elsewhere") as caught:
+    with pytest.raises(DrystoneError, match=r"E100 .*elsewhere"):
         execute_there(spec, tmp_path / "elsewhere")
-    assert caught.value.code == "E100"
 
 
 class Workers:
@@ -185,10 +175,8 @@ HERE = version("drystone")
     ],
 )
 def test_other_versions(client, said):
-    with pytest.raises(UsageError) as caught:
+    with pytest.raises(UsageError, match=f"E405 .*drystone is {HERE} here, {said}"):
         check_versions(client)
-    assert caught.value.code == "E405"
-    assert caught.value.what == f"drystone is {HERE} here, {said}"
 
 
 @pytest.fixture
@@ -201,26 +189,22 @@ def _collected():
 @pytest.mark.usefixtures("_collected")
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "nonsense://here"])
 def test_nobody_answers(address):
-    with pytest.raises(UsageError) as caught, cluster_at_work(address, patience_s=0.3):
+    said = pytest.raises(UsageError, match=f"E404.*{address}")
+    with said, cluster_at_work(address, patience_s=0.3):
         pass
-    assert caught.value.code == "E404"
-    assert address in caught.value.what
 
 
 def test_a_cluster_without_workers():
     with (
         distributed.LocalCluster(n_workers=0, processes=False, **QUIET) as cluster,
-        pytest.raises(UsageError) as caught,
+        pytest.raises(UsageError, match=r"E404 .*has no workers"),
         cluster_at_work(cluster.scheduler_address, patience_s=2.0),
     ):
         pass
-    assert caught.value.code == "E404"
-    assert "has no workers" in caught.value.what
 
 
 def test_dask_is_not_installed(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(UsageError) as caught, cluster_at_work("tcp://127.0.0.1:9"):
+    missing = pytest.raises(UsageError, match=r"E403 .*drystone\[dask\]")
+    with missing, cluster_at_work("tcp://127.0.0.1:9"):
         pass
-    assert caught.value.code == "E403"
-    assert "drystone[dask]" in caught.value.cure
