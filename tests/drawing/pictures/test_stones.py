@@ -36,7 +36,7 @@ def numbers(ax):
     return {text.get_text(): text for text in ax.texts}
 
 
-def test_stones_have_the_colour_of_their_cluster_and_their_id_in_a_readable_one():
+def test_stones_lie_as_in_the_image_with_their_id_in_a_readable_colour():
     stones, where = examples.stone_set(), Figure().subplots()
     ax = plot_stones(stones, CLUSTERS, where)
     assert ax is where
@@ -50,6 +50,11 @@ def test_stones_have_the_colour_of_their_cluster_and_their_id_in_a_readable_one(
         text = written[str(stone.id)]
         assert text.get_position() == pytest.approx(stone.centroid)
         assert text.get_color() == text_colour(cluster_colour(CLUSTERS[stone.id]))
+        corner = patches(ax)[f"stone-{stone.id}"].get_path().vertices.min(axis=0)
+        np.testing.assert_allclose(corner, [stone.left_px, stone.bottom_px], atol=0.51)
+    plain = plot_stones(stones)
+    assert {to_hex(patch.get_facecolor()) for patch in plain.patches} == {PLAIN_COLOUR}
+    assert plain.get_legend() is None
 
 
 def test_numbers_shrink_with_the_stone():
@@ -58,18 +63,6 @@ def test_numbers_shrink_with_the_stone():
     assert sizes["40"] <= sizes["300"] <= sizes["3"]
     small = StoneSet(tuple(examples.stone_set()), Source(width_px=5000, height_px=500))
     assert numbers(plot_stones(small))["3"].get_size() < sizes["3"]
-
-
-def test_stones_lie_where_they_lie_in_the_image():
-    stones = examples.stone_set()
-    ax = plot_stones(stones)
-    for stone in stones:
-        patch = patches(ax)[f"stone-{stone.id}"]
-        corners = np.array([stone.left_px, stone.bottom_px])
-        vertices = patch.get_path().vertices
-        np.testing.assert_allclose(vertices.min(axis=0), corners, atol=0.51)
-        assert to_hex(patch.get_facecolor()) == PLAIN_COLOUR
-    assert ax.get_legend() is None
 
 
 def test_stones_of_a_folder_do_not_cover_each_other():

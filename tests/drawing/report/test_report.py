@@ -14,7 +14,7 @@ from PIL import Image
 
 import drystone as ds
 from drystone.contacts.blocks import model_from_labels
-from drystone.drawing import view_of_result, view_of_wall, write_pictures, write_report
+from drystone.drawing import view_of_result, write_pictures, write_report
 from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.drawing.report.html import viewer_frame, viewer_page, viewer_script, viewer_style
 from drystone.drawing.report.notebook import Shown
@@ -26,7 +26,7 @@ from drystone.io.wall_image import write_labels
 from drystone.model.plan import PlanMetrics
 from drystone.statics.limit import lateral_resistance
 from tests.drawing import examples
-from tests.drawing.report.walls import result, written
+from tests.drawing.report.walls import analysed, result, written
 from tests.verify.exact_examples import exact_example
 
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
@@ -222,9 +222,7 @@ def test_a_missing_index_is_a_dash_and_metres_are_told_in_centimetres(tmp_path):
 
 
 def test_a_wall_that_was_not_planned_has_a_table_of_blocks(tmp_path, monkeypatch):
-    labels = examples.wall().labels
-    model = model_from_labels(labels).model
-    shown = view_of_wall(labels, model, lateral_resistance(model, mechanism=True), title="found")
+    shown = analysed(examples.wall().labels, title="found")
     page = Page(write_report(tmp_path / "found.html", shown).read_text(encoding="utf-8"))
     assert "Steps of construction" not in page.text
     assert "6 stones, " in page.text

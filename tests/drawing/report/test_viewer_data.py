@@ -10,7 +10,6 @@ import pytest
 import shapely
 from PIL import Image, ImageDraw
 
-from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
 from drystone.drawing import view_of_assembly, view_of_result, view_of_wall, write_report
 from drystone.drawing.assembly.read import read_assembly, scaled_resistance
@@ -22,7 +21,7 @@ from drystone.io.published import SETS
 from drystone.model.plan import StoneStep
 from drystone.statics.failing.mechanism import Names
 from drystone.statics.limit import lateral_resistance
-from tests.drawing.report.walls import result, written
+from tests.drawing.report.walls import analysed, result, written
 
 CASES = [("best", None), ("paper", 100.0)]
 
@@ -173,12 +172,9 @@ def test_a_scale_told_afterwards_makes_metres(tmp_path):
 def test_what_is_not_planned_is_shown_too():
     labels = np.zeros((40, 60), np.uint32)
     labels[20:, 5:25], labels[20:, 25:45], labels[:20, 15:35] = 7, 9, 12
-    model = model_from_labels(labels).model
     cards = [ResultCard("F_AV", "Interlocking", "33.30 %", "higher", "words")]
-    shown = view_of_wall(
-        labels, model, lateral_resistance(model, mechanism=True),
-        title="three <b>blocks</b>", cards=cards, names=Names("stone", frozenset([12])),
-    )  # fmt: skip
+    names = Names("stone", frozenset([12]))
+    shown = analysed(labels, title="three <b>blocks</b>", cards=cards, names=names)
     assert shown["steps"] == 0
     assert shown["summary"].startswith("2 stones, stands; falls when tilted by 30 degrees; weakest")
     assert [(p["id"], p["kind"], p["number"]) for p in shown["parts"]] == [
@@ -196,11 +192,10 @@ def test_what_is_not_planned_is_shown_too():
 
 
 def test_a_wall_that_falls_has_a_mechanism_without_a_load(tmp_path):
-    model = model_from_json({"blocks_xywh": [[0, 0, 2, 1], [1.5, 1, 4, 1]]})
     low, high = shapely.box(0, 0, 2, 1), shapely.box(1.5, 1, 5.5, 2)
     wall = {1: np.array(low.exterior.coords), 2: np.array(high.exterior.coords)}
-    resistance = lateral_resistance(model, mechanism=True)
-    shown = view_of_wall(wall, model, resistance, names=Names("block"), unit="units")
+    blocks = [[0, 0, 2, 1], [1.5, 1, 4, 1]]
+    shown = analysed(wall, blocks, names=Names("block"), unit="units")
     found = shown["mechanisms"]["left"]
     assert (found["status"], found["alpha"]) == ("unstable", None)
     assert found["words"].startswith("It does not stand under its own weight. ")
@@ -228,10 +223,8 @@ def test_a_wall_that_falls_has_a_mechanism_without_a_load(tmp_path):
     ],
 )
 def test_only_a_tilting_table_is_called_one(load_case, said, horizontal):
-    model = model_from_json({"blocks_xywh": [[0, 0, 1, 2]]})
     wall = {1: np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]])}
-    resistance = lateral_resistance(model, mechanism=True)
-    shown = view_of_wall(wall, model, resistance, unit="units", load_case=load_case)
+    shown = analysed(wall, [[0, 0, 1, 2]], unit="units", load_case=load_case)
     assert shown["mechanisms"]["left"]["load"] == said
     plain = load_case == "tilting table"
     assert ("as on a tilting table" in shown["assumptions"][-1]) == plain

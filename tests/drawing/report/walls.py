@@ -6,8 +6,19 @@ from functools import cache
 import numpy as np
 
 import drystone as ds
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json
+from drystone.drawing import view_of_wall
+from drystone.statics.limit import lateral_resistance
 
 WALL_PX = (130.0, 50.0)
+
+
+def analysed(wall, blocks_xywh=None, **more):
+    """Show a wall that was not planned: a label image, or outlines and their blocks."""
+    given = {"blocks_xywh": blocks_xywh}
+    model = model_from_labels(wall).model if blocks_xywh is None else model_from_json(given)
+    return view_of_wall(wall, model, lateral_resistance(model, mechanism=True), **more)
 
 
 def result(method="best", px_per_m=None):

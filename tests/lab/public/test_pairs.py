@@ -206,9 +206,8 @@ def test_what_is_not_defined_is_counted_and_never_zero():
     assert any(
         note.startswith("F_LR is not defined for walls of one 4 of 6") for note in walls.notes
     )
-
-
-def test_amplitudes_are_there_when_walls_were_shaken():
+    # Amplitudes are there when walls were shaken.
+    assert "PGA, g" not in walls.columns
     values = {WALLS[0]: [0.2, None, 0.3], WALLS[1]: [0.1, 0.1, 0.1]}
     walls, _, _ = comparison(made(pga_g=values, shaken=dict.fromkeys(WALLS, ["yes"] * 3)))
     assert walls.records()[0]["PGA, g"] == pytest.approx(0.25)
@@ -218,4 +217,3 @@ def test_amplitudes_are_there_when_walls_were_shaken():
         in note
         for note in walls.notes
     )
-    assert "PGA, g" not in comparison(made(F_SF=VALUES))[0].columns

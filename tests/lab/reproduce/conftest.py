@@ -11,5 +11,11 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def output(request, folder):
-    return request.module.MADE.make(context(folder))
+def output(request, here):
+    return request.module.MADE.make(here)
+
+
+@pytest.fixture(scope="module")
+def here(folder):
+    """The context of items that are made from these runs."""
+    return context(folder)

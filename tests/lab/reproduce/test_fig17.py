@@ -12,14 +12,9 @@ from tests.lab.reproduce.small_walls import RUBBLE, context, gids, of, rows
 MADE = of(fig17.PATHS, RUBBLE)
 
 
-@pytest.fixture(scope="module")
-def where(folder):
-    return context(folder)
-
-
-def test_factors_are_those_of_the_run_and_of_the_table(where, output):
+def test_factors_are_those_of_the_run_and_of_the_table(here, output):
     (row,) = rows(output, "figures")
-    (outcome,) = where.run((RUBBLE.run(1),))
+    (outcome,) = here.run((RUBBLE.run(1),))
     assert row["F_AV %"] == pytest.approx(outcome.figures["F_AV"], abs=1e-4)
     assert row["F_AH %"] == pytest.approx(outcome.figures["F_AH"], abs=1e-4)
     for way, name, straight in (

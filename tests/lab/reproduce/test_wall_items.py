@@ -15,18 +15,13 @@ from drystone_lab.reproduce import base_case, noise, other_stones, times, ways
 from drystone_lab.runs.spec import generated
 from drystone_lab.timed_walls import TimedWall
 from drystone_lab.walls import Target
-from tests.lab.reproduce.small_walls import context, of, on, rows
+from tests.lab.reproduce.small_walls import of, on, rows
 
 SEEDS = (1, 2)
 RUBBLE = Target(
     "rubble", generated("rubble", 5, count=9, width_px=100, height_px=40, courses=3), 100, 40, 1.0
 )
 SHARP = replace(RUBBLE, name="sharp", source=replace(RUBBLE.source, seed=8), number=5)
-
-
-@pytest.fixture(scope="module")
-def here(tmp_path_factory):
-    return context(tmp_path_factory.mktemp("runs"))
 
 
 def _outcomes(here, *changes):

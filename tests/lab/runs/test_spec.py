@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from drystone.errors import InputError
 from drystone.planner.settings import method_settings
 from drystone_lab.runs import spec as spec_module
 from drystone_lab.runs.spec import GENERATORS, RunSpec, StoneSource, generated, published
@@ -88,6 +89,16 @@ def test_published_stones_are_read_from_their_folder(tmp_path):
     picture(tmp_path / "set" / "bricks.png")
     assert source.is_there(tmp_path)
     assert len(source.stones(tmp_path)) == 6
+
+
+def test_other_stones_in_the_place_of_published_ones(tmp_path):
+    source = published("almeida/PR.png")
+    source.check(None)
+    source.check(tmp_path)  # a file that is missing is another matter
+    picture(tmp_path / "almeida" / "PR.png")
+    for refused in (source.check, source.stones):
+        with pytest.raises(InputError, match="E160"):
+            refused(tmp_path)
 
 
 def test_published_pictures_may_be_read_otherwise(tmp_path):
