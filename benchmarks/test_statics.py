@@ -5,6 +5,7 @@ from statistics import fmean
 import numpy as np
 import pytest
 from tests.naive import statics as naive
+from tests.naive.contacts import directed_edges
 
 from benchmarks.conftest import Row, Timer
 from benchmarks.scenes import Scene, places, standing
@@ -50,7 +51,7 @@ def test_contacts_slowly(timer: Timer, scene: Scene, what: str) -> None:
         labels[placement.window][posed.mask] = placement.stone_id
 
     def call() -> None:
-        naive.pixel_edges(labels)
+        directed_edges(labels)
         naive.diagonal_touches(labels)
 
     timer.times(1, Row(what, scene.name, scene.pixels, LOOPS), call)

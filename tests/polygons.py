@@ -86,6 +86,16 @@ def box(left, low, right, high):
     return np.array([[left, low], [right, low], [right, high], [left, high]], float)
 
 
-def box_of(left, bottom, width, height):
+def box_of(left, bottom, width=40.0, height=20.0):
     """The corners of a rectangle of some size."""
     return box(left, bottom, left + width, bottom + height)
+
+
+def box_about(width, height):
+    """The corners of a rectangle about the origin."""
+    return box(-width / 2.0, -height / 2.0, width / 2.0, height / 2.0)
+
+
+def moved(polygon, x, y=0.0):
+    """The same polygon somewhere else."""
+    return np.asarray(polygon + np.array([x, y]))

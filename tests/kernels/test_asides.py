@@ -8,11 +8,8 @@ from hypothesis import strategies as st
 from drystone.kernels.asides import asides
 from drystone.kernels.polygons import no_polygons
 from tests.naive import asides as naive
+from tests.polygons import box_of as box
 from tests.strategies import repeatable
-
-
-def box(x, y, width=40.0, height=20.0):
-    return np.array([[x, y], [x + width, y], [x + width, y + height], [x, y + height]])
 
 
 def test_polygons_go_as_far_aside_as_those_of_the_twin():

@@ -73,28 +73,6 @@ def slid(scene, mask):
     return areas
 
 
-def test_a_long_run_does_not_see_the_next_row():
-    occupied = np.zeros((4, 9), bool)
-    occupied[1:, 0] = True
-    found = resting(occupied, np.ones((1, 8), bool))
-    assert found.tolist() == [[0, 0], [3, 1]]
-
-
-def test_under_a_roof_and_on_it():
-    occupied = np.zeros((7, 200), bool)
-    occupied[3, 10:190] = True
-    # As wide as what is left of the roof, and a pixel wider.
-    assert [6, 0] in resting(occupied, np.ones((1, 10), bool)).tolist()
-    places = resting(occupied, np.ones((3, 150), bool)).tolist()
-    assert places == [[0, col] for col in range(51)] + [[4, col] for col in range(51)]
-
-
-def test_a_mask_that_is_too_large_has_no_position():
-    occupied = np.zeros((4, 6), bool)
-    for shape in ((5, 2), (4, 7)):
-        assert resting(occupied, np.ones(shape, bool)).shape == (0, 2)
-
-
 @pytest.mark.parametrize("width", [1, 64, 65, 200])
 def test_a_mask_as_large_as_the_image(width):
     occupied, mask = np.zeros((4, width), bool), np.ones((4, width), bool)

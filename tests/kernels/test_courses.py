@@ -14,7 +14,6 @@ from drystone.kernels.course_types import (
     Arrangement,
     Cooling,
     Ground,
-    Poses,
     Rules,
     Weights,
 )
@@ -25,8 +24,6 @@ from drystone.search.course_task import poses_of
 from tests.naive.courses import all_terms, annealed
 from tests.polygons import random_polygon
 from tests.strategies import repeatable
-
-Case = tuple[Poses, Arrangement, Ground, Rules]
 
 
 def random_case(seed):

@@ -6,7 +6,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.coverage import Grid, coverage, newly_filled, windows
+from drystone.kernels.coverage import coverage, newly_filled, windows
 from tests.naive import coverage as naive
 from tests.polygons import simple_polygons
 from tests.strategies import repeatable
@@ -43,11 +43,6 @@ def test_cells_inside_are_full_and_cells_outside_empty_to_the_last_bit(x, y):
             assert (shares[row, col] == 0.0) == (shape.intersection(cell).area < 1e-12)
 
 
-def test_a_box_on_cell_edges_fills_its_cells():
-    shares, left, bottom = coverage(np.array([[3.0, -1.0], [5.0, -1.0], [5.0, 2.0], [3.0, 2.0]]))
-    assert (shares.tolist(), left, bottom) == ([[1.0, 1.0]] * 3, 3, -1)
-
-
 @pytest.mark.parametrize("size", [1e-3, 1e-9, 1e-160])
 def test_a_speck_has_one_cell(size):
     shares, left, bottom = coverage(size * np.array([[0.1, 0.2], [0.9, 0.2], [0.5, 0.8]]))
@@ -68,9 +63,6 @@ def test_a_speck_has_one_cell(size):
 def test_what_is_no_polygon_is_refused(corners, message):
     with pytest.raises(ValueError, match=message):
         coverage(np.array(corners))
-
-
-Scene = tuple[Grid, Grid, int, int]
 
 
 @st.composite
@@ -110,11 +102,6 @@ def test_half_is_filled_and_what_was_half_is_not_new():
     assert (found[0].tolist(), found[1:]) == ([[True, False, False, True]], (0, 0))
     third = np.full((1, 1), 1.0 / 3.0)
     assert newly_filled(third, np.full((1, 1), 0.5 - 1.0 / 3.0 - 1e-13), 0, 0) is not None
-
-
-@pytest.mark.parametrize(("row", "col"), [(-1, 0), (0, -1), (2, 0), (0, 2)])
-def test_nothing_new_when_a_cell_outside_is_filled(row, col):
-    assert newly_filled(np.zeros((3, 3)), np.ones((2, 2)), row, col) is None
 
 
 @repeatable(100)

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from drystone.kernels.crevice import between, crevice, slabs
 from drystone.kernels.polygons import mirrored_polygon, no_polygons
 from tests.naive.crevice import gap_at
-from tests.polygons import box
-from tests.settle.piles import WIDTH, moved, piles
+from tests.polygons import box, moved
+from tests.settle.piles import WIDTH, piles
 from tests.strategies import repeatable
 
 CLEARANCE = 0.01

@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 
 from drystone.kernels import drops as module
 from drystone.kernels.drops import DropTerms, Wanted
-from drystone.kernels.profiles import HeightProfile, StoneProfile, bare, hanging, in_a_row, raised
+from drystone.kernels.profiles import HeightProfile, bare, hanging, in_a_row, raised
 from tests.naive.drops import all_drops
-from tests.polygons import box_of, random_polygon
+from tests.polygons import box_of, moved, random_polygon
 from tests.strategies import repeatable
 
 WEIGHTS = ("height", "void", "gap", "slot", "headroom", "step", "joint", "unbalanced")
@@ -21,10 +21,6 @@ def drops(profile, stone, terms, constant, count, apart_px):
     places, limit = module.drops(profile, in_a_row([stone]), terms, np.array([constant]), wanted)
     assert limit == np.inf
     return places[0]
-
-
-def moved(polygon, x, y):
-    return np.asarray(polygon + np.array([x, y]))
 
 
 def wall_of(polygons, columns, cell):
@@ -40,9 +36,6 @@ def terms_of(**changes):
         2.0, 40.0, 20.0, 0.0, 0.0, 5.0, 4.0, 32.0, *[0.0] * 8, np.arange(21), np.arange(11)
     )
     return terms._replace(**changes)
-
-
-Scene = tuple[HeightProfile, StoneProfile, DropTerms]
 
 
 @st.composite

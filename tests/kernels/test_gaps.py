@@ -12,15 +12,12 @@ from drystone.kernels.gaps import END, GROUND, crosses_any, gaps_around
 from drystone.kernels.polygons import no_polygons, polygon_edges
 from drystone.model.overlap import overlap_depth
 from tests.naive.settling import distances, placed
+from tests.polygons import moved as at
 from tests.polygons import simple_polygons
 from tests.strategies import repeatable
 
 WIDTH = 60.0
 SQUARE = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
-
-
-def at(outline, x, y):
-    return outline + np.array([x, y])
 
 
 @st.composite
@@ -119,17 +116,6 @@ def test_no_overlap_is_missed_and_what_is_apart_does_not_cross():
 
     check()
     assert seen == {True, False}
-
-
-def test_what_lies_inside_crosses():
-    inner = no_polygons().added([SQUARE])
-    outer = 3.0 * SQUARE - 2.0
-    assert crosses_any(outer, inner)
-    assert crosses_any(SQUARE, no_polygons().added([outer]))
-    assert not crosses_any(SQUARE + 5.0, inner)
-    assert not crosses_any(SQUARE, no_polygons())
-    bar = np.array([[-3.0, 0.9], [5.0, 0.9], [5.0, 1.1], [-3.0, 1.1]])
-    assert crosses_any(bar, inner)
 
 
 def test_what_lies_inside_crosses_at_whatever_height():

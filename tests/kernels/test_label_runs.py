@@ -47,11 +47,3 @@ def test_pieces_are_those_of_every_label_alone(labels):
 def test_nothing_has_no_runs(shape):
     runs = label_runs(np.zeros(shape, np.uint32))
     assert len(runs.rows) == len(runs_in_pieces(runs)) == 0
-
-
-def test_equal_labels_at_the_end_of_a_row_and_the_start_of_the_next_are_two_runs():
-    runs = label_runs(np.array([[0, 7], [7, 0]]))
-    assert runs.begins.tolist() == [1, 0]
-    assert runs_in_pieces(runs).tolist() == [0, 0]
-    apart = label_runs(np.array([[0, 0, 7], [7, 0, 0]]))
-    assert runs_in_pieces(apart).tolist() == [0, 1]

@@ -108,11 +108,6 @@ def test_a_brick_on_the_ground(gap):
     assert told(np.roll(brick, 2, axis=0) + at(0.0, gap)) == expected
 
 
-def test_out_of_reach():
-    assert told(brick + at(0.0, 0.101)) == []
-    assert told(brick + at(0.0, 30.0), brick + at(0.0, 50.11), brick + at(40.11, 30.0)) == []
-
-
 def test_the_ground_comes_first_then_others_in_their_order():
     # A neighbour on each side, and one that stands on top.
     found = told(
@@ -144,41 +139,56 @@ def test_contacts_with_one_polygon_are_in_order_along_the_placed_one():
     ]
 
 
-def test_half_a_brick_on_a_brick():
-    low = brick + at(0.0, 30.0)
-    assert told(brick + at(20.0, 50.01), low) == [(0, [[20.0, 50.01], [40.0, 50.01]], [0.0, 1.0])]
+LOW, UP = brick + at(0.0, 30.0), [0.0, 1.0]
+TIP = np.array([[-5.0, 30.0], [5.0, 30.0], [0.0, 60.0]])
+HOLLOW = np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [10.0, 0.05], [0.0, 20.0]])
 
 
-def test_a_short_overlap_is_one_point():
-    low = brick + at(0.0, 30.0)
-    assert told(brick + at(39.95, 50.01), low) == [(0, [[39.95, 50.01]], [0.0, 1.0])]
-    assert told(brick + at(39.85, 50.01), low) == [(0, [[39.85, 50.01], [40.0, 50.01]], [0.0, 1.0])]
+@pytest.mark.parametrize(
+    ("corners", "others", "contacts"),
+    [
+        # Out of reach.
+        (brick + at(0.0, 0.101), [], []),
+        (brick + at(0.0, 30.0), [brick + at(0.0, 50.11), brick + at(40.11, 30.0)], []),
+        # Half a brick on a brick; an overlap shorter than the tolerance is one point.
+        (brick + at(20.0, 50.01), [LOW], [(0, [[20.0, 50.01], [40.0, 50.01]], UP)]),
+        (brick + at(39.85, 50.01), [LOW], [(0, [[39.85, 50.01], [40.0, 50.01]], UP)]),
+        (brick + at(39.95, 50.01), [LOW], [(0, [[39.95, 50.01]], UP)]),
+        # Corners beside each other touch on the face that separates them most; .113 is too far.
+        (brick + at(40.005, 50.02), [LOW], [(0, [[40.005, 50.02]], UP)]),
+        (brick + at(40.05, 50.02), [LOW], [(0, [[40.05, 50.02]], [1.0, 0.0])]),
+        (brick + at(40.08, 50.08), [LOW], []),
+        # An edge that ends just beyond a spike: the point is on the edge, over the tip.
+        (brick + at(-0.05, 60.01), [TIP], [(0, [[0.0, 60.01]], UP)]),
+        (brick + at(-39.95, 60.01), [TIP], [(0, [[0.0, 60.01]], UP)]),
+        (brick + at(-0.5, 60.01), [TIP], [(0, [[0.0, 60.01]], UP)]),
+        # Corners that no face separates do not touch.
+        (spike[::-1] * [1.0, -1.0] + at(40.05, 50.05), [LOW], []),
+        # A spike on a face, on the ground, and a face on a spike.
+        (spike + at(10.0, 50.03), [LOW], [(0, [[10.0, 50.03]], UP)]),
+        (spike + at(10.0, 0.03), [], [(-1, [[10.0, 0.03]], UP)]),
+        (brick + at(0.0, 10.0), [spike + at(10.0, 30.02)], [(0, [[10.0, 30.0]], [0.0, -1.0])]),
+        # The bottom touches all along; the dent, .05 above it, does not.
+        (HOLLOW + at(0.0, 50.01), [LOW], [(0, [[0.0, 50.01], [20.0, 50.01]], UP)]),
+        # A spike in a notch touches both faces at one point.
+        (
+            spike + at(0.0, 40.014),
+            [notch],
+            [(0, [[0.0, 40.014]], [-(0.5**0.5), 0.5**0.5]), (0, [[0.0, 40.014]], [0.5**0.5] * 2)],
+        ),
+    ],
+)
+def test_contacts_by_hand(corners, others, contacts):
+    found = told(corners, *others)
+    assert [contact[:2] for contact in found] == [contact[:2] for contact in contacts]
+    assert [n for _, _, n in found] == [[round(x, 6) for x in n] for _, _, n in contacts]
 
 
-def test_corners_beside_each_other_touch_on_the_face_that_separates_them_most():
-    low = brick + at(0.0, 30.0)
-    assert told(brick + at(40.005, 50.02), low) == [(0, [[40.005, 50.02]], [0.0, 1.0])]
-    assert told(brick + at(40.05, 50.02), low) == [(0, [[40.05, 50.02]], [1.0, 0.0])]
-    assert told(brick + at(40.08, 50.08), low) == []  # .113 apart
-    # Equal: the level one, also when rounding says otherwise, and mirrored.
+def test_of_equal_faces_the_level_one_is_taken_also_when_rounding_says_otherwise():
     for right in (40.02, 40.0202, 40.0198):
-        assert told(brick + at(right, 50.02), low) == [(0, [[right, 50.02]], [0.0, 1.0])]
-        assert told(brick + at(-right, 50.02), low) == [
-            (0, [[round(40 - right, 6), 50.02]], [0.0, 1.0])
-        ]
-
-
-def test_a_corner_beside_a_corner_on_the_face_of_the_placed_one():
-    # An edge that ends just beyond a spike: the point is on the edge, over the tip.
-    tip = np.array([[-5.0, -30.0], [5.0, -30.0], [0.0, 0.0]]) + at(0.0, 60.0)
-    assert told(brick + at(-0.05, 60.01), tip) == [(0, [[0.0, 60.01]], [0.0, 1.0])]
-    assert told(brick + at(-39.95, 60.01), tip) == [(0, [[0.0, 60.01]], [0.0, 1.0])]
-    assert told(brick + at(-0.5, 60.01), tip) == [(0, [[0.0, 60.01]], [0.0, 1.0])]
-
-
-def test_corners_that_no_face_separates_do_not_touch():
-    low = brick + at(0.0, 30.0)
-    assert told(spike[::-1] * [1.0, -1.0] + at(40.05, 50.05), low) == []
+        assert told(brick + at(right, 50.02), LOW) == [(0, [[right, 50.02]], UP)]
+        left = round(40 - right, 6)
+        assert told(brick + at(-right, 50.02), LOW) == [(0, [[left, 50.02]], UP)]
 
 
 @pytest.mark.parametrize(("angle", "length"), [(0.05, 39.5), (0.5, 8.313), (2.0, 0.577)])
@@ -221,37 +231,12 @@ def test_the_normal_is_that_of_the_edge_under_the_nearer_end(sign):
     assert normal == pytest.approx(turn(np.array([[0.0, 1.0]]), lean)[0].tolist(), abs=1e-6)
 
 
-def test_a_spike_on_a_face_and_a_face_on_a_spike():
-    assert told(spike + at(10.0, 50.03), brick + at(0.0, 30.0)) == [
-        (0, [[10.0, 50.03]], [0.0, 1.0])
-    ]
-    assert told(spike + at(10.0, 0.03)) == [(-1, [[10.0, 0.03]], [0.0, 1.0])]
-    found = told(brick + at(0.0, 10.0), spike + at(10.0, 30.02))
-    assert found == [(0, [[10.0, 30.0]], [0.0, -1.0])]
-
-
-def test_a_dent_above_a_face_is_no_contact():
-    hollow = np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [10.0, 0.05], [0.0, 20.0]])
-    # The bottom touches all along; the dent, .05 above it, does not.
-    assert told(hollow + at(0.0, 50.01), brick + at(0.0, 30.0)) == [
-        (0, [[0.0, 50.01], [20.0, 50.01]], [0.0, 1.0])
-    ]
-
-
 def test_a_square_in_a_notch_touches_both_faces():
     s = 0.5**0.5
     found = told(diamond + at(0.0, 40.0 + 0.01 / s), notch)
     assert [(len(p), n) for _, p, n in found] == [
         (2, [-0.707107, 0.707107]),
         (2, [0.707107, 0.707107]),
-    ]
-
-
-def test_a_spike_in_a_notch_touches_both_faces_at_one_point():
-    tip = [0.0, 40.014]
-    assert told(spike + tip, notch) == [
-        (0, [tip], [-0.707107, 0.707107]),
-        (0, [tip], [0.707107, 0.707107]),
     ]
 
 

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.kernels.outline import pixel_polygon, rasterise_polygon
-from tests.naive.outline import centre_inside, inside_by_floats
+from tests.naive.outline import inside_by_floats
 from tests.strategies import masks, repeatable
 
 
@@ -57,21 +57,6 @@ def test_polygon_passes_a_corner_where_two_pixels_touch_twice():
 def test_masks_that_one_polygon_cannot_describe_are_refused(rows, message):
     with pytest.raises(ValueError, match=message):
         pixel_polygon(np.array(rows, bool))
-
-
-@repeatable(150)
-@given(st.lists(st.tuples(st.integers(-6, 6), st.integers(-6, 6)), min_size=3, max_size=8))
-def test_rasterised_polygon_holds_the_pixels_whose_centres_are_inside(corners):
-    mask, left, bottom = rasterise_polygon(np.array(corners, float))
-    canvas = np.zeros((14, 14), bool)
-    if mask.size:
-        top = 14 - (bottom + 7) - mask.shape[0]
-        canvas[top : top + mask.shape[0], left + 7 : left + 7 + mask.shape[1]] = mask
-    for row in range(-7, 7):
-        for col in range(-7, 7):
-            inside = centre_inside(corners, col, row)
-            if inside is not None:
-                assert canvas[13 - (row + 7), col + 7] == inside
 
 
 def test_polygon_without_a_pixel_centre_has_an_empty_mask():

@@ -12,18 +12,10 @@ from drystone.kernels.polygons import mirrored_polygon, no_polygons, polygon_edg
 from drystone.kernels.settling import Status, settle
 from tests.kernels.heaps import WIDTH, drops, rules
 from tests.naive.settling import overlap_area, placed
+from tests.polygons import box_about as box
 from tests.polygons import centred
+from tests.polygons import moved as at
 from tests.strategies import repeatable
-
-
-def box(width, height):
-    a, b = width / 2.0, height / 2.0
-    return np.array([[-a, -b], [a, -b], [a, b], [-a, b]])
-
-
-def at(outline, x, y):
-    return outline + np.array([x, y])
-
 
 BRICK = box(20.0, 10.0)
 SLIVER = box(60.0, 2.0)
@@ -32,16 +24,6 @@ SLIVER = box(60.0, 2.0)
 def let_go(outline, pose, others=(), width=200.0, **changes):
     around = no_polygons().added(list(others))
     return settle(outline, polygon_edges(outline), pose, around, width, rules(15.0, **changes))
-
-
-def test_a_brick_falls_flat_on_the_ground():
-    found = let_go(BRICK, (50.0, 12.0, 0.1), lean=0.0)
-    assert found.status == Status.RESTS
-    assert (found.y, found.angle) == pytest.approx((5.01, 0.0), abs=1e-6)
-    assert found.gap == pytest.approx(0.01, abs=1e-6)
-    assert found.touching == 2
-    # It tips over an end when gravity leans by half its length over half its height.
-    assert found.margin == pytest.approx(min(2.0, 0.58) / 0.58, abs=1e-2)
 
 
 def test_it_does_not_move_aside_without_a_reason():
@@ -58,14 +40,6 @@ def test_what_overlaps_comes_apart_or_is_soon_given_up():
         found = let_go(BRICK, (60.2 + room - 19.6, 5.1, 0.0), beside, **how)
         assert found.status == status
         assert found.steps <= steps
-
-
-def test_leaning_gravity_closes_the_joint_beside_it():
-    left = at(BRICK, 40.0, 5.01)
-    found = let_go(BRICK, (62.0, 12.0, 0.05), [left])
-    assert found.status == Status.RESTS
-    assert found[1:4] == pytest.approx((60.01, 5.01, 0.0), abs=1e-3)
-    assert let_go(BRICK, (62.0, 12.0, 0.0), [left], lean=0.0).x == 62.0
 
 
 def test_ends_of_the_wall_block_but_carry_nothing():

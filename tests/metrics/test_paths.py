@@ -8,14 +8,10 @@ from skimage.graph import MCP_Geometric
 
 from drystone.metrics import paths
 from drystone.metrics.joints import joint_mask
+from tests.kernels.test_paths import noise
 from tests.metrics.walls import bricks, walls
 from tests.naive import metrics as naive
 from tests.strategies import repeatable
-
-
-def noise(shape, share, seed):
-    return np.random.default_rng(seed).random(shape) < share
-
 
 JOINTS = st.builds(
     noise,
@@ -71,13 +67,6 @@ def test_starts_stand_ten_pixels_from_the_ends_and_a_tenth_of_the_width_apart():
     columns = [path.pixels[0, 1] for path in paths.vertical_paths(np.ones((5, 57), bool))]
     assert columns == [10, 15, 20, 25, 30, 35, 40, 45]
     assert paths.vertical_paths(np.ones((5, 20), bool)) == ()
-
-
-def test_a_detour_takes_the_diagonals():
-    joint = np.ones((5, 21), bool)
-    joint[2, 10] = False
-    (path,) = paths.vertical_paths(joint)
-    assert path.length_px == 2 + 2 * math.sqrt(2)
 
 
 @pytest.mark.parametrize("stone", [(2, slice(None)), (0, 10)], ids=["across", "at the start"])

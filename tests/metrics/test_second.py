@@ -51,14 +51,6 @@ def test_four_square_stones():
     assert both(stack(2, 2, side // 2, side // 2)) == pytest.approx((expected, expected))
 
 
-def test_all_paths_count_and_not_the_shortest_alone():
-    """Bed joints are straight, but a path that begins beside a stone must find the joint."""
-    wall = stack(2, 1, 40, 300)
-    assert both(wall)[0] is None
-    assert both(wall)[1] == pytest.approx(naive.second_definition(wall)[1])
-    assert both(wall)[1] > 5.0
-
-
 def test_a_path_cannot_pass_by_the_wall():
     assert both(np.ones((30, 30), np.uint32)) == (None, None)
     assert both(stack(1, 2, 30, 30))[1] is None

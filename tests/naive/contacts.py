@@ -8,11 +8,6 @@ from scipy import ndimage
 
 from tests.naive.statics import diagonal_touches
 
-Node = tuple[int, int]
-Edge = tuple[Node, Node]
-Normal = tuple[float, float]
-Told = tuple[int, int, list[tuple[float, float]], Normal]
-
 TOLERANCE_PX = math.sqrt(2.0)
 
 

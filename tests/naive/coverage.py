@@ -4,9 +4,6 @@ import math
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
-
-Grid = NDArray[np.float64]
 
 
 def coverage(corners):

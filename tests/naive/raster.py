@@ -8,8 +8,6 @@ from shapely import affinity
 
 from drystone.kernels.raster import rotation
 
-Pixel = tuple[int, int]
-
 
 def polygon_of(mask):
     """The pixel squares of a mask, y up from its bottom-left corner."""

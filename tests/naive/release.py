@@ -1,10 +1,9 @@
 """Slow, obvious twin of drystone.statics.flow.release: all sets of contact states."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import linprog
 
-Floats = NDArray[np.float64]
+from tests.naive.statics import contact_matrices
 
 STATES = ("open", "stick", "slide+", "slide-")
 """Of a contact point; "slide+" along its tangent."""
@@ -29,21 +28,9 @@ def greatest_power_of_a_fall(model):
 class _Problem:
     def __init__(self, model):
         free = [block for block in model.blocks if not block.fixed]
-        place = {block.id: 3 * i for i, block in enumerate(free)}
-        centroid = {block.id: block.centroid for block in free}
-        points = [(i, p) for i in model.interfaces for p in i.points]
-        size = 3 * len(free)
-        self.rates = np.zeros((2 * len(points), size))
-        self.mu = [model.friction(i) for i, _ in points]
-        for k, (interface, (px, py)) in enumerate(points):
-            nx, ny = interface.normal
-            for row, (fx, fy) in ((2 * k, (nx, ny)), (2 * k + 1, (ny, -nx))):
-                for block, side in ((interface.block, 1.0), (interface.other, -1.0)):
-                    if block in place:
-                        cx, cy = centroid[block]
-                        moment = (px - cx) * fy - (py - cy) * fx
-                        at = slice(place[block], place[block] + 3)
-                        self.rates[row, at] = side * np.array([fx, fy, moment])
+        normal, tangent = contact_matrices(model)
+        self.rates = np.stack((normal.T, tangent.T), axis=1).reshape(-1, len(normal))
+        self.mu = [model.friction(i) for i in model.interfaces for _ in i.points]
         mass = np.array([[b.weight, b.weight, b.weight * b.area / 6.0] for b in free])
         self.dead = np.array([[0.0, -b.weight, 0.0] for b in free]).ravel()
         self.newton = np.hstack((np.diag(mass.ravel()), -self.rates.T))

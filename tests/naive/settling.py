@@ -8,8 +8,6 @@ import shapely
 from scipy.optimize import linprog
 
 Pose = tuple[float, float, float]
-Contact = tuple[float, float, float, float]
-"""A point, and the unit normal there, towards the polygon that rests."""
 
 
 def placed(outline, pose):

@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
+from tests.naive import columns
+
 Floats = NDArray[np.float64]
 OPTIMAL, UNSTABLE, UNBOUNDED = 0, 1, 2
 
@@ -21,24 +23,8 @@ class Whole:
 
 
 def whole(optimum, added):
-    """The program of a wall with a stone, entry by entry, without what is closed."""
-    weights = [*optimum.weights, *added.weights]
-    rows = 3 * len(weights)
-    columns = []
-    for cones, closed in ((optimum.cones, set(added.closed.tolist())), (added.cones, set())):
-        for number, (first, second) in enumerate(zip(cones.first, cones.second, strict=True)):
-            if number in closed:
-                continue
-            column = np.zeros(rows)
-            for row in range(3):
-                column[3 * first + row] = cones.entries[row, number]
-                if second >= 0:
-                    column[3 * second + row] = cones.entries[3 + row, number]
-            columns.append(column)
-    live, rhs = np.zeros(rows), np.zeros(rows)
-    for body, weight in enumerate(weights):
-        live[3 * body], rhs[3 * body + 1] = weight, weight
-    return Whole(np.array(columns).reshape(-1, rows).T, live, rhs)
+    """The program of a wall with a stone, without what is closed."""
+    return Whole(*columns.program(optimum.cones, optimum.weights, added))
 
 
 def solved(program, sign):

@@ -6,33 +6,6 @@ from scipy.sparse import csc_array
 
 from drystone.statics.model import GROUND
 
-Pair = tuple[int, int]
-Edge = frozenset[tuple[int, int]]
-
-
-def pixel_edges(labels):
-    """Unit edges between each pair of labels, as sets of two wall-frame corners (x, y)."""
-    height, width = labels.shape
-    edges = {}
-
-    def label(x, y):
-        """Of the pixel whose lower left corner is (x, y); -1 where nothing is."""
-        if y < 0:
-            return GROUND
-        inside = 0 <= x < width and y < height
-        return int(labels[height - 1 - y, x]) or -1 if inside else -1
-
-    for x in range(width):
-        for y in range(height):
-            for (dx, dy), ends in (
-                ((0, -1), ((x, y), (x + 1, y))),
-                ((1, 0), ((x + 1, y), (x + 1, y + 1))),
-            ):
-                a, b = label(x, y), label(x + dx, y + dy)
-                if a != b and min(a, b) >= 0:
-                    edges.setdefault((max(a, b), min(a, b)), set()).add(frozenset(ends))
-    return edges
-
 
 def diagonal_touches(labels):
     """(larger id, smaller id, x, y) where two labels touch across two empty pixels."""
@@ -47,43 +20,47 @@ def diagonal_touches(labels):
     return found
 
 
+def contact_matrices(model):
+    """How a unit normal and tangential force at each contact point act on the free blocks.
+
+    Two matrices with three rows a block: force to the right, upwards, and moment.
+    """
+    free = [block for block in model.blocks if not block.fixed]
+    rows = {block.id: 3 * i for i, block in enumerate(free)}
+    centroid = {block.id: block.centroid for block in free}
+    points = [(i, p) for i in model.interfaces for p in i.points]
+    normal, tangent = np.zeros((2, 3 * len(free), len(points)))
+    for k, (interface, (px, py)) in enumerate(points):
+        nx, ny = interface.normal
+        for matrix, (fx, fy) in ((normal, (nx, ny)), (tangent, (ny, -nx))):
+            for block, side in ((interface.block, 1.0), (interface.other, -1.0)):
+                if block in rows:
+                    cx, cy = centroid[block]
+                    moment = (px - cx) * fy - (py - cy) * fx
+                    matrix[rows[block] : rows[block] + 3, k] = side * np.array([fx, fy, moment])
+    return normal, tangent
+
+
 def limit_alphas(model):
     """Least upper bounds of alpha to the left and right; None when unstable by itself.
 
     Forces are normal and tangential, friction is two inequalities (Eq. 23c), nothing is scaled.
     """
-    rows = {block.id: 3 * i for i, block in enumerate(model.blocks)}
-    contacts = [(i, p) for i in model.interfaces for p in i.points]
-    count = 1 + 2 * len(contacts)
-    equilibrium = np.zeros((3 * len(model.blocks), count))
-    friction = np.zeros((2 * len(contacts), count))
-    dead = np.zeros(3 * len(model.blocks))
-    for block in model.blocks:
-        equilibrium[rows[block.id], 0] = block.weight
-        dead[rows[block.id] + 1] = block.weight
-    centroid = {block.id: block.centroid for block in model.blocks}
-    for k, (interface, (px, py)) in enumerate(contacts):
-        nx, ny = interface.normal
-        for column, (fx, fy) in ((1 + 2 * k, (nx, ny)), (2 + 2 * k, (ny, -nx))):
-            for block, sign in ((interface.block, 1), (interface.other, -1)):
-                if block == GROUND:
-                    continue
-                cx, cy = centroid[block]
-                moment = (px - cx) * fy - (py - cy) * fx
-                at = rows[block]
-                equilibrium[at : at + 3, column] = sign * np.array([fx, fy, moment])
-        friction[2 * k, 1 + 2 * k : 3 + 2 * k] = (-model.mu, 1)
-        friction[2 * k + 1, 1 + 2 * k : 3 + 2 * k] = (-model.mu, -1)
-    forces = [bounds for _ in contacts for bounds in ((0, None), (None, None))]
+    normal, tangent = contact_matrices(model)
+    none, one = np.zeros(normal.shape[1]), np.eye(normal.shape[1])
+    live, dead = np.zeros((2, 3 * len(model.blocks)))
+    live[0::3] = dead[1::3] = [block.weight for block in model.blocks]
+    friction = np.block(
+        [[none[:, None], -model.mu * one, one], [none[:, None], -model.mu * one, -one]]
+    )
+    forces = [(0, None)] * len(one) + [(None, None)] * len(one)
 
     def solve(sign, highest):
-        push = equilibrium.copy()
-        push[:, 0] *= sign
         answer = linprog(
-            np.eye(count)[0] * -1,
+            [-1.0, *none, *none],
             A_ub=friction,
             b_ub=np.zeros(len(friction)),
-            A_eq=push,
+            A_eq=np.column_stack((sign * live, normal, tangent)),
             b_eq=dead,
             bounds=[(0, highest), *forces],
         )

@@ -4,11 +4,7 @@ import math
 
 import numpy as np
 
-from drystone.model.pose import PosedStone
 from tests.naive.overlap import overlaps
-
-Ends = tuple[tuple[int, int], tuple[int, int]]
-Pose = tuple[PosedStone, int, int]
 
 
 def supported_columns(occupied, mask, row, col):

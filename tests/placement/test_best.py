@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Placement
-from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.stone import Stone
 from drystone.model.wall import Wall
@@ -18,25 +17,9 @@ from tests.naive import placement as naive
 from tests.naive import rays
 from tests.strategies import posed_on_walls, repeatable
 
-Scene = tuple[Wall, PosedStone, int, int]
-
 
 def block(height, width, stone_id=1):
     return PoseBook().pose(Stone(stone_id, np.ones((height, width), bool)), 0.0)
-
-
-@repeatable(40)
-@given(scene=posed_on_walls())
-def test_eq12_takes_the_largest_value_then_the_lower_then_the_left(scene):
-    wall, posed, _, _ = scene
-    settings = PlacementSettings(tries=5)
-    value = {
-        at: naive.eq12(wall.occupied, posed.mask, posed.anchor[0], at, settings.beta)
-        for at in naive.resting_positions(wall.occupied, posed.mask)
-    }
-    ranked = sorted(value, key=lambda at: (-round(value[at], 9), -at[0], at[1]))
-    got = best_spots(Landscape.of(wall), [posed], settings)
-    assert [(spot.row, spot.col) for spot in got] == ranked[:5]
 
 
 @repeatable(40)

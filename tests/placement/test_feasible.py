@@ -43,25 +43,6 @@ def test_from_above_is_where_a_lowered_stone_comes_to_rest(occupied, mask):
     assert all(at in everywhere for at in lowered)
 
 
-@repeatable(80)
-@given(occupied=landscapes(14), mask=masks(), clearance=st.integers(1, 3))
-def test_clearance_is_free_on_both_sides_of_the_stone(occupied, mask, clearance):
-    wide = [list(at) for at in naive.positions_from_above(occupied, mask, clearance)]
-    assert found(occupied, mask, "above", clearance) == wide
-
-
-def test_clearance_counts_at_every_height_of_the_stone():
-    stone = np.array([[1, 1], [0, 1], [0, 1]], bool)
-    occupied = np.zeros((12, 6), bool)
-    # A post beside the stone.  Three px above its place the stone's foot reaches down to row 8;
-    # from the top of the post it has one free px to its left, not two.
-    occupied[9:, 1] = True
-    assert [9, 2] in found(occupied, stone, "above", 2)
-    occupied[8, 1] = True
-    assert [9, 2] not in found(occupied, stone, "above", 2)
-    assert [9, 2] in found(occupied, stone, "above", 1)
-
-
 @pytest.mark.parametrize("reach", ["any", "above"])
 def test_a_stone_larger_than_the_site_fits_nowhere(reach):
     occupied = np.zeros((4, 6), bool)

@@ -80,29 +80,6 @@ def test_a_repeated_attempt_chooses_what_a_new_one_does():
             assert chosen.course_height_px == fresh.course_height_px
 
 
-def test_both_sides_are_tried_when_asked(monkeypatch):
-    for two_sided, sides in ((True, {"left", "right"}), (False, {"left"})):
-        attempt = _attempt(PlannerSettings(sampling="full", two_sided=two_sided))
-        with monkeypatch.context() as patch:
-            calls = _Calls(patch)
-            attempt.choose(np.random.default_rng(0))
-        assert {side for _, _, side in calls.proposed} == sides
-
-
-def test_the_second_fold_tries_the_cluster_of_the_winner(monkeypatch):
-    # Two clusters of three stones: one of each is drawn, then the rest of one of them.
-    stones = blocks({1: (10, 10), 2: (10, 10), 3: (10, 10), 4: (30, 5), 5: (30, 5), 6: (30, 5)})
-    settings = PlannerSettings(sampling="twofold")
-    planner = Planner(stones, Site(60, 20), settings=settings)
-    calls = _Calls(monkeypatch)
-    attempt = Attempt(planner.workshop, settings, planner.build)
-    chosen = attempt.choose(np.random.default_rng(0))
-    tried = {stone_id for stone_id, _, _ in calls.proposed}
-    members = {1, 2, 3} if chosen.stone_id <= 3 else {4, 5, 6}
-    assert members <= tried
-    assert len(tried - members) == 1
-
-
 def test_the_height_of_a_course_is_the_mean_of_other_stones():
     # Eq. 8: the first stone is compared with the mean height of the other candidates.
     stones = blocks({1: (20, 10), 2: (20, 10), 3: (20, 4)})

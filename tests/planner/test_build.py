@@ -5,8 +5,6 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from drystone.model.site import Site
-from drystone.planner.build import Build
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
@@ -95,11 +93,3 @@ def test_the_unit_of_weight_is_a_stone_of_the_set(monkeypatch):
     again.restore(planner.build.wall, {})
     area = planner.workshop.stock.mean_area_px
     assert units == {(np.sqrt(area), area)}
-
-
-def test_nothing_is_built_yet():
-    build = Build.empty(Site(20, 10), 0.4, 100.0)
-    assert (build.actions, build.model.blocks, build.model.mu) == ((), (), 0.4)
-    assert build.wall.labels.shape == (10, 20)
-    assert build.states() == (build,)
-    assert build.analysis.model is build.model

@@ -21,18 +21,14 @@ from drystone.generate import (
 from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.model.outlines import Outlines
 from drystone.model.site import Site
-from drystone.model.stone import StoneSet
 from drystone.model.wall import outlined
 from drystone.planner.planner import Planner
-from drystone.planner.settings import PlannerSettings
 from drystone.search.plan_wall import plan_wall
 from drystone.search.whole_search import run_to_end
 from drystone.settle.rest import placed_outline
 from drystone.verify import check_plan
 from tests.planner.scenes import WITH_WEDGES, few_stones, finish, greedy, outlines, rubble, same
 from tests.strategies import repeatable
-
-Case = tuple[StoneSet, tuple[float, float], float, PlannerSettings]
 
 
 @st.composite

@@ -233,15 +233,3 @@ def test_a_course_is_begun_with_the_height_it_was_begun_with(settings):
     build, _, _ = replayed(planner.build, steps, {1: 8.0}, planner.workshop, planner.settings)
     assert [a.course_height_px for a in build.actions] == [8.0, None]
     assert build.actions[0].indices.NHR == pytest.approx(0.2)
-
-
-def test_what_stands_stands_in_both_models_and_carries_a_load():
-    planner, groups = scene(scenes.greedy())
-    build, _, _ = replayed(
-        planner.build, [groups["ground"]], {}, planner.workshop, planner.settings
-    )
-    action = build.actions[0]
-    assert action.stands
-    assert not replace(action, sturdy=False).stands
-    for llc in (0.0, None):
-        assert not replace(action, indices=replace(action.indices, LLC=llc)).stands

@@ -6,11 +6,9 @@ import pytest
 
 from drystone.errors import UsageError
 from drystone.model.site import Site
-from drystone.planner.craft import PoseCosts
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
-from drystone.selection.scored import PIN_BONUS, ScoreSettings
 from tests.planner.scenes import RUBBLE_SITE, blocks, bricks, finish, greedy, order, rubble
 
 
@@ -77,16 +75,6 @@ def test_lists_of_settings_are_lists():
     written = settings.as_dict()
     assert (written["ban"], written["pin"]) == ([3], [1, 2])
     assert PlannerSettings().updated(written) == settings
-
-
-def test_a_pinned_stone_costs_less_by_the_bonus():
-    workshop = Workshop.prepare(rubble(), RUBBLE_SITE, PlannerSettings())
-    poses = [workshop.initial(stone_id) for stone_id in workshop.fitting]
-    plain = PoseCosts(workshop.stock).of(poses, ScoreSettings())
-    pinned = PoseCosts(workshop.stock, frozenset({workshop.fitting[1]})).of(poses, ScoreSettings())
-    assert (plain - pinned).tolist() == pytest.approx(
-        [PIN_BONUS if k == 1 else 0.0 for k in range(len(poses))]
-    )
 
 
 @pytest.mark.parametrize(

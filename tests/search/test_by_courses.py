@@ -1,13 +1,11 @@
 """Walls that are planned course by course and laid, and what is changed of them and others."""
 
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial, partialmethod
 
 import numpy as np
 import pytest
-from numpy.random import Generator
 
 from drystone.model.site import Site
 from drystone.planner.evaluate import Evaluator
@@ -29,8 +27,6 @@ from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.verify.check import check_plan
 from tests.planner import scenes
 from tests.planner.scenes import RUBBLE_SITE, blocks, greedy, rubble
-
-Change = Callable[[FoundWall, Yard, Generator], FoundWall | None]
 
 
 def rng(seed):

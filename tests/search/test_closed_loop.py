@@ -7,9 +7,9 @@ import shapely
 from drystone.model.builder import HAND, BuilderErrors
 from drystone.search.closed_loop import rehearse_closed, tilt_as_built
 from drystone.search.rehearsal import mean_size, rehearse
+from tests.polygons import box_of as box
 from tests.search.test_rehearsal import BOND, NONE, TOWER
 from tests.settle.test_as_built import PLANK, POST
-from tests.settle.test_putting import box
 
 
 def runs(groups, once, precision=HAND, count=8):

@@ -15,8 +15,6 @@ from drystone.settle.wedged import wedged
 from tests.planner.scenes import RUBBLE_SITE, rubble
 from tests.search.yards import Plot
 
-Place = tuple[float, float]
-
 
 class Drop:
     """A stone of some rubble over two others."""

@@ -7,7 +7,7 @@ import pytest
 
 from drystone.model.builder import HAND, ROBOT, BuilderErrors
 from drystone.search.rehearsal import mean_size, rehearse, rehearse_in_engine
-from tests.settle.test_putting import box
+from tests.polygons import box_of as box
 
 NONE = BuilderErrors(placement=0.0, angle_deg=0.0, outline=0.0)
 TURNED = BuilderErrors(placement=0.0, angle_deg=10.0, outline=0.0)

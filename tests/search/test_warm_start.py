@@ -25,7 +25,6 @@ from tests.planner.scenes import (
     few_stones,
     finish,
     greedy,
-    order,
     outlines,
     rubble,
 )
@@ -39,15 +38,6 @@ def built(seed=3):
 
 def new(settings):
     return Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
-
-
-def test_the_wall_is_as_it_was():
-    old = built()
-    planner = new(old.settings)
-    assert begin_with(planner, old.build.wall, {}) == ()
-    assert order(planner) == order(old)
-    assert outlines(planner) == outlines(old)
-    assert planner.build.wall.labels.tobytes() == old.build.wall.labels.tobytes()
 
 
 def test_banned_stones_are_taken_out_with_what_falls_then():

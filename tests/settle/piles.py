@@ -1,18 +1,12 @@
 """Random piles of polygons, and one more that was let down on them without turning."""
 
-import numpy as np
 from hypothesis import strategies as st
 
 from drystone.kernels.polygons import no_polygons
 from tests.naive.crevice import drop
-from tests.polygons import simple_polygons
+from tests.polygons import moved, simple_polygons
 
 WIDTH = 60.0
-
-
-def moved(polygon, x, y=0.0):
-    """The same polygon somewhere else."""
-    return np.asarray(polygon + np.array([x, y]))
 
 
 def let_down(stone, around, gap):

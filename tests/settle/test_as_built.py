@@ -8,8 +8,9 @@ from drystone.search.rehearsal import mean_size, rehearse
 from drystone.settle import as_built
 from drystone.settle.as_built import BuiltWall
 from tests.naive import as_built as naive
+from tests.polygons import box_of as box
 from tests.search.test_rehearsal import BOND, BOTH, NONE
-from tests.settle.test_putting import SETTLE, box
+from tests.settle.test_putting import SETTLE
 
 POST, PLANK = [(1, box(0.0, 0.0, 20.0))], [(2, box(-20.0, 20.0, 60.0, 10.0))]
 """A brick on the ground, and a plank in balance on it."""

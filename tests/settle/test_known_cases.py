@@ -10,47 +10,24 @@ import pytest
 from scipy.optimize import brentq, minimize_scalar
 
 from drystone.kernels.polygons import no_polygons, polygon_edges
-from drystone.kernels.settling import SettlingRules, Status, settle
+from drystone.kernels.settling import Status, settle
+from tests.kernels.heaps import rules
+from tests.polygons import box_about as box
+from tests.polygons import moved as at
 
 MU = 0.58
 
 
 def exact(size, **changes):
     """Rules without slack."""
-    usual = SettlingRules(
-        lean=0.0,
-        stop=-1.0,
-        mu=MU,
-        clearance=1e-9 * size,
-        tolerance=1e-7 * size,
-        corner=1e-7 * size,
-        near=0.04 * size,
-        far=0.08 * size,
-        turn=math.radians(60.0),
-        shift=2.0 * size,
-        gain=1e-12 * size,
-        overlap=0.01 * size,
-        steep=-1.0,
-        beyond=0.0,
-        sticks=False,
-        turns=True,
-        steps=400,
-    )
-    return usual._replace(**changes)
+    close = {"clearance": 1e-9 * size, "tolerance": 1e-7 * size, "corner": 1e-7 * size}
+    near = {"overlap": 0.01 * size, "gain": 1e-12 * size, "turn": math.radians(60.0), "steps": 400}
+    return rules(size, **{"lean": 0.0, **close, **near, **changes})
 
 
 def let_go(outline, pose, others, size, width=400.0, **changes):
     around = no_polygons().added(others)
     return settle(outline, polygon_edges(outline), pose, around, width, exact(size, **changes))
-
-
-def box(width, height):
-    a, b = width / 2.0, height / 2.0
-    return np.array([[-a, -b], [a, -b], [a, b], [-a, b]])
-
-
-def at(outline, x, y):
-    return outline + np.array([x, y])
 
 
 def round_stone(corners, radius, phase=0.0):

@@ -9,13 +9,9 @@ from drystone.model.builder import Built
 from drystone.settle.putting import fallen_share, put_down
 from drystone.settle.settings import SettleSettings
 from tests.naive import putting as naive
+from tests.polygons import box_of as box
 
 SETTLE = SettleSettings()
-
-
-def box(x, y, width=40.0, height=20.0):
-    """A box with its lower left corner at a place."""
-    return np.array([[x, y], [x + width, y], [x + width, y + height], [x, y + height]])
 
 
 def brick(x, y, angle_deg=0.0, width=40.0):

@@ -29,7 +29,9 @@ from drystone.settle.rest import (
     ways,
 )
 from drystone.settle.settings import SettleSettings
-from tests.settle.piles import WIDTH, moved, piles
+from tests.polygons import box_about as box
+from tests.polygons import moved
+from tests.settle.piles import WIDTH, piles
 from tests.strategies import repeatable
 
 MU = 0.58
@@ -38,11 +40,6 @@ METHODS = ("energy", "pivot")
 CLEAR = 0.01
 FINE = 2e-5
 """Settling ends where a step gains less than 4e-6 of the size of a stone."""
-
-
-def box(width, height):
-    a, b = width / 2.0, height / 2.0
-    return np.array([[-a, -b], [a, -b], [a, b], [-a, b]])
 
 
 BRICK = box(20.0, 10.0)

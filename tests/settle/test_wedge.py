@@ -29,8 +29,8 @@ from drystone.settle.wedge import (
 )
 from tests.naive.crevice import gap_at
 from tests.naive.wedge_shape import covered, objections
-from tests.polygons import box
-from tests.settle.piles import WIDTH, moved, piles
+from tests.polygons import box, moved
+from tests.settle.piles import WIDTH, piles
 from tests.strategies import repeatable
 
 LIMITS = WedgeLimits(least_thickness=0.5, greatest_height=6.0)

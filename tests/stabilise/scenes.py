@@ -3,12 +3,9 @@
 import numpy as np
 from hypothesis import strategies as st
 
-from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
 from drystone.poses import PoseBook
 from tests.naive.overlap import lowered
-
-Pose = tuple[PosedStone, int, int]
 
 BOOK = PoseBook()
 BAR = BOOK.pose(Stone(1, np.ones((6, 30), bool)), 0.0)

@@ -100,16 +100,6 @@ def test_it_turns_as_a_walk_from_angle_to_angle_does(scene, settings):
     assert (result.pose and (result.pose, result.pivots)) == expected
 
 
-def test_meeting_the_landscape_before_resting_ends_the_rotation():
-    occupied = ledge()
-    posed, row, col = bar_on_the_ledge(occupied, PoseBook())
-    occupied[: row + 4, col + posed.width_px :] = True  # a wall close to its free end
-    occupied[: row - 1, :] = True
-    occupied[row - 1, 0:16] = True
-    trial = posed, row, col
-    assert rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings()).pose is None
-
-
 def test_a_stone_in_the_air_does_not_rest():
     posed = PoseBook().pose(Stone(7, np.ones((6, 30), bool)), 0.0)
     result = rotate_to_rest(ledge(), (posed, 3, 10), PoseBook(), StabiliseSettings())
