@@ -21,6 +21,7 @@ from drystone.poses import (
     pose_at,
     wrap_deg,
 )
+from tests.naive import indices
 from tests.naive import raster as naive
 from tests.strategies import blobs, masks, repeatable
 
@@ -32,14 +33,14 @@ SCALES = st.sampled_from([1.0, 0.5, 0.3, 0.2])
 @given(mask=masks(), angle=st.floats(-180, 180))
 def test_shape_factor_is_that_of_the_turned_polygon(mask, angle):
     assert bounding_box_shape_factor(Stone(1, mask), angle) == pytest.approx(
-        naive.shape_factor(mask, angle)
+        indices.shape_factor(mask, angle)
     )
 
 
 @repeatable(25)
 @given(mask=masks())
 def test_initial_angle_maximises_shape_factor_over_whole_degrees(mask):
-    factors = {a: naive.shape_factor(mask, a) for a in range(-45, 45)}
+    factors = {a: indices.shape_factor(mask, a) for a in range(-45, 45)}
     best = max(factors.values())
     level = [a for a, factor in factors.items() if factor >= best - 1e-9]
     angle = initial_angle_deg(Stone(1, mask))

@@ -5,6 +5,7 @@ import pytest
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.kernels import simplex
+from drystone.kernels.cones import GROUND_BODY, cone_edges
 from drystone.kernels.simplex import OPTIMAL, Added, Cones, Optimum
 from drystone.statics.model import GROUND
 from tests.naive import simplex as naive
@@ -37,25 +38,22 @@ def cones(first, second, entries):
 
 def edges_of(interfaces, blocks, mu):
     """The two edges of the cone of every contact point."""
-    first, second, entries = [], [], []
-    for interface in interfaces:
-        normal_x, normal_y = interface.normal
-        for x, y in interface.points.tolist():
-            for along in (mu, -mu):
-                column = []
-                force_x, force_y = normal_x + along * normal_y, normal_y - along * normal_x
-                for number, way in ((interface.block, 1.0), (interface.other, -1.0)):
-                    if number == GROUND:
-                        column += [0.0, 0.0, 0.0]
-                        continue
-                    centre_x, centre_y = blocks[number][1].centroid
-                    arm_x, arm_y = (x - centre_x) / LENGTH_PX, (y - centre_y) / LENGTH_PX
-                    moment = arm_x * force_y - arm_y * force_x
-                    column += [way * force_x, way * force_y, way * moment]
-                first.append(blocks[interface.block][0])
-                second.append(-1 if interface.other == GROUND else blocks[interface.other][0])
-                entries.append(column)
-    return cones(first, second, entries)
+
+    def body(number):
+        if number == GROUND:
+            return GROUND_BODY
+        place, block = blocks[number]
+        return place, *block.centroid
+
+    return Cones(
+        *cone_edges(
+            [(body(interface.block), body(interface.other)) for interface in interfaces],
+            [interface.normal for interface in interfaces],
+            [mu] * len(interfaces),
+            [interface.points for interface in interfaces],
+            LENGTH_PX,
+        )
+    )
 
 
 def added_blocks(model, placed, new):
@@ -155,18 +153,14 @@ def identical(one, other):
 
 def differing(one, other):
     """Names of what is not equal in two optima."""
-    names = [
+    parts = (
+        (one.basis, other.basis, vars(one.basis)),
+        (one, other, ("sign", "alpha", "weights", "forces", "velocity")),
+        (one.cones, other.cones, ("first", "second", "entries")),
+    )
+    return [
         name
-        for name in vars(one.basis)
-        if not np.array_equal(getattr(one.basis, name), getattr(other.basis, name))
-    ]
-    names += [
-        name
-        for name in ("sign", "alpha", "weights", "forces", "velocity")
-        if not np.array_equal(getattr(one, name), getattr(other, name))
-    ]
-    return names + [
-        name
-        for name in ("first", "second", "entries")
-        if not np.array_equal(getattr(one.cones, name), getattr(other.cones, name))
+        for mine, others, names in parts
+        for name in names
+        if not np.array_equal(getattr(mine, name), getattr(others, name))
     ]

@@ -6,7 +6,7 @@ import shapely
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from drystone.kernels.crevice import between, crevice, slabs
+from drystone.kernels.crevice import between, crevice
 from drystone.kernels.polygons import mirrored_polygon, no_polygons
 from tests.naive.crevice import gap_at
 from tests.polygons import box, moved
@@ -98,26 +98,6 @@ def test_a_mirrored_scene_gives_the_mirrored_space(pile):
         assert shapely.hausdorff_distance(*shapes) < 1e-9
 
 
-def test_a_corner_of_the_stone_gets_a_corner_of_the_wedge():
-    stone = np.array([[0.0, 4.0], [3.0, 3.0], [6.0, 4.0], [6.0, 9.0], [0.0, 9.0]])
-    piece = gap_polygon(stone, no_polygons(), 1.0, 5.0, 0.1)
-    assert piece is not None
-    fall = 0.1 * np.hypot(1.0, 1.0 / 3.0)  # of an edge of slope 1/3 moved along its normal
-    expected = [
-        [1.0, 0.1], [5.0, 0.1], [5.0, 3.0 + 2.0 / 3.0 - fall], [3.0, 3.0 - fall],
-        [1.0, 3.0 + 2.0 / 3.0 - fall],
-    ]  # fmt: skip
-    assert piece == pytest.approx(np.array(expected))
-
-
-def test_a_step_below_is_kept_as_a_step():
-    """One corner stands out and stays at a distance on both of its sides, one does not."""
-    piece = gap_polygon(box(0, 5, 6, 8), no_polygons().added([box(0, 0, 3, 2)]), 1.0, 5.0, 0.1)
-    assert piece is not None
-    expected = [[1, 2.1], [3.1, 2.1], [3.1, 0.1], [5, 0.1], [5, 4.9], [1, 4.9]]
-    assert piece == pytest.approx(np.array(expected))
-
-
 def test_an_acute_corner_is_cut_off():
     """The tip of a stone below, 26.6 degrees: moved edges would meet 4.2 clearances from it."""
     spike = np.array([[3.0, 0.0], [5.0, 0.0], [4.0, 2.0]])
@@ -168,12 +148,3 @@ def test_what_stands_just_beside_a_line_keeps_its_distance():
     piece = gap_polygon(box(0, 4, 8, 6), posts, 2.05, 8.0, 0.1)
     assert piece is not None
     assert shapely.Polygon(piece).distance(bodies(posts)) == pytest.approx(0.1)
-
-
-def test_slabs_are_cut_at_all_corners():
-    stone = np.array([[0.0, 4.0], [3.0, 3.0], [6.0, 4.0], [6.0, 9.0], [0.0, 9.0]])
-    space = crevice(stone, no_polygons().added([box(2, 0, 9, 1)]), 0.0)
-    x, low, high = slabs(space, 1.0, 5.0)
-    assert x.tolist() == [1, 2, 3, 5]
-    assert low.tolist() == [[0, 0], [1, 1], [1, 1]]
-    assert high == pytest.approx(np.array([[11, 10], [10, 9], [9, 11]]) / 3.0)

@@ -253,24 +253,6 @@ def test_a_stone_ends_below_the_walls_height(height, slack, fits):
     assert drops(bare(20), stone, terms, 0.0, 1, 0.0)[:, 2].tolist() == [0.0] * fits
 
 
-def test_a_stone_on_one_end_leans_to_the_other():
-    profile = wall_of([box_of(10, 0, 4, 10)], 20, 2.0)
-    terms = terms_of(height_px=40.0, unbalanced=2.0)
-    stone = hanging(box_of(-4.0, -3.0, 8.0, 6.0), 2.0)
-    found = {row[0]: row[2:] for row in drops(profile, stone, terms, 0.0, 20, 0.0).tolist()}
-    assert found[12.0] == [2.0 * 2 / 8, 2 / 8]
-    assert found[10.0] == [0.0, 0.0]
-    assert found[4.0] == [2.0 * 2 / 8, -2 / 8]
-    # Its own right end carries a stone that ends within a column.
-    short = hanging(box_of(-3.5, -3.0, 4.5, 6.0), 2.0)
-    found = {row[0]: row[3] for row in drops(bare(20), short, terms, 0.0, 20, 0.0).tolist()}
-    assert set(found.values()) == {0.0}
-    beside = short._replace(left=-5.0, right=-0.5)
-    found = {row[0]: row[3] for row in drops(bare(20), beside, terms, 0.0, 20, 0.0).tolist()}
-    # Two columns carry it; its last half px is not over a third.
-    assert set(found.values()) == {1.0 / 4.5}
-
-
 def test_what_cannot_be_is_refused():
     stone, terms = hanging(box_of(-4, -3, 8, 6), 2.0), terms_of(joint=1.0)
     one, two = np.zeros(1), np.zeros(2)

@@ -19,10 +19,6 @@ def test_tries_all_combinations(stones, limit):
     assert unfillable(Counter(stones), limit).tolist() == naive.unfillable(stones, limit)
 
 
-def test_a_length_is_used_once_and_in_one_orientation():
-    assert unfillable({(3, 5): 1}, 8).tolist() == [0, 1, 2, 0, 1, 0, 1, 2, 3]
-
-
 def test_very_many_stones_are_as_many_as_fit():
     assert unfillable({(7,): 10**9}, 15).tolist() == unfillable({(7,): 2}, 15).tolist()
 

@@ -49,15 +49,6 @@ def test_joints_are_their_slow_twin(labels):
     assert np.array_equal(joint_mask(labels), naive.joint_mask(labels))
 
 
-def test_the_edge_erodes_nothing_and_padding_is_one_above_two_below_one_left_two_right():
-    stone = ~joint_mask(np.ones((4, 5), np.uint8))
-    assert stone[1:-2, 1:-2].all()
-    assert (stone.shape, stone.sum()) == ((7, 8), 20)
-    # Stones that touch have a joint of two pixels.
-    labels = np.repeat([[1, 70_000]], 5, axis=1).repeat(4, axis=0)
-    assert np.flatnonzero(joint_mask(labels)[2, 1:-2]).tolist() == [4, 5]
-
-
 @repeatable()
 @given(walls(), st.floats(0.05, 2.5))
 def test_reduced_is_its_slow_twin(labels, scale):

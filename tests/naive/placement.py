@@ -3,7 +3,7 @@
 import numpy as np
 from scipy import ndimage, signal
 
-from tests.naive import indices, rays
+from tests.naive import indices
 from tests.naive.overlap import lowered, overlaps
 
 
@@ -61,14 +61,6 @@ def positions_from_above(occupied, mask, clearance=0):
     return sorted(found)
 
 
-def eq12(occupied, mask, anchor_x, at, beta):
-    """Eq. 12a at one position."""
-    dice = indices.dice_score(occupied, indices.painted(occupied.shape, mask, *at))
-    filling = rays.local_filling_ratio(occupied, mask, *at)
-    x_c = (at[1] + anchor_x) / occupied.shape[1]
-    return float(filling + (dice if dice > beta else 0.0) - x_c)
-
-
 def gap_beside(occupied, mask, at):
     """Empty pixels between a stone and the first thing to its left, row by row."""
     empty = 0
@@ -122,8 +114,8 @@ def filling_on_images(occupied, stone):
     return float(np.count_nonzero(swept & occupied) / count) if count else 1.0
 
 
-def eq12_on_images(occupied, mask, anchor_x, at, beta):
-    """`eq12` on whole images."""
+def eq12(occupied, mask, anchor_x, at, beta):
+    """Eq. 12a at one position, on whole images."""
     stone = indices.painted(occupied.shape, mask, *at)
     dice = indices.dice_score(occupied, stone)
     x_c = (at[1] + anchor_x) / occupied.shape[1]
@@ -133,8 +125,7 @@ def eq12_on_images(occupied, mask, anchor_x, at, beta):
 def best_by_eq12(occupied, mask, anchor_x, positions, beta):
     """The position of the largest merit; equal ones: the lower, then the one further left."""
     ranked = [
-        (-round(eq12_on_images(occupied, mask, anchor_x, at, beta), 12), -at[0], at[1])
-        for at in positions
+        (-round(eq12(occupied, mask, anchor_x, at, beta), 12), -at[0], at[1]) for at in positions
     ]
     if not ranked:
         return None

@@ -35,12 +35,6 @@ def coverage(mask, centre, angle_deg, scale, phase, window):
     return np.asarray(areas, float).reshape(top - bottom, right - left)
 
 
-def shape_factor(mask, angle_deg):
-    """Eq. 3: area over that of the axis-aligned bounding box."""
-    left, bottom, right, top = affinity.rotate(polygon_of(mask), angle_deg).bounds
-    return float(np.count_nonzero(mask) / ((right - left) * (top - bottom)))
-
-
 def second_moment_eccentricity(mask):
     """Focal distance over major axis of the ellipse of equal second moments (§3.4)."""
     rows, cols = np.nonzero(mask)

@@ -93,17 +93,16 @@ def test_the_height_of_a_course_is_the_mean_of_other_stones():
     assert chosen.indices.NHR == pytest.approx(0.3)
 
 
-def test_orientations_are_candidates_or_the_rule_picks_one(monkeypatch):
+def test_orientations_are_candidates_or_the_rule_picks_one():
     stones = blocks({1: (20, 10), 2: (16, 8)})
     for choice, tried in (("candidates", 4), ("placement", 2)):
         settings = PlannerSettings(sampling="full", orientations="quarter").updated(
             {"orientation_choice": choice}
         )
         planner = Planner(stones, Site(60, 30), settings=settings)
-        with monkeypatch.context() as patch:
-            calls = _Calls(patch)
-            Attempt(planner.workshop, settings, planner.build).choose(np.random.default_rng(0))
-        assert len(calls.proposed) == tried
+        attempt = Attempt(planner.workshop, settings, planner.build)
+        attempt.choose(np.random.default_rng(0))
+        assert attempt.candidates == tried
 
 
 @pytest.mark.parametrize(("clearance_px", "proposed"), [(0, True), (1, True), (2, False)])

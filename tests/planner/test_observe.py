@@ -202,18 +202,34 @@ def test_a_stone_alone_is_measured_to_a_third_of_a_pixel_and_a_degree(scale):
     assert degrees.max() < 1.0
 
 
-def test_a_stone_is_found_whichever_way_it_is_turned():
-    shape = np.array([[0.0, 0.0], [40.0, 0.0], [40.0, 12.0], [20.0, 16.0], [0.0, 30.0]])
-    shape = shape - shapely.get_coordinates(shapely.Polygon(shape).centroid)
+def shown(corners, angle_deg, x, y):
+    """A shape as a picture of 80 x 80 px shows it, turned, with its centroid somewhere."""
     rows, cols = np.mgrid[0:80, 0:80]
+    there = affinity.rotate(shapely.Polygon(corners), angle_deg, origin=(0, 0))
+    there = affinity.translate(there, x, y)
+    return shapely.contains(there, shapely.points(cols + 0.5, 80 - rows - 0.5))
+
+
+def about_its_centroid(*corners):
+    return np.array(corners) - shapely.get_coordinates(shapely.Polygon(corners).centroid)
+
+
+def test_a_stone_is_found_whichever_way_it_is_turned():
+    shape = about_its_centroid((0, 0), (40, 0), (40, 12), (20, 16), (0, 30))
     for angle in (-170.0, -60.0, 0.0, 95.0, 180.0):
-        there = affinity.rotate(shapely.Polygon(shape), angle, origin=(0, 0))
-        there = affinity.translate(there, 41.3, 37.8)
-        seen = shapely.contains(there, shapely.points(cols + 0.5, 80 - rows - 0.5))
-        place = fitted(seen, shape, 1.0, None)
+        place = fitted(shown(shape, angle, 41.3, 37.8), shape, 1.0, None)
         assert turns(place.angle_deg, angle) < 1.0
         # Straight edges along rows and columns tell where they are to half a pixel.
         assert np.hypot(place.x_px - 41.3, place.y_px - 37.8) < (0.5 if angle % 90 == 0 else 0.3)
+
+
+def test_a_stone_is_turned_otherwise_than_planned_only_if_it_looks_so():
+    wedge = about_its_centroid((0, 0), (40, 0), (40, 6), (0, 26))
+    brick = about_its_centroid((0, 0), (40, 0), (40, 20), (0, 20))
+    # A brick upside down is the same picture: it is as it was planned.
+    for shape, planned_deg, found_deg in ((wedge, -100.0, 33.0), (brick, -145.0, -147.0)):
+        place = fitted(shown(shape, 33.0, 40.2, 39.7), shape, 1.0, planned_deg)
+        assert turns(place.angle_deg, found_deg) < 1.0
 
 
 @BOTH
@@ -415,17 +431,3 @@ def _block(one, stone_id):
     """Where a block is, on a site without a scale."""
     (placement,) = (p for p in one.build.wall.placements if p.stone_id == stone_id)
     return *placement.centroid(one.workshop.site.height_px), placement.posed.angle_deg
-
-
-def test_a_stone_is_turned_otherwise_than_planned_only_if_it_looks_so():
-    rows, cols = np.mgrid[0:80, 0:80]
-    centres = shapely.points(cols + 0.5, 80 - rows - 0.5)
-    wedge = np.array([[0.0, 0.0], [40.0, 0.0], [40.0, 6.0], [0.0, 26.0]])
-    brick = np.array([[0.0, 0.0], [40.0, 0.0], [40.0, 20.0], [0.0, 20.0]])
-    for shape, planned_deg, found_deg in ((wedge, -100.0, 33.0), (brick, -145.0, -147.0)):
-        about = shape - shapely.get_coordinates(shapely.Polygon(shape).centroid)
-        there = affinity.rotate(shapely.Polygon(about), 33.0, origin=(0, 0))
-        there = affinity.translate(there, 40.2, 39.7)
-        # A brick upside down is the same picture: it is as it was planned.
-        place = fitted(shapely.contains(there, centres), about, 1.0, planned_deg)
-        assert turns(place.angle_deg, found_deg) < 1.0

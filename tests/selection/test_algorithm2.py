@@ -56,14 +56,6 @@ def test_choice_is_that_of_the_appendix(pi, weights):
     )
 
 
-@pytest.mark.parametrize("llc", [0.0, -0.1, None])
-def test_nothing_that_does_not_stand_is_chosen(llc):
-    assert select_action([action(1, LLC=llc), action(2, LLC=llc)]) is None
-    selected = select_action([action(1, LLC=llc, GDS=1.0), action(2, LLC=1e-9)])
-    assert selected.position == 1
-    assert select_action([]) is None
-
-
 @pytest.mark.parametrize("name", ["LLC", "NHR", "IWR", "GDS", "LFR"])
 def test_equal_values_do_not_vanish_by_rounding(name):
     for value, count in itertools.product((0.1 + 0.2, 0.7 / 3, 1 / 3, 1e-3), (3, 6, 7, 10)):
@@ -72,20 +64,6 @@ def test_equal_values_do_not_vanish_by_rounding(name):
     # Values a rounding apart pass together.
     selected = select_action([action(1, LLC=0.3), action(2, LLC=0.1 + 0.2, GDS=0.6)])
     assert (selected.survivors[1], selected.position) == ((0, 1), 1)
-
-
-@pytest.mark.parametrize(
-    ("better", "worse"),
-    [
-        ({"LLC": 0.6}, {"NHR": 0.0}),
-        ({"NHR": 0.4}, {"IWR": 1.0}),
-        ({"IWR": 0.6}, {"GDS": 1.0}),
-        ({"GDS": 0.6}, {"LFR": 1.0}),
-    ],
-)
-def test_earlier_criteria_decide_before_later_ones(better, worse):
-    selected = select_action([action(1, **worse), action(2, **better)])
-    assert selected.position == 1
 
 
 def test_boundary_and_inner_stones_are_compared_among_their_own_kind():
@@ -98,11 +76,6 @@ def test_boundary_and_inner_stones_are_compared_among_their_own_kind():
     better = action(3, IS=0.2, GDS=0.9, boundary=True)
     selected = select_action([*inner, better])
     assert selected.position == 2
-
-
-def test_ties_go_to_the_lower_id_then_to_the_first():
-    selected = select_action([action(9), action(4), action(4), action(4)])
-    assert selected.position == 1
 
 
 def test_the_weights_belong_to_the_terms():

@@ -93,13 +93,6 @@ def test_a_lintel_on_two_round_stones_against_the_end_of_the_wall(corners, other
     assert found.x == pytest.approx(lowest(best.x)[1], abs=8e-5)
 
 
-def test_a_lintel_on_two_round_stones_of_one_height_is_level():
-    rounds = [at(round_stone(64, 20.0), 60.0, 20.0), at(round_stone(24, 14.0), 125.0, 26.0)]
-    found = let_go(box(80.0, 10.0), (97.0, 60.0, 0.05), rounds, 80.0)
-    assert found.status == Status.RESTS
-    assert (found.y, found.angle) == pytest.approx((45.0, 0.0), abs=8e-5)
-
-
 def notch(half_deg):
     """Two blocks whose faces meet at the ground, at x = 100."""
     out = 60.0 * math.tan(math.radians(half_deg))

@@ -65,10 +65,6 @@ def seen(found, side, width=200.0):
     return (x, y, found.angle_deg) if side == "left" else (width - x, y, -found.angle_deg)
 
 
-def energy(**changes):
-    return SettleSettings(**changes)
-
-
 @pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("method", METHODS)
 def test_without_a_neighbour_it_rests_where_it_is_let_go(side, method):
@@ -84,12 +80,12 @@ def test_without_a_neighbour_it_rests_where_it_is_let_go(side, method):
 def test_energy_closes_the_joint_on_the_building_side_and_pivot_does_not(side):
     scene = scene_of([moved(BRICK, 40.0, 5.0 + CLEAR)], side)
     stone = turned(BRICK, side=side)
-    pushed = come_to_rest(stone, scene, (62.0, 12.0), energy())
+    pushed = come_to_rest(stone, scene, (62.0, 12.0), SettleSettings())
     assert seen(pushed, side) == pytest.approx((60.0 + CLEAR, 5.0 + CLEAR, 0.0), abs=1e-3)
     stays = come_to_rest(stone, scene, (62.0, 12.0), SettleSettings(method="pivot"))
     assert seen(stays, side) == pytest.approx((62.0, 5.0 + CLEAR, 0.0), abs=FINE)
     # Too far for a push, which is then not made at all.
-    far = come_to_rest(stone, scene, (70.0, 12.0), energy())
+    far = come_to_rest(stone, scene, (70.0, 12.0), SettleSettings())
     assert seen(far, side)[0] == 70.0
 
 
@@ -105,7 +101,7 @@ def test_pivot_rolls_about_the_point_that_touches_first(side):
     assert abs(angle_deg) < math.degrees(0.05 / 20.0)
     assert y == pytest.approx(5.0 + CLEAR, abs=0.03)
     assert x - 10.0 == pytest.approx(50.0 + corner, abs=0.02)
-    fallen = come_to_rest(stone, scene, start, energy())
+    fallen = come_to_rest(stone, scene, start, SettleSettings())
     assert seen(fallen, side) == pytest.approx((50.0, 5.0 + CLEAR, 0.0), abs=2e-3)
 
 
@@ -159,10 +155,10 @@ def test_what_lies_too_deep_in_others_is_not_let_go(method):
 
 def test_it_does_not_turn_further_than_it_may():
     stone, scene = turned(BRICK, 5.0), scene_of([])
-    assert come_to_rest(stone, scene, (50.0, 12.0), energy(max_turn_deg=4.0)) is None
-    assert come_to_rest(stone, scene, (50.0, 12.0), energy(max_turn_deg=6.0)) is not None
+    assert come_to_rest(stone, scene, (50.0, 12.0), SettleSettings(max_turn_deg=4.0)) is None
+    assert come_to_rest(stone, scene, (50.0, 12.0), SettleSettings(max_turn_deg=6.0)) is not None
     # On one corner.
-    assert come_to_rest(stone, scene, (50.0, 12.0), energy(), turns=False) is None
+    assert come_to_rest(stone, scene, (50.0, 12.0), SettleSettings(), turns=False) is None
 
 
 @pytest.mark.parametrize("side", SIDES)
@@ -180,9 +176,9 @@ def test_touching_down_needs_no_balance(side):
 @pytest.mark.parametrize("side", SIDES)
 def test_what_slides_away_does_not_touch_down(side):
     scene, start = scene_of([ramp(20.0)], side), (70.0, 27.0)
-    assert touch_down(turned(BRICK, 20.0, side), scene, start, energy()) is None
+    assert touch_down(turned(BRICK, 20.0, side), scene, start, SettleSettings()) is None
     deep = scene_of([moved(BRICK, 50.0, 5.0)], side)
-    assert touch_down(turned(BRICK, side=side), deep, (50.0, 10.0), energy()) is None
+    assert touch_down(turned(BRICK, side=side), deep, (50.0, 10.0), SettleSettings()) is None
 
 
 def test_ways_to_settle():
@@ -235,7 +231,7 @@ def test_all_ways_are_tried_but_for_those_that_lead_nowhere(side, method):
 def test_poses_are_on_a_grid_and_angles_in_one_turn(side):
     outline = BRICK + np.array([0.1, -0.03])
     found = come_to_rest(
-        Turned.of(outline, 177.0, side, 14.0), scene_of([], side), (50.3, 12.0), energy()
+        Turned.of(outline, 177.0, side, 14.0), scene_of([], side), (50.3, 12.0), SettleSettings()
     )
     assert -180.0 <= found.angle_deg < 180.0
     assert (found.angle_deg - 180.0 + 1.0) % 360.0 == pytest.approx(1.0, abs=1e-2)
@@ -296,31 +292,30 @@ def test_rounding_is_no_turn(monkeypatch):
     monkeypatch.setattr(slightly, lambda *args: settle(*args)._replace(angle=4e-18))
     stone, scene = turned(BRICK), scene_of([])
     for found in (
-        come_to_rest(stone, scene, (50.0, 12.0), energy(), turns=False),
-        touch_down(stone, scene, (50.0, 12.0), energy()),
+        come_to_rest(stone, scene, (50.0, 12.0), SettleSettings(), turns=False),
+        touch_down(stone, scene, (50.0, 12.0), SettleSettings()),
     ):
         assert (found.angle_deg, found.turned) == (0.0, False)
-    free = come_to_rest(stone, scene, (50.0, 12.0), energy())
+    free = come_to_rest(stone, scene, (50.0, 12.0), SettleSettings())
     assert free.turned
 
 
-def test_a_stone_that_rests_where_it_is_laid_stays_there():
-    scene = scene_of([BRICK + np.array([50.0, 5.01])])
-    found = lay(turned(BRICK), scene, (52.0, 15.02), SettleSettings())
-    assert (found.settled.x_px, found.settled.y_px) == pytest.approx((52.0, 15.02), abs=1e-6)
-    assert not found.turned
-
-
-def test_a_stone_that_is_laid_into_another_is_brought_apart():
-    scene = scene_of([BRICK + np.array([50.0, 5.01])])
-    found = lay(turned(BRICK), scene, (52.0, 14.7), SettleSettings())
-    assert found.settled.y_px == pytest.approx(15.02, abs=0.01)
-    assert lay(turned(BRICK), scene, (52.0, 14.0), SettleSettings()) is None
-
-
-def test_a_stone_that_falls_where_it_is_laid_is_lost():
-    scene = scene_of([BRICK + np.array([50.0, 5.01])])
-    assert lay(turned(BRICK), scene, (61.0, 15.02), SettleSettings()) is None
+@pytest.mark.parametrize(
+    ("x", "y", "rests_px", "abs_px"),
+    [
+        (52.0, 15.02, 15.02, 1e-6),  # where it is laid
+        (52.0, 14.7, 15.02, 0.01),  # in another: it is brought apart
+        (52.0, 14.0, None, 0.0),  # too deep
+        (61.0, 15.02, None, 0.0),  # it falls
+    ],
+)
+def test_a_stone_that_is_laid_stays_or_is_lost(x, y, rests_px, abs_px):
+    found = lay(turned(BRICK), scene_of([moved(BRICK, 50.0, 5.01)]), (x, y), SettleSettings())
+    assert (found is None) == (rests_px is None)
+    if found is not None:
+        assert found.settled.y_px == pytest.approx(rests_px, abs=abs_px)
+        assert found.settled.x_px == pytest.approx(x, abs=1e-6)
+        assert not found.turned
 
 
 @pytest.mark.parametrize("side", SIDES)

@@ -1,24 +1,12 @@
 """The support polyline over all supporters (§3.7, Fig. 9a, DESIGN 4.6)."""
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.model.stone import Stone
-from drystone.poses import PoseBook
 from drystone.stabilise.support import Support, support_polyline
 from tests.naive import support as naive
 from tests.strategies import posed_on_walls, repeatable
-
-
-def block(height, width):
-    return PoseBook().pose(Stone(1, np.ones((height, width), bool)), 0.0)
-
-
-def scene(*rows):
-    """A landscape drawn with # for what is occupied."""
-    return np.array([[letter == "#" for letter in row] for row in rows])
 
 
 @repeatable(100)
@@ -31,13 +19,6 @@ def test_support_is_that_of_every_pixel_on_its_own(on_wall, margin):
     x_c = col + posed.anchor[0]
     stable = naive.rests_stably(wall.occupied, posed.mask, row, col, x_c, margin)
     assert (support.falls(x_c, margin) == 0) == stable
-
-
-def test_a_stone_that_bridges_two_pillars_is_stable():
-    occupied = scene("..........", "..........", "##......##", "##......##")
-    support = support_polyline(occupied, block(2, 10), 0, 0)
-    assert support == Support(left_x=0, right_x=10, left_row=2, right_row=2)
-    assert support.falls(5.0) == 0
 
 
 @pytest.mark.parametrize(
