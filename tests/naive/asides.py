@@ -1,5 +1,6 @@
-"""How far polygons go aside to clear one, line by line with shapely."""
+"""How far polygons go aside to clear one, strip by strip with shapely."""
 
+import numpy as np
 import shapely
 
 
@@ -20,12 +21,16 @@ def asides(corners, others, gap, sign):
 
 def depth(one, other, start, end, sign, axis):
     """Return how far along x (axis 0) or y another polygon must go to clear one."""
-    deepest = 0.0
-    for j in range(32):
-        low, high = (start + (end - start) * k / 32 for k in (j, j + 1))
-        box = shapely.box(-1e4, low, 1e4, high) if axis == 0 else shapely.box(low, -1e4, high, 1e4)
-        ours, theirs = box.intersection(one), box.intersection(other)
-        if not (ours.is_empty or theirs.is_empty):
-            near, far = (ours, theirs) if sign > 0 else (theirs, ours)
-            deepest = max(deepest, near.bounds[2 + axis] - far.bounds[axis])
-    return deepest
+    lines = np.linspace(start, end, 33)
+    if axis == 0:
+        boxes = shapely.box(-1e4, lines[:-1], 1e4, lines[1:])
+    else:
+        boxes = shapely.box(lines[:-1], -1e4, lines[1:], 1e4)
+    near, far = (boxes_of(boxes, shape) for shape in ((one, other)[:: int(sign)]))
+    # Nothing has no bounds.
+    return float(np.nanmax(near[:, 2 + axis] - far[:, axis], initial=0.0))
+
+
+def boxes_of(boxes, shape):
+    """Return the bounds of what a shape has in each of some boxes."""
+    return shapely.bounds(shapely.intersection(boxes, shape))

@@ -19,27 +19,6 @@ from drystone.planner.settings import PlannerSettings
 from tests.planner.scenes import RUBBLE_SITE, blocks, greedy, rubble
 
 
-class _Calls:
-    """How often the evaluator proposed and judged each candidate."""
-
-    def __init__(self, monkeypatch):
-        self.proposed = Counter()
-        self.judged = Counter()
-        spotted, judge = RasterProposer.spotted, Evaluator.judge
-
-        def spotted_once(this, trial):
-            posed = trial.poses[0]
-            self.proposed[posed.stone.id, posed.angle_deg, trial.landscape.side] += 1
-            return spotted(this, trial)
-
-        def judge_once(this, wall, analysis, proposal):
-            self.judged[proposal.stone_id, proposal.trial_angle_deg, proposal.side] += 1
-            return judge(this, wall, analysis, proposal)
-
-        monkeypatch.setattr(RasterProposer, "spotted", spotted_once)
-        monkeypatch.setattr(Evaluator, "judge", judge_once)
-
-
 def _attempt(settings, built=2):
     planner = Planner(rubble(), RUBBLE_SITE, settings=settings)
     for step in planner.steps():
@@ -59,12 +38,25 @@ def _attempt(settings, built=2):
 )
 def test_nothing_is_evaluated_twice(settings, monkeypatch):
     attempt = _attempt(settings)
-    calls = _Calls(monkeypatch)
+    proposed, judged = Counter(), Counter()
+    spotted, judge = RasterProposer.spotted, Evaluator.judge
+
+    def spotted_once(this, trial):
+        posed = trial.poses[0]
+        proposed[posed.stone.id, posed.angle_deg, trial.landscape.side] += 1
+        return spotted(this, trial)
+
+    def judge_once(this, wall, analysis, proposal):
+        judged[proposal.stone_id, proposal.trial_angle_deg, proposal.side] += 1
+        return judge(this, wall, analysis, proposal)
+
+    monkeypatch.setattr(RasterProposer, "spotted", spotted_once)
+    monkeypatch.setattr(Evaluator, "judge", judge_once)
     for seed in range(4):
         attempt.choose(np.random.default_rng(seed))
-    assert set(calls.proposed.values()) == {1}
-    assert set(calls.judged.values()) == {1}
-    assert attempt.candidates == len(calls.proposed)
+    assert set(proposed.values()) == {1}
+    assert set(judged.values()) == {1}
+    assert attempt.candidates == len(proposed)
 
 
 def test_a_repeated_attempt_chooses_what_a_new_one_does():

@@ -81,12 +81,6 @@ def test_a_wrong_orientation_set_keeps_its_own_code():
         PlannerSettings().updated({"orientations": "north"})
 
 
-def test_methods():
-    paper = method_settings("paper")
-    assert (paper.sampling, paper.two_sided, paper.orientations) == ("variant", False, "quarter")
-    assert (paper.placement.rule, paper.placement.reach, paper.stabilise.margin) == (
-        "eq12", "any", 0.0,
-    )  # fmt: skip
-    assert method_settings("best").placement.reach == "above"
+def test_an_unknown_method_is_refused_with_the_known_ones():
     with pytest.raises(UsageError, match=r"E124 --method: there is no method 'x'\. .*paper, best"):
         method_settings("x")

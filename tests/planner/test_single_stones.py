@@ -88,13 +88,6 @@ def test_a_pinned_stone_goes_in_earlier(changes):
     assert stones_of(planner).index(last) < len(free.build.actions) - 2
 
 
-def test_a_pinned_stone_that_never_fits_does_not_stop_others():
-    stones = blocks({1: (20, 10), 2: (200, 100), 3: (20, 10)})
-    settings = PlannerSettings(pin=(2,), skip_too_large=True)
-    planner = finish(Planner(stones, Site(60, 20), settings=settings))
-    assert sorted(stones_of(planner)) == [1, 3]
-
-
 @pytest.mark.parametrize("changes", [{}, {"geometry": "raster"}, {"selection_rule": "algorithm2"}])
 def test_in_a_given_order_ids_ascend(changes):
     settings = greedy({**changes, "order": "given"})

@@ -69,13 +69,6 @@ def test_a_stone_without_any_place_is_not_in_the_wall():
     assert [i for i, _ in run.blocks] == [1]
 
 
-def test_the_same_random_numbers_give_the_same_wall():
-    first, again = runs(TOWER, rehearse_closed, count=2), runs(TOWER, rehearse_closed, count=2)
-    for one, other in zip(first, again, strict=True):
-        assert (one.stones, one.again) == (other.stones, other.again)
-    assert first[0].stones != first[1].stones
-
-
 def test_a_wall_as_it_was_built_is_tilted():
     pytest.importorskip("pymunk")
     low = [[(k + 1, box(41.0 * k, 0.0))] for k in range(2)]
