@@ -4,7 +4,6 @@ import math
 from dataclasses import fields
 
 import numpy as np
-import pytest
 
 from drystone.planner.planner import Planner
 from drystone.planner.settings import method_settings
@@ -40,13 +39,3 @@ def test_another_seed_gives_another_wall_and_the_same_seed_the_same():
     # Without it nothing is random here.
     plain = [built(seed, 0.0) for seed in (1, 2)]
     assert same(*plain)
-
-
-@pytest.mark.parametrize("seed", [1, 4])
-def test_a_restored_wall_goes_on_with_the_weights_of_its_seed(seed):
-    whole = built(seed, 0.5)
-    part = Planner(rubble(), RUBBLE_SITE, seed=seed, settings=greedy({"vary": 0.5}))
-    next(step for step in part.steps() if step.number == 3)
-    again = Planner(rubble(), RUBBLE_SITE, seed=seed, settings=greedy({"vary": 0.5}))
-    again.restore(part.build.wall, {})
-    assert order(finish(again)) == order(whole)
