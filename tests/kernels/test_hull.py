@@ -35,10 +35,3 @@ def test_corners_are_those_of_all_pixel_squares(mask):
     # From the right end of the lowest edge to its left end.
     assert found[0].tolist() == [max(x[y == y.min()]) + 1, y.min()]
     assert found[-1].tolist() == [min(x[y == y.min()]), y.min()]
-
-
-def test_one_pixel_and_empty_lines_around_it():
-    assert pixel_hull(np.ones((1, 1), bool)).tolist() == [[1, 0], [1, 1], [0, 1], [0, 0]]
-    lonely = np.zeros((4, 5), bool)
-    lonely[1, 3] = True
-    assert pixel_hull(lonely).tolist() == [[4, 2], [4, 3], [3, 3], [3, 2]]

@@ -67,16 +67,6 @@ def test_views_in_any_direction_are_read_in_place(occupied, mask, row, col):
         assert other == (place[0], (width - right, width - left, right_row, left_row))
 
 
-def test_one_pixel_on_a_site_of_one_pixel():
-    site, pixel = np.zeros((1, 1), bool), np.ones((1, 1), bool)
-    assert support_ends(site, pixel, 0, 0) == (0, 1, 1, 1)
-    assert resting_place(site, pixel, 0, 0, 0) == (0, (0, 1, 1, 1))
-    assert resting_place(~site, pixel, 0, 0, 5) is None
-    assert resting_place(site, pixel, 0, 1, 5) is None
-    assert resting_place(site, pixel, 0, -1, 5) is None
-    assert resting_place(site, np.ones((2, 1), bool), 0, 0, 5) is None
-
-
 def lowest(mask):
     return np.asarray(mask.shape[0] - 1 - np.argmax(mask[::-1], axis=0))
 

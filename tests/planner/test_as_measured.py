@@ -35,38 +35,35 @@ def order(one):
     return [action.stone_id for action in one.build.actions]
 
 
+LOWER, UPPER = (30.0, 5.0), (30.0, 15.0)
+"""Two blocks, 10 px high, one on the other."""
+
+
 @BOTH
-@pytest.mark.parametrize("height", [10, 3])
-def test_a_stone_put_under_a_planned_one_is_built_before_it(settings, height):
-    one = wall(settings, {1: (30.0, 5.0), 2: (30.0, 15.0)}, {3: (20, height)})
-    # Without what is under it the second hangs in the air, or falls to where the third is.
-    seen = one.observe(at({1: (30.0, 5.0), 2: (30.0, 15.0 + height), 3: (30.0, 10.0 + height / 2)}))
+@pytest.mark.parametrize(
+    ("planned", "third", "measured", "ids"),
+    [
+        # Without what is put under it the second hangs in the air, or falls to where the third is.
+        ((LOWER, UPPER), (20, 10), ((30.0, 5.0), (30.0, 25.0), (30.0, 15.0)), [1, 3, 2]),
+        ((LOWER, UPPER), (20, 3), ((30.0, 5.0), (30.0, 18.0), (30.0, 11.5)), [1, 3, 2]),
+        # A prop keeps the stone above where it was measured.
+        (((24.0, 5.0), (24.0, 15.0)), (10, 10), ((24.0, 5.0), (12.0, 15.0), (7.0, 5.0)), [1, 3, 2]),
+        # What is put on top comes after those that were planned, though it lies lower.
+        ((LOWER, UPPER), (20, 10), (LOWER, UPPER, (50.0, 5.0)), [1, 2, 3]),
+    ],
+)
+def test_a_stone_that_was_put_there_is_built_in_its_turn(settings, planned, third, measured, ids):
+    one = wall(settings, dict(enumerate(planned, 1)), {3: third})
+    seen = one.observe(at(dict(enumerate(measured, 1))))
     assert (seen.stands, seen.notices, seen.added) == (True, (), (3,))
-    assert order(one) == [1, 3, 2]
+    assert seen.largest_moved_px < 0.5
+    assert order(one) == ids
     assert all(action.stands for action in one.build.actions)
 
 
 @BOTH
-def test_a_prop_keeps_the_stone_above_where_it_was_measured(settings):
-    one = wall(settings, {1: (24.0, 5.0), 2: (24.0, 15.0)}, {3: (10, 10)})
-    seen = one.observe(at({1: (24.0, 5.0), 2: (12.0, 15.0), 3: (7.0, 5.0)}))
-    assert (seen.stands, seen.notices) == (True, ())
-    assert seen.largest_moved_px < 0.5
-    assert order(one) == [1, 3, 2]
-
-
-@BOTH
-def test_stones_put_on_top_come_after_those_that_were_planned(settings):
-    one = wall(settings, {1: (30.0, 5.0), 2: (30.0, 15.0)}, {3: (20, 10)})
-    # Though it lies lower than the second.
-    seen = one.observe(at({1: (30.0, 5.0), 2: (30.0, 15.0), 3: (50.0, 5.0)}))
-    assert (seen.stands, seen.notices) == (True, ())
-    assert order(one) == [1, 2, 3]
-
-
-@BOTH
 def test_no_order_makes_room_for_two_stones_in_one_place(settings):
-    one = wall(settings, {1: (30.0, 5.0), 2: (30.0, 15.0)}, {3: (20, 10)})
+    one = wall(settings, {1: LOWER, 2: UPPER}, {3: (20, 10)})
     before = one.build
     with pytest.raises(InputError, match="E198 observe: stone 3"):
         one.observe(at({1: (30.0, 5.0), 2: (30.0, 15.0), 3: (30.0, 14.0)}))
@@ -97,14 +94,10 @@ def test_a_stone_that_would_fall_and_has_no_better_place_is_taken_over_as_it_is(
 
 @BOTH
 def test_small_moves_are_not_worth_a_word(settings):
-    one = wall(settings, {1: (30.0, 5.0), 2: (30.0, 15.0)}, {})
+    one = wall(settings, {1: LOWER, 2: UPPER}, {})
     seen = one.observe(at({1: (30.3, 5.2), 2: (29.8, 15.9)}))
     assert (seen.stands, seen.notices) == (True, ())
     assert 0.0 < seen.largest_moved_px < 1.4
-
-
-LOWER, UPPER = MeasuredPose(30.0, 5.0, 0.0), MeasuredPose(30.0, 15.0, 0.0)
-"""Two blocks, 10 px high, one on the other."""
 
 
 @pytest.mark.parametrize(
@@ -118,11 +111,11 @@ def test_half_a_working_px_above_the_top_is_in_the_wall_and_more_is_not(height_p
     site = Site.from_source(60.0, height_px, scale)
     one = Planner(blocks({1: (20, 10), 2: (20, 10)}), site, settings=greedy())
     if inside:
-        assert one.observe({1: LOWER, 2: UPPER}).stands
+        assert one.observe(at({1: LOWER, 2: UPPER})).stands
         assert order(one) == [1, 2]
     else:
         with pytest.raises(InputError, match="E198 observe: stone 2"):
-            one.observe({1: LOWER, 2: UPPER})
+            one.observe(at({1: LOWER, 2: UPPER}))
 
 
 def test_a_stone_longer_than_the_wall_is_not_in_it():

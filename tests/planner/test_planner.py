@@ -13,32 +13,26 @@ from drystone.search.plan_result import result_of
 from tests.planner.scenes import RUBBLE_SITE, blocks, bricks, finish, greedy, order, rubble, same
 
 
-def test_it_stops_when_the_wall_is_filled():
-    planner = finish(Planner(bricks(8), Site(60, 20)))
-    assert planner.stopped.reason == "filled"
-    assert len(planner.build.actions) == 6
-    assert planner.build.wall.filling == 1.0
-
-
-def test_the_filling_wanted_is_a_setting():
-    settings = PlannerSettings(stop=StopSettings(filling=0.6))
-    planner = finish(Planner(bricks(8), Site(60, 20), settings=settings))
-    assert planner.stopped == Stopped("filled", "filling above 0.6")
-    assert len(planner.build.actions) == 4  # 4/6 is the first above .6
-
-
-def test_it_stops_when_no_stones_are_left():
-    planner = finish(Planner(bricks(3), Site(60, 20)))
-    assert planner.stopped == Stopped("stones", "all stones placed")
-    assert len(planner.build.actions) == 3
-
-
-def test_stones_that_do_not_fit_are_not_said_to_be_placed():
-    stones = blocks({1: (20, 10), 2: (90, 10)})
-    settings = PlannerSettings(skip_too_large=True)
+@pytest.mark.parametrize(
+    ("stones", "changes", "stopped", "built"),
+    [
+        (bricks(8), {}, Stopped("filled", "filling above 0.99"), 6),
+        # 4/6 is the first above .6.
+        (bricks(8), {"stop": {"filling": 0.6}}, Stopped("filled", "filling above 0.6"), 4),
+        (bricks(3), {}, Stopped("stones", "all stones placed"), 3),
+        (
+            blocks({1: (20, 10), 2: (90, 10)}),
+            {"skip_too_large": True},
+            Stopped("stones", "all stones that fit placed"),
+            1,
+        ),
+    ],
+)
+def test_it_stops_when_the_wall_is_filled_or_no_stones_are_left(stones, changes, stopped, built):
+    settings = PlannerSettings().updated(changes)
     planner = finish(Planner(stones, Site(60, 20), settings=settings))
-    assert planner.stopped == Stopped("stones", "all stones that fit placed")
-    assert [action.stone_id for action in planner.build.actions] == [1]
+    assert planner.stopped == stopped
+    assert len(planner.build.actions) == built
 
 
 @pytest.fixture

@@ -17,7 +17,6 @@ from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.search.plan_wall import plan_wall
 from drystone.selection.policies import registry
 from drystone.selection.policies.registry import BUILT_IN, GROUP
-from drystone.selection.policy import Offer
 from drystone.verify import check_plan
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, order, rubble
 
@@ -39,22 +38,40 @@ def true(result, stones):
     assert len(plan.stone_steps) >= 4
 
 
+def ids(offers):
+    return {one.stone_id for one in offers}
+
+
 def planned(settings, **options):
     return plan_wall(rubble(1), 100, 36, scale=1.0, settings=settings, **options)
 
 
 @pytest.fixture
 def installed(monkeypatch):
-    """Pretend that a package has a policy, `mine`."""
+    """Pretend that a package has a policy, `mine`, that answers so, and tell what it is offered."""
 
-    def install(made):
+    def install(answer=lambda _: 0, made=None):
+        offers = []
+
+        class Mine:
+            def choose(self, candidates, rng):  # noqa: ARG002
+                offers.append(candidates)
+                return answer(candidates)
+
         module = ModuleType("mine_module")
-        module.Mine = made
+        module.Mine = made or Mine
         monkeypatch.setitem(sys.modules, "mine_module", module)
         points = EntryPoints([EntryPoint("mine", "mine_module:Mine", GROUP)])
         monkeypatch.setattr(registry, "entry_points", points.select)
+        return offers
 
     return install
+
+
+@pytest.fixture
+def seen(installed):
+    """What a policy is offered that takes the first."""
+    return installed()
 
 
 @pytest.mark.parametrize(
@@ -83,29 +100,11 @@ def test_random_depends_on_the_seed():
     assert walls[0] == walls[2] != walls[1]
 
 
-class Seen:
-    """Keeps what it is offered and takes the first."""
-
-    offers: list[tuple[Offer, ...]]
-
-    def choose(self, candidates, rng):  # noqa: ARG002
-        type(self).offers.append(candidates)
-        return 0
-
-
-@pytest.fixture
-def seen(installed):
-    """What a policy is offered that takes the first."""
-    kept = type("Kept", (Seen,), {"offers": []})
-    installed(kept)
-    return kept.offers
-
-
 @pytest.mark.parametrize("geometry", GEOMETRIES)
 def test_both_sides_are_offered_at_once(geometry, seen):
     finish(Planner(rubble(1), RUBBLE_SITE, settings=by("mine", {"geometry": geometry})))
     assert {one.side for one in seen[0]} == {"left", "right"}
-    assert {one.stone_id for one in seen[0]} == {stone.id for stone in rubble(1)}
+    assert ids(seen[0]) == {stone.id for stone in rubble(1)}
     assert all(one.indices.LLC and one.indices.LLC > 0 for offers in seen for one in offers)
 
 
@@ -123,55 +122,36 @@ def test_pinned_stones_come_first(seen):
     settings = by("mine", {**RASTER, "pin": [6, 4]})
     planner = finish(Planner(rubble(1), RUBBLE_SITE, settings=settings))
     assert {action.stone_id for action in planner.build.actions[:2]} == {4, 6}
-    assert [{one.stone_id for one in offers} for offers in seen[:3]] == [
+    assert [ids(offers) for offers in seen[:3]] == [
         {4, 6},
         {4, 6} - {planner.build.actions[0].stone_id},
         {1, 2, 3, 5, 7, 8},
     ]
 
 
-class NoneOfFew(Seen):
-    """Takes nothing where there is little to choose from."""
-
-    def choose(self, candidates, rng):
-        few = len({one.stone_id for one in candidates}) <= 2
-        return None if few else super().choose(candidates, rng)
-
-
 def test_others_come_where_no_pinned_stone_can(installed):
-    kept = type("Kept", (NoneOfFew,), {"offers": []})
-    installed(kept)
+    """The policy takes nothing where there is little to choose from."""
+    seen = installed(lambda candidates: None if len(ids(candidates)) <= 2 else 0)
     settings = by("mine", {**RASTER, "pin": [6, 4]})
     planner = finish(Planner(rubble(1), RUBBLE_SITE, settings=settings))
     assert len(planner.build.actions) >= 4
-    offers = kept.offers
-    assert {one.stone_id for one in offers[0]} == set(range(1, 9))
+    assert ids(seen[0]) == set(range(1, 9))
 
 
 def test_the_rule_of_an_order_is_kept(seen):
     finish(Planner(rubble(1), RUBBLE_SITE, settings=by("mine", {**RASTER, "order": "given"})))
-    assert all(len({one.stone_id for one in offers}) == 1 for offers in seen)
-
-
-class Nobody:
-    def choose(self, candidates, rng):  # noqa: ARG002
-        return None
+    assert all(len(ids(offers)) == 1 for offers in seen)
 
 
 def test_a_policy_that_takes_nothing_ends_the_wall(installed):
-    installed(Nobody)
+    installed(lambda _: None)
     full = finish(Planner(rubble(1), RUBBLE_SITE, settings=by("mine", RASTER)))
     assert full.build.actions == ()
     assert full.stopped.reason == "failures"
 
 
-class Breaks:
-    def choose(self, candidates, rng):  # noqa: ARG002
-        return len(candidates)
-
-
 def test_a_broken_policy_ends_the_plan(installed):
-    installed(Breaks)
+    installed(len)
     with pytest.raises(UsageError, match=r"E147 .*'mine' returned"):
         planned(by("mine", RASTER))
 
@@ -186,8 +166,7 @@ def test_an_unknown_policy_is_refused_when_it_is_to_choose():
 
 
 def test_a_wall_is_checked_without_its_policy(installed, monkeypatch):
-    kept = type("Kept", (Seen,), {"offers": []})
-    installed(kept)
+    installed()
     result = planned(by("mine", RASTER))
     monkeypatch.setattr(registry, "entry_points", lambda **_: EntryPoints())
     true(result, rubble(1))
@@ -213,7 +192,7 @@ def test_the_policy_of_the_document_builds_a_wall(installed):
     (program,) = (one for one in programs if "class Largest" in one)
     names = {}
     exec(compile(program, PAGE.name, "exec"), names)  # noqa: S102 - our own document
-    installed(names["Largest"])
+    installed(made=names["Largest"])
     result = planned(by("mine", RASTER), seed=2)
     true(result, rubble(1))
     first = result.plan.stone_steps[0].stone

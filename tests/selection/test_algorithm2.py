@@ -76,10 +76,3 @@ def test_boundary_and_inner_stones_are_compared_among_their_own_kind():
     better = action(3, IS=0.2, GDS=0.9, boundary=True)
     selected = select_action([*inner, better])
     assert selected.position == 2
-
-
-def test_the_weights_belong_to_the_terms():
-    weights = SelectionSettings(w_llc=1, w_nhr=10, w_third=100, w_gds=1000, w_lfr=10000)
-    one = action(1, LLC=0.5, LFR=0.9)
-    assert weighted_sum(one, weights) == pytest.approx(0.5 - 5 + 50 + 500 + 9000)
-    assert weighted_sum(one, weights, 3) == pytest.approx(0.5 - 5 + 50)
