@@ -35,7 +35,7 @@ def lengths_px(lengths):
 def test_lengths_are_those_of_the_slow_twin(image):
     rows = np.arange(image.shape[0])
     last = image.shape[1] - 1
-    expected = [naive.shortest_length(image, (row, 0), (row, last)) for row in rows.tolist()]
+    expected = [naive.shortest_to(image, (row, 0), {(row, last)}) for row in rows.tolist()]
     found = lengths_px(row_lengths(image, rows))
     assert [x is None for x in found] == [x is None for x in expected]
     assert found == pytest.approx(expected, abs=1e-9)
@@ -63,7 +63,7 @@ def test_a_way_is_as_long_as_it_should_be_and_stays_on_open_pixels(image, data):
 def test_lengths_in_larger_images_are_those_of_the_slow_twin(share, seed):
     image = noise((60, 110), share, seed)
     rows = np.arange(0, 60, 9)
-    expected = [naive.shortest_length(image, (row, 0), (row, 109)) for row in rows.tolist()]
+    expected = [naive.shortest_to(image, (row, 0), {(row, 109)}) for row in rows.tolist()]
     assert lengths_px(row_lengths(image, rows)) == pytest.approx(expected, abs=1e-9)
 
 
@@ -71,7 +71,7 @@ def test_lengths_in_larger_images_are_those_of_the_slow_twin(share, seed):
 def test_a_better_way_that_is_found_just_after_the_first(seed):
     """Images in which a search that ends with the first bucket of the end is wrong."""
     image, rows = noise((12, 18), 0.62, seed), np.arange(12)
-    expected = [naive.shortest_length(image, (row, 0), (row, 17)) for row in rows.tolist()]
+    expected = [naive.shortest_to(image, (row, 0), {(row, 17)}) for row in rows.tolist()]
     found = lengths_px(row_lengths(image, rows))
     assert found == pytest.approx(expected, abs=1e-9)
 

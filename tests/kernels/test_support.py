@@ -125,6 +125,35 @@ def test_a_filling_has_the_pixels_of_the_gap_that_is_lowest(data, occupied, mask
     assert pixels[-1].any()
 
 
+@pytest.mark.parametrize(
+    ("heights", "sizes", "columns_taken"),
+    [
+        ((5, 2, 2, 5, 5), (2, 9), (1, 3)),
+        ((5, 3, 2, 3, 5), (2, 9), (1, 4)),  # a pixel higher goes with the lowest
+        ((5, 2, 4, 5, 9), (2, 9), (1, 3)),  # two, as it would be too narrow
+        ((5, 3, 5, 6, 9), (3, 9), (0, 3)),  # three, both sides at once
+        ((1, 2, 2, 9, 2), (2, 4), (1, 3)),  # too low and too high stay out
+        ((1, 2, 9, 3, 3), (2, 4), None),  # what is not lowest does not touch first
+        ((2, 2, 9, 2, 2, 2), (2, 4), (0, 2)),  # of two runs the left one
+        ((2, 9, 2, 2, 2, 9), (2, 4), (2, 5)),
+        ((2, 9, 2, 9, 2), (2, 4), None),
+        ((1, 1, 1), (2, 4), None),
+        ((5, 5, 5), (2, 4), None),
+    ],
+)
+def test_the_columns_that_touch_first_are_filled(heights, sizes, columns_taken):
+    bar = np.ones((1, len(heights)), bool)
+    occupied = np.zeros((1 + max(heights), len(heights)), bool)
+    for col, height in enumerate(heights):
+        occupied[1 + height :, col] = True  # below the bar so many are free
+    filling = gap_filling(occupied, bar, 0, 0, (0, len(heights)), sizes)
+    if columns_taken is None:
+        assert filling is None
+    else:
+        assert (filling[2], filling[2] + filling[0].shape[1]) == columns_taken
+        assert filling[0].sum(axis=0).tolist() == list(heights[slice(*columns_taken)])
+
+
 def test_a_filling_that_would_fall_apart_is_none():
     """Two columns of the same height, the second one lower than the first by that height."""
     mask = np.array([[1, 1], [0, 1], [0, 1], [0, 1]], bool)

@@ -31,11 +31,6 @@ def joint_mask(labels):
     return joint
 
 
-def shortest_length(joint, start, end):
-    """From one pixel to another; None when there is no path."""
-    return shortest_to(joint, start, {end})
-
-
 def shortest_to(joint, start, ends):
     """Dijkstra on a heap, step by step, to the nearest of some pixels; None without a path."""
     if not joint[start]:
@@ -62,7 +57,7 @@ def vertical_lengths(joint):
     height, width = joint.shape
     lengths, column = [], 10
     while column < width - 10:
-        length = shortest_length(joint, (0, column), (height - 1, column))
+        length = shortest_to(joint, (0, column), {(height - 1, column)})
         if length is not None:
             lengths.append(length)
         column += width // 10
