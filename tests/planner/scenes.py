@@ -65,6 +65,11 @@ def greedy(changes=None):
     return method_settings("best").updated({"search": {"budget": 1}, **(changes or {})})
 
 
+def ids(planner):
+    """The stones in the order of placement."""
+    return [action.stone_id for action in planner.build.actions]
+
+
 def order(planner):
     """Stone, angle, row, column and side of every action."""
     placements = [action.stabilised.placement for action in planner.build.actions]

@@ -6,7 +6,7 @@ from drystone.errors import InputError
 from drystone.model.site import Site
 from drystone.planner.measured import MeasuredPose
 from drystone.planner.planner import Planner
-from tests.planner.scenes import blocks, greedy
+from tests.planner.scenes import blocks, greedy, ids
 
 BOTH = pytest.mark.parametrize(
     "settings", [greedy(), greedy({"geometry": "raster"})], ids=["exact", "raster"]
@@ -21,7 +21,7 @@ def wall(settings, spots, sizes):
     """A planner whose plan has blocks where they are asked for."""
     one = Planner(blocks({1: (20, 10), 2: (20, 10), **sizes}), Site(60, 60), settings=settings)
     assert one.observe(at(spots)).stands
-    assert [action.stone_id for action in one.build.actions] == list(spots)
+    assert ids(one) == list(spots)
     return one
 
 
@@ -31,17 +31,13 @@ def now(one):
     return at(spots)
 
 
-def order(one):
-    return [action.stone_id for action in one.build.actions]
-
-
 LOWER, UPPER = (30.0, 5.0), (30.0, 15.0)
 """Two blocks, 10 px high, one on the other."""
 
 
 @BOTH
 @pytest.mark.parametrize(
-    ("planned", "third", "measured", "ids"),
+    ("planned", "third", "measured", "order"),
     [
         # Without what is put under it the second hangs in the air, or falls to where the third is.
         ((LOWER, UPPER), (20, 10), ((30.0, 5.0), (30.0, 25.0), (30.0, 15.0)), [1, 3, 2]),
@@ -52,12 +48,12 @@ LOWER, UPPER = (30.0, 5.0), (30.0, 15.0)
         ((LOWER, UPPER), (20, 10), (LOWER, UPPER, (50.0, 5.0)), [1, 2, 3]),
     ],
 )
-def test_a_stone_that_was_put_there_is_built_in_its_turn(settings, planned, third, measured, ids):
+def test_a_stone_that_was_put_there_is_built_in_its_turn(settings, planned, third, measured, order):
     one = wall(settings, dict(enumerate(planned, 1)), {3: third})
     seen = one.observe(at(dict(enumerate(measured, 1))))
     assert (seen.stands, seen.notices, seen.added) == (True, (), (3,))
     assert seen.largest_moved_px < 0.5
-    assert order(one) == ids
+    assert ids(one) == order
     assert all(action.stands for action in one.build.actions)
 
 
@@ -112,7 +108,7 @@ def test_half_a_working_px_above_the_top_is_in_the_wall_and_more_is_not(height_p
     one = Planner(blocks({1: (20, 10), 2: (20, 10)}), site, settings=greedy())
     if inside:
         assert one.observe(at({1: LOWER, 2: UPPER})).stands
-        assert order(one) == [1, 2]
+        assert ids(one) == [1, 2]
     else:
         with pytest.raises(InputError, match="E198 observe: stone 2"):
             one.observe(at({1: LOWER, 2: UPPER}))

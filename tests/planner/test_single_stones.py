@@ -9,21 +9,17 @@ from drystone.model.site import Site
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
-from tests.planner.scenes import RUBBLE_SITE, blocks, bricks, finish, greedy, order, rubble
-
-
-def stones_of(planner):
-    return [action.stone_id for action in planner.build.actions]
+from tests.planner.scenes import RUBBLE_SITE, blocks, bricks, finish, greedy, ids, order, rubble
 
 
 @pytest.mark.parametrize("changes", [{}, {"geometry": "raster"}, {"selection_rule": "algorithm2"}])
 def test_banned_stones_are_not_used(changes):
     free = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=greedy(changes)))
-    ban = stones_of(free)[1:3]
+    ban = ids(free)[1:3]
     settings = greedy({**changes, "ban": ban})
     planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
     assert planner.build.actions
-    assert not set(stones_of(planner)) & set(ban)
+    assert not set(ids(planner)) & set(ban)
 
 
 def test_why_a_wall_ends_without_banned_stones():
@@ -32,11 +28,11 @@ def test_why_a_wall_ends_without_banned_stones():
         planner = finish(Planner(bricks(stones), Site(60, 10), settings=settings))
         return planner.stopped.text
 
-    ids = [stone.id for stone in bricks(4)]
-    assert said({"ban": [ids[0]]}) == "all stones that are not banned placed"
+    all_four = [stone.id for stone in bricks(4)]
+    assert said({"ban": [all_four[0]]}) == "all stones that are not banned placed"
     assert said({}) == "filling above 0.99"
     assert said({}, 2) == "all stones placed"
-    assert said({"ban": ids[:3]}) == "all stones that are not banned placed"
+    assert said({"ban": all_four[:3]}) == "all stones that are not banned placed"
 
 
 def test_a_banned_stone_may_be_too_large():
@@ -82,10 +78,10 @@ def test_lists_of_settings_are_lists():
 )
 def test_a_pinned_stone_goes_in_earlier(changes):
     free = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=greedy(changes)))
-    last = stones_of(free)[-1]
+    last = ids(free)[-1]
     settings = greedy({**changes, "pin": [last]})
     planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
-    assert stones_of(planner).index(last) < len(free.build.actions) - 2
+    assert ids(planner).index(last) < len(free.build.actions) - 2
 
 
 @pytest.mark.parametrize("changes", [{}, {"geometry": "raster"}, {"selection_rule": "algorithm2"}])
@@ -93,7 +89,7 @@ def test_in_a_given_order_ids_ascend(changes):
     settings = greedy({**changes, "order": "given"})
     planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
     assert len(planner.build.actions) >= 5
-    assert stones_of(planner) == sorted(stones_of(planner))
+    assert ids(planner) == sorted(ids(planner))
     # What is built says where to go on.
     again = Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
     for step in again.steps():
@@ -107,8 +103,8 @@ def test_what_finds_no_place_in_its_turn_is_set_aside():
     settings = greedy({"geometry": "raster", "order": "given", "orientations": "sf"})
     settings = replace(settings, skip_too_large=True)
     small = finish(Planner(stones, Site(60, 10), settings=settings))
-    assert stones_of(small) == [1, 3, 4]
+    assert ids(small) == [1, 3, 4]
     assert small.stopped.reason == "filled"
     narrow = finish(Planner(stones, Site(45, 10), settings=settings))
-    assert stones_of(narrow) == [1, 3]
+    assert ids(narrow) == [1, 3]
     assert narrow.stopped.text == "no stone is left that was not tried in its turn"

@@ -29,6 +29,7 @@ from drystone.search.whole_search import (
 )
 from drystone.search.yard import Yard
 from tests.planner import scenes
+from tests.planner.scenes import ids
 
 FEW = {"search": {"budget": 4, "passes": 4, "chains": 2, "share_every": 2}}
 
@@ -43,10 +44,7 @@ def small_search():
 def planner():
     """One that has built a whole wall."""
     settings = scenes.greedy({"search": {"budget": 2}, "goal": {"fallen": 0.0}})
-    planner = Planner(scenes.rubble(), scenes.RUBBLE_SITE, seed=1, settings=settings)
-    for _ in planner.steps():
-        pass
-    return planner
+    return scenes.finish(Planner(scenes.rubble(), scenes.RUBBLE_SITE, seed=1, settings=settings))
 
 
 def half_of(planner):
@@ -54,10 +52,6 @@ def half_of(planner):
     half = Planner(scenes.rubble(), scenes.RUBBLE_SITE, settings=planner.settings)
     half.build = planner.build.states()[len(planner.build.actions) // 2]
     return PackedWall.of(FoundWall.of(half))
-
-
-def ids(planner):
-    return [action.stone_id for action in planner.build.actions]
 
 
 def test_stones_that_find_a_place_stay_where_that_is_better(planner):
@@ -102,7 +96,7 @@ def test_stones_that_move_when_the_wall_fails_are_taken_out_or_laid_elsewhere():
     assert wall.movers == (3,)  # the slender one on top
     assert wall.figures.F_LR_coulomb == pytest.approx(8 / 24 / 0.58, abs=0.03)
     better = repaired(planner, wall)
-    assert [action.stone_id for action in better.build.actions] == [1, 2]
+    assert ids(better) == [1, 2]
     assert better.figures.F_LR_coulomb == pytest.approx(1.0)
 
 

@@ -2,7 +2,6 @@
 
 import math
 
-import numpy as np
 import pytest
 
 import drystone as ds
@@ -11,15 +10,8 @@ from drystone.planner.deadline import Deadline
 from drystone.planner.events import OUT_OF_TIME
 from drystone.planner.settings import method_settings
 from drystone.verify.check import check_plan
-from tests.planner.scenes import Ticks, after_looks, blocks, greedy, rubble
+from tests.planner.scenes import Ticks, after_looks, blocks, bricks, greedy, rubble
 from tests.verify.exact_examples import with_stone
-
-
-@pytest.fixture(scope="module")
-def stones():
-    """Three bricks."""
-    bricks = ds.generate.BrickSettings(count=3, height_px=10, aspect=2)
-    return ds.generate.brick_stones(bricks, np.random.default_rng(1))
 
 
 @pytest.mark.parametrize(
@@ -35,14 +27,15 @@ def stones():
         ((0, 20), {}, "E121"),
     ],
 )
-def test_values_that_make_no_sense(stones, size, options, code):
+def test_values_that_make_no_sense(size, options, code):
     with pytest.raises(ds.DrystoneError) as caught:
-        ds.plan_wall(stones, *size, **options)
+        ds.plan_wall(bricks(3), *size, **options)
     assert caught.value.code == code
     assert caught.value.cure
 
 
-def test_inputs_that_exclude_each_other_or_are_of_the_wrong_type(stones):
+def test_inputs_that_exclude_each_other_or_are_of_the_wrong_type():
+    stones = bricks(3)
     wall = ds.plan_wall(stones, 60, 20, scale=1.0, budget=1).wall
     with pytest.raises(ds.DrystoneError, match="E138"):
         ds.plan_wall(stones, 60, 20, scale=1.0, built=wall, begin=wall)
