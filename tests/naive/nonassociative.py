@@ -4,12 +4,9 @@ from dataclasses import dataclass
 
 import highspy
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
 from tests.naive.statics import contact_matrices
-
-Floats = NDArray[np.float64]
 
 STATES = ("open", "stick", "slide+", "slide-")
 """Of a contact point; "slide+" along its tangent."""
@@ -34,40 +31,34 @@ class Limits:
     greatest: float
 
 
-@dataclass(frozen=True)
-class _Wall:
-    """Contact (rows, m) matrices, not scaled: a force in column k acts on the blocks so."""
-
-    normal: Floats
-    tangent: Floats
-    dead: Floats
-    live: Floats
-    mu: float
-
-
 def all_limits(model, direction):
     """Enumerate the solutions of the non-associative problem for a handful of blocks.
 
     States are given to one contact point after another; a branch ends where no forces or no
     motion are left, whatever the other points do.
     """
-    wall = _wall(model, 1.0 if direction == "right" else -1.0)
-    return list(_branch(wall, _motions(wall), _forces(wall), []))
+    normal, tangent = contact_matrices(model)
+    dead, live = np.zeros((2, len(normal)))
+    live[0::3] = dead[1::3] = [-block.weight for block in model.blocks]
+    live = live if direction == "left" else -live
+    forces = _forces(normal, tangent, live, dead, model.mu)
+    return list(_branch(normal.shape, _motions(normal, tangent, live), forces, []))
 
 
-def _branch(wall, motions, forces, states):
+def _branch(shape, motions, forces, states):
+    size, count = shape
     if _least(motions, 0, 0.0) is None:
         return
     least = _least(forces, 0, 1.0)
     if least is None:
         return
-    k, count = len(states), wall.normal.shape[1]
+    k = len(states)
     if k == count:
         greatest = _least(forces, 0, -1.0)
         assert greatest is not None
         yield Limits(least, -greatest)
         return
-    normal, up, down = 1 + 2 * k, len(wall.dead) + 2 * k, len(wall.dead) + 2 * k + 1
+    normal, up, down = 1 + 2 * k, size + 2 * k, size + 2 * k + 1
     for state in STATES:
         opens, slips = MOTION[state]
         motions.changeRowBounds(k, *opens)
@@ -76,7 +67,7 @@ def _branch(wall, motions, forces, states):
         # Full friction against the slip: t = -mu n along the tangent, t = mu n against it.
         forces.changeRowBounds(up, 0.0 if state == "slide-" else -INF, 0.0)
         forces.changeRowBounds(down, 0.0 if state == "slide+" else -INF, 0.0)
-        yield from _branch(wall, motions, forces, [*states, state])
+        yield from _branch(shape, motions, forces, [*states, state])
     motions.changeRowBounds(k, 0.0, INF)
     motions.changeRowBounds(count + k, -INF, INF)
     forces.changeColBounds(normal, 0.0, INF)
@@ -84,26 +75,26 @@ def _branch(wall, motions, forces, states):
     forces.changeRowBounds(down, -INF, 0.0)
 
 
-def _motions(wall):
+def _motions(normal, tangent, live):
     """Rates of opening, rates of slip, and the power of the live load by velocities of blocks."""
-    count = wall.normal.shape[1]
-    rows = np.vstack((wall.normal.T, wall.tangent.T, wall.live))
+    count = normal.shape[1]
+    rows = np.vstack((normal.T, tangent.T, live))
     least = np.concatenate((np.zeros(count), np.full(count, -INF), [1.0]))
     greatest = np.concatenate((np.full(2 * count, INF), [1.0]))
-    free = np.full(len(wall.live), INF)
+    free = np.full(len(live), INF)
     return _program(rows, least, greatest, -free, free)
 
 
-def _forces(wall):
+def _forces(normal, tangent, live, dead, mu):
     """Equilibrium, and t - mu n and -t - mu n at each point, by alpha and all n and t."""
-    size, count = wall.normal.shape
+    size, count = normal.shape
     rows = np.zeros((size + 2 * count, 1 + 2 * count))
-    rows[:size, 0], rows[:size, 1::2], rows[:size, 2::2] = wall.live, wall.normal, wall.tangent
+    rows[:size, 0], rows[:size, 1::2], rows[:size, 2::2] = live, normal, tangent
     for k in range(count):
-        rows[size + 2 * k, 1 + 2 * k : 3 + 2 * k] = (-wall.mu, 1.0)
-        rows[size + 2 * k + 1, 1 + 2 * k : 3 + 2 * k] = (-wall.mu, -1.0)
-    least = np.concatenate((-wall.dead, np.full(2 * count, -INF)))
-    greatest = np.concatenate((-wall.dead, np.zeros(2 * count)))
+        rows[size + 2 * k, 1 + 2 * k : 3 + 2 * k] = (-mu, 1.0)
+        rows[size + 2 * k + 1, 1 + 2 * k : 3 + 2 * k] = (-mu, -1.0)
+    least = np.concatenate((-dead, np.full(2 * count, -INF)))
+    greatest = np.concatenate((-dead, np.zeros(2 * count)))
     lowest = np.full(1 + 2 * count, -INF)
     lowest[1::2] = 0.0
     return _program(rows, least, greatest, lowest, np.full(1 + 2 * count, INF))
@@ -134,11 +125,3 @@ def _program(rows, least, greatest, lowest, highest):
         np.zeros(columns, np.int32),
     )  # fmt: skip
     return highs
-
-
-def _wall(model, sign):
-    normal, tangent = contact_matrices(model)
-    weights = np.array([block.weight for block in model.blocks])
-    dead, live = np.zeros((2, len(weights), 3))
-    dead[:, 1], live[:, 0] = -weights, sign * weights
-    return _Wall(normal, tangent, dead.ravel(), live.ravel(), model.mu)

@@ -4,8 +4,6 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.sparse import csc_array
 
-from drystone.statics.model import GROUND
-
 
 def diagonal_touches(labels):
     """(larger id, smaller id, x, y) where two labels touch across two empty pixels."""
@@ -76,37 +74,20 @@ def limit_alphas(model):
 
 
 def cone_program(model):
-    """Matrix and right-hand side of the tilting table, entry by entry.
+    """Matrix and right-hand side of the tilting table.
 
     Column 0 is alpha, then come the two edges of the friction cone of every contact point; mean
     weight and mean area of the blocks are 1.
     """
-    weight = sum(block.weight for block in model.blocks) / len(model.blocks)
-    length = (sum(block.area for block in model.blocks) / len(model.blocks)) ** 0.5
-    place = {block.id: 3 * i for i, block in enumerate(model.blocks)}
-    centroid = {block.id: block.centroid for block in model.blocks}
-    dead = np.zeros(3 * len(model.blocks))
-    entries = []
-    for block in model.blocks:
-        entries.append((place[block.id], 0, block.weight / weight))
-        dead[place[block.id] + 1] = block.weight / weight
-    column = 0
-    for interface in model.interfaces:
-        mu = model.friction(interface)
-        nx, ny = interface.normal
-        for px, py in interface.points.tolist():
-            for along in (mu, -mu):
-                column += 1
-                for block_id, sign in ((interface.block, 1), (interface.other, -1)):
-                    if block_id == GROUND:
-                        continue
-                    fx, fy = sign * (nx + along * ny), sign * (ny - along * nx)
-                    cx, cy = centroid[block_id]
-                    moment = ((px - cx) * fy - (py - cy) * fx) / length
-                    at = place[block_id]
-                    entries += [(at, column, fx), (at + 1, column, fy), (at + 2, column, moment)]
-    rows, columns, values = zip(*entries, strict=True)
-    return csc_array((values, (rows, columns)), shape=(dead.size, column + 1)), dead
+    normal, tangent = contact_matrices(model)
+    mu = np.array([model.friction(i) for i in model.interfaces for _ in i.points])
+    live, dead = np.zeros((2, len(normal)))
+    weights = np.array([block.weight for block in model.blocks])
+    live[0::3] = dead[1::3] = weights / weights.mean()
+    edges = np.stack((normal + mu * tangent, normal - mu * tangent), axis=2)
+    matrix = np.column_stack((live, edges.reshape(len(dead), -1)))
+    matrix[2::3] /= np.mean([block.area for block in model.blocks]) ** 0.5
+    return csc_array(matrix), dead
 
 
 def alphas_by_linprog(model):
