@@ -1,4 +1,4 @@
-"""One step: nothing is evaluated twice, and both sides and folds are tried."""
+"""One step: nothing is evaluated twice, and the surest place is taken."""
 
 from collections import Counter
 from dataclasses import replace

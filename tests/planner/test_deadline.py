@@ -1,4 +1,4 @@
-"""A time limit leaves a wall as it is between two steps, and changes nothing unless it strikes."""
+"""A time limit strikes once the clock is past it.  What it leaves: `search/test_plan_wall.py`."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Walls that the planner builds: courses, bridges, wedges, ids, and nothing mirrored."""
+"""Walls that the planner builds: courses, bridges, wedges and ids."""
 
 import numpy as np
 import pytest
