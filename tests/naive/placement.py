@@ -1,10 +1,16 @@
 """Slow, obvious twins of placement: every position of the image, one after the other (§3.6)."""
 
+from collections.abc import Callable
+
 import numpy as np
+from numpy.typing import NDArray
 from scipy import ndimage, signal
 
+from drystone.kernels.raster import Mask
 from tests.naive import indices
 from tests.naive.overlap import lowered, overlaps
+
+OverlapAreas = Callable[[Mask, Mask], NDArray[np.int64]]
 
 
 def all_positions(occupied, mask):
