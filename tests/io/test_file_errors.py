@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 
 from drystone.errors import DrystoneError
-from drystone.io.file_errors import listed, short
+from drystone.io.files import listed, short
 from drystone.io.photo_file import read_photo
 from drystone.io.read_settings import ReadSettings
 from drystone.io.read_stones import read_stones

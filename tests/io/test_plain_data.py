@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.io.plain_data import as_json, from_plain
+from drystone.io.json_text import as_json, from_plain
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,7 @@ import pytest
 
 import drystone
 from drystone.errors import DrystoneError, InputError
-from drystone.io.file_bytes import file_bytes
-from drystone.io.foreign import foreign, silent_stderr
+from drystone.io.files import file_bytes, foreign, silent_stderr
 from drystone.io.images import decode
 from drystone.io.json_text import DEEPEST, json_of
 from drystone.io.read_stones import read_stones

@@ -12,8 +12,7 @@ from typing import Any
 from drystone.cli.numbers import positive, share, whole_from
 from drystone.cli.parser import Renamed
 from drystone.errors import InputError, UsageError
-from drystone.io.file_bytes import file_bytes
-from drystone.io.foreign import foreign
+from drystone.io.files import file_bytes, foreign
 from drystone.model.stone import StoneSet
 from drystone.planner.search_settings import AIMS, UNLIMITED
 from drystone.planner.settings import METHODS, PlannerSettings, method_settings

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from drystone.errors import PlanError
-from drystone.io.plain_data import as_json, from_plain
+from drystone.io.json_text import as_json, from_plain
 from drystone.planner.search_settings import SearchSettings
 from drystone.search.operators import OPERATORS
 from drystone.search.packed import PackedWall

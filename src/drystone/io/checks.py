@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from drystone.errors import InputError, LabelImageError, Notice
-from drystone.io.file_errors import listed
+from drystone.io.files import listed
 from drystone.io.json_text import json_in
 from drystone.io.labels import Census, IdImage
 from drystone.kernels.ids import counted
@@ -77,23 +77,19 @@ def check_background(
     corners = sum(int(index[r, c] == common) for r in (0, -1) for c in (0, -1))
     # A stone cropped to its bounding box touches all four borders too, but has not the corners,
     # or nothing inside it.
-    if corners >= 3 and all(side.mean() > 0.5 for side in sides) and _has_islands(index, common):
+    if corners < 3 or not all(side.mean() > 0.5 for side in sides):
+        return
+    found, _ = ndimage.label(index != common)
+    inside = np.bincount(found.ravel())
+    for line in (0, found[0], found[-1], found[:, 0], found[:, -1]):
+        inside[line] = 0
+    if inside.max() >= RARE_PX:
         raise LabelImageError(
             "E105",
             f"the value {value} fills {(index == common).mean():.0%} of the picture and its "
             f"borders: it looks like the background, which is {background} by the settings.",
             cure=f"{cure.format(value)}; if it is a stone, give the picture a rim of {background}.",
         )
-
-
-def _has_islands(index: NDArray[Any], common: int) -> bool:
-    """Tell whether anything as large as a stone lies inside a value and off the borders."""
-    found, _ = ndimage.label(index != common)
-    areas = np.bincount(found.ravel())
-    for line in (found[0], found[-1], found[:, 0], found[:, -1]):
-        areas[line] = 0
-    areas[0] = 0
-    return bool(areas.max() >= RARE_PX)
 
 
 def check_not_lossy(image: IdImage) -> None:
@@ -328,8 +324,8 @@ def without_blends(image: IdImage, least_px: int, *, wall: bool = False) -> IdIm
     )
     cure = (
         "Use --min-area 1 --pieces split (min_area_px=1, pieces='split' in Python) to keep their "
-        "values."
     )
+    cure += "values."
     if wall:
         cure = "Export the ids without anti-aliasing if they are right as they are."
     notices = (*image.notices, Notice("W136", what, cure))

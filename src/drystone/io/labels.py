@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from drystone.errors import InputError, LabelImageError, Notice
-from drystone.io.file_errors import several_pages
+from drystone.io.files import several_pages
 from drystone.io.images import Picture
 from drystone.kernels.ids import counted, looked_up, numbered
 
@@ -192,7 +192,11 @@ def _check_no_stone_of_zero(image: IdImage, ground: NDArray[np.bool_], *, named:
     corners = ground[[0, 0, -1, -1], [0, -1, 0, -1]].sum() >= 3
     inner = np.zeros_like(zero)
     inner[_RIM:-_RIM, _RIM:-_RIM] = True
-    if named or (corners and not (zero & ~inner).any() and _lies_alone(zero, ground)):
+    # Whether a piece as large as a stone has only ground around it.
+    found, count = ndimage.label(zero, np.ones((3, 3)))
+    alone = np.bincount(found.ravel(), minlength=count + 1) >= _LEAST_PX
+    alone[ndimage.maximum_filter(found, 3)[~ground & ~zero]] = False
+    if named or (corners and not (zero & ~inner).any() and alone[1:].any()):
         raise LabelImageError(
             "E108",
             f"{int(zero.sum())} px are 0 on a background that is another value or transparent, "
@@ -203,16 +207,6 @@ def _check_no_stone_of_zero(image: IdImage, ground: NDArray[np.bool_], *, named:
 
 _RIM = 2
 """Pixels at the border of a picture that programs leave as they are."""
-
-
-def _lies_alone(zero: NDArray[np.bool_], ground: NDArray[np.bool_]) -> bool:
-    """Tell whether a piece as large as a stone has only ground around it."""
-    found, count = ndimage.label(zero, np.ones((3, 3)))
-    large = np.bincount(found.ravel(), minlength=count + 1) >= _LEAST_PX
-    around = ndimage.maximum_filter(found, 3)
-    large[around[~ground & ~zero]] = False
-    return bool(large[1:].any())
-
 
 _LEAST_PX = 10
 

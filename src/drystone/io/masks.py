@@ -1,5 +1,7 @@
-"""Binary masks: which pictures are masks, and their stones (DESIGN 4.1)."""
+"""Masks: which pictures are binary ones, and archives of arrays (NPZ; DESIGN 4.1)."""
 
+import io
+import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -8,13 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from drystone.errors import LabelImageError, Notice
+from drystone.errors import InputError, LabelImageError, Notice
 from drystone.io.checks import blended
-from drystone.io.file_errors import unfit
-from drystone.io.images import Picture
+from drystone.io.files import damaged, foreign, too_large, unfit, unusable
+from drystone.io.images import Picture, array_of
 from drystone.io.labels import Census, IdImage, take_census
+from drystone.io.outlines_in.classes import Gathered
+from drystone.io.outlines_in.fill import trimmed
+from drystone.io.outlines_in.model import OutlineFile
 from drystone.io.outlines_in.nested import not_stones, of_one_picture, said_of
-from drystone.io.patches import StonePatch
+from drystone.io.patches import PlacedMask, StonePatch
 from drystone.io.read_settings import ReadSettings
 from drystone.kernels.raster import Mask
 
@@ -147,3 +152,64 @@ def without_others(
     kept = [patch for patch in patches if patch.id not in left]
     names = {patch.id: patch.name for patch in patches}
     return kept, [said_of(left, len(patches), names)] if left else []
+
+
+_BYTES_PER_PX = 8
+
+
+def is_npz(data: bytes) -> bool:
+    """Tell NPZ by its beginning and the arrays in it."""
+    return data.startswith(b"PK\x03\x04") and b".npy" in data[:200]
+
+
+def read_npz(data: bytes, max_px: int) -> NDArray[Any] | OutlineFile:
+    """Read the arrays of an archive.
+
+    The only array, or that of the name labels, is returned as it is; else each is a stone.
+    """
+    found = {
+        name.removesuffix(".npy"): array_of(member, max_px)
+        for name, member in _members(data, max_px).items()
+    }
+    alone = found.get("labels", next(iter(found.values())) if len(found) == 1 else None)
+    return _masks(found) if alone is None else np.asarray(alone)
+
+
+def _members(data: bytes, max_px: int) -> dict[str, bytes]:
+    """Unpack the arrays of an archive, of which the sizes are added up first."""
+    with foreign(_broken):
+        archive = zipfile.ZipFile(io.BytesIO(data))
+        entries = archive.infolist()
+    total, most = sum(entry.file_size for entry in entries), _BYTES_PER_PX * max_px
+    if total > most:
+        raise too_large(
+            f"its arrays have {total / 1e6:.0f} MB; the limit is {most / 1e6:g} MB.",
+            "Give arrays of fewer or smaller values; only in Python can the limit be raised "
+            "(max_image_mpx).",
+        )
+    found = {}
+    for entry in entries:
+        # Of others zipfile unpacks all that there is, whatever size they name.
+        if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+            raise _broken("it is packed as NumPy packs none")
+        with foreign(_broken), archive.open(entry) as member:
+            found[entry.filename] = member.read(entry.file_size)
+    return found
+
+
+def _broken(why: str) -> InputError:
+    return damaged(why, cure="Export it again, without pickled objects.")
+
+
+def _masks(found: Mapping[str, NDArray[Any]]) -> OutlineFile:
+    gathered = Gathered()
+    shapes = {array.shape for array in found.values()}
+    if len(shapes) != 1 or len(next(iter(shapes))) != 2:
+        raise unusable(f"its arrays are not masks of one picture: shapes {sorted(shapes)}")
+    for name, array in found.items():
+        values = np.unique(array)
+        if len(values) > 2 or array.dtype.kind not in "biuf" or (len(values) == 2 and values[0]):
+            raise unusable(f"the array {name!r} is not a mask (0 and one other value)")
+        gathered.labelled(name, name, trimmed(PlacedMask(array.astype(bool), 0, 0)))
+    height, width = next(iter(shapes))
+    return gathered.file(size_px=(width, height), seen_by="either", names_images=False)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from drystone.errors import LabelImageError, Notice
-from drystone.io.file_errors import MANY, listed, naming, short
+from drystone.io.files import MANY, listed, naming, short
 from drystone.io.labels import MAX_ID
 from drystone.io.read_settings import ReadSettings
 from drystone.kernels.ids import counted

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from drystone.errors import InputError, UsageError
-from drystone.io.file_errors import short
+from drystone.io.files import short
 from drystone.io.json_text import json_in
 from drystone.io.read_settings import MOST_PX_PER_M
 from drystone.model.stone import writable

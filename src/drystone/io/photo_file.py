@@ -12,11 +12,18 @@ from numpy.typing import NDArray
 from PIL import Image, ImageOps
 
 from drystone.errors import InputError, Notice
-from drystone.io import tiff
-from drystone.io.file_bytes import file_bytes, given_bytes
-from drystone.io.file_errors import naming, too_large, unread
-from drystone.io.pictures import check_size, format_of, opened
-from drystone.io.tiff import ORIENTATION, TURNED_BACK, TURNS, turned
+from drystone.io.files import file_bytes, given_bytes, naming, too_large, unread
+from drystone.io.images import (
+    ORIENTATION,
+    TURNED_BACK,
+    TURNS,
+    check_size,
+    format_of,
+    inspect_tiff,
+    opened,
+    tiff_values,
+    turned,
+)
 from drystone.model.stone import writable
 
 MAX_PX = 200_000_000
@@ -125,7 +132,7 @@ def _by_pillow(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[
 
 
 def _tiff(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any], int]:
-    page = tiff.inspect(data)
+    page = inspect_tiff(data)
     check(page.width, page.height)
     if page.bits <= 8:
         # Pillow turns a TIFF by itself when it reads it: taken back, so that it is said.
@@ -137,7 +144,7 @@ def _tiff(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any],
     if page.colours:
         what = f"TIFF of {page.bits} bits a channel in {page.colours} cannot be read."
         raise unread(what, "Export it in RGB, or with 8 bits a channel.")
-    values = tiff.values(data, page, check)
+    values = tiff_values(data, page, check)
     # Pillow takes this back for 8 bits; ids keep the numbers of the file, light does not.
     if page.negative and values.dtype == np.uint16:
         values = values.copy()

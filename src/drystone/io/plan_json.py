@@ -16,10 +16,8 @@ import jsonschema
 
 from drystone.errors import PlanError
 from drystone.indices import INDEX_NAMES
-from drystone.io.file_bytes import file_bytes
-from drystone.io.foreign import foreign
-from drystone.io.json_text import json_of, plain
-from drystone.io.plain_data import from_plain, to_plain
+from drystone.io.files import file_bytes, foreign
+from drystone.io.json_text import from_plain, json_of, plain, to_plain
 from drystone.model.plan import SCHEMA, Plan, PlanMetrics, StoneStep, WedgeStep
 from drystone.whole_files import write_whole
 

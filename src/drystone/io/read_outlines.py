@@ -11,23 +11,18 @@ from typing import Any
 import numpy as np
 
 from drystone.errors import InputError
-from drystone.io.file_errors import listed, short, too_large, unfit
-from drystone.io.foreign import foreign
-from drystone.io.images import BEGINNING
+from drystone.io.files import foreign, listed, short, too_large, unfit
+from drystone.io.images import BEGINNING, format_of
 from drystone.io.json_text import json_of
-from drystone.io.outlines_in import exports
-from drystone.io.outlines_in.annotations import read_coco, read_labelme, read_sam
+from drystone.io.outlines_in import annotations
 from drystone.io.outlines_in.classes import of_classes
 from drystone.io.outlines_in.dxf import is_dxf, read_dxf
-from drystone.io.outlines_in.geojson import is_geojson, read_geojson
 from drystone.io.outlines_in.meshes import mesh_kind, read_mesh
 from drystone.io.outlines_in.model import METRES, OutlineFile, numbered, without_wedges
-from drystone.io.outlines_in.nesting import is_nesting, read_nesting
 from drystone.io.outlines_in.raster import in_px, rastered
 from drystone.io.outlines_in.svg import is_svg, read_svg
 from drystone.io.patches import stone_set
 from drystone.io.photo_beside import LABELS, SCHEMA
-from drystone.io.pictures import format_of
 from drystone.io.read_settings import ReadSettings
 from drystone.model.stone import Source, StoneSet
 
@@ -55,13 +50,13 @@ def _is_sam(content: Any) -> bool:
 
 # The first of these that a file is; an empty list is one of masks.
 _KINDS: tuple[tuple[Callable[[Any], bool], Callable[[Any, ReadSettings], OutlineFile]], ...] = (
-    (_is_sam, read_sam),
-    (exports.is_label_studio, exports.read_label_studio),
-    (_holds("shapes"), read_labelme),
-    (_holds("annotations"), read_coco),
-    (is_geojson, read_geojson),
-    (exports.is_via, exports.read_via),
-    (is_nesting, read_nesting),
+    (_is_sam, annotations.read_sam),
+    (annotations.is_label_studio, annotations.read_label_studio),
+    (_holds("shapes"), annotations.read_labelme),
+    (_holds("annotations"), annotations.read_coco),
+    (annotations.is_geojson, annotations.read_geojson),
+    (annotations.is_via, annotations.read_via),
+    (annotations.is_nesting, annotations.read_nesting),
 )
 
 
@@ -76,8 +71,8 @@ def outline_reader(data: bytes, name: str) -> Reader | None:
         return _read_json
     # A drawing names itself; the text of an OBJ is told by its lines, so it comes last.
     readers: tuple[tuple[bool, Reader], ...] = (
-        (suffix == ".txt" and exports.is_yolo(data), exports.read_yolo),
-        (begins == b"<" and exports.is_cvat(data), exports.read_cvat),
+        (suffix == ".txt" and annotations.is_yolo(data), annotations.read_yolo),
+        (begins == b"<" and annotations.is_cvat(data), annotations.read_cvat),
         (is_svg(data, suffix), read_svg),
         (suffix != ".bmp" and is_dxf(data, suffix), read_dxf),
     )

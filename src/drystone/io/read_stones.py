@@ -11,13 +11,19 @@ from numpy.typing import NDArray
 
 from drystone.errors import InputError, LabelImageError, Notice
 from drystone.io import checks, read_outlines
-from drystone.io.file_bytes import given_bytes
-from drystone.io.file_errors import listed, naming
+from drystone.io.files import given_bytes, listed, naming
 from drystone.io.images import FORMATS, SUFFIXES, Picture, decode
 from drystone.io.labels import Census, IdImage, check_no_zero, to_ids
-from drystone.io.masks import BinaryMask, components, find_mask, ground_in, without_others
+from drystone.io.masks import (
+    BinaryMask,
+    components,
+    find_mask,
+    ground_in,
+    is_npz,
+    read_npz,
+    without_others,
+)
 from drystone.io.outlines_in.model import OutlineFile
-from drystone.io.outlines_in.npz import is_npz, read_npz
 from drystone.io.patches import (
     MIN_AREA_PX,
     StonePatch,

@@ -14,23 +14,20 @@ from numpy.typing import NDArray
 from drystone.contacts.blocks import pieces_apart
 from drystone.contacts.given import polygons_from_json, read_mu
 from drystone.errors import InputError, LabelImageError, Notice, UsageError
-from drystone.io.file_bytes import file_bytes
-from drystone.io.file_errors import listed, naming
-from drystone.io.foreign import foreign
+from drystone.io.files import file_bytes, foreign, listed, naming
+from drystone.io.images import check_size
 from drystone.io.json_text import json_of
+from drystone.io.masks import is_npz
 from drystone.io.outlines_in.fill import filled_area
 from drystone.io.outlines_in.model import Area, OutlineFile
-from drystone.io.outlines_in.npz import is_npz
 from drystone.io.outlines_in.silhouettes import outer_edge, tidy_edge
 from drystone.io.photo_beside import read_sidecar, scale_beside
-from drystone.io.pictures import check_size
 from drystone.io.plan_folder import BLOCKS
 from drystone.io.plan_json import read_plan
 from drystone.io.read_outlines import outline_reader, stones_and_outlines
 from drystone.io.read_settings import ReadSettings
 from drystone.io.read_stones import read_stones
-from drystone.io.wall_image import read_wall_image, read_wall_picture
-from drystone.io.write_stones import painted
+from drystone.io.wall_image import painted, read_wall_image, read_wall_picture
 from drystone.kernels.label_runs import label_runs
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.model.plan import Plan

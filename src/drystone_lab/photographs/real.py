@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 from scipy import ndimage
 
-from drystone.io.pictures import opened
+from drystone.io.images import opened
 
 Labels = NDArray[np.uint16]
 

@@ -8,8 +8,8 @@ import yaml
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextPath
 
-from drystone.drawing.export.text import json_text, number
 from drystone.drawing.lettering import ELLIPSIS, MISSING, drawable, fitted, one_line
+from drystone.io.json_text import json_text, number
 
 
 def test_json_is_json_of_any_shape():

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from drystone.contacts.given import model_from_json
-from drystone.drawing.words.analysis import ModelledWall
-from drystone.drawing.words.wall_verdict import judge_wall
+from drystone.drawing.words.analysis import ModelledWall, judge_wall
 from drystone.statics.failing.mechanism import Names
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus

@@ -12,7 +12,7 @@ from drystone.cli.progress import busy, counting_bar
 from drystone.cli.reading import reading_of
 from drystone.drawing.words.checked import PICTURE, Checked, PhysicsCard
 from drystone.errors import ExitCode, InputError, PlanError
-from drystone.io.file_bytes import file_bytes
+from drystone.io.files import file_bytes
 from drystone.io.plan_json import read_plan
 from drystone.io.read_stones import read_stones
 from drystone.io.walls import read_blocks_of, read_image_of

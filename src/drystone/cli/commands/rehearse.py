@@ -12,7 +12,7 @@ from drystone.cli.numbers import METRES, friction, whole_from
 from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.cli.progress import counting_bar
 from drystone.contacts.given import polygons_from_json
-from drystone.drawing.words.rehearsed import Rehearsed
+from drystone.drawing.words.checked import Rehearsed
 from drystone.errors import ExitCode, PlanError, UsageError
 from drystone.io.walls import GivenWall, read_wall
 from drystone.model.builder import BuilderErrors
@@ -89,7 +89,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     card = Rehearsed(plan, groups, errors, tuple(found), planned, engine=engine)
     if arguments.output:
         from drystone.drawing.files import save  # noqa: PLC0415 - slow import
-        from drystone.drawing.pictures.rehearsed import plot_risk  # noqa: PLC0415
+        from drystone.drawing.pictures.check import plot_risk  # noqa: PLC0415
 
         save(plot_risk(card).figure, Path(arguments.output))
     if arguments.json:

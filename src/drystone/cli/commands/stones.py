@@ -12,7 +12,7 @@ from drystone.cli.reading import STONES, add_reading, reading_from
 from drystone.clusters import cluster_stones
 from drystone.errors import ExitCode, counted
 from drystone.io.read_stones import read_stones
-from drystone.io.write_stones import write_stones, written_as
+from drystone.io.wall_image import write_stones, written_as
 from drystone.model.stone_size import median_sides, sides_px
 from drystone.poses import PoseBook
 

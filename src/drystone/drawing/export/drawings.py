@@ -9,8 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from drystone.drawing import dxf as dxf_end
-from drystone.drawing import svg as svg_end
+from drystone.drawing import vector
 from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.canvas import draw
 from drystone.drawing.drawing import Dots, Drawable, Drawing, Lines, Surface, placed
@@ -41,7 +40,7 @@ def svg(assembly: Assembly, settings: ExportSettings) -> Files:
     )
     drawing, unit = with_statics(assembly), "mm" if metric else "px"
     there = replace(drawing, items=tuple(placed(drawing.items, factor)))
-    data = svg_end.svg_bytes(there, (width, height), unit, _name(assembly, settings), about)
+    data = vector.svg_bytes(there, (width, height), unit, _name(assembly, settings), about)
     return {"wall.svg": data}
 
 
@@ -56,9 +55,7 @@ def dxf(assembly: Assembly, settings: ExportSettings) -> Files:
         f"drystone {plan.version}, seed {plan.seed}. Numbers are steps of construction.",
     )
     drawing = with_statics(assembly)
-    return {
-        "wall.dxf": dxf_end.dxf_bytes(ezdxf, drawing, assembly.size, metric=metric, about=about)
-    }
+    return {"wall.dxf": vector.dxf_bytes(ezdxf, drawing, assembly.size, metric=metric, about=about)}
 
 
 def png(assembly: Assembly, settings: ExportSettings) -> Files:

@@ -17,7 +17,7 @@ from drystone.drawing.assembly import handling
 from drystone.drawing.assembly.parts import Assembly, Part
 from drystone.drawing.export.formats import ExportSettings, Files
 from drystone.drawing.export.solids import Solid, inertia, material, solid_of_part, stl_bytes
-from drystone.drawing.export.text import json_text, number
+from drystone.io.json_text import json_text, number
 from drystone.model.frames3d import Pose3d
 
 FRAMES = {

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from drystone.drawing.assembly.parts import Assembly, Part
 from drystone.drawing.export.formats import ExportSettings, Files, load_extra
-from drystone.drawing.export.text import number
 from drystone.drawing.palette import PLAIN_COLOUR, WEDGE_COLOUR, Rgb, cluster_colour, linear, rgb
 from drystone.errors import InputError
+from drystone.io.json_text import number
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.model.frames3d import Matrix, Vector
 

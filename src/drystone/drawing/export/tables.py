@@ -9,8 +9,8 @@ import shapely
 from drystone.drawing.assembly import handling
 from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.export.formats import ExportSettings, Files, load_extra
-from drystone.drawing.export.text import json_text
 from drystone.drawing.sheet.words import step_words
+from drystone.io.json_text import json_text
 from drystone.model.plan import StoneStep
 
 

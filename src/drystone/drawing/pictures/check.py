@@ -1,4 +1,4 @@
-"""The picture of what `drystone check` found to fail: where blocks were planned, and ended."""
+"""Pictures of what `drystone check` found to fail, and of the risk that `rehearse` found."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -12,9 +12,9 @@ from drystone.drawing.canvas import MARGIN_IN, WIDTH_IN, draw
 from drystone.drawing.drawing import Drawable, Drawing, Lines, Surface, Words, ground
 from drystone.drawing.files import save
 from drystone.drawing.outlines import Bounds, Loop, polygon_regions, rectangle, regions_box
-from drystone.drawing.palette import GREY, OUTLINE_COLOUR, PALE
+from drystone.drawing.palette import GREY, OUTLINE_COLOUR, PALE, rgb
 from drystone.drawing.pictures.mechanism import motion_of
-from drystone.drawing.words.checked import PICTURE, Checked
+from drystone.drawing.words.checked import PICTURE, Checked, Rehearsed
 from drystone.errors import PlanError
 from drystone.model.steps import piece_id
 from drystone.statics.limit import lateral_resistance
@@ -223,3 +223,39 @@ def _moved(view: FailureView) -> list[Surface]:
                      width_pt=1.0 if fails else 0.5, dashes=DASHES, z=3.0)
             )  # fmt: skip
     return drawn
+
+
+SURE, UNSURE, ALWAYS = "#d5e8d4", "#f0c050", "#b03030"
+"""Stones that never fall, fall in half of the runs, and in all."""
+
+
+def plot_risk(card: Rehearsed, ax: Axes | None = None) -> Axes:
+    """Draw a plan, in source px; numbers are in how many of 100 runs a stone falls."""
+    planned = {block: corners for group in card.groups for block, corners in group}
+    regions = polygon_regions(planned)
+    x0, y0, x1, y1 = regions_box([region.loops for region in regions])
+    pad = 0.03 * (y1 - y0)
+    box = x0 - pad, min(y0, 0.0) - 2 * pad, x1 + pad, y1 + pad
+    items: list[Drawable] = [*ground(box)]
+    for region in regions:
+        risk = card.risk.get(region.id)
+        fill = PALE if risk is None else risk_colour(risk)
+        area = Surface(f"block-{region.id}", region.loops, fill)
+        items.append(area)
+        if risk:
+            text = f"{100 * risk:.0f}"
+            items.append(Words(f"risk-{region.id}", text, region.centroid, area.room, fill))
+    legend = {
+        "never falls": Surface("", (), SURE),
+        "in half of the runs": Surface("", (), UNSURE),
+        "always": Surface("", (), ALWAYS),
+    }
+    title = f"Stones that fall, of 100 rehearsals; {card.verdict}"
+    return draw(Drawing(tuple(items), box, title=title, legend=legend), ax)
+
+
+def risk_colour(risk: float) -> str:
+    """Return the colour of a risk in [0, 1]."""
+    low, high, share = (SURE, UNSURE, 2 * risk) if risk < 0.5 else (UNSURE, ALWAYS, 2 * risk - 1)
+    mixed = (a + share * (b - a) for a, b in zip(rgb(low), rgb(high), strict=True))
+    return "#" + "".join(f"{round(255 * part):02x}" for part in mixed)

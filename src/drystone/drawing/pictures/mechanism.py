@@ -115,35 +115,13 @@ def plot_mechanism(
     the picture is some 12 % of the wall's height.  Thin grey lines show the wall before.  Blocks
     without a velocity stay where they are.
 
-    Parameters
-    ----------
-    wall : (h, w) integer array, or mapping of int to (n, 2) float array
-        The wall whose blocks the mechanism names: a label image, row 0 at the top, or polygons by
-        id.
-    mechanism : Mechanism
-        Velocities of the blocks.
-    direction : {"left", "right"} or None
-        Where the live load points; None when the wall falls by itself.
-    alpha : float, optional
-        Load multiplier (adequacy factor), written beside the arrow.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    load : str
-        Words for a live load that is not the tilting table's, such as "point load on 7"; they
-        are written without an arrow.
-    numbers : bool or mapping of int to int
-        Write the ids on the blocks, or other numbers by id, such as steps.
-
-    Returns
-    -------
-    ax : Axes
-        In px of the label image or the unit of the polygons, y up from the ground: for a label
-        image the lower edge of its lowest stone pixel.
-
-    Raises
-    ------
-    ValueError
-        When the mechanism names a block that the wall does not have.
+    The wall is a label image, (h, w), row 0 at the top, or polygons, (n, 2), by id; ValueError when
+    it lacks a block of the mechanism.  The live load points in the `direction`, None when the wall
+    falls by itself.  Beside its arrow the load multiplier `alpha` (adequacy factor) is written.
+    `load` are words for a live load that is not the tilting table's, such as "point load on 7",
+    which has no arrow.  `numbers` writes ids on the blocks, or other numbers by id, such as steps.
+    The axes are in px of the image or the unit of the polygons, y up from the ground: for a label
+    image the lower edge of its lowest stone pixel.
     """
     motion = motion_of(wall, mechanism)
     moved = motion.at(1.0)

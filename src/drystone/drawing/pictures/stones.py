@@ -22,21 +22,9 @@ def plot_stones(
 ) -> Axes:
     """Draw stones as they lie in the source image, coloured by cluster (Fig. 5).
 
-    Stones that come from a folder of masks have a frame each; they are laid out in rows.
-
-    Parameters
-    ----------
-    stone_set : StoneSet
-        At least one stone.
-    clusters : mapping of int to int, optional
-        Cluster of each stone's id, from 1; None draws all stones in one colour.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-
-    Returns
-    -------
-    ax : Axes
-        In source px, y up from the image's bottom edge.
+    Stones that come from a folder of masks have a frame each; they are laid out in rows.  There is
+    at least one.  `clusters` are those of stones by id, from 1; None draws all in one colour.  The
+    axes are in source px, y up from the image's bottom edge.
     """
     source = stone_set.source
     if source.files:
@@ -83,21 +71,9 @@ def _rows(stones: StoneSet) -> dict[int, tuple[float, float]]:
 
 
 def plot_labels(labels: Labels, ax: Axes | None = None, *, title: str = "") -> Axes:
-    """Draw a label image, coloured and numbered by id.
+    """Draw a label image, (h, w), coloured and numbered by id; 0 is background, row 0 at the top.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        0 is background; row 0 at the top.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    title : str
-        Written above.
-
-    Returns
-    -------
-    ax : Axes
-        In px, y up from the image's bottom edge.
+    The axes are in px, y up from the image's bottom edge.
     """
     height, width = labels.shape
     pad = 0.01 * width

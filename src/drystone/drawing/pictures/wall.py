@@ -30,26 +30,11 @@ def plot_wall(
 ) -> Axes:
     """Draw a wall: stones coloured by cluster and numbered in order of placement, wedges red.
 
-    The number of a stone is its step in the plan, where each wedge is a step too.
-
-    Parameters
-    ----------
-    wall : Wall
-        Also an empty one.
-    clusters : mapping of int to int, optional
-        Cluster of each stone's id, from 1; None draws all stones in one colour.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    outlines : mapping of int to (n, 2) float array, optional
-        Polygons to draw instead of the pixels, by id, wall frame, plan's units; for example
-        from :func:`drystone.drawing.wall_outlines`, which are drawn of a wall of outlines.
-    title : str
-        Written above.
-
-    Returns
-    -------
-    ax : Axes
-        In the plan's units: source px, or metres when the site has a scale.
+    The number of a stone is its step in the plan, where each wedge is a step too.  `clusters` are
+    those of stones by id, from 1; None draws all in one colour.  `outlines` are polygons, (n, 2),
+    to draw instead of the pixels, by id, wall frame, plan's units, for example from
+    :func:`drystone.drawing.wall_outlines`; of a wall of outlines these are drawn anyway.  The axes
+    are in the plan's units: source px, or metres when the site has a scale.
     """
     return draw(drawing_of_wall(wall, clusters, outlines, title), ax)
 

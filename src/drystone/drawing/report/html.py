@@ -31,25 +31,9 @@ def write_report(path: str | Path, view: ViewerData, *, pictures: str | Path | N
     JavaScript it shows pictures instead of the viewer and says all the same.  It has no date, so
     equal arguments give equal bytes.
 
-    Parameters
-    ----------
-    path : str or Path
-        The file to write.
-    view : ViewerData
-        The wall: from `view_of_assembly`, `view_of_wall` or `view_of_result`.
-    pictures : str or Path, optional
-        Folder with picture.png, mechanism_left.png and mechanism_right.png; the report
-        names those that are missing.
-
-    Returns
-    -------
-    path : Path
-        The file.
-
-    Raises
-    ------
-    PlanError
-        E206 when it cannot be written; an existing one is as it was.
+    `view` is from `view_of_assembly`, `view_of_wall` or `view_of_result`; `pictures` is a folder
+    with picture.png, mechanism_left.png and mechanism_right.png, and the report names those that
+    are missing.  E206 when it cannot be written; an existing one is as it was then.
     """
     path = Path(path)
     folder = None if pictures is None else Path(pictures)

@@ -23,8 +23,7 @@ from drystone.drawing.photo import read_photo
 from drystone.drawing.pictures.mechanism import motion_of
 from drystone.drawing.sheet.words import beside_words, step_words, turn_words
 from drystone.drawing.words import content
-from drystone.drawing.words.analysis import STONES, ModelledWall
-from drystone.drawing.words.wall_verdict import WallVerdict, judge_wall
+from drystone.drawing.words.analysis import STONES, ModelledWall, WallVerdict, judge_wall
 from drystone.errors import Notice, counted
 from drystone.io.plan_json import plan_digest
 from drystone.kernels.polygons import Points

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from drystone.drawing.canvas import add
 from drystone.drawing.drawing import Drawable, Lines, Surface
@@ -20,32 +20,26 @@ PT_PER_MM = 72.0 / MM_PER_INCH
 A4_MM = (210.0, 297.0)
 EDGE_MM = 12.0  # of paper that printers do not print on, and a hole punch
 PAGE_NUMBER_MM = 30.0  # room for it at the right end of the foot
-SMALL_PT, PLAIN_PT, LARGE_PT = 7.0, 8.5, 12.0
+SMALL_PT, PLAIN_PT = 7.0, 8.5
 NOT_TO_SCALE = "NOT TO SCALE"
+FAINT = "#555555"  # of words that explain
 
 
 class SheetPage:
-    """One sheet of paper; lengths are mm from its lower left corner."""
+    """One sheet of paper; lengths are mm from its lower left corner.
+
+    `right` and `top` are the ends of what is printed.
+    """
 
     def __init__(self, size_mm: tuple[float, float] = A4_MM) -> None:
         self.width, self.height = size_mm
-        inches = (self.width / MM_PER_INCH, self.height / MM_PER_INCH)
-        self.figure = Figure(figsize=inches)
+        self.right, self.top = self.width - EDGE_MM, self.height - EDGE_MM
+        self.figure = Figure(figsize=(self.width / MM_PER_INCH, self.height / MM_PER_INCH))
         self.ax = self.figure.add_axes((0.0, 0.0, 1.0, 1.0))
         self.ax.set_axis_off()
         self.ax.set_xlim(0.0, self.width)
         self.ax.set_ylim(0.0, self.height)
         self.ax.set_autoscale_on(False)
-
-    @property
-    def right(self) -> float:
-        """Right end of what is printed."""
-        return self.width - EDGE_MM
-
-    @property
-    def top(self) -> float:
-        """Upper end of what is printed."""
-        return self.height - EDGE_MM
 
     def write(self, x: float, y: float, text: str, size: float = PLAIN_PT, **style: Any) -> None:
         """Write a line of text, its left end on the base line unless `ha` and `va` differ.
@@ -95,15 +89,6 @@ class SheetPage:
         self.line(arc, colour=colour, width_pt=1.1, z=6.0)
         self.draw(Surface("", (np.array(head),), colour, "none", z=6.0))
 
-    def picture(
-        self, image: NDArray[np.uint8], x: float, y: float, width: float, height: float
-    ) -> None:
-        """Place an image, (h, w, 3), from its lower left corner."""
-        self.ax.imshow(
-            image, extent=(x, x + width, y, y + height), aspect="auto", interpolation="none",
-            zorder=1,
-        )  # fmt: skip
-
     def dimension(
         self, start: Sequence[float], end: Sequence[float], text: str, *, upright: bool = False
     ) -> None:
@@ -123,14 +108,9 @@ class SheetPage:
         """Draw an empty box for a tick."""
         self.box(x, y, size, size, width_pt=0.7)
 
-    def foot(self, left: str, number: int, count: int) -> None:
-        """Write what the page belongs to and its number."""
+    def foot(self, left: str, right: str) -> None:
+        """Write what the page belongs to, and its number."""
         self.line([(EDGE_MM, EDGE_MM - 1.5), (self.right, EDGE_MM - 1.5)], colour=GREY)
-        self.write(
-            EDGE_MM, EDGE_MM - 5.0, left, SMALL_PT, color="#555555",
-            room=self.right - EDGE_MM - PAGE_NUMBER_MM,
-        )  # fmt: skip
-        self.write(
-            self.right, EDGE_MM - 5.0, f"page {number} of {count}", SMALL_PT, ha="right",
-            color="#555555",
-        )  # fmt: skip
+        room = self.right - EDGE_MM - PAGE_NUMBER_MM
+        self.write(EDGE_MM, EDGE_MM - 5.0, left, SMALL_PT, color=FAINT, room=room)
+        self.write(self.right, EDGE_MM - 5.0, right, SMALL_PT, ha="right", color=FAINT)

@@ -21,7 +21,7 @@ from drystone.drawing.photo import StonePhoto
 from drystone.drawing.sheet.page import (
     A4_MM,
     EDGE_MM,
-    LARGE_PT,
+    FAINT,
     NOT_TO_SCALE,
     PLAIN_PT,
     PT_PER_MM,
@@ -122,7 +122,8 @@ class BuildSheet:
         pages = [self._first_page(), *self._row_pages(), *self._list_pages()]
         for number, page in enumerate(pages, 1):
             # What tells plans apart is first: a long title is cut.
-            page.foot(f"plan {self._sha256}   {self._title}", number, len(pages))
+            foot = f"page {number} of {len(pages)}"
+            page.foot(f"plan {self._sha256}   {self._title}", foot)
         return pages
 
     @cached_property
@@ -143,14 +144,13 @@ class BuildSheet:
         bottom = EDGE_MM + BLOCK_MM + 24.0 + (DRAWING_MM[1] - height) / 2
         page.write(EDGE_MM, page.top - 6.0, self._title, 18.0, weight="bold",
                    room=page.right - EDGE_MM - SCALE_MM)  # fmt: skip
-        page.write(
-            EDGE_MM, page.top - 12.5,
-            "Numbers are steps, in the order of building: set each stone, then push in its wedges.",
-            PLAIN_PT,
-        )  # fmt: skip
-        loud = scale.denominator is None
+        said = (
+            "Numbers are steps, in the order of building: set each stone, then push in its wedges."
+        )
+        page.write(EDGE_MM, page.top - 12.5, said)
+        colour = WEDGE_COLOUR if scale.denominator is None else "black"
         page.write(page.right, page.top - 6.0, scale.words, 14.0, ha="right", weight="bold",
-                   color=WEDGE_COLOUR if loud else "black")  # fmt: skip
+                   color=colour)  # fmt: skip
         # The ground: a line, and strokes below it.
         ends = max(EDGE_MM, left - 10.0), min(page.right, left + width + 10.0)
         page.line([(ends[0], bottom), (ends[1], bottom)], width_pt=1.2, z=4.0)
@@ -191,7 +191,7 @@ class BuildSheet:
             for column, (name, value) in enumerate(cells):
                 x = EDGE_MM + column * wide
                 page.box(x, y, wide, high, width_pt=0.5)
-                page.write(x + 1.5, y + high - 3.4, name, 6.5, color="#555555")
+                page.write(x + 1.5, y + high - 3.4, name, 6.5, color=FAINT)
                 page.write(x + 1.5, y + 2.2, value, PLAIN_PT + 1, room=wide - 3.0)
         self._ruler(page, EDGE_MM + BLOCK_MM + 7.0, scale)
 
@@ -208,10 +208,8 @@ class BuildSheet:
             said += f"; {scale.denominator / 10:g} m of wall"
         page.write(x + 102.0, y - 0.5, said, SMALL_PT)
         if scale.denominator is None:
-            page.write(
-                page.right, y - 0.5, "The size of a px is not known: all lengths are in px.",
-                LARGE_PT - 2, ha="right", color=WEDGE_COLOUR,
-            )  # fmt: skip
+            said = "The size of a px is not known: all lengths are in px."
+            page.write(page.right, y - 0.5, said, 10.0, ha="right", color=WEDGE_COLOUR)
 
     def _row_pages(self) -> list[SheetPage]:
         """Draw a line a stone; the drawings that show how to turn one are all to one scale."""
@@ -233,25 +231,21 @@ class BuildSheet:
         last = [stones[-1], *wedges_after(self.assembly, stones[-1])][-1]
         head = f"Steps {stones[0].step} to {last.step}"
         page.write(EDGE_MM, page.top - 4.5, head, 13.0, weight="bold")
-        page.write(
-            page.right, page.top - 4.5,
-            "seen from the front; a mark on top of the stone as it lies shows how it turns",
-            SMALL_PT, ha="right", color="#555555",
-        )  # fmt: skip
+        said = "seen from the front; a mark on top of the stone as it lies shows how it turns"
+        page.write(page.right, page.top - 4.5, said, SMALL_PT, ha="right", color=FAINT)
         top = page.top - HEAD_MM + 8.0
         taken = "in the photo" if self.photo else "as it lies"
         for x, name in ((NUMBER, "step"), (PICTURE, taken), (TURN, "how to turn it"),
                         (WHERE, "where"), (BESIDE, "rests on, beside")):  # fmt: skip
             page.write(x, top, name, SMALL_PT, weight="bold")
-        for row, meaning in enumerate(
-            ("\N{RIGHTWARDS ARROW} from the left end", "\N{UPWARDS ARROW} above the ground")
-        ):
-            page.write(WHERE, top - 3.1 * (row + 1), meaning, 6.0, color="#555555")
+        arrows = "\N{RIGHTWARDS ARROW} from the left end", "\N{UPWARDS ARROW} above the ground"
+        for row, meaning in enumerate(arrows, 1):
+            page.write(WHERE, top - 3.1 * row, meaning, 6.0, color=FAINT)
         for row, part in enumerate(stones):
             y = page.top - HEAD_MM - (row + 1) * high
             page.line([(EDGE_MM, y + high), (page.right, y + high)], colour=GREY)
             page.write(NUMBER, y + high - 9.5, str(part.step), 19.0, weight="bold")
-            page.write(NUMBER, y + high - 14.0, f"stone {part.id}", SMALL_PT, color="#555555")
+            page.write(NUMBER, y + high - 14.0, f"stone {part.id}", SMALL_PT, color=FAINT)
             page.tick_box(NUMBER, y + 4.0)
             self._picture(page, part, y + high / 2)
             self._turn(page, part, y + high / 2, scale)
@@ -270,7 +264,9 @@ class BuildSheet:
         if self.photo is not None:
             (x0, y0), (x1, y1) = (middle - half).tolist(), (middle + half).tolist()
             (left, bottom), (wide, high) = (at - half * scale).tolist(), (2 * half * scale).tolist()
-            page.picture(self.photo.crop((x0, y0, x1, y1)), left, bottom, wide, high)
+            extent = (left, left + wide, bottom, bottom + high)
+            page.ax.imshow(self.photo.crop((x0, y0, x1, y1)), extent=extent, aspect="auto",
+                           interpolation="none", zorder=1)  # fmt: skip
         shape = Surface("", ((outline - middle) * scale + at,), PLAIN_COLOUR, z=3.0)
         over = replace(shape, fill="none", line=WEDGE_COLOUR, width_pt=0.9)
         page.draw(over if self.photo else shape)
@@ -306,22 +302,20 @@ class BuildSheet:
         corner = lowest_corner(part)
         for row, (name, point) in enumerate((("middle", part.centroid), ("lowest corner", corner))):
             at = top - 10.0 * row
-            page.write(WHERE, at, name, SMALL_PT, color="#555555")
+            page.write(WHERE, at, name, SMALL_PT, color=FAINT)
             # The grip of a rule: how far from the left end, then how high.
             across, up = (length_words(self.assembly, length) for length in point)
             said = f"\N{RIGHTWARDS ARROW} {across.split()[0]}   \N{UPWARDS ARROW} {up}"
             page.write(WHERE, at - 4.2, said, PLAIN_PT)
-        lines = wrap(beside_words(self.assembly, part), WORDS)
-        told = [(line, "black") for line in lines]
+        told = [(line, "black") for line in wrap(beside_words(self.assembly, part), WORDS)]
         for wedge in wedges_after(self.assembly, part):
-            told += [
-                (line, WEDGE_COLOUR) for line in wrap(wedge_words(self.assembly, wedge), WORDS)
-            ]
+            words = wrap(wedge_words(self.assembly, wedge), WORDS)
+            told += [(line, WEDGE_COLOUR) for line in words]
         # Lines come closer where there are many, such as three wedges.
         pitch = min(3.9, (high - 4.0) / max(len(told), 1))
         size = min(PLAIN_PT, 2.15 * pitch)
-        for place, (words, colour) in enumerate(told):
-            page.write(BESIDE, top - pitch * place, words, size, color=colour)
+        for place, (line, colour) in enumerate(told):
+            page.write(BESIDE, top - pitch * place, line, size, color=colour)
 
     def _list_pages(self) -> list[SheetPage]:
         """Draw where the stones lie, list them, and draw the wedges to cut.
@@ -349,11 +343,10 @@ class BuildSheet:
             page.write(EDGE_MM, page.top - 4.5, "Fetch list", 13.0, weight="bold")
             top = page.top - 11.0
             if not pages:
-                page.write(
-                    EDGE_MM, top,
+                said = (
                     "The stones as they lie in the picture that they were found in, from the top "
-                    "left. Chalk on each the number of its step.", PLAIN_PT,
-                )  # fmt: skip
+                )
+                page.write(EDGE_MM, top, f"{said}left. Chalk on each the number of its step.")
                 top = self._map(page, top - 4.0) - 8.0
             rows = int((top - EDGE_MM - 20.0) // LINE_MM)
             here, stones = stones[: COLUMNS * rows], stones[COLUMNS * rows :]
@@ -410,9 +403,8 @@ class BuildSheet:
         if not stones:
             return
         columns = (x + 7.0, x + 19.0, x + 33.0, x + 64.0)
-        for place, name in zip(
-            columns, ("step", "stone", "across, down", "long, wide"), strict=True
-        ):
+        names = ("step", "stone", "across, down", "long, wide")
+        for place, name in zip(columns, names, strict=True):
             page.write(place, y, name, SMALL_PT, weight="bold")
         page.line([(x, y - 1.6), (x + wide, y - 1.6)], colour=GREY)
         height = float(assembly.plan.source.get("height_px") or 0.0)
@@ -430,8 +422,8 @@ class BuildSheet:
                 length_words(assembly, across / assembly.px_per_unit, down),
                 length_words(assembly, float(length), width),
             )  # fmt: skip
-            for place, text, weight in zip(columns, texts, ("bold", "normal", "normal", "normal"),
-                                           strict=True):  # fmt: skip
+            for place, text in zip(columns, texts, strict=True):
+                weight = "bold" if place == columns[0] else "normal"
                 page.write(place, base, text, PLAIN_PT, weight=weight)
 
     def _left_over(self, page: SheetPage, top: float) -> float:
@@ -462,12 +454,9 @@ class BuildSheet:
         factor = drawn_factor(assembly, wedge)
         per_unit = factor * (1000.0 if assembly.unit == "m" else 1.0)
         shown = [side * per_unit for side in size]
-        left, foot = (
-            x + 12.0 + (SHAPE_MM[0] - shown[0]) / 2,
-            y + 11.0 + (SHAPE_MM[1] - shown[1]) / 2,
-        )
-        low = wedge.corners.min(axis=0)
-        shape = (wedge.corners - low) * per_unit + (left, foot)
+        left = x + 12.0 + (SHAPE_MM[0] - shown[0]) / 2
+        foot = y + 11.0 + (SHAPE_MM[1] - shown[1]) / 2
+        shape = (wedge.corners - wedge.corners.min(axis=0)) * per_unit + (left, foot)
         page.draw(Surface("", (shape,), "#f3d9d9"))
         texts = [f"{1000 * side:.0f}" if assembly.unit == "m" else f"{side:.0f}" for side in size]
         page.dimension((left, foot - 4.0), (left + shown[0], foot - 4.0), texts[0])

@@ -5,13 +5,14 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from importlib.metadata import version
 from math import atan, degrees, isfinite
+from types import MappingProxyType
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from drystone.contacts.gaps import GapSweep
-from drystone.drawing.words.content import number
+from drystone.drawing.words.content import FALLS, TILTING, dead_load, is_horizontal, number
 from drystone.errors import Notice
 from drystone.io.walls import GivenWall, on_ground
 from drystone.model.wall import Labels
@@ -24,7 +25,7 @@ from drystone.statics.flow.nonassociative import (
 from drystone.statics.joints import loose_blocks
 from drystone.statics.loads import Loads
 from drystone.statics.lp.extremes import Solver
-from drystone.statics.model import RigidBlockModel
+from drystone.statics.model import GROUND, RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.statics.scatter.scatter import Scatter
 from drystone.statics.sensitivity import friction_sensitivity
@@ -441,3 +442,67 @@ def noise_unit(wall: GivenWall) -> tuple[str, float]:
         return "lengths of the block model", 1.0
     px_per_m = wall.plan.px_per_m if wall.plan.length_unit == "m" else None
     return "px", 1.0 / (px_per_m or 1.0)
+
+
+@dataclass(frozen=True)
+class WallVerdict:
+    """What is said first: whether a wall stands, and what brings it down.
+
+    `stands` is None when no answer could be certified.
+    """
+
+    stands: bool | None
+    words: str
+
+
+def judge_wall(
+    subject: str,
+    wall: ModelledWall,
+    resistance: LateralResistance,
+    *,
+    load_case: str = TILTING,
+    without_dilatancy: Mapping[str, float | None] = MappingProxyType({}),
+) -> WallVerdict:
+    """Judge a wall of which `subject` says how large it is, such as "28 of 30 stones".
+
+    `without_dilatancy` are load multipliers by Coulomb's law, by direction, where they are known:
+    the least of all is what the wall is told to carry.
+    """
+    if resistance.failed:
+        words = f"{subject}; not known whether it stands: no answer could be certified"
+        return WallVerdict(None, words)
+    failures = wall.failures((resistance.left, resistance.right))
+    if not resistance.stable:
+        why = wall.why_it_falls(failures).removeprefix("Falls by itself: ").rstrip(".")
+        return WallVerdict(False, f"{subject}, {FALLS}: {why[:1].lower()}{why[1:]}")
+    both = [(end.alpha, str(end.direction)) for end in (resistance.left, resistance.right)]
+    both += [(alpha, direction) for direction, alpha in without_dilatancy.items()]
+    known = [(alpha, direction) for alpha, direction in both if alpha is not None]
+    if not known:
+        return WallVerdict(True, f"{subject}, stands; no load of this kind brings it down")
+    alpha, direction = min(known)
+    words = f"{subject}, stands; {_load(alpha, load_case)}"
+    if direction in failures:
+        words += f"; weakest place: {_weakest_place(wall, failures[direction])}"
+    return WallVerdict(True, words)
+
+
+def _load(alpha: float, load_case: str) -> str:
+    """Say what brings a wall down."""
+    if load_case != TILTING:
+        of = f"the {dead_load(load_case)}" if is_horizontal(load_case) else "the live load"
+        return f"carries {alpha:.3f} times {of} ({load_case})"
+    if alpha <= 0.0:
+        return "can fall when it is let go"
+    angle = degrees(atan(alpha))
+    return f"falls when tilted by {angle:.{0 if angle >= 10.0 else 1}f} degrees"
+
+
+def _weakest_place(wall: ModelledWall, failure: Failure) -> str:
+    """Name what moves first where it turns about or slides: as the words of the failure begin."""
+    if not failure.groups:
+        return "not known"
+    first = failure.groups[0]
+    if first.toe is None and GROUND in first.against:
+        return "the joint with the ground"
+    return wall.names.listed(first.blocks if first.toe is None else [first.toe.block])

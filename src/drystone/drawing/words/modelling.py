@@ -18,7 +18,7 @@ from drystone.contacts.scarce import scarce_contacts
 from drystone.contacts.settled import SETBACK
 from drystone.drawing.words.analysis import STONES, ModelledWall, Shapes
 from drystone.errors import InputError, Notice, UsageError
-from drystone.io.file_errors import listed
+from drystone.io.files import listed
 from drystone.io.walls import GivenWall
 from drystone.model.stone_size import median_sides, sides_px
 from drystone.model.wall import Labels

@@ -1,30 +1,30 @@
-"""Annotations in JSON: labelme, COCO, the automatic masks of Segment Anything (SAM)."""
+"""Outlines of labelling tools and other programs: JSON of many kinds, XML of CVAT, text of YOLO.
+
+The JSON is that of labelme, COCO, Segment Anything (SAM), GeoJSON, nesting programs, Label Studio
+and VIA.
+"""
 
 import base64
 import math
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
+from xml.etree import ElementTree as ET
 
 import numpy as np
 from numpy.typing import NDArray
 
 from drystone.errors import InputError, Notice
-from drystone.io.file_errors import MANY, entry, listed
+from drystone.io.files import MANY, entry, listed, short, too_large
+from drystone.io.images import check_size, opened
+from drystone.io.outlines_in import model
+from drystone.io.outlines_in.classes import Gathered, Pictured, chosen, class_of
 from drystone.io.outlines_in.fill import Room, trimmed
-from drystone.io.outlines_in.gathered import Gathered, Pictured, chosen
-from drystone.io.outlines_in.model import (
-    MOST_PX,
-    OutlineFile,
-    ellipse,
-    number_in,
-    place_px,
-    rectangle,
-    size_px,
-)
+from drystone.io.outlines_in.model import OutlinedStone, OutlineFile
 from drystone.io.patches import PlacedMask
 from drystone.io.photo_beside import photograph_in
-from drystone.io.pictures import check_size, opened
 from drystone.io.read_settings import MOST_PX_PER_M, ReadSettings
 
 _MARKED = {"proposed": "proposals that nobody accepted", "not_used": "marked as not to be used"}
@@ -52,7 +52,7 @@ def read_labelme(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
             else:
                 gathered.aside[f"{kind}s"] += 1
     with entry("the size of the image"):
-        size = size_px(content.get("imageWidth"), content.get("imageHeight"))
+        size = model.size_px(content.get("imageWidth"), content.get("imageHeight"))
     with entry("the table drystone"):
         file = gathered.file(size_px=size, names_images=False)
         return _of_page(file, content.get("drystone") or {})
@@ -70,7 +70,9 @@ def _of_page(file: OutlineFile, own: Mapping[str, Any]) -> OutlineFile:
     if scale is not None and not 0.0 < float(scale) <= MOST_PX_PER_M:
         raise ValueError(f"{scale} px in a metre")
     ground = None if ends is None else np.array(ends, float).reshape(2, 2)
-    if ground is not None and not (np.ptp(ground[:, 0]) > 0.0 and np.abs(ground).max() <= MOST_PX):
+    if ground is not None and not (
+        np.ptp(ground[:, 0]) > 0.0 and np.abs(ground).max() <= model.MOST_PX
+    ):
         raise ValueError("the ground is not a line from left to right")
     file = replace(file, stones=kept, notices=notices, photograph=photograph_in(own))
     return replace(file, px_per_m=scale and float(scale), ground=ground)
@@ -80,12 +82,12 @@ def _corners(kind: str, points: Any) -> Any:
     """Return the corners of a shape; None when it encloses nothing."""
     # X-AnyLabeling writes all four corners of a rectangle, also of one that is turned.
     if kind == "rectangle" and len(points) != 4:
-        return rectangle(*points)
+        return model.rectangle(*points)
     if kind == "circle":
         (x, y), (on_x, on_y) = points
-        return ellipse((x, y), (math.hypot(on_x - x, on_y - y),) * 2)
-    kinds = {"polygon", "rectangle", "oriented_rectangle", "rotation"}
-    return points if kind in kinds else None
+        return model.ellipse((x, y), (math.hypot(on_x - x, on_y - y),) * 2)
+    known = kind in {"polygon", "rectangle", "oriented_rectangle", "rotation"}
+    return points if known else None
 
 
 def _mask(shape: Mapping[str, Any], room: Room) -> PlacedMask:
@@ -104,7 +106,7 @@ def _mask(shape: Mapping[str, Any], room: Room) -> PlacedMask:
         if error.code == "E110":
             raise
         raise ValueError(f"its mask is not a picture: {error.what}") from error
-    return PlacedMask(mask, place_px(y0), place_px(x0))
+    return PlacedMask(mask, model.place_px(y0), model.place_px(x0))
 
 
 def _outline(segmentation: Any, room: Room) -> tuple[Any, tuple[int, int] | None]:
@@ -181,7 +183,7 @@ def _annotated(
             name = label if len(classes) > 1 else ""
             outline, size = _outline(segmentation, gathered.room)
             sizes.add(size)
-            gathered.add(where, outline, number_in(found.get("id")), name, label)
+            gathered.add(where, outline, model.number_in(found.get("id")), name, label)
     notices = gathered.notices()
     if masks_of_crowds:
         text = f"{masks_of_crowds} masks are marked as crowds, as CVAT marks all: a stone each."
@@ -215,7 +217,7 @@ def _picture_of(content: Mapping[str, Any], asked: str) -> Pictured:
         pictures = []
         for i in dict.fromkeys((*known, *shapes)):
             image = known.get(i, only)
-            size = size_px(image.get("width") or None, image.get("height") or None)
+            size = model.size_px(image.get("width") or None, image.get("height") or None)
             name = str(known.get(i, {}).get("file_name", i))
             pictures.append(Pictured(name, size, shapes.get(i, []), str(i)))
     return chosen(pictures, asked)
@@ -293,3 +295,411 @@ def _numbers(counts: Any) -> NDArray[np.int64]:
     if runs.size and (int(runs.min()) < 0 or int(runs.max()) > _MOST_PX_OF_MASK):
         raise ValueError("a count is below 0 or too large")
     return runs.astype(np.int64)
+
+
+_KINDS = (
+    "FeatureCollection", "Feature", "GeometryCollection", "Polygon", "MultiPolygon", "Point",
+    "MultiPoint", "LineString", "MultiLineString",
+)  # fmt: skip
+_CLASSES = ("classification", "class", "label", "category", "type")
+_DEGREES = ("CRS84", "4326", "WGS84")
+
+
+def is_geojson(content: Any) -> bool:
+    """Tell GeoJSON, or a list of its features, which is what QuPath exports."""
+    if isinstance(content, list):
+        return all(isinstance(one, Mapping) and one.get("type") == "Feature" for one in content)
+    kind = content.get("type") if isinstance(content, Mapping) else None
+    return isinstance(kind, str) and kind in _KINDS
+
+
+def read_geojson(content: Any, settings: ReadSettings) -> OutlineFile:
+    """Read polygons and multi-polygons, a stone a feature.
+
+    A foreign member ``unit`` of the file ("m", "mm" …), or the setting, makes it a drawing with y
+    up; without one, or with "px", coordinates are px of an image with y down, as image tools
+    write them, unless its ``frame`` is that of a wall of drystone, or all y are negative.  The id
+    of a stone is the ``id`` of its feature or of its properties, its name their ``name``.
+    """
+    if isinstance(content, list):
+        content = {"type": "FeatureCollection", "features": content}
+    if any(name in str(content.get("crs", "")) for name in _DEGREES):
+        what = "its coordinates are degrees of latitude and longitude."
+        cure = 'Project it to metres, and give the file a member "unit": "m".'
+        raise InputError("E116", what, cure=cure)
+    if content.get("crs") and not settings.unit and "unit" not in content:
+        what = "its coordinates are those of a map, and it does not say their unit."
+        cure = "Say it with --unit m (or ft; ReadSettings.unit), or px if they are px of an image "
+        raise InputError("E116", what, cure=f"{cure}after all.")
+    unit = content.get("unit", "px")
+    if unit not in (*model.METRES, "px"):
+        what = f"its unit {short(repr(unit))} is not known."
+        raise InputError("E116", what, cure=f"Use one of px, {', '.join(model.METRES)}.")
+    gathered = Gathered()
+    with entry("the list of features"):
+        kind = content["type"]
+        alone = content if kind == "Feature" else {"geometry": content}
+        features = list(content["features"]) if kind == "FeatureCollection" else [alone]
+    for number, feature in enumerate(features):
+        with entry(f"feature {number} (from 0)"):
+            _add_feature(feature, f"feature {number}", gathered)
+    unit_m = model.METRES.get(unit if "unit" in content else settings.unit or "px")
+    upwards = unit_m is not None or str(content.get("frame")).startswith("wall")
+    notices = gathered.notices()
+    rings = [one for stone in gathered.stones for one in stone.rings]
+    # Below a picture's upper edge with y up, where y down has no pixel: nearly all, as an outline
+    # may reach over the edge.
+    if not upwards and rings and float(np.median(np.concatenate(rings)[:, 1])) < 0.0:
+        upwards = True
+        text = "most y are negative: y runs up, as GIS programs have it over a picture."
+        notices.append(Notice("W119", text))
+    return gathered.file(unit_m=unit_m, y_up=upwards, notices=notices, names_images=False)
+
+
+def _add_feature(feature: Mapping[str, Any], where: str, gathered: Gathered) -> None:
+    geometry = feature["geometry"]
+    if geometry is None:
+        gathered.aside["features without a geometry"] += 1
+        return
+    said = {**(feature.get("properties") or {})}
+    own = model.number_in(feature.get("id"))
+    if own is None:
+        own = model.number_in(said.get("id", said.get("stone")))
+    name = str(said.get("name") or (feature["id"] if isinstance(feature.get("id"), str) else ""))
+    kind = geometry["type"]
+    if kind == "GeometryCollection":
+        for part in geometry["geometries"]:
+            _add_feature({**feature, "geometry": part}, where, gathered)
+    elif said.get("kind", "stone") != "stone":
+        gathered.aside[f"features of the kind {said['kind']!r}"] += 1
+    elif kind in {"Polygon", "MultiPolygon"}:
+        polygons = [geometry["coordinates"]] if kind == "Polygon" else geometry["coordinates"]
+        if not polygons or not all(polygons):
+            raise ValueError("a polygon has no ring")
+        gathered.add(where, polygons, own, name, _class_in(said))
+    else:
+        gathered.aside[f"{kind}s"] += 1
+
+
+def _class_in(said: Mapping[str, Any]) -> str:
+    """Return the class of a feature, as QuPath and GIS programs write it."""
+    for key in _CLASSES:
+        found = said.get(key)
+        if isinstance(found, Mapping):
+            found = found.get("name")
+        if isinstance(found, str):
+            return class_of(found)
+    return ""
+
+
+_MOST_COPIES = 10_000
+_GAP = 0.05
+"""Between pieces that are laid in a row, as a share of the largest."""
+
+
+def is_nesting(content: Any) -> bool:
+    """Tell an instance of sparrow or jagua-rs."""
+    items = _lower(content).get("items") if isinstance(content, Mapping) else None
+    if not isinstance(items, list):
+        return False
+    return all(isinstance(item, Mapping) and "shape" in _lower(item) for item in items)
+
+
+def _lower(table: Mapping[str, Any]) -> dict[str, Any]:
+    return {str(key).lower(): value for key, value in table.items()}
+
+
+def read_nesting(content: Mapping[str, Any], settings: ReadSettings) -> OutlineFile:
+    """Read the items of an instance, each as often as it is demanded.
+
+    Where items lie over each other, as each has an origin of its own, they are laid in a row.
+    """
+    gathered, copies = Gathered(), 0
+    stones = gathered.stones
+    for number, item in enumerate(map(_lower, _lower(content)["items"])):
+        where, before = f"item {number} (from 0)", len(stones)
+        with entry(where):
+            demand = int(item.get("demand", 1))
+            if demand < 0:
+                raise ValueError(f"{demand} of it are demanded")
+            own = model.number_in(item.get("id")) if demand == 1 else None
+            gathered.add(where, _of_nesting(_lower(item["shape"])), own)
+        copies += demand
+        if copies > _MOST_COPIES:
+            cure = "Ask for fewer of each."
+            raise too_large(f"more than {_MOST_COPIES} items are demanded.", cure)
+        stones[before:] = stones[before:] * demand
+    unit_m = model.METRES.get(settings.unit)
+    notices = gathered.notices()
+    if not settings.unit:
+        text = "an instance says no unit: its numbers are taken as px, with y down."
+        notices.append(Notice("W119", text, "Name the unit with --unit (unit in Python)."))
+    if _overlap(stones):
+        stones = list(_in_a_row(stones, whole=unit_m is None))
+        notices.append(Notice("W119", "items lie over each other: they are laid in a row."))
+    return OutlineFile(stones, unit_m, unit_m is not None, notices=notices, seen_by="none")
+
+
+def _of_nesting(shape: Mapping[str, Any]) -> Iterator[list[Any]]:
+    kind, data = str(shape.get("type", "")).lower().replace("_", ""), shape.get("data", shape)
+    if kind == "simplepolygon":
+        yield [data]
+    elif kind in {"polygon", "multipolygon"}:
+        for part in map(_lower, data if kind == "multipolygon" else [data]):
+            yield [part["outer"], *(part.get("inner") or ())]
+    elif kind == "rectangle":
+        data = _lower(data)
+        x, y = float(data.get("x_min", 0.0)), float(data.get("y_min", 0.0))
+        yield [model.rectangle((x, y), (x + float(data["width"]), y + float(data["height"])))]
+    else:
+        raise ValueError(f"a shape of the type {short(repr(shape.get('type')))}")
+
+
+def _overlap(stones: list[OutlinedStone]) -> bool:
+    """Tell whether the boxes of two stones share more than half of the smaller one."""
+    low, high = _boxes(stones)
+    areas = (high - low).prod(axis=1)
+    for i in range(1, len(stones)):
+        sides = np.minimum(high[:i], high[i]) - np.maximum(low[:i], low[i])
+        shared = sides.clip(0.0).prod(axis=1)
+        if (shared > 0.5 * np.minimum(areas[:i], areas[i])).any():
+            return True
+    return False
+
+
+def _boxes(stones: list[OutlinedStone]) -> tuple[Any, Any]:
+    corners = [np.concatenate(stone.rings) for stone in stones]
+    low = np.array([points.min(axis=0) for points in corners]).reshape(-1, 2)
+    return low, np.array([points.max(axis=0) for points in corners]).reshape(-1, 2)
+
+
+def _in_a_row(stones: list[OutlinedStone], *, whole: bool) -> Iterator[OutlinedStone]:
+    """Move each behind the last one; by `whole` px, which changes no pixel of it."""
+    low, high = _boxes(stones)
+    gap, x = _GAP * float((high - low).max()), 0.0
+    for stone, start, end in zip(stones, low, high, strict=True):
+        shift = np.array([x, 0.0]) - start
+        yield stone.moved(partial(np.add, np.ceil(shift) if whole else shift))
+        x += float(end[0] - start[0]) + gap + whole
+
+
+_CLASSES_OF_VIA = ("class", "label", "type", "category", "name")
+_YOLO = re.compile(rb"\s*[0-9]+(?:[ \t]+-?[0-9.]+(?:[eE][-+]?[0-9]+)?){4,}[ \t]*\r?(?:\n|\Z)")
+
+
+def _text(value: Any) -> str:
+    """Return a class that is a text, or a list or table of what applies."""
+    if isinstance(value, Mapping):
+        value = [key for key, on in value.items() if on]
+    if isinstance(value, list):
+        value = value[0] if value else ""
+    return "" if value is None else str(value)
+
+
+def _turned(corners: Any, degrees: float, about: tuple[float, float]) -> Any:
+    """Turn corners clockwise, as y runs down."""
+    sine, cosine = math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
+    return (corners - about) @ np.array([[cosine, sine], [-sine, cosine]]) + about
+
+
+# Label Studio
+
+
+def is_label_studio(content: Any) -> bool:
+    """Tell a list of tasks."""
+    tasks = content if isinstance(content, list) else [content]
+    known = (isinstance(task, Mapping) and _results(task) is not None for task in tasks)
+    return bool(tasks) and all(known)
+
+
+def _results(task: Mapping[str, Any]) -> list[list[Any]] | None:
+    """Return what each annotator of a task drew, in the long or the short form."""
+    for key in ("annotations", "completions"):
+        if isinstance(task.get(key), list) and "data" in task:
+            made = [a for a in task[key] if isinstance(a, Mapping) and not a.get("was_cancelled")]
+            drawn = (one.get("result") for one in made)
+            lists = (found if isinstance(found, list) else [] for found in drawn)
+            return [[one for one in found if isinstance(one, Mapping)] for found in lists]
+    alone = [
+        {"value": one, **one}
+        for value in task.values()
+        if isinstance(value, list)
+        for one in value
+        if isinstance(one, Mapping) and "original_width" in one
+    ]
+    return [alone] if alone else None
+
+
+def read_label_studio(content: Any, settings: ReadSettings) -> OutlineFile:
+    """Read polygons, rectangles and ellipses, which are in per cent of their picture."""
+    pictures = []
+    with entry("the list of tasks"):
+        for task in content if isinstance(content, list) else [content]:
+            where = task.get("data") or task
+            name = next((v for k, v in where.items() if k != "id" and isinstance(v, str)), "")
+            made = _results(task) or [[]]
+            own = str(task.get("id", ""))
+            pictures.append(Pictured(name, None, made[-1], own, len(made) - 1))
+    picture = chosen(pictures, settings.image)
+    found, sizes = Gathered(settings), set()
+    found.aside["earlier annotations of the same picture"] = picture.earlier
+    # Where shape and class are marked one after the other, both hold the outline.
+    drawn = {str(one.get("id") or i): one for i, one in enumerate(picture.shapes)}
+    for number, shape in enumerate(drawn.values()):
+        where = f"result {number}"
+        with entry(where):
+            value = shape.get("value") or {}
+            # Not points, words and masks of pixels.
+            sides = ({"points"}, {"radiusX", "radiusY"}, {"x", "y", "width", "height"})
+            if "format" in value or not any(names <= set(value) for names in sides):
+                found.aside[f"results of the type {short(shape.get('type', 'unknown'))}"] += 1
+                continue
+            size = model.side_px(shape["original_width"]), model.side_px(shape["original_height"])
+            sizes.add(size)
+            label = _text(value.get(next((k for k in value if k.endswith("labels")), "")))
+            corners = _of_label_studio(value, size[0] / 100.0, size[1] / 100.0)
+            found.add(where, [[corners]], model.number_in(label), "", class_of(label))
+    brushes = "brush" in str(found.aside)
+    cure = "Brush masks are read from its export as COCO or PNG." if brushes else ""
+    return found.file(cure, size_px=next(iter(sizes)) if len(sizes) == 1 else None)
+
+
+def _of_label_studio(value: Mapping[str, Any], across: float, down: float) -> Any:
+    """Return corners in px, of which a per cent has so many."""
+    if "points" in value:
+        points = np.array([list(map(float, point)) for point in value["points"]])
+        return points * (across, down)
+    x, y = float(value["x"]) * across, float(value["y"]) * down
+    turn = float(value.get("rotation") or 0.0)
+    if "radiusX" in value:
+        radii = float(value["radiusX"]) * across, float(value["radiusY"]) * down
+        return model.ellipse((x, y), radii, math.radians(turn))
+    width, height = float(value["width"]) * across, float(value["height"]) * down
+    return _turned(model.rectangle((x, y), (x + width, y + height)), turn, (x, y))
+
+
+# VGG Image Annotator
+
+
+def is_via(content: Any) -> bool:
+    """Tell a project of VIA 2, or its annotations alone."""
+    images = content.get("_via_img_metadata", content) if isinstance(content, Mapping) else None
+    if not isinstance(images, Mapping) or not images:
+        return False
+    return all(isinstance(one, Mapping) and "regions" in one for one in images.values())
+
+
+def read_via(content: Mapping[str, Any], settings: ReadSettings) -> OutlineFile:
+    """Read polygons, rectangles, circles and ellipses of VIA."""
+    pictures = []
+    with entry("the list of images"):
+        for key, image in content.get("_via_img_metadata", content).items():
+            regions = image["regions"]
+            shapes = list(regions.values()) if isinstance(regions, Mapping) else list(regions)
+            pictures.append(Pictured(str(image.get("filename", key)), None, shapes, str(key)))
+    found = Gathered(settings)
+    for number, region in enumerate(chosen(pictures, settings.image).shapes):
+        where = f"region {number} (from 0)"
+        with entry(where):
+            shape = region["shape_attributes"]
+            corners = _of_via(shape)
+            if corners is None:
+                found.aside[f"{shape.get('name')}s"] += 1
+                continue
+            said = region.get("region_attributes") or {}
+            key = next((k for k in _CLASSES_OF_VIA if k in said), next(iter(said), ""))
+            found.labelled(where, _text(said.get(key)), [[corners]])
+    return found.file()
+
+
+def _of_via(shape: Mapping[str, Any]) -> Any:
+    kind = shape["name"]
+    if kind == "polygon":
+        return list(zip(shape["all_points_x"], shape["all_points_y"], strict=True))
+    if kind == "rect":
+        x, y, width, height = (float(shape[name]) for name in ("x", "y", "width", "height"))
+        return model.rectangle((x, y), (x + width, y + height))
+    if kind in {"circle", "ellipse"}:
+        across, along = ("r", "r") if kind == "circle" else ("rx", "ry")
+        radii = float(shape[across]), float(shape[along])
+        return model.ellipse((shape["cx"], shape["cy"]), radii, float(shape.get("theta") or 0.0))
+    return None
+
+
+# CVAT
+
+
+def is_cvat(data: bytes) -> bool:
+    """Tell CVAT's own XML by its root element."""
+    return b"<annotations" in data[:4096]
+
+
+def read_cvat(data: bytes, settings: ReadSettings) -> OutlineFile:
+    """Read polygons, boxes, ellipses and masks of CVAT for images."""
+    root = model.xml_root(data, "XML", "Export the annotations of one image.")
+    pictures = []
+    with entry("the list of images"):
+        for image in root.iter("image"):
+            size, own = model.size_px(image.get("width"), image.get("height")), image.get("id", "")
+            pictures.append(Pictured(image.get("name", ""), size, list(image), own))
+    picture, found = chosen(pictures, settings.image), Gathered(settings)
+    for number, shape in enumerate(picture.shapes):
+        where, label = f"shape {number} (from 0)", shape.get("label", "")
+        with entry(where):
+            if shape.tag == "mask":
+                found.labelled(where, label, _mask_of_cvat(shape, found.room))
+            elif shape.tag in {"polygon", "box", "ellipse"}:
+                found.labelled(where, label, [[_of_cvat(shape)]])
+            else:
+                found.aside[f"{short(shape.tag)}s"] += 1
+    return found.file(size_px=picture.size_px)
+
+
+def _of_cvat(shape: ET.Element) -> Any:
+    turn = float(shape.get("rotation", 0.0))
+    if shape.tag == "polygon":
+        return [tuple(map(float, p.split(","))) for p in shape.attrib["points"].split(";")]
+    names = ("xtl", "ytl", "xbr", "ybr") if shape.tag == "box" else ("cx", "cy", "rx", "ry")
+    one, two, three, four = (float(shape.attrib[name]) for name in names)
+    if shape.tag == "ellipse":
+        return model.ellipse((one, two), (three, four), math.radians(turn))
+    middle = (one + three) / 2.0, (two + four) / 2.0
+    return _turned(model.rectangle((one, two), (three, four)), turn, middle)
+
+
+def _mask_of_cvat(shape: ET.Element, room: Room) -> PlacedMask | None:
+    """Return a mask of run lengths along the rows of its box, background first."""
+    sides = ("left", "top", "width", "height")
+    left, top, width, height = (model.place_px(shape.attrib[name]) for name in sides)
+    check_size(model.side_px(width), model.side_px(height), room.max_px)
+    room.take(width * height)
+    runs = np.array([int(run) for run in shape.attrib["rle"].split(",")], np.int64)
+    if runs.min() < 0 or runs.max() > width * height or int(runs.sum()) != width * height:
+        raise ValueError(f"its run lengths do not fill {width} x {height} px")
+    flat = np.repeat(np.arange(len(runs)) % 2 == 1, runs)
+    return trimmed(PlacedMask(flat.reshape(height, width), top, left))
+
+
+# YOLO
+
+
+def is_yolo(data: bytes) -> bool:
+    """Tell lines of a class and coordinates."""
+    return _YOLO.match(data) is not None
+
+
+def read_yolo(data: bytes, settings: ReadSettings) -> OutlineFile:
+    """Read segments of YOLO: a class and the corners, as shares of the picture, in a line."""
+    found = Gathered(settings)
+    for number, line in enumerate(data.decode("utf-8", "replace").splitlines(), start=1):
+        where = f"line {number}"
+        with entry(where):
+            kind, *values = line.split() or [""]
+            if len(values) in {4, 5}:
+                found.aside["boxes"] += 1
+            elif values:
+                if len(values) % 2:
+                    raise ValueError("an odd number of coordinates")
+                corners = np.array(values, float).reshape(-1, 2)
+                found.add(where, [[corners]], label=kind)
+    return found.file("Boxes have no outlines: train or label segments." if found.aside else "")

@@ -4,42 +4,36 @@ import io
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from importlib import import_module
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.interpolate import BSpline, CubicSpline
 
 from drystone.errors import InputError, Notice, extra
-from drystone.io.file_errors import damaged, listed, too_large, unusable
-from drystone.io.foreign import foreign
+from drystone.io.files import damaged, foreign, listed, too_large, unusable
+from drystone.io.outlines_in import model
 from drystone.io.outlines_in.classes import layer
-from drystone.io.outlines_in.model import (
-    METRES,
-    OutlinedStone,
-    OutlineFile,
-    left_aside,
-    number_in,
-    overruled,
-    ring,
-    within_reach,
+from drystone.io.outlines_in.model import OutlinedStone, OutlineFile
+from drystone.io.outlines_in.silhouettes import (
+    Vector,
+    asked,
+    plane_of,
+    usual_side,
+    view,
+    with_holes,
 )
-from drystone.io.outlines_in.silhouettes import with_holes
-from drystone.io.outlines_in.views import Vector, asked, plane_of, usual_side, view
 from drystone.io.read_settings import ReadSettings
 from drystone.kernels.polygons import Points
 
 BINARY = b"AutoCAD Binary DXF"
 _FOOT_OF_SURVEY = 1200 / 3937
-_INSUNITS_M = MappingProxyType(
-    {
-        1: 0.0254, 2: 0.3048, 3: 1609.344, 4: 1e-3, 5: 1e-2, 6: 1.0, 7: 1e3, 8: 0.0254e-6,
-        9: 0.0254e-3, 10: 0.9144, 11: 1e-10, 12: 1e-9, 13: 1e-6, 14: 1e-1, 15: 10.0, 16: 100.0,
-        17: 1e9, 18: 149597870700.0, 19: 9460730472580800.0, 20: 149597870700.0 * 648000 / np.pi,
-        21: _FOOT_OF_SURVEY, 22: _FOOT_OF_SURVEY / 12, 23: _FOOT_OF_SURVEY * 3,
-        24: _FOOT_OF_SURVEY * 5280,
-    }
-)  # fmt: skip
+_INSUNITS_M = {
+    1: 0.0254, 2: 0.3048, 3: 1609.344, 4: 1e-3, 5: 1e-2, 6: 1.0, 7: 1e3, 8: 0.0254e-6,
+    9: 0.0254e-3, 10: 0.9144, 11: 1e-10, 12: 1e-9, 13: 1e-6, 14: 1e-1, 15: 10.0, 16: 100.0,
+    17: 1e9, 18: 149597870700.0, 19: 9460730472580800.0, 20: 149597870700.0 * 648000 / np.pi,
+    21: _FOOT_OF_SURVEY, 22: _FOOT_OF_SURVEY / 12, 23: _FOOT_OF_SURVEY * 3,
+    24: _FOOT_OF_SURVEY * 5280,
+}  # fmt: skip
 """Metres in each unit of $INSUNITS; ezdxf lacks some, and rounds others."""
 _FRAME = 16
 """Flag of a vertex that shapes a spline-fit polyline, and is not drawn."""
@@ -112,11 +106,11 @@ def read_dxf(data: bytes, settings: ReadSettings) -> OutlineFile:
     # The one layer that all stones are on says nothing of a stone.
     names = names if len(set(names)) > 1 or len(names) == 1 else [""] * len(names)
     stones = [
-        OutlinedStone(number_in(names[i]), names[i], (area,), label=layer(names[i]))
+        OutlinedStone(model.number_in(names[i]), names[i], (area,), label=layer(names[i]))
         for i, area in found
     ]
     cure = "Only closed outlines are read: join lines and arcs to polylines, bind references."
-    notices += left_aside(+aside, cure) + seen
+    notices += model.left_aside(+aside, cure) + seen
     if open_ended := [outline.handle for outline in outlines if outline.is_open]:
         which = f"splines that say they are closed end apart ({listed(open_ended)})"
         text = f"{which}: a straight line was drawn between their ends."
@@ -146,30 +140,29 @@ def _in_plane(
     if not outlines:
         return [], [], []
     for outline in outlines:
-        within_reach(outline.corners)
+        model.within_reach(outline.corners)
     normal, leaning = plane_of([outline.corners for outline in outlines])
-    aside["outlines that are seen edgewise"] = int((leaning < _EDGEWISE).sum())
-    kept = [one for one, lean in zip(outlines, leaning, strict=True) if lean >= _EDGEWISE]
+    leans = [*zip(leaning.tolist(), outlines, strict=True)]
+    kept = [outline for lean, outline in leans if lean >= _EDGEWISE]
+    aside["outlines that are seen edgewise"] = len(outlines) - len(kept)
     normal, why = usual_side(normal, settings.up), "as CAD programs show it"
     facing = {float(np.sign(one.facing @ normal)) for one in kept if one.facing is not None}
     if facing == {-1.0} and normal[2] != 1.0:
         normal, why = -normal, "the side that its outlines face"
     seen = asked(normal, settings.up) if settings.up else view(normal, "z")
-    rings = [ring(seen.of(outline.corners)) for outline in kept]
+    rings = [model.ring(seen.of(outline.corners)) for outline in kept]
     notices = []
     if settings.up or normal[2] != 1.0:
         why = f"as --up {settings.up} says" if settings.up else why
         text = f"the drawing is seen {seen.said} ({why})."
         cure = "--up y takes another axis for up, and --up z or z-back one side or the other."
         notices.append(Notice("W119", text, cure))
-    short = [(float(lean), one.handle) for one, lean in zip(outlines, leaning, strict=True)
-             if _EDGEWISE <= lean < 1.0]  # fmt: skip
+    short = [(lean, outline.handle) for lean, outline in leans if _EDGEWISE <= lean < 1.0]
     if short:
         least, handle = min(short)
-        text = (
-            f"{len(short)} outlines do not lie in the plane that is seen, and are shortened: most "
-            f"by {100 * (1 - least):.2g} % (handle {handle})."
-        )
+        most = f"most by {100 * (1 - least):.2g} % (handle {handle})"
+        text = "outlines do not lie in the plane that is seen, and are shortened"
+        text = f"{len(short)} {text}: {most}."
         notices.append(Notice("W119", text, "Draw them flat, in one plane."))
     return kept, rings, notices
 
@@ -180,17 +173,13 @@ def _document(ezdxf: Any, data: bytes) -> Any:
             tagger = import_module("ezdxf.lldxf.tagger")
             drawing = import_module("ezdxf.document").Drawing
             return drawing.load(tagger.binary_tags_loader(data, errors="surrogateescape"))
-        return ezdxf.read(io.StringIO(_text(data)))
-
-
-def _text(data: bytes) -> str:
-    """Decode a drawing: what is no UTF-8 is in the code page that it names (before R2007)."""
-    try:
-        return data.decode("utf-8")
-    except UnicodeDecodeError:
-        head = io.StringIO(data.decode("utf-8", "surrogateescape"))
-        page = import_module("ezdxf.filemanagement").dxf_stream_info(head).encoding
-        return data.decode(page, "surrogateescape")
+        try:
+            text = data.decode("utf-8")
+        except UnicodeDecodeError:  # it is in the code page that it names (before R2007)
+            head = io.StringIO(data.decode("utf-8", "surrogateescape"))
+            page = import_module("ezdxf.filemanagement").dxf_stream_info(head).encoding
+            text = data.decode(page, "surrogateescape")
+        return ezdxf.read(io.StringIO(text))
 
 
 def _unit(document: Any, settings: ReadSettings) -> tuple[float | None, list[Notice]]:
@@ -199,17 +188,13 @@ def _unit(document: Any, settings: ReadSettings) -> tuple[float | None, list[Not
         number = int(document.header.get("$INSUNITS", 0))
     own = _INSUNITS_M.get(number)
     if settings.unit:
-        said = overruled(own, f"$INSUNITS {number}, {own or 0.0:g} m", settings)
-        return METRES.get(settings.unit), said
+        said = model.overruled(own, f"$INSUNITS {number}, {own or 0.0:g} m", settings)
+        return model.METRES.get(settings.unit), said
     if own is not None:
         return own, []
-    raise InputError(
-        "E116",
-        f"the drawing does not say its unit ($INSUNITS is {number}), so its stones could be of "
-        "any size.",
-        cure="Say it with --unit mm (or cm, m, in, ft, px; ReadSettings.unit), or set it in the "
-        "CAD program.",
-    )
+    what = f"the drawing does not say its unit ($INSUNITS is {number}), so its stones could be of "
+    cure = "Say it with --unit mm (or cm, m, in, ft, px; ReadSettings.unit), or set it in the "
+    raise InputError("E116", f"{what}any size.", cure=f"{cure}CAD program.")
 
 
 def _outline(drawn: Drawn, aside: Counter[str]) -> _Outline | None:
@@ -247,7 +232,7 @@ def _path_corners(drawn: Drawn) -> tuple[Vector | None, bool]:
     # Curves stay curves also where a block is stretched, or mirrored.
     path = path.transform(drawn.matrix)
     # Few corners are enough to see how large it is.
-    rough = within_reach(_xyz(path.control_vertices()))
+    rough = model.within_reach(_xyz(path.control_vertices()))
     size = float(np.ptp(rough, axis=0).max())
     return _xyz(path.flattening(max(size * _FLATNESS, 1e-12), segments=8)), False
 

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.io.file_errors import short, too_large
+from drystone.io.files import short, too_large
 from drystone.io.outlines_in.model import Area, OutlinedStone
 from drystone.io.patches import PlacedMask
 from drystone.kernels.polygons import Points

@@ -14,18 +14,10 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
 from drystone.errors import InputError, Notice, extra
-from drystone.io.file_errors import damaged, listed, short, unusable
-from drystone.io.foreign import foreign
-from drystone.io.outlines_in.model import (
-    METRES,
-    OutlinedStone,
-    OutlineFile,
-    left_aside,
-    number_in,
-    within_reach,
-)
-from drystone.io.outlines_in.silhouettes import shadow
-from drystone.io.outlines_in.views import asked
+from drystone.io.files import damaged, foreign, listed, short, unusable
+from drystone.io.outlines_in import model
+from drystone.io.outlines_in.model import OutlinedStone, OutlineFile
+from drystone.io.outlines_in.silhouettes import asked, shadow
 from drystone.io.read_settings import ReadSettings
 
 _OURS = (b"# drystone ", b"drystone, ")
@@ -84,7 +76,7 @@ def read_mesh(kind: str, data: bytes, settings: ReadSettings) -> OutlineFile:
     bodies = _BODIES[kind](data)
     used = np.unique(np.concatenate([np.concatenate(list(b.faces)) for b in bodies]))
     with foreign(lambda why: unusable(f"a vertex cannot be used ({why})")):
-        vertices = within_reach(bodies[0].vertices[used])
+        vertices = model.within_reach(bodies[0].vertices[used])
     ours = data.startswith(_OURS)
     axis = 1 if ours else int(np.argmin(np.ptp(vertices, axis=0)))
     if axis == 1 and not (ours or settings.up):
@@ -99,7 +91,7 @@ def read_mesh(kind: str, data: bytes, settings: ReadSettings) -> OutlineFile:
         flat = seen.of(bodies[0].vertices)
         areas = [shadow([flat[face] for face in b.faces]) for b in bodies]
     both = [(body, area) for body, area in zip(bodies, areas, strict=True) if area]
-    stones = [OutlinedStone(number_in(body.name), body.name, area) for body, area in both]
+    stones = [OutlinedStone(model.number_in(body.name), body.name, area) for body, area in both]
     edgewise = Counter({"bodies without an area as they are seen": len(bodies) - len(stones)})
     why = "as drystone writes meshes" if ours else "in which the mesh is thinnest"
     text = f"{len(stones)} bodies, seen {seen.said} ({why})."
@@ -107,7 +99,7 @@ def read_mesh(kind: str, data: bytes, settings: ReadSettings) -> OutlineFile:
     if axis != 2 and _is_inside_out(bodies):
         text = "its faces look inwards: with axes of a left hand its stones are mirrored."
         notices.append(Notice("W119", text, "Say --up y-back or z-back if they are."))
-    notices += left_aside(+edgewise, "Give every stone a closed surface.")
+    notices += model.left_aside(+edgewise, "Give every stone a closed surface.")
     for body in (body for body in bodies if len(body.said) > 1):
         why = "of the groups of a face the first counts, and what follows # is a comment"
         text = f"{why}, so {short(body.name)} is one stone of: {listed(map(short, body.said))}."
@@ -116,7 +108,7 @@ def read_mesh(kind: str, data: bytes, settings: ReadSettings) -> OutlineFile:
     if not settings.unit and not ours:
         text = f"{kind.upper()} has no unit: lengths were taken as metres."
         notices.append(Notice("W119", text, "Say --unit mm (or cm, in, ft) if they are not."))
-    unit_m = METRES.get(settings.unit or "m")
+    unit_m = model.METRES.get(settings.unit or "m")
     return OutlineFile(stones, unit_m, True, notices=notices, in_space=True, seen_by="either")
 
 
@@ -224,7 +216,7 @@ def _name(kind: str, *words: str) -> str:
     """
     title = " ".join(words)
     numbered = title.partition(" # ")[0]
-    if number_in(numbered) is not None:
+    if model.number_in(numbered) is not None:
         return numbered
     return title if kind == "o" or not words else words[0]
 

@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.errors import Notice
-from drystone.io.file_errors import damaged, listed, short, too_large
-from drystone.io.foreign import foreign
+from drystone.io.files import damaged, foreign, listed, short, too_large
 from drystone.io.labels import MAX_ID
 from drystone.io.patches import PlacedMask
 from drystone.io.read_settings import ReadSettings

@@ -9,7 +9,7 @@ import shapely
 from scipy import ndimage
 
 from drystone.errors import Notice
-from drystone.io.file_errors import MANY, listed, short, too_large
+from drystone.io.files import MANY, listed, short, too_large
 from drystone.io.outlines_in.fill import covered
 from drystone.io.patches import PlacedMask, enclosed
 

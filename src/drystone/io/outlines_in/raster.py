@@ -10,16 +10,14 @@ import numpy as np
 import shapely
 
 from drystone.errors import InputError, LabelImageError, Notice
-from drystone.io.file_bytes import file_bytes
-from drystone.io.file_errors import listed, naming, short
+from drystone.io.files import file_bytes, listed, naming, short
+from drystone.io.images import ORIENTATION, check_size, format_of, opened
 from drystone.io.outlines_in.fill import check_reach, covered, pixels_of, trimmed
 from drystone.io.outlines_in.model import OutlinedStone, OutlineFile
 from drystone.io.outlines_in.nested import meeting_boxes, not_stones, of_one_picture, said_of
 from drystone.io.outlines_in.silhouettes import outer_edge
 from drystone.io.patches import PlacedMask, StonePatch
-from drystone.io.pictures import check_size, format_of, opened
 from drystone.io.read_settings import ReadSettings
-from drystone.io.tiff import ORIENTATION
 from drystone.kernels.polygons import Points
 
 _TOO_FAR = (
