@@ -6,8 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.path import Path as Outline
 
-from drystone.io.outlines_in.fill import filled_area, united
-from drystone.io.outlines_in.model import Area, PlacedMask
+from drystone.io.outlines_in.model import Area, PlacedMask, filled_area, united
 
 NUMBERS = st.integers(-24, 72).map(lambda n: n / 3 + 0.1)
 RINGS = st.lists(st.tuples(NUMBERS, NUMBERS), min_size=3, max_size=9, unique=True)

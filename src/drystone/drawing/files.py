@@ -9,9 +9,9 @@ import matplotlib as mpl
 from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure, SubFigure
 
+from drystone.drawing.drawing import step_by_id
 from drystone.drawing.pictures.mechanism import plot_mechanism
 from drystone.drawing.pictures.wall import plot_wall
-from drystone.drawing.wall import step_by_id
 from drystone.model.wall import Wall
 from drystone.statics.model import Direction
 from drystone.statics.result import LateralResistance, LimitStatus

@@ -16,8 +16,7 @@ from drystone.io.files import damaged, foreign, too_large, unfit, unusable
 from drystone.io.images import Picture, array_of
 from drystone.io.labels import Census, IdImage, take_census
 from drystone.io.outlines_in.classes import Gathered
-from drystone.io.outlines_in.fill import trimmed
-from drystone.io.outlines_in.model import OutlineFile
+from drystone.io.outlines_in.model import OutlineFile, trimmed
 from drystone.io.outlines_in.nested import not_stones, of_one_picture, said_of
 from drystone.io.patches import PlacedMask, StonePatch
 from drystone.io.read_settings import ReadSettings

@@ -12,18 +12,8 @@ from numpy.typing import NDArray
 from PIL import Image, ImageOps
 
 from drystone.errors import InputError, Notice
+from drystone.io import images
 from drystone.io.files import file_bytes, given_bytes, naming, too_large, unread
-from drystone.io.images import (
-    ORIENTATION,
-    TURNED_BACK,
-    TURNS,
-    check_size,
-    format_of,
-    inspect_tiff,
-    opened,
-    tiff_values,
-    turned,
-)
 from drystone.model.stone import writable
 
 MAX_PX = 200_000_000
@@ -70,9 +60,9 @@ def read_photo(path: str | Path, max_px: int = MAX_PX) -> Photo:
     name = writable(path.name)
     if deep:
         notices = (Notice("W174", "16 bits a channel were scaled to 8."), *notices)
-    if orientation in TURNS:
-        rgb = turned(rgb, orientation)
-        said = f"{name} was {TURNS[orientation]}, as its EXIF data say."
+    if orientation in images.TURNS:
+        rgb = images.turned(rgb, orientation)
+        said = f"{name} was {images.TURNS[orientation]}, as its EXIF data say."
         notices = (*notices, Notice("W173", said))
     return Photo(rgb, name, hashlib.sha256(data).hexdigest(), notices)
 
@@ -97,7 +87,7 @@ def _refuse_labels(values: NDArray[Any], name: str) -> None:
 
 def _decode(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any], int, bool]:
     """Return values (palettes and CMYK as RGB), the orientation, and if there were 16 bits."""
-    kind = format_of(data)
+    kind = images.format_of(data)
     if kind == "TIFF":
         values, orientation = _tiff(data, check)
         return values, orientation, values.dtype == np.uint16
@@ -110,15 +100,15 @@ def _decode(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any
 
 def _check(width: int, height: int, max_px: int) -> None:
     """Refuse photographs that would fill the memory, or that OpenCV cannot turn (E110)."""
-    check_size(width, height, max_px, _REDUCE)
+    images.check_size(width, height, max_px, _REDUCE)
     if max(width, height) > MAX_SIDE_PX:
         what = f"{width} x {height} px; the limit of a side is {MAX_SIDE_PX} px."
         raise too_large(what, "Reduce it or crop it.")
 
 
 def _by_pillow(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any], int]:
-    with opened(data, check) as image:
-        orientation = int(image.getexif().get(ORIENTATION, 1))
+    with images.opened(data, check) as image:
+        orientation = int(image.getexif().get(images.ORIENTATION, 1))
         mode = image.mode
         if mode in ("1", "CMYK", "YCbCr", "LAB", "HSV"):
             values = np.asarray(image.convert("RGB"))
@@ -132,19 +122,19 @@ def _by_pillow(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[
 
 
 def _tiff(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any], int]:
-    page = inspect_tiff(data)
+    page = images.inspect_tiff(data)
     check(page.width, page.height)
     if page.bits <= 8:
         # Pillow turns a TIFF by itself when it reads it: taken back, so that it is said.
         values, orientation = _by_pillow(data, check)
-        return turned(values, TURNED_BACK.get(orientation, orientation)), orientation
+        return images.turned(values, images.TURNED_BACK.get(orientation, orientation)), orientation
     if page.unreadable:
         what = f"TIFF with {page.unreadable} cannot be read."
         raise unread(what, "Export it uncompressed or with LZW.")
     if page.colours:
         what = f"TIFF of {page.bits} bits a channel in {page.colours} cannot be read."
         raise unread(what, "Export it in RGB, or with 8 bits a channel.")
-    values = tiff_values(data, page, check)
+    values = images.tiff_values(data, page, check)
     # Pillow takes this back for 8 bits; ids keep the numbers of the file, light does not.
     if page.negative and values.dtype == np.uint16:
         values = values.copy()
@@ -178,7 +168,7 @@ def read_photo_picture(photo: Path, source_px: tuple[float, float]) -> Image.Ima
     cannot be read, or has another shape, is refused (E189).
     """
     try:
-        with opened(file_bytes(photo), partial(check_size, max_px=MAX_PX)) as read:
+        with images.opened(file_bytes(photo), partial(images.check_size, max_px=MAX_PX)) as read:
             image = ImageOps.exif_transpose(read).convert("RGB")
     except InputError as error:
         raise _of_no_use(photo, f"the photograph cannot be read: {error.what}") from error

@@ -18,15 +18,13 @@ from drystone.io.files import file_bytes, foreign, listed, naming
 from drystone.io.images import check_size
 from drystone.io.json_text import json_of
 from drystone.io.masks import is_npz
-from drystone.io.outlines_in.fill import filled_area
-from drystone.io.outlines_in.model import Area, OutlineFile
+from drystone.io.outlines_in.model import Area, OutlineFile, filled_area
 from drystone.io.outlines_in.silhouettes import outer_edge, tidy_edge
 from drystone.io.photo_beside import read_sidecar, scale_beside
 from drystone.io.plan_folder import BLOCKS
 from drystone.io.plan_json import read_plan
-from drystone.io.read_outlines import outline_reader, stones_and_outlines
 from drystone.io.read_settings import ReadSettings
-from drystone.io.read_stones import read_stones
+from drystone.io.read_stones import outline_reader, read_stones, stones_and_outlines
 from drystone.io.wall_image import painted, read_wall_image, read_wall_picture
 from drystone.kernels.label_runs import label_runs
 from drystone.kernels.polygons import Points, area_and_centroid

@@ -11,8 +11,8 @@ import shapely
 from PIL import Image
 
 from drystone.drawing.canvas import draw
+from drystone.drawing.drawing import drawing_of_assembly
 from drystone.drawing.export.formats import FORMATS, ExportSettings
-from drystone.drawing.wall import drawing_of_assembly
 from tests.drawing.export.drawn_walls import assembly
 
 SVG = "{http://www.w3.org/2000/svg}"

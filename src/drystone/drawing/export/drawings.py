@@ -12,7 +12,15 @@ import numpy as np
 from drystone.drawing import vector
 from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.canvas import draw
-from drystone.drawing.drawing import Dots, Drawable, Drawing, Lines, Surface, placed
+from drystone.drawing.drawing import (
+    Dots,
+    Drawable,
+    Drawing,
+    Lines,
+    Surface,
+    drawing_of_assembly,
+    placed,
+)
 from drystone.drawing.export.formats import ExportSettings, Files, load_extra
 from drystone.drawing.files import figure_bytes, pdf_bytes
 from drystone.drawing.lettering import one_line
@@ -20,7 +28,6 @@ from drystone.drawing.photo import read_photo
 from drystone.drawing.pictures.forces import JOINT, LONGEST_SHARE, RESULTANT, resultants
 from drystone.drawing.pictures.mechanism import motion_of
 from drystone.drawing.sheet.pages import BuildSheet
-from drystone.drawing.wall import drawing_of_assembly
 from drystone.statics.result import LimitResult
 
 SMALLEST_SHARE = 0.005  # arrows of smaller forces over the largest one would be dots

@@ -13,12 +13,11 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from drystone.drawing.assembly.parts import Assembly
-from drystone.drawing.drawing import Drawable, Lines, Surface
+from drystone.drawing.drawing import Drawable, Lines, Surface, drawing_of_assembly
 from drystone.drawing.export.formats import ExportSettings, Files, load_extra
 from drystone.drawing.lettering import font
 from drystone.drawing.palette import GREY, OUTLINE_COLOUR, PLAIN_COLOUR, WEDGE_COLOUR, rgb
 from drystone.drawing.pixels import PixelView, gif_bytes, paint, palette_of
-from drystone.drawing.wall import drawing_of_assembly
 from drystone.errors import UsageError
 
 PLACING_COLOUR = "#f0a202"

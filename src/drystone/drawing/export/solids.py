@@ -55,8 +55,17 @@ def extruded(outline: Points, front: float, back: float, name: str = "outline") 
     The outline is counter-clockwise in x and z, not closed; E180 names it when it crosses or
     touches itself, or has no area.
     """
-    face = triangulated(outline, name)
-    count = len(outline)
+    polygon, count = shapely.Polygon(outline), len(outline)
+    place = {corner: index for index, corner in enumerate(map(tuple, outline.tolist()))}
+    whole = polygon.is_valid and polygon.area > 0.0 and len(place) == count
+    pieces = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon)) if whole else ()
+    if len(pieces) != count - 2:
+        what = f"the outline of {name} crosses or touches itself, so it bounds no solid."
+        cure = "Plan with exact geometry, whose outlines are simple, or clean the wall image."
+        raise InputError("E180", what, where=name, cure=cure)
+    corners = shapely.get_coordinates(shapely.orient_polygons(pieces)).reshape(-1, 4, 2)[:, :3]
+    flat = [place[x, z] for x, z in corners.reshape(-1, 2).tolist()]
+    face = np.array(flat, dtype=np.int64).reshape(-1, 3)
     x, z = outline.T
     vertices = np.concatenate([np.column_stack([x, np.full(count, y), z]) for y in (front, back)])
     here = np.arange(count)
@@ -66,21 +75,6 @@ def extruded(outline: Points, front: float, back: float, name: str = "outline") 
         [face, face[:, ::-1] + count, *(np.column_stack(side) for side in sides)]
     )
     return Solid(vertices, triangles)
-
-
-def triangulated(outline: Points, name: str = "outline") -> Triangles:
-    """Return (n - 2, 3) corners of triangles that fill an outline, counter-clockwise like it."""
-    polygon = shapely.Polygon(outline)
-    place = {corner: index for index, corner in enumerate(map(tuple, outline.tolist()))}
-    whole = polygon.is_valid and polygon.area > 0.0 and len(place) == len(outline)
-    pieces = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon)) if whole else ()
-    if len(pieces) != len(outline) - 2:
-        what = f"the outline of {name} crosses or touches itself, so it bounds no solid."
-        cure = "Plan with exact geometry, whose outlines are simple, or clean the wall image."
-        raise InputError("E180", what, where=name, cure=cure)
-    corners = shapely.get_coordinates(shapely.orient_polygons(pieces)).reshape(-1, 4, 2)[:, :3]
-    flat = [place[(x, z)] for x, z in corners.reshape(-1, 2).tolist()]
-    return np.array(flat, dtype=np.int64).reshape(-1, 3)
 
 
 def inertia(assembly: Assembly, part: Part) -> tuple[Vector, Matrix]:

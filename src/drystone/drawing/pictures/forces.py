@@ -9,9 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.transforms import ScaledTranslation
 
 from drystone.drawing.canvas import draw, draw_legend
-from drystone.drawing.drawing import Dots, Drawing, Lines, Surface
+from drystone.drawing.drawing import Dots, Drawing, Lines, Surface, pale_wall, size_of
 from drystone.drawing.outlines import Loop, wall_regions
-from drystone.drawing.wall import pale_wall, size_of
 from drystone.kernels.raster import Floats
 from drystone.model.wall import Labels
 from drystone.statics.failing.bodies import ContactKind

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from drystone.drawing.drawing import Surface
 from drystone.drawing.files import pdf_bytes
 from drystone.drawing.outlines import pixel_loops
-from drystone.drawing.sheet.page import SheetPage
+from drystone.drawing.sheet.pages import SheetPage
 from drystone.photo import layout
 from drystone.photo.markers import FAMILIES, marker_modules
 from drystone.whole_files import write_whole

@@ -14,11 +14,10 @@ from matplotlib.patches import PathPatch
 from PIL import Image, PngImagePlugin
 
 from drystone.drawing.canvas import block_path, draw
-from drystone.drawing.drawing import Drawable, Drawing, Lines, Surface, Words, ground
+from drystone.drawing.drawing import Drawable, Drawing, Lines, Surface, Words, ground, size_of
 from drystone.drawing.outlines import Loop, Region, regions_box, stands_on_ground, wall_regions
 from drystone.drawing.palette import GREY
 from drystone.drawing.pixels import gif_bytes, palette_of
-from drystone.drawing.wall import size_of
 from drystone.kernels.raster import Floats
 from drystone.model.wall import Labels
 from drystone.statics.model import Direction

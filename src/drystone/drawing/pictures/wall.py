@@ -6,10 +6,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from drystone.drawing.canvas import add, draw, fit_axes
-from drystone.drawing.drawing import Surface
+from drystone.drawing.drawing import Surface, drawing_of_wall
 from drystone.drawing.outlines import Loop
 from drystone.drawing.palette import CLUSTER_COLOURS
-from drystone.drawing.wall import drawing_of_wall
 from drystone.model.wall import Wall
 
 COLUMNS = 3

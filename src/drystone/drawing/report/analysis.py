@@ -16,17 +16,8 @@ from drystone.drawing.pictures.forces import plot_contacts, plot_forces
 from drystone.drawing.pictures.mechanism import plot_mechanism, save_mechanism_animation
 from drystone.drawing.report.html import write_report
 from drystone.drawing.report.viewer_data import view_of_wall
-from drystone.drawing.words import content
-from drystone.drawing.words.analysis import (
-    BLOCKS,
-    CONTACTS,
-    FRICTION,
-    REPORT,
-    WRITTEN,
-    Card,
-    RangeCard,
-    Shapes,
-)
+from drystone.drawing.words import analysis, content
+from drystone.drawing.words.analysis import Card, RangeCard, Shapes
 from drystone.kernels.polygons import area_and_centroid
 from drystone.statics.loads import Loads
 from drystone.statics.model import RigidBlockModel
@@ -47,7 +38,7 @@ def write_analysis(folder: Path, card: RangeCard, loads: Loads, per_unit_m: floa
     What an earlier run left there belongs to another wall, and is taken out.  `per_unit_m` is
     metres in a unit of the model, where that is known.
     """
-    for name in WRITTEN:
+    for name in analysis.WRITTEN:
         (folder / name).unlink(missing_ok=True)
     shapes, model = card.wall.shapes, card.wall.model
     save(plot_contacts(shapes, model).figure, folder / "contacts.png")
@@ -76,7 +67,7 @@ def _write_report(folder: Path, card: Card, loads: Loads, per_unit_m: float | No
     shapes, model = wall.shapes, wall.model
     curve = friction_curve(model, loads)
     axes = plot_friction(curve, model.mu, slides_at_mu=card.load_case == content.TILTING)
-    save(axes.figure, folder / FRICTION)
+    save(axes.figure, folder / analysis.FRICTION)
     unit: Literal["px", "m", "units"] = "units" if wall.names.noun == "block" else "px"
     if per_unit_m is not None:
         unit = "m"
@@ -96,7 +87,7 @@ def _write_report(folder: Path, card: Card, loads: Loads, per_unit_m: float | No
     )  # fmt: skip
     view["inputs"] = [list(row) for row in (*rows, ("cite", cite))]
     view["notices"] = [asdict(notice) for notice in wall.notices]
-    write_report(folder / REPORT, view, pictures=folder)
+    write_report(folder / analysis.REPORT, view, pictures=folder)
 
 
 def in_metres(
@@ -154,7 +145,7 @@ def write_tables(
         if end.forces is not None:
             head += [f"{name}_force_{end.direction}" for name in ("normal", "tangential")]
             rows = [row + f for row, f in zip(rows, (end.forces / weight).tolist(), strict=True)]
-    _write(folder / CONTACTS, [head, *rows])
+    _write(folder / analysis.CONTACTS, [head, *rows])
     head = ["block", f"x{unit}", f"y{unit}", f"area{unit and '_m2'}", "share_of_weight"]
     rows = []
     for block in model.blocks:
@@ -170,7 +161,7 @@ def write_tables(
                 across, up, turning = moves.get(int(row[0]), (0.0, 0.0, 0.0))
                 # Centroids move in units of the largest displacement; turns are per such a unit.
                 row += [across, up, turning / factor]
-    _write(folder / BLOCKS, [head, *rows])
+    _write(folder / analysis.BLOCKS, [head, *rows])
 
 
 def _write(path: Path, rows: Iterable[list[Cell]]) -> None:

@@ -9,39 +9,136 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from textwrap import wrap
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import FancyArrowPatch
+from numpy.typing import ArrayLike
 
 from drystone.drawing.assembly.handling import wedges_after
 from drystone.drawing.assembly.parts import Assembly, Part
-from drystone.drawing.drawing import Surface, letters_pt, placed
+from drystone.drawing.canvas import add
+from drystone.drawing.drawing import (
+    FRAME_DASHES,
+    Drawable,
+    Lines,
+    Surface,
+    drawing_of_assembly,
+    letters_pt,
+    placed,
+)
 from drystone.drawing.export.formats import ExportSettings
-from drystone.drawing.palette import GREY, PLAIN_COLOUR, WEDGE_COLOUR
+from drystone.drawing.lettering import drawable, fitted
+from drystone.drawing.outlines import rectangle
+from drystone.drawing.palette import GREY, OUTLINE_COLOUR, PLAIN_COLOUR, WEDGE_COLOUR
 from drystone.drawing.photo import StonePhoto
-from drystone.drawing.sheet.page import (
-    A4_MM,
-    EDGE_MM,
-    FAINT,
-    NOT_TO_SCALE,
-    PLAIN_PT,
-    PT_PER_MM,
-    SMALL_PT,
-    SheetPage,
-)
-from drystone.drawing.sheet.words import (
-    beside_words,
-    length_words,
-    lowest_corner,
-    shortest_turn,
-    size_words,
-    turn_words,
-    wedge_place,
-    wedge_words,
-)
-from drystone.drawing.wall import FRAME_DASHES, drawing_of_assembly
+from drystone.drawing.sheet import words
 from drystone.drawing.words.content import source_name
 from drystone.io.plan_json import plan_digest
 from drystone.model.plan import Point, StoneStep
+
+MM_PER_INCH = 25.4
+PT_PER_MM = 72.0 / MM_PER_INCH
+
+A4_MM = (210.0, 297.0)
+EDGE_MM = 12.0  # of paper that printers do not print on, and a hole punch
+PAGE_NUMBER_MM = 30.0  # room for it at the right end of the foot
+SMALL_PT, PLAIN_PT = 7.0, 8.5
+NOT_TO_SCALE = "NOT TO SCALE"
+FAINT = "#555555"  # of words that explain
+
+
+class SheetPage:
+    """One sheet of paper; lengths are mm from its lower left corner.
+
+    `right` and `top` are the ends of what is printed.
+    """
+
+    def __init__(self, size_mm: tuple[float, float] = A4_MM) -> None:
+        self.width, self.height = size_mm
+        self.right, self.top = self.width - EDGE_MM, self.height - EDGE_MM
+        self.figure = Figure(figsize=(self.width / MM_PER_INCH, self.height / MM_PER_INCH))
+        self.ax = self.figure.add_axes((0.0, 0.0, 1.0, 1.0))
+        self.ax.set_axis_off()
+        self.ax.set_xlim(0.0, self.width)
+        self.ax.set_ylim(0.0, self.height)
+        self.ax.set_autoscale_on(False)
+
+    def write(self, x: float, y: float, text: str, size: float = PLAIN_PT, **style: Any) -> None:
+        """Write a line of text, its left end on the base line unless `ha` and `va` differ.
+
+        With `room`, in mm, what is wider is cut.
+        """
+        text, room = drawable(text), style.pop("room", None)
+        if room is not None:
+            text = fitted(text, size, room * PT_PER_MM, bold=style.get("weight") == "bold")
+        chosen = {"ha": "left", "va": "baseline", "color": OUTLINE_COLOUR, **style}
+        # What users call things is text, also with dollar signs in it.
+        self.ax.text(x, y, text, size=size, parse_math=False, **chosen)
+
+    def draw(self, *items: Drawable) -> None:
+        """Draw what has its lengths in mm from the page's corner."""
+        add(self.ax, items)
+
+    def line(self, points: ArrayLike, **style: Any) -> None:
+        """Draw a line through points, (n, 2)."""
+        chosen = {"name": "", "width_pt": 0.5, "z": 2.0, "layer": "SITE", **style}
+        self.draw(Lines(lines=[np.asarray(points, float)], **chosen))
+
+    def box(self, x: float, y: float, width: float, height: float, **style: Any) -> None:
+        """Draw a rectangle from its lower left corner."""
+        self.draw(Surface(style.pop("name", ""), (rectangle(x, y, width, height),), **style))
+
+    def arrow(self, start: Sequence[float], end: Sequence[float], **style: Any) -> None:
+        """Draw a line with a head at its end, or of another `arrowstyle`."""
+        chosen = {
+            "arrowstyle": "-|>,head_width=1.3,head_length=2.6", "color": OUTLINE_COLOUR,
+            "linewidth": 0.6, "shrinkA": 0.0, "shrinkB": 0.0, "mutation_scale": 1.0, **style,
+        }  # fmt: skip
+        self.ax.add_patch(FancyArrowPatch((start[0], start[1]), (end[0], end[1]), **chosen))
+
+    def turn_arrow(
+        self, centre: Sequence[float], radius: float, angle_deg: float, colour: str
+    ) -> None:
+        """Draw an arc from straight up by an angle, counter-clockwise, with a head at its end."""
+        turned = np.radians(np.linspace(90.0, 90.0 + angle_deg, 60))
+        arc = np.asarray(centre, float) + radius * np.column_stack([np.cos(turned), np.sin(turned)])
+        out, tip = (arc[-1] - centre) / radius, arc[-1]
+        along = np.sign(angle_deg) * np.array([-out[1], out[0]])
+        # As long as an arc has room for.
+        size = min(1.8, 0.6 * radius * abs(np.radians(angle_deg)))
+        head = [tip + 0.5 * size * along, tip - 0.5 * size * along + 0.4 * size * out,
+                tip - 0.5 * size * along - 0.4 * size * out]  # fmt: skip
+        self.line(arc, colour=colour, width_pt=1.1, z=6.0)
+        self.draw(Surface("", (np.array(head),), colour, "none", z=6.0))
+
+    def dimension(
+        self, start: Sequence[float], end: Sequence[float], text: str, *, upright: bool = False
+    ) -> None:
+        """Draw a dimension line between two points with its length in words on it."""
+        style = "<|-|>,head_width=1.1,head_length=2.4"
+        self.arrow(start, end, arrowstyle=style, linewidth=0.45)
+        for x, y in (start, end):
+            ends = [(x - 1.5, y), (x + 1.5, y)] if upright else [(x, y - 1.5), (x, y + 1.5)]
+            self.line(ends, width_pt=0.45)
+        x, y = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
+        self.write(
+            x, y, text, SMALL_PT, ha="center", va="center", rotation=90 if upright else 0,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.2}, zorder=5,
+        )  # fmt: skip
+
+    def tick_box(self, x: float, y: float, size: float = 4.5) -> None:
+        """Draw an empty box for a tick."""
+        self.box(x, y, size, size, width_pt=0.7)
+
+    def foot(self, left: str, right: str) -> None:
+        """Write what the page belongs to, and its number."""
+        self.line([(EDGE_MM, EDGE_MM - 1.5), (self.right, EDGE_MM - 1.5)], colour=GREY)
+        room = self.right - EDGE_MM - PAGE_NUMBER_MM
+        self.write(EDGE_MM, EDGE_MM - 5.0, left, SMALL_PT, color=FAINT, room=room)
+        self.write(self.right, EDGE_MM - 5.0, right, SMALL_PT, ha="right", color=FAINT)
+
 
 USUAL_SCALES = (1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 50.0, 100.0, 200.0, 250.0, 500.0, 1000.0)
 
@@ -273,7 +370,7 @@ class BuildSheet:
 
     def _turn(self, page: SheetPage, part: Part, middle_mm: float, scale: float) -> None:
         """Draw how a stone lies beside how it is in the wall."""
-        angle, middle = shortest_turn(part.angle_deg), middle_mm + 2.2
+        angle, middle = words.shortest_turn(part.angle_deg), middle_mm + 2.2
         lying, standing = (TURN + 12.5, middle), (TURN + 39.5, middle)
         own = part.own_corners * scale
         placed = (part.corners - np.array(part.centroid)) * scale
@@ -295,22 +392,22 @@ class BuildSheet:
             radius = min(4.5, 0.55 * reach)
             page.turn_arrow(lying, radius, angle, TURN_COLOUR)
         page.arrow((TURN + 24.0, middle), (TURN + 28.0, middle))
-        said, low = turn_words(angle), middle_mm - 11.9
+        said, low = words.turn_words(angle), middle_mm - 11.9
         page.write(TURN + 26.0, low, said, PLAIN_PT + 1, ha="center", weight="bold")
 
     def _words(self, page: SheetPage, part: Part, top: float, high: float) -> None:
-        corner = lowest_corner(part)
+        corner = words.lowest_corner(part)
         for row, (name, point) in enumerate((("middle", part.centroid), ("lowest corner", corner))):
             at = top - 10.0 * row
             page.write(WHERE, at, name, SMALL_PT, color=FAINT)
             # The grip of a rule: how far from the left end, then how high.
-            across, up = (length_words(self.assembly, length) for length in point)
+            across, up = (words.length_words(self.assembly, length) for length in point)
             said = f"\N{RIGHTWARDS ARROW} {across.split()[0]}   \N{UPWARDS ARROW} {up}"
             page.write(WHERE, at - 4.2, said, PLAIN_PT)
-        told = [(line, "black") for line in wrap(beside_words(self.assembly, part), WORDS)]
+        told = [(line, "black") for line in wrap(words.beside_words(self.assembly, part), WORDS)]
         for wedge in wedges_after(self.assembly, part):
-            words = wrap(wedge_words(self.assembly, wedge), WORDS)
-            told += [(line, WEDGE_COLOUR) for line in words]
+            lines = wrap(words.wedge_words(self.assembly, wedge), WORDS)
+            told += [(line, WEDGE_COLOUR) for line in lines]
         # Lines come closer where there are many, such as three wedges.
         pitch = min(3.9, (high - 4.0) / max(len(told), 1))
         size = min(PLAIN_PT, 2.15 * pitch)
@@ -419,8 +516,8 @@ class BuildSheet:
             length = np.ptp(part.own_corners @ np.array([np.cos(along), np.sin(along)]))
             texts = (
                 str(part.step), str(part.id),
-                length_words(assembly, across / assembly.px_per_unit, down),
-                length_words(assembly, float(length), width),
+                words.length_words(assembly, across / assembly.px_per_unit, down),
+                words.length_words(assembly, float(length), width),
             )  # fmt: skip
             for place, text in zip(columns, texts, strict=True):
                 weight = "bold" if place == columns[0] else "normal"
@@ -448,8 +545,9 @@ class BuildSheet:
         size = [float(side) for side in np.ptp(wedge.corners, axis=0)]
         page.write(x + 2.0, y + CARD_MM[1] - 6.0, str(wedge.step), 13.0, weight="bold",
                    color=WEDGE_COLOUR)  # fmt: skip
-        words = f"under {stone.step}, {wedge_place(assembly, wedge)}"
-        page.write(x + 13.0, y + CARD_MM[1] - 5.6, words, SMALL_PT)
+        place = words.wedge_place(assembly, wedge)
+        said = f"under {stone.step}, {place}"
+        page.write(x + 13.0, y + CARD_MM[1] - 5.6, said, SMALL_PT)
         page.tick_box(x + CARD_MM[0] - 7.0, y + CARD_MM[1] - 7.0)
         factor = drawn_factor(assembly, wedge)
         per_unit = factor * (1000.0 if assembly.unit == "m" else 1.0)
@@ -461,7 +559,7 @@ class BuildSheet:
         texts = [f"{1000 * side:.0f}" if assembly.unit == "m" else f"{side:.0f}" for side in size]
         page.dimension((left, foot - 4.0), (left + shown[0], foot - 4.0), texts[0])
         page.dimension((left - 4.5, foot), (left - 4.5, foot + shown[1]), texts[1], upright=True)
-        page.write(x + 2.0, y + 2.0, size_words(assembly, *size), SMALL_PT)
+        page.write(x + 2.0, y + 2.0, words.size_words(assembly, *size), SMALL_PT)
         if assembly.unit == "m":
             scale = f"{factor:g}:1" if factor > 1.0 else f"1:{1 / factor:g}"
             page.write(x + CARD_MM[0] - 2.0, y + 2.0, f"drawn {scale}", SMALL_PT, ha="right")

@@ -21,8 +21,7 @@ from drystone.io.files import MANY, entry, listed, short, too_large
 from drystone.io.images import check_size, opened
 from drystone.io.outlines_in import model
 from drystone.io.outlines_in.classes import Gathered, Pictured, chosen, class_of
-from drystone.io.outlines_in.fill import Room, trimmed
-from drystone.io.outlines_in.model import OutlinedStone, OutlineFile
+from drystone.io.outlines_in.model import OutlinedStone, OutlineFile, Room, trimmed
 from drystone.io.patches import PlacedMask
 from drystone.io.photo_beside import photograph_in
 from drystone.io.read_settings import MOST_PX_PER_M, ReadSettings

@@ -10,8 +10,7 @@ from typing import Any
 from drystone.errors import InputError, Notice
 from drystone.io.files import MANY, listed, short, unfit
 from drystone.io.outlines_in import model
-from drystone.io.outlines_in.fill import Room
-from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile
+from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile, Room
 from drystone.io.patches import PlacedMask
 from drystone.io.read_settings import ReadSettings
 

@@ -11,17 +11,10 @@ from scipy.interpolate import BSpline, CubicSpline
 
 from drystone.errors import InputError, Notice, extra
 from drystone.io.files import damaged, foreign, listed, too_large, unusable
-from drystone.io.outlines_in import model
+from drystone.io.outlines_in import model, silhouettes
 from drystone.io.outlines_in.classes import layer
 from drystone.io.outlines_in.model import OutlinedStone, OutlineFile
-from drystone.io.outlines_in.silhouettes import (
-    Vector,
-    asked,
-    plane_of,
-    usual_side,
-    view,
-    with_holes,
-)
+from drystone.io.outlines_in.silhouettes import Vector
 from drystone.io.read_settings import ReadSettings
 from drystone.kernels.polygons import Points
 
@@ -101,7 +94,7 @@ def read_dxf(data: bytes, settings: ReadSettings) -> OutlineFile:
     with foreign(lambda why: unusable(f"its outlines cannot be used ({why})")):
         outlines, rings, seen = _in_plane(outlines, aside, settings)
     with foreign(lambda why: unusable(f"its outlines cannot be put in order ({why})")):
-        found = with_holes(rings)
+        found = silhouettes.with_holes(rings)
     names = [outline.name for outline in outlines]
     # The one layer that all stones are on says nothing of a stone.
     names = names if len(set(names)) > 1 or len(names) == 1 else [""] * len(names)
@@ -141,15 +134,15 @@ def _in_plane(
         return [], [], []
     for outline in outlines:
         model.within_reach(outline.corners)
-    normal, leaning = plane_of([outline.corners for outline in outlines])
+    normal, leaning = silhouettes.plane_of([outline.corners for outline in outlines])
     leans = [*zip(leaning.tolist(), outlines, strict=True)]
     kept = [outline for lean, outline in leans if lean >= _EDGEWISE]
     aside["outlines that are seen edgewise"] = len(outlines) - len(kept)
-    normal, why = usual_side(normal, settings.up), "as CAD programs show it"
+    normal, why = silhouettes.usual_side(normal, settings.up), "as CAD programs show it"
     facing = {float(np.sign(one.facing @ normal)) for one in kept if one.facing is not None}
     if facing == {-1.0} and normal[2] != 1.0:
         normal, why = -normal, "the side that its outlines face"
-    seen = asked(normal, settings.up) if settings.up else view(normal, "z")
+    seen = silhouettes.asked(normal, settings.up) if settings.up else silhouettes.view(normal, "z")
     rings = [model.ring(seen.of(outline.corners)) for outline in kept]
     notices = []
     if settings.up or normal[2] != 1.0:

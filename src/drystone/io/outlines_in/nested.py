@@ -10,7 +10,7 @@ from scipy import ndimage
 
 from drystone.errors import Notice
 from drystone.io.files import MANY, listed, short, too_large
-from drystone.io.outlines_in.fill import covered
+from drystone.io.outlines_in.model import covered
 from drystone.io.patches import PlacedMask, enclosed
 
 INSIDE = 0.8

@@ -12,7 +12,7 @@ import shapely
 from drystone.errors import InputError, LabelImageError, Notice
 from drystone.io.files import file_bytes, listed, naming, short
 from drystone.io.images import ORIENTATION, check_size, format_of, opened
-from drystone.io.outlines_in.fill import check_reach, covered, pixels_of, trimmed
+from drystone.io.outlines_in import model
 from drystone.io.outlines_in.model import OutlinedStone, OutlineFile
 from drystone.io.outlines_in.nested import meeting_boxes, not_stones, of_one_picture, said_of
 from drystone.io.outlines_in.silhouettes import outer_edge
@@ -99,8 +99,8 @@ def rastered(
     stones, (width, height) = _in_picture(file, px_per_m)
     max_px = int(settings.max_image_mpx * 1e6)
     check_size(width, height, max_px, _TOO_FAR)
-    check_reach(stones, max_px)
-    places = [pixels_of(stone) for stone in stones]
+    model.check_reach(stones, max_px)
+    places = [model.pixels_of(stone) for stone in stones]
     left = {} if file.seen_by == "none" else _not_stones(file, places, (width, height), settings)
     if left:
         said = said_of(left, len(stones), {stone.id or 0: stone.name for stone in stones})
@@ -115,7 +115,7 @@ def rastered(
         inside = placed
         within = None if placed is None else placed.shared(picture)[0]
         if placed is not None and within is not None and within.shape != placed.mask.shape:
-            inside = trimmed(PlacedMask(within, max(0, placed.row), max(0, placed.col)))
+            inside = model.trimmed(PlacedMask(within, max(0, placed.row), max(0, placed.col)))
             if outside := int(placed.mask.sum()) - int(within.sum()):
                 lost.append(f"{name}: {outside} px")
         if inside is None:
@@ -238,7 +238,7 @@ def _beside_others(patches: list[StonePatch]) -> tuple[list[StonePatch], list[No
         if px := patches[i].common_px(patches[j]):
             overlaps.append(f"{patches[i].id} and {patches[j].id} ({px} px)")
     result = [
-        replace(patch, others=covered(patch, others).mask & ~patch.mask if others else None)
+        replace(patch, others=model.covered(patch, others).mask & ~patch.mask if others else None)
         for patch, others in zip(patches, beside, strict=True)
     ]
     if not overlaps:
