@@ -17,7 +17,7 @@ from drystone.poses import PoseBook
 from drystone_lab.planned_walls import missing_data
 from drystone_lab.runs.outcome import FIGURES, RunOutcome
 from drystone_lab.runs.spec import RunSpec
-from drystone_lab.search_runs import SEARCH, WAYS, looked_at_times
+from drystone_lab.search import SEARCH, WAYS, looked_at_times
 from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 from drystone_lab.walls import BRICKS, SEARCHED, Target, chosen
 

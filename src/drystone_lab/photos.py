@@ -2,7 +2,7 @@
 
 import io
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,13 +14,7 @@ from drystone.errors import DrystoneError, ExitCode
 from drystone.photo.segment_doubts import doubts_of, verdict_of
 from drystone.photo.segment_photo import SegmentedPhoto, segment_photo
 from drystone_lab.photographs.layout import LEVELS, PhotoLevel
-from drystone_lab.photographs.real import (
-    ALL,
-    RealPhoto,
-    pixels_of,
-    there,
-    truth_of,
-)
+from drystone_lab.photographs.real import ALL, RealPhoto, pixels_of, there, truth_of
 from drystone_lab.photographs.scene import Photograph, inverse, layout_of, moved, photograph
 from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 
@@ -44,20 +38,18 @@ class Score:
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
     """Render the photographs, find the stones, compare."""
+
+    def said(rows: Iterable[tuple[Cell, ...]]) -> Iterator[tuple[Cell, ...]]:
+        for row in rows:
+            settings.say(", ".join(map(str, row)))
+            yield row
+
+    words = BENCH["photos"]
     levels = tuple(_small(level) for level in LEVELS[::3]) if settings.quick else LEVELS
-    rows = []
-    for level in levels:
-        rows.append(_row(level))
-        settings.say(", ".join(map(str, rows[-1])))
-    cases = []
-    for name, level, change in _refused():
-        cases.append((name, "an error", _outcome(_small(level), change)))
-        settings.say(", ".join(cases[-1]))
-    return (
-        worded(BENCH["photos"]["rendered"], rows),
-        worded(BENCH["photos"]["refused"], cases),
-        _real(settings),
-    )
+    rendered = worded(words["rendered"], said(map(_row, levels)))
+    cases = ((name, "an error", _outcome(_small(level), way)) for name, level, way in _refused())
+    refused = worded(words["refused"], said(cases))
+    return rendered, refused, _real(settings)
 
 
 def _real(settings: BenchSettings) -> Table:
@@ -71,18 +63,17 @@ def _real(settings: BenchSettings) -> Table:
 
 def _real_row(photo: RealPhoto, data: Path | None) -> tuple[Cell, ...]:
     image = pixels_of(photo, data)
+    full = truth_of(photo, data, (image.shape[1], image.shape[0]))
     about = (photo.name, photo.source, photo.licence, "yes" if photo.asked_for else "no")
     try:
         result = segment_photo(image)
     except DrystoneError as error:
-        truth = truth_of(photo, data, (image.shape[1], image.shape[0]))
-        count = None if truth is None else int(whole_stones(truth).max())
+        count = None if full is None else int(whole_stones(full).max())
         return (*about, count, 0, None, None, None, error.code, int(error.exit_code))
-    verdict = verdict_of(result.found, doubts_of(result.found))
-    said = "doubtful" if verdict.doubtful else "found"
-    code = int(ExitCode.CHECK_FAILED if verdict.doubtful else ExitCode.DONE)
+    doubtful = verdict_of(result.found, doubts_of(result.found)).doubtful
+    said = "doubtful" if doubtful else "found"
+    code = int(ExitCode.CHECK_FAILED if doubtful else ExitCode.DONE)
     height, width = result.found.labels.shape
-    full = truth_of(photo, data, (image.shape[1], image.shape[0]))
     if full is None:
         return (*about, None, result.found.count, None, None, None, said, code)
     scaled = Image.fromarray(full.astype(np.int32)).resize((width, height), 0)
@@ -100,11 +91,16 @@ def _real_row(photo: RealPhoto, data: Path | None) -> tuple[Cell, ...]:
 
 def whole_stones(truth: NDArray[np.uint16]) -> NDArray[np.uint16]:
     """Return the stones that the edge of the picture does not cut, numbered anew."""
-    rim = np.unique(np.concatenate([truth[0], truth[-1], truth[:, 0], truth[:, -1]]))
-    kept = np.setdiff1d(np.unique(truth), np.append(rim, 0))
+    kept = _whole(truth)
     new = np.zeros(int(truth.max()) + 1, np.uint16)
     new[kept] = np.arange(1, len(kept) + 1)
     return np.asarray(new[truth])
+
+
+def _whole(truth: NDArray[np.uint16]) -> NDArray[np.uint16]:
+    """Return the numbers of the stones that the edge of the picture does not cut."""
+    rim = np.concatenate([truth[0], truth[-1], truth[:, 0], truth[:, -1]])
+    return np.setdiff1d(truth, np.append(rim, 0))
 
 
 def score(made: Photograph, result: SegmentedPhoto) -> Score:
@@ -112,15 +108,14 @@ def score(made: Photograph, result: SegmentedPhoto) -> Score:
     labels = result.found.labels
     truth = made.truth_in(inverse(result.from_photo), labels.shape)
     frame = made.truth_in(np.eye(3), (made.level.height_px, made.level.width_px))
-    rim = np.unique(np.concatenate([frame[0], frame[-1], frame[:, 0], frame[:, -1]]))
-    whole = np.setdiff1d(np.unique(frame), np.append(rim, 0)).astype(int)
+    whole = _whole(frame).astype(int)
     iou = overlaps(truth, labels)
     best = iou[whole - 1].max(axis=1)
     # What is found of a stone that is cut is no mistake of telling stones from ground.
     matched = (iou[whole - 1].max(axis=0) >= MATCHED).sum()
     return Score(
         len(whole), result.found.count, float((best >= MATCHED).mean()),
-        float(matched / result.found.count), tuple(float(value) for value in best),
+        float(matched / result.found.count), tuple(best.tolist()),
         _scale_error(made, result),
     )  # fmt: skip
 

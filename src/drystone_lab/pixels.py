@@ -1,14 +1,14 @@
 """Suite "pixels": cases from pictures, and how errors fall as the resolution grows."""
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 import shapely
 from numpy.random import Generator
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from shapely.geometry.polygon import orient
 from shapely.ops import split
 
@@ -19,7 +19,7 @@ from drystone.kernels.outline import rasterise_polygon
 from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.result import LimitResult, LimitStatus
+from drystone.statics.result import LimitStatus
 from drystone_lab.statics_cases import HEIGHT, MU, WALLS, Rectangle, closed_forms
 from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 
@@ -60,12 +60,12 @@ class TiltedWall:
         ]
         return model_from_json({"blocks": blocks, "mu": mu})
 
-    def picture(self, height_px: int, offset_px: tuple[float, float] = (0.0, 0.0)) -> Labels:
+    def picture(self, height_px: int, offset_px: ArrayLike = (0.0, 0.0)) -> Labels:
         """Return its label image: a pixel belongs to the stone that its centre lies in.
 
         `offset_px` is where the lower left corner lies right of and above a pixel corner, 0 to 1.
         """
-        scaled = [polygon * height_px + offset_px for polygon in self.polygons]
+        scaled = [polygon * height_px + np.asarray(offset_px) for polygon in self.polygons]
         width, height = np.ceil(np.max([p.max(axis=0) for p in scaled], axis=0)).astype(int)
         labels = np.zeros((int(height), int(width)), np.uint32)
         for number, polygon in enumerate(scaled, start=1):
@@ -87,8 +87,7 @@ def tilted_wall(rng: Generator, courses: int = 4, length: float = 0.9) -> Tilted
     (7, (40, 36))
     """
     for _ in range(ATTEMPTS):
-        polygons = _attempt(rng, courses, length)
-        if polygons:
+        if polygons := _attempt(rng, courses, length):
             return TiltedWall(polygons)
     raise ValueError(f"no wall of {courses} courses, {length} long, has joints far enough apart")
 
@@ -109,7 +108,12 @@ def _attempt(rng: Generator, courses: int, length: float) -> tuple[Points, ...]:
         upper = next((bed for bed in beds if _are_apart(bed, heads, outline)), None)
         if upper is None:
             return ()
-        polygons += _stones(shapely.Polygon([*lower, *upper[::-1]]) & outline, heads)
+        pieces = [shapely.Polygon([*lower, *upper[::-1]]) & outline]
+        for head in heads:
+            line = shapely.LineString(head)
+            pieces = [part for piece in pieces for part in split(piece, line).geoms]
+        pieces.sort(key=lambda piece: float(piece.centroid.x))
+        polygons += [shapely.get_coordinates(orient(piece))[:-1] for piece in pieces]
         lower, below = upper, heads
     return tuple(polygons)
 
@@ -156,15 +160,6 @@ def _are_apart(bed: Points, heads: list[Points], outline: shapely.Polygon) -> bo
     return all(after - before >= SHORTEST for before, after in pairwise(places.tolist()))
 
 
-def _stones(band: shapely.Polygon, heads: list[Points]) -> list[Points]:
-    """Cut a course into its stones, from left to right."""
-    pieces = [band]
-    for head in heads:
-        pieces = [part for piece in pieces for part in split(piece, shapely.LineString(head)).geoms]
-    pieces.sort(key=lambda piece: float(piece.centroid.x))
-    return [shapely.get_coordinates(orient(piece))[:-1] for piece in pieces]
-
-
 COURSES = (3, 4, 5)
 """The walls have these numbers of courses in turn."""
 
@@ -193,19 +188,17 @@ def refinement_errors(
         for i, wall_seed in enumerate(seeds)
     ]
     exact = [_alphas(wall.model(mu)) for wall in drawn]
-    return np.array(
-        [
-            [
-                [
-                    np.abs(_alphas(model_of(wall.picture(height_px, _offset(number)), mu)) - true)
-                    for wall, true in zip(drawn, exact, strict=True)
-                    for number in range(offsets)
-                ]
-                for model_of in (from_pixels, from_outlines)
-            ]
-            for height_px in heights_px
-        ]
-    ).reshape(len(heights_px), 2, -1)
+    # An even sequence of sub-pixel positions (Roberts's R2)
+    numbers = np.arange(offsets)[:, None]
+    places = (0.5 + numbers * (0.7548776662466927, 0.5698402909980532)) % 1.0
+    errors = [
+        np.abs(_alphas(model_of(wall.picture(height_px, place), mu)) - true)
+        for height_px in heights_px
+        for model_of in (from_pixels, from_outlines)
+        for wall, true in zip(drawn, exact, strict=True)
+        for place in places
+    ]
+    return np.reshape(errors, (len(heights_px), 2, -1))
 
 
 def fitted_order(heights_px: Sequence[int], errors: Sequence[float]) -> float:
@@ -217,20 +210,19 @@ def fitted_order(heights_px: Sequence[int], errors: Sequence[float]) -> float:
     return float(-np.polyfit(np.log(heights_px), np.log(errors), 1)[0])
 
 
-def _offset(number: int) -> tuple[float, float]:
-    """Return the n-th point of an even sequence of sub-pixel positions (Roberts's R2)."""
-    return (0.5 + 0.7548776662466927 * number) % 1.0, (0.5 + 0.5698402909980532 * number) % 1.0
-
-
-def _alphas(model: RigidBlockModel) -> np.ndarray:
+def _alphas(model: RigidBlockModel) -> Points:
+    """Return both load factors: 0 where blocks do not stand, nan where there is no number."""
     both = lateral_resistance(model)
-    return np.array([_alpha(both.left), _alpha(both.right)])
-
-
-def _alpha(result: LimitResult) -> float:
-    if result.status is LimitStatus.UNSTABLE:
-        return 0.0
-    return np.nan if result.alpha is None else result.alpha
+    return np.array(
+        [
+            0.0
+            if end.status is LimitStatus.UNSTABLE
+            else np.nan
+            if end.alpha is None
+            else end.alpha
+            for end in (both.left, both.right)
+        ]
+    )
 
 
 BRICK_PX = 20
@@ -245,7 +237,19 @@ SEEDS = 4
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
     """Return the published cases from pixels, and the study of tilted joints."""
-    return _published(quick=settings.quick), _refinement(settings)
+    heights, count = ((40, 80, 160), 1) if settings.quick else ((40, 80, 160, 320), SEEDS)
+    few = {"walls": 3, "offsets": 1} if settings.quick else {}
+    rows: list[tuple[Cell, ...]] = []
+    for seed in range(settings.seed, settings.seed + count):
+        errors = refinement_errors(heights, seed=seed, **few)
+        means, worst = np.nanmean(errors, axis=2), np.nanmax(errors, axis=2)
+        for height, mean, most in zip(heights, means.tolist(), worst.tolist(), strict=True):
+            last = height == heights[-1]
+            orders = [fitted_order(heights, each) if last else None for each in means.T]
+            rows.append(
+                (seed, height, errors.shape[2], mean[0], most[0], mean[1], most[1], *orders)
+            )
+    return _published(quick=settings.quick), worded(BENCH["pixels"]["refinement"], rows)
 
 
 def rasterised(rectangles: Iterable[Rectangle], px: float) -> Labels:
@@ -287,24 +291,18 @@ def _published(*, quick: bool) -> Table:
     rows = []
     for name, rectangles, px, mu, expected in cases:
         labels = rasterised(rectangles, px)
-        pixels, pixel_error = _compared(from_pixels, labels, mu, expected)
-        outlines, outline_error = _compared(from_outlines, labels, mu, expected)
-        known = (pixel_error, outline_error)
-        hits = all(error is not None and error <= TOLERANCE for error in known)
-        told = _both(*expected)
+        pixels, outlines = (
+            _compared(model_of(labels, mu), expected) for model_of in (from_pixels, from_outlines)
+        )
+        hits = all(error is not None and error <= TOLERANCE for _, error in (pixels, outlines))
         verdict = "pass" if hits else "miss"
-        rows.append((name, mu, told, pixels, pixel_error, outlines, outline_error, verdict))
+        rows.append((name, mu, _both(*expected), *pixels, *outlines, verdict))
     return worded(BENCH["pixels"]["published"], rows)
 
 
-def _compared(
-    model_of: Callable[[Labels, float], RigidBlockModel],
-    labels: Labels,
-    mu: float,
-    expected: tuple[float, float],
-) -> tuple[str, float | None]:
+def _compared(model: RigidBlockModel, expected: tuple[float, float]) -> tuple[str, float | None]:
     """Return what was found, and its error; None when there is no number."""
-    both = lateral_resistance(model_of(labels, mu))
+    both = lateral_resistance(model)
     if both.left.alpha is None or both.right.alpha is None:
         return f"{both.left.status} / {both.right.status}", None
     found = (both.left.alpha, both.right.alpha)
@@ -316,24 +314,3 @@ def _both(left: float, right: float) -> str:
     if abs(left - right) < 1e-4:
         return f"{left:.4f}"
     return f"{left:.4f} / {right:.4f}"
-
-
-def _refinement(settings: BenchSettings) -> Table:
-    heights, count = ((40, 80, 160), 1) if settings.quick else ((40, 80, 160, 320), SEEDS)
-    few = {"walls": 3, "offsets": 1} if settings.quick else {}
-    rows: list[tuple[Cell, ...]] = []
-    for seed in range(settings.seed, settings.seed + count):
-        rows += _study_rows(seed, heights, refinement_errors(heights, seed=seed, **few))
-    return worded(BENCH["pixels"]["refinement"], rows)
-
-
-def _study_rows(
-    seed: int, heights: Sequence[int], errors: NDArray[np.float64]
-) -> list[tuple[Cell, ...]]:
-    means, worst = np.nanmean(errors, axis=2), np.nanmax(errors, axis=2)
-    rows: list[tuple[Cell, ...]] = [
-        (seed, height, errors.shape[2], mean[0], most[0], mean[1], most[1], None, None)
-        for height, mean, most in zip(heights, means.tolist(), worst.tolist(), strict=True)
-    ]
-    rows[-1] = (*rows[-1][:-2], *(fitted_order(heights, each) for each in means.T))
-    return rows

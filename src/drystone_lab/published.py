@@ -1,6 +1,5 @@
 """Suite "statics": published and closed-form cases of the limit analysis, both flow rules."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -8,17 +7,8 @@ from drystone.statics.flow.nonassociative import NonassociativeResult, nonassoci
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult
-from drystone_lab.statics_cases import (
-    NO_SLIDING,
-    THICKEST,
-    WALLS,
-    WITH_FRICTION,
-    WITHOUT_SLIDING,
-    ArchCase,
-    arch,
-    closed_forms,
-    least_thickness,
-)
+from drystone_lab import statics_cases
+from drystone_lab.statics_cases import WALLS, WITH_FRICTION, WITHOUT_SLIDING, closed_forms
 from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 
 CLOSED_FORM_TOLERANCE = 1e-6
@@ -61,12 +51,6 @@ class Expected:
     words: str  # That range for people
     may_not_converge: bool = False  # No factor without dilatancy is accepted too
 
-    def fits(self, found: LimitResult) -> bool:
-        """Tell whether a load factor is certified and as expected."""
-        certified = found.certificate is not None and found.certificate.holds
-        near = found.alpha is not None and abs(found.alpha - self.alpha) <= self.tolerance
-        return certified and near
-
     def fits_without_dilatancy(self, found: NonassociativeResult, upper: float | None) -> bool:
         """Tell whether a factor is checked, in its range, and not above the associative one."""
         if found.alpha is None:
@@ -93,13 +77,8 @@ class CaseRow(NamedTuple):
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
     """Compare the limit analysis with all published cases."""
-    arches = (*WITHOUT_SLIDING, *WITH_FRICTION)
-    chosen = [case for case in arches if not settings.quick or case in QUICK_ARCHES]
-    return _closed_forms(quick=settings.quick), _ferris(quick=settings.quick), _arches(chosen)
-
-
-def _closed_forms(*, quick: bool) -> Table:
-    rows: list[CaseRow] = []
+    quick = settings.quick
+    forms: list[CaseRow] = []
     for number, case in enumerate(closed_forms()):
         near = CLOSED_FORM_TOLERANCE
         expected = [
@@ -107,12 +86,8 @@ def _closed_forms(*, quick: bool) -> Table:
             for alpha in (case.left, case.right)
         ]
         both_rules = not quick or number % QUICK_STEP == 0
-        rows += _rows(case.name, case.model, expected, both_rules=both_rules)
-    return _cases("closed_forms", rows)
-
-
-def _ferris(*, quick: bool) -> Table:
-    rows: list[CaseRow] = []
+        forms += _rows(case.name, case.model, expected, both_rules=both_rules)
+    walls: list[CaseRow] = []
     for wall in WALLS:
         low, high = wall.nonassociative
         words = f"{low:g} to {high:g}" if low else f"at most {high:g}, or none"
@@ -121,16 +96,18 @@ def _ferris(*, quick: bool) -> Table:
         )
         both_rules = not quick or wall.number in QUICK_WALLS
         name = f"example {wall.number}, {wall.blocks} blocks"
-        rows += _rows(name, wall.model, [expected, expected], both_rules=both_rules)
-    return _cases("ferris", rows)
-
-
-def _cases(name: str, rows: Sequence[CaseRow]) -> Table:
-    return worded(BENCH["statics"][name], rows, columns={"<case>": COLUMNS})
+        walls += _rows(name, wall.model, [expected, expected], both_rules=both_rules)
+    arches = QUICK_ARCHES if quick else (*WITHOUT_SLIDING, *WITH_FRICTION)
+    words, columns = BENCH["statics"], {"<case>": COLUMNS}
+    return (
+        worded(words["closed_forms"], forms, columns=columns),
+        worded(words["ferris"], walls, columns=columns),
+        worded(words["arches"], map(_arch_row, arches)),
+    )
 
 
 def _rows(
-    case: str, model: RigidBlockModel, expected: list[Expected], *, both_rules: bool = True
+    case: str, model: RigidBlockModel, expected: list[Expected], *, both_rules: bool
 ) -> list[CaseRow]:
     """Return a row for each direction, or one when both say the same."""
     both = lateral_resistance(model)
@@ -139,36 +116,33 @@ def _rows(
     if both_rules:
         without = nonassociative_resistance(model)
         others = [without.left, without.right]
-    left, right = (
-        _row(case, model.mu, *things) for things in zip(expected, found, others, strict=True)
-    )
-    return _together(left, right)
+    rows = (_row(case, model.mu, *things) for things in zip(expected, found, others, strict=True))
+    return _together(*rows)
 
 
 def _row(
     case: str, mu: float, expected: Expected, found: LimitResult, other: NonassociativeResult | None
 ) -> CaseRow:
-    fits = expected.fits(found)
+    difference = None if found.alpha is None else abs(found.alpha - expected.alpha)
+    fits = found.certificate is not None and found.certificate.holds
+    fits = fits and difference is not None and difference <= expected.tolerance
     if other is not None:
         fits = fits and expected.fits_without_dilatancy(other, found.alpha)
     return CaseRow(
-        case=case,
-        mu=mu,
-        towards="-x" if found.direction == "left" else "+x",
-        expected=expected.alpha,
-        alpha=found.alpha,
-        difference=None if found.alpha is None else abs(found.alpha - expected.alpha),
-        gap=None if found.certificate is None else found.certificate.gap,
-        accepted=expected.words,
-        without_dilatancy=None if other is None else other.alpha,
-        verdict=_verdict(fits=fits),
-    )
+        case, mu, "-x" if found.direction == "left" else "+x", expected.alpha, found.alpha,
+        difference, None if found.certificate is None else found.certificate.gap, expected.words,
+        None if other is None else other.alpha, "pass" if fits else "miss",
+    )  # fmt: skip
 
 
 def _together(left: CaseRow, right: CaseRow) -> list[CaseRow]:
     """Make one row of two that agree: the larger difference, and the larger gap."""
-    alike = _agree(left.alpha, right.alpha) and _agree(
-        left.without_dilatancy, right.without_dilatancy
+    alike = all(
+        one is other if one is None or other is None else abs(one - other) <= ALIKE
+        for one, other in (
+            (left.alpha, right.alpha),
+            (left.without_dilatancy, right.without_dilatancy),
+        )
     )
     if not alike or (left.expected, left.verdict) != (right.expected, right.verdict):
         return [left, right]
@@ -177,29 +151,19 @@ def _together(left: CaseRow, right: CaseRow) -> list[CaseRow]:
     return [worse._replace(towards="both", gap=gap)]
 
 
-def _agree(first: float | None, second: float | None) -> bool:
-    if first is None or second is None:
-        return first is second
-    return abs(first - second) <= ALIKE
-
-
-def _arches(cases: Sequence[ArchCase]) -> Table:
-    return worded(BENCH["statics"]["arches"], map(_arch_row, cases))
-
-
-def _arch_row(case: ArchCase) -> tuple[Cell, ...]:
-    mu: Cell = "no sliding" if case.mu == NO_SLIDING else case.mu
-    least = least_thickness(case.count, case.mu, BISECTION)
+def _arch_row(case: statics_cases.ArchCase) -> tuple[Cell, ...]:
+    mu: Cell = "no sliding" if case.mu == statics_cases.NO_SLIDING else case.mu
+    least = statics_cases.least_thickness(case.count, case.mu, BISECTION)
     if least is None or case.least is None:
-        fits = least is case.least
-        words = [f"none up to {THICKEST:g}" if t is None else t for t in (case.least, least)]
-        return case.count, mu, *words, None, None, _verdict(fits=fits)
-    certificate = lateral_resistance(arch(case.count, least, case.mu)).right.certificate
+        words = [
+            f"none up to {statics_cases.THICKEST:g}" if t is None else t
+            for t in (case.least, least)
+        ]
+        return case.count, mu, *words, None, None, "pass" if least is case.least else "miss"
+    certificate = lateral_resistance(
+        statics_cases.arch(case.count, least, case.mu)
+    ).right.certificate
     gap = None if certificate is None else certificate.gap
     difference = abs(least - case.least)
-    verdict = _verdict(fits=difference <= ARCH_TOLERANCE)
+    verdict = "pass" if difference <= ARCH_TOLERANCE else "miss"
     return case.count, mu, case.least, least, difference, gap, verdict
-
-
-def _verdict(*, fits: bool) -> str:
-    return "pass" if fits else "miss"

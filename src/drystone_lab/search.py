@@ -1,32 +1,387 @@
 """Suite "search": methods that look for good walls, compared at equal CPU time."""
 
-from collections.abc import Mapping, Sequence
+import csv
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import NamedTuple
 
 from drystone.errors import UsageError
 from drystone.io.published import published_file
 from drystone.io.wall_image import read_wall_image
+from drystone.metrics import second
 from drystone.metrics.frame import reduce_labels
 from drystone.metrics.measure import measure_labels
-from drystone.metrics.second import FINER, finer_labels, second_arrangement
-from drystone.model.wall import Labels
-from drystone.planner.settings import method_settings
+from drystone.model.site import Site
+from drystone.model.stone import StoneSet
+from drystone.model.wall import Labels, Wall
+from drystone.planner.deadline import Deadline
+from drystone.planner.planner import Planner
+from drystone.planner.settings import PlannerSettings, method_settings
+from drystone.search.anytime import searching
+from drystone.search.chain import wedged
+from drystone.search.goal import FoundWall, possible_filling
+from drystone.search.packed import found_again
+from drystone.search.yard import Yard
 from drystone_lab.paired import median_difference, median_of
 from drystone_lab.planned_walls import SETS, missing_data
 from drystone_lab.runs.spec import Changes, nested, told
-from drystone_lab.search_runs import (
-    FIGURES,
-    NO_COURSES,
-    RESTARTS,
-    SEARCH,
-    WAYS,
-    WEDGED,
-    SearchResult,
-    SearchRun,
-    method_name,
-    searched,
-    searched_walls,
+from drystone_lab.runs.workers import crew
+from drystone_lab.table import BENCH, BenchSettings, Cell, Table, read_rows, worded
+from drystone_lab.walls import BRICKS, SEARCHED, UNSEEN, Target, chosen
+
+Clock = Callable[[], float]
+
+ENDLESS = 10**9
+"""A budget that is never used up: the clock ends all ways."""
+
+BETWEEN_SEEDS = 10_000
+"""Restarts of two seeds that are nearer to each other than this have no pass in common."""
+
+
+class WayState(NamedTuple):
+    """How far a way is."""
+
+    walls: int  # How many walls it has built
+    best: Callable[[], FoundWall]  # Gives the best of them
+
+
+class SearchWay(NamedTuple):
+    """A way to look for a good wall."""
+
+    name: str
+    # Goes on from the planner of the first wall, which is built, for as long as it is asked, or
+    # until a time of a clock
+    states: Callable[[Planner, float, Clock], Iterator[WayState]]
+
+
+class WayResult(NamedTuple):
+    """What a way came to."""
+
+    found: FoundWall
+    walls: int  # How many walls it built; the last may have been finished after the end
+    possible: float  # Area bound on F_SF
+    seconds: float
+
+
+def _restarts(first: Planner, _end: float, _clock: Clock) -> Iterator[WayState]:
+    return _passes(first, lambda found, _: found)
+
+
+def _restarts_with_wedges(first: Planner, _end: float, _clock: Clock) -> Iterator[WayState]:
+    yard = Yard.of(first)
+
+    def finished(found: FoundWall, best: FoundWall) -> FoundWall:
+        # As a chain of the search does it: the others are not worth the time.
+        if found.merit <= best.merit - yard.settings.search.wedge_below:
+            return found
+        return wedged(found, yard)
+
+    return _passes(first, finished)
+
+
+def _passes(
+    first: Planner, finished: Callable[[FoundWall, FoundWall], FoundWall]
+) -> Iterator[WayState]:
+    """Build wall after wall from other seeds, and keep the best."""
+    start = FoundWall.of(first)
+    best, walls = finished(start, start), 1
+    while True:
+        yield WayState(walls, lambda best=best: best)  # type: ignore[misc]
+        planner = Planner(
+            first.workshop.stones,
+            first.workshop.site,
+            seed=first.seed + BETWEEN_SEEDS * walls,
+            settings=first.settings,
+            workshop=first.workshop,
+        )
+        for _ in planner.steps():
+            pass
+        found = finished(FoundWall.of(planner), best)
+        best, walls = max(best, found, key=lambda one: one.merit), walls + 1
+
+
+def _search(first: Planner, end: float, clock: Clock) -> Iterator[WayState]:
+    return _searched(first, first.settings, end, clock)
+
+
+def _without_courses(first: Planner, end: float, clock: Clock) -> Iterator[WayState]:
+    # Courses are planned in further first walls only, and chains of other walls never do.
+    settings = first.settings
+    alone = replace(settings, search=replace(settings.search, passes=1))
+    return _searched(first, alone, end, clock)
+
+
+def _searched(
+    first: Planner, settings: PlannerSettings, end: float, clock: Clock
+) -> Iterator[WayState]:
+    yard = Yard(first.workshop, settings, Deadline(end, clock))
+    for progress in searching(FoundWall.of(first), yard, first.seed):
+        packed = progress.best
+        yield WayState(
+            progress.walls,
+            lambda packed=packed: found_again(packed, Yard(first.workshop, settings)),  # type: ignore[misc]
+        )
+
+
+RESTARTS, WEDGED = "restarts", "restarts with wedges"
+SEARCH, NO_COURSES = "search", "without courses"
+
+WAYS = (
+    SearchWay(RESTARTS, _restarts),
+    SearchWay(WEDGED, _restarts_with_wedges),
+    SearchWay(SEARCH, _search),
+    SearchWay(NO_COURSES, _without_courses),
 )
-from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
+
+
+def tries(budget: int) -> PlannerSettings:
+    """Return the settings of `best` with so many walls tried; 1 is a single pass."""
+    best = method_settings("best")
+    return replace(best, search=replace(best.search, budget=budget))
+
+
+def looked_at_times(
+    way: SearchWay,
+    stones: StoneSet,
+    target: Target,
+    times: Sequence[float],
+    seed: int,
+    clock: Clock = time.process_time,
+    changes: Changes = (),
+) -> list[WayResult]:
+    """Look for a good wall, and say what was the best after several times.
+
+    The last wall is the one that is begun before the end and finished after it, but for a search,
+    which leaves it there; of the earlier times what was finished by then counts, though never less
+    than the first wall.
+    """
+    started = clock()
+    end = started + times[-1]
+    # Another budget for every seed, so that nothing is left over from a search of another seed.
+    settings = tries(ENDLESS + seed).updated(nested(changes))
+    width, height = target.size(stones)
+    site = Site.from_source(width, height, target.scale)
+    first = Planner(stones, site, seed=seed, settings=settings)
+    for _ in first.steps():
+        pass
+    reached: list[tuple[WayState, float]] = []
+    before: tuple[WayState, float] | None = None
+    for state in way.states(first, end, clock):
+        now = state, clock()
+        while len(reached) < len(times) - 1 and now[1] > started + times[len(reached)]:
+            reached.append(before or now)
+        before = now
+        if now[1] > end:
+            break
+    assert before is not None  # noqa: S101 - the first wall is there
+    reached += [before] * (len(times) - len(reached))
+    # Packed walls are built again only now, in nobody's time.
+    possible = possible_filling(first.workshop)
+    return [WayResult(state.best(), state.walls, possible, at - started) for state, at in reached]
+
+
+FIGURES = (
+    "placed", "F_SF", "F_AV", "F_AH", "F_LR", "2nd F_AV", "2nd F_AH", "T_LEVEL", "E_FLUSH", "merit",
+)  # fmt: skip
+"""What is compared."""
+
+SPENT = ("possible F_SF", "walls", "CPU s")
+"""Area bound on F_SF, walls built, and time; every result has them."""
+
+SearchResult = Mapping[str, float | None]
+"""What one method came to, by :data:`FIGURES` and :data:`SPENT`; None where it is not defined."""
+
+
+class SearchRun(NamedTuple):
+    """One method that looks for one wall."""
+
+    wall: str
+    way: str  # the method, with the settings that were replaced
+    seed: int
+    seconds: float  # CPU time
+
+
+COLUMNS = ("wall", "method", "seed", "seconds", *FIGURES, *SPENT)
+"""Of the table."""
+
+
+def result_of(looked: WayResult) -> SearchResult:
+    """Measure a wall by both definitions."""
+    found, figures = looked.found, looked.found.figures
+    if figures is None:
+        raise ValueError("no stone stands in this wall")
+    other = second_of(found.build.wall)
+    values = (
+        figures.stones, figures.F_SF, figures.F_AV, figures.F_AH, figures.F_LR, other.F_AV,
+        other.F_AH, figures.T_LEVEL, figures.E_FLUSH, found.merit, looked.possible, looked.walls,
+        looked.seconds,
+    )  # fmt: skip
+    return dict(zip((*FIGURES, *SPENT), values, strict=True))
+
+
+def in_words(result: SearchResult, stones: int) -> str:
+    """Return a result for people who wait; `stones` are all that there are."""
+    values = {name: "-" if v is None else f"{v:.4g}" for name, v in result.items()}
+    named = ", ".join(f"{name} {values[name]}" for name in FIGURES[1:])
+    return f"{values['placed']} of {stones} stones, {named}, {result['walls']} walls"
+
+
+def second_of(wall: Wall) -> second.SecondArrangement:
+    """Measure a planned wall by the second definition, on outlines where it has them."""
+    if wall.outlines is None:
+        return second.second_arrangement(second.finer_labels(wall.labels))
+    return second.second_arrangement(second.outlined_labels(wall.outlines.blocks, wall.site))
+
+
+def read_results(path: Path) -> dict[SearchRun, SearchResult]:
+    """Read the results that a table holds; none when there is no table; E148 for another file."""
+    if not path.exists():
+        return {}
+    refused = UsageError(
+        "E148",
+        "this is not a table of searches of this version.",
+        cure="Name another file, which is begun anew, or take out the line if it was cut off.",
+    )
+    return dict(read_rows(path, COLUMNS, _row, refused))
+
+
+def _row(row: dict[str, str]) -> tuple[SearchRun, SearchResult]:
+    run = SearchRun(row["wall"], row["method"], int(row["seed"]), float(row["seconds"]))
+    # Figures that count something are whole.
+    result = {
+        name: None if row[name] == "" else int(row[name]) if row[name].isdecimal()
+        else float(row[name])
+        for name in (*FIGURES, *SPENT)
+    }  # fmt: skip
+    if None in (result[name] for name in SPENT):
+        raise ValueError(row)
+    return run, result
+
+
+def append_results(path: Path, results: Iterable[tuple[SearchRun, SearchResult]]) -> None:
+    """Add results at the end of a table, which is begun when there is none."""
+    new = not path.exists()
+    with path.open("a", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        if new:
+            writer.writerow(COLUMNS)
+        for run, result in results:
+            writer.writerow([*run, *(result[name] for name in (*FIGURES, *SPENT))])
+
+
+@dataclass(frozen=True)
+class SearchTask:
+    """What one process does: a method looks for a wall, and is asked at several times."""
+
+    wall: str  # name of the target
+    way: str
+    seed: int
+    times: tuple[float, ...]  # CPU times, s
+    data: Path | None
+    quick: bool  # whether targets are those of the smaller version
+    changes: Changes = ()
+
+    @property
+    def runs(self) -> list[SearchRun]:
+        """What its results are called; runs with other settings are not taken for these."""
+        method = method_name(self.way, self.changes)
+        return [SearchRun(self.wall, method, self.seed, seconds) for seconds in self.times]
+
+    def __str__(self) -> str:
+        return f"{self.wall}, {method_name(self.way, self.changes)}, seed {self.seed}"
+
+
+def method_name(way: str, changes: Changes) -> str:
+    """Return what a way with settings is called in a table.
+
+    >>> method_name("search", (("goal.F_AV", 24.0),))
+    'search, goal.F_AV = 24.0'
+    """
+    return f"{way}, {told(changes)}" if changes else way
+
+
+def searched(
+    walls: Sequence[tuple[Target, StoneSet]],
+    seeds: Sequence[int],
+    times: tuple[float, ...],
+    settings: BenchSettings,
+) -> dict[SearchRun, SearchResult]:
+    """Let every method look for every wall with every seed; what the table has is not done again.
+
+    With each seed all methods take turns, so that all have the same day.  `times` are CPU times,
+    rising, s.
+    """
+    known = {} if settings.runs is None else read_results(settings.runs)
+    tasks = [
+        SearchTask(
+            target.name, way.name, seed, times, settings.data, settings.quick, settings.changes
+        )
+        for seed in seeds
+        for target, _ in walls
+        for way in chosen_ways(settings.policies)
+    ]
+    counts = {target.name: len(stones) for target, stones in walls}
+    left = [task for task in tasks if not known.keys() >= set(task.runs)]
+    for task, results in _done(left, settings.jobs or 1):
+        found = dict(zip(task.runs, results, strict=True))
+        new = {run: result for run, result in found.items() if run not in known}
+        known |= new
+        if settings.runs is not None:
+            append_results(settings.runs, new.items())
+        for run, result in new.items():
+            settings.say(
+                f"{run.wall}, {run.way}, seed {run.seed}, {run.seconds:g} s: "
+                f"{in_words(result, counts[run.wall])}"
+            )
+    return {run: known[run] for task in tasks for run in task.runs}
+
+
+def searched_walls(settings: BenchSettings) -> tuple[Target, ...]:
+    """Return the walls of the suite: of published stones, and sets that are made for it alone."""
+    return chosen((BRICKS,) if settings.quick else (*SEARCHED, *UNSEEN), settings.only)
+
+
+def chosen_ways(names: Sequence[str]) -> tuple[SearchWay, ...]:
+    """Return all ways, or those that are named; E138 for a name that none has."""
+    unknown = set(names) - {way.name for way in WAYS}
+    if unknown:
+        raise UsageError(
+            "E138",
+            f"there is no way to search that is called {min(unknown)!r}.",
+            where="--policy",
+            cure=f"There are {', '.join(repr(way.name) for way in WAYS)}.",
+        )
+    return tuple(way for way in WAYS if not names or way.name in names)
+
+
+def _done(
+    tasks: Sequence[SearchTask], jobs: int
+) -> Iterator[tuple[SearchTask, list[SearchResult]]]:
+    """Do tasks, and give their results as they come."""
+    if jobs == 1:
+        yield from map(_with_results, tasks)
+    else:
+        with crew(jobs, fresh=True) as processes:
+            yield from processes.work(_with_results, tasks)
+
+
+def _with_results(task: SearchTask) -> tuple[SearchTask, list[SearchResult]]:
+    """Do a task, and say which it was."""
+    return task, do(task)
+
+
+def do(task: SearchTask) -> list[SearchResult]:
+    """Do a task."""
+    settings = BenchSettings(data=task.data, quick=task.quick)
+    (target,) = (one for one in searched_walls(settings) if one.name == task.wall)
+    (way,) = (one for one in WAYS if one.name == task.way)
+    stones = target.stones(task.data)
+    assert stones is not None  # noqa: S101 - who asks has seen them
+    looked = looked_at_times(way, stones, target, task.times, task.seed, changes=task.changes)
+    return [result_of(one) for one in looked]
+
 
 SECONDS, SEEDS = 20.0, 6
 QUICK_SECONDS, QUICK_SEEDS = 0.1, 2
@@ -41,7 +396,15 @@ ByWay = Mapping[str, Sequence[SearchResult]]
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
     """Let every method look for every wall with every seed."""
-    _check(settings.changes)
+    own = [name for name, _ in settings.changes if name in ("geometry", "search.budget")]
+    if own:
+        raise UsageError(
+            "E138",
+            f"{own[0]} cannot be replaced: walls are searched on outlines, for a time.",
+            where="--settings",
+            cure="Leave it out; see --only and --seconds.",
+        )
+    method_settings("best").updated(nested(settings.changes))  # E123 for what there is not
     times, seeds = _effort(settings)
     walls = [
         (target, stones)
@@ -52,31 +415,22 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     tables = []
     with_settings = [f"With {told(settings.changes)}."] if settings.changes else []
     notes = (*with_settings, *missing_data(settings))
+    of = BENCH["search"]
     for seconds in times:
-        compared = [
-            (target.name, len(stones), _by_way(target.name, seeds, seconds, settings, results))
-            for target, stones in walls
-        ]
-        medians = [row for one in compared for row in _rows(*one)]
-        differences = [row for name, _, found in compared for row in _differences(name, found)]
-        of = BENCH["search"]
+        medians: list[tuple[Cell, ...]] = []
+        differences: list[tuple[Cell, ...]] = []
+        for target, stones in walls:
+            found = {}
+            for way in chosen_ways(settings.policies):
+                method = method_name(way.name, settings.changes)
+                runs = [SearchRun(target.name, method, seed, seconds) for seed in seeds]
+                found[way.name] = [results[run] for run in runs]
+            medians += _rows(target.name, len(stones), found)
+            differences += _differences(target.name, found)
         tables.append(worded(of["medians"], medians, more=notes, seconds=seconds, seeds=len(seeds)))
         columns = {"<figures>": FIGURES}
         tables.append(worded(of["paired"], differences, columns=columns, seconds=seconds))
     return (*tables, masons_walls(settings))
-
-
-def _check(changes: Changes) -> None:
-    """Refuse settings that there are not (E123), and what walls and times say themselves (E138)."""
-    own = [name for name, _ in changes if name in ("geometry", "search.budget")]
-    if own:
-        raise UsageError(
-            "E138",
-            f"{own[0]} cannot be replaced: walls are searched on outlines, for a time.",
-            where="--settings",
-            cure="Leave it out; see --only and --seconds.",
-        )
-    method_settings("best").updated(nested(changes))
 
 
 def _effort(settings: BenchSettings) -> tuple[tuple[float, ...], range]:
@@ -84,23 +438,6 @@ def _effort(settings: BenchSettings) -> tuple[tuple[float, ...], range]:
     usual = (QUICK_SECONDS, QUICK_SEEDS) if settings.quick else (SECONDS, SEEDS)
     times = tuple(sorted(set(settings.seconds))) or (usual[0],)
     return times, range(settings.seed, settings.seed + (settings.seeds or usual[1]))
-
-
-def _by_way(
-    wall: str,
-    seeds: Sequence[int],
-    seconds: float,
-    settings: BenchSettings,
-    results: Mapping[SearchRun, SearchResult],
-) -> ByWay:
-    """Sort the results of a wall after a time by methods."""
-    found = {}
-    for way in WAYS:
-        method = method_name(way.name, settings.changes)
-        runs = [SearchRun(wall, method, seed, seconds) for seed in seeds]
-        if runs[0] in results:
-            found[way.name] = [results[run] for run in runs]
-    return found
 
 
 def _rows(wall: str, stones: int, by_way: ByWay) -> list[tuple[Cell, ...]]:
@@ -149,8 +486,8 @@ def masons_row(name: str, labels: Labels, scale: float) -> tuple[Cell, ...]:
     """Measure one of them."""
     reduced = reduce_labels(labels, scale)
     first = measure_labels(reduced)
-    repeated = second_arrangement(finer_labels(reduced))
-    sampled = second_arrangement(reduce_labels(labels, FINER * scale))
+    repeated = second.second_arrangement(second.finer_labels(reduced))
+    sampled = second.second_arrangement(reduce_labels(labels, second.FINER * scale))
     height, width = reduced.shape
     return (
         name, f"{width}x{height}", first.stones, first.F_SF, first.F_AV, first.F_AH,

@@ -12,6 +12,7 @@ from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from statistics import fmean, stdev
+from typing import NamedTuple
 
 import numpy as np
 
@@ -95,9 +96,15 @@ def shear_wall(
     (50, 18.6)
     """
     kn_m2 = series.density_kg_m3 * GRAVITY * series.thickness / 1e3
-    boxes = [*_stones(series, halves_first=halves_first)]
-    top = 2.0 * series.load_height - series.height
-    boxes.append((0.0, series.height, series.length, top))
+    boxes = []  # left, bottom, right and top
+    for course in range(series.course_count):
+        halves = (course % 2 == 0) == halves_first
+        first = series.block_length / 2.0 if halves else series.block_length
+        inner = np.arange(first, series.length - COURSE_TOLERANCE, series.block_length)
+        bottom = course * series.block_height
+        for left, right in pairwise([0.0, *inner.tolist(), series.length]):
+            boxes.append((left, bottom, right, bottom + series.block_height))
+    boxes.append((0.0, series.height, series.length, 2.0 * series.load_height - series.height))
     beam = len(boxes)
     blocks = [
         {
@@ -116,19 +123,6 @@ def shear_wall(
     return model, Loads(dead, point_load(model, beam, middle, (1.0, 0.0)), "shear test")
 
 
-def _stones(
-    series: ShearSeries, *, halves_first: bool
-) -> Iterator[tuple[float, float, float, float]]:
-    """Yield left, bottom, right and top of the blocks, course by course."""
-    for course in range(series.course_count):
-        halves = (course % 2 == 0) == halves_first
-        first = series.block_length / 2.0 if halves else series.block_length
-        inner = np.arange(first, series.length - COURSE_TOLERANCE, series.block_length)
-        bottom = course * series.block_height
-        for left, right in pairwise([0.0, *inner.tolist(), series.length]):
-            yield left, bottom, right, bottom + series.block_height
-
-
 FRICTION = 0.62
 """Of sawn stone on stone, and of the beam on it; assumed for both stones."""
 
@@ -144,16 +138,14 @@ ShearModel = Callable[["ShearSeries", "Loading"], "ShearForces"]
 PICTURE, DPI = "shear_tests.png", 170
 
 
-@dataclass(frozen=True)
-class ShearForces:
+class ShearForces(NamedTuple):
     """V in kN by both flow rules; None where an answer is not certified."""
 
     associative: float | None
     without_dilatancy: float | None
 
 
-@dataclass(frozen=True)
-class Loading:
+class Loading(NamedTuple):
     """What a prediction depends on besides the wall."""
 
     vertical_kn: float
@@ -171,37 +163,31 @@ def predict(series: ShearSeries, loading: Loading) -> ShearForces:
     15.0
     """
     model, loads = shear_wall(
-        series,
-        loading.vertical_kn,
-        loading.mu,
-        level=loading.level,
+        series, loading.vertical_kn, loading.mu, level=loading.level,
         halves_first=loading.halves_first,
-    )
+    )  # fmt: skip
     associative = lateral_resistance(model, loads).right.alpha
     without = nonassociative_load(model, "right", loads=loads).alpha
-    return ShearForces(*(None if v is None else round(v, 6) for v in (associative, without)))
+    return ShearForces(_rounded(associative, 6), _rounded(without, 6))
 
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
     """Compare the limit analysis with the shear tests."""
     # Tests of one series with the same vertical load have the same prediction, which is made once.
     known = cache(predict)
+
+    def model(series: ShearSeries, loading: Loading) -> ShearForces:
+        return known(replace(series, name="", tests=()), loading)
+
+    asked = SERIES
     if settings.quick:
-        few = tuple(replace(series, tests=series.tests[:1]) for series in SERIES)
-        return _predicted(known, few), _by_test(known, few), _scatter(known, few)
+        asked = tuple(replace(series, tests=series.tests[:1]) for series in SERIES)
+    tables = _predicted(model, asked), _by_test(model, asked), _scatter(model, asked)
+    if settings.quick:
+        return tables
     if settings.output is not None:
-        _draw(known, settings.output / PICTURE)
-    return (
-        _predicted(known, SERIES),
-        _by_test(known, SERIES),
-        _scatter(known, SERIES),
-        _friction(known),
-        _details(known),
-    )
-
-
-def _v(known: ShearModel, series: ShearSeries, loading: Loading) -> ShearForces:
-    return known(replace(series, name="", tests=()), loading)
+        _draw(model, settings.output / PICTURE)
+    return (*tables, _friction(model), _details(model))
 
 
 MODELS = tuple(
@@ -216,35 +202,34 @@ def _worded(name: str, rows: Iterable[tuple[Cell, ...]], notes: Iterable[str] = 
 
 
 def _four(
-    known: ShearModel, series: ShearSeries, vertical_kn: float, mu: float = FRICTION
+    model: ShearModel, series: ShearSeries, vertical_kn: float, mu: float = FRICTION
 ) -> list[float | None]:
     """Return V by all `MODELS`."""
-    both = [_v(known, series, Loading(vertical_kn, level, mu)) for level in RESTRAINTS]
-    return [v for p in both for v in (p.associative, p.without_dilatancy)]
+    return [v for level in RESTRAINTS for v in model(series, Loading(vertical_kn, level, mu))]
 
 
 def _ratios(
-    known: ShearModel, all_series: Sequence[ShearSeries], mu: float = FRICTION
+    model: ShearModel, all_series: Sequence[ShearSeries], mu: float = FRICTION
 ) -> list[list[float | None]]:
     """Return predicted over measured of every test by all `MODELS`."""
     return [
         [
             None if v is None else v / test.measured_kn
-            for v in _four(known, one, test.vertical_kn, mu)
+            for v in _four(model, one, test.vertical_kn, mu)
         ]
         for one in all_series
         for test in one.tests
     ]
 
 
-def _predicted(known: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
+def _predicted(model: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for series in all_series:
         for vertical in dict.fromkeys(test.vertical_kn for test in series.tests):
             tests = [test for test in series.tests if test.vertical_kn == vertical]
             peaks = [peak for test in tests for peak in test.peaks_kn]
             measured = f"{min(peaks):g} to {max(peaks):g}" if len(peaks) > 1 else f"{peaks[0]:g}"
-            values = [_rounded(v, 1) for v in _four(known, series, vertical)]
+            values = [_rounded(v, 1) for v in _four(model, series, vertical)]
             rows.append((series.name, vertical, len(tests), measured, *values))
     about = (
         f"{series.name}: {series.course_count} courses of {series.block_length:g} x "
@@ -256,34 +241,32 @@ def _predicted(known: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
     return _worded("predicted", rows, about)
 
 
-def _by_test(known: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
+def _by_test(model: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for series in all_series:
-        for test, ratios in zip(series.tests, _ratios(known, [series]), strict=True):
+        for test, ratios in zip(series.tests, _ratios(model, [series]), strict=True):
             peaks = " / ".join(f"{peak:g}" for peak in test.peaks_kn)
             values = [_rounded(ratio, 2) for ratio in ratios]
             rows.append((test.name, test.vertical_kn, peaks, *values))
     return _worded("by_test", rows)
 
 
-def _scatter(known: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
-    rows: list[tuple[Cell, ...]] = [
-        (name, *_mean_and_deviation(_ratios(known, series)))
-        for name, series in (*((one.name, (one,)) for one in all_series), ("all", all_series))
-    ]
+def _scatter(model: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
+    named = (*((one.name, (one,)) for one in all_series), ("all", all_series))
+    rows = ((name, *_mean_and_deviation(_ratios(model, series))) for name, series in named)
     return _worded("scatter", rows)
 
 
-def _friction(known: ShearModel) -> Table:
-    rows: list[tuple[Cell, ...]] = [
-        (one.name, mu, *_mean_and_deviation(_ratios(known, (one,), mu)))
+def _friction(model: ShearModel) -> Table:
+    rows = (
+        (one.name, mu, *_mean_and_deviation(_ratios(model, (one,), mu)))
         for one in SERIES
         for mu in FRICTION_BAND
-    ]
+    )
     return _worded("friction", rows)
 
 
-def _details(known: ShearModel) -> Table:
+def _details(model: ShearModel) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for series in SERIES[:2]:
         loads = sorted({test.vertical_kn for test in series.tests})
@@ -295,15 +278,14 @@ def _details(known: ShearModel) -> Table:
         for vertical in (loads[0], loads[-1]):
             for name, varied, halves in variants:
                 loading = Loading(vertical, level=False, halves_first=halves)
-                v = _v(known, varied, loading)
-                values = (_rounded(v.associative, 2), _rounded(v.without_dilatancy, 2))
+                values = (_rounded(v, 2) for v in model(varied, loading))
                 rows.append((series.name, vertical, name, *values))
     return _worded("details", rows)
 
 
 def _mean_and_deviation(ratios: Sequence[Sequence[float | None]]) -> list[str]:
     """Return mean and standard deviation of every column, of the answers that there are."""
-    columns = [[v for v in column if v is not None] for column in zip(*ratios, strict=True)]
+    columns = ([v for v in column if v is not None] for column in zip(*ratios, strict=True))
     return [f"{fmean(v):.2f} ± {stdev(v):.2f}" if len(v) > 1 else "-" for v in columns]
 
 
@@ -311,7 +293,7 @@ def _rounded(value: float | None, digits: int) -> float | None:
     return None if value is None else round(value, digits)
 
 
-def _draw(known: ShearModel, path: Path) -> None:
+def _draw(model: ShearModel, path: Path) -> None:
     """Draw predicted against measured, associative, with the band of friction."""
     from drystone.drawing.files import save  # noqa: PLC0415 - Matplotlib takes long to import
     from drystone_lab.pictures.validation import Prediction, plot_predictions  # noqa: PLC0415
@@ -321,7 +303,7 @@ def _draw(known: ShearModel, path: Path) -> None:
         for series in SERIES:
             for test in series.tests:
                 loads = [Loading(test.vertical_kn, level, mu) for mu in FRICTION_BAND]
-                band = [_v(known, series, loading).associative for loading in loads]
+                band = (model(series, loading).associative for loading in loads)
                 found = [v for v in band if v is not None]
                 if len(found) == len(band):
                     points.append(Prediction(series.name, restraint, test.measured_kn, *found))

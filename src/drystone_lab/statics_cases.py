@@ -124,22 +124,15 @@ class ArchCase:
     least: float | None  # Least t/R, to five digits; None when no thickness up to `THICKEST` stands
 
 
-WITHOUT_SLIDING = (
-    ArchCase(9, NO_SLIDING, 0.10213),
-    ArchCase(11, NO_SLIDING, 0.10491),
-    ArchCase(16, NO_SLIDING, 0.10724),
-    ArchCase(20, NO_SLIDING, 0.10746),
-    ArchCase(27, NO_SLIDING, 0.10678),
-    ArchCase(40, NO_SLIDING, 0.10746),
-    ArchCase(100, NO_SLIDING, 0.10746),
-)
-
-WITH_FRICTION = (
-    ArchCase(40, 0.5, 0.10746),
-    ArchCase(40, 0.4, 0.10746),
-    ArchCase(40, 0.35, 0.15182),
-    ArchCase(40, 0.32, 0.18544),
-    ArchCase(40, 0.3, None),
+WITHOUT_SLIDING = tuple(
+    ArchCase(count, NO_SLIDING, least)
+    for count, least in {
+        9: 0.10213, 11: 0.10491, 16: 0.10724, 20: 0.10746, 27: 0.10678, 40: 0.10746, 100: 0.10746,
+    }.items()
+)  # fmt: skip
+WITH_FRICTION = tuple(
+    ArchCase(40, mu, least)
+    for mu, least in {0.5: 0.10746, 0.4: 0.10746, 0.35: 0.15182, 0.32: 0.18544, 0.3: None}.items()
 )
 
 
@@ -243,26 +236,21 @@ class FerrisWall:
         return model_from_json({"blocks_xywh": self.rectangles, "mu": MU})
 
 
-_DOORS_3 = (Q_OPEN, P_OPEN)
-_DOORS_4 = (A_OPEN, B_OPEN)
-_DOORS_5 = (C_OPEN, D_OPEN)
-_DOORS_6 = (E_OPEN, F_OPEN)
-
 WALLS = (
     FerrisWall(1, (A, B) * 3, 33, 83, 0.64286, (0.638, 0.650)),
     FerrisWall(2, (A, B) * 5, 55, 141, 0.58000, (0.550, 0.564)),
-    FerrisWall(3, (P, Q, P, *_DOORS_3 * 2, Q_OPEN, P, Q, P), 46, 102, 0.40369, (0.350, 0.361)),
-    FerrisWall(4, (A, B, A, *_DOORS_4 * 2, A_OPEN, A, B, A), 55, 116, 0.33195, (0.262, 0.267)),
     FerrisWall(
-        5, (*(C, D, C, *_DOORS_5 * 2, C_OPEN) * 2, C, D, C), 61, 120, 0.23964, (0.205, 0.217)
+        3, (P, Q, P, *(Q_OPEN, P_OPEN) * 2, Q_OPEN, P, Q, P), 46, 102, 0.40369, (0.350, 0.361)
     ),
     FerrisWall(
-        6,
-        (E, F, E, F, *_DOORS_6 * 2, E_OPEN, F, E, F, *_DOORS_6 * 2, E_OPEN, F, E, F, E),
-        146,
-        345,
-        0.34782,
-        (0.0, 0.34783),
-        may_not_converge=True,
+        4, (A, B, A, *(A_OPEN, B_OPEN) * 2, A_OPEN, A, B, A), 55, 116, 0.33195, (0.262, 0.267)
     ),
-)
+    FerrisWall(
+        5, (*(C, D, C, *(C_OPEN, D_OPEN) * 2, C_OPEN) * 2, C, D, C), 61, 120, 0.23964,
+        (0.205, 0.217),
+    ),
+    FerrisWall(
+        6, (E, F, *(E, F, *(E_OPEN, F_OPEN) * 2, E_OPEN, F) * 2, E, F, E), 146, 345, 0.34782,
+        (0.0, 0.34783), may_not_converge=True,
+    ),
+)  # fmt: skip

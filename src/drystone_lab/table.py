@@ -76,9 +76,9 @@ def read_rows(
     path: Path,
     columns: tuple[str, ...],
     read: Callable[[dict[str, str]], Row],
-    refused: Callable[[str], DrystoneError],
+    refused: DrystoneError,
 ) -> Iterator[Row]:
-    """Read a CSV file of such a table; what is refused is another file, at a place in it."""
+    """Read a CSV file of such a table; of another one what is refused says the place."""
     with path.open(newline="", encoding="utf-8") as file:
         rows = csv.DictReader(file)
         try:
@@ -89,7 +89,8 @@ def read_rows(
                     raise ValueError(row)  # fewer cells than columns
                 yield read(row)
         except (TypeError, ValueError, csv.Error) as error:
-            raise refused(f"{path}:{max(1, rows.line_num)}") from error
+            refused.where = f"{path}:{max(1, rows.line_num)}"
+            raise refused from error
 
 
 def worded(

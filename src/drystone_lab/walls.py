@@ -48,6 +48,11 @@ class Target:
         """Return the stones; None when published data that they need are not there."""
         return self.source.stones(data) if self.source.is_there(data) else None
 
+    @property
+    def working_px(self) -> str:
+        """Width and height of the wall in working px, for people."""
+        return f"{self.width * self.scale:.0f} x {self.height * self.scale:.0f}"
+
     def size(self, stones: StoneSet) -> tuple[float, float]:
         """Return the width and height of the wall, source px."""
         source = stones.source

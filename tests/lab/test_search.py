@@ -11,12 +11,13 @@ from drystone.metrics.second import finer_labels, second_arrangement
 from drystone.model.site import Site
 from drystone.model.wall import Wall
 from drystone_lab import search
-from drystone_lab.search import masons_row, masons_walls
-from drystone_lab.search_runs import (
+from drystone_lab.search import (
     FIGURES,
     SPENT,
     SearchRun,
     append_results,
+    masons_row,
+    masons_walls,
     result_of,
     searched_walls,
     second_of,

@@ -13,7 +13,7 @@ from drystone.errors import DrystoneError, UsageError
 from drystone.generate.brick import BrickSettings, brick_stones
 from drystone.planner.settings import method_settings
 from drystone.search.plan_wall import plan_wall
-from drystone_lab import search_runs
+from drystone_lab import search as search_runs
 from drystone_lab.runs.spec import generated
 from drystone_lab.table import BenchSettings
 from drystone_lab.walls import BRICKS, Target

@@ -51,16 +51,10 @@ class PhotoLevel:
     px_per_m: float = 1250.0  # About, in the middle of the photograph
 
 
-def _levels() -> tuple[PhotoLevel, ...]:
-    text = Path(__file__).with_name("levels.toml").read_text("utf-8")
-    levels = tomllib.loads(text)["levels"]
-    return tuple(
-        PhotoLevel(**level | {"rocks": tuple(level.get("rocks", PhotoLevel.rocks))})
-        for level in levels
-    )
-
-
-LEVELS = _levels()
+LEVELS = tuple(
+    PhotoLevel(**level | {"rocks": tuple(level.get("rocks", PhotoLevel.rocks))})
+    for level in tomllib.loads(Path(__file__).with_name("levels.toml").read_text("utf-8"))["levels"]
+)
 """Test photographs, from easy to hard."""
 
 

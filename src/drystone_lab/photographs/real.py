@@ -3,12 +3,13 @@
 import io
 import json
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import skimage
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 from scipy import ndimage
@@ -45,24 +46,18 @@ class RealPhoto:
 _FILE = tomllib.loads(Path(__file__).with_name("real.toml").read_text("utf-8"))
 
 
-def _photos(kind: str) -> tuple[RealPhoto, ...]:
-    def frozen(photo: Mapping[str, Any]) -> dict[str, Any]:
-        return dict(photo) | {
-            name: tuple(tuple(part) if isinstance(part, list) else part for part in photo[name])
-            for name in ("box", "drawn")
-            if name in photo
-        }
-
-    return tuple(RealPhoto(**frozen(photo)) for photo in _FILE[kind])
+def _frozen(value: Any) -> Any:
+    return tuple(map(_frozen, value)) if isinstance(value, list) else value
 
 
-PHOTOS = _photos("photos")
-"""The photographs of the study."""
+PHOTOS, COMPOSITES = (
+    tuple(RealPhoto(**{name: _frozen(value) for name, value in photo.items()}) for photo in photos)
+    for photos in (_FILE["photos"], _FILE["composites"])
+)
+"""The photographs of the study; and real pebbles of the first one on other real grounds: edges
+and shadows are not real."""
 
 _PEBBLES = PHOTOS[0]
-
-COMPOSITES = _photos("composites")
-"""Real pebbles of the first photograph on other real grounds: edges and shadows are not real."""
 
 ALL = (*PHOTOS, *COMPOSITES)
 
@@ -88,13 +83,8 @@ def _opened(name: str, box: Box | None, data: Path | None) -> Image.Image:
     path = _path(name, data)
     if path is None:
         raise FileNotFoundError(name)
-    with opened(path.read_bytes(), _any_size) as picture:
+    with opened(path.read_bytes(), lambda *_: None) as picture:
         return picture.crop(box or (0, 0, *picture.size))
-
-
-def _any_size(width: int, height: int) -> None:
-    """Refuse nothing: these pictures are known."""
-    del width, height
 
 
 def _composite(photo: RealPhoto, data: Path | None) -> tuple[NDArray[np.uint8], Labels]:
@@ -123,7 +113,7 @@ def _composite(photo: RealPhoto, data: Path | None) -> tuple[NDArray[np.uint8], 
         labels[at][mask] = labels.max() + 1
     file = io.BytesIO()
     Image.fromarray(ground.astype(np.uint8)).save(file, "JPEG", quality=80)
-    with opened(file.getvalue(), _any_size) as picture:
+    with opened(file.getvalue(), lambda *_: None) as picture:
         return np.asarray(picture), labels
 
 
@@ -148,8 +138,6 @@ def truth_of(photo: RealPhoto, data: Path | None, size_px: tuple[int, int]) -> L
 
 def _path(name: str, data: Path | None) -> Path | None:
     if "." not in name:
-        import skimage  # noqa: PLC0415
-
         return Path(skimage.__file__).parent / "data" / f"{name}.png"
     path = None if data is None else data / FOLDER / name
     return path if path is not None and path.is_file() else None

@@ -4,6 +4,7 @@ import io
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.random import Generator
@@ -24,8 +25,7 @@ Light = NDArray[np.float32]
 """(h, w, 3), linear, 0 to 1 for what a camera can record."""
 
 
-@dataclass(frozen=True)
-class _Face:
+class _Face(NamedTuple):
     colours: tuple[str, ...]
     clouds: float
     specks: float
@@ -236,7 +236,16 @@ def place_markers(level: PhotoLevel, surface: Light, seen: Mask) -> Mask:
     covered = np.zeros(seen.shape, bool)
     if layout is None:
         return covered
-    papers = [_sheet(layout)] if layout.page else [_single(layout, k) for k in range(ON_A_SHEET)]
+    numbers = range(ON_A_SHEET)
+    if layout.page:
+        width, height = page_mm(layout.page)
+        squares = tuple((layout.corners_m(k)[0], marker_modules("aruco", k)) for k in numbers)
+        papers = [_Paper((width / 1000, height / 1000), squares, layout.size_m)]
+    else:
+        border = _GAP * layout.size_m
+        side, corner = layout.size_m + 2 * border, np.array([border, border])
+        singles = (((corner, marker_modules("aruco", k)),) for k in numbers)
+        papers = [_Paper((side, side), square, layout.size_m) for square in singles]
     for place, paper in enumerate(papers):
         wrong = level.wrong_print if place == len(papers) - 1 else 1.0
         half = math.hypot(*paper.size_m) / 2 * level.px_per_m
@@ -247,25 +256,11 @@ def place_markers(level: PhotoLevel, surface: Light, seen: Mask) -> Mask:
     return np.asarray(ndimage.distance_transform_edt(~covered) < level.gap_px)
 
 
-@dataclass(frozen=True, eq=False)
-class _Paper:
+class _Paper(NamedTuple):
     size_m: tuple[float, float]
+    # Upper left corner and modules of every marker
     squares: tuple[tuple[NDArray[np.float64], NDArray[np.bool_]], ...]
-    """Upper left corner and modules of every marker."""
     side_m: float
-
-
-def _sheet(layout: MarkerLayout) -> _Paper:
-    width, height = page_mm(str(layout.page))
-    squares = tuple((layout.corners_m(k)[0], marker_modules("aruco", k)) for k in range(ON_A_SHEET))
-    return _Paper((width / 1000, height / 1000), squares, layout.size_m)
-
-
-def _single(layout: MarkerLayout, number: int) -> _Paper:
-    border = _GAP * layout.size_m
-    whole = layout.size_m + 2 * border
-    corner = np.array([border, border])
-    return _Paper((whole, whole), ((corner, marker_modules("aruco", number)),), layout.size_m)
 
 
 def _draw(

@@ -2,14 +2,18 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
 from drystone.drawing.canvas import draw_block, draw_ground, fit_axes
 from drystone.drawing.outlines import label_regions
-from drystone.drawing.palette import PLAIN_COLOUR, cluster_colour
+from drystone.drawing.palette import GREY, PLAIN_COLOUR, cluster_colour
+from drystone.drawing.pictures.stones import plot_stones
 from drystone.drawing.pictures.wall import plot_wall
+from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels, Wall
 
 FIGURE_IN = 11.0
@@ -97,11 +101,14 @@ def plot_walls(walls: Sequence[TitledWall], columns: int) -> Figure:
 
 def wall_panel(title: str, wall: Wall, clusters: Mapping[int, int] | None) -> Panel:
     """Return a wall as a panel of a sheet; see :func:`plot_walls`."""
+    aspect = wall_aspect(wall.site.height_px / wall.site.width_px)
+    return Panel(title, aspect, lambda ax: plot_wall(wall, clusters, ax))
 
-    def draw(ax: Axes) -> Axes:
-        return plot_wall(wall, clusters, ax)
 
-    return Panel(title, wall_aspect(wall.site.height_px / wall.site.width_px), draw)
+def stones_panel(title: str, stones: StoneSet, clusters: Mapping[int, int]) -> Panel:
+    """Return the stones of a set as a panel, where they lie in its image, coloured by cluster."""
+    aspect = wall_aspect(stones.source.height_px / stones.source.width_px)
+    return Panel(title, aspect, lambda ax: plot_stones(stones, clusters, ax))
 
 
 def wall_aspect(aspect: float) -> float:
@@ -113,11 +120,39 @@ def wall_aspect(aspect: float) -> float:
     return (aspect + MARGIN + GROUND * max(aspect, 0.2)) / (1 + 2 * MARGIN)
 
 
+def plot_landscape(
+    ax: Axes | None,
+    labels: Labels,
+    fill: str,
+    *,
+    fills: Mapping[int, str] = MappingProxyType({}),
+    ground: float = 0.04,
+    framed: bool = True,
+    edgecolor: str = GREY,
+    linewidth: float = 0.4,
+) -> Axes:
+    """Draw stones on the ground, y up, in working px, and the frame of their site, dashed.
+
+    `fills` are the colours of single stones by id; `ground` is its depth over the height of the
+    picture, or over a fifth of its width.
+    """
+    height, width = labels.shape
+    depth = ground * max(height, 0.2 * width)
+    ax = fit_axes(ax, (-2.0, -depth, width + 2.0, height + 2.0))
+    draw_ground(ax, -2.0, width + 2.0, depth)
+    if framed:
+        ax.add_patch(Rectangle((0, 0), width, height, fill=False, edgecolor=GREY, linewidth=0.6,
+                               linestyle=(0, (5, 4)), gid="frame"))  # fmt: skip
+    for region in label_regions(labels):
+        draw_block(ax, region.loops, f"block-{region.id}", fill=fills.get(region.id, fill),
+                   edgecolor=edgecolor, linewidth=linewidth)  # fmt: skip
+    return ax
+
+
 def plot_masonry(
     labels: Labels,
     clusters: Mapping[int, int] | None = None,
     ax: Axes | None = None,
-    *,
     units_per_px: float = 1.0,
 ) -> Axes:
     """Draw the stones of a wall, coloured by cluster, on the ground.
@@ -125,7 +160,7 @@ def plot_masonry(
     In source px, y up from the ground, which is below the last row of `labels` (row 0 at the top).
     """
     height, width = (units_per_px * size for size in labels.shape)
-    margin, depth = 0.015 * width, 0.035 * max(height, 0.2 * width)
+    margin, depth = MARGIN * width, GROUND * max(height, 0.2 * width)
     ax = fit_axes(ax, (-margin, -depth, width + margin, height + margin))
     draw_ground(ax, -margin, width + margin, depth)
     for region in label_regions(labels):
@@ -141,8 +176,5 @@ def masonry_panel(
     title: str, labels: Labels, clusters: Mapping[int, int] | None, units_per_px: float
 ) -> Panel:
     """Return such a wall as a panel of a sheet; see :func:`plot_masonry`."""
-
-    def draw(ax: Axes) -> Axes:
-        return plot_masonry(labels, clusters, ax, units_per_px=units_per_px)
-
-    return Panel(title, wall_aspect(labels.shape[0] / labels.shape[1]), draw)
+    aspect = wall_aspect(labels.shape[0] / labels.shape[1])
+    return Panel(title, aspect, lambda ax: plot_masonry(labels, clusters, ax, units_per_px))

@@ -9,8 +9,6 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from drystone.contacts.outlines import outlines_of_labels
-from drystone.kernels.polygons import Points
-from drystone.model.wall import Wall
 from drystone.physics.building import ROUNDED
 from drystone.physics.scene import EngineScene
 from drystone.physics.shake import shake_once
@@ -31,17 +29,13 @@ def pga_of(spec: RunSpec, outcome: RunOutcome, data: Path | None) -> float | Non
     if not outcome.figures["placed"]:
         return None
     wall = outcome.wall(spec, data)
+    if wall.outlines is not None:
+        outlines = {block: np.asarray(corners) for block, corners in wall.outlines.blocks}
+    else:
+        outlines = outlines_of_labels(wall.labels)
     # Wedges may fall out: the score is about stones.
     stones = frozenset(placement.stone_id for placement in wall.placements)
-    scene = EngineScene(wall_outlines(wall), spec.settings().mu)
-    return shake_once(scene, ROUNDED, watched=stones).pga_g
-
-
-def wall_outlines(wall: Wall) -> Mapping[int, Points]:
-    """Return the outlines of stones and wedges; of a wall of pixels, sub-pixel ones."""
-    if wall.outlines is not None:
-        return {block: np.asarray(corners) for block, corners in wall.outlines.blocks}
-    return outlines_of_labels(wall.labels)
+    return shake_once(EngineScene(outlines, spec.settings().mu), ROUNDED, watched=stones).pga_g
 
 
 SEEDS, QUICK_SEEDS = 5, 2
@@ -49,6 +43,13 @@ SEEDS, QUICK_SEEDS = 5, 2
 
 RUNS = "runs"
 """Folder of the plans in a store."""
+
+YARDSTICK = (
+    f"{STRIPS} is a yardstick, in no pairs and no ranking: all stones packed into a strip as "
+    f"high as the wall, by quarter turns, {STRIP_SECONDS} s each, without gravity, order or "
+    "support. Its F_SF is their area over that of the strip, or over that of the wall where "
+    "the strip is shorter; it has no other figures. What it finds depends on the machine."
+)
 
 BenchRun = tuple[RunSpec, RunOutcome, KeptRun]
 
@@ -79,26 +80,13 @@ def run_public(suite: str, settings: BenchSettings, stamp: Stamp) -> tuple[Table
     # The yardstick builds no walls to be compared.
     planned = BenchResults(tuple(result for result in results.all if result.method != STRIPS))
     first, *others = (*comparison(results), *pair_tables(planned))
-    notes = (*first.notes, *_yardstick(results), *_left_out(asked, walls))
-    return (replace(first, notes=notes), *others)
-
-
-def _yardstick(results: BenchResults) -> tuple[str, ...]:
-    """Say what the yardstick is, where there is one."""
-    if STRIPS not in results.methods:
-        return ()
-    return (
-        f"{STRIPS} is a yardstick, in no pairs and no ranking: all stones packed into a strip as "
-        f"high as the wall, by quarter turns, {STRIP_SECONDS} s each, without gravity, order or "
-        "support. Its F_SF is their area over that of the strip, or over that of the wall where "
-        "the strip is shorter; it has no other figures. What it finds depends on the machine.",
-    )
-
-
-def _left_out(asked: Sequence[Target], there: Sequence[Target]) -> tuple[str, ...]:
-    names = ", ".join(wall.name for wall in asked if wall not in there)
-    needed = "Left out, as they need the published stone sets (`drystone fetch`, or --data DIR): "
-    return (f"{needed}{names}.",) if names else ()
+    notes = [*first.notes]
+    if STRIPS in results.methods:
+        notes.append(YARDSTICK)
+    if left_out := ", ".join(wall.name for wall in asked if wall not in walls):
+        needed = "as they need the published stone sets (`drystone fetch`, or --data DIR)"
+        notes.append(f"Left out, {needed}: {left_out}.")
+    return (replace(first, notes=tuple(notes)), *others)
 
 
 def _done(
@@ -111,12 +99,11 @@ def _done(
         load_packer()
     store = settings.store
     kept = {} if store is None else {run.run_key: run for run in kept_runs(store)}
-    place = None if store is None else nullcontext(str(store))
     with (
-        place or TemporaryDirectory(prefix="drystone-bench-") as folder,
+        TemporaryDirectory(prefix="drystone-bench-") if store is None else nullcontext(store) as at,
         work_of(settings.jobs, settings.dask) as work,
     ):
-        plans = RunStore(Path(folder) / RUNS)
+        plans = RunStore(Path(at) / RUNS)
         runner = Runner(plans, settings.data, work, settings.say, again=settings.again)
         outcomes = runner.run([spec for *_, spec in tasks])
     runs = [
@@ -143,8 +130,8 @@ def _shaken(
         if shakes:
             pga_g = pga_of(spec, outcome, settings.data)
         shaken = replace(run, pga_g=pga_g, shaken="falls" if pga_g is None else "yes")
-        if shakes and settings.store is not None:
-            keep(settings.store, [shaken])
         if shakes:
+            if settings.store is not None:
+                keep(settings.store, [shaken])
             settings.say(f"{number} of {len(runs)} walls shaken")
         yield spec, outcome, shaken

@@ -11,8 +11,6 @@ from drystone_lab.pictures.charts import history_panels
 from drystone_lab.public.store import PLACED, SHAKE, KeptRun
 from drystone_lab.table import BENCH, Cell, Table, worded
 
-Value = float | None
-
 
 @dataclass(frozen=True)
 class Medians:
@@ -22,7 +20,7 @@ class Medians:
     method: str  # Its name, with settings that were replaced
     version: str
     runs: tuple[tuple[str, int], ...]  # Walls and seeds
-    values: dict[str, Value]  # Median of each figure over its runs; None where no run has it
+    values: dict[str, float | None]  # Median of each figure over its runs; None where no run has it
 
 
 def medians_of(runs: Sequence[KeptRun]) -> tuple[Medians, ...]:
@@ -57,21 +55,12 @@ def history_table(medians: Sequence[Medians]) -> Table:
          *(None if value is None else float(f"{value:.4g}") for value in one.values.values()))
         for one in medians
     ]  # fmt: skip
-    notes = []
-    differing = sorted(
-        {
-            f"{one.suite} {one.method}"
-            for one in medians
-            for other in medians
-            if (one.suite, one.method) == (other.suite, other.method) and one.runs != other.runs
-        }
-    )
-    if differing:
-        notes.append(
-            "Versions have runs of different walls or seeds, so their medians cannot be compared: "
-            + ", ".join(differing)
-            + "."
-        )
+    runs: dict[str, set[tuple[tuple[str, int], ...]]] = {}
+    for one in medians:
+        runs.setdefault(f"{one.suite} {one.method}", set()).add(one.runs)
+    differing = ", ".join(sorted(name for name, of in runs.items() if len(of) > 1))
+    other = "Versions have runs of different walls or seeds, so their medians cannot be compared"
+    notes = [f"{other}: {differing}."] if differing else []
     words = BENCH["public"]["history"]
     return worded(words, rows, columns={"<figures>": tuple(FIGURES)}, more=notes)
 
@@ -81,17 +70,13 @@ def drawn_history(medians: Sequence[Medians]) -> Figure:
     versions = sorted({one.version for one in medians}, key=version_order)
     methods = dict.fromkeys(one.method for one in medians)
     values = {(one.method, one.version): one.values for one in medians}
-    lines = {
+    known = {
         figure: {
             method: [values.get((method, version), {}).get(figure) for version in versions]
             for method in methods
         }
         for figure in FIGURES
-    }
-    known = {
-        figure: of_methods
-        for figure, of_methods in lines.items()
-        if any(value is not None for line in of_methods.values() for value in line)
+        if any(one.values[figure] is not None for one in medians)
     }
     title = f"suite {medians[0].suite}: medians over walls and seeds (F_AH: lower is better)"
     return history_panels(versions, known, title)
@@ -104,11 +89,7 @@ def version_order(version: str) -> tuple[tuple[int, int, str], ...]:
     ['0.9', '0.9.1', '0.10.0rc1', '0.10.0']
     """
     parts = re.findall(r"\d+|[a-z]+", version.lower())
-    # Letters come before the end, and the end before numbers.
-    marked = [(2, int(part), "") if part.isdigit() else (_LETTERS.get(part, 0), 0, part)
+    # Letters come before the end, and the end before numbers and post-releases.
+    marked = [(2, int(part), "") if part.isdigit() else (2 * (part == "post"), 0, part)
               for part in parts]  # fmt: skip
     return (*marked, (1, 0, ""))
-
-
-_LETTERS = {"post": 2}
-"""A post-release comes after its release; every other word before it."""

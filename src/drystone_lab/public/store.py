@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterable
 from dataclasses import astuple, dataclass, fields
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -90,21 +91,19 @@ class KeptRun:
 
 
 COLUMNS = tuple(field.name for field in fields(KeptRun))
+ORDER = ("suite", "suite_version", "wall", "method", "settings", "seed", "version")
+"""Of the rows."""
 
 
 def kept_runs(folder: Path) -> tuple[KeptRun, ...]:
     """Return the runs of a store, none where there is none; E401 for another table."""
     path = folder / CSV
-    return tuple(read_rows(path, COLUMNS, _read, _refused)) if path.is_file() else ()
-
-
-def _refused(where: str) -> InputError:
-    return InputError(
+    refused = InputError(
         "E401",
         "this is not a table of runs that can be used.",
-        where=where,
         cure="Move it away; runs whose plans are kept beside it are not done again.",
     )
+    return tuple(read_rows(path, COLUMNS, _read, refused)) if path.is_file() else ()
 
 
 def keep(folder: Path, runs: Iterable[KeptRun]) -> None:
@@ -112,13 +111,9 @@ def keep(folder: Path, runs: Iterable[KeptRun]) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     with locked(folder):
         found = {run.run_key: run for run in (*kept_runs(folder), *runs)}
-        rows = sorted(found.values(), key=_order)
-        table = Table("", COLUMNS, tuple(astuple(run) for run in rows))
-        write_whole(folder / CSV, table.csv().encode())
-
-
-def _order(run: KeptRun) -> tuple[Any, ...]:
-    return run.suite, run.suite_version, run.wall, run.method, run.settings, run.seed, run.version
+        order = attrgetter(*ORDER)
+        rows = tuple(astuple(run) for run in sorted(found.values(), key=order))
+        write_whole(folder / CSV, Table("", COLUMNS, rows).csv().encode())
 
 
 def _read(row: dict[str, str]) -> KeptRun:

@@ -4,16 +4,17 @@ Walls are fixed (``suites.toml``): they may not change without a new :data:`SUIT
 """
 
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from importlib.metadata import entry_points
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 from drystone.errors import UsageError
+from drystone.planner.settings import method_settings
 from drystone.selection.policies.registry import BUILT_IN, GROUP, PAPER, RULES, no_policy, rule_of
-from drystone_lab.runs.spec import STRIPS, Changes, RunSpec, flat, generated
+from drystone_lab.runs.spec import STRIPS, Changes, RunSpec, Scalar, flat, generated, nested
 from drystone_lab.walls import IR_FRAMED, NOISY, PR_560, PR_600, R_FRAMED, Target, chosen
 
 SUITE_VERSION = 1
@@ -27,21 +28,23 @@ _MASONS = tuple(
 _NOISE = tuple(replace(wall, suite="noise") for wall in NOISY)
 
 
-def _generated() -> Iterator[tuple[str, tuple[Target, ...]]]:
-    text = Path(__file__).with_name("suites.toml").read_text("utf-8")
-    for suite, about in tomllib.loads(text).items():
-        walls = []
-        for wall in about["walls"]:
-            source = generated(about["kind"], about["seed"], **wall["settings"])
-            width, height, scale = wall["size"]
-            walls.append(Target(wall["name"], source, width, height, scale, suite=suite))
-        yield suite, tuple(walls)
-
+_GENERATED = {
+    suite: tuple(
+        Target(
+            wall["name"], generated(about["kind"], about["seed"], **wall["settings"]),
+            *wall["size"], suite=suite,
+        )
+        for wall in about["walls"]
+    )
+    for suite, about in tomllib.loads(
+        Path(__file__).with_name("suites.toml").read_text("utf-8")
+    ).items()
+}  # fmt: skip
 
 ALL = "all"
 
 _WALLS: Mapping[str, tuple[Target, ...]] = MappingProxyType(
-    {"masons": _MASONS, **dict(_generated()), "noise": _NOISE}
+    {"masons": _MASONS, **_GENERATED, "noise": _NOISE}
 )
 
 PUBLIC_SUITES: Mapping[str, str] = MappingProxyType(
@@ -84,8 +87,7 @@ ABOUT = {
 """What each does; docs/for-researchers.md explains the policies."""
 
 
-@dataclass(frozen=True)
-class BenchMethod:
+class BenchMethod(NamedTuple):
     """Somebody who builds walls."""
 
     name: str
@@ -113,34 +115,28 @@ def method_named(name: str, changes: Changes = ()) -> BenchMethod:
         # No setting of a planner means anything to it.
         return BenchMethod(STRIPS, STRIPS, (("seconds", STRIP_SECONDS),))
     if name == BEST:
-        own: Changes = (("search.budget", 1),)
-        found = BenchMethod(name, "best", _merged(own, changes))
+        method, own = "best", dict[str, Scalar]({"search.budget": 1})
     else:
         if name not in (known := known_methods()):
             raise no_policy(name, tuple(known))
-        rule = rule_of(name)
-        own = () if name == PAPER else (("selection_rule", rule),)
-        found = BenchMethod(name, "paper", _merged(own, changes))
-    RunSpec(source=generated("brick", 0), method=found.method, changes=found.changes).settings()
-    return found
+        method, own = "paper", {} if name == PAPER else {"selection_rule": rule_of(name)}
+    merged = tuple((own | dict(changes)).items())
+    method_settings(method).updated(nested(merged))  # E123 for what there is not
+    return BenchMethod(name, method, merged)
 
 
-def flat_changes(nested: Mapping[str, Any], where: str) -> Changes:
+def flat_changes(settings: Mapping[str, Any], where: str) -> Changes:
     """Return settings from a TOML file as changes of every method.
 
     >>> flat_changes({"sampling": "full", "placement": {"beta": 0.5}}, "full.toml")
     (('placement.beta', 0.5), ('sampling', 'full'))
     """
     for name in ("selection_rule", "ban", "pin"):
-        if name in nested:
+        if name in settings:
             raise UsageError(
                 "E138",
                 f"{name} cannot be the same for all methods and walls.",
                 where=where,
                 cure="Leave it out; --policy names who chooses the stones.",
             )
-    return flat(nested)
-
-
-def _merged(own: Changes, changes: Changes) -> Changes:
-    return tuple((dict(own) | dict(changes)).items())
+    return flat(settings)

@@ -1,8 +1,8 @@
 """What methods came to on walls, and the tables that compare them."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from itertools import combinations, compress, groupby
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations, compress, groupby, zip_longest
 from math import fsum, sqrt
 from statistics import fmean, stdev
 
@@ -81,26 +81,28 @@ UNITS = {PLACED: "placed share", SHAKE: "PGA, g"}
 def comparison(results: BenchResults) -> tuple[Table, ...]:
     """Return the figures of every method on every wall, on all walls, and the times."""
     figures, columns = results.figures, {"<figures>": _columns(results.figures)}
-    walls = worded(
-        BENCH["public"]["walls"],
-        (
-            (wall, method, len(results.of(method, wall)),
-             *_cells(figures, [results.of(method, wall)]))
-            for wall in results.walls
-            for method in results.methods
-        ),
-        columns=columns, more=_undefined(results),
+    words = BENCH["public"]
+    each = {
+        (wall, method): results.of(method, wall)
+        for wall in results.walls
+        for method in results.methods
+    }
+    walls = [(*key, len(runs), *_cells(figures, [runs])) for key, runs in each.items()]
+    everything = (
+        (method, len(results.of(method)),
+         *_cells(figures, [each[wall, method] for wall in results.walls]))
+        for method in results.methods
     )  # fmt: skip
-    everything = worded(
-        BENCH["public"]["everything"],
-        (
-            (method, len(results.of(method)),
-             *_cells(figures, [results.of(method, wall) for wall in results.walls]))
-            for method in results.methods
-        ),
-        columns=columns,
-    )  # fmt: skip
-    return walls, everything, _times(results)
+    times: list[tuple[Cell, ...]] = []
+    for key, runs in each.items():
+        seconds = [run.seconds for run in runs]
+        spread = _rounded(stdev(seconds), 3) if len(seconds) > 1 else None
+        times.append((*key, _rounded(fmean(seconds), 3), spread, _rounded(min(seconds), 3)))
+    return (
+        worded(words["walls"], walls, columns=columns, more=_undefined(results)),
+        worded(words["everything"], everything, columns=columns),
+        worded(words["times"], times),
+    )
 
 
 def _columns(figures: Sequence[str]) -> tuple[str, ...]:
@@ -118,50 +120,27 @@ def _cells(figures: Sequence[str], walls: Sequence[Sequence[KeptRun]]) -> tuple[
         ]
         found = [values for values in defined if values]
         spreads = [stdev(values) for values in found if len(values) > 1]
+        best = min if figure in LOWER_IS_BETTER else max
         cells += [
-            _mean([fmean(values) for values in found]),
+            _rounded(fmean(fmean(values) for values in found)) if found else None,
             _rounded(sqrt(fsum(s * s for s in spreads) / len(spreads))) if spreads else None,
-            _mean([(min if figure in LOWER_IS_BETTER else max)(values) for values in found]),
+            _rounded(fmean(best(values) for values in found)) if found else None,
         ]
     return tuple(cells)
 
 
-_NOT_SHAKEN = "nothing was built, or it does not stand at rest in the engine"
-
-
-def _undefined(results: BenchResults) -> tuple[str, ...]:
+def _undefined(results: BenchResults) -> Iterator[str]:
     """Say how many walls have no value of a figure, which is left out of means and never 0."""
-    notes = []
     for figure in results.figures:
-        counts = {m: results.values(m, figure).count(None) for m in results.methods}
-        if any(counts.values()):
-            said = ", ".join(
-                f"{method} {count} of {len(results.of(method))}"
-                for method, count in counts.items()
-                if count
-            )
-            why = f"{_NOT_SHAKEN}; " if figure == SHAKE else ""
-            notes.append(
-                f"{figure} is not defined for walls of {said}: {why}left out of means, never 0."
-            )
-    return tuple(notes)
-
-
-def _times(results: BenchResults) -> Table:
-    rows: list[tuple[Cell, ...]] = []
-    for wall in results.walls:
-        for method in results.methods:
-            found = results.of(method, wall)
-            seconds = [result.seconds for result in found]
-            spread = _rounded(stdev(seconds), 3) if len(seconds) > 1 else None
-            rows.append(
-                (wall, method, _rounded(fmean(seconds), 3), spread, _rounded(min(seconds), 3))
-            )
-    return worded(BENCH["public"]["times"], rows)
-
-
-def _mean(values: Sequence[float]) -> float | None:
-    return _rounded(fmean(values)) if values else None
+        said = ", ".join(
+            f"{method} {count} of {len(results.of(method))}"
+            for method in results.methods
+            if (count := results.values(method, figure).count(None))
+        )
+        why = "nothing was built, or it does not stand at rest in the engine; "
+        why = why if figure == SHAKE else ""
+        if said:
+            yield f"{figure} is not defined for walls of {said}: {why}left out of means, never 0."
 
 
 def _rounded(value: float, digits: int = 4) -> float:
@@ -228,119 +207,80 @@ def holm(p_values: Sequence[float]) -> list[float]:
     return corrected
 
 
+PairKey = tuple[str, str, str]
+"""Figure, first method, second method."""
+
+
 def pair_tables(results: BenchResults) -> tuple[Table, ...]:
     """Return the differences of all pairs of methods, a table a figure, and the ranking."""
     if len(results.methods) < 2:
         return ()
     counting = {pair: results.counting(*pair) for pair in combinations(results.methods, 2)}
-    found = {
-        (figure, *pair): _compared(results, figure, pair, counts)
-        for figure in results.figures
-        for pair, counts in counting.items()
-    }
-    known = {key: pair for key, pair in found.items() if pair is not None}
-    p = dict(zip(known, holm([pair.p for pair in known.values()]), strict=True))
+    found: dict[PairKey, MethodPair] = {}
+    for figure in results.figures:
+        for pair, counts in counting.items():
+            values = (list(compress(results.values(name, figure), counts)) for name in pair)
+            one = compared(*values, higher=figure not in LOWER_IS_BETTER)
+            if one is not None:
+                found[figure, *pair] = one
+    corrected = holm([one.p for one in found.values()])
+    known = {key: replace(one, p=p) for (key, one), p in zip(found.items(), corrected, strict=True)}
     copies = not all(map(all, counting.values()))
-    tables = tuple(_pairs_table(figure, known, p, copies=copies) for figure in results.figures)
-    return (*tables, _ranking(results, known, p))
+    tables = [_pairs_table(figure, known, copies=copies) for figure in results.figures]
+    return (*tables, _ranking(results, known))
 
 
-PairKey = tuple[str, str, str]
-"""Figure, first method, second method."""
-
-
-def _compared(
-    results: BenchResults, figure: str, pair: tuple[str, str], counting: Sequence[bool]
-) -> MethodPair | None:
-    first, second = (list(compress(results.values(name, figure), counting)) for name in pair)
-    return compared(first, second, higher=figure not in LOWER_IS_BETTER)
-
-
-def _pairs_table(
-    figure: str, known: dict[PairKey, MethodPair], p: dict[PairKey, float], *, copies: bool
-) -> Table:
+def _pairs_table(figure: str, known: Mapping[PairKey, MethodPair], *, copies: bool) -> Table:
     rows: list[tuple[Cell, ...]] = []
-    for key, pair in known.items():
-        if key[0] != figure:
-            continue
-        cells = [float(f"{value:.3g}") for value in (pair.mean, pair.low, pair.high, pair.won)]
-        shown = _shown(key, pair, p[key])
-        rows.append((key[1], key[2], pair.pairs, *cells, float(f"{p[key]:.2g}"), shown))
-    less = sum(pair.left_out for key, pair in known.items() if key[0] == figure)
-    most = max((row[2] for row in rows if isinstance(row[2], int)), default=0)
+    pairs = {key[1:]: pair for key, pair in known.items() if key[0] == figure}
+    for (first, second), pair in pairs.items():
+        cells = (_rounded(value, 3) for value in (pair.mean, pair.low, pair.high, pair.won))
+        better = second if (pair.mean > 0) == (figure in LOWER_IS_BETTER) else first
+        shown = "nothing" if pair.holds_zero else better if pair.p < LEVEL else f"{better}?"
+        rows.append((first, second, pair.pairs, *cells, _rounded(pair.p, 2), shown))
+    less = sum(pair.left_out for pair in pairs.values())
     more = [f"{less} pairs lack a value of one or both and are left out."] if less else []
     more += [_COPIES] if copies else []
-    more += _too_few(most, len(known), copies=copies)
+    # No p of so few pairs may reach the level of significance.
+    most = max((pair.pairs for pair in pairs.values()), default=0)
+    least = min(1.0, len(known) * 2.0 ** (1 - most)) if most else 1.0
+    if least >= LEVEL:
+        cure = "walls, or --seeds where they change something" if copies else "--seeds"
+        tests = f"With {most} pairs and {len(known)} tests"
+        more.append(f"{tests} no p can be below {least:.2g}: use more {cure}.")
     return worded(BENCH["public"]["pairs"], rows, more=more, figure=figure, tests=len(known))
 
 
 _COPIES = "Walls on which two methods do not depend on the seed count once for these two."
 
 
-def _too_few(pairs: int, tests: int, *, copies: bool) -> tuple[str, ...]:
-    """Say when no p of so few pairs can reach the level of significance."""
-    least = min(1.0, tests * 2.0 ** (1 - pairs)) if pairs else 1.0
-    if least < LEVEL:
-        return ()
-    more = "walls, or --seeds where they change something" if copies else "--seeds"
-    return (
-        f"With {pairs} pairs and {tests} tests no p can be below {least:.2g}: use more {more}.",
-    )
-
-
-def _ranking(
-    results: BenchResults, known: dict[PairKey, MethodPair], p: dict[PairKey, float]
-) -> Table:
+def _ranking(results: BenchResults, known: Mapping[PairKey, MethodPair]) -> Table:
     """Rank the methods by their mean rank over figures, walls and seeds."""
-    per_figure = {figure: _mean_ranks(results, figure) for figure in results.figures}
-    overall = {m: fmean(ranks[m] for ranks in per_figure.values()) for m in results.methods}
-    order = sorted(results.methods, key=lambda method: overall[method])
-    shown = {key for key, pair in known.items() if not pair.holds_zero and p[key] < LEVEL}
-    rows = tuple(
-        (place, method, round(overall[method], 3),
-         *(round(per_figure[figure][method], 3) for figure in results.figures),
-         _not_told_apart(method, order, results.figures, shown))
-        for place, method in enumerate(order, 1)
-    )  # fmt: skip
+    ranks: dict[str, list[float]] = {method: [] for method in results.methods}
+    for figure in results.figures:
+        sign = 1.0 if figure in LOWER_IS_BETTER else -1.0
+        values = [
+            [np.inf if value is None else sign * round(value, DECIMALS)
+             for value in results.values(method, figure)]
+            for method in results.methods
+        ]  # fmt: skip
+        for method, rank in zip(ranks, rankdata(values, axis=0).mean(axis=1), strict=True):
+            ranks[method].append(float(rank))
+    shown = {key for key, pair in known.items() if not pair.holds_zero and pair.p < LEVEL}
+    order = sorted(ranks, key=lambda method: fmean(ranks[method]))
+    rows: list[tuple[Cell, ...]] = []
+    for place, (method, other) in enumerate(zip_longest(order, order[1:]), 1):
+        # Figures in which it is not told apart from the next.
+        same = [
+            figure
+            for figure in results.figures
+            if not {(figure, method, other), (figure, other, method)} & shown
+        ]
+        alike = None if other is None else ", ".join(same) or "none"
+        cells = (round(each, 3) for each in (fmean(ranks[method]), *ranks[method]))
+        rows.append((place, method, *cells, alike))
     columns = {"<figures>": results.figures}
     return worded(BENCH["public"]["ranking"], rows, columns=columns)
-
-
-def _mean_ranks(results: BenchResults, figure: str) -> dict[str, float]:
-    sign = 1.0 if figure in LOWER_IS_BETTER else -1.0
-    columns = [results.values(method, figure) for method in results.methods]
-    ranks = [
-        rankdata([np.inf if value is None else sign * round(value, DECIMALS) for value in row])
-        for row in zip(*columns, strict=True)
-    ]
-    means = np.mean(ranks, axis=0).tolist() if ranks else [1.0] * len(columns)
-    return dict(zip(results.methods, means, strict=True))
-
-
-def _not_told_apart(
-    method: str, order: Sequence[str], figures: Sequence[str], shown: set[PairKey]
-) -> str | None:
-    place = order.index(method)
-    if place + 1 == len(order):
-        return None
-    other = order[place + 1]
-    same = [
-        figure
-        for figure in figures
-        if not {(figure, method, other), (figure, other, method)} & shown
-    ]
-    return ", ".join(same) or "none"
-
-
-def _shown(key: PairKey, pair: MethodPair, p: float) -> str:
-    if pair.holds_zero:
-        return "nothing"
-    return _better(key, pair) if p < LEVEL else f"{_better(key, pair)}?"
-
-
-def _better(key: PairKey, pair: MethodPair) -> str:
-    lower_is_better = key[0] in LOWER_IS_BETTER
-    return key[2] if (pair.mean > 0) == lower_is_better else key[1]
 
 
 def _signed_rank(differences: np.ndarray) -> float:

@@ -4,17 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from drystone.indices import (
-    geometrical_dice_score_at,
-    interlocking_width_ratio,
-    inward_slope,
-    is_boundary,
-    joints_below,
-    left_neighbour,
-    local_filling_ratio_at,
-    neighbour_height_ratio,
-    shape_factor,
-)
+from drystone import indices
 from drystone.kernels.lowering import Positions
 from drystone.model.landscape import Landscape, view_box
 from drystone.model.pose import PosedStone
@@ -114,16 +104,16 @@ def place_of(moment: Moment, posed: PosedStone, row: int, col: int, factor: floa
     box = view_box(posed, row, col, landscape.height_px)
     values = {
         "SF": factor,
-        "LFR": local_filling_ratio_at(landscape, posed, row, col),
-        "GDS": geometrical_dice_score_at(landscape, posed, row),
+        "LFR": indices.local_filling_ratio_at(landscape, posed, row, col),
+        "GDS": indices.geometrical_dice_score_at(landscape, posed, row),
     }
-    neighbour = left_neighbour(landscape, box)
+    neighbour = indices.left_neighbour(landscape, box)
     if neighbour is not None:
-        values["NHR"] = neighbour_height_ratio(box, neighbour, None)
-    if is_boundary(landscape, box, end_px):
-        values["IS"] = inward_slope(landscape, posed, col)
-    elif box.bottom > 0 and None not in joints_below(landscape, box, end_px):
-        values["IWR"] = interlocking_width_ratio(landscape, box, end_px)
+        values["NHR"] = indices.neighbour_height_ratio(box, neighbour, None)
+    if indices.is_boundary(landscape, box, end_px):
+        values["IS"] = indices.inward_slope(landscape, posed, col)
+    elif box.bottom > 0 and None not in indices.joints_below(landscape, box, end_px):
+        values["IWR"] = indices.interlocking_width_ratio(landscape, box, end_px)
     return RestingPlace(posed, row, col, values)
 
 
@@ -137,7 +127,7 @@ def amid_course(built: Construction) -> tuple[Moment, RestingPlace]:
     found = []
     for moment, stage in zip(built.moments[half:], built.stages[half:], strict=True):
         at = stage.group.placement
-        place = place_of(moment, at.posed, at.row, at.col, shape_factor(at.posed))
+        place = place_of(moment, at.posed, at.row, at.col, indices.shape_factor(at.posed))
         if {"NHR", "IWR"} <= place.values.keys():
             return moment, place
         found.append((moment, place))

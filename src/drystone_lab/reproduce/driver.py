@@ -3,15 +3,15 @@
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import timedelta
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any, Literal
 
 from drystone.errors import DrystoneError
-from drystone_lab.reproduce.folder import ReportFolder, TimeOfDay, made_with, request_of, utc_now
-from drystone_lab.reproduce.item import Context, Output, PaperItem
+from drystone_lab.reproduce.folder import ReportFolder, made_with, request_of
+from drystone_lab.reproduce.item import Context, PaperItem
 from drystone_lab.reproduce.items import ITEMS, item_named
-from drystone_lab.runs.outcome import Runner, RunStore, RunWorker, absent_data, one_by_one
+from drystone_lab.runs.outcome import Runner, RunWorker, absent_data, one_by_one
 from drystone_lab.runs.spec import published
 
 ItemStatus = Literal["made", "kept", "missing data", "failed"]
@@ -31,7 +31,9 @@ class Options:
     again: bool = False
     work: RunWorker = one_by_one  # Who plans the walls
     say: Callable[[str], None] = lambda _: None  # Told of progress, a line each
-    now: TimeOfDay = utc_now  # Gives the time of day that is written into the report
+    now: Callable[[], datetime] = lambda: datetime.now(
+        UTC
+    )  # Gives the time of day that is written into the report
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,10 +87,14 @@ def _made(
     except DrystoneError as error:
         report.miss(name, item, error)
         return MadeItem(name, "failed", None, error, page)
+    seconds = time.perf_counter() - begun
+    # Whenever its walls were planned
+    outcomes = [runner.store.get(key) for key in {spec.key for spec in output.runs}]
+    walls = [outcome.times["wall"] for outcome in outcomes if outcome is not None]
     about = {
         "request": request,
-        "made": made_with(options.now),
-        "taken": taken(output, runner.store, time.perf_counter() - begun),
+        "made": made_with(options.now()),
+        "taken": {"seconds": seconds, "walls": len(walls), "wall_seconds": sum(walls)},
     }
     return MadeItem(name, "made", report.keep(name, item, output, about), None, page)
 
@@ -123,10 +129,3 @@ class ItemProgress:
         elapsed = timedelta(seconds=int(self._clock() - self._begun))
         what = f"{self._number} of {self._total}, {self._name}"
         self._say(f"[{elapsed}] {what}{': ' if text else ''}{text}")
-
-
-def taken(output: Output, store: RunStore, seconds: float) -> dict[str, float | int]:
-    """Return how long an item took, and its walls, whenever they were planned; seconds."""
-    outcomes = [store.get(key) for key in {spec.key for spec in output.runs}]
-    walls = [outcome.times["wall"] for outcome in outcomes if outcome is not None]
-    return {"seconds": seconds, "walls": len(walls), "wall_seconds": sum(walls)}

@@ -12,15 +12,15 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from drystone.contacts.blocks import model_from_labels
-from drystone.drawing.canvas import draw_block, draw_ground, draw_legend, fit_axes
+from drystone.drawing.canvas import draw_legend
 from drystone.drawing.drawing import Lines
-from drystone.drawing.outlines import label_regions
-from drystone.drawing.palette import GREY, PALE
+from drystone.drawing.palette import PALE
 from drystone.drawing.pictures.forces import JOINT, NORMAL, plot_contacts
 from drystone.drawing.pictures.stones import plot_labels
 from drystone.kernels.boundary import EMPTY, boundary_of
 from drystone.model.wall import Labels, Wall
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
+from drystone_lab.pictures.walls import plot_landscape
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.walls import PR, Target
@@ -37,13 +37,8 @@ def plot_boundary_edges(
 
     `starts` and `ends` are (n, 2), px, y up from the ground; the normal is to the left of the way.
     """
-    height, width = labels.shape
-    depth = 0.06 * max(height, 0.2 * width)
-    ax = fit_axes(ax, (-2.0, -depth, width + 2.0, height + 2.0))
+    plot_landscape(ax, labels, PALE, ground=0.06, framed=False)
     ax.set_axis_off()
-    draw_ground(ax, -2.0, width + 2.0, depth)
-    for region in label_regions(labels):
-        draw_block(ax, region.loops, f"block-{region.id}", fill=PALE, edgecolor=GREY, linewidth=0.4)
     way = ends - starts
     normals = np.column_stack([-way[:, 1], way[:, 0]])
     middles = (starts + ends) / 2.0
@@ -79,11 +74,6 @@ class Blocks:
     def edges(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Pixel edges between two of them or one and the ground: starts and ends."""
         return boundary_edges(self.labels)
-
-    @property
-    def edge_count(self) -> int:
-        """How many pixel edges."""
-        return len(self.edges[0])
 
 
 def blocks(context: Context, wall: Target = PR) -> Blocks:

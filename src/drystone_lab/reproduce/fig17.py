@@ -9,15 +9,10 @@ from matplotlib.figure import Figure
 from drystone.drawing.pictures.stones import plot_joint_paths
 from drystone.io.published import published_file
 from drystone.io.wall_image import read_wall_image
+from drystone.metrics import paths as joint_paths
 from drystone.metrics.frame import frame_wall, reduce_labels
 from drystone.metrics.joints import PAD_LEFT, PAD_TOP, joint_mask
-from drystone.metrics.paths import (
-    SHORTEST,
-    JointPath,
-    horizontal_paths,
-    mean_excess,
-    vertical_paths,
-)
+from drystone.metrics.paths import SHORTEST, JointPath, mean_excess
 from drystone.model.wall import Labels
 from drystone_lab.reproduce.cells import rounded
 from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
@@ -28,19 +23,17 @@ ACROSS, UPRIGHT = 3, 7
 """How many paths Fig. 17 draws."""
 
 
+Way = tuple[str, tuple[JointPath, ...], int, int]
+"""Name, paths, length of a straight one in px, and how many are drawn."""
+
+
 @dataclass(frozen=True, eq=False)
 class Paths:
-    """The shortest paths along the joints of a wall, the shortest first.
-
-    Width and height are the lengths of straight paths, px.
-    """
+    """The shortest paths along the joints of a wall either way, the shortest first."""
 
     name: str
     labels: Labels
-    across: tuple[JointPath, ...]
-    upright: tuple[JointPath, ...]
-    width: int
-    height: int
+    ways: tuple[Way, Way]
 
     @classmethod
     def of(cls, name: str, labels: Labels, wall_width_px: float | None = None) -> "Paths":
@@ -48,15 +41,9 @@ class Paths:
         framed = frame_wall(labels, wall_width_px).labels
         joint = joint_mask(framed)
         rows, cols = joint.shape
-        return cls(name, framed, horizontal_paths(joint), vertical_paths(joint), cols - 1, rows - 1)
-
-    @property
-    def ways(self) -> tuple[tuple[str, tuple[JointPath, ...], int, int], ...]:
-        """Name, paths, length of a straight one, and how many are drawn, of either way."""
-        return (
-            ("horizontal", self.across, self.width, ACROSS),
-            ("vertical", self.upright, self.height, UPRIGHT),
-        )
+        across = "horizontal", joint_paths.horizontal_paths(joint), cols - 1, ACROSS
+        upright = "vertical", joint_paths.vertical_paths(joint), rows - 1, UPRIGHT
+        return cls(name, framed, (across, upright))
 
 
 def walls(context: Context, wall: Target = PR) -> tuple[Paths, ...]:
@@ -75,7 +62,7 @@ def _figures(walls: Sequence[Paths]) -> Rows:
             rounded(mean_excess([path.length_px for path in found[:SHORTEST]], straight))
             for _, found, straight, _ in paths.ways
         )
-        yield paths.name, paths.width, paths.height, *factors
+        yield paths.name, *(straight for _, _, straight, _ in paths.ways), *factors
 
 
 def _paths(walls: Sequence[Paths]) -> Rows:
@@ -95,7 +82,7 @@ def _picture(paths: Paths, number: int) -> ItemFigure:
         plot_joint_paths(paths.labels, [path.pixels - pad for path in found[:count]], ax)
         lengths = ", ".join(f"{path.length_px:.0f}" for path in found[:count])
         ax.set_title(f"{paths.name}: {way} paths of {lengths} px", fontsize=8, loc="left")
-    counts = {"across": len(paths.across[:ACROSS]), "upright": len(paths.upright[:UPRIGHT])}
+    counts = {way: len(found[:count]) for way, found, _, count in paths.ways}
     return ItemFigure("fig17-masons" if number else "fig17", figure, {"name": paths.name, **counts})
 
 

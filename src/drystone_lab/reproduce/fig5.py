@@ -15,6 +15,7 @@ from drystone.drawing.pictures.stones import plot_stones
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
 from drystone_lab.pictures.charts import name_axes
+from drystone_lab.reproduce.cells import rounded
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.walls import MASONS, PR, Target
@@ -108,40 +109,34 @@ Clustered = Sequence[ClusteredStones]
 """Sets of stones, of which the first is drawn."""
 
 
-def grouped(
-    context: Context, wall: Target = PR, others: Sequence[Target] = MASONS
-) -> list[ClusteredStones]:
-    """Group the stones of a wall, which are drawn, and of others whose stones are there."""
-    sets = {one.name: one.stones(context.data) for one in (wall, *others)}
+def grouped(context: Context, wall: Target = PR) -> list[ClusteredStones]:
+    """Group the stones of a wall, which are drawn, and of the masons' whose stones are there."""
+    sets = {one.name: one.stones(context.data) for one in (wall, *MASONS)}
     return [ClusteredStones.of(name, stones) for name, stones in sets.items() if stones is not None]
 
 
 def _clusters(sets: Clustered) -> Rows:
     drawn = sets[0]
-    ids = np.array([stone.id for stone in drawn.stones])
-    place = np.array([drawn.clusters[i] for i in ids.tolist()])
-    for cluster in sorted({*drawn.clusters.values()}):
-        among = place == cluster
-        eccentricity, size = drawn.features[among].mean(axis=0).tolist()
-        names = " ".join(map(str, ids[among].tolist()))
-        yield cluster, int(among.sum()), round(eccentricity, 4), round(size, 4), names
+    place = np.array([drawn.clusters[stone.id] for stone in drawn.stones])
+    for cluster in range(1, drawn.number + 1):
+        ids = [stone.id for stone in drawn.stones if drawn.clusters[stone.id] == cluster]
+        means = drawn.features[place == cluster].mean(axis=0).tolist()
+        yield cluster, len(ids), *map(rounded, means), " ".join(map(str, ids))
 
 
 def _stones(sets: Clustered) -> Rows:
     for stone, features in zip(sets[0].stones, sets[0].features.tolist(), strict=True):
-        yield stone.id, sets[0].clusters[stone.id], *(round(each, 4) for each in features)
+        yield stone.id, sets[0].clusters[stone.id], *map(rounded, features)
 
 
 def _picture(sets: Clustered) -> ItemFigure:
     drawn = sets[0]
     figure = Figure(figsize=(7.2, 6.4), layout="constrained")
-    parts = figure.subfigures(2, 1, squeeze=False, height_ratios=(1.5, 1.0))
-    above, below = parts[:, 0]
+    above, below = figure.subfigures(2, 1, height_ratios=(1.5, 1.0))
     ids = [stone.id for stone in drawn.stones]
     plot_features(above.add_subplot(), drawn.features, ids, drawn.clusters)
     plot_stones(drawn.stones, drawn.clusters, below.add_subplot())
-    about = {"count": len(ids), "name": drawn.name, "number": drawn.number}
-    return ItemFigure("fig5", figure, about)
+    return ItemFigure("fig5", figure, drawn)
 
 
 def _claims(sets: Clustered) -> Iterator[Claimed]:

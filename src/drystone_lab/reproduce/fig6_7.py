@@ -12,22 +12,19 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
-from drystone.drawing.canvas import draw_block, draw_ground, fit_axes
+from drystone.drawing.canvas import draw_block
 from drystone.drawing.outlines import label_regions
-from drystone.drawing.palette import GREY, OUTLINE_COLOUR
+from drystone.drawing.palette import OUTLINE_COLOUR
 from drystone.indices import joints_below, left_neighbour, peak_columns, shape_factor, swept_pixels
 from drystone.kernels.raster import Mask
 from drystone.model.landscape import Box, view_box
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Labels
 from drystone.stabilise.stabilise import falls_to
-from drystone_lab.reproduce.construction import (
-    Moment,
-    RestingPlace,
-    amid_course,
-    construction,
-    place_of,
-)
+from drystone_lab.pictures.walls import plot_landscape
+from drystone_lab.reproduce import construction
+from drystone_lab.reproduce.cells import rounded
+from drystone_lab.reproduce.construction import Moment, RestingPlace, place_of
 from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.table import Cell
@@ -89,17 +86,11 @@ def action_at(moment: Moment, posed: PosedStone, row: int, col: int) -> ActionVi
         None if found is None else (ids[landscape.boxes.index(found)], found)
         for found in (left_neighbour(landscape, box), *joints_below(landscape, box, end_px))
     )
+    swept = swept_pixels(landscape, posed, row, col)
     return ActionView(
-        labels=moment.wall.labels,
-        posed=posed,
-        row=row,
-        col=col,
-        swept=swept_pixels(landscape, posed, row, col),
-        built_height=landscape.built_height_px,
-        neighbour=neighbour,
-        below=(below1, below2),
-        peaks=peak_columns(posed),
-    )
+        moment.wall.labels, posed, row, col, swept, landscape.built_height_px, neighbour,
+        (below1, below2), peak_columns(posed),
+    )  # fmt: skip
 
 
 def plot_action(
@@ -107,21 +98,19 @@ def plot_action(
 ) -> Axes:
     """Draw a stone on the landscape with what some of its indices measure."""
     height, width = action.labels.shape
-    depth = 0.04 * max(height, 0.2 * width)
-    ax = fit_axes(ax, (-2.0, -depth, width + 2.0, height + 2.0))
-    draw_ground(ax, -2.0, width + 2.0, depth)
-    _draw_frame(ax, (0, 0), width, height, "frame", edgecolor=GREY, linewidth=0.6,
-                linestyle=(0, (5, 4)), zorder=1)  # fmt: skip
     fills: dict[int, str] = {}
     if "joints" in marks:
         fills |= {beside[0]: BELOW for beside in action.below if beside is not None}
     if "neighbour" in marks and action.neighbour is not None:
         fills[action.neighbour[0]] = NEIGHBOUR
-    for region in label_regions(action.labels):
-        fill = fills.get(region.id, BUILT)
-        draw_block(ax, region.loops, f"block-{region.id}", fill=fill, edgecolor=GREY, linewidth=0.4)
+    ax = plot_landscape(ax, action.labels, BUILT, fills=fills)
     if "rays" in marks:
-        _draw_rays(ax, action)
+        # Pale where it is empty, stronger over what is filled.
+        image = np.zeros((height, width, 4))
+        image[action.swept] = to_rgba(RAYS, 0.9)
+        image[action.swept & (action.labels > 0)] = to_rgba("#a08500", 0.55)
+        extent = (0, width, 0, height)
+        ax.imshow(image, extent=extent, interpolation="nearest", zorder=2, gid="rays")
     (region,) = label_regions(action.stone_pixels.astype(np.uint32))
     draw_block(ax, region.loops, "stone", fill=STONE, zorder=3)
     if "box" in marks:
@@ -170,17 +159,6 @@ def _name_stones(ax: Axes, action: ActionView) -> None:
         )  # fmt: skip
 
 
-def _draw_rays(ax: Axes, action: ActionView) -> None:
-    """Colour what the rays sweep: pale where it is empty, stronger over what is filled."""
-    height, width = action.labels.shape
-    image = np.zeros((height, width, 4))
-    image[action.swept] = to_rgba(RAYS, 0.9)
-    image[action.swept & (action.labels > 0)] = to_rgba("#a08500", 0.55)
-    ax.imshow(image, extent=(0, width, 0, height), interpolation="nearest", zorder=2, gid="rays")
-    # An image would take the limits of the axes for its own.
-    ax.set_aspect("equal")
-
-
 def _draw_tops(ax: Axes, action: ActionView) -> None:
     """Draw the heights of both tops, and how far they are apart."""
     if action.neighbour is None:
@@ -216,18 +194,12 @@ def recounted(action: ActionView, name: str) -> float | None:
 
     SF is that of the working pixels; the planner's is that of the source image.
     """
-    counts = {"SF": _shape, "LFR": _filling, "GDS": _dice, "NHR": _height, "IWR": _joints,
-              "IS": _slope}  # fmt: skip
-    return counts[name](action)
-
-
-def _shape(action: ActionView) -> float:
-    return float(action.posed.mask.mean())
-
-
-def _filling(action: ActionView) -> float:
-    swept = action.labels[action.swept] > 0
-    return float(swept.mean()) if swept.size else 1.0
+    if name == "SF":
+        return float(action.posed.mask.mean())
+    if name == "LFR":
+        swept = action.labels[action.swept] > 0
+        return float(swept.mean()) if swept.size else 1.0
+    return {"GDS": _dice, "NHR": _height, "IWR": _joints, "IS": _slope}[name](action)
 
 
 def _dice(action: ActionView) -> float:
@@ -326,14 +298,15 @@ class MomentPlaces:
     def cells(self, place: RestingPlace, name: str) -> tuple[Cell, ...]:
         """Return stone, place, an index, and the index counted again."""
         action = self.action(place)
-        again, box, value = recounted(action, name), action.box, round(place.values[name], 4)
-        again = None if again is None else round(again, 4)
+        box, value = action.box, rounded(place.values[name])
+        again = rounded(recounted(action, name))
         return place.posed.stone.id, box.left, box.bottom, value, again
 
 
 def places(context: Context, wall: Target = PR) -> MomentPlaces:
     """Find the places of all stones that are left at a moment of a run."""
-    moment, place = amid_course(construction(context, wall.run(context.seed)))
+    run = construction.construction(context, wall.run(context.seed))
+    moment, place = construction.amid_course(run)
     return MomentPlaces(wall, moment, place, resting_places(moment))
 
 
@@ -342,7 +315,7 @@ def _ranges(found: MomentPlaces) -> Rows:
         values = sorted(place.values[name] for place in found.all if name in place.values)
         if values:
             cells = (values[0], values[len(values) // 2], values[-1])
-            yield name, len(values), *(round(value, 4) for value in cells)
+            yield name, len(values), *map(rounded, cells)
 
 
 def _pictures(found: MomentPlaces) -> Iterator[ItemFigure]:

@@ -8,22 +8,22 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch, Rectangle
+from matplotlib.patches import Patch
 from numpy.typing import NDArray
 from scipy import ndimage, signal
 
-from drystone.drawing.canvas import draw_block, draw_ground, fit_axes
+from drystone.drawing.canvas import draw_block
 from drystone.drawing.outlines import label_regions
-from drystone.drawing.palette import GREY, OUTLINE_COLOUR
+from drystone.drawing.palette import OUTLINE_COLOUR
 from drystone.kernels.lowering import Positions
 from drystone.kernels.raster import Mask
 from drystone.kernels.spots import eq12_merits
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Labels
+from drystone_lab.pictures.walls import plot_landscape
 from drystone_lab.reproduce.construction import Moment, amid_course, construction
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.items import ITEMS
-from drystone_lab.table import Cell
 from drystone_lab.walls import PR, Target
 
 BUILT = "#dedad2"
@@ -37,7 +37,8 @@ Layers = Sequence[tuple[str, str, Mask]]
 
 def plot_position_layers(ax: Axes, labels: Labels, posed: PosedStone, layers: Layers) -> None:
     """Draw sets of positions of a stone as areas; a position is where its centroid is."""
-    _draw_landscape(ax, labels)
+    plot_landscape(ax, labels, BUILT, edgecolor=OUTLINE_COLOUR, linewidth=0.3)
+    ax.set_xlabel("working px", fontsize=7, labelpad=1)
     height = labels.shape[0]
     x, y = posed.anchor
     for label, colour, positions in layers:
@@ -47,7 +48,6 @@ def plot_position_layers(ax: Axes, labels: Labels, posed: PosedStone, layers: La
         top = height - posed.height_px + y + 0.5
         ax.imshow(image, extent=(x - 0.5, x + cols - 0.5, top - rows, top), zorder=3,
                   interpolation="nearest", gid=f"layer-{label}")  # fmt: skip
-    _show_all(ax, labels)
     handles = [
         Patch(facecolor=to_rgba(colour, OPACITY), label=label) for label, colour, _ in layers
     ]
@@ -67,7 +67,8 @@ def plot_position_values(
 
     `positions` (n, 2) and `chosen` are rows and columns of the mask's top-left corner.
     """
-    _draw_landscape(ax, labels)
+    plot_landscape(ax, labels, BUILT, edgecolor=OUTLINE_COLOUR, linewidth=0.3)
+    ax.set_xlabel("working px", fontsize=7, labelpad=1)
     height = labels.shape[0]
     stone = np.zeros(labels.shape, np.uint32)
     row, col = chosen
@@ -83,33 +84,6 @@ def plot_position_values(
     bar = ax.figure.colorbar(drawn, ax=ax, fraction=0.02, pad=0.01)
     bar.set_label("LFR + H(GDS) - $x_c$/w", size=7)
     bar.ax.tick_params(labelsize=6, length=2)
-    _show_all(ax, labels)
-
-
-def _draw_landscape(ax: Axes, labels: Labels) -> None:
-    height, width = labels.shape
-    depth = _depth(labels)
-    ax = fit_axes(ax, (-2.0, -depth, width + 2.0, height + 2.0))
-    draw_ground(ax, -2.0, width + 2.0, depth)
-    ax.add_patch(Rectangle((0, 0), width, height, fill=False, edgecolor=GREY, linewidth=0.6,
-                           linestyle=(0, (5, 4)), gid="frame"))  # fmt: skip
-    for region in label_regions(labels):
-        draw_block(ax, region.loops, f"block-{region.id}", fill=BUILT, edgecolor=OUTLINE_COLOUR,
-                   linewidth=0.3)  # fmt: skip
-    ax.set_xlabel("working px", fontsize=7, labelpad=1)
-
-
-def _depth(labels: Labels) -> float:
-    height, width = labels.shape
-    return float(0.04 * max(height, 0.2 * width))
-
-
-def _show_all(ax: Axes, labels: Labels) -> None:
-    """Show the whole site: an image or dots would take the limits of the axes for their own."""
-    height, width = labels.shape
-    ax.set_xlim(-2.0, width + 2.0)
-    ax.set_ylim(-_depth(labels), height + 2.0)
-    ax.set_aspect("equal")
 
 
 FREE, FLOATING, TOUCHING = "#d55e00", "#0072b2", "#cc79a7"
@@ -130,20 +104,17 @@ class PositionMaps:
 
         The landscape (L_0 of the paper) has bounds on all four sides (Fig. 4b).
         """
-        bounded = np.pad(occupied, 1, constant_values=True)
-        dilated = ndimage.binary_dilation(bounded)[1:-1, 1:-1]
-        return cls(_overlap(occupied, mask) == 0, _overlap(dilated, mask) == 0)
+        dilated = ndimage.binary_dilation(occupied, border_value=1)
+        overlaps = (
+            signal.correlate(picture.astype(float), mask.astype(float), "valid", "fft")
+            for picture in (occupied, dilated)
+        )
+        return cls(*(np.rint(pixels) == 0 for pixels in overlaps))
 
     @property
     def touching(self) -> Mask:
         """The paper's feasible positions: the difference of both."""
         return self.free & ~self.floating
-
-
-def _overlap(picture: Mask, mask: Mask) -> NDArray[np.int64]:
-    """Return how many pixels overlap at each position."""
-    counts = signal.correlate(picture.astype(float), mask.astype(float), "valid", "fft")
-    return np.asarray(np.rint(counts), np.int64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,6 +130,11 @@ class PositionTrial:
     def maps(self) -> PositionMaps:
         """The paper's positions."""
         return PositionMaps.of(self.moment.wall.occupied, self.posed.mask)
+
+    @property
+    def built(self) -> int:
+        """Stones of the landscape."""
+        return len(self.moment.wall.placements)
 
     @cached_property
     def resting(self) -> Positions:
@@ -198,40 +174,33 @@ def _positions(found: PositionTrial) -> Rows:
         ("resting on something from below", found.resting),
         ("chosen", np.array([found.chosen], np.int64)),
     ):
-        yield name, len(positions), *_best(found, positions)
-
-
-def _best(found: PositionTrial, positions: Positions) -> tuple[Cell, ...]:
-    """Return the place of the largest value, and it; of equal ones the lower, then the left one."""
-    values = found.values(positions)
-    best = np.lexsort((positions[:, 1], -positions[:, 0], -np.round(values, 12)))[0]
-    row, col = positions[best].tolist()
-    bottom = found.moment.landscape.height_px - row - found.posed.height_px
-    return col, bottom, round(float(values[best]), 4)
+        # The place of the largest value; of equal ones the lower, then the left one.
+        values = found.values(positions)
+        best = np.lexsort((positions[:, 1], -positions[:, 0], -np.round(values, 12)))[0]
+        row, col = positions[best].tolist()
+        bottom = found.moment.landscape.height_px - row - found.posed.height_px
+        yield name, len(positions), col, bottom, round(float(values[best]), 4)
 
 
 def _drawn(found: PositionTrial) -> ItemFigure:
-    moment, posed, maps, resting = found.moment, found.posed, found.maps, found.resting
+    posed, maps, resting = found.posed, found.maps, found.resting
+    labels = found.moment.wall.labels
     figure = Figure(figsize=(7.2, 7.05), layout="constrained")
     first, second, third = figure.subplots(3, 1)
-    labels = moment.wall.labels
     bearing = np.zeros_like(maps.free)
     bearing[resting[:, 0], resting[:, 1]] = True
-    apart: Layers = (
+    apart = (
         ("no overlap", FREE, maps.free),
         ("floating: no overlap when dilated", FLOATING, maps.floating),
     )
-    plot_position_layers(first, labels, posed, apart)
-    near: Layers = (
+    near = (
         ("touching: the difference", TOUCHING, maps.touching),
         ("resting on something from below", "#000000", bearing),
     )
+    plot_position_layers(first, labels, posed, apart)
     plot_position_layers(second, labels, posed, near)
     plot_position_values(third, labels, posed, resting, found.values(resting), found.chosen)
-    built = len(moment.wall.placements)
-    return ItemFigure(
-        "fig8", figure, {"stone": posed.stone.id, "built": built, "wall": found.wall.name}
-    )
+    return ItemFigure("fig8", figure)
 
 
 def _claims(found: PositionTrial) -> Iterator[Claimed]:

@@ -20,7 +20,6 @@ from drystone.stabilise.support import Pose, Support, falling_side, support_poly
 from drystone_lab.reproduce.construction import Construction, Moment, construction
 from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.items import ITEMS
-from drystone_lab.table import Cell
 from drystone_lab.walls import PR, Target
 
 BUILT, STONE, GHOST = "#e4e0d8", "#9ecae1", "#0072b2"
@@ -29,6 +28,9 @@ LINE, MASS = "#d55e00", "#000000"
 PointXY = tuple[float, float]
 Window = tuple[float, float, float, float]
 """x0, y0, x1, y1, working px, y up from the ground."""
+
+MARGIN_PX = 6.0
+"""What is shown above the stones; twice as much on the other sides."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +93,14 @@ def plot_standing(
     if window[1] <= 0:
         ax.plot([window[0], window[2]], [0, 0], color=OUTLINE_COLOUR, linewidth=1.4, gid="ground")
     if standing.wedges:
-        _draw_supported(ax, before or standing)
+        # The supported side, which wedging leaves alone (grey in Fig. 9c)
+        first = before or standing
+        points = np.concatenate(first.loops)
+        (left, bottom), (right, top) = points.min(axis=0), points.max(axis=0)
+        x_a = first.ends[0][0]
+        start, end = (left, x_a) if first.falls > 0 else (x_a, right)
+        ax.add_patch(Rectangle((start, bottom), end - start, top - bottom, facecolor=GREY,
+                               alpha=0.45, gid="supported", zorder=3))  # fmt: skip
     draw_block(ax, standing.loops, "stone", fill=STONE, zorder=2)
     if before is not None and not standing.wedges:
         draw_block(ax, before.loops, "before", edgecolor=GHOST, linestyle=(0, (3, 2)), zorder=3)
@@ -108,13 +117,6 @@ def plot_standing(
     ax.set_xlabel("working px", fontsize=7, labelpad=1)
     if title:
         ax.set_title(title, fontsize=7, loc="left", pad=3)
-
-
-def window_around(standings: Sequence[SupportedStone], margin_px: float = 6.0) -> Window:
-    """Return a window that shows some stones and what is around them."""
-    points = np.concatenate([loop for one in standings for loop in one.loops])
-    low, high = points.min(axis=0) - 2 * margin_px, points.max(axis=0) + margin_px
-    return float(low[0]), float(max(low[1], -2.0)), float(high[0] + margin_px), float(high[1])
 
 
 def _draw_points(ax: Axes, standing: SupportedStone) -> None:
@@ -147,23 +149,12 @@ def _draw_turn(ax: Axes, standing: SupportedStone) -> None:
     (left, _), (right, top) = points.min(axis=0), points.max(axis=0)
     middle, reach = (left + right) / 2, 0.25 * (right - left)
     side = standing.falls
-    ax.add_patch(
-        FancyArrowPatch(
-            (middle - side * reach, top + 1.5), (middle + side * reach, top + 1.5),
-            connectionstyle=f"arc3,rad={-0.35 * side}", arrowstyle="-|>", mutation_scale=9,
-            linewidth=1.3, color=LINE, gid="turn", zorder=6,
-        )
+    arrow = FancyArrowPatch(
+        (middle - side * reach, top + 1.5), (middle + side * reach, top + 1.5),
+        connectionstyle=f"arc3,rad={-0.35 * side}", arrowstyle="-|>", mutation_scale=9,
+        linewidth=1.3, color=LINE, gid="turn", zorder=6,
     )  # fmt: skip
-
-
-def _draw_supported(ax: Axes, before: SupportedStone) -> None:
-    """Draw the supported side, which wedging leaves alone (grey in Fig. 9c)."""
-    points = np.concatenate(before.loops)
-    (left, bottom), (right, top) = points.min(axis=0), points.max(axis=0)
-    x_a = before.ends[0][0]
-    ends = (left, x_a) if before.falls > 0 else (x_a, right)
-    ax.add_patch(Rectangle((ends[0], bottom), ends[1] - ends[0], top - bottom, facecolor=GREY,
-                           alpha=0.45, gid="supported", zorder=3))  # fmt: skip
+    ax.add_patch(arrow)
 
 
 @dataclass(frozen=True, eq=False)
@@ -310,9 +301,7 @@ def _cases(found: Falls) -> Rows:
             if standing is None:
                 continue
             points = [f"{x:.4g}, {y:.4g}" for x, y in (*standing.ends, standing.mass)]
-            turn: tuple[Cell, Cell] = (None, None)
-            if pose == "turned":
-                turn = case.turn_deg, case.pivots
+            turn = (case.turn_deg, case.pivots) if pose == "turned" else (None, None)
             size = standing.wedges[0].mask.shape if standing.wedges else (None, None)
             cross = round(standing.cross, 2)
             yield case.stone_id, case.moment.number, pose, *points, cross, *turn, *size
@@ -323,7 +312,13 @@ def _picture(found: Falls) -> ItemFigure:
     panels = figure.subplots(len(found.shown), 3, squeeze=False)
     for axes, case in zip(panels.tolist(), found.shown, strict=True):
         stands = [one for one in (case.trial, case.turned, case.wedged) if one is not None]
-        window, labels = window_around(stands), case.moment.wall.labels
+        points = np.concatenate([loop for one in stands for loop in one.loops])
+        (left, bottom), (right, top) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+        window = (
+            left - 2 * MARGIN_PX, max(bottom - 2 * MARGIN_PX, -2.0),
+            right + 2 * MARGIN_PX, top + MARGIN_PX,
+        )  # fmt: skip
+        labels = case.moment.wall.labels
         title = f"stone {case.stone_id} before step {case.moment.number}: falls"
         plot_standing(axes[0], labels, case.trial, window, title=title)
         turned = "" if case.turn_deg is None else f"turned by {case.turn_deg:g}°"

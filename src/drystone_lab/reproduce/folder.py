@@ -3,8 +3,8 @@
 import json
 import os
 import platform
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from datetime import UTC, datetime
+from collections.abc import Iterable, Iterator, Mapping
+from datetime import datetime
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -26,13 +26,6 @@ PACKAGES = (
     "numpy", "scipy", "scikit-image", "shapely", "highspy", "clarabel", "pillow", "matplotlib",
 )  # fmt: skip
 """That results depend on, beside drystone itself."""
-
-TimeOfDay = Callable[[], datetime]
-
-
-def utc_now() -> datetime:
-    """Return the time of day."""
-    return datetime.now(UTC)
 
 
 def request_of(*, quick: bool, seed: int, data: Path | None) -> dict[str, Any]:
@@ -61,22 +54,14 @@ def is_met(request: Mapping[str, Any], made: Mapping[str, Any]) -> bool:
     return same and {*request["published"]} <= {*made["published"]}
 
 
-def made_with(now: TimeOfDay) -> dict[str, Any]:
+def made_with(now: datetime) -> dict[str, Any]:
     """Return when, and on what kind of machine with what packages, something is made."""
     return {
-        "date": now().strftime("%Y-%m-%d %H:%M UTC"),
+        "date": now.strftime("%Y-%m-%d %H:%M UTC"),
         "machine": f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
         "python": platform.python_version(),
         "kernels": describe(),
         "packages": {name: version(name) for name in PACKAGES},
-    }
-
-
-def write_tables(folder: Path, output: Output) -> dict[str, list[dict[str, Any]]]:
-    """Write the tables of an item; those of times under names that end with ``_times.csv``."""
-    return {
-        "tables": [_write_table(folder, name, table) for name, table in output.tables],
-        "times": [_write_table(folder, f"{name}_times", table) for name, table in output.times],
     }
 
 
@@ -165,7 +150,12 @@ class ReportFolder:
         """Write the files of an item in place of those of an earlier one; its JSON comes last."""
         folder = self.path / name
         folder.mkdir(exist_ok=True)
-        self._remove(name)
+        # Without its JSON, which goes first, nothing is there of an earlier version.
+        path = folder / f"{name}.json"
+        earlier = _read(path, ITEM_SCHEMA)
+        path.unlink(missing_ok=True)
+        for file in () if earlier is None else files_of(earlier):
+            (folder / file).unlink(missing_ok=True)
         record = {
             "schema": ITEM_SCHEMA,
             "name": name,
@@ -174,14 +164,15 @@ class ReportFolder:
             **about,
             "paper": list(output.paper),
             "ours": list(output.ours),
-            **write_tables(folder, output),
+            "tables": [_write_table(folder, name, table) for name, table in output.tables],
+            "times": [_write_table(folder, f"{name}_times", table) for name, table in output.times],
             "pictures": [write_picture(folder, picture) for picture in output.pictures],
             "seeds": sorted({spec.seed for spec in output.runs}),
             "runs": [{"key": spec.key, **spec.as_dict()} for spec in output.runs],
         }
         write_item_page(self.page(name), record)
         text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
-        write_whole(folder / f"{name}.json", text.encode())
+        write_whole(path, text.encode())
         self.forget_miss(name)
         return record
 
@@ -199,14 +190,6 @@ class ReportFolder:
         names = list(order)
         records = [record for name in names if (record := self.record(name)) is not None]
         return write_page(self.path / PAGE, records, self.misses, names)
-
-    def _remove(self, name: str) -> None:
-        """Take away the files of an earlier version, its JSON first: without it none is there."""
-        path = self.path / name / f"{name}.json"
-        record = _read(path, ITEM_SCHEMA)
-        path.unlink(missing_ok=True)
-        for file in () if record is None else files_of(record):
-            (path.parent / file).unlink(missing_ok=True)
 
     def _write_misses(self, misses: Mapping[str, Mapping[str, str]]) -> None:
         text = json.dumps({"schema": MARK_SCHEMA, "misses": misses}, ensure_ascii=False, indent=1)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 from math import floor
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,21 +14,13 @@ from scipy import ndimage
 from drystone.clusters import cluster_stones
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.gaps import model_with_closed_gaps, settle_gaps
-from drystone.drawing.pictures.stones import plot_stones
 from drystone.metrics.frame import reduce_labels
 from drystone.metrics.measure import WallMetrics, measure_labels
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
 from drystone.poses import PoseBook
 from drystone.statics.limit import lateral_resistance
-from drystone_lab.pictures.walls import (
-    EMPTY,
-    Panel,
-    masonry_panel,
-    sheet_of,
-    wall_aspect,
-    wall_panel,
-)
+from drystone_lab.pictures import walls as sheets
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, rounded
 from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
@@ -85,8 +78,10 @@ def _nearest(pixels: NDArray[np.intp], others: Labels) -> NDArray[np.intp]:
         ways = sorted((_distance(middle + move, others), order) for order, move in enumerate(MOVES))
         for distance, order in ways:
             step = np.array(MOVES[order])
-            if distance < here and _is_free(pixels + step, others):
-                pixels, middle = pixels + step, middle + step
+            moved = pixels + step
+            inside = (moved >= 0).all() and (moved < others.shape).all()
+            if distance < here and inside and not others[tuple(moved.T)].any():
+                pixels, middle = moved, middle + step
                 break
         else:
             return pixels
@@ -95,12 +90,6 @@ def _nearest(pixels: NDArray[np.intp], others: Labels) -> NDArray[np.intp]:
 def _distance(place: NDArray[np.floating], labels: Labels) -> float:
     """Return how far a row and column is from the bottom left corner."""
     return float(np.hypot(labels.shape[0] - 0.5 - place[0], place[1] + 0.5))
-
-
-def _is_free(pixels: NDArray[np.intp], others: Labels) -> bool:
-    if (pixels < 0).any() or (pixels >= others.shape).any():
-        return False
-    return not others[tuple(pixels.T)].any()
 
 
 REACHES_PX = (1, 2, 3, 4, 6, 8)
@@ -139,9 +128,17 @@ class TracedWall:
         """The wall with its stones drawn together and dilated by one pixel."""
         return dilated(drawn_together(self.labels))
 
+    @property
+    def both(self) -> tuple[tuple[str, Labels], tuple[str, Labels]]:
+        """The wall as it was traced, and with its gaps treated as in the paper."""
+        return ("as traced", self.labels), (PAPERS_WAY, self.papers_way)
 
-@dataclass(frozen=True)
-class Treatment:
+    def panel(self, title: str, labels: Labels) -> sheets.Panel:
+        """Return a picture of it as a panel of a sheet."""
+        return sheets.masonry_panel(title, labels, self.clusters, 1 / self.wall.scale)
+
+
+class Treatment(NamedTuple):
     """F_LR for one way to treat the gaps; without one the status says what the wall does."""
 
     name: str
@@ -196,24 +193,24 @@ def treated_walls(context: Context, walls: Sequence[Target] = MASONS) -> Treated
 
 def _metrics(walls: TreatedWalls) -> Rows:
     for each, _ in walls:
-        for name, labels in (("as traced", each.labels), (PAPERS_WAY, each.papers_way)):
+        for name, labels in each.both:
             ours = measured(labels)
             size = f"{ours.width:.0f} x {ours.height:.0f}"
-            found = [rounded(getattr(ours, metric)) for metric in METRICS]
+            found = (rounded(getattr(ours, metric)) for metric in METRICS)
             yield each.wall.name, name, size, ours.stones, *found
         yield each.wall.name, "paper, Table 2", None, None, *REFERENCES[each.wall.number]
 
 
 def _gaps_picture(walls: TreatedWalls) -> ItemFigure:
     panels = [
-        masonry_panel(f"{each.wall.name}, {name}", labels, each.clusters, 1 / each.wall.scale)
+        each.panel(f"{each.wall.name}, {name}", labels)
         for each, _ in walls
         for name, labels in (
             ("as traced", each.labels),
             ("drawn together, dilated", each.papers_way),
         )
     ]
-    return ItemFigure("fig13", sheet_of(panels, 2))
+    return ItemFigure("fig13", sheets.sheet_of(panels, 2))
 
 
 FIG13 = PaperItem(
@@ -245,14 +242,14 @@ def best_trial(outcomes: Sequence[RunOutcome]) -> int:
     the same order, and then the earlier trial.  Multipliers are over mu, as those that the paper
     prints seem to be (Fig. 14: .79, above any mu that it names): F_LR.
     """
-    return max(range(len(outcomes)), key=lambda place: (*_merit(outcomes[place]), -place))
 
+    def merit(place: int) -> tuple[float, float, float, float, int]:
+        figures = outcomes[place].figures
+        filled = float(figures["F_SF"] or 0.0)
+        resistance = -1.0 if figures["F_LR"] is None else round(figures["F_LR"], EXACT)
+        return tenths(filled), tenths(resistance), filled, resistance, -place
 
-def _merit(outcome: RunOutcome) -> tuple[float, float, float, float]:
-    resistance, filled = outcome.figures["F_LR"], float(outcome.figures["F_SF"] or 0.0)
-    if resistance is None:
-        return tenths(filled), -1.0, filled, 0.0
-    return tenths(filled), tenths(resistance), filled, round(resistance, EXACT)
+    return max(range(len(outcomes)), key=merit)
 
 
 def tenths(value: float) -> int:
@@ -313,8 +310,7 @@ def _references(wall: FiveWall) -> Iterator[tuple[Cell, ...]]:
     if wall.masons is None:
         yield number, "the paper's", "reference", None, None, *NONE, *papers
         return
-    treated = (("as traced", wall.masons.labels), (PAPERS_WAY, wall.masons.papers_way))
-    metrics = [(what, measured(labels)) for what, labels in treated]
+    metrics = [(what, measured(labels)) for what, labels in wall.masons.both]
     count = metrics[0][1].stones
     for what, ours in metrics:
         figures = (rounded(getattr(ours, name)) for name in METRICS)
@@ -342,25 +338,22 @@ def _ours(wall: FiveWall) -> Iterator[tuple[Cell, ...]]:
     yield *wall.name, "all stones", count, count, most, None, None, None, *NONE
 
 
-def _five_panels(built: StudyWalls, wall: FiveWall) -> list[Panel]:
+def _five_panels(built: StudyWalls, wall: FiveWall) -> list[sheets.Panel]:
     trials, stones = wall.trials, wall.stones
     seeds = [spec.seed for spec in trials.specs]
     clusters = cluster_stones(stones, PoseBook(trials.wall.scale))
     title = f"Wall {trials.wall.number}, {trials.wall.name}\n"
     title += f"{len(stones)} stones in {len(set(clusters.values()))} clusters"
     best = f"best of {len(seeds)}, seed {seeds[wall.best]}"
-    masons = EMPTY
+    masons = sheets.EMPTY
     if wall.masons is not None:
-        unit = 1 / trials.wall.scale
-        labels = wall.masons.papers_way
-        masons = masonry_panel("masons, gaps closed", labels, wall.masons.clusters, unit)
+        masons = wall.masons.panel("masons, gaps closed", wall.masons.papers_way)
     return [
-        Panel(title, wall_aspect(stones.source.height_px / stones.source.width_px),
-              lambda ax: plot_stones(stones, clusters, ax)),
-        wall_panel(*built.titled(trials, f"fixed seed {seeds[0]}")),
-        wall_panel(*built.titled(trials, best, wall.best)),
+        sheets.stones_panel(title, stones, clusters),
+        sheets.wall_panel(*built.titled(trials, f"fixed seed {seeds[0]}")),
+        sheets.wall_panel(*built.titled(trials, best, wall.best)),
         masons,
-    ]  # fmt: skip
+    ]
 
 
 TABLE2 = PaperItem(
@@ -378,7 +371,9 @@ TABLE2 = PaperItem(
     pictures=lambda found: [
         ItemFigure(
             "fig18",
-            sheet_of([panel for wall in found[1] for panel in _five_panels(found[0], wall)], 4),
+            sheets.sheet_of(
+                [panel for wall in found[1] for panel in _five_panels(found[0], wall)], 4
+            ),
         )
     ],
 )

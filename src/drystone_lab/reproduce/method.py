@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import islice
 from types import SimpleNamespace
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -11,7 +12,6 @@ from matplotlib.figure import Figure
 from drystone.contacts.blocks import model_from_labels
 from drystone.drawing.palette import CLUSTER_COLOURS
 from drystone.drawing.pictures.forces import plot_forces
-from drystone.drawing.pictures.stones import plot_stones
 from drystone.model.site import Site
 from drystone.model.wall import Labels, Wall
 from drystone.planner.attempt import Attempt
@@ -24,7 +24,7 @@ from drystone.selection.sampling import sample_stones
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
-from drystone_lab.pictures.walls import Panel, plot_walls, sheet_of, wall_aspect, wall_panel
+from drystone_lab.pictures.walls import plot_walls, sheet_of, stones_panel, wall_panel
 from drystone_lab.reproduce.cells import rounded
 from drystone_lab.reproduce.construction import Construction, construction
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
@@ -45,12 +45,11 @@ ROWS: Mapping[str, tuple[str, int, tuple[str, ...]]] = {
 
 
 def _table1(_: object) -> Rows:
-    def cell(policy: str, part: str) -> str:
-        said, ours = policy in ROWS[part][2], part in MARKS[policy]
-        return {(1, 1): "paper and ours", (1, 0): "paper", (0, 1): "ours", (0, 0): ""}[said, ours]
-
-    for part, (name, count, _who) in ROWS.items():
-        yield name, count, *(cell(policy, part) for policy in MARKS)
+    for part, (name, count, said) in ROWS.items():
+        whose = (
+            ["paper"] * (policy in said) + ["ours"] * (part in MARKS[policy]) for policy in MARKS
+        )
+        yield name, count, *map(" and ".join, whose)
 
 
 TABLE1 = PaperItem(
@@ -80,18 +79,16 @@ def _steps(run: Construction) -> Rows:
 
 def _workflow(run: Construction) -> Iterator[ItemFigure]:
     stones, count = run.workshop.stones, len(run.stages)
-    shown = sorted({1, max(1, count // 3), max(1, 2 * count // 3), count})
     walls = [
         (f"after {number} stones", run.stages[number - 1].after, run.workshop.clusters)
-        for number in shown
+        for number in sorted({1, max(1, count // 3), max(1, 2 * count // 3), count})
     ]
     yield ItemFigure("fig3", plot_walls(walls, 2), {"placed": count, "count": len(stones)})
-    empty = Wall.empty(run.wall.site)
+    free = "the landscape before the first stone: free between its bounds"
     panels = [
-        Panel("the stones", wall_aspect(stones.source.height_px / stones.source.width_px),
-              lambda ax: plot_stones(stones, run.workshop.clusters, ax)),
-        wall_panel("the landscape before the first stone: free between its bounds", empty, {}),
-    ]  # fmt: skip
+        stones_panel("the stones", stones, run.workshop.clusters),
+        wall_panel(free, Wall.empty(run.wall.site), {}),
+    ]
     yield ItemFigure("fig4", sheet_of(panels, 2))
 
 
@@ -152,8 +149,7 @@ def _selection_picture(step: Selection) -> ItemFigure:
     figure = Figure(figsize=(6.4, 0.4 + 0.22 * len(step.candidates)), layout="constrained")
     ax = figure.add_subplot()
     for k, passed in enumerate(step.passed):
-        colour = CLUSTER_COLOURS[1 if k == step.selected.position else 0]
-        ax.barh(k, passed, color=colour)
+        ax.barh(k, passed, color=CLUSTER_COLOURS[k == step.selected.position])
     names = [f"{c.stone_id} at {c.proposal.trial_angle_deg:g}" for c in step.candidates]
     ax.set_yticks(range(len(names)), names, fontsize=6)
     ax.set_xticks(range(1, len(FILTERS) + 1), FILTERS, fontsize=7)
@@ -170,8 +166,7 @@ SELECTION = PaperItem(
 )
 
 
-@dataclass(frozen=True, eq=False)
-class TwoStones:
+class TwoStones(NamedTuple):
     """Fig. 11: a stone on another one, and the forces at the most that they carry."""
 
     labels: Labels
@@ -206,9 +201,8 @@ def _two_claims(found: TwoStones) -> Iterator[Claimed]:
 
 def _two_picture(found: TwoStones) -> ItemFigure:
     figure = Figure(figsize=(5.0, 3.6), layout="constrained")
-    forces = found.both.right.forces
-    if forces is not None:
-        plot_forces(found.labels, found.model, forces, figure.add_subplot())
+    if found.both.right.forces is not None:
+        plot_forces(found.labels, found.model, found.both.right.forces, figure.add_subplot())
     return ItemFigure("fig11", figure)
 
 

@@ -15,13 +15,7 @@ from drystone.metrics.frame import reduce_labels
 from drystone.metrics.measure import measure_labels
 from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
-from drystone_lab.pictures.charts import (
-    TWO_IN,
-    NoisePanel,
-    group_panels,
-    noise_panels,
-    plot_two_figures,
-)
+from drystone_lab.pictures import charts
 from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import LEVEL, Trend, figures_of, metric_cells, rounded, trend
@@ -103,11 +97,6 @@ class NoiseLevel:
         return self.ours.wall.number
 
     @property
-    def generated(self) -> bool:
-        """Whether the stones are our own."""
-        return self.ours.wall.stand_in
-
-    @property
     def ours(self) -> Trials:
         """Walls of the paper's method."""
         return self.built.all[0]
@@ -118,30 +107,20 @@ class NoiseLevel:
         return trials.median(name) or 0.0
 
 
-@dataclass(frozen=True, eq=False)
-class NoiseLevels:
-    """The walls of all noise levels."""
-
-    built: StudyWalls
-    all: tuple[NoiseLevel, ...]
-
-    @property
-    def low(self) -> list[NoiseLevel]:
-        """Levels below :data:`MIXED`."""
-        return [level for level in self.all if level.noise < MIXED]
-
-    @property
-    def published(self) -> list[tuple[NoiseLevel, ReferenceWall]]:
-        """Levels whose published walls are there, and these."""
-        return [(level, level.reference) for level in self.all if level.reference is not None]
+NoiseLevels = Sequence[NoiseLevel]
 
 
 def noise_levels(context: Context, study: Study) -> NoiseLevels:
     """Build walls of every noise level, and measure the published ones."""
-    found = study(context)
-    groups = found.by_wall
-    levels = (NoiseLevel(group, reference_of(group.all[0].wall, context.data)) for group in groups)
-    return NoiseLevels(found, tuple(levels))
+    return [
+        NoiseLevel(group, reference_of(group.all[0].wall, context.data))
+        for group in study(context).by_wall
+    ]
+
+
+def published_of(levels: NoiseLevels) -> list[tuple[NoiseLevel, ReferenceWall]]:
+    """Return the levels whose published walls are there, and these."""
+    return [(level, level.reference) for level in levels if level.reference is not None]
 
 
 def is_full(outcome: RunOutcome) -> bool:
@@ -152,17 +131,17 @@ def is_full(outcome: RunOutcome) -> bool:
 
 def trends(levels: NoiseLevels, name: str) -> dict[str, Trend | None]:
     """Correlate a figure with the noise: over walls; over sets, which alone are independent."""
-    walls = [(level.noise, value) for level in levels.all
+    walls = [(level.noise, value) for level in levels
              for value in figures_of(level.ours.outcomes, name)]  # fmt: skip
-    sets = [(level.noise, level.ours.median(name)) for level in levels.all]
+    sets = [(level.noise, level.ours.median(name)) for level in levels]
     return {"walls": trend(walls), "sets": trend(sets)}
 
 
 def residuals(levels: NoiseLevels) -> dict[int, float]:
     """Return by how much the median filling of each level is above that of its neighbours."""
-    filled = [level.least("F_SF") for level in levels.all]
+    filled = [level.least("F_SF") for level in levels]
     found = {}
-    for place, level in enumerate(levels.all):
+    for place, level in enumerate(levels):
         beside = filled[max(0, place - 1) : place] + filled[place + 1 : place + 2]
         if beside:
             found[level.noise] = filled[place] - median(beside)
@@ -171,22 +150,23 @@ def residuals(levels: NoiseLevels) -> dict[int, float]:
 
 def noise_findings(levels: NoiseLevels) -> Iterator[Claimed]:
     """Compare the levels with what §5.3 says of them."""
-    low = [outcome for level in levels.low for outcome in level.ours.outcomes]
-    full = sum(map(is_full, low))
+    low = [level for level in levels if level.noise < MIXED]
+    walls = [outcome for level in low for outcome in level.ours.outcomes]
+    full = sum(map(is_full, walls))
     against = {
-        name: sum(one.least(name) > one.least(name, "random") for one in levels.low)
+        name: sum(one.least(name) > one.least(name, "random") for one in low)
         for name in ("F_SF", "F_LR")
     }
     told = ", ".join(f"{name} in {count}" for name, count in against.items())
-    reference = trend([(level.noise, wall.F_AV) for level, wall in levels.published])
+    reference = trend([(level.noise, wall.F_AV) for level, wall in published_of(levels)])
     # Few walls are published: a correlation that is not clear is not yet against the claim.
     clear = reference is not None and (reference.clear or reference.rho <= 0)
     yield _trending("falls", levels, "F_SF", -1)
-    agrees = full == len(low) if low else None
-    yield Claimed("always", agrees, {"full": full, "count": len(low)})
+    agrees = full == len(walls) if walls else None
+    yield Claimed("always", agrees, {"full": full, "count": len(walls)})
     yield from _between(levels)
-    agrees = against["F_SF"] == len(levels.low) if levels.low else None
-    yield Claimed("random", agrees, {"told": told, "count": len(levels.low)})
+    agrees = against["F_SF"] == len(low) if low else None
+    yield Claimed("random", agrees, {"told": told, "count": len(low)})
     yield _trending("resistance", levels, "F_LR", 0)
     yield _trending("interlocking", levels, "F_AV", 1)
     words = "too few published walls" if reference is None else reference.words()
@@ -212,21 +192,21 @@ def _trending(key: str, levels: NoiseLevels, name: str, sign: int) -> Claimed:
 
 
 def _between(levels: NoiseLevels) -> Iterator[Claimed]:
-    if len(levels.all) < 2:
+    if len(levels) < 2:
         return
-    worst: dict[str, NoiseLevel] = {}
-    for name in ("F_SF", "F_LR"):
-        figures = [level.least(name) for level in levels.all]
-        worst[name] = levels.all[figures.index(min(figures))]
+    worst = {
+        name: min(levels, key=lambda level, name=name: level.least(name))  # type: ignore[misc]
+        for name in ("F_SF", "F_LR")
+    }
     words = "; ".join(
         f"the lowest median {name} is that of {level.noise} % noise, {level.least(name):.3f}"
         for name, level in worst.items()
     )
-    there = levels.all[-1].noise == NOISES[-1]
+    there = levels[-1].noise == NOISES[-1]
     hardest = all(level.noise == NOISES[-1] for level in worst.values())
     yield Claimed("hardest", hardest if there else None, {"words": words})
     # The first and the last have a neighbour on one side only: a mere trend sets them apart.
-    inner = [level.noise for level in levels.all[1:-1]]
+    inner = [level.noise for level in levels[1:-1]]
     if inner:
         above = residuals(levels)
         best = max(inner, key=lambda noise: above[noise])
@@ -236,7 +216,7 @@ def _between(levels: NoiseLevels) -> Iterator[Claimed]:
 def _against_reference(key: str, levels: NoiseLevels, name: str) -> Claimed:
     pairs = [
         (level.noise, level.least(name), getattr(wall, name) or 0.0)
-        for level, wall in levels.published
+        for level, wall in published_of(levels)
     ]
     # Sizes of walls are rounded to px, so that walls of all stones differ in later digits.
     better = sum(round(ours, 3) >= round(theirs, 3) for _, ours, theirs in pairs)
@@ -246,23 +226,29 @@ def _against_reference(key: str, levels: NoiseLevels, name: str) -> Claimed:
 
 
 def _references(levels: NoiseLevels) -> Rows:
-    for level, wall in levels.published:
+    for level, wall in published_of(levels):
         figures = map(rounded, (wall.F_SF, wall.F_AV, wall.F_AH, *wall.resistances))
         yield level.noise, wall.stones, *figures
 
 
-_level_rows = medians(lambda one: (one.wall.number, one.wall.said, one.way))
-_wall_rows = each_wall(
-    lambda one, spec, outcome: (
-        one.wall.number, one.wall.said, one.way, spec.seed, *cells.placed_of(outcome),
-        *metric_cells(outcome), is_full(outcome),
-    )
-)  # fmt: skip
+def _level_rows(levels: NoiseLevels) -> Rows:
+    rows = medians(lambda one: (one.wall.number, one.wall.said, one.way))
+    return (row for level in levels for row in rows(level.built))
+
+
+def _wall_rows(levels: NoiseLevels) -> Rows:
+    rows = each_wall(
+        lambda one, spec, outcome: (
+            one.wall.number, one.wall.said, one.way, spec.seed, *cells.placed_of(outcome),
+            *metric_cells(outcome), is_full(outcome),
+        )
+    )  # fmt: skip
+    return (row for level in levels for row in rows(level.built))
 
 
 def _noise_pictures(levels: NoiseLevels) -> Iterator[ItemFigure]:
     walls = []
-    for level in levels.all:
+    for level in levels:
         place = level.ours.middle
         figures, seed = level.ours.outcomes[place].figures, level.ours.specs[place].seed
         resistance = "-" if figures["F_LR"] is None else f"{figures['F_LR']:.2f}"
@@ -272,23 +258,23 @@ def _noise_pictures(levels: NoiseLevels) -> Iterator[ItemFigure]:
     yield _scatter(levels)
     names = (f"F_SF > {FILLED:g}", f"F_SF <= {FILLED:g}", "published walls",
              "random choice, median")  # fmt: skip
-    ticks = {level.noise: f"{level.noise}{'*' if level.generated else ''}" for level in levels.all}
+    ticks = {one.noise: f"{one.noise}{'*' * one.ours.wall.stand_in}" for one in levels}
     axes = {"F_SF": "F_SF", "F_LR": "F_LR", "F_AV": "F_AV, %", "F_AH": "F_AH, %"}
     panels = [_panel(levels, name, words) for name, words in axes.items()]
-    yield ItemFigure("fig24", noise_panels(panels, names, ticks))
+    yield ItemFigure("fig24", charts.noise_panels(panels, names, ticks))
 
 
 def _scatter(levels: NoiseLevels) -> ItemFigure:
     groups = {
-        f"{level.noise} %{' gen.' if level.generated else ''}": list(
+        f"{level.noise} %{' gen.' * level.ours.wall.stand_in}": list(
             zip(level.ours.values("F_LR"), level.ours.values("F_SF"), strict=True)
         )
-        for level in levels.all
+        for level in levels
     }
-    figure = Figure(figsize=TWO_IN)
-    ax = plot_two_figures(groups, figure.add_subplot(), across="F_LR", up="F_SF")
+    figure = Figure(figsize=charts.TWO_IN)
+    ax = charts.plot_two_figures(groups, figure.add_subplot(), across="F_LR", up="F_SF")
     ax.margins(0.09)
-    for level, offset in zip(levels.all, cycle(OFFSETS_PT), strict=False):
+    for level, offset in zip(levels, cycle(OFFSETS_PT), strict=False):
         drawn = level.ours.outcomes[level.ours.middle].figures
         resistance, filling = drawn["F_LR"], drawn["F_SF"]
         if resistance is not None and filling is not None:
@@ -300,21 +286,21 @@ def _scatter(levels: NoiseLevels) -> ItemFigure:
     return ItemFigure("fig23", figure)
 
 
-def _panel(levels: NoiseLevels, name: str, words: str) -> NoisePanel:
+def _panel(levels: NoiseLevels, name: str, words: str) -> charts.NoisePanel:
     def pairs(full: bool) -> tuple[tuple[int, float], ...]:
         return tuple(
             (level.noise, value)
-            for level in levels.all
+            for level in levels
             for value in figures_of([o for o in level.ours.outcomes if is_full(o) is full], name)
         )
 
     def line(figure: Callable[[NoiseLevel], float | None]) -> dict[int, float]:
-        found = ((level.noise, figure(level)) for level in levels.all)
+        found = ((level.noise, figure(level)) for level in levels)
         return {noise: value for noise, value in found if value is not None}
 
     published = line(lambda level: getattr(level.reference, name, None))
     random = line(lambda level: level.built.of("random")[0].median(name))
-    return NoisePanel(words, pairs(True), pairs(False), published, random)
+    return charts.NoisePanel(words, pairs(True), pairs(False), published, random)
 
 
 NOISE = PaperItem(
@@ -331,9 +317,9 @@ NOISE = PaperItem(
     ),
     claims=noise_findings,
     tables={
-        "levels": lambda levels: _level_rows(levels.built),
+        "levels": _level_rows,
         "reference": _references,
-        "walls": lambda levels: _wall_rows(levels.built),
+        "walls": _wall_rows,
     },
     pictures=_noise_pictures,
 )
@@ -380,7 +366,7 @@ def _turned_pictures(found: StudyWalls) -> Iterator[ItemFigure]:
         }
         for figure in ("F_SF", "F_LR")
     }
-    yield ItemFigure("fig25-figures", group_panels(panels))
+    yield ItemFigure("fig25-figures", charts.group_panels(panels))
 
 
 TURNED = PaperItem(

@@ -113,7 +113,7 @@ def write_page(
     sections = {name: {"name": name, **miss} for name, miss in misses.items()}
     for record in records:
         name = record["name"]
-        error = sections.get(name, {}).get("error")
+        error = misses.get(name, {}).get("error")
         sections[name] = {**record, "prefix": f"{name}/", "error": error}
     return _write(
         path,

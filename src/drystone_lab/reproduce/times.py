@@ -1,7 +1,7 @@
 """Items that are timed: Fig. 28, a step by part; Fig. 29, resolution; §6.2, stones and clusters."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from statistics import fmean
 from typing import NamedTuple
@@ -14,6 +14,7 @@ from drystone.planner.profile import Part, StepTime
 from drystone.planner.settings import method_settings
 from drystone.poses import PoseBook
 from drystone.selection.sampling import Sampling
+from drystone_lab import timed_walls
 from drystone_lab.pictures.growth import plot_growth, step_time_panels
 from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import metric_cells, placed_of, trend
@@ -21,16 +22,7 @@ from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem,
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.reproduce.study import ONE_WAY, StudyWalls, built
 from drystone_lab.table import Cell
-from drystone_lab.timed_walls import (
-    SAMPLINGS,
-    TimedWall,
-    exponents,
-    fitted,
-    parts_ms,
-    planned,
-    rubble,
-    three_digits,
-)
+from drystone_lab.timed_walls import SAMPLINGS, TimedWall, fitted, parts_ms, three_digits
 from drystone_lab.walls import PR, Target
 
 REPEATS = 5
@@ -41,7 +33,7 @@ def timed(context: Context, wall: Target, changes: Mapping[str, object]) -> Time
     """Plan a wall by the paper's method, and time it."""
     settings = method_settings("paper").updated(changes)
     repeats = 1 if context.quick else REPEATS
-    return planned(wall, context.data, settings, seed=context.seed, repeats=repeats)
+    return timed_walls.planned(wall, context.data, settings, seed=context.seed, repeats=repeats)
 
 
 BySampling = Mapping[Sampling, TimedWall]
@@ -155,11 +147,9 @@ def step_findings(walls: BySampling) -> Iterator[Claimed]:
     yield Claimed("stable", 1 / STABLE < stable < STABLE, {"stable": stable})
     selection = [procedure_seconds([step])["selection"] for step in variant]
     grows = late_over_early(selection) if min(selection) > 0 else None
-    words = _trend_words([(s.stones, t / s.candidates)
-                          for s, t in zip(variant, selection, strict=True)])  # fmt: skip
-    yield Claimed(
-        "grows", None if grows is None else grows > 1, {"grows": grows or 0.0, "words": words}
-    )
+    each_ms = [(s.stones, t / s.candidates) for s, t in zip(variant, selection, strict=True)]
+    values = {"grows": grows or 0.0, "words": _trend_words(each_ms)}
+    yield Claimed("grows", None if grows is None else grows > 1, values)
     falls = late_over_early([step.seconds for step in full])
     candidates = late_over_early([float(step.candidates) for step in full])
     words = _trend_words([(step.stones, step.seconds) for step in full])
@@ -189,7 +179,7 @@ def step_rows(walls: BySampling) -> Rows:
             yield three_digits((sampling, stones, candidates, *parts, parts[-1] / candidates))
         late = [step for step in wall.steps if step.stones >= FIRST_STONES]
         each = [[ms / step.candidates for ms in parts_ms([step])] for step in late]
-        growth = exponents([float(step.stones) for step in late], each)
+        growth = timed_walls.exponents([float(step.stones) for step in late], each)
         yield three_digits((sampling, "exponent a candidate", None, *growth, None))
 
 
@@ -232,8 +222,7 @@ PAPER_STEP_S = {560 * 160: 25.0}
 """By pixels.  §6.3: at the highest resolution no step takes longer."""
 
 
-@dataclass(frozen=True, eq=False)
-class ScaledWalls:
+class ScaledWalls(NamedTuple):
     """A wall at several resolutions, built to be drawn and timed, by scale."""
 
     built: StudyWalls
@@ -254,8 +243,7 @@ def scale_findings(walls: Mapping[float, TimedWall]) -> Iterator[Claimed]:
         ("longest step", {scale: wall.longest for scale, wall in walls.items()}, PAPER_STEP_S),
     )
     for what, seconds, _ in measures:
-        law = fitted(list(seconds.items()))
-        if law is None:
+        if (law := fitted(list(seconds.items()))) is None:
             yield Claimed("few", None, {"what": what})
         else:
             near = abs(law.exponent - QUADRATIC) <= TOLERANCE
@@ -284,7 +272,8 @@ def pixel_rows(name: str, by_scale: Mapping[float, TimedWall]) -> Rows:
              wall.longest, said[1])
         )  # fmt: skip
     measured = [(*parts_ms(wall.steps), wall.seconds, wall.longest) for wall in walls]
-    *steps, whole, longest = exponents([float(wall.pixels) for wall in walls], measured)
+    pixels = [float(wall.pixels) for wall in walls]
+    *steps, whole, longest = timed_walls.exponents(pixels, measured)
     yield three_digits(("exponent over pixels", None, None, *steps, whole, None, longest, None))
 
 
@@ -338,8 +327,7 @@ LIMIT = 0.25
 """How far an exponent may be from the paper's."""
 
 
-@dataclass(frozen=True)
-class Sizes:
+class Sizes(NamedTuple):
     """Numbers of stones Q; and thresholds of the clusters K, with the largest Q."""
 
     counts: tuple[int, ...] = (16, 32, 64, 128)
@@ -349,8 +337,7 @@ class Sizes:
 QUICK = Sizes((8, 16, 32), (0.1, 0.4))
 
 
-@dataclass(frozen=True)
-class GrowthWall:
+class GrowthWall(NamedTuple):
     """A wall, with the numbers of stones and clusters that its time should depend on."""
 
     sampling: Sampling
@@ -371,16 +358,15 @@ def by_stones(context: Context, sizes: Sizes | None = None) -> tuple[GrowthWall,
         (sampling, usual, count) for sampling in SAMPLINGS for count in sizes.counts
     ]
     asked += [("variant", distance, sizes.counts[-1]) for distance in sizes.distances]
-    return tuple(_grown(context, *one) for one in asked)
-
-
-def _grown(context: Context, sampling: Sampling, distance: float, count: int) -> GrowthWall:
-    wall = rubble(count, context.seed, WALL_PX)
-    changes = {"sampling": sampling, "clusters": {"distance": distance}}
-    settings = method_settings("paper").updated(changes)
-    clusters = cluster_stones(wall.source.stones(None), PoseBook(), settings.clusters)
-    found = planned(wall, None, settings, seed=context.seed, repeats=1)
-    return GrowthWall(sampling, distance, count, len({*clusters.values()}), found)
+    walls = []
+    for sampling, distance, count in asked:
+        wall = timed_walls.rubble(count, context.seed, WALL_PX)
+        changes = {"sampling": sampling, "clusters": {"distance": distance}}
+        settings = method_settings("paper").updated(changes)
+        clusters = cluster_stones(wall.source.stones(None), PoseBook(), settings.clusters)
+        found = timed_walls.planned(wall, None, settings, seed=context.seed, repeats=1)
+        walls.append(GrowthWall(sampling, distance, count, len({*clusters.values()}), found))
+    return tuple(walls)
 
 
 def counts(walls: Grew) -> Iterator[Claimed]:

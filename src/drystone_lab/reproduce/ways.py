@@ -3,36 +3,16 @@
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
+from drystone_lab import walls
 from drystone_lab.paired import median_of
 from drystone_lab.pictures.charts import figure_of, group_panels, plot_two_figures
-from drystone_lab.reproduce import cells
+from drystone_lab.reproduce import cells, study
 from drystone_lab.reproduce.cells import METRICS, rounded
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem
 from drystone_lab.reproduce.items import ITEMS
-from drystone_lab.reproduce.study import (
-    Study,
-    StudyWalls,
-    Trials,
-    built,
-    each_wall,
-    medians,
-    pairs,
-    sheet,
-    strips,
-)
+from drystone_lab.reproduce.study import Study, StudyWalls, Trials, medians
 from drystone_lab.runs.spec import Changes
-from drystone_lab.walls import (
-    FRAMED,
-    IR,
-    LIU_5,
-    MASONS,
-    PR,
-    PR_FREE_596,
-    TWO_SIDED,
-    R,
-    Target,
-    coarser,
-)
+from drystone_lab.walls import IR, LIU_5, MASONS, PR, TWO_SIDED, R, Target, coarser
 
 COARSE = (coarser(R, 0.1), coarser(PR, 0.25))
 """For quick versions: the many stones of IR take longest."""
@@ -65,7 +45,7 @@ BETA = PaperItem(
     ),
     tables={
         "beta": medians(_named),
-        "beta_pairs": pairs(PAPERS, [beta for beta in BETAS if beta != PAPERS]),
+        "beta_pairs": study.pairs(PAPERS, [beta for beta in BETAS if beta != PAPERS]),
     },
     pictures=lambda found: [_beta_picture(found)],
 )
@@ -102,8 +82,8 @@ SAMPLING = PaperItem(
         "fig16": medians(lambda one: (one.way,), lambda one: (rounded(one.median("candidates")),))
     },
     pictures=lambda found: (
-        sheet(found, "fig16", 2, lambda one: one.way),
-        strips(found, "fig16_seeds", (*METRICS, "placed", "candidates"), lambda one: one.way),
+        study.sheet(found, "fig16", 2, lambda one: one.way),
+        study.strips(found, "fig16_seeds", (*METRICS, "placed", "candidates"), lambda one: one.way),
     ),
 )
 
@@ -135,10 +115,6 @@ def _wedges_picture(group: StudyWalls, number: int) -> ItemFigure:
     return ItemFigure(f"fig20_{number}", figure, group)
 
 
-def _wedge_cells(one: Trials) -> tuple[float | None, ...]:
-    return one.median("wedges"), rounded(median_of(_wedge_share(one)))
-
-
 STABILISATION = PaperItem(
     words=ITEMS["fig20"],
     study=Study(
@@ -148,7 +124,11 @@ STABILISATION = PaperItem(
         quick_walls=(coarser(LIU_5, 0.15), coarser(IR, 0.15)),
     ),
     claims=_stabilised_claims,
-    tables={"fig20": medians(_named, _wedge_cells)},
+    tables={
+        "fig20": medians(
+            _named, lambda one: (one.median("wedges"), rounded(median_of(_wedge_share(one))))
+        )
+    },
     pictures=lambda found: [
         _wedges_picture(group, number) for number, group in enumerate(found.by_wall, 1)
     ],
@@ -180,9 +160,9 @@ CAUSES: dict[str, Changes] = {
 VARIED: tuple[tuple[Target, Mapping[str, Changes]], ...] = (
     (R, NAMED | RELEASED),
     (PR, NAMED | RELEASED | CAUSES),
-    (PR_FREE_596, RELEASED | CAUSES),
+    (walls.PR_FREE_596, RELEASED | CAUSES),
     (IR, RELEASED),
-    *((wall, {}) for wall in FRAMED),
+    *((wall, {}) for wall in walls.FRAMED),
 )
 """Walls, and by what else they are built; 596 px is the width of the authors' released times."""
 
@@ -196,13 +176,8 @@ def named_variants(
     if context.quick:
         varied, count = [(wall, NAMED) for wall in COARSE], 2
     seeds = range(context.seed, context.seed + count)
-    walls = [built(context, (wall,), {"paper": (), **ways}, seeds) for wall, ways in varied]
-    return StudyWalls(context, tuple(one for found in walls for one in found))
-
-
-def _working_px(one: Trials) -> str:
-    width, height = (side * one.wall.scale for side in (one.specs[0].width, one.specs[0].height))
-    return f"{width:.0f} x {height:.0f}"
+    each = (study.built(context, (wall,), {"paper": (), **ways}, seeds) for wall, ways in varied)
+    return StudyWalls(context, tuple(one for found in each for one in found))
 
 
 VARIANTS = PaperItem(
@@ -210,11 +185,11 @@ VARIANTS = PaperItem(
     study=named_variants,
     tables={
         "variants": medians(
-            lambda one: (*_named(one), _working_px(one)), lambda one: (_whole(one),)
+            lambda one: (*_named(one), one.wall.working_px), lambda one: (_whole(one),)
         ),
     },
     pictures=lambda found: [
-        strips(group, f"variants_{number}", ("placed", "F_SF", "F_LR"), lambda one: one.way)
+        study.strips(group, f"variants_{number}", ("placed", "F_SF", "F_LR"), lambda one: one.way)
         for number, group in enumerate(found.by_wall, 1)
         if len(group.all) > 1
     ],
@@ -222,19 +197,22 @@ VARIANTS = PaperItem(
 
 ONE, TWO = "one-sided", "two-sided"
 SIDES: dict[str, Changes] = {ONE: (), TWO: TWO_SIDED}
-FLUSH = (*METRICS, "E_FLUSH")
-
 
 BOTH_ENDS = PaperItem(
     words=ITEMS["fig21"],
     study=Study(walls=MASONS, ways=SIDES, quick_walls=COARSE),
     tables={
         "fig21": medians(_named, lambda one: (rounded(one.median("E_FLUSH")),)),
-        "fig21_pairs": pairs(TWO, (ONE,)),
+        "fig21_pairs": study.pairs(TWO, (ONE,)),
     },
     pictures=lambda found: (
-        sheet(found, "fig21", 2, lambda one: f"{one.wall.name}, {one.way}"),
-        strips(found, "fig21_seeds", FLUSH, lambda one: f"{one.wall.name} {one.way[:3]}"),
+        study.sheet(found, "fig21", 2, lambda one: f"{one.wall.name}, {one.way}"),
+        study.strips(
+            found,
+            "fig21_seeds",
+            (*METRICS, "E_FLUSH"),
+            lambda one: f"{one.wall.name} {one.way[:3]}",
+        ),
     ),
 )
 
@@ -243,7 +221,7 @@ NUMBERS = {"R": "B.30", "PR": "B.31", "IR": "B.32"}
 
 def _methods_picture(group: StudyWalls) -> ItemFigure:
     number = NUMBERS.get(group.name, "B.1")
-    drawn = sheet(group, f"fig{number.replace('.', '')}", len(SIDES), lambda one: one.way)
+    drawn = study.sheet(group, f"fig{number.replace('.', '')}", len(SIDES), lambda one: one.way)
     return drawn._replace(about=(number, group.name))
 
 
@@ -261,7 +239,7 @@ ALL_METHODS = PaperItem(
         quick_walls=COARSE,
     ),
     tables={
-        "figB30_32": each_wall(
+        "figB30_32": study.each_wall(
             lambda one, _, outcome: (
                 *_named(one), *cells.placed_of(outcome), *cells.metric_cells(outcome),
                 outcome.figures["wedges"], outcome.figures["candidates"],

@@ -34,7 +34,15 @@ def cluster_at_work(address: str, *, patience_s: float = PATIENCE_S) -> Iterator
     the worker's machine, else from the folder that ``DRYSTONE_DATA`` names there.  A file of
     one's own is read here, and its stones are sent.
     """
-    distributed = _distributed()
+    try:
+        distributed = import_module("distributed")
+    except ImportError as error:
+        raise UsageError(
+            "E403",
+            "Dask is not installed, and a cluster is asked for.",
+            where=OPTION,
+            cure="Install it with `pip install 'drystone[dask]'`, or use --jobs.",
+        ) from error
     client = _client(distributed, address, patience_s)
     try:
         check_versions(client)
@@ -69,18 +77,6 @@ def execute_there(spec: RunSpec, data: Path | None) -> RunOutcome:
     if data is not None and not data.is_dir():
         data = Path(os.environ.get("DRYSTONE_DATA", data))
     return execute(spec, data)
-
-
-def _distributed() -> Any:
-    try:
-        return import_module("distributed")
-    except ImportError as error:
-        raise UsageError(
-            "E403",
-            "Dask is not installed, and a cluster is asked for.",
-            where=OPTION,
-            cure="Install it with `pip install 'drystone[dask]'`, or use --jobs.",
-        ) from error
 
 
 def _client(distributed: Any, address: str, patience_s: float) -> Any:

@@ -105,9 +105,12 @@ class RunStore:
 
     def get(self, key: str) -> RunOutcome | None:
         """Return the outcome of a run; None when it is not there."""
-        path = self._path(key)
+        path = self.folder / f"{key}.json"
         try:
-            return _outcome(key, json.loads(path.read_text(encoding="utf-8")))
+            data = json.loads(path.read_text(encoding="utf-8"))
+            figures, plan, times = (dict(data[name]) for name in ("figures", "plan", "times"))
+            if not ("wall" in times and "steps" in plan and set(FIGURES) <= figures.keys()):
+                raise KeyError(key)
         except FileNotFoundError:
             return None
         except (ValueError, TypeError, KeyError) as error:
@@ -117,24 +120,14 @@ class RunStore:
                 where=str(path),
                 cure="Delete the file: its run is then done again.",
             ) from error
+        return RunOutcome(key, figures, plan, times)
 
     def put(self, outcome: RunOutcome) -> None:
         """Keep an outcome; the file is whole or not there."""
         self.folder.mkdir(parents=True, exist_ok=True)
         data = {"figures": outcome.figures, "plan": outcome.plan, "times": outcome.times}
         text = json.dumps(data, ensure_ascii=False, allow_nan=False)
-        write_whole(self._path(outcome.key), text.encode())
-
-    def _path(self, key: str) -> Path:
-        return self.folder / f"{key}.json"
-
-
-def _outcome(key: str, data: Any) -> RunOutcome:
-    """Return what a file holds; anything else is one of the errors of plain Python."""
-    figures, plan, times = (dict(data[name]) for name in ("figures", "plan", "times"))
-    if not {"wall"} <= times.keys() or not set(FIGURES) <= figures.keys() or "steps" not in plan:
-        raise KeyError(key)
-    return RunOutcome(key, figures, plan, times)
+        write_whole(self.folder / f"{outcome.key}.json", text.encode())
 
 
 def died(spec: RunSpec | str, who: str) -> DrystoneError:
@@ -194,7 +187,7 @@ class Runner:
             self.store.put(outcome)
             found[outcome.key] = outcome
             self.say(f"{count} of {len(missing)} walls, {outcome.times['wall']:.1f} s")
-        done = [found[spec.key] for spec in specs]
-        if any(outcome is None for outcome in done):
+        done = tuple(one for spec in specs if (one := found[spec.key]) is not None)
+        if len(done) < len(specs):
             raise RuntimeError("runs were lost")
-        return tuple(outcome for outcome in done if outcome is not None)
+        return done

@@ -32,17 +32,13 @@ def flat(settings: Mapping[str, Any]) -> Changes:
     >>> flat({"sampling": "full", "placement": {"beta": 0.5}})
     (('placement.beta', 0.5), ('sampling', 'full'))
     """
-    return tuple(sorted(_pairs(settings, "")))
-
-
-def _pairs(settings: Mapping[str, Any], prefix: str) -> list[tuple[str, Scalar]]:
     found: list[tuple[str, Scalar]] = []
     for name, value in settings.items():
         if isinstance(value, Mapping):
-            found.extend(_pairs(value, f"{prefix}{name}."))
+            found += [(f"{name}.{below}", each) for below, each in flat(value)]
         else:
-            found.append((prefix + name, value))
-    return found
+            found.append((name, value))
+    return tuple(sorted(found))
 
 
 def nested(changes: Changes) -> dict[str, Any]:
@@ -190,8 +186,8 @@ class RunSpec:
     def __str__(self) -> str:
         """Return a line for messages."""
         size = f"{self.width:g} x {self.height:g} px" if self.width and self.height else "own size"
-        changes = "".join(f", {name} = {value}" for name, value in self.changes)
-        return f"{self.source}, {size} at {self.scale:g}, {self.method}{changes}, seed {self.seed}"
+        method = ", ".join([self.method, told(self.changes)] if self.changes else [self.method])
+        return f"{self.source}, {size} at {self.scale:g}, {method}, seed {self.seed}"
 
     @property
     def key(self) -> str:

@@ -6,14 +6,12 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from functools import partial
-from pathlib import Path
 from typing import Any, TypeVar
 
 from drystone.errors import UsageError
 from drystone.search.processes import MUCH_MEMORY, process_pool
 from drystone_lab.runs.cluster import cluster_at_work
-from drystone_lab.runs.outcome import RunOutcome, RunWorker, died, execute, one_by_one
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.runs.outcome import RunWorker, died, execute, one_by_one
 
 ONE_THREAD = (
     "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS",
@@ -38,11 +36,7 @@ def processes_at_work(jobs: int) -> Iterator[RunWorker]:
         yield one_by_one
         return
     with crew(jobs) as found:
-
-        def work(specs: Sequence[RunSpec], data: Path | None) -> Iterator[RunOutcome]:
-            return found.work(partial(execute, data=data), specs)
-
-        yield work
+        yield lambda specs, data: found.work(partial(execute, data=data), specs)
 
 
 @contextmanager
@@ -90,13 +84,17 @@ class Crew:
                     else:
                         failed[number] = error
         except KeyboardInterrupt:
-            yield from _ended(busy)
+            for future in tuple(busy):
+                if future.done() and future.exception() is None:
+                    yield future.result()
             raise
         finally:
             self.free += [process for _, process in busy.values()]
         if failed:
-            first = min(failed)
-            raise _told(failed[first], str(tasks[first]))
+            number, error = min(failed.items())
+            if isinstance(error, BrokenProcessPool):
+                raise died(str(tasks[number]), "process") from error
+            raise error
 
     def _next(self, process: Process, error: BaseException | None) -> Process:
         """Return the process, or another one in its place if it died or is used once."""
@@ -126,22 +124,6 @@ def _begun(process: Process, do: Callable[[Task], Done], task: Task) -> Future[D
     return future
 
 
-def _ended(busy: dict[Future[Done], tuple[int, Process]]) -> Iterator[Done]:
-    """Give the results of the tasks that have ended well by now."""
-    for future in tuple(busy):
-        if future.done() and future.exception() is None:
-            yield future.result()
-
-
-def _told(error: BaseException, task: str) -> BaseException:
-    """Return what is raised for a task."""
-    if not isinstance(error, BrokenProcessPool):
-        return error
-    told = died(task, "process")
-    told.__cause__ = error
-    return told
-
-
 @contextmanager
 def work_of(jobs: int | None, dask_address: str | None) -> Iterator[RunWorker]:
     """Have runs done by whom the options say, as long as the block lasts.
@@ -163,8 +145,6 @@ def work_of(jobs: int | None, dask_address: str | None) -> Iterator[RunWorker]:
             where="--jobs, --dask",
             cure="Give one of the two; a cluster's workers are its own.",
         )
-    at_work = (
-        processes_at_work(jobs or 1) if dask_address is None else cluster_at_work(dask_address)
-    )
-    with at_work as work:
+    here = dask_address is None
+    with processes_at_work(jobs or 1) if here else cluster_at_work(str(dask_address)) as work:
         yield work
