@@ -93,7 +93,14 @@ def plot_groups(
     for number, (name, value) in enumerate((claims or {}).items()):
         ax.plot([places[name]], [value], "x", color=OUTLINE_COLOUR, markersize=7,
                 label="the paper" if number == 0 else "_again", gid=f"claim-{name}")  # fmt: skip
-    _name_groups(ax, list(groups))
+    ax.set_xlim(-0.6, len(groups) - 0.4)
+    longest = max((len(name) for name in groups), default=0)
+    # Names of more letters than a strip is wide are turned, or they would run into each other.
+    turned = longest * len(groups) > 42
+    ax.set_xticks(
+        range(len(groups)), list(groups), fontsize=7, rotation=30 if turned else 0,
+        ha="right" if turned else "center",
+    )  # fmt: skip
     ax.set_ylabel(figure, fontsize=8)
     ax.tick_params(axis="y", labelsize=7)
     ax.grid(axis="y", color=GREY, linewidth=0.3, alpha=0.5)
@@ -155,17 +162,6 @@ def _shifts(values: Sequence[float]) -> list[float]:
     return shifts
 
 
-def _name_groups(ax: Axes, names: Sequence[str]) -> None:
-    ax.set_xlim(-0.6, len(names) - 0.4)
-    longest = max((len(name) for name in names), default=0)
-    # Names of more letters than a strip is wide are turned, or they would run into each other.
-    turned = longest * len(names) > 42
-    ax.set_xticks(
-        range(len(names)), names, fontsize=7, rotation=30 if turned else 0,
-        ha="right" if turned else "center",
-    )  # fmt: skip
-
-
 FULL: dict[str, Any] = {"marker": "o", "color": CLUSTER_COLOURS[0]}
 POOR: dict[str, Any] = {"marker": "^", "color": CLUSTER_COLOURS[1]}
 """Walls above and below the threshold of filling: blue points and yellow triangles."""
@@ -200,8 +196,20 @@ NoiseNames = tuple[str, str, str, str]
 """What the legend calls full and poor walls, the reference and the baseline."""
 
 
-def plot_noise(ax: Axes, panel: NoisePanel, names: NoiseNames) -> None:
-    """Draw a figure over the noise."""
+def noise_panels(
+    panels: Sequence[NoisePanel], names: NoiseNames, ticks: Mapping[int, str]
+) -> Figure:
+    """Draw several figures of the same walls over the noise, with one legend above."""
+    sheet, axes = panel_sheet(len(panels), 2, (3.9, 2.8))
+    for ax, panel in zip(axes, panels, strict=True):
+        _plot_noise(ax, panel, names)
+        ax.set_xticks(list(ticks), list(ticks.values()))
+    handles, labels = axes[0].get_legend_handles_labels()
+    sheet.legend(handles, labels, fontsize=7, frameon=False, loc="outside upper center", ncols=4)
+    return sheet
+
+
+def _plot_noise(ax: Axes, panel: NoisePanel, names: NoiseNames) -> None:
     full, poor, reference, baseline = names
     for name, pairs, look in ((full, panel.full, FULL), (poor, panel.poor, POOR)):
         seen: Counter[int] = Counter()
@@ -220,19 +228,6 @@ def plot_noise(ax: Axes, panel: NoisePanel, names: NoiseNames) -> None:
         ax.plot(list(line), list(line.values()), label=name, gid=name, zorder=3, **look)
     name_axes(ax, "noise, %", panel.figure)
     ax.grid(axis="y", color=GREY, linewidth=0.3, alpha=0.5)
-
-
-def noise_panels(
-    panels: Sequence[NoisePanel], names: NoiseNames, ticks: Mapping[int, str]
-) -> Figure:
-    """Draw several figures of the same walls, with one legend above."""
-    sheet, axes = panel_sheet(len(panels), 2, (3.9, 2.8))
-    for ax, panel in zip(axes, panels, strict=True):
-        plot_noise(ax, panel, names)
-        ax.set_xticks(list(ticks), list(ticks.values()))
-    handles, labels = axes[0].get_legend_handles_labels()
-    sheet.legend(handles, labels, fontsize=7, frameon=False, loc="outside upper center", ncols=4)
-    return sheet
 
 
 VersionLines = Mapping[str, Sequence[float | None]]

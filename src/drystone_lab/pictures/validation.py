@@ -1,7 +1,7 @@
 """What a model says against what was measured."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -20,8 +20,7 @@ MARKERS = ("o", "s", "^", "D")
 SIZE_IN = (6.0, 6.0)
 
 
-@dataclass(frozen=True)
-class Prediction:
+class Prediction(NamedTuple):
     """One measured value and what a model says of it."""
 
     series: str  # Kind of test; chooses the marker
@@ -52,12 +51,7 @@ def plot_predictions(predictions: Sequence[Prediction], band: str) -> Axes:
     ax.set_xlim(0, end)
     ax.set_ylim(0, end)
     name_axes(ax, "measured, kN", "predicted, kN")
-    _legend(ax, colours, markers, band)
-    return ax
-
-
-def _legend(ax: Axes, colours: dict[str, str], markers: dict[str, str], band: str) -> None:
-    """Explain colours, markers and lines in the corner where too little is predicted."""
+    # Colours, markers and lines are explained in the corner where too little is predicted.
     handles = [Line2D([], [], color=c, linewidth=2, label=name) for name, c in colours.items()]
     handles += [
         Line2D([], [], color=OUTLINE_COLOUR, marker=m, linestyle="", markersize=4.5, label=name)
@@ -69,3 +63,4 @@ def _legend(ax: Axes, colours: dict[str, str], markers: dict[str, str], band: st
         Line2D([], [], color=GREY, linewidth=0.6, linestyle="--", label="20 % off"),
     ]
     ax.legend(handles=handles, loc="lower right", fontsize=7, framealpha=1.0, edgecolor="none")
+    return ax

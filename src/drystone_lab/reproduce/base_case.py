@@ -1,10 +1,10 @@
 """Figs. 14 and 15: the base case PR and its failure mechanisms (§5.1); Fig. 19: wedges (§5.2)."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from itertools import accumulate
 from statistics import fmean
+from typing import NamedTuple
 
 from matplotlib.axes import Axes
 
@@ -27,27 +27,21 @@ from drystone_lab.reproduce.cells import rounded
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials, sheet
-from drystone_lab.table import Cell
 from drystone_lab.walls import IR, LIU_5, PR
 
 ALPHAS: Mapping[str, float] = {"left": 0.79, "right": 0.71}
 """Load multipliers of §5.1, tilting towards that side."""
 
 
-@dataclass(frozen=True, eq=False)
-class BaseCase:
+class BaseCase(NamedTuple):
     """Walls of several seeds, and the mechanisms of the first by both flow rules."""
 
     built: StudyWalls
+    trials: Trials
     wall: Wall
     model: RigidBlockModel
     # Flow rule and result, both rules of the left side first
     mechanisms: tuple[tuple[str, LimitResult | NonassociativeResult], ...]
-
-    @property
-    def trials(self) -> Trials:
-        """The walls."""
-        return self.built.all[0]
 
     def over_mu(self, side: str) -> list[float]:
         """Return the load multipliers of all walls towards a side, over mu."""
@@ -66,7 +60,7 @@ def base_case(context: Context, study: Study) -> BaseCase:
         ("associative", both.left), ("without dilatancy", without.left),
         ("associative", both.right), ("without dilatancy", without.right),
     )  # fmt: skip
-    return BaseCase(found, wall, model, mechanisms)
+    return BaseCase(found, trials, wall, model, mechanisms)
 
 
 def _summary(case: BaseCase) -> Rows:
@@ -139,24 +133,20 @@ def _wedges_claims(found: StudyWalls) -> Iterator[Claimed]:
             "number": one.wall.number, "name": one.wall.name, "count": len(wall.wedges),
             "under": len({wedge.under for wedge in wall.wedges}), "placed": figures["placed"],
             "share": 100 * area / (one.wall.width * one.wall.height),
-            "tallest": tallest / _mean_height_px(wall),
+            "tallest": tallest / fmean(stone.posed.height_px for stone in wall.placements),
         }  # fmt: skip
         yield Claimed("needed", bool(wall.wedges), values)
-
-
-def _mean_height_px(wall: Wall) -> float:
-    return fmean(placement.posed.mask.shape[0] for placement in wall.placements)
 
 
 def _wedges(found: StudyWalls) -> Rows:
     for one in found:
         wall = found.wall(one)
-        unit, mean = 1 / wall.site.scale, _mean_height_px(wall)
+        unit = 1 / wall.site.scale
+        mean = fmean(stone.posed.height_px for stone in wall.placements)
         for wedge in wall.wedges:
             height, width = wedge.mask.shape
             sizes = (width * unit, height * unit, wedge.area_px * unit**2, height / mean)
-            rounded_sizes: tuple[Cell, ...] = tuple(map(rounded, sizes))
-            yield one.wall.number, wedge.id, wedge.under, *rounded_sizes
+            yield one.wall.number, wedge.id, wedge.under, *map(rounded, sizes)
 
 
 def _wedges_picture(trials: Trials, wall: Wall) -> ItemFigure:

@@ -1,10 +1,10 @@
 """Walls of other stones: rounded ones (§5.3), 91 irregular ones, and bricks (B.2)."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise, product
 from statistics import median
+from typing import NamedTuple
 
 from matplotlib.figure import Figure
 from scipy.stats import mannwhitneyu
@@ -161,8 +161,7 @@ OVERLAP = 0.25
 usual rule of a bond."""
 
 
-@dataclass(frozen=True)
-class Brick:
+class Brick(NamedTuple):
     """The box of a placed brick, px; full when it fills it, so that it is not turned."""
 
     left: int
@@ -172,8 +171,7 @@ class Brick:
     full: bool
 
 
-@dataclass(frozen=True)
-class BrickCourses:
+class BrickCourses(NamedTuple):
     """What the courses of a wall are like."""
 
     bricks: int
@@ -187,14 +185,11 @@ class BrickCourses:
 
 def bricks_of(wall: Wall) -> tuple[Brick, ...]:
     """Return the boxes of the stones of a wall of pixels."""
-    bricks = []
+    bricks, height = [], wall.site.height_px
     for placement in wall.placements:
         rows, cols = placement.window
-        height = wall.site.height_px
-        bricks.append(
-            Brick(cols.start, cols.stop, height - rows.stop, height - rows.start,
-                  bool(placement.posed.mask.all()))
-        )  # fmt: skip
+        ends = cols.start, cols.stop, height - rows.stop, height - rows.start
+        bricks.append(Brick(*ends, bool(placement.posed.mask.all())))
     return tuple(bricks)
 
 
@@ -207,20 +202,20 @@ def courses_of(bricks: Sequence[Brick], height_px: int, width_px: int) -> BrickC
     """
     lying = [b for b in bricks if b.full and b.right - b.left == width_px]
     level = [b for b in lying if b.bottom % height_px == 0]
-    by_course: dict[int, list[Brick]] = {}
-    for brick in level:
-        by_course.setdefault(brick.bottom // height_px, []).append(brick)
-    joints = {course: head_joints(found) for course, found in by_course.items()}
+    joints = {
+        course: head_joints([b for b in level if b.bottom == course * height_px])
+        for course in {b.bottom // height_px for b in level}
+    }
     count = crossed = 0
     for course, places in joints.items():
-        if not {course - 1, course + 1} & set(joints):
-            continue
-        beside = joints.get(course - 1, []) + joints.get(course + 1, [])
-        count += len(places)
-        crossed += sum(
-            all(abs(place - other) >= OVERLAP * width_px for other in beside) for place in places
-        )
-    return BrickCourses(len(bricks), len(lying), len(level), len(by_course), count, crossed)
+        beside = [place for other in (course - 1, course + 1) for place in joints.get(other, ())]
+        if {course - 1, course + 1} & joints.keys():
+            count += len(places)
+            crossed += sum(
+                all(abs(place - other) >= OVERLAP * width_px for other in beside)
+                for place in places
+            )
+    return BrickCourses(len(bricks), len(lying), len(level), len(joints), count, crossed)
 
 
 def head_joints(course: Sequence[Brick]) -> list[float]:

@@ -58,9 +58,8 @@ class Trials:
     @property
     def middle(self) -> int:
         """Place of the wall in the middle by filling, the lower one of two."""
-        filled = self.values("F_SF")
-        order = sorted(range(len(filled)), key=lambda place: (filled[place] or 0.0, place))
-        return order[(len(order) - 1) // 2]
+        filled = [value or 0.0 for value in self.values("F_SF")]
+        return sorted(range(len(filled)), key=filled.__getitem__)[(len(filled) - 1) // 2]
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,6 +1,6 @@
 """The environment ``drystone/Wall-v0``: stones arrive, each is built where it is offered."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from copy import copy, deepcopy
 from dataclasses import asdict
 from operator import index
@@ -18,10 +18,8 @@ from drystone.errors import UsageError
 from drystone.metrics.shape import top_profile
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
-from drystone.model.wall import Wall
 from drystone.planner.settings import PlannerSettings
 from drystone.selection.policies.learned import FEATURES, features
-from drystone.selection.policy import Offer
 from drystone_lab.rl.draw import DrawSettings, draw_wall
 from drystone_lab.rl.episode import ARRIVING, Episode, prepared
 
@@ -31,20 +29,6 @@ WallObservation = dict[str, Floats32]
 STONE = ("area", "width", "height")
 """Of an offer, beside its features: of the stone over the wall's, the same for all its offers but
 for how it lies."""
-
-
-def observation_space(offers: int, columns: int) -> spaces.Space[WallObservation]:
-    """Return the space of :func:`observation`."""
-    shape = (offers, len(FEATURES) + len(STONE))
-    space: Any = spaces.Dict(
-        {
-            "offers": spaces.Box(-1.0, 1.0, shape, np.float32),
-            "profile": spaces.Box(0.0, 1.0, (columns,), np.float32),
-            "left": spaces.Box(0.0, 1.0, (2,), np.float32),
-        }
-    )
-    found: spaces.Space[WallObservation] = space  # a Dict does not know of what its values are
-    return found
 
 
 def observation(episode: Episode, offers: int, columns: int) -> WallObservation:
@@ -57,15 +41,8 @@ def observation(episode: Episode, offers: int, columns: int) -> WallObservation:
     """
     fitting = max(1, len(episode.workshop.fitting))
     left = np.array([episode.waiting / fitting, 1.0 - episode.build.wall.filling])
-    return {
-        "offers": _rows(episode.offers, offers),
-        "profile": _profile(episode.build.wall, columns),
-        "left": np.clip(left, 0.0, 1.0).astype(np.float32),
-    }
-
-
-def _rows(offered: Sequence[Offer], offers: int) -> Floats32:
-    rows = np.zeros((offers, len(FEATURES) + len(STONE)), np.float32)
+    offered, wall = episode.offers, episode.build.wall
+    rows = np.zeros((offers, len(FEATURES) + len(STONE)))
     if offered:
         stone = [
             (
@@ -75,19 +52,15 @@ def _rows(offered: Sequence[Offer], offers: int) -> Floats32:
             )
             for o in offered
         ]
-        seen = np.column_stack([features(offered), np.clip(stone, 0.0, 1.0)])
-        rows[: len(offered)] = seen
-    return rows
-
-
-def _profile(wall: Wall, columns: int) -> Floats32:
+        rows[: len(offered)] = np.column_stack([features(offered), np.clip(stone, 0.0, 1.0)])
     heights = top_profile(wall.labels) / wall.site.height_px
     # Parts need not be whole columns of pixels: the mean is that of the integral between its ends.
     integral = np.concatenate([[0.0], np.cumsum(heights)])
     ends = np.linspace(0.0, wall.site.width_px, columns + 1)
     at_ends = np.interp(ends, np.arange(len(integral)), integral)
-    means = np.diff(at_ends) / np.diff(ends)
-    return np.asarray(np.clip(means, 0.0, 1.0), np.float32)
+    profile = np.clip(np.diff(at_ends) / np.diff(ends), 0.0, 1.0)
+    seen = {"offers": rows, "profile": profile, "left": np.clip(left, 0.0, 1.0)}
+    return {name: values.astype(np.float32) for name, values in seen.items()}
 
 
 SIZE_IN = (8.0, 4.0)
@@ -178,7 +151,15 @@ class WallEnv(gymnasium.Env[WallObservation, np.int64]):
         self.draw = draw or DrawSettings()
         self.settings = settings or ARRIVING
         self.render_mode = render_mode
-        self.observation_space = observation_space(offers, columns)
+        shape = (offers, len(FEATURES) + len(STONE))
+        space: Any = spaces.Dict(
+            {
+                "offers": spaces.Box(-1.0, 1.0, shape, np.float32),
+                "profile": spaces.Box(0.0, 1.0, (columns,), np.float32),
+                "left": spaces.Box(0.0, 1.0, (2,), np.float32),
+            }
+        )
+        self.observation_space = space  # a Dict does not know of what its values are
         self.action_space = spaces.Discrete(offers)
         self._offers, self._columns = offers, columns
         self._illegal = illegal
@@ -202,7 +183,7 @@ class WallEnv(gymnasium.Env[WallObservation, np.int64]):
         )
         self._potential = self._episode.potential
         self._ended = False
-        return self._seen(), self._info(illegal=False)
+        return self._told(illegal=False)
 
     def step(self, action: np.int64) -> tuple[WallObservation, float, bool, bool, dict[str, Any]]:
         """Build the stone that has arrived; see :class:`gymnasium.Env`.
@@ -217,7 +198,8 @@ class WallEnv(gymnasium.Env[WallObservation, np.int64]):
             raise _no_action(f"{action!r} is none of {self.action_space}", "Give one of these.")
         if episode.over:  # `reset` cannot say that an episode is over before it began
             self._ended = True
-            return self._seen(), 0.0, True, False, self._info(illegal=True)
+            seen, info = self._told(illegal=True)
+            return seen, 0.0, True, False, info
         legal = int(action) < len(episode.offers)
         if not legal and self._illegal == "error":
             raise _no_action(
@@ -228,7 +210,8 @@ class WallEnv(gymnasium.Env[WallObservation, np.int64]):
         before, self._potential = self._potential, episode.potential
         reward = self._potential - before
         self._ended = episode.over
-        return self._seen(), reward, self._ended, False, self._info(illegal=not legal)
+        seen, info = self._told(illegal=not legal)
+        return seen, reward, self._ended, False, info
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Return which actions are allowed, (offers,): none when the wall is finished.
@@ -268,25 +251,27 @@ class WallEnv(gymnasium.Env[WallObservation, np.int64]):
             raise _refused(f"reset knows no option {', '.join(map(repr, unknown))}")
         stones, site, order = (options.get(name) for name in OPTIONS)
         if stones is None and site is None and order is None:
-            drawn, place = draw_wall(self.draw, self.np_random)
-            return drawn, place, None
+            return *draw_wall(self.draw, self.np_random), None
         if not isinstance(stones, StoneSet) or not isinstance(site, Site):
             raise _refused("reset needs both a StoneSet and a Site, or draws both")
         if order is None:
             ids = [stone.id for stone in stones]
             return stones, site, [ids[k] for k in self.np_random.permutation(len(ids)).tolist()]
-        return stones, site, _arriving(stones, order)
+        try:
+            ids = [stones.by_id(index(stone_id)).id for stone_id in order]
+        except TypeError as error:
+            raise _refused(f"order is {order!r}, which is not a sequence of ids") from error
+        if not ids or len(set(ids)) < len(ids):
+            raise _refused("no stone arrives" if not ids else "a stone arrives twice")
+        return stones, site, ids
 
     def _running(self) -> Episode:
         if self._episode is None:
             raise _no_action("no wall was begun", "Call `reset` first.")
         return self._episode
 
-    def _seen(self) -> WallObservation:
-        return observation(self._running(), self._offers, self._columns)
-
-    def _info(self, *, illegal: bool) -> dict[str, Any]:
-        """Return what is said beside the reward; with all figures when the wall is finished."""
+    def _told(self, *, illegal: bool) -> tuple[WallObservation, dict[str, Any]]:
+        """Return what is seen, and what is said beside; all figures when the wall is finished."""
         episode = self._running()
         actions = episode.build.actions
         info: dict[str, Any] = {
@@ -302,18 +287,7 @@ class WallEnv(gymnasium.Env[WallObservation, np.int64]):
             figures = episode.figures
             info["merit"] = episode.merit
             info["metrics"] = {} if figures is None else asdict(figures)
-        return info
-
-
-def _arriving(stones: StoneSet, order: Any) -> list[int]:
-    """Return ids in the order of arrival as it was given."""
-    try:
-        ids = [stones.by_id(index(stone_id)).id for stone_id in order]
-    except TypeError as error:
-        raise _refused(f"order is {order!r}, which is not a sequence of ids") from error
-    if not ids or len(set(ids)) < len(ids):
-        raise _refused("no stone arrives" if not ids else "a stone arrives twice")
-    return ids
+        return observation(episode, self._offers, self._columns), info
 
 
 def _refused(what: str) -> UsageError:

@@ -98,10 +98,12 @@ class Episode:
             found = self._attempt.standing((stone_id,))
             if found:
                 site = self.workshop.site
-                pairs = [(candidate, offer(candidate, site)) for candidate in found]
-                kept = _lowest([o.centroid_px[1] for _, o in pairs], self._most)
-                self._candidates = [pairs[k][0] for k in kept]
-                self.offers = tuple(pairs[k][1] for k in kept)
+                offers = [offer(candidate, site) for candidate in found]
+                # Those that are kept stay in their order.
+                order = sorted(range(len(offers)), key=lambda k: offers[k].centroid_px[1])
+                kept = sorted(order[: self._most])
+                self._candidates = [found[k] for k in kept]
+                self.offers = tuple(offers[k] for k in kept)
                 self.stone_id = stone_id
                 return
             self.aside += 1
@@ -132,10 +134,3 @@ class Episode:
             F_AV=0.0, F_AH=0.0, T_LEVEL=0.0, E_FLUSH=0.0,
         )  # fmt: skip
         return merit_of(so_far, self._possible, replace(self._settings.goal, F_AV=0.0, F_AH=0.0))
-
-
-def _lowest(heights: Sequence[float], most: int | None) -> list[int]:
-    """Return the positions of the lowest, in their order."""
-    if most is None or len(heights) <= most:
-        return list(range(len(heights)))
-    return sorted(sorted(range(len(heights)), key=lambda k: (heights[k], k))[:most])

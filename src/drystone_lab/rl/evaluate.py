@@ -135,7 +135,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = parser.parse_args(argv)
     if min(arguments.walls, arguments.first + 1) < 1 or len(set(arguments.policies)) < 2:
         parser.error("there must be a wall or more, from number 0 on, and two policies or more")
-    every: dict[str, dict[str, list[float]]] = {}
+    every = {name: {figure: list[float]() for figure in FIGURES} for name in arguments.policies}
     try:
         draw = DrawSettings(stones=arguments.stones)
         settings = FREE if arguments.free else ARRIVING
@@ -145,9 +145,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             found = {name: figures_by(name, walls, settings) for name in arguments.policies}
             _print(report(found, f"{len(walls)} walls of {kind} stones"))
             for name, figures in found.items():
-                pooled = every.setdefault(name, {figure: [] for figure in FIGURES})
                 for figure in FIGURES:
-                    pooled[figure] += figures[figure]
+                    every[name][figure] += figures[figure]
     except DrystoneError as error:
         sys.stderr.write(f"drystone: {error}\n")
         return int(error.exit_code)

@@ -123,8 +123,6 @@ HELD_OUT = 10**7
 VALIDATION = 10**6
 """Added to the seed of walls that compare the result with its start; training has fewer walls."""
 
-Say = Callable[[str], None]
-
 
 @dataclass(frozen=True, kw_only=True)
 class TrainSettings:
@@ -140,7 +138,9 @@ class TrainSettings:
 
 
 def train(
-    settings: TrainSettings, say: Say = lambda _: None, seconds: float = math.inf
+    settings: TrainSettings,
+    say: Callable[[str], None] = lambda _: None,
+    seconds: float = math.inf,
 ) -> ValueModel:
     """Return the model that a training run finds.
 
@@ -152,7 +152,12 @@ def train(
     model = ValueModel((0.0,) * len(FEATURES), {})
     done = walls = 0
     while done < settings.rounds and time.monotonic() - start <= seconds:
-        new = _branchings(settings, done, learned(model).choose if done else LOWEST.choose)
+        choose = learned(model).choose if done else LOWEST.choose
+        branched = (
+            branching(_workshop(settings, k), choose, (settings.seed, 3, k))
+            for k in range(done * settings.walls, (done + 1) * settings.walls)
+        )
+        new = [one for one in branched if one is not None]
         found += new
         if not found:
             raise UsageError(
@@ -198,16 +203,6 @@ def mean_merit(choose: Choose, workshops: Sequence[Workshop]) -> float:
     return math.fsum(merits) / len(workshops)
 
 
-def _branchings(settings: TrainSettings, number: int, choose: Choose) -> list[Branching]:
-    """Return the branchings of a round."""
-    first = number * settings.walls
-    found = (
-        branching(_workshop(settings, k), choose, (settings.seed, 3, k))
-        for k in range(first, first + settings.walls)
-    )
-    return [one for one in found if one is not None]
-
-
 def _workshop(settings: TrainSettings, number: int) -> Workshop:
     """Return the wall of a number."""
     kinds = settings.draw.kinds
@@ -243,20 +238,15 @@ def main(argv: Sequence[str] | None = None) -> int:
         # Before a minute of training.
         refuse_existing(arguments.output, overwrite=arguments.overwrite)
         settings = TrainSettings(
-            seed=arguments.seed,
-            rounds=arguments.rounds,
-            walls=arguments.walls,
+            seed=arguments.seed, rounds=arguments.rounds, walls=arguments.walls,
             validation=arguments.validation,
             draw=DrawSettings(kinds=TRAINED_ON, stones=arguments.stones),
-        )
+        )  # fmt: skip
         model = train(settings, say, 60.0 * arguments.minutes)
         arguments.output.write_text(model.to_json(), encoding="utf-8")
-    except DrystoneError as error:
+    except (DrystoneError, OSError) as error:
         sys.stderr.write(f"drystone: {error}\n")
-        return int(error.exit_code)
-    except OSError as error:
-        sys.stderr.write(f"drystone: {error}\n")
-        return int(ExitCode.BAD_INPUT)
+        return int(getattr(error, "exit_code", ExitCode.BAD_INPUT))
     sys.stdout.write(f"{arguments.output}\n")
     return int(ExitCode.DONE)
 
