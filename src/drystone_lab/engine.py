@@ -1,8 +1,8 @@
 """Suite "engine": walls planned on outlines, built up and tilted in a rigid-body engine."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from statistics import median
+from typing import NamedTuple
 
 from scipy.stats import spearmanr
 
@@ -20,8 +20,7 @@ SEEDS = 5
 BothSides = tuple[float | None, float | None]
 
 
-@dataclass(frozen=True, eq=False)
-class EngineWall:
+class EngineWall(NamedTuple):
     """A wall in the engine; ends are to the left and to the right."""
 
     name: str

@@ -91,14 +91,11 @@ def _row(
     looked = looked_at_times(way, stones, target, (seconds,), seed)[0]
     figures = looked.found.figures
     return (
-        target.name,
-        height,
+        target.name, height,
         *(cell for strip in strips for cell in (strip, stones.total_area_px / (strip * height))),
-        width,
-        looked.possible,
-        None if figures is None else figures.F_SF,
+        width, looked.possible, None if figures is None else figures.F_SF,
         f"{0 if figures is None else figures.stones} of {len(stones)}",
-    )
+    )  # fmt: skip
 
 
 def packed(spec: RunSpec, data: Path | None) -> RunOutcome:

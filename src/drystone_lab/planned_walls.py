@@ -6,11 +6,11 @@ from functools import cached_property
 
 from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
-from drystone.model.wall import Labels
+from drystone.model.wall import Labels, Wall
 from drystone.statics.model import RigidBlockModel
 from drystone.verify.claims import wall_model
 from drystone.verify.lengths import plan_settings
-from drystone.verify.replay import Stage, replay_plan
+from drystone.verify.replay import replay_plan
 from drystone_lab.runs.outcome import execute
 from drystone_lab.table import BenchSettings
 from drystone_lab.walls import IR, PR, R
@@ -27,20 +27,21 @@ class PlannedWall:
     stones: StoneSet
 
     @cached_property
+    def after(self) -> tuple[Wall, ...]:
+        """The wall after each stone and its wedges."""
+        return tuple(stage.after for stage in replay_plan(self.plan, self.stones).stages)
+
+    @property
     def stages(self) -> tuple[Labels, ...]:
-        """Label image at the working scale after each stone and its wedges."""
-        return tuple(stage.after.labels for stage in self._replayed)
+        """Label images of these walls at the working scale."""
+        return tuple(wall.labels for wall in self.after)
 
     @cached_property
     def models(self) -> tuple[RigidBlockModel, ...]:
-        """Models of the same walls on the geometry of the plan: of its pixels or its outlines."""
+        """Models of these walls on the geometry of the plan: of its pixels or its outlines."""
         settings, _ = plan_settings(self.plan)
-        found = (wall_model(stage.after, settings) for stage in self._replayed)
+        found = (wall_model(wall, settings) for wall in self.after)
         return tuple(model for model in found if model is not None)
-
-    @cached_property
-    def _replayed(self) -> tuple[Stage, ...]:
-        return replay_plan(self.plan, self.stones).stages
 
     @property
     def mu(self) -> float:

@@ -38,13 +38,14 @@ class Table:
         tall   0.25
         flat      -
         """
-        cells = [list(self.columns), *([written(cell) for cell in row] for row in self.rows)]
-        widths = [max(len(row[k]) for row in cells) for k in range(len(self.columns))]
-        words = [
-            all(isinstance(row[k], str | bool) for row in self.rows)
-            for k in range(len(self.columns))
-        ]
-        lines = [_aligned(row, widths, words) for row in cells]
+        lines = [""] * (1 + len(self.rows))
+        for k, name in enumerate(self.columns):
+            cells = [name, *(written(row[k]) for row in self.rows)]
+            width = max(map(len, cells))
+            left = all(isinstance(row[k], str | bool) for row in self.rows)
+            padded = [cell.ljust(width) if left else cell.rjust(width) for cell in cells]
+            lines = [f"{line}  {cell}" for line, cell in zip(lines, padded, strict=True)]
+        lines = [line[2:].rstrip() for line in lines]
         return "\n".join([self.title, *lines, *(f"* {note}" for note in self.notes)])
 
     def markdown(self) -> str:
@@ -62,7 +63,10 @@ class Table:
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(self.columns)
-        writer.writerows([_exact(cell) for cell in row] for row in self.rows)
+        for row in self.rows:
+            cells = (written(cell) if isinstance(cell, bool) else cell for cell in row)
+            # Floats of NumPy are floats, but write their type.
+            writer.writerow([float(c) if isinstance(c, float) else c for c in cells])
         return text.getvalue()
 
 
@@ -125,13 +129,6 @@ BENCH: Mapping[str, Mapping[str, Any]] = MappingProxyType(
 """Words of the tables of the suites."""
 
 
-def _exact(cell: Cell) -> Cell:
-    if isinstance(cell, bool):
-        return "yes" if cell else "no"
-    # Floats of NumPy are floats, but write their type.
-    return float(cell) if isinstance(cell, float) else cell
-
-
 @dataclass(frozen=True)
 class BenchSettings:
     """What a suite is run with; each goes by some of it."""
@@ -164,11 +161,3 @@ def written(cell: Cell) -> str:
     if isinstance(cell, float):
         return f"{cell:.1e}" if 0 < abs(cell) < 1e-3 else f"{cell + 0.0:.5g}"  # -0.0 + 0.0 is 0.0
     return str(cell)
-
-
-def _aligned(row: Sequence[str], widths: Sequence[int], words: Sequence[bool]) -> str:
-    parts = [
-        cell.ljust(width) if left else cell.rjust(width)
-        for cell, width, left in zip(row, widths, words, strict=True)
-    ]
-    return "  ".join(parts).rstrip()

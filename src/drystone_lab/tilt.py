@@ -18,14 +18,11 @@ BOTH_FALL = "both fall"
 def run(settings: BenchSettings) -> tuple[Table, ...]:
     """Return simulated and predicted load multipliers of the same outlines, a row a direction."""
     walls = planned_walls(settings, methods=("paper",), seeds=SEEDS)
-    return (table_of([row for wall in walls for row in _rows(wall, settings)], settings),)
-
-
-def table_of(rows: list[tuple[Cell, ...]], settings: BenchSettings) -> Table:
-    """Return the rows as a table, with how many predictions are inside."""
+    rows = [row for wall in walls for row in _rows(wall, settings)]
     agreeing = sum(row[5] in ("yes", BOTH_FALL) for row in rows)
     counted = f"{agreeing} of {len(rows)} directions: " if rows else ""
-    return worded(BENCH["tilt"]["directions"], rows, more=missing_data(settings), counted=counted)
+    words, more = BENCH["tilt"]["directions"], missing_data(settings)
+    return (worded(words, rows, more=more, counted=counted),)
 
 
 def _rows(wall: PlannedWall, settings: BenchSettings) -> list[tuple[Cell, ...]]:
@@ -48,23 +45,14 @@ def _row(name: str, one: TiltComparison) -> tuple[Cell, ...]:
     # Trials that fall at rest would make the scatter as wide as one likes.
     inside = inside and not simulated.fell_at_rest
     both_fall = one.associative is None and simulated.fell_at_rest
+    why = "falls" if one.associative is None else "not certain to stand"
     return (
-        name,
-        one.direction,
-        one.associative,
-        _predicted(one),
+        name, one.direction, one.associative,
+        why if one.associative is None or predicted is None else predicted,
         "falls at rest" if simulated.fell_at_rest else _interval(motion),
         BOTH_FALL if both_fall else "yes" if inside else "no",
-        _interval(fall),
-        simulated.settled_shift,
-    )
-
-
-def _predicted(one: TiltComparison) -> Cell:
-    """Return the factor without dilatancy, or why there is none."""
-    if one.associative is None:
-        return "falls"
-    return "not certain to stand" if one.nonassociative is None else one.nonassociative
+        _interval(fall), simulated.settled_shift,
+    )  # fmt: skip
 
 
 def _interval(found: tuple[float, float] | None) -> str:

@@ -5,6 +5,8 @@ import platform
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
 
 from drystone.cli.output import make_folder, print_json, say
@@ -31,7 +33,13 @@ DPI = 150
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Run a suite and print its tables."""
     if arguments.list:
-        _print_list()
+        for name, about in SUITES.items():
+            print(f"{name}: {about.about}")
+        for name, text in PUBLIC_SUITES.items():
+            print(f"{name}: public suite: {text}")
+        for text, methods in groupby(known_methods().items(), key=itemgetter(1)):
+            names = ", ".join(name for name, _ in methods)
+            print(f"{names}: --policy of public suites: {text}")
         return ExitCode.DONE
     suite = _suite(arguments)
     tables = _history(arguments, suite) if arguments.history else _tables(arguments, str(suite))
@@ -42,18 +50,6 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             print(table.markdown() if arguments.markdown else table.text(), end="\n\n")
     missed = any("miss" in row for table in tables for row in table.rows)
     return ExitCode.CHECK_FAILED if missed else ExitCode.DONE
-
-
-def _print_list() -> None:
-    for name, suite in SUITES.items():
-        print(f"{name}: {suite.about}")
-    for name, text in PUBLIC_SUITES.items():
-        print(f"{name}: public suite: {text}")
-    by_text: dict[str, list[str]] = {}
-    for name, text in known_methods().items():
-        by_text.setdefault(text, []).append(name)
-    for text, names in by_text.items():
-        print(f"{', '.join(names)}: --policy of public suites: {text}")
 
 
 def _useless(what: str, where: str, cure: str) -> UsageError:
@@ -77,7 +73,11 @@ def _suite(arguments: argparse.Namespace) -> str | None:
 
 
 def _tables(arguments: argparse.Namespace, suite: str) -> Sequence[Table]:
-    data = _data(arguments.data)
+    # The option, DRYSTONE_DATA, the cache, or none
+    data = published_folder(arguments.data)
+    if data is not None and not data.is_dir():
+        say(f"drystone: there is no folder {data}; rows that need it are left out")
+        data = None
     public = suite in PUBLIC_SUITES
     _refuse(arguments, PUBLIC if public else suite)
     if arguments.again and arguments.store is None:
@@ -91,12 +91,14 @@ def _tables(arguments: argparse.Namespace, suite: str) -> Sequence[Table]:
         None if given is None else Path(given)
         for given in (arguments.output, arguments.runs, arguments.store)
     )
+    file = arguments.settings
+    changes = () if file is None else flat_changes(read_toml(Path(file)), file)
     settings = BenchSettings(
         data=data, output=output, seed=arguments.seed, quick=arguments.quick,
         seconds=tuple(arguments.seconds), seeds=arguments.seeds, only=tuple(arguments.only),
-        policies=tuple(dict.fromkeys(policies)), changes=_changes(arguments.settings),
-        jobs=arguments.jobs, dask=arguments.dask, runs=runs, store=store, again=arguments.again,
-        shake=arguments.shake, say=say,
+        policies=tuple(dict.fromkeys(policies)), changes=changes, jobs=arguments.jobs,
+        dask=arguments.dask, runs=runs, store=store, again=arguments.again, shake=arguments.shake,
+        say=say,
     )  # fmt: skip
     if not public:
         with busy(suite, quiet=arguments.json, after_s=2.0):
@@ -107,11 +109,6 @@ def _tables(arguments: argparse.Namespace, suite: str) -> Sequence[Table]:
     now = datetime.now(UTC).isoformat(timespec="seconds")
     stamp = Stamp(version("drystone"), now, f"{platform.system()} {platform.machine()}")
     return run_public(suite, settings, stamp)
-
-
-def _changes(name: str | None) -> tuple[tuple[str, bool | int | float | str], ...]:
-    """Return what a file of settings replaces for all methods; nothing without a file."""
-    return () if name is None else flat_changes(read_toml(Path(name)), name)
 
 
 def _refuse(arguments: argparse.Namespace, who: str) -> None:
@@ -126,22 +123,9 @@ def _refuse(arguments: argparse.Namespace, who: str) -> None:
             raise _useless(what, "-o" if name == "output" else f"--{name}", cure)
 
 
-def _data(given: str | None) -> Path | None:
-    """Return the folder of published data: the option, DRYSTONE_DATA, the cache, or none."""
-    folder = published_folder(given)
-    if folder is not None and not folder.is_dir():
-        say(f"drystone: there is no folder {folder}; rows that need it are left out")
-        return None
-    return folder
-
-
 def _history(arguments: argparse.Namespace, suite: str | None) -> Sequence[Table]:
     """Return what a store holds by version, and draw it with -o; E138 for other options."""
-    from drystone_lab.public.history import (  # noqa: PLC0415 - see above
-        drawn_history,
-        history_table,
-        medians_of,
-    )
+    from drystone_lab.public import history  # noqa: PLC0415 - see above
     from drystone_lab.public.store import kept_runs  # noqa: PLC0415
 
     _refuse(arguments, HISTORY)
@@ -152,13 +136,13 @@ def _history(arguments: argparse.Namespace, suite: str | None) -> Sequence[Table
         what = "the store holds no runs" + (f" of {suite!r}." if suite else ".")
         cure = "`drystone bench --suite NAME --store DIR` adds some."
         raise _useless(what, arguments.store, cure)
-    medians = medians_of(runs)
+    medians = history.medians_of(runs)
     if arguments.output is not None:
         from drystone.drawing.files import save  # noqa: PLC0415 - see above
 
         make_folder(Path(arguments.output))
         for each in dict.fromkeys(one.suite for one in medians):
             path = Path(arguments.output) / f"history-{each.replace('/', '-')}.png"
-            save(drawn_history([one for one in medians if one.suite == each]), path, DPI)
+            save(history.drawn_history([one for one in medians if one.suite == each]), path, DPI)
             say(f"wrote {path}")
-    return (history_table(medians),)
+    return (history.history_table(medians),)

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 from drystone.cli.output import make_folder, print_json, say
 from drystone.errors import ExitCode, UsageError
 from drystone.io.folder_lock import locked
+from drystone.io.published import published_folder
 from drystone_lab.reproduce.items import ALL, ITEMS, item_names
 
 if TYPE_CHECKING:  # loaded when something is made: --list does not wait for matplotlib
-    from drystone_lab.reproduce.driver import MadeItem, Options
+    from drystone_lab.reproduce.driver import MadeItem
     from drystone_lab.reproduce.item import PaperItem
-    from drystone_lab.runs.outcome import RunWorker
 
 LISTED = 12
 """Columns for the names of the list."""
@@ -29,13 +29,21 @@ def run(arguments: argparse.Namespace, items: "Mapping[str, PaperItem] | None" =
     names = _names(arguments)
     folder = Path(arguments.output)
     make_folder(folder)
-    from drystone_lab.reproduce.driver import reproduce  # noqa: PLC0415 - see above
+    from drystone_lab.reproduce.driver import Options, reproduce  # noqa: PLC0415 - see above
     from drystone_lab.reproduce.page import PAGE  # noqa: PLC0415
     from drystone_lab.runs.workers import work_of  # noqa: PLC0415
 
     done = []
     with locked(folder, "*/"), work_of(arguments.jobs, arguments.dask) as work:
-        for made in reproduce(names, folder, _options(arguments, work), items):
+        data = published_folder(arguments.data)
+        if data is not None and not data.is_dir():
+            print(f"drystone: there is no folder {data} of published data", file=sys.stderr)
+            data = None
+        options = Options(
+            data=data, quick=arguments.quick, seed=arguments.seed, again=arguments.again, work=work,
+            say=(lambda _: None) if arguments.quiet else say,
+        )  # fmt: skip
+        for made in reproduce(names, folder, options, items):
             done.append(made)
             if made.error is not None:
                 print(f"drystone: {made.name}: {made.error}", file=sys.stderr)
@@ -72,24 +80,6 @@ def _names(arguments: argparse.Namespace) -> tuple[str, ...]:
         )
     asked = {name for each in arguments.names for name in item_names(each)}
     return tuple(name for name in ITEMS if name in asked)
-
-
-def _options(arguments: argparse.Namespace, work: "RunWorker") -> "Options":
-    from drystone.io.published import published_folder  # noqa: PLC0415
-    from drystone_lab.reproduce.driver import Options  # noqa: PLC0415
-
-    data = published_folder(arguments.data)
-    if data is not None and not data.is_dir():
-        print(f"drystone: there is no folder {data} of published data", file=sys.stderr)
-        data = None
-    return Options(
-        data=data,
-        quick=arguments.quick,
-        seed=arguments.seed,
-        again=arguments.again,
-        work=work,
-        say=(lambda _: None) if arguments.quiet else say,
-    )
 
 
 def _print(made: "MadeItem") -> None:

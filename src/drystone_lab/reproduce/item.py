@@ -125,7 +125,10 @@ class PaperItem:
         context = replace(context, asked=[])
         found = self.study(context)
         tables, times = (
-            [(name, self._table(kind, name, found, rows(found))) for name, rows in of.items()]
+            [
+                (name, worded(self.words[kind][name], rows(found), found, columns=COLUMN_SETS))
+                for name, rows in of.items()
+            ]
             for kind, of in (("tables", self.tables), ("times", self.times))
         )
         checked = self.checked(found)
@@ -151,9 +154,6 @@ class PaperItem:
             (*(text.format(**one.values) for text in words[one.key]), one.holds)
             for one in self.claims(found)
         ]
-
-    def _table(self, kind: str, name: str, found: Any, rows: Rows) -> Table:
-        return worded(self.words[kind][name], rows, found, columns=COLUMN_SETS)
 
     def _pictures(self, found: Any) -> Iterator[ItemPicture]:
         for name, figure, about in self.pictures(found):
