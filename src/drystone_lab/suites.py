@@ -18,7 +18,7 @@ SUITES = {
     "statics": Suite("published and closed-form cases of the limit analysis", "published"),
     "pixels": Suite("the same cases from pixels, and tilted joints at 40 to 320 px", "pixels"),
     "walls": Suite(
-        "planned walls: agreement of solvers and certificates at every step", "agreement"
+        "planned walls: agreement of solvers and certificates at every step", "planned_walls"
     ),
     "shear": Suite(
         "shear tests of dry-joint walls, predicted over measured", "shear", ("output",)

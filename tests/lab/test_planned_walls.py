@@ -7,7 +7,7 @@ import pytest
 
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LimitStatus
-from drystone_lab import agreement
+from drystone_lab import planned_walls as agreement
 from drystone_lab.planned_walls import PlannedWall, planned_walls
 from drystone_lab.table import BenchSettings
 from tests.verify.exact_examples import exact_example

@@ -1,15 +1,20 @@
-"""Figures of many walls: by group, over the noise of their stones, by version."""
+"""Charts of studies: many walls, times of a planner at work, forces that were measured."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from statistics import median
-from typing import Any
+from typing import Any, NamedTuple
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 from drystone.drawing.palette import CLUSTER_COLOURS, GREY, OUTLINE_COLOUR, WEDGE_COLOUR
+from drystone.planner.profile import Part, StepTime
+from drystone_lab.timed_walls import fitted
 
 LOOKS = (
     (CLUSTER_COLOURS[0], "o"), (WEDGE_COLOUR, "s"), (CLUSTER_COLOURS[12], "^"),
@@ -262,3 +267,130 @@ def history_panels(
         ncols=min(len(labels), 8),
     )  # fmt: skip
     return sheet
+
+
+PART_COLOURS: Mapping[Part, str] = {
+    "placement": CLUSTER_COLOURS[0],
+    "stabilisation": CLUSTER_COLOURS[5],
+    "contacts": CLUSTER_COLOURS[7],
+    "limit analysis": CLUSTER_COLOURS[1],
+    "indices": CLUSTER_COLOURS[10],
+}
+"""Blue, green and shades of orange, as in Fig. 28, where the last three are one: selection."""
+
+REST = "rest"
+STEPS_IN = (4.2, 3.2)
+
+
+def plot_step_times(ax: Axes, steps: Sequence[StepTime]) -> None:
+    """Draw the time of every step as a bar, its parts on top of each other (Fig. 28)."""
+    number = np.arange(1, len(steps) + 1)
+    foot = np.zeros(len(steps))
+    for part, colour in PART_COLOURS.items():
+        height = 1e3 * np.array([step.parts.get(part, 0.0) for step in steps])
+        ax.bar(number, height, 0.8, foot, color=colour, label=part)
+        foot += height
+    rest = np.maximum(0.0, 1e3 * np.array([step.seconds for step in steps]) - foot)
+    ax.bar(number, rest, 0.8, foot, color=GREY, label=REST)
+    ax.set_xlim(0.4, len(steps) + 0.6)
+    name_axes(ax, "step", "ms")
+
+
+def step_time_panels(runs: Mapping[str, Sequence[StepTime]]) -> Figure:
+    """Draw the steps of several walls side by side, with one legend."""
+    figure = Figure(figsize=(STEPS_IN[0] * len(runs), STEPS_IN[1]))
+    panels = figure.subplots(1, len(runs), squeeze=False)[0]
+    for ax, (title, steps) in zip(panels, runs.items(), strict=True):
+        plot_step_times(ax, steps)
+        ax.set_title(title, fontsize=8)
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.tight_layout()
+    # Above, where it hides no bar.
+    figure.legend(
+        handles, labels, fontsize=7, edgecolor="none", loc="lower center",
+        bbox_to_anchor=(0.5, 1.0), ncols=len(labels),
+    )  # fmt: skip
+    return figure
+
+
+def plot_growth(
+    ax: Axes,
+    series: Mapping[str, Sequence[tuple[float, float]]],
+    claims: Sequence[tuple[str, str, float, float]],
+) -> None:
+    """Draw times over sizes, both logarithmic, with the power laws fitted to them (Fig. 29).
+
+    A claim is what somebody else measured: a label, a marker, size and seconds.
+    """
+    for (label, points), (colour, marker) in zip(series.items(), LOOKS, strict=False):
+        x, y = zip(*points, strict=True)
+        ax.plot(x, y, color=colour, marker=marker, linestyle="", markersize=5, label=label)
+        if (law := fitted(points)) is not None:
+            ends = [min(x), max(x)]
+            words = f"exponent {law.exponent:.2f}"
+            ax.plot(ends, [law(end) for end in ends], color=colour, linewidth=1, label=words)
+    for label, marker, size, seconds in claims:
+        ax.plot([size], [seconds], color=OUTLINE_COLOUR, marker=marker, linestyle="",
+                markersize=6, label=label)  # fmt: skip
+    ax.set_xscale("log")
+    ax.set_yscale("log")
+    for axis in (ax.xaxis, ax.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+        axis.set_minor_formatter(NullFormatter())
+    name_axes(ax, "pixels of the wall", "s")
+    # Above, where it hides no point.
+    ax.legend(fontsize=7, edgecolor="none", loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
+
+
+COLOURS = (CLUSTER_COLOURS[0], WEDGE_COLOUR, CLUSTER_COLOURS[11])
+"""By model; the first three."""
+
+MARKERS = ("o", "s", "^", "D")
+"""By series; the first four."""
+
+
+class Prediction(NamedTuple):
+    """One measured value and what a model says of it."""
+
+    series: str  # Kind of test; chooses the marker
+    model: str  # Assumptions; choose the colour
+    measured: float
+    low: float  # low, predicted, high: Band and middle, in the same unit
+    predicted: float
+    high: float
+
+
+def plot_predictions(predictions: Sequence[Prediction], band: str) -> Axes:
+    """Draw predicted over measured forces, bands as bars; at most three models, four series."""
+    ax = Figure(figsize=(6.0, 6.0)).add_subplot()
+    models = list(dict.fromkeys(p.model for p in predictions))
+    series = list(dict.fromkeys(p.series for p in predictions))
+    colours = dict(zip(models, COLOURS, strict=False))
+    markers = dict(zip(series, MARKERS, strict=False))
+    for p in predictions:
+        ax.errorbar(
+            p.measured, p.predicted, yerr=[[p.predicted - p.low], [p.high - p.predicted]],
+            color=colours[p.model], marker=markers[p.series], markersize=4.5,
+            markerfacecolor="white", linewidth=0.9, capsize=2,
+        )  # fmt: skip
+    end = 1.05 * float(np.max([[p.measured, p.high] for p in predictions]))
+    ax.plot([0, end], [0, end], color=OUTLINE_COLOUR, linewidth=0.8, gid="equal", zorder=0)
+    for share in (0.8, 1.2):
+        ax.plot([0, end], [0, share * end], color=GREY, linewidth=0.6, linestyle="--", zorder=0)
+    ax.set_xlim(0, end)
+    ax.set_ylim(0, end)
+    name_axes(ax, "measured, kN", "predicted, kN")
+    # Colours, markers and lines are explained in the corner where too little is predicted.
+    handles = [Line2D([], [], color=c, linewidth=2, label=name) for name, c in colours.items()]
+    handles += [
+        Line2D([], [], color=OUTLINE_COLOUR, marker=m, linestyle="", markersize=4.5, label=name)
+        for name, m in markers.items()
+    ]
+    handles += [
+        Line2D([], [], color=OUTLINE_COLOUR, marker="|", linestyle="", markersize=9, label=band),
+        Line2D([], [], color=OUTLINE_COLOUR, linewidth=0.8, label="equal"),
+        Line2D([], [], color=GREY, linewidth=0.6, linestyle="--", label="20 % off"),
+    ]
+    ax.legend(handles=handles, loc="lower right", fontsize=7, framealpha=1.0, edgecolor="none")
+    return ax

@@ -1,18 +1,215 @@
 """`drystone reproduce`: items of the paper made one after the other, kept, and reported."""
 
+import json
+import os
+import platform
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal
 
-from drystone.errors import DrystoneError
-from drystone_lab.reproduce.folder import ReportFolder, made_with, request_of
-from drystone_lab.reproduce.item import Context, PaperItem
+from PIL import PngImagePlugin
+
+from drystone.drawing.files import save
+from drystone.errors import DrystoneError, UsageError
+from drystone.io.folder_lock import has_files
+from drystone.io.published import SETS
+from drystone.kernels.backend import describe
+from drystone.whole_files import write_whole
+from drystone_lab.reproduce.item import Context, ItemPicture, Output, PaperItem
 from drystone_lab.reproduce.items import ITEMS, item_named
-from drystone_lab.runs.outcome import Runner, RunWorker, absent_data, one_by_one
+from drystone_lab.reproduce.page import PAGE, write_item_page, write_page
+from drystone_lab.runs.outcome import Runner, RunStore, RunWorker, absent_data, one_by_one
 from drystone_lab.runs.spec import published
+from drystone_lab.table import Table
+
+PACKAGES = (
+    "numpy", "scipy", "scikit-image", "shapely", "highspy", "clarabel", "pillow", "matplotlib",
+)  # fmt: skip
+"""That results depend on, beside drystone itself."""
+
+
+def request_of(*, quick: bool, seed: int, data: Path | None) -> dict[str, Any]:
+    """Return what the contents of an item depend on, beside its name.
+
+    Published are the files that are there: some items leave out rows whose stones are not.
+    """
+    files = [file.name for each in SETS.values() for file in each.files]
+    return {
+        "version": version("drystone"),
+        "quick": quick,
+        "seed": seed,
+        "published": [name for name in files if data is not None and (data / name).is_file()],
+    }
+
+
+def is_met(request: Mapping[str, Any], made: Mapping[str, Any]) -> bool:
+    """Return whether what was made for one request is what another asks for.
+
+    >>> few = {"seed": 1, "published": []}
+    >>> more = {"seed": 1, "published": ["almeida/R.png"]}
+    >>> is_met(few, more), is_met(more, few)
+    (True, False)
+    """
+    same = all(made[name] == value for name, value in request.items() if name != "published")
+    return same and {*request["published"]} <= {*made["published"]}
+
+
+def made_with(now: datetime) -> dict[str, Any]:
+    """Return when, and on what kind of machine with what packages, something is made."""
+    return {
+        "date": now.strftime("%Y-%m-%d %H:%M UTC"),
+        "machine": f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
+        "python": platform.python_version(),
+        "kernels": describe(),
+        "packages": {name: version(name) for name in PACKAGES},
+    }
+
+
+def write_picture(folder: Path, picture: ItemPicture) -> dict[str, Any]:
+    """Write a picture as PNG and SVG; return its names, size in px and caption for JSON."""
+    png, svg = f"{picture.name}.png", f"{picture.name}.svg"
+    for name in (png, svg):
+        save(picture.figure, folder / name)
+    with PngImagePlugin.PngImageFile(folder / png) as image:
+        width, height = image.size
+    return {
+        "name": picture.name, "png": png, "svg": svg, "width_px": width, "height_px": height,
+        "caption": picture.caption,
+    }  # fmt: skip
+
+
+def files_of(record: dict[str, Any]) -> Iterator[str]:
+    """Yield the names of the files of an item, without its JSON and page."""
+    for table in (*record["tables"], *record["times"]):
+        yield table["file"]
+    for picture in record["pictures"]:
+        yield picture["png"]
+        yield picture["svg"]
+
+
+def _write_table(folder: Path, name: str, table: Table) -> dict[str, Any]:
+    file = f"{name}.csv"
+    write_whole(folder / file, table.csv().encode())
+    return {
+        "name": name, "file": file, "title": table.title, "columns": list(table.columns),
+        "rows": [list(row) for row in table.rows], "notes": list(table.notes),
+    }  # fmt: skip
+
+
+MARK = "reproduce.json"
+MARK_SCHEMA = "drystone-reproduce/1"
+ITEM_SCHEMA = "drystone-item/1"
+
+
+class ReportFolder:
+    """Where items are written, one folder each, with a report of all of them."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        path.mkdir(parents=True, exist_ok=True)
+        if _read(path / MARK, MARK_SCHEMA) is None and has_files(path):
+            raise UsageError(
+                "E129",
+                "the folder is not empty, and it is none that `drystone reproduce` wrote.",
+                where=str(path),
+                cure="Choose another with -o; nothing in it was touched.",
+            )
+        self._write_misses(self.misses)
+
+    @property
+    def runs(self) -> RunStore:
+        """Finished walls."""
+        return RunStore(self.path / "runs")
+
+    @property
+    def misses(self) -> dict[str, dict[str, str]]:
+        """Items that could not be made when they were last asked for: why, by name."""
+        mark = _read(self.path / MARK, MARK_SCHEMA)
+        return {} if mark is None else mark["misses"]
+
+    def page(self, name: str) -> Path:
+        """Return where the page of an item is."""
+        return self.path / name / PAGE
+
+    def record(self, name: str) -> dict[str, Any] | None:
+        """Return what the JSON of an item says; None when it was not made, or a file is gone."""
+        folder = self.path / name
+        record = _read(folder / f"{name}.json", ITEM_SCHEMA)
+        if record is None or not all((folder / file).is_file() for file in files_of(record)):
+            return None
+        return record
+
+    def finished(self, name: str, request: Mapping[str, Any]) -> dict[str, Any] | None:
+        """Return the record of an item that was made for such a request; None without one."""
+        record = self.record(name)
+        return record if record is not None and is_met(request, record["request"]) else None
+
+    def keep(
+        self, name: str, item: PaperItem, output: Output, about: Mapping[str, Any]
+    ) -> dict[str, Any]:
+        """Write the files of an item in place of those of an earlier one; its JSON comes last."""
+        folder = self.path / name
+        folder.mkdir(exist_ok=True)
+        # Without its JSON, which goes first, nothing is there of an earlier version.
+        path = folder / f"{name}.json"
+        earlier = _read(path, ITEM_SCHEMA)
+        path.unlink(missing_ok=True)
+        for file in () if earlier is None else files_of(earlier):
+            (folder / file).unlink(missing_ok=True)
+        record = {
+            "schema": ITEM_SCHEMA,
+            "name": name,
+            "title": item.words["title"],
+            "section": item.words["section"],
+            **about,
+            "paper": list(output.paper),
+            "ours": list(output.ours),
+            "tables": [_write_table(folder, name, table) for name, table in output.tables],
+            "times": [_write_table(folder, f"{name}_times", table) for name, table in output.times],
+            "pictures": [write_picture(folder, picture) for picture in output.pictures],
+            "seeds": sorted({spec.seed for spec in output.runs}),
+            "runs": [{"key": spec.key, **spec.as_dict()} for spec in output.runs],
+        }
+        write_item_page(self.page(name), record)
+        text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
+        write_whole(path, text.encode())
+        self.forget_miss(name)
+        return record
+
+    def miss(self, name: str, item: PaperItem, error: DrystoneError) -> None:
+        """Note why an item cannot be made."""
+        text = {name: item.words[name] for name in ("title", "section")} | {"error": str(error)}
+        self._write_misses({**self.misses, name: text})
+
+    def forget_miss(self, name: str) -> None:
+        """Note no longer why an item was not made: it is there."""
+        self._write_misses({key: miss for key, miss in self.misses.items() if key != name})
+
+    def write_report(self, order: Iterable[str]) -> Path:
+        """Write the page of everything that was made so far."""
+        names = list(order)
+        records = [record for name in names if (record := self.record(name)) is not None]
+        return write_page(self.path / PAGE, records, self.misses, names)
+
+    def _write_misses(self, misses: Mapping[str, Mapping[str, str]]) -> None:
+        text = json.dumps({"schema": MARK_SCHEMA, "misses": misses}, ensure_ascii=False, indent=1)
+        write_whole(self.path / MARK, text.encode())
+
+
+def _read(path: Path, schema: str) -> dict[str, Any] | None:
+    """Return the contents of one of our files; None when it is not there, or is none."""
+    if not path.is_file():
+        return None
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError:  # cut short or of another program: as good as not there
+        return None
+    return data if isinstance(data, dict) and data.get("schema") == schema else None
+
 
 ItemStatus = Literal["made", "kept", "missing data", "failed"]
 

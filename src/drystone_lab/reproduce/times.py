@@ -15,7 +15,7 @@ from drystone.planner.settings import method_settings
 from drystone.poses import PoseBook
 from drystone.selection.sampling import Sampling
 from drystone_lab import timed_walls
-from drystone_lab.pictures.growth import plot_growth, step_time_panels
+from drystone_lab.pictures.charts import plot_growth, step_time_panels
 from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import metric_cells, placed_of, trend
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows

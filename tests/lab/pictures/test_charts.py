@@ -7,9 +7,17 @@ import pytest
 from matplotlib.figure import Figure
 
 from drystone.planner.profile import StepTime
-from drystone_lab.pictures import growth
-from drystone_lab.pictures.charts import group_panels, plot_groups, plot_history, plot_two_figures
-from drystone_lab.pictures.validation import COLOURS, MARKERS, Prediction, plot_predictions
+from drystone_lab.pictures import charts as growth
+from drystone_lab.pictures.charts import (
+    COLOURS,
+    MARKERS,
+    Prediction,
+    group_panels,
+    plot_groups,
+    plot_history,
+    plot_predictions,
+    plot_two_figures,
+)
 
 VALUES = {"both": [0.8, 0.7, 0.9, 0.75, 0.72, 0.71], "none": [0.5, None, 0.4], "empty": [None]}
 
@@ -86,7 +94,7 @@ def test_points_laws_and_claims_are_drawn_where_they_are():
     assert bare.get_xydata().tolist() == [[10.0, 0.5]]
     assert [wall.get_marker(), step.get_marker()] == ["x", "v"]
     assert step.get_xydata().tolist() == [[90.0, 25.0]]
-    assert [points.get_color(), bare.get_color()] == [colour for colour, _ in growth.LINES[:2]]
+    assert [points.get_color(), bare.get_color()] == [colour for colour, _ in growth.LOOKS[:2]]
     words = [text.get_text() for text in ax.get_legend().get_texts()]
     assert words == ["wall", "exponent 1.00", "step", "paper: wall", "paper: step"]
     assert (ax.get_xscale(), ax.get_yscale()) == ("log", "log")
