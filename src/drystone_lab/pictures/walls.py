@@ -1,8 +1,8 @@
 """Walls side by side on a sheet, each with a title."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
+from typing import NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -31,8 +31,7 @@ LINE_IN, ABOVE_IN = 0.16, 0.12
 TITLE_PT = 8
 
 
-@dataclass(frozen=True, eq=False)
-class Panel:
+class Panel(NamedTuple):
     """A picture on a sheet."""
 
     title: str  # Written above, in lines, or ""
@@ -65,25 +64,20 @@ def sheet_of(panels: Sequence[Panel], columns: int) -> Figure:
     for row, up, high in zip(rows, above, tall, strict=True):
         bottom -= up + high
         for column, panel in enumerate(row):
+            if panel.draw is None:
+                continue
             left = LEFT_IN + column * (across + LEFT_IN)
-            box = (left / width, bottom / height, across / width, high / height)
-            _draw(figure, box, panel)
+            ax = figure.add_axes((left / width, bottom / height, across / width, high / height))
+            # Pictures lower than their row hang from its title.
+            ax.set_anchor("NW")
+            panel.draw(ax)
+            legend = ax.get_legend()
+            if legend is not None:
+                legend.remove()
+            ax.tick_params(labelsize=6)
+            ax.set_title(panel.title, fontsize=TITLE_PT, loc="left", pad=3)
         bottom -= BELOW_IN
     return figure
-
-
-def _draw(figure: Figure, box: tuple[float, float, float, float], panel: Panel) -> None:
-    if panel.draw is None:
-        return
-    ax = figure.add_axes(box)
-    # Pictures lower than their row hang from its title.
-    ax.set_anchor("NW")
-    panel.draw(ax)
-    legend = ax.get_legend()
-    if legend is not None:
-        legend.remove()
-    ax.tick_params(labelsize=6)
-    ax.set_title(panel.title, fontsize=TITLE_PT, loc="left", pad=3)
 
 
 TitledWall = tuple[str, Wall, Mapping[int, int] | None]

@@ -143,11 +143,6 @@ class ReportFolder:
             return None
         return record
 
-    def finished(self, name: str, request: Mapping[str, Any]) -> dict[str, Any] | None:
-        """Return the record of an item that was made for such a request; None without one."""
-        record = self.record(name)
-        return record if record is not None and is_met(request, record["request"]) else None
-
     def keep(
         self, name: str, item: PaperItem, output: Output, about: Mapping[str, Any]
     ) -> dict[str, Any]:
@@ -269,8 +264,8 @@ def _made(
     """Return what becomes of an item: it is kept, made, or there is an error."""
     page = report.page(name)
     request = request_of(quick=options.quick, seed=options.seed, data=options.data)
-    kept = None if options.again else report.finished(name, request)
-    if kept is not None:
+    kept = None if options.again else report.record(name)
+    if kept is not None and is_met(request, kept["request"]):
         report.forget_miss(name)
         return MadeItem(name, "kept", kept, None, page)
     absent = [each for each in item.needs if not published(each).is_there(options.data)]

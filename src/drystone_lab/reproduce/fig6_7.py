@@ -120,8 +120,8 @@ def plot_action(
     if "begun" in marks:
         _draw_frame(ax, (0, 0), width, action.built_height, "begun", linewidth=1.6,
                     edgecolor=BEGUN, zorder=4)  # fmt: skip
-    if "neighbour" in marks:
-        _draw_tops(ax, action)
+    if "neighbour" in marks and action.neighbour is not None:
+        _draw_tops(ax, action.box, action.neighbour[1])
     if "joints" in marks:
         _draw_joints(ax, action)
     if "slope" in marks and action.peaks is not None:
@@ -159,11 +159,8 @@ def _name_stones(ax: Axes, action: ActionView) -> None:
         )  # fmt: skip
 
 
-def _draw_tops(ax: Axes, action: ActionView) -> None:
+def _draw_tops(ax: Axes, stone: Box, beside: Box) -> None:
     """Draw the heights of both tops, and how far they are apart."""
-    if action.neighbour is None:
-        return
-    stone, beside = action.box, action.neighbour[1]
     ends = (min(stone.left, beside.left), max(stone.right, beside.right))
     for top in (stone.top, beside.top):
         _draw_line(ax, ends, (top, top), "top", linewidth=0.8, linestyle=(0, (4, 2)), zorder=4)
@@ -284,12 +281,12 @@ class MomentPlaces:
     @property
     def cases(self) -> Sequence[tuple[str, str, RestingPlace]]:
         """The best and the worst place by each index: index, verdict and place."""
-        found = [
-            (name, verdict, extreme(self.all, name, best=verdict == "favourable"))
+        return [
+            (name, verdict, place)
             for name in MARKS
             for verdict in ("favourable", "unfavourable")
+            if (place := extreme(self.all, name, best=verdict == "favourable")) is not None
         ]
-        return [(name, verdict, place) for name, verdict, place in found if place is not None]
 
     def action(self, place: RestingPlace) -> ActionView:
         """Return a place to be drawn."""

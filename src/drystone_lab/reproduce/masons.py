@@ -261,8 +261,7 @@ def tenths(value: float) -> int:
     return floor(10 * round(value, EXACT) + 0.5)
 
 
-@dataclass(frozen=True, eq=False)
-class FiveWall:
+class FiveWall(NamedTuple):
     """One of the five walls: its trials, its stones, and what masons built from them, if any did.
 
     The first trial is that of the fixed seed.
@@ -294,15 +293,11 @@ Five = tuple[StudyWalls, Sequence[FiveWall]]
 
 def five_walls(context: Context, study: Study) -> Five:
     """Build the walls, and read the masons'."""
-    found = study(context)
-    return found, [
-        FiveWall(
-            each,
-            each.wall.source.stones(context.data),
-            None if each.wall.stand_in else masons_wall(each.wall, context.data),
-        )
-        for each in found
-    ]
+    found, walls = study(context), []
+    for each in found:
+        masons = None if each.wall.stand_in else masons_wall(each.wall, context.data)
+        walls.append(FiveWall(each, each.wall.source.stones(context.data), masons))
+    return found, walls
 
 
 def _references(wall: FiveWall) -> Iterator[tuple[Cell, ...]]:

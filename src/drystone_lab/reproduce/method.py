@@ -1,7 +1,6 @@
 """The method itself: Table 1, and Figs. 3, 4, 10 and 11 on a real run."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from itertools import islice
 from types import SimpleNamespace
 from typing import NamedTuple
@@ -99,8 +98,7 @@ WORKFLOW = PaperItem(
 FILTERS = ("LLC > 0", "LLC", "NHR", "IWR or IS", "GDS", "LFR")
 
 
-@dataclass(frozen=True, eq=False)
-class Selection:
+class Selection(NamedTuple):
     """A step of Algorithm 2: candidates after which the wall stands, and who passed what."""
 
     tried: int

@@ -6,6 +6,7 @@ from functools import partial
 from itertools import cycle
 from pathlib import Path
 from statistics import median
+from typing import NamedTuple
 
 from matplotlib.figure import Figure
 from scipy.stats import binomtest
@@ -84,8 +85,7 @@ MIXED = 60
 """Noise in % below which the paper's walls are always filled above :data:`FILLED`."""
 
 
-@dataclass(frozen=True, eq=False)
-class NoiseLevel:
+class NoiseLevel(NamedTuple):
     """The walls of one set of stones by either rule, and the published wall where there is one."""
 
     built: StudyWalls

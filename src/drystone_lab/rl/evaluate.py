@@ -8,7 +8,8 @@ the order too.
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.stats import t as student
@@ -40,8 +41,7 @@ PolicyFigures = Mapping[str, Sequence[float]]
 """The figures of some walls by their names."""
 
 
-@dataclass(frozen=True)
-class Interval:
+class Interval(NamedTuple):
     """A mean, and where that of all walls of their kind lies."""
 
     mean: float

@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.random import Generator
@@ -46,8 +47,7 @@ def at_random(offers: Sequence[Offer], rng: Generator) -> int:
     return int(rng.integers(len(offers)))
 
 
-@dataclass(frozen=True, eq=False)
-class Branching:
+class Branching(NamedTuple):
     """The places of one stone, and the walls that were finished from each."""
 
     features: Floats
