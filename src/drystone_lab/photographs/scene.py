@@ -85,53 +85,43 @@ def stone_face(rock: Rock, shape: tuple[int, int], rng: Generator) -> Light:
     return np.clip(colour, 0.01, 1.0).astype(np.float32)
 
 
+_GROUNDS: dict[GroundKind, str] = {
+    "plywood": "#d8b98a", "tarpaulin": "#2f6fb0", "cloth": "#ecebe6", "rubber": "#26262a",
+    "gravel": "#c9c3b4", "grass": "#5b8a35",
+}  # fmt: skip
+
+
 def ground_surface(ground: GroundKind, shape: tuple[int, int], rng: Generator) -> Light:
     """Return a ground, evenly lit."""
-    makers = {
-        "plywood": _plywood, "tarpaulin": _tarpaulin, "cloth": _cloth,
-        "rubber": _rubber, "gravel": _gravel, "grass": _grass,
-    }  # fmt: skip
-    return np.asarray(np.clip(makers[ground](shape, rng), 0.005, 1.0), np.float32)
 
+    def noise(*cells: tuple[float, float], fall: float = 0.6) -> Plane:
+        return clouds(shape, cells, rng, fall)
 
-def _plywood(shape: tuple[int, int], rng: Generator) -> Light:
-    grain = clouds(shape, [(14, 900), (5, 300), (2, 90)], rng, 0.8)
-    boards = clouds(shape, [(400, 1500)], rng)
-    return np.asarray(linear("#d8b98a") * (1 + 0.06 * grain + 0.04 * boards)[..., None])
-
-
-def _tarpaulin(shape: tuple[int, int], rng: Generator) -> Light:
-    rows, cols = np.indices(shape, np.float32)
-    weave = np.sin(rows * 1.1) * np.sin(cols * 1.1)
-    folds = clouds(shape, [(500, 300), (160, 200)], rng, 0.4)
-    return np.asarray(linear("#2f6fb0") * (1 + 0.05 * weave + 0.08 * folds)[..., None])
-
-
-def _cloth(shape: tuple[int, int], rng: Generator) -> Light:
-    folds = clouds(shape, [(420, 260), (120, 150)], rng, 0.4)
-    threads = clouds(shape, [(2, 6), (6, 2)], rng, 0.9)
-    return linear("#ecebe6") * (1 + 0.03 * folds + 0.02 * threads)[..., None]
-
-
-def _rubber(shape: tuple[int, int], rng: Generator) -> Light:
-    crumbs = clouds(shape, [(5, 5), (2.5, 2.5)], rng, 0.8)
-    return linear("#26262a") * (1 + 0.25 * crumbs)[..., None]
-
-
-def _gravel(shape: tuple[int, int], rng: Generator) -> Light:
-    grains = clouds(shape, [(7, 7), (4, 4), (2.5, 2.5)], rng, 0.8)
-    tint = 0.04 * clouds(shape, [(9, 9)], rng)
-    light = linear("#c9c3b4") * (1 + 0.16 * grains)[..., None]
-    light[..., 0] *= 1 + tint
-    return np.asarray(light)
-
-
-def _grass(shape: tuple[int, int], rng: Generator) -> Light:
-    blades = clouds(shape, [(16, 5), (9, 3), (4, 3)], rng, 0.8)
-    patches = clouds(shape, [(220, 220), (70, 70)], rng, 0.6)
-    light = linear("#5b8a35") * np.exp(0.35 * blades + 0.12 * patches)[..., None]
-    light[..., 0] *= 1 + 0.12 * patches
-    return np.asarray(light)
+    redder = np.zeros(shape, np.float32)
+    match ground:
+        case "plywood":
+            grain = noise((14, 900), (5, 300), (2, 90), fall=0.8)
+            light = 1 + 0.06 * grain + 0.04 * noise((400, 1500))
+        case "tarpaulin":
+            rows, cols = np.indices(shape, np.float32)
+            weave = np.sin(rows * 1.1) * np.sin(cols * 1.1)
+            light = 1 + 0.05 * weave + 0.08 * noise((500, 300), (160, 200), fall=0.4)
+        case "cloth":
+            folds = noise((420, 260), (120, 150), fall=0.4)
+            light = 1 + 0.03 * folds + 0.02 * noise((2, 6), (6, 2), fall=0.9)
+        case "rubber":
+            light = 1 + 0.25 * noise((5, 5), (2.5, 2.5), fall=0.8)
+        case "gravel":
+            light = 1 + 0.16 * noise((7, 7), (4, 4), (2.5, 2.5), fall=0.8)
+            redder = 0.04 * noise((9, 9))
+        case "grass":
+            blades = noise((16, 5), (9, 3), (4, 3), fall=0.8)
+            patches = noise((220, 220), (70, 70))
+            light = np.exp(0.35 * blades + 0.12 * patches)
+            redder = 0.12 * patches
+    colour = linear(_GROUNDS[ground]) * light[..., None]
+    colour[..., 0] *= 1 + redder
+    return np.asarray(np.clip(colour, 0.005, 1.0), np.float32)
 
 
 Homography = NDArray[np.float64]
@@ -361,7 +351,11 @@ def _light_on_ground(labels: Labels, level: PhotoLevel, rng: Generator) -> Light
             top = pad + round(step * math.sin(azimuth))
             left = pad + round(step * math.cos(azimuth))
             here[top : top + mask.shape[0], left : left + mask.shape[1]] |= mask
-        _add(shadow, here, box[0].start - pad, box[1].start - pad)
+        # A shadow may reach beyond the picture.
+        row, col = box[0].start - pad, box[1].start - pad
+        top, left = max(row, 0), max(col, 0)
+        area = shadow[top : row + here.shape[0], left : col + here.shape[1]]
+        area[here[top - row :, left - col :][: area.shape[0], : area.shape[1]]] = 1
     shadow = ndimage.gaussian_filter(shadow, 2.5) * np.float32(level.shadow)
     near = ndimage.distance_transform_edt(labels == 0)
     rim = np.exp(-near / 3.0) * (0.25 if level.shadow else 0.08)
@@ -369,13 +363,6 @@ def _light_on_ground(labels: Labels, level: PhotoLevel, rng: Generator) -> Light
     dark = shadow[..., None]
     light = (1 - dark) + dark * (sky - 1) * (1 - level.shadow)
     return np.asarray(light * (1 - rim[..., None]), np.float32)
-
-
-def _add(whole: Plane, part: NDArray[np.bool_], row: int, col: int) -> None:
-    """Mark a part of a picture that may reach beyond it."""
-    top, left = max(row, 0), max(col, 0)
-    area = whole[top : row + part.shape[0], left : col + part.shape[1]]
-    np.maximum(area, part[top - row :, left - col :][: area.shape[0], : area.shape[1]], out=area)
 
 
 def _shading(mask: NDArray[np.bool_], level: PhotoLevel) -> Plane:

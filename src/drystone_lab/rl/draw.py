@@ -1,7 +1,5 @@
 """Walls to learn on: generated stones in the order in which they arrive, and a site for them."""
 
-import types
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,14 +10,15 @@ from drystone.generate import GENERATORS
 from drystone.model.site import Site
 from drystone.model.stone import Stone, StoneSet
 
+KINDS = ("fourier", "polygon", "brick", "rubble")
+"""Generators of stones."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class DrawSettings:
     """What walls are drawn."""
 
-    # Generators, all with the same chance: ``"fourier"``, ``"polygon"``, ``"brick"``,
-    # ``"rubble"``
-    kinds: tuple[str, ...] = ("fourier", "polygon", "brick", "rubble")
+    kinds: tuple[str, ...] = KINDS  # Generators, all with the same chance
     stones: int = 20  # How many stones arrive, at least 3
     # Square root of the mean area of a stone, at least 8.  Images are not reduced: working
     # and source px are the same
@@ -46,8 +45,7 @@ def draw_wall(settings: DrawSettings, rng: Generator) -> tuple[StoneSet, Site]:
     """
     kind = settings.kinds[int(rng.integers(len(settings.kinds)))]
     kind_settings, make = GENERATORS[kind]
-    numbers = {"count": settings.stones} | KINDS[kind](settings, rng)
-    stones = in_order(make(kind_settings(**numbers), rng), rng)
+    stones = in_order(make(kind_settings(**_numbers(kind, settings, rng)), rng), rng)
     area = stones.total_area_px / settings.surplus
     height = max(1, round((area / settings.aspect) ** 0.5))
     return stones, Site(max(1, round(settings.aspect * height)), height)
@@ -63,48 +61,25 @@ def in_order(stones: StoneSet, rng: Generator) -> StoneSet:
     )
 
 
-def _fourier(settings: DrawSettings, rng: Generator) -> dict[str, float]:
-    """Round to elongated, the largest almost twice as large as the smallest."""
-    radius = settings.size_px / np.pi**0.5
-    return {
-        "smallest_radius_px": 0.7 * radius, "largest_radius_px": 1.25 * radius,
-        "D2": float(rng.uniform(0.0, 0.2)),
-    }  # fmt: skip
-
-
-def _polygon(settings: DrawSettings, rng: Generator) -> dict[str, float]:
-    """Bricks whose corners are moved a little or much."""
-    return {
-        "width_px": 1.2 * settings.size_px, "height_px": settings.size_px / 1.2,
-        "noise": float(rng.uniform(0.1, 0.4)),
-    }  # fmt: skip
-
-
-def _brick(settings: DrawSettings, rng: Generator) -> dict[str, float]:
-    """Bricks, a third of them halves."""
-    halves = settings.stones // 3
-    # The mean area is that of the set, halves among them.
-    share = 1.0 - 0.5 * halves / settings.stones
-    aspect = float(rng.uniform(1.6, 3.0))
-    height = max(2, round(settings.size_px / (share * aspect) ** 0.5))
-    count = settings.stones - halves
-    return {"count": count, "halves": halves, "height_px": height, "aspect": aspect}
-
-
-def _rubble(settings: DrawSettings, _: Generator) -> dict[str, float]:
-    """Stones of a few course heights."""
-    ratio = 0.9
-    height = settings.size_px * (settings.stones / ratio / settings.aspect) ** 0.5
-    return {
-        "width_px": settings.aspect * height, "height_px": height, "area_ratio": ratio,
-        "courses": min(3, settings.stones),
-    }  # fmt: skip
-
-
-KINDS: Mapping[str, Callable[[DrawSettings, Generator], dict[str, float]]] = types.MappingProxyType(
-    {"fourier": _fourier, "polygon": _polygon, "brick": _brick, "rubble": _rubble}
-)
-"""Settings of the generator of each kind, beside the number of stones."""
+def _numbers(kind: str, settings: DrawSettings, rng: Generator) -> dict[str, float]:
+    """Return the settings of the generator of a kind."""
+    size, count = settings.size_px, settings.stones
+    if kind == "fourier":  # round to elongated, the largest almost twice as large as the smallest
+        radius = size / np.pi**0.5
+        numbers = {"smallest_radius_px": 0.7 * radius, "largest_radius_px": 1.25 * radius}
+        return {"count": count, **numbers, "D2": float(rng.uniform(0.0, 0.2))}
+    if kind == "polygon":  # bricks whose corners are moved a little or much
+        sides = {"width_px": 1.2 * size, "height_px": size / 1.2}
+        return {"count": count, **sides, "noise": float(rng.uniform(0.1, 0.4))}
+    if kind == "brick":  # a third of them halves, which the mean area counts too
+        halves = count // 3
+        aspect = float(rng.uniform(1.6, 3.0))
+        height = max(2, round(size / ((1.0 - 0.5 * halves / count) * aspect) ** 0.5))
+        return {"count": count - halves, "halves": halves, "height_px": height, "aspect": aspect}
+    ratio = 0.9  # rubble of a few course heights
+    height_px = size * (count / ratio / settings.aspect) ** 0.5
+    sides = {"width_px": settings.aspect * height_px, "height_px": height_px}
+    return {"count": count, **sides, "area_ratio": ratio, "courses": min(3, count)}
 
 
 def _refused(what: str, cure: str) -> UsageError:
