@@ -1,5 +1,6 @@
 """Stones and the walls that are to be built of them: one type for all studies."""
 
+import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -92,6 +93,23 @@ FIVE = (*MASONS, LIU_4, LIU_5)
 """Fig. 18."""
 
 
+def made_walls(path: Path) -> dict[str, tuple[Target, ...]]:
+    """Return the walls of generated stones that a TOML file describes, by group.
+
+    What the walls of a group have in common may stand beside them.
+    """
+    groups = tomllib.loads(path.read_text("utf-8"))
+    return {
+        group: tuple(
+            Target(
+                one["name"], generated(one["kind"], one["seed"], **one["settings"]), *one["size"]
+            )
+            for one in (about | wall for wall in about["walls"])
+        )
+        for group, about in groups.items()
+    }
+
+
 def generated_noise(noise: int, count: int = 26, scale: float = 0.3) -> Target:
     """Return generated stones, with a wall of which they are the same share as published ones.
 
@@ -129,40 +147,12 @@ BRICKS = Target("bricks", generated("brick", 0, count=9), 108, 36, 1.0)
 
 SEARCHED = (R_FRAMED, PR_600, PR_560, IR_FRAMED)
 
-JUDGED = (
-    *SEARCHED,
-    *NOISY,
-    Target(
-        "Fourier",
-        generated("fourier", 0, count=40, smallest_radius_px=15, largest_radius_px=35, D2=0.2),
-        400, 200, 0.6,
-    ),
-    Target("polygons", generated("polygon", 0, count=30, noise=0.2), 800, 460, 0.3),
-)  # fmt: skip
+_MADE = made_walls(Path(__file__).with_name("walls.toml"))
+
+JUDGED = (*SEARCHED, *NOISY, *_MADE["judged"])
 """Walls that are built up in the engine."""
 
-UNSEEN = (
-    Target(
-        "Fourier, 45",
-        generated("fourier", 9301, count=45, smallest_radius_px=16, largest_radius_px=34, D2=0.15),
-        621, 200, 0.6,
-    ),
-    Target("polygons 20 %, 40", generated("polygon", 9302, count=40, noise=0.2), 1462, 400, 0.3),
-    Target("polygons 60 %, 40", generated("polygon", 9303, count=40, noise=0.6), 1462, 400, 0.25),
-    Target(
-        "rubble, 60",
-        generated("rubble", 9304, count=60, width_px=900, height_px=300, courses=5), 990, 300, 0.5,
-    ),
-    Target(
-        "rubble, 120",
-        generated("rubble", 9305, count=120, width_px=1400, height_px=420, courses=7),
-        1437, 450, 0.45,
-    ),
-    Target(
-        "bricks, 48", generated("brick", 9306, count=40, height_px=24, aspect=2.5, halves=8),
-        550, 144, 0.6,
-    ),
-)  # fmt: skip
+UNSEEN = _MADE["unseen"]
 """Sets that no setting had been tuned on when they were measured; walls of their area over .8."""
 
 TWO_SIDED: Changes = (("two_sided", True),)

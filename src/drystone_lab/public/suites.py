@@ -3,7 +3,6 @@
 Walls are fixed (``suites.toml``): they may not change without a new :data:`SUITE_VERSION`.
 """
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import entry_points
@@ -14,8 +13,17 @@ from typing import Any, NamedTuple
 from drystone.errors import UsageError
 from drystone.planner.settings import method_settings
 from drystone.selection.policies.registry import BUILT_IN, GROUP, PAPER, RULES, no_policy, rule_of
-from drystone_lab.runs.spec import STRIPS, Changes, RunSpec, Scalar, flat, generated, nested
-from drystone_lab.walls import IR_FRAMED, NOISY, PR_560, PR_600, R_FRAMED, Target, chosen
+from drystone_lab.runs.spec import STRIPS, Changes, RunSpec, Scalar, flat, nested
+from drystone_lab.walls import (
+    IR_FRAMED,
+    NOISY,
+    PR_560,
+    PR_600,
+    R_FRAMED,
+    Target,
+    chosen,
+    made_walls,
+)
 
 SUITE_VERSION = 1
 """Of all suites together."""
@@ -29,17 +37,9 @@ _NOISE = tuple(replace(wall, suite="noise") for wall in NOISY)
 
 
 _GENERATED = {
-    suite: tuple(
-        Target(
-            wall["name"], generated(about["kind"], about["seed"], **wall["settings"]),
-            *wall["size"], suite=suite,
-        )
-        for wall in about["walls"]
-    )
-    for suite, about in tomllib.loads(
-        Path(__file__).with_name("suites.toml").read_text("utf-8")
-    ).items()
-}  # fmt: skip
+    suite: tuple(replace(wall, suite=suite) for wall in walls)
+    for suite, walls in made_walls(Path(__file__).with_name("suites.toml")).items()
+}
 
 ALL = "all"
 
