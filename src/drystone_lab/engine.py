@@ -79,14 +79,8 @@ def _summary(judged: Sequence[EngineWall]) -> Table:
     ]
     ratios = [tilt / alpha for alpha, tilt in pairs if alpha > 0]
     row = (
-        len(judged), f"{standing} of {len(judged)}", len(pairs), _rank_correlation(pairs),
-        _rank_correlation(weaker), median(ratios) if ratios else None,
+        len(judged), f"{standing} of {len(judged)}", len(pairs),
+        *(float(spearmanr(of).statistic) if len(of) > 2 else None for of in (pairs, weaker)),
+        median(ratios) if ratios else None,
     )  # fmt: skip
     return worded(BENCH["engine"]["summary"], [row])
-
-
-def _rank_correlation(pairs: Sequence[tuple[float, float]]) -> float | None:
-    if len(pairs) < 3:
-        return None
-    found = spearmanr([first for first, _ in pairs], [second for _, second in pairs])
-    return float(found.statistic)

@@ -19,7 +19,7 @@ from drystone_lab.runs.outcome import FIGURES, RunOutcome
 from drystone_lab.runs.spec import RunSpec
 from drystone_lab.search import SEARCH, WAYS, looked_at_times
 from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
-from drystone_lab.walls import BRICKS, SEARCHED, Target, chosen
+from drystone_lab.walls import BRICKS, SEARCHED, chosen
 
 SECONDS = 30
 TURNS: dict[str, tuple[float, ...] | None] = {"quarter": (0.0, 90.0, 180.0, 270.0), "any": None}
@@ -31,12 +31,24 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     packer = load_packer()
     usual = 1 if settings.quick else SECONDS
     seconds = max(1, round(settings.seconds[-1] if settings.seconds else usual))
-    rows = []
+    rows: list[tuple[Cell, ...]] = []
     for target in chosen((BRICKS,) if settings.quick else SEARCHED, settings.only):
         stones = target.stones(settings.data)
-        if stones is not None:
-            rows.append(_row(packer, target, stones, seconds, settings.seed))
-            settings.say(", ".join(map(str, rows[-1])))
+        if stones is None:
+            continue
+        width, height = target.size(stones)
+        strips: list[Cell] = []
+        for turns in TURNS.values():
+            strip = packed_width_px(packer, stones, height, turns, seconds, settings.seed)
+            strips += strip, stones.total_area_px / (strip * height)
+        (way,) = (way for way in WAYS if way.name == SEARCH)
+        (looked,) = looked_at_times(way, stones, target, (seconds,), settings.seed)
+        placed, filled = 0, None
+        if looked.found.figures is not None:
+            placed, filled = looked.found.figures.stones, looked.found.figures.F_SF
+        possible, told = looked.possible, f"{placed} of {len(stones)}"
+        rows.append((target.name, height, *strips, width, possible, filled, told))
+        settings.say(", ".join(map(str, rows[-1])))
     words = BENCH["packing"]["strips"]
     return (worded(words, rows, more=missing_data(settings), seconds=seconds),)
 
@@ -78,24 +90,6 @@ def packed_width_px(
     )
     strip = packer.StripPackingInstance("stones", strip_height=height_px, items=items)
     return float(strip.solve(config).width)
-
-
-def _row(
-    packer: Any, target: Target, stones: StoneSet, seconds: int, seed: int
-) -> tuple[Cell, ...]:
-    width, height = target.size(stones)
-    strips = [
-        packed_width_px(packer, stones, height, turns, seconds, seed) for turns in TURNS.values()
-    ]
-    (way,) = (way for way in WAYS if way.name == SEARCH)
-    looked = looked_at_times(way, stones, target, (seconds,), seed)[0]
-    figures = looked.found.figures
-    return (
-        target.name, height,
-        *(cell for strip in strips for cell in (strip, stones.total_area_px / (strip * height))),
-        width, looked.possible, None if figures is None else figures.F_SF,
-        f"{0 if figures is None else figures.stones} of {len(stones)}",
-    )  # fmt: skip
 
 
 def packed(spec: RunSpec, data: Path | None) -> RunOutcome:

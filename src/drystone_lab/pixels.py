@@ -76,7 +76,7 @@ class TiltedWall:
         return labels[: filled[-1] + 1]
 
 
-def tilted_wall(rng: Generator, courses: int = 4, length: float = 0.9) -> TiltedWall:
+def tilted_wall(rng: Generator, courses: int, length: float = 0.9) -> TiltedWall:
     """Draw a wall whose bed joints zigzag, whose head joints lean and whose ends have a batter.
 
     Bends and ends of joints are at least `SHORTEST` apart along a bed.  A facet smaller than a

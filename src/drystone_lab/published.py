@@ -91,18 +91,16 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     for wall in WALLS:
         low, high = wall.nonassociative
         words = f"{low:g} to {high:g}" if low else f"at most {high:g}, or none"
-        expected = Expected(
-            wall.associative, FERRIS_TOLERANCE, low, high, words, wall.may_not_converge
-        )
+        one = Expected(wall.associative, FERRIS_TOLERANCE, low, high, words, wall.may_not_converge)
         both_rules = not quick or wall.number in QUICK_WALLS
         name = f"example {wall.number}, {wall.blocks} blocks"
-        walls += _rows(name, wall.model, [expected, expected], both_rules=both_rules)
+        walls += _rows(name, wall.model, [one, one], both_rules=both_rules)
     arches = QUICK_ARCHES if quick else (*WITHOUT_SLIDING, *WITH_FRICTION)
-    words, columns = BENCH["statics"], {"<case>": COLUMNS}
+    of, columns = BENCH["statics"], {"<case>": COLUMNS}
     return (
-        worded(words["closed_forms"], forms, columns=columns),
-        worded(words["ferris"], walls, columns=columns),
-        worded(words["arches"], map(_arch_row, arches)),
+        worded(of["closed_forms"], forms, columns=columns),
+        worded(of["ferris"], walls, columns=columns),
+        worded(of["arches"], map(_arch_row, arches)),
     )
 
 

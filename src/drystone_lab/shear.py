@@ -253,7 +253,9 @@ def _by_test(model: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
 
 def _scatter(model: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
     named = (*((one.name, (one,)) for one in all_series), ("all", all_series))
-    rows = ((name, *_mean_and_deviation(_ratios(model, series))) for name, series in named)
+    rows: list[tuple[Cell, ...]] = [
+        (name, *_mean_and_deviation(_ratios(model, series))) for name, series in named
+    ]
     return _worded("scatter", rows)
 
 
@@ -303,7 +305,7 @@ def _draw(model: ShearModel, path: Path) -> None:
         for series in SERIES:
             for test in series.tests:
                 loads = [Loading(test.vertical_kn, level, mu) for mu in FRICTION_BAND]
-                band = (model(series, loading).associative for loading in loads)
+                band = [model(series, loading).associative for loading in loads]
                 found = [v for v in band if v is not None]
                 if len(found) == len(band):
                     points.append(Prediction(series.name, restraint, test.measured_kn, *found))

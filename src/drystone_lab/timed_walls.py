@@ -25,7 +25,7 @@ COLUMNS = (*PARTS, "rest", "all")
 """Mean ms a step."""
 
 LEAST_STONES = 32
-"""For which :func:`rubble` makes the given number of courses."""
+"""For which :func:`rubble` makes four courses."""
 
 SAMPLINGS: Mapping[Sampling, str] = {"variant": "variant sampling", "full": "full batch sampling"}
 
@@ -64,17 +64,14 @@ class TimedWall:
         return sum(step.candidates for step in self.steps)
 
 
-def rubble(
-    count: int, seed: int, wall_px: tuple[int, int], courses: int = 4, scale: float = 1.0
-) -> Target:
-    """Return generated stones for a wall, with so many courses when there are 32 of them."""
+def rubble(count: int, seed: int, wall_px: tuple[int, int]) -> Target:
+    """Return generated stones for a wall, with four courses when there are 32 of them."""
     width, height = wall_px
-    factor = (count / LEAST_STONES) ** 0.5
+    courses = max(1, round(4 * (count / LEAST_STONES) ** 0.5))
     source = generated(
-        "rubble", seed, count=count, width_px=width, height_px=height,
-        courses=max(1, round(courses * factor)),
-    )  # fmt: skip
-    return Target(f"{count} generated stones", source, width, height, scale)
+        "rubble", seed, count=count, width_px=width, height_px=height, courses=courses
+    )
+    return Target(f"{count} generated stones", source, width, height, 1.0)
 
 
 def planned(

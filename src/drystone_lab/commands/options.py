@@ -38,11 +38,6 @@ def add_bench(command: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     command.add_argument("--json", action="store_true", help="print as JSON")
     command.add_argument("--markdown", action="store_true", help="print as Markdown")
-    _public(command)
-
-
-def _public(command: argparse.ArgumentParser) -> None:
-    """Add the options of public suites."""
     group = command.add_argument_group("public suites (docs/evidence/benchmark.md)")
     group.add_argument(
         "--policy", nargs="+", action="extend", default=[], metavar="NAME",

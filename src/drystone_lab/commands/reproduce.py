@@ -47,8 +47,8 @@ def run(arguments: argparse.Namespace, items: "Mapping[str, PaperItem] | None" =
             done.append(made)
             if made.error is not None:
                 print(f"drystone: {made.name}: {made.error}", file=sys.stderr)
-            elif not arguments.json:
-                _print(made)
+            elif not arguments.json and made.record is not None:
+                _print(made.record, made.page)
     if arguments.json:
         print_json({"report": str(folder / PAGE), "items": [_as_json(made) for made in done]})
     else:
@@ -82,18 +82,15 @@ def _names(arguments: argparse.Namespace) -> tuple[str, ...]:
     return tuple(name for name in ITEMS if name in asked)
 
 
-def _print(made: "MadeItem") -> None:
+def _print(record: "Mapping[str, Any]", page: Path) -> None:
     """Print the tables of an item, and where its page is."""
     from drystone_lab.table import Table  # noqa: PLC0415
 
-    if made.record is None:
-        return
-    print(f"{made.name}: {made.record['title']} ({made.record['section']})\n")
-    for table in (*made.record["tables"], *made.record["times"]):
-        rows = tuple(tuple(row) for row in table["rows"])
-        text = Table(table["title"], tuple(table["columns"]), rows, tuple(table["notes"])).text()
-        print(text, end="\n\n")
-    print(f"page: {made.page}\n", flush=True)
+    print(f"{record['name']}: {record['title']} ({record['section']})\n")
+    for table in (*record["tables"], *record["times"]):
+        print(Table(*(table[name] for name in ("title", "columns", "rows", "notes"))).text())
+        print()
+    print(f"page: {page}\n", flush=True)
 
 
 def _as_json(made: "MadeItem") -> dict[str, Any]:

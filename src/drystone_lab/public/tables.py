@@ -49,9 +49,9 @@ class BenchResults:
         order = {known: number for number, known in enumerate(self.walls)}
         return tuple(sorted(found, key=lambda result: (order[result.wall], result.seed)))
 
-    def values(self, method: str, figure: str, wall: str | None = None) -> tuple[float | None, ...]:
+    def values(self, method: str, figure: str) -> tuple[float | None, ...]:
         """Return a figure of the results of a method, as :meth:`of` orders them."""
-        return tuple(result.figure(figure) for result in self.of(method, wall))
+        return tuple(result.figure(figure) for result in self.of(method))
 
     def counting(self, one: str, other: str) -> tuple[bool, ...]:
         """Say which results of two methods, as :meth:`of` orders them, count as pairs.

@@ -58,17 +58,6 @@ def is_met(request: Mapping[str, Any], made: Mapping[str, Any]) -> bool:
     return same and {*request["published"]} <= {*made["published"]}
 
 
-def made_with(now: datetime) -> dict[str, Any]:
-    """Return when, and on what kind of machine with what packages, something is made."""
-    return {
-        "date": now.strftime("%Y-%m-%d %H:%M UTC"),
-        "machine": f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
-        "python": platform.python_version(),
-        "kernels": describe(),
-        "packages": {name: version(name) for name in PACKAGES},
-    }
-
-
 def write_picture(folder: Path, picture: ItemPicture) -> dict[str, Any]:
     """Write a picture as PNG and SVG; return its names, size in px and caption for JSON."""
     png, svg = f"{picture.name}.png", f"{picture.name}.svg"
@@ -119,11 +108,6 @@ class ReportFolder:
                 cure="Choose another with -o; nothing in it was touched.",
             )
         self._write_misses(self.misses)
-
-    @property
-    def runs(self) -> RunStore:
-        """Finished walls."""
-        return RunStore(self.path / "runs")
 
     @property
     def misses(self) -> dict[str, dict[str, str]]:
@@ -249,7 +233,7 @@ def reproduce(
     items = {name: item_named(name) for name in ITEMS} if items is None else items
     report = ReportFolder(folder)
     progress = ItemProgress(options.say, len(names))
-    runner = Runner(report.runs, options.data, options.work, progress.walls)
+    runner = Runner(RunStore(folder / "runs"), options.data, options.work, progress.walls)
     for name in names:
         progress.begin(name)
         made = _made(name, items[name], report, options, runner)
@@ -285,7 +269,13 @@ def _made(
     walls = [outcome.times["wall"] for outcome in outcomes if outcome is not None]
     about = {
         "request": request,
-        "made": made_with(options.now()),
+        "made": {
+            "date": options.now().strftime("%Y-%m-%d %H:%M UTC"),
+            "machine": f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
+            "python": platform.python_version(),
+            "kernels": describe(),
+            "packages": {name: version(name) for name in PACKAGES},
+        },
         "taken": {"seconds": seconds, "walls": len(walls), "wall_seconds": sum(walls)},
     }
     return MadeItem(name, "made", report.keep(name, item, output, about), None, page)

@@ -132,7 +132,7 @@ def _stones(sets: Clustered) -> Rows:
 def _picture(sets: Clustered) -> ItemFigure:
     drawn = sets[0]
     figure = Figure(figsize=(7.2, 6.4), layout="constrained")
-    above, below = figure.subfigures(2, 1, height_ratios=(1.5, 1.0))
+    above, below = figure.subfigures(2, 1, squeeze=False, height_ratios=(1.5, 1.0))[:, 0]
     ids = [stone.id for stone in drawn.stones]
     plot_features(above.add_subplot(), drawn.features, ids, drawn.clusters)
     plot_stones(drawn.stones, drawn.clusters, below.add_subplot())

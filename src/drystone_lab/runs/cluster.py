@@ -110,7 +110,21 @@ def _outcomes(
     del futures
     try:
         for future in ended:
-            outcome = _outcome(distributed, future, spec_of[future.key])
+            spec = spec_of[future.key]
+            try:
+                outcome: RunOutcome = future.result()
+            except distributed.KilledWorker as error:
+                raise died(spec, "workers, one after the other,") from error
+            except CancelledError as error:
+                raise DrystoneError(
+                    "E404",
+                    "the connection to the Dask cluster was lost.",
+                    where=OPTION,
+                    cure="Give the same command again when it is back: the runs that ended are "
+                    "kept.",
+                ) from error
+            if outcome.key != spec.key:
+                raise _other_version("a worker that joined the Dask cluster has another drystone.")
             # The cluster would do it again if it lost what somebody still holds.
             asked.pop(future.key).release()
             yield outcome
@@ -121,24 +135,6 @@ def _outcomes(
         raise
     finally:
         client.cancel(list(asked.values()))
-
-
-def _outcome(distributed: Any, future: Any, spec: RunSpec) -> RunOutcome:
-    """Return the outcome of a run that has ended."""
-    try:
-        outcome: RunOutcome = future.result()
-    except distributed.KilledWorker as error:
-        raise died(spec, "workers, one after the other,") from error
-    except CancelledError as error:
-        raise DrystoneError(
-            "E404",
-            "the connection to the Dask cluster was lost.",
-            where=OPTION,
-            cure="Give the same command again when it is back: the runs that ended are kept.",
-        ) from error
-    if outcome.key != spec.key:
-        raise _other_version("a worker that joined the Dask cluster has another drystone.")
-    return outcome
 
 
 def _other_version(what: str) -> UsageError:
