@@ -260,11 +260,11 @@ def _scatter(model: ShearModel, all_series: Sequence[ShearSeries]) -> Table:
 
 
 def _friction(model: ShearModel) -> Table:
-    rows = (
+    rows: list[tuple[Cell, ...]] = [
         (one.name, mu, *_mean_and_deviation(_ratios(model, (one,), mu)))
         for one in SERIES
         for mu in FRICTION_BAND
-    )
+    ]
     return _worded("friction", rows)
 
 
