@@ -109,9 +109,11 @@ Clustered = Sequence[ClusteredStones]
 """Sets of stones, of which the first is drawn."""
 
 
-def grouped(context: Context, wall: Target = PR) -> list[ClusteredStones]:
-    """Group the stones of a wall, which are drawn, and of the masons' whose stones are there."""
-    sets = {one.name: one.stones(context.data) for one in (wall, *MASONS)}
+def grouped(
+    context: Context, wall: Target = PR, others: Sequence[Target] = MASONS
+) -> list[ClusteredStones]:
+    """Group the stones of a wall, which are drawn, and of others whose stones are there."""
+    sets = {one.name: one.stones(context.data) for one in (wall, *others)}
     return [ClusteredStones.of(name, stones) for name, stones in sets.items() if stones is not None]
 
 
