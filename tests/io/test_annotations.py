@@ -15,7 +15,7 @@ from pycocotools import mask as coco_mask
 
 from drystone.errors import InputError, UsageError
 from drystone.io.outlines_in.annotations import mask_of, unpacked
-from drystone.io.outlines_in.fill import Room
+from drystone.io.outlines_in.model import Room
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.known_stones import HEIGHT, PIECES, STONES, WIDTH, compare, masks
 from tests.io.pictures import codes

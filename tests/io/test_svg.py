@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 
 from drystone.errors import InputError
 from drystone.io.outlines_in.silhouettes import region
-from drystone.io.outlines_in.svg import read_svg
-from drystone.io.outlines_in.svg_shapes import subpaths, transform
+from drystone.io.outlines_in.svg import read_svg, subpaths, transform
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.known_stones import HEIGHT, METRIC, PX_PER_M, STONES, WIDTH, close, compare
 

@@ -18,9 +18,8 @@ from drystone.errors import DrystoneError, InputError
 from drystone.io.photo_beside import PhotoSidecar, write_sidecar
 from drystone.io.read_settings import ReadSettings
 from drystone.io.read_stones import read_stones
-from drystone.io.wall_image import write_labels, write_wall_image
+from drystone.io.wall_image import write_labels, write_stones, write_wall_image
 from drystone.io.walls import _seen, outlines_painted, read_wall, shows
-from drystone.io.write_stones import write_stones
 from drystone.poses import PoseBook
 from drystone.statics.limit import lateral_resistance
 from tests.io import labelled
