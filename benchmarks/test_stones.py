@@ -10,7 +10,7 @@ from benchmarks.conftest import Row, Timer
 from benchmarks.scenes import Scene, Stock, places
 from benchmarks.work import samples
 from drystone.poses import PoseBook
-from drystone.stabilise.support import support_polyline
+from drystone.stabilise.stabilise import support_polyline
 
 ANGLE_DEG = 7.0
 SCALE = 0.5

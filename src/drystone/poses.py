@@ -145,7 +145,16 @@ class PoseBook:
         key = (stone, wrap_deg(angle_deg))
         posed = self._poses.get(key)
         if posed is None:
-            posed = _best_phase_pose(stone, key[1], self.scale)
+            angle, scale = key[1], self.scale
+            left, bottom, *_ = turned_boxes(stone.hull, np.array([rotation(angle)]))[0].tolist()
+            # First the position with edges on pixel edges: a bottom edge there rests flat.
+            phase = quantise(-left * scale) % 1.0, quantise(-bottom * scale) % 1.0
+            area = stone.area_px * scale**2
+            wanted = area, max(0.01 * area, 2.0)
+            mask, col, row, phase = rasterise_to_area(
+                stone.mask, stone.local_centroid, angle, scale, phase, wanted
+            )
+            posed = PosedStone(stone, angle, scale, mask, (phase[0] - col, phase[1] - row))
             posed = self._poses.keep(key, posed, memory_bytes(posed))
         return posed
 
@@ -188,21 +197,6 @@ def pose_at(
     mask, left, bottom = rasterise(stone.mask, stone.local_centroid, angle_deg, scale, phase)
     anchor = (phase[0] - left, phase[1] - bottom)
     return PosedStone(stone, angle_deg, scale, mask, anchor), left, bottom
-
-
-def _best_phase_pose(stone: Stone, angle_deg: float, scale: float) -> PosedStone:
-    area = stone.area_px * scale**2
-    left, bottom, _, _ = turned_boxes(stone.hull, np.array([rotation(angle_deg)]))[0].tolist()
-    # The first position is the one with edges on pixel edges: a bottom edge there rests flat.
-    mask, col, row, phase = rasterise_to_area(
-        stone.mask,
-        stone.local_centroid,
-        angle_deg,
-        scale,
-        (quantise(-left * scale) % 1.0, quantise(-bottom * scale) % 1.0),
-        (area, max(0.01 * area, 2.0)),
-    )
-    return PosedStone(stone, angle_deg, scale, mask, (phase[0] - col, phase[1] - row))
 
 
 def memory_bytes(posed: PosedStone) -> int:

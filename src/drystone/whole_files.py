@@ -16,19 +16,8 @@ def write_whole(path: Path, data: bytes) -> None:
     """Write a file beside its place and move it there, so that no reader ever sees half of it.
 
     Whatever stops it, an interrupt too, leaves an existing file as it was and no other behind; a
-    power cut leaves the old one or the new one.
-
-    Parameters
-    ----------
-    path : Path
-        Where to; an existing file is replaced.
-    data : bytes
-        All of it.
-
-    Raises
-    ------
-    PlanError
-        E206: the folder is missing, full or not writable.
+    power cut leaves the old one or the new one.  PlanError (E206): the folder is missing, full or
+    not writable.
     """
     part = path.with_name(f".{path.name}.{uuid.uuid4().hex}.part")
     try:
@@ -55,24 +44,10 @@ def remove_parts(folder: Path) -> None:
 
 
 def refuse_existing(path: Path, *, overwrite: bool) -> None:
-    """Refuse to write where a folder is, or a file that is not to be replaced.
-
-    Raises
-    ------
-    UsageError
-        E129.
-    """
+    """Refuse to write where a folder is, or a file that is not to be replaced (E129)."""
     if path.is_dir():
-        raise UsageError(
-            "E129",
-            "is a folder, not a file.",
-            where=str(path),
-            cure="Give the name of a file, in the folder for example.",
-        )
+        cure = "Give the name of a file, in the folder for example."
+        raise UsageError("E129", "is a folder, not a file.", where=str(path), cure=cure)
     if path.exists() and not overwrite:
-        raise UsageError(
-            "E129",
-            "exists already.",
-            where=str(path),
-            cure="Choose another with -o, or add --overwrite to replace it.",
-        )
+        cure = "Choose another with -o, or add --overwrite to replace it."
+        raise UsageError("E129", "exists already.", where=str(path), cure=cure)

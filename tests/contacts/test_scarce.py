@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.gaps import Scarce, scarce_contacts
 from drystone.contacts.given import model_from_json, polygons_from_json
-from drystone.contacts.scarce import Scarce, scarce_contacts
 
 
 def test_a_stone_that_floats_and_one_that_touches_at_a_corner():

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.errors import UsageError
-from drystone.generate.outlines import draw_stone, is_whole, outline_mask, polygon_area
+from drystone.generate.layout import draw_stone, is_whole, outline_mask, polygon_area
 from tests.strategies import repeatable
 
 FINE = st.floats(-20, 20).map(lambda value: round(value, 3))

@@ -7,9 +7,8 @@ from hypothesis import strategies as st
 
 from drystone.model.stone import Stone
 from drystone.poses import PoseBook
-from drystone.stabilise.rotate import rotate_to_rest
 from drystone.stabilise.settings import StabiliseSettings
-from drystone.stabilise.support import support_polyline
+from drystone.stabilise.stabilise import rotate_to_rest, support_polyline
 from tests.naive import support as naive
 from tests.naive.overlap import overlaps
 from tests.stabilise.scenes import BOOK, bar_on_the_ledge, ledge, mirrored, stairs

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.stabilise.support import Support, support_polyline
+from drystone.stabilise.stabilise import Support, support_polyline
 from tests.naive import support as naive
 from tests.strategies import posed_on_walls, repeatable
 

@@ -10,7 +10,7 @@ from drystone.physics.building import BlockMove, BuildUp, build_up, tilt_of
 from drystone.physics.scatter import TiltResult
 from drystone.physics.tilt import TiltTrial
 from drystone.statics.limit import lateral_resistance
-from drystone.verify.engine import CONFIRMED, check_engine, claimed_alpha
+from drystone.verify.claims import CONFIRMED, check_engine, claimed_alpha
 from tests.verify.exact_examples import exact_example
 from tests.verify.examples import SLAB, WEDGE
 

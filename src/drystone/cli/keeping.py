@@ -75,7 +75,12 @@ class Keeper:
             elif self._state is not self._kept and self._search.due:
                 self._keep_search()
         except (DrystoneError, OSError) as error:
-            self._tell(error)
+            if not self._told:
+                why = error.what.rstrip(".") if isinstance(error, DrystoneError) else error.strerror
+                what = f"what is planned so far cannot be kept in {self._folder}: {why}."
+                cure = "Planning goes on; if it is killed, what it has found is lost."
+                note(Notice("W130", what, cure))
+            self._told = True
 
     def end(self, result: PlanResult) -> None:
         """Keep where a search stands that is to be gone on with; a finished plan is enough."""
@@ -98,14 +103,6 @@ class Keeper:
                 (self._folder / name).unlink(missing_ok=True)
         plan = replace(result.plan, source={**result.plan.source, **self._record})
         write_plan_folder(replace(result, plan=plan), self._folder)
-
-    def _tell(self, error: DrystoneError | OSError) -> None:
-        if not self._told:
-            why = error.what.rstrip(".") if isinstance(error, DrystoneError) else error.strerror
-            what = f"what is planned so far cannot be kept in {self._folder}: {why}."
-            cure = "Planning goes on; if it is killed, what it has found is lost."
-            note(Notice("W130", what, cure))
-        self._told = True
 
 
 class _Pace:

@@ -61,7 +61,14 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _called(words: Sequence[str]) -> int:
-    _prepare_output()
+    # What is printed where the shell closed it, as in `drystone stones X >&-`, is thrown away, and
+    # the next file that is opened does not take its number.
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))  # noqa: SIM115
+    if isinstance(sys.stdout, TextIOWrapper):
+        # Names of stones are in any script, terminals and files on some systems are not.
+        sys.stdout.reconfigure(errors="backslashreplace")
     if os.environ.get(VARIABLE) and (wrong := fault()) is not None:
         what = f"the kernels asked for are not there: {wrong}."
         cure = f"Set it to one of {', '.join(CHOICES)}, or install with a compiler."
@@ -71,17 +78,6 @@ def _called(words: Sequence[str]) -> int:
     # A reader that went away is noticed here and not when the interpreter ends.
     sys.stdout.flush()
     return code
-
-
-def _prepare_output() -> None:
-    """Make stdout take any name; what is printed where the shell closed it is thrown away."""
-    # As in `drystone stones X >&-`: the next file that is opened would take its number.
-    for name in ("stdout", "stderr"):
-        if getattr(sys, name) is None:
-            setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))  # noqa: SIM115
-    if isinstance(sys.stdout, TextIOWrapper):
-        # Names of stones are in any script, terminals and files on some systems are not.
-        sys.stdout.reconfigure(errors="backslashreplace")
 
 
 def _coded(error: Exception, command: str) -> DrystoneError:

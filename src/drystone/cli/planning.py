@@ -13,7 +13,7 @@ from drystone.cli.output import note, print_json, print_table, working_in
 from drystone.cli.progress import step_bar
 from drystone.cli.resuming import earlier_run, made_of, plan_to_begin_with, tell_finished
 from drystone.cli.settings import PlanRequest
-from drystone.drawing.export.formats import FORMATS
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.drawing.words.planned import ending, profile_rows, profile_summary, rows, summary
 from drystone.errors import DrystoneError, ExitCode, Notice, UsageError, counted
 from drystone.io.checkpoint import CHECKPOINT
@@ -62,14 +62,23 @@ def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:
     earlier.tell()
     begin = plan_to_begin_with(request)
     begun = earlier.plan or begin
-    _check_stones(request)
+    # What cannot be meant is refused before a folder is made: E138 of a ruler, E126.
+    refuse_outside(request.px_per_m, picture_size_px(stones.source))
+    site = Site.from_source(*request.wall, request.scale, request.px_per_m)
+    if not fitting_stones(stones, site, request.settings):
+        what = (
+            f"none of the {len(stones)} stones can be built with: each is banned, or fits into "
+            "the wall in no orientation."
+        )
+        cure = "Build a larger wall, or ban fewer stones."
+        raise UsageError("E126", what, where=stones.source.path, cure=cure)
     # What would stop the report after the search is refused before it: E129, E189.
     check_place(photo, folder)
     if photo is not None:
         read_photo_picture(photo, (stones.source.width_px, stones.source.height_px))
-    if request.pareto:
+    if request.options.pareto:
         choice.prepare_choice(folder)
-    overwrite = request.overwrite or earlier.begun
+    overwrite = request.options.overwrite or earlier.begun
     ready = working_in(folder, (*WRITTEN, CHECKPOINT), overwrite=overwrite, within=choice.PLACES)
     with nullcontext() if prepared else ready:
         keeper = Keeper(folder, made_of(request), photo)
@@ -81,7 +90,7 @@ def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:
             result = plan_wall(
                 stones,
                 *request.wall,
-                seed=request.seed,
+                seed=request.options.seed,
                 method=request.method,
                 settings=request.settings,
                 scale=request.scale,
@@ -89,33 +98,18 @@ def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:
                 budget=request.settings.search.budget,
                 seconds=math.inf if request.seconds is None else request.seconds,
                 first_whole=request.first_whole,
-                n_jobs=request.jobs,
+                n_jobs=request.options.jobs,
                 callbacks=callbacks,
                 built=None if earlier.plan is None else rebuild_wall(earlier.plan, stones),
                 course_heights_px=None if begun is None else begun.course_heights_px,
                 begin=None if begin is None else rebuild_wall(begin, stones),
-                choice=request.pareto,
+                choice=request.options.pareto,
                 keep=keeper,
                 state=earlier.state,
             )
         # What it has come to is not lost by a second interrupt.
         with held():
             return _written_and_told(result, request, keeper)
-
-
-def _check_stones(request: PlanRequest) -> None:
-    """Refuse what cannot be meant, before a folder is made: E126, and E138 of a ruler."""
-    stones = request.stones
-    refuse_outside(request.px_per_m, picture_size_px(stones.source))
-    site = Site.from_source(*request.wall, request.scale, request.px_per_m)
-    if not fitting_stones(stones, site, request.settings):
-        raise UsageError(
-            "E126",
-            f"none of the {len(stones)} stones can be built with: each is banned, or fits into "
-            "the wall in no orientation.",
-            where=stones.source.path,
-            cure="Build a larger wall, or ban fewer stones.",
-        )
 
 
 def _announce(request: PlanRequest) -> None:
@@ -127,10 +121,10 @@ def _announce(request: PlanRequest) -> None:
         more = "" if seconds is not None or walls == 1 else f", {walls} walls"
         more += "" if walls == 1 else " (--time, --budget)"
         note(f"{read_line(stones, request.wall, px_per_m, seconds)}{more}")
-    if request.method != request.asked_method:
+    if request.method != request.options.method:
         note(
-            f"{request.settings_file} has every setting, so that nothing of --method "
-            f"{request.asked_method} is left; the plan names the method custom"
+            f"{request.options.settings} has every setting, so that nothing of --method "
+            f"{request.options.method} is left; the plan names the method custom"
         )
     median_px, _ = median_sides(sides_px(stone.mask) for stone in stones)
     note(scale_notice(median_px, px_per_m))
@@ -179,15 +173,15 @@ def _written_and_told(result: PlanResult, request: PlanRequest, keeper: Keeper) 
         keeper.end(result)
     except (DrystoneError, OSError) as error:
         failed = error
-    profile = profile_summary(result, request.jobs) if request.profile else None
-    if request.json:
+    profile = profile_summary(result, request.options.jobs) if request.options.profile else None
+    if request.options.json:
         told = summary(result, folder)
-        if request.pareto:
+        if request.options.pareto:
             told["pareto"] = choice.choice_summary(result, folder)
         print_json(told | ({} if profile is None else {"profile": profile}))
     else:
         print_table(ending(result), rows(result, folder))
-        if request.pareto:
+        if request.options.pareto:
             choice.print_choice(result)
         if profile is not None:
             title = "\nwhere the time went, and microseconds a candidate"
@@ -220,11 +214,15 @@ def _write(result: PlanResult, request: PlanRequest) -> PlanResult:
     view = view_of_result(result, photo=photo, notices=notices)
     write_report(folder / "report.html", view, pictures=folder)
     write_film(result, folder)
-    if request.pareto:
+    if request.options.pareto:
         choice.write_choice(result, folder)
     else:
         choice.clear_choice(folder)
-    note(_exports_notice(folder))
+    names = (name for one in FORMATS.values() for name in one.writes if name not in WRITTEN)
+    earlier = [name for name in names if (folder / name).exists()]
+    if earlier:
+        what = f"of an earlier plan: {', '.join(earlier)}, in {folder}."
+        note(Notice("W181", what, "Make them again: drystone export --overwrite."))
     return result
 
 
@@ -235,16 +233,5 @@ def write_film(result: PlanResult, folder: Path) -> None:
         return
     # What draws is loaded when it draws.
     from drystone.drawing.assembly.read import read_assembly  # noqa: PLC0415
-    from drystone.drawing.export.formats import ExportSettings  # noqa: PLC0415
 
     FORMATS["gif"].write(read_assembly(folder), folder, ExportSettings())
-
-
-def _exports_notice(folder: Path) -> Notice | None:
-    """Say when exports of an earlier plan lie beside a new one (W181); None when there are none."""
-    names = (name for one in FORMATS.values() for name in one.writes if name not in WRITTEN)
-    earlier = [name for name in names if (folder / name).exists()]
-    if not earlier:
-        return None
-    what = f"of an earlier plan: {', '.join(earlier)}, in {folder}."
-    return Notice("W181", what, "Make them again: drystone export --overwrite.")

@@ -22,7 +22,7 @@ from drystone.planner.settings import PlannerSettings
 
 
 class _StepBar(Callbacks):
-    def __init__(self, bar: Progress, stones: int, total: float, *, timed: bool) -> None:
+    def __init__(self, bar: Progress, stones: int, total: float, timed: bool) -> None:
         self._bar, self._count, self._total, self._timed = bar, stones, total, timed
         self._stones = bar.add_task(f"stone 0/{stones}", total=stones)
         self._walls: TaskID | None = None
@@ -58,8 +58,7 @@ def step_bar(
     """
     total = settings.search.budget if seconds is None else round(seconds)
     with _shown(quiet=quiet) as bar:
-        timed = seconds is not None
-        yield Callbacks() if bar is None else _StepBar(bar, stones, total, timed=timed)
+        yield Callbacks() if bar is None else _StepBar(bar, stones, total, seconds is not None)
 
 
 @contextmanager

@@ -54,7 +54,7 @@ def made_of(request: PlanRequest) -> dict[str, Any]:
         "--wall": request.wall,
         "--px-per-m": request.px_per_m,
         "--scale": request.scale,
-        "--seed": request.seed,
+        "--seed": request.options.seed,
         "--method": request.method,
         "settings": _without_budget(request.settings.as_dict()),
     }
@@ -70,12 +70,12 @@ def _without_budget(settings: Mapping[str, Any]) -> dict[str, Any]:
 
 def earlier_run(request: PlanRequest) -> Earlier:
     """Return what to go on from, if that is asked for; refuse what is of something else (E136)."""
-    if not request.resume:
+    if not request.options.resume:
         return Earlier()
     folder, asked = request.folder, made_of(request)
     path = folder / "plan.json"
     plan = read_plan(path) if path.exists() else None
-    different = [] if plan is None else _differences(plan, asked, request.asked_method)
+    different = [] if plan is None else _differences(plan, asked, request.options.method)
     ids = [stone.id for stone in request.stones]
     try:
         kept = read_checkpoint(folder, ids, request.settings.search)
@@ -136,7 +136,7 @@ def tell_finished(plan: Plan, request: PlanRequest) -> str:
     result = result_of(planner)
     if result.shortfall:
         note(f"{result.status}: {result.shortfall}")
-    if request.json:
+    if request.options.json:
         print_json(summary_of_plan(plan, request.folder) | {"status": "finished"})
     return result.status
 
@@ -147,9 +147,10 @@ def plan_to_begin_with(request: PlanRequest) -> Plan | None:
     E144: it is of other stones, for another wall, made at another resolution or geometry, or in
     poses or from a side that the settings do not allow.
     """
-    if request.begin is None:
+    begin = request.options.begin
+    if begin is None:
         return None
-    plan = read_plan(request.begin)
+    plan = read_plan(Path(begin))
     source, wall, settings = request.stones.source, request.wall, request.settings
     size, of_plan = _wall_px(plan, plan.px_per_m), plan.settings
     geometry = str(of_plan.get("geometry", "raster"))
@@ -172,5 +173,5 @@ def plan_to_begin_with(request: PlanRequest) -> Plan | None:
         if all(different.values()):
             cure = f"Add {' '.join(different.values())}."
         what = f"the plan is of {', '.join(different)}."
-        raise UsageError("E144", what, where=str(request.begin), cure=cure)
+        raise UsageError("E144", what, where=str(Path(begin)), cure=cure)
     return plan

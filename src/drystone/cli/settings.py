@@ -32,9 +32,6 @@ SHOWN = (
 )  # fmt: skip
 """What the help of `plan` lists; the other options are settings, for scripts and for studies."""
 
-_PLAIN = ("sampling", "two_sided", "orientations", "mu", "skip_too_large")
-"""Settings that have an option of their own name."""
-
 _Change = tuple[str, dict[str, Any]]
 """Options, as an error names them, and what they change."""
 
@@ -111,13 +108,27 @@ def settings_from(arguments: argparse.Namespace) -> PlannerSettings:
     """Return the settings that the command line asks for; errors name the file or the option."""
     settings = method_settings(arguments.method)
     if arguments.settings is not None:
-        settings = _with_file(settings, arguments)
+        path = Path(arguments.settings)
+        changes = read_toml(path)
+        try:
+            settings = settings.updated(changes)
+            if settings.by_policy and arguments.policy is None:
+                rule_of(settings.selection_rule)  # the file may name one that is not there
+        except UsageError as error:
+            table = error.where.removeprefix("settings").strip() if error.code == "E123" else ""
+            raise _blamed(error, f"{path} [{table}]" if table else str(path)) from None
     try:
         settings = settings.updated(_together(arguments.changes))
     except UsageError as error:
         cure = f"{error.cure} `drystone settings` lists all."
         raise UsageError(error.code, error.what, where="--set", cure=cure) from None
-    _check_geometry(arguments.geometry or settings.geometry, arguments)
+    geometry = arguments.geometry or settings.geometry
+    useless = ("placement", "reach") if geometry == "exact" else ("settle",)
+    given = [f"--{name}" for name in useless if getattr(arguments, name) is not None]
+    if given:
+        what = f"{' and '.join(given)} would do nothing with --geometry {geometry}."
+        cure = f"Leave it out, or add --geometry {'raster' if geometry == 'exact' else 'exact'}."
+        raise UsageError("E138", what, cure=cure)
     asked = settings
     for where, changes in [*_changes(settings, arguments)]:
         try:
@@ -153,20 +164,6 @@ def _differences(one: object, other: object) -> int:
     return sum(_differences(getattr(one, f.name), getattr(other, f.name)) for f in fields(one))
 
 
-def _with_file(settings: PlannerSettings, arguments: argparse.Namespace) -> PlannerSettings:
-    """Return settings with the values of the file in their place."""
-    path = Path(arguments.settings)
-    changes = read_toml(path)
-    try:
-        settings = settings.updated(changes)
-        if settings.by_policy and arguments.policy is None:
-            rule_of(settings.selection_rule)  # the file may name one that is not there
-    except UsageError as error:
-        table = error.where.removeprefix("settings").strip() if error.code == "E123" else ""
-        raise _blamed(error, f"{path} [{table}]" if table else str(path)) from None
-    return settings
-
-
 def _blamed(error: UsageError, where: str) -> UsageError:
     """Return an error of settings that says where the values came from."""
     return UsageError(error.code, error.what, where=where, cure=error.cure)
@@ -183,7 +180,7 @@ def _changes(settings: PlannerSettings, arguments: argparse.Namespace) -> Iterat
         yield "--geometry", {"geometry": "raster", "search": {"budget": 1}}
     else:
         yield "--geometry", given(geometry="geometry")
-    for name in _PLAIN:
+    for name in ("sampling", "two_sided", "orientations", "mu", "skip_too_large"):
         yield f"--{name.replace('_', '-')}", given(**{name: name})
     yield "--placement, --reach", {"placement": given(rule="placement", reach="reach")}
     search = _search(settings, arguments)
@@ -237,17 +234,6 @@ def limited(
     return settings.updated({"search": budget}), max(GUARD_S, stones * GUARD_S_A_STONE)
 
 
-def _check_geometry(geometry: str, arguments: argparse.Namespace) -> None:
-    """Refuse options that would do nothing on the geometry of a plan (E138)."""
-    exact = geometry == "exact"
-    useless = ("placement", "reach") if exact else ("settle",)
-    given = [f"--{name}" for name in useless if getattr(arguments, name) is not None]
-    if given:
-        what = f"{' and '.join(given)} would do nothing with --geometry {geometry}."
-        cure = f"Leave it out, or add --geometry {'raster' if exact else 'exact'}."
-        raise UsageError("E138", what, cure=cure)
-
-
 def read_toml(path: Path) -> dict[str, Any]:
     """Read a TOML file; a missing or broken one is an InputError (E128)."""
 
@@ -273,23 +259,14 @@ class PlanRequest:
     wall: tuple[float, float]  # width and height, source px
     px_per_m: float | None  # of the source
     scale: float  # working resolution over that of the source
-    seed: int
-    asked_method: str
     method: str  # the one that the plan names
-    settings_file: str | None
     settings: PlannerSettings
     seconds: float | None  # time limit of the search
     first_whole: bool  # whether that is but a guard, and the first wall is built to its end
-    jobs: int
-    resume: bool
-    begin: Path | None  # the plan that the search begins with
     folder: Path
     photo: Path | None  # of the stones, to be put beside the plan
-    overwrite: bool
-    pareto: bool  # whether walls to choose from are written
-    json: bool
     quiet: bool
-    profile: bool
+    options: argparse.Namespace  # all options as they were given
 
 
 def request_from(
@@ -301,21 +278,17 @@ def request_from(
 ) -> PlanRequest:
     """Return what the options of `plan` or `demo` ask for."""
     settings, seconds = limited(settings_from(arguments), len(stones), arguments)
-    same = ("seed", "jobs", "resume", "overwrite", "pareto", "json", "profile")
     return PlanRequest(
         stones=stones,
         wall=wall,
         px_per_m=px_per_m,
         settings=settings,
         scale=arguments.scale or working_scale(stones),
-        asked_method=arguments.method,
         method=recorded_method(arguments),
-        settings_file=arguments.settings,
         seconds=seconds,
         first_whole=arguments.time is None,
-        begin=None if arguments.begin is None else Path(arguments.begin),
         folder=Path(arguments.output),
         photo=photo,
         quiet=arguments.quiet or arguments.json,
-        **{name: getattr(arguments, name) for name in same},
+        options=arguments,
     )

@@ -75,7 +75,15 @@ def model_from_labels(labels: Labels, mu: float = 0.58) -> ImageModel:
         what = f"{rows} below the stones left out: the wall stands on its lowest stone pixel."
         notices.append(Notice("W301", what))
     above = labels[:height]
-    model = RigidBlockModel(_all_blocks(above), find_interfaces(above), mu)
+    runs = label_runs(above)
+    ids, place = np.unique(runs.labels, return_inverse=True)
+    # All sums are multiples of a half, exact in floats in any order.
+    area = np.bincount(place, runs.lengths, len(ids))
+    x = np.bincount(place, runs.lengths * (runs.begins + runs.ends) / 2.0, len(ids)) / area
+    y = np.bincount(place, runs.lengths * (height - runs.rows - 0.5), len(ids)) / area
+    columns = zip(ids.tolist(), area.tolist(), x.tolist(), y.tolist(), strict=True)
+    blocks = tuple(Block(i, a, (cx, cy)) for i, a, cx, cy in columns)
+    model = RigidBlockModel(blocks, find_interfaces(above), mu)
     return ImageModel(model, height, (*notices, *notice_of_pieces(above)))
 
 
@@ -152,15 +160,3 @@ def _block(part: Part, sums: tuple[int, int, int], height_px: int) -> Block:
     y = (area * mask.shape[0] - rows - 0.5 * area) / area
     bottom = height_px - row - mask.shape[0]
     return Block(block_id, float(area), (col + x, bottom + y))
-
-
-def _all_blocks(labels: Labels) -> tuple[Block, ...]:
-    runs = label_runs(labels)
-    ids, place = np.unique(runs.labels, return_inverse=True)
-    # All sums are multiples of a half, exact in floats in any order.
-    area = np.bincount(place, runs.lengths, len(ids))
-    x = np.bincount(place, runs.lengths * (runs.begins + runs.ends) / 2.0, len(ids)) / area
-    up = labels.shape[0] - runs.rows - 0.5
-    y = np.bincount(place, runs.lengths * up, len(ids)) / area
-    columns = zip(ids.tolist(), area.tolist(), x.tolist(), y.tolist(), strict=True)
-    return tuple(Block(i, a, (cx, cy)) for i, a, cx, cy in columns)

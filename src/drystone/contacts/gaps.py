@@ -1,19 +1,24 @@
-"""Pictures of real walls have gaps between the stones: close them for the contacts, or settle."""
+"""Pictures of real walls have gaps between the stones: close them for the contacts, or settle.
 
-from collections.abc import Callable, Mapping
+Blocks that touch too little are named, with what they would touch next.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from drystone.contacts.blocks import ImageModel, model_from_labels
+from drystone.kernels.polygons import Points
 from drystone.kernels.raster import Mask
 from drystone.kernels.runs import narrow_gaps
 from drystone.model.wall import Labels
-from drystone.statics.model import GROUND, Interface
+from drystone.statics.model import GROUND, RigidBlockModel
 from drystone.statics.result import LateralResistance
 
 LADDER = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 36, 40)
@@ -54,7 +59,11 @@ def close_gaps(labels: Labels, reach_px: float) -> Labels:
     gap, nearest = narrow_gaps(cells, ground, reach_px)
     grown = np.where(gap, nearest, cells)
     # By what grew beside them: a stone itself would bulge into a joint that meets it.
-    grown = _filled(grown, ground, _holes_between(cells, gap, reach_px))
+    holes = _holes_between(cells, gap, reach_px)
+    stone = (grown > 0) & (grown != ground)
+    rim = np.argwhere(stone & ~ndimage.binary_erosion(stone))
+    _, places = cKDTree(rim).query(np.argwhere(holes) + TIE_BREAK)
+    grown[holes] = grown[tuple(rim[places].T)]
     # Pixels that are not connected with the stone they were given to are taken back.
     for block in np.unique(grown[grown != cells]).tolist():
         pieces, _ = ndimage.label(grown == block)
@@ -76,18 +85,14 @@ def model_with_closed_gaps(labels: Labels, reach_px: float, mu: float = 0.58) ->
     """
     picture = model_from_labels(labels, mu)
     closed = model_from_labels(close_gaps(labels, reach_px), mu)
-    interfaces = tuple(_on_own_foot(i, labels) for i in closed.model.interfaces)
-    return replace(picture, model=replace(picture.model, interfaces=interfaces))
-
-
-def _on_own_foot(interface: Interface, labels: Labels) -> Interface:
-    """Keep a contact with the ground within the columns of its stone: toes do not grow."""
-    if interface.other != GROUND:
-        return interface
-    cols = np.flatnonzero((labels == interface.block).any(axis=0))
-    points = interface.points.copy()
-    points[:, 0] = np.clip(points[:, 0], cols[0], cols[-1] + 1)
-    return replace(interface, points=points)
+    interfaces = []
+    for interface in closed.model.interfaces:
+        points = interface.points.copy()
+        if interface.other == GROUND:  # within the columns of its stone: toes do not grow
+            cols = np.flatnonzero((labels == interface.block).any(axis=0))
+            points[:, 0] = np.clip(points[:, 0], cols[0], cols[-1] + 1)
+        interfaces.append(replace(interface, points=points))
+    return replace(picture, model=replace(picture.model, interfaces=tuple(interfaces)))
 
 
 def settle_gaps(
@@ -137,16 +142,6 @@ def _holes_between(cells: NDArray[np.int64], gap: Mask, reach_px: float) -> Mask
             if gap[around][beside].any():
                 holes[around] |= hole
     return holes
-
-
-def _filled(cells: NDArray[np.int64], ground: int, holes: Mask) -> NDArray[np.int64]:
-    """Give the pixels of holes to the nearest stones."""
-    stone = (cells > 0) & (cells != ground)
-    rim = np.argwhere(stone & ~ndimage.binary_erosion(stone))
-    _, nearest = cKDTree(rim).query(np.argwhere(holes) + TIE_BREAK)
-    filled = cells.copy()
-    filled[holes] = cells[tuple(rim[nearest].T)]
-    return filled
 
 
 def _part_strangers(cells: NDArray[np.int64], grown: NDArray[np.int64], reach_px: float) -> None:
@@ -221,9 +216,9 @@ class GapSweep:
     stands_from_px: int | None  # None when it stands with none of the widths
     steady: bool  # whether the load multiplier hardly changes from the chosen width on
 
-    def within(self, factor: float = BEYOND) -> tuple[float, float] | None:
+    def within(self) -> tuple[float, float] | None:
         """Return the least and the greatest load multiplier from the chosen width on."""
-        upto = _beyond(self.chosen_px, factor)
+        upto = _beyond(self.chosen_px)
         found = [
             alpha
             for width, _, alpha in self.tried
@@ -280,11 +275,94 @@ def _steady(tried: Mapping[int, tuple[bool, float | None]]) -> int | None:
     return None
 
 
-def _beyond(width: int, factor: float = BEYOND) -> float:
-    return max(factor * width, width + 2.0)
+def _beyond(width: int) -> float:
+    return max(BEYOND * width, width + 2.0)
 
 
 def _alike(one: float | None, other: float | None) -> bool:
     if one is None or other is None:
         return one is other
     return abs(other - one) <= LITTLE * max(one, 1e-9)
+
+
+ENOUGH = 2
+"""Contact points without which nothing rests: an interface has two, at its ends."""
+
+
+@dataclass(frozen=True)
+class Scarce:
+    """A block that touches too little."""
+
+    block: int
+    contacts: int  # contact points that it has, 0 or 1
+    nearest: int | None
+    """What it would touch next, GROUND (0) for the ground; None when there is nothing else."""
+    gap: float  # how wide the gap to it is, px of the image or unit of the polygons
+
+
+def scarce_contacts(
+    model: RigidBlockModel, shapes: Labels | Mapping[int, Points]
+) -> tuple[Scarce, ...]:
+    """Find the free blocks that have fewer than two contact points, in the order of the model.
+
+    `shapes` is what it was made from: the label image, row 0 at the top, or polygons (n, 2) by id.
+    """
+    touching: dict[int, set[int]] = {block.id: set() for block in model.blocks if not block.fixed}
+    points = dict.fromkeys(touching, 0)
+    for face in model.interfaces:
+        for one, other in ((face.block, face.other), (face.other, face.block)):
+            if one in touching:
+                touching[one].add(other)
+                points[one] += len(face.points)
+    few = [block for block, count in points.items() if count < ENOUGH]
+    near = _near_pixels if isinstance(shapes, np.ndarray) else _near_polygons
+    return tuple(
+        Scarce(block, points[block], *near(shapes, block, touching[block]))  # type: ignore[arg-type]
+        for block in few
+    )
+
+
+def _near_pixels(labels: Labels, block: int, others: set[int]) -> tuple[int | None, float]:
+    """Return the nearest label that is not touched, and how many px lie between."""
+    lowest = np.flatnonzero((labels > 0).any(axis=1))[-1] + 1
+    cells = np.vstack([labels[:lowest].astype(np.int64), np.full((1, labels.shape[1]), -1)])
+    rows, cols = np.nonzero(cells == block)
+    reach = 8
+    while True:
+        window = (_slice(rows, reach, cells.shape[0]), _slice(cols, reach, cells.shape[1]))
+        part = cells[window]
+        strangers = (part != 0) & (part != block)
+        for other in others:
+            strangers &= part != (-1 if other == GROUND else other)
+        whole = part.shape == cells.shape
+        if strangers.any():
+            away = ndimage.distance_transform_edt(part != block)
+            distances = np.where(strangers, away, np.inf)
+            least = int(np.argmin(distances))
+            gap = float(distances.flat[least]) - 1.0
+            # Beyond the window there may be something nearer than what is far away in it.
+            if gap <= reach or whole:
+                found = int(part.flat[least])
+                return (GROUND if found == -1 else found), gap
+        elif whole:
+            return None, np.inf
+        reach *= 4
+
+
+def _slice(places: NDArray[np.int64], reach: int, size: int) -> slice:
+    return slice(max(0, int(places.min()) - reach), min(size, int(places.max()) + reach + 1))
+
+
+def _near_polygons(
+    polygons: Mapping[int, Points], block: int, others: set[int]
+) -> tuple[int | None, float]:
+    """Return the nearest polygon that is not touched, or the ground, and how far it is away."""
+    own = shapely.Polygon(polygons[block])
+    strangers: Sequence[int] = [i for i in polygons if i != block and i not in others]
+    gaps = {i: float(shapely.distance(own, shapely.Polygon(polygons[i]))) for i in strangers}
+    if GROUND not in others:
+        gaps[GROUND] = max(0.0, float(own.bounds[1]))
+    if not gaps:
+        return None, np.inf
+    nearest = min(gaps, key=gaps.__getitem__)
+    return nearest, gaps[nearest]

@@ -12,7 +12,7 @@ from drystone.contacts.blocks import check_mu
 from drystone.errors import InputError
 from drystone.kernels.polygons import Points
 from drystone.model.overlap import overlap_depth
-from drystone.statics.joints import with_head_friction, with_pair_friction
+from drystone.statics.joints import with_head_friction
 from drystone.statics.model import FREEDOMS, GROUND, Block, Interface, RigidBlockModel
 
 LARGEST = 1e50
@@ -94,7 +94,7 @@ def model_from_json(data: Mapping[str, Any]) -> RigidBlockModel:
     if "mu_head" in data:
         model = with_head_friction(model, read_mu(data, "mu_head", 0.0))
     if "friction" in data:
-        model = with_pair_friction(model, read_friction(read_list(data, "friction"), ids))
+        model = with_pair_friction(model, read_list(data, "friction"), ids)
     return model
 
 
@@ -105,21 +105,21 @@ def polygons_from_json(data: Mapping[str, Any]) -> dict[int, Points]:
 
 def _given_blocks(data: Mapping[str, Any]) -> list[tuple[Block, Points]]:
     if "blocks_xywh" in data:
-        rows = enumerate(read_list(data, "blocks_xywh"), start=1)
-        return [(Block(i, 0.0, (0.0, 0.0)), _rectangle(i, row)) for i, row in rows]
+        given = []
+        for number, row in enumerate(read_list(data, "blocks_xywh"), start=1):
+            where = f"blocks_xywh, block {number}"
+            x, y, width, height = read_numbers(row, (4,), where)
+            if width <= 0 or height <= 0:
+                cure = "Give a width and height above 0."
+                raise bad(f"a block of {width} x {height}.", where, cure)
+            _check_size(min(width, height), max(abs(x), abs(y)), where)
+            right, top = x + width, y + height
+            corners = np.array([[x, y], [right, y], [right, top], [x, top], [x, y]])
+            given.append((Block(number, 0.0, (0.0, 0.0)), corners))
+        return given
     if "blocks" in data:
         return [_polygon_block(i, entry) for i, entry in enumerate(read_list(data, "blocks"))]
     raise bad("there is neither 'blocks_xywh' nor 'blocks'.", "block model", "Give one.")
-
-
-def _rectangle(number: int, row: Any) -> Points:
-    where = f"blocks_xywh, block {number}"
-    x, y, width, height = read_numbers(row, (4,), where)
-    if width <= 0 or height <= 0:
-        raise bad(f"a block of {width} x {height}.", where, "Give a width and height above 0.")
-    _check_size(min(width, height), max(abs(x), abs(y)), where)
-    right, top = x + width, y + height
-    return np.array([[x, y], [right, y], [right, top], [x, top], [x, y]])
 
 
 def _polygon_block(place: int, entry: Any) -> tuple[Block, Points]:
@@ -147,7 +147,10 @@ def _polygon_block(place: int, entry: Any) -> tuple[Block, Points]:
     if len(corners):
         size = float(np.ptp(corners, axis=0).max())
         _check_size(size, float(np.abs(corners).max()), where)
-    corners = _apart(corners)
+        # Of two corners that are one but for rounding, as one that closes a line may be, each would
+        # be on the line through the other, and neither a corner.
+        steps = np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
+        corners = corners[steps > STRAIGHT * size]
     shape = shapely.Polygon(corners) if len(corners) >= 3 else shapely.Polygon()
     if shape.is_empty or not shape.is_valid or shape.area <= 0:
         raise bad("its polygon has no area or crosses itself.", where, "Correct its corners.")
@@ -170,18 +173,6 @@ def _check_size(size: float, farthest: float, where: str) -> None:
             where,
             "Put the origin near the wall.",
         )
-
-
-def _apart(corners: Points) -> Points:
-    """Drop corners that are the next one but for rounding, as one that closes a line may be.
-
-    Each of both would be on the line through the other, and neither a corner.
-    """
-    if not len(corners):
-        return corners
-    steps = np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
-    kept: Points = corners[steps > STRAIGHT * np.ptp(corners, axis=0).max()]
-    return kept
 
 
 def _without_straight_corners(line: Points) -> Points:
@@ -371,14 +362,20 @@ def read_mu(data: Mapping[str, Any], key: str, default: float) -> float:
     return mu
 
 
-def read_friction(entries: Sequence[Any], ids: Collection[int]) -> dict[tuple[int, int], float]:
-    """Read the friction of pairs of blocks."""
+def with_pair_friction(
+    model: RigidBlockModel, entries: Sequence[Any], ids: Collection[int]
+) -> RigidBlockModel:
+    """Give all interfaces of pairs of ids, in either order, the friction that a file names."""
     friction = {}
     for place, entry in enumerate(entries):
-        where = f"friction, entry {place + 1}"
-        pair = _between(entry, ids, where)
+        pair = _between(entry, ids, f"friction, entry {place + 1}")
         friction[pair] = read_mu(entry, "mu", 0.58)
-    return friction
+    known = {frozenset(pair): mu for pair, mu in friction.items()}
+    faces = (
+        replace(face, mu=known.get(frozenset((face.block, face.other)), face.mu))
+        for face in model.interfaces
+    )
+    return replace(model, interfaces=tuple(faces))
 
 
 def read_interfaces(entries: Sequence[Any], ids: Collection[int]) -> tuple[Interface, ...]:

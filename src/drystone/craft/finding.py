@@ -2,15 +2,13 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from drystone.craft.masonry import Masonry
 from drystone.errors import UsageError
-
-if TYPE_CHECKING:
-    from drystone.craft.masonry import Masonry
 
 Line = NDArray[np.float64]
 """(n, 2) points of the wall frame."""
@@ -70,7 +68,7 @@ class Rule:
     higher_is_better: bool = False
     by_limit: bool = False
 
-    def find(self, masonry: "Masonry", limit: Limit | None = None) -> "Finding":
+    def find(self, masonry: Masonry, limit: Limit | None = None) -> "Finding":
         """Judge a wall, by limits of its own unless others are given."""
         limit = limit or self.limit
         sign = 1.0 if self.higher_is_better else -1.0

@@ -179,19 +179,10 @@ class CraftReport:
 
 
 def look(masonry: Masonry, limits: Mapping[str, Limit] | None = None) -> CraftReport:
-    """Judge a wall by the masons' rules.
+    """Judge a wall by the masons' rules; of an empty one nothing is judged.
 
-    Parameters
-    ----------
-    masonry : Masonry
-        Any wall; also an empty one, of which nothing is judged.
-    limits : mapping of str to Limit, optional
-        By name of a rule, limits that replace its own.
-
-    Raises
-    ------
-    UsageError
-        E190 for limits of no rule, or the wrong way round.
+    `limits` replace those of rules, by their names.  UsageError (E190): limits of no rule, or the
+    wrong way round.
 
     Examples
     --------

@@ -25,12 +25,8 @@ lines that cut it, and what they cut, take as much memory and time."""
 class Masonry:
     """A wall of any origin, as the rules look at it.
 
-    Raises
-    ------
-    UsageError
-        E191 for the id of a wedge that is not in the wall.
-    InputError
-        E192, when the rules look at it, for a wall that is too long for the height of its stones.
+    UsageError (E191): a wedge is not in the wall.  InputError (E192), when the rules look at it:
+    the wall is too long for the height of its stones.
 
     Examples
     --------

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.random import Generator
 
-from drystone.generate.layout import check_room, stones_of
-from drystone.generate.outlines import check_setting
+from drystone.generate.layout import check_room, check_setting, stones_of
 from drystone.model.stone import StoneSet
 
 

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from drystone.generate.layout import check_room, stones_of
-from drystone.generate.outlines import Outline, check_setting, draw_stone
+from drystone.generate.layout import Outline, check_room, check_setting, draw_stone, stones_of
 from drystone.model.stone import StoneSet
 
 LARGEST_DESCRIPTOR = 2.0

@@ -9,14 +9,15 @@ import shapely
 from numpy.random import Generator
 from scipy.spatial import ConvexHull
 
-from drystone.generate.layout import check_room, stones_of
-from drystone.generate.outlines import (
+from drystone.generate.layout import (
     ATTEMPTS,
     Outline,
+    check_room,
     check_setting,
     draw_stone,
     no_stone,
     polygon_area,
+    stones_of,
 )
 from drystone.model.stone import StoneSet
 

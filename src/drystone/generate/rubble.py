@@ -7,8 +7,15 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from drystone.generate.layout import check_room, stones_of
-from drystone.generate.outlines import Outline, check_setting, is_whole, outline_mask, polygon_area
+from drystone.generate.layout import (
+    Outline,
+    check_room,
+    check_setting,
+    is_whole,
+    outline_mask,
+    polygon_area,
+    stones_of,
+)
 from drystone.kernels.raster import turn
 from drystone.model.stone import StoneSet
 

@@ -197,22 +197,17 @@ def _edge(grey: NDArray[np.uint8], corners: Points, modules: int) -> tuple[Point
         borderMode=cv2.BORDER_REPLICATE,
     ).astype(np.float64)
     # Lenses blur light, not the grey values of sRGB, in which black squares would seem smaller.
-    offset = _offsets(255.0 * ((seen / 255.0 + 0.055) / 1.055) ** 2.4)
-    if offset is None:
-        return None
-    return _line(places + reach * offset[:, None] * outward)
-
-
-def _offsets(seen: Points) -> Points | None:
-    """Return where each profile, dark to bright, has its step, in reaches from its middle."""
-    ends = len(_ACROSS) // 5
+    light = 255.0 * ((seen / 255.0 + 0.055) / 1.055) ** 2.4
     # Light changes along an edge, but slowly.
-    dark = np.polyval(np.polyfit(_ALONG, seen[:, :ends].mean(axis=1), 1), _ALONG)
-    bright = np.polyval(np.polyfit(_ALONG, seen[:, -ends:].mean(axis=1), 1), _ALONG)
+    ends = len(_ACROSS) // 5
+    dark = np.polyval(np.polyfit(_ALONG, light[:, :ends].mean(axis=1), 1), _ALONG)
+    bright = np.polyval(np.polyfit(_ALONG, light[:, -ends:].mean(axis=1), 1), _ALONG)
     if not (bright - dark > _LEAST_CONTRAST).all():
         return None
-    share = (seen - dark[:, None]) / (bright - dark)[:, None]
-    return np.asarray(1.0 - np.trapezoid(share, _ACROSS, axis=1))
+    share = (light - dark[:, None]) / (bright - dark)[:, None]
+    # Where each profile, dark to bright, has its step, in reaches from its middle.
+    offset = 1.0 - np.trapezoid(share, _ACROSS, axis=1)
+    return _line(places + reach * offset[:, None] * outward)
 
 
 def _line(points: Points) -> tuple[Points, Points] | None:

@@ -90,8 +90,22 @@ def rectify(image: NDArray[np.uint8], view: View, max_px: int = MAX_PX) -> Recti
     moved = np.array([[scale, 0, -scale * low[0]], [0, scale, -scale * low[1]], [0, 0, 1]])
     across, down = (max(1, math.ceil(side * scale - 1e-6)) for side in extent)
     from_photo = moved @ view.photo_to_ground
-    values, inside = _warped(image, from_photo, (across, down))
-    return Rectified(values, scale, inside, from_photo)
+    cv2 = load_cv2()
+    # OpenCV puts 0 at the centre of the first pixel, here it is at its corner.
+    half = np.array([[1.0, 0.0, 0.5], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]])
+    by = np.linalg.inv(half) @ from_photo @ half
+    shown = np.full(image.shape[:2], 255, dtype=np.uint8)
+    middle = np.array([image.shape[1] / 2.0, image.shape[0] / 2.0])
+    finer = float(np.abs(np.linalg.det(jacobian(from_photo, middle))))
+    if finer < 0.5:
+        # Px of the photograph between the samples would be skipped, and thin gaps with them.
+        blur = 0.5 * math.sqrt(1.0 / finer - 1.0)
+        image = cv2.GaussianBlur(image, (0, 0), blur)
+    size, beyond = (across, down), cv2.BORDER_REPLICATE
+    values = cv2.warpPerspective(image, by, size, flags=cv2.INTER_LINEAR, borderMode=beyond)
+    inside = np.asarray(cv2.warpPerspective(shown, by, size, flags=cv2.INTER_NEAREST)) > 0
+    values[~inside] = 0
+    return Rectified(np.asarray(values, dtype=np.uint8), scale, inside, from_photo)
 
 
 def refuse_horizon(view: View, size_px: tuple[int, int]) -> None:
@@ -109,25 +123,3 @@ def refuse_horizon(view: View, size_px: tuple[int, int]) -> None:
             "horizon, is in it; sizes there mean nothing.",
             cure="Photograph the stones from above, or crop what is far away.",
         )
-
-
-def _warped(
-    image: NDArray[np.uint8], from_photo: NDArray[np.float64], size: tuple[int, int]
-) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
-    cv2 = load_cv2()
-    # OpenCV puts 0 at the centre of the first pixel, here it is at its corner.
-    half = np.array([[1.0, 0.0, 0.5], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]])
-    by = np.linalg.inv(half) @ from_photo @ half
-    shown = np.full(image.shape[:2], 255, dtype=np.uint8)
-    middle = np.array([image.shape[1] / 2.0, image.shape[0] / 2.0])
-    finer = float(np.abs(np.linalg.det(jacobian(from_photo, middle))))
-    if finer < 0.5:
-        # Px of the photograph between the samples would be skipped, and thin gaps with them.
-        blur = 0.5 * math.sqrt(1.0 / finer - 1.0)
-        image = cv2.GaussianBlur(image, (0, 0), blur)
-    values = cv2.warpPerspective(
-        image, by, size, flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE
-    )
-    inside = np.asarray(cv2.warpPerspective(shown, by, size, flags=cv2.INTER_NEAREST)) > 0
-    values[~inside] = 0
-    return np.asarray(values, dtype=np.uint8), inside

@@ -63,10 +63,6 @@ class TiltingTable:
         self._space.add(body)
         for part in convex_parts(corners):
             self._add_shape(body, part, scene.mu)
-        return self._depth(body)
-
-    def _depth(self, body: Any) -> float:
-        """Return how deep a body lies in others, as the engine sees its parts."""
         return max(
             (
                 -point.distance

@@ -66,14 +66,8 @@ def tilt_once(
     if not stands:
         moved = table.beyond(shifts, settings.noticeable)
         return TiltTrial(direction, None, None, moved, settled_shift, 0.0, fell_at_rest=True)
-    return _raised(table, direction, settings, settled_shift)
-
-
-def _raised(
-    level: TiltingTable, direction: Direction, settings: TiltSettings, settled_shift: float
-) -> TiltTrial:
-    """Raise the table until blocks come down."""
-    settled, stood = level.poses(), level
+    level = stood = table
+    settled = level.poses()
     sign = -1.0 if direction == "left" else 1.0
     low, step, suspect = 0.0, settings.coarse, 0.0
     first_motion: float | None = None

@@ -11,8 +11,7 @@ from drystone.model.stone import Stone
 from drystone.model.wall import Group
 from drystone.poses import PoseBook, RecentlyUsed, memory_bytes
 from drystone.stabilise.settings import StabiliseSettings
-from drystone.stabilise.stabilise import Outcome, WedgeStock, falls_to, make_stable
-from drystone.stabilise.support import Pose
+from drystone.stabilise.stabilise import Outcome, Pose, WedgeStock, falls_to, make_stable
 
 Key = tuple[Stone, float, int, int, int, tuple[int, ...], bytes]
 
@@ -32,17 +31,11 @@ class StabiliseMemory:
     depends on the budget.  The mean height of the stones limits the wedges.
     """
 
-    def __init__(
-        self,
-        book: PoseBook,
-        mean_height_px: float,
-        settings: StabiliseSettings,
-        budget_bytes: int = MEMORY_BYTES,
-    ) -> None:
+    def __init__(self, book: PoseBook, mean_height_px: float, settings: StabiliseSettings) -> None:
         self._book = book
         self._stock = WedgeStock(1, mean_height_px)
         self._settings = settings
-        self._outcomes = RecentlyUsed[Key, Outcome](budget_bytes)
+        self._outcomes = RecentlyUsed[Key, Outcome](MEMORY_BYTES)
 
     def stabilise(self, occupied: Mask, trial: Pose, side: Side, next_wedge: int) -> Group | None:
         """Return a stable placement from a trial one; None when there is none (§3.7).

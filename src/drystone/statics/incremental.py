@@ -240,7 +240,14 @@ class LocalAnalysis(ConeAnalysis):
         least, greatest = by_highs.extremes
         if not least.status is greatest.status is LimitStatus.OPTIMAL:
             return replace(by_highs, result=result)
-        ends = (_primal_dual(greatest, 1), _primal_dual(least, -1))
+
+        def known(sign: int, extreme: Extreme) -> PrimalDual:
+            solution = extreme.solution
+            assert solution.columns is not None  # noqa: S101 - an optimal solution has both
+            assert solution.duals is not None  # noqa: S101
+            return PrimalDual(sign, extreme.alpha, solution.columns[1:], -solution.duals)
+
+        ends = known(1, greatest), known(-1, least)
         return cls(by_highs.model, result, program, by_highs, *ends)
 
     def in_highs(self) -> "HighsAnalysis":
@@ -307,13 +314,6 @@ class LocalAnalysis(ConeAnalysis):
                 whole = whole or self.by_highs.prepared(model)
                 bound = highs_bound(*whole, end.sign)
             yield bound
-
-
-def _primal_dual(extreme: Extreme, sign: int) -> PrimalDual:
-    solution = extreme.solution
-    assert solution.columns is not None  # noqa: S101 - an optimal solution has both
-    assert solution.duals is not None  # noqa: S101
-    return PrimalDual(sign, extreme.alpha, solution.columns[1:], -solution.duals)
 
 
 class WarmBases(NamedTuple):

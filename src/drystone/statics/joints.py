@@ -1,11 +1,9 @@
 """Friction of some interfaces only, and blocks that nothing carries."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import replace
 
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
-
-IdPair = tuple[int, int]
 
 
 def is_head_joint(interface: Interface) -> bool:
@@ -24,16 +22,6 @@ def with_head_friction(model: RigidBlockModel, mu: float) -> RigidBlockModel:
         for face in model.interfaces
     )
     return replace(model, interfaces=tuple(heads))
-
-
-def with_pair_friction(model: RigidBlockModel, friction: Mapping[IdPair, float]) -> RigidBlockModel:
-    """Give all interfaces of some pairs of ids, in either order, a friction of their own."""
-    known = {frozenset(pair): mu for pair, mu in friction.items()}
-    faces = (
-        replace(face, mu=known.get(frozenset((face.block, face.other)), face.mu))
-        for face in model.interfaces
-    )
-    return replace(model, interfaces=tuple(faces))
 
 
 def slippery(

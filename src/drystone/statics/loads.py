@@ -89,15 +89,6 @@ def point_load(
     return forces
 
 
-def gravity_factor(model: RigidBlockModel) -> Loads:
-    """Alpha times the weight; the dead loads are whatever else acts, nothing as yet.
-
-    The least alpha is the share of its weight with which the wall still carries the other loads:
-    1 / alpha is the safety against being too light.  The greatest one is mostly unbounded.
-    """
-    return Loads(weight(model) * 0.0, weight(model), "gravity factor")
-
-
 def support_settlement(model: RigidBlockModel, block: int) -> tuple[RigidBlockModel, Loads]:
     """Let a fixed block give way downwards, and find what holds it (settlement of a support).
 
@@ -189,9 +180,17 @@ def load_case(case: LoadCase, model: RigidBlockModel) -> tuple[RigidBlockModel, 
     elif case.load == "height":
         loads = growing_with_height(model)
     elif case.load == "gravity":
-        loads = gravity_factor(model)
+        # The least alpha is the share of its weight with which the wall still carries the others:
+        # 1 / alpha is the safety against being too light.  The greatest is mostly unbounded.
+        loads = Loads(weight(model) * 0.0, weight(model), "gravity factor")
     elif case.load == "points":
-        loads = _points(model, case)
+        if not case.live:
+            cure = "Add --live ID@X,Y:FX,FY once or more."
+            raise UsageError("E138", "--load points needs forces.", cure=cure)
+        live = weight(model) * 0.0
+        for text in case.live:
+            live = live + point_load(model, *_parsed(text, "--live"))
+        loads = Loads(weight(model), live, f"point loads ({' '.join(case.live)})")
     else:
         loads = tilting_table(model)
     if case.tilt:
@@ -204,17 +203,6 @@ def load_case(case: LoadCase, model: RigidBlockModel) -> tuple[RigidBlockModel, 
     if case.dead:
         loads = replace(loads, name=f"{loads.name}, dead forces ({' '.join(case.dead)})")
     return model, loads
-
-
-def _points(model: RigidBlockModel, case: LoadCase) -> Loads:
-    if not case.live:
-        raise UsageError(
-            "E138", "--load points needs forces.", cure="Add --live ID@X,Y:FX,FY once or more."
-        )
-    live = weight(model) * 0.0
-    for text in case.live:
-        live = live + point_load(model, *_parsed(text, "--live"))
-    return Loads(weight(model), live, f"point loads ({' '.join(case.live)})")
 
 
 def _parsed(text: str, option: str) -> tuple[int, tuple[float, float], tuple[float, float]]:

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from drystone.statics.failing.bodies import Floats, kinematics
+from drystone.statics.failing.mechanism import Floats, kinematics
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, tilting_table
 from drystone.statics.model import RigidBlockModel
@@ -12,9 +12,6 @@ from drystone.statics.result import LimitResult
 
 USUAL = (0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8)
 """From smooth and wet to rough and dry stone."""
-
-NO_TOLERANCE = 0.0
-"""Every velocity counts: small ones add little."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +55,7 @@ def friction_sensitivity(
     """
     if result.mechanism is None or result.forces is None:
         raise ValueError("the sensitivity needs an optimal result with mechanism and forces")
-    motion = kinematics(model, result.mechanism, NO_TOLERANCE)
+    motion = kinematics(model, result.mechanism, tolerance=0.0)  # small ones add little
     lost = result.forces[:, 0] * np.abs(motion.relative[:, 1])
     per_interface = np.bincount(model.contact_interfaces, lost, len(model.interfaces))
     live = (tilting_table(model) if loads is None else loads).live

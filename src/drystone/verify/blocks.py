@@ -11,7 +11,6 @@ from drystone.errors import DrystoneError
 from drystone.kernels.polygons import Points
 from drystone.model.plan import Plan
 from drystone.model.steps import piece_name
-from drystone.statics.joints import IdPair
 from drystone.statics.model import Interface, RigidBlockModel
 from drystone.verify.replay import Replay
 from drystone.verify.report import Problem
@@ -25,6 +24,8 @@ SAME_WAY = 1e-3
 """Between unit normals: that much a short edge turns when its ends are rounded."""
 
 SAME_FRICTION = 1e-9
+
+IdPair = tuple[int, int]
 
 
 def check_blocks(

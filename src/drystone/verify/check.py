@@ -44,11 +44,7 @@ def check_plan(
     replay = replay_plan(plan, stones)
     reference = Reference.of(stones, replay.settings, plan.working_scale)
     stability = claims.check_stability(replay.stages, replay.settings)
-    problems = [
-        *claims.check_source(plan, stones),
-        *claims.check_unused(plan, stones),
-        *replay.problems,
-    ]
+    problems = [*claims.check_source(plan, stones), *replay.problems]
     problems += claims.check_choice(plan, replay.settings)
     problems += _check_pieces(replay, reference)
     problems += stability.problems + tuple(_check_stages(replay, stability, reference))

@@ -1,4 +1,4 @@
-"""What a plan claims of its stones, actions and wall, computed again."""
+"""What a plan claims of its stones, actions and wall, computed again or built in an engine."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
@@ -8,8 +8,11 @@ from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.settled import model_of_outlines
 from drystone.model.landscape import Landscape
 from drystone.model.plan import Plan, PlanMetrics, StoneStep
+from drystone.model.steps import piece_id, piece_name
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
+from drystone.physics.building import BuildUp
+from drystone.physics.scatter import TiltResult
 from drystone.planner.assemble import plan_metrics
 from drystone.planner.build import Build
 from drystone.planner.evaluate import action_indices
@@ -19,7 +22,7 @@ from drystone.planner.sturdy import sturdy_model_of
 from drystone.poses import PoseBook
 from drystone.search.plan_result import other_resistances
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import GROUND, RigidBlockModel
+from drystone.statics.model import GROUND, Direction, RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitStatus
 from drystone.verify.replay import Replay, Stage
 from drystone.verify.report import PrefixAlpha, Problem, contradicted
@@ -151,7 +154,7 @@ class Reference:
 
 
 def check_source(plan: Plan, stones: StoneSet) -> list[Problem]:
-    """Compare the stones with those that the plan was made from (E210, E211)."""
+    """Compare the stones with those that the plan was made from (E210, E211) and leaves (E216)."""
     problems = []
     claimed, source = plan.source, stones.source
     # No file has the bytes of an array that a program made; the stones are compared themselves.
@@ -165,20 +168,17 @@ def check_source(plan: Plan, stones: StoneSet) -> list[Problem]:
     facts = {"stones": len(stones), "width_px": source.width_px, "height_px": source.height_px}
     if source.files or "files" in claimed:
         facts["files"] = list(source.files)  # type: ignore[assignment]
-    return problems + [
+    problems += [
         Problem("E211", None, f"source.{name} is {claimed.get(name)} by the plan, found {found}.")
         for name, found in facts.items()
         if claimed.get(name) != found
     ]
-
-
-def check_unused(plan: Plan, stones: StoneSet) -> list[Problem]:
-    """Compare the list of stones that are left over with the steps (E216)."""
     placed = {step.stone for step in plan.stone_steps}
     left = [stone.id for stone in stones if stone.id not in placed]
-    if sorted(plan.unused) == left:
-        return []
-    return [Problem("E216", None, f"unused is {list(plan.unused)} by the plan, found {left}.")]
+    if sorted(plan.unused) != left:
+        message = f"unused is {list(plan.unused)} by the plan, found {left}."
+        problems.append(Problem("E216", None, message))
+    return problems
 
 
 def check_choice(plan: Plan, settings: PlannerSettings) -> list[Problem]:
@@ -274,8 +274,14 @@ def _wrong_turning(step: StoneStep, reference: Reference) -> str | None:
     settings = reference.settings
     if step.side == "right" and not settings.two_sided:
         return "side is right by the plan, but its settings build from the left only."
-    moves = step.rotation_moves
-    most, low, high = _allowed_turns(moves, settings)
+    moves, limits = step.rotation_moves, settings.stabilise
+    # About one point it only turns one way.
+    most, high, low = limits.max_pivots, limits.max_turn_deg, limits.step_deg * (moves == 1)
+    if settings.geometry == "exact":
+        # A stone that turns as it settles counts as one that was moved once, however far.
+        most, high, low = 1, settings.settle.max_turn_deg, 0.0
+    most = most if limits.method in ("both", "rotation") else 0
+    high = high if moves else 0.0
     if moves > most:
         return f"rotation_moves is {moves} by the plan, more than its settings allow."
     angles = reference.book.angles(reference.stones.by_id(step.stone), settings.orientations)
@@ -288,13 +294,41 @@ def _wrong_turning(step: StoneStep, reference: Reference) -> str | None:
     )
 
 
-def _allowed_turns(moves: int, settings: PlannerSettings) -> tuple[int, float, float]:
-    """Return the most rotation moves, and the least and largest turn after some of them."""
-    limits = settings.stabilise
-    turns = limits.method in ("both", "rotation")
-    if settings.geometry == "exact":
-        # A stone that turns as it settles counts as one that was moved once, however far.
-        return int(turns), 0.0, settings.settle.max_turn_deg if moves else 0.0
-    # About one point it only turns one way.
-    low = limits.step_deg if moves == 1 else 0.0
-    return limits.max_pivots if turns else 0, low, limits.max_turn_deg if moves else 0.0
+CONFIRMED = 0.85
+"""A wall must come down no earlier in the engine than at this share of what its plan claims."""
+
+
+def check_engine(
+    plan: Plan, built: BuildUp, tilts: tuple[TiltResult, TiltResult] | None
+) -> list[Problem]:
+    """Verify that the engine does not contradict a plan, whose wall it built and may have tilted.
+
+    E241: blocks fall in the wall as it is drawn.  E242: tilted, the wall comes down below
+    `CONFIRMED` of a load multiplier that the plan claims.
+    """
+    problems = []
+    if built.first_fall is not None:
+        names = {piece_id(step): piece_name(step) for step in plan.steps}
+        fallen = ", ".join(names[block] for block in built.fallen)
+        message = f"in the engine blocks fall, the first after this stone and its wedges: {fallen}."
+        problems.append(Problem("E241", plan.stone_steps[built.first_fall - 1].step, message))
+    for tilt in tilts or ():
+        alpha = claimed_alpha(plan, tilt.direction)
+        found = 0.0 if tilt.fell_at_rest else tilt.high
+        if alpha is not None and found is not None and found < CONFIRMED * alpha:
+            message = (
+                f"tilted to the {tilt.direction} the wall comes down by alpha = {found:.3f} in the "
+                f"engine, {found / alpha:.0%} of the {alpha:.3f} that the plan claims; "
+                f"{CONFIRMED:.0%} are wanted."
+            )
+            problems.append(Problem("E242", None, message))
+    return problems
+
+
+def claimed_alpha(plan: Plan, direction: Direction) -> float | None:
+    """Return the load multiplier that a plan claims of a side, the smaller of both flow rules."""
+    metrics = plan.metrics
+    claims = [getattr(metrics, f"alpha_{direction}{rule}") for rule in ("", "_coulomb")]
+    if metrics.F_LR_coulomb == 0.0:  # it can fall by itself: nothing is claimed
+        claims.append(0.0)
+    return min((claim for claim in claims if claim is not None), default=None)

@@ -13,9 +13,6 @@ from drystone.model.site import MAX_SITE_PX, Site
 from drystone.planner.settings import METHODS, PlannerSettings
 from drystone.verify.report import Problem
 
-MAX_WALL_PX = MAX_SITE_PX
-"""Larger walls are neither planned nor rebuilt."""
-
 _Path = tuple[str, ...]
 """Names that lead to a setting, the outer first."""
 
@@ -102,13 +99,13 @@ def plan_site(plan: Plan) -> Site:
     # Metres times px per metre leave rounding errors, which must not decide over a half px.
     width, height = round(plan.width * source_px, 6), round(plan.height * source_px, 6)
     area = width * height * plan.working_scale**2
-    if not 0.25 <= area <= MAX_WALL_PX or plan.working_scale * min(width, height) < 0.5:
+    if not 0.25 <= area <= MAX_SITE_PX or plan.working_scale * min(width, height) < 0.5:
         raise PlanError(
             "E215",
             f"a wall of {width:g} x {height:g} px at a working scale of {plan.working_scale:g} "
             "cannot be made an image.",
             where="wall",
-            cure=f"Its image must have 1 to {MAX_WALL_PX} px.",
+            cure=f"Its image must have 1 to {MAX_SITE_PX} px.",
         )
     return Site.from_source(width, height, plan.working_scale, plan.px_per_m)
 

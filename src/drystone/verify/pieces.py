@@ -165,7 +165,17 @@ def check_settled_wedge(
     The model, of the wall with the stone and its wedges, says what touches what.  `stone` lies on
     the wedge, `wall` are all outlines, and `width` is that of the site.
     """
-    above, below = _supports(step.id, model)
+    above, below = set(), set()  # what touches it from there
+    for interface in model.interfaces:
+        if step.id not in (interface.block, interface.other):
+            continue
+        mine = interface.block == step.id
+        up = interface.normal[1] if mine else -interface.normal[1]
+        other = interface.other if mine else interface.block
+        if up > 0.0:
+            below.add(other)
+        elif up < 0.0:
+            above.add(other)
     stands = bool(below - {step.under})
     problems = _touching(step, holds=step.under in above, stands=stands)
     faults = list(limits.faults(WedgeShape.of(corners)))
@@ -197,19 +207,3 @@ def _touching(step: WedgeStep, *, holds: bool, stands: bool) -> list[Problem]:
         f"wedge {step.id} stands on nothing.": stands,
     }
     return [Problem("E223", step.step, said) for said, touches in missing.items() if not touches]
-
-
-def _supports(block: int, model: RigidBlockModel) -> tuple[set[int], set[int]]:
-    """Return the ids of what touches a block from above and from below."""
-    above, below = set(), set()
-    for interface in model.interfaces:
-        if block not in (interface.block, interface.other):
-            continue
-        mine = interface.block == block
-        up = interface.normal[1] if mine else -interface.normal[1]
-        other = interface.other if mine else interface.block
-        if up > 0.0:
-            below.add(other)
-        elif up < 0.0:
-            above.add(other)
-    return above, below

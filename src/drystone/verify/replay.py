@@ -1,7 +1,6 @@
 """Build a planned wall again from the input stones and the poses alone (DESIGN 2)."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -291,8 +290,20 @@ def replay_plan(plan: Plan, stones: StoneSet) -> Replay:
     pieces: list[PlanPiece] = []
     stages: list[Stage] = []
     used: set[int] = set()
+    largest = max((stone.id for stone in stones), default=0)
     for steps in groups:
-        derived, found = _derive(steps, canvas, stones, used)
+        derived: list[PlanPiece] = []
+        found: list[Problem] = []
+        for step in steps:
+            try:
+                piece, faults = canvas.put(step)
+            except PlanError as error:
+                code = "E212" if error.code == "E201" else error.code
+                found.append(Problem(code, step.step, error.what))
+            else:
+                derived.append(piece)
+                repeated = id_fault(step, used, largest)
+                found += faults if repeated is None else [repeated, *faults]
         pieces += derived
         problems += found
         if found and broken_at is None:
@@ -307,23 +318,3 @@ def replay_plan(plan: Plan, stones: StoneSet) -> Replay:
     return Replay(
         settings, site, tuple(pieces), canvas.labels, tuple(stages), broken_at, tuple(problems)
     )
-
-
-def _derive(
-    steps: Sequence[Step], canvas: ExactCanvas | RasterCanvas, stones: StoneSet, used: set[int]
-) -> tuple[list[PlanPiece], list[Problem]]:
-    """Turn the steps of a group into what they place; note their ids as used."""
-    pieces: list[PlanPiece] = []
-    problems = []
-    largest = max((stone.id for stone in stones), default=0)
-    for step in steps:
-        try:
-            piece, found = canvas.put(step)
-        except PlanError as error:
-            code = "E212" if error.code == "E201" else error.code
-            problems.append(Problem(code, step.step, error.what))
-        else:
-            pieces.append(piece)
-            repeated = id_fault(step, used, largest)
-            problems += found if repeated is None else [repeated, *found]
-    return pieces, problems

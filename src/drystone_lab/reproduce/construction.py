@@ -13,7 +13,7 @@ from drystone.placement.best import best_spots
 from drystone.placement.feasible import feasible_positions
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
-from drystone.stabilise.support import Pose
+from drystone.stabilise.stabilise import Pose
 from drystone.verify.replay import Stage, replay_plan
 from drystone_lab.reproduce.item import Context
 from drystone_lab.runs.spec import RunSpec

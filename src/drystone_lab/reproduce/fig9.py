@@ -14,9 +14,15 @@ from drystone.drawing.outlines import Loop, label_regions
 from drystone.drawing.palette import GREY, OUTLINE_COLOUR, WEDGE_COLOUR
 from drystone.model.placement import Wedge
 from drystone.model.wall import Labels
-from drystone.stabilise.rotate import rotate_to_rest
-from drystone.stabilise.stabilise import WedgeStock, make_stable
-from drystone.stabilise.support import Pose, Support, falling_side, support_polyline
+from drystone.stabilise.stabilise import (
+    Pose,
+    Support,
+    WedgeStock,
+    falling_side,
+    make_stable,
+    rotate_to_rest,
+    support_polyline,
+)
 from drystone_lab.reproduce.construction import Construction, Moment, construction
 from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.items import ITEMS

@@ -10,8 +10,7 @@ from matplotlib.figure import Figure
 from drystone.contacts.blocks import model_from_labels
 from drystone.drawing.pictures.curves import plot_friction, plot_scatter
 from drystone.statics.result import LimitStatus
-from drystone.statics.scatter.scatter import scatter
-from drystone.statics.scatter.shaking import ScatterSettings
+from drystone.statics.scatter.scatter import ScatterSettings, scatter
 from drystone.statics.sensitivity import AtFriction
 from tests.statics.walls import coursed, stacked
 

@@ -1,7 +1,6 @@
 import pytest
 
-from drystone.statics.failing.bodies import MovingGroup, Toe
-from drystone.statics.failing.mechanism import Names, in_words
+from drystone.statics.failing.mechanism import MovingGroup, Names, Toe, in_words
 from drystone.statics.model import GROUND
 
 STONES = Names("stone", frozenset({300, 301}))

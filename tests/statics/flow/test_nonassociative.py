@@ -7,10 +7,11 @@ import pytest
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.statics.flow import nonassociative
-from drystone.statics.flow.flow_check import FlowCheck, check_flow
 from drystone.statics.flow.flow_search import STARTS, NonassociativeSettings
 from drystone.statics.flow.nonassociative import (
+    FlowCheck,
     NonassociativeResult,
+    check_flow,
     nonassociative_load,
     nonassociative_resistance,
 )
@@ -81,7 +82,7 @@ def test_without_starts_it_says_that_it_did_not_converge():
 
 
 def test_answers_whose_check_does_not_hold_are_not_told(monkeypatch):
-    monkeypatch.setattr("drystone.statics.flow.flow_check.HOLDS", -1.0)
+    monkeypatch.setattr("drystone.statics.flow.nonassociative.HOLDS", -1.0)
     result = nonassociative_load(boxes([0, 0, 1, 2], mu=0.7), "left", settings=FEW)
     assert (result.status, result.alpha) == (LimitStatus.FAILED, None)
     assert result.rounds > 0

@@ -11,9 +11,12 @@ from hypothesis import strategies as st
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
 from drystone.statics.flow import release
-from drystone.statics.flow.flow_check import check_flow
 from drystone.statics.flow.flow_search import NonassociativeSettings
-from drystone.statics.flow.nonassociative import nonassociative_load, nonassociative_resistance
+from drystone.statics.flow.nonassociative import (
+    check_flow,
+    nonassociative_load,
+    nonassociative_resistance,
+)
 from drystone.statics.flow.release import fall_of, with_inertia
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, tilting_table

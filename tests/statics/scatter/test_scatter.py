@@ -11,8 +11,7 @@ from drystone.errors import InputError
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LimitStatus
 from drystone.statics.scatter import scatter as scatter_module
-from drystone.statics.scatter.scatter import scatter
-from drystone.statics.scatter.shaking import ScatterSettings, shaken
+from drystone.statics.scatter.scatter import ScatterSettings, scatter, shaken
 from tests.statics.walls import boxes, brick_model, coursed, irregular, stacked
 from tests.strategies import label_images, repeatable
 

@@ -21,8 +21,7 @@ from drystone.model.builder import BuilderErrors
 from drystone.statics.limit import lateral_resistance, load_range
 from drystone.statics.loads import LoadCase, load_case
 from drystone.statics.lp.program import assemble
-from drystone.statics.scatter.scatter import scatter
-from drystone.statics.scatter.shaking import ScatterSettings
+from drystone.statics.scatter.scatter import ScatterSettings, scatter
 
 SAMPLES = 200
 
@@ -102,7 +101,12 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     size = modelling.size_words(wall.shapes, per_unit_m)
     if size is not None:
         wall = replace(wall, remarks={**wall.remarks, "size": size})
-    folder = _prepare(arguments)
+    folder = None if arguments.output is None else Path(arguments.output)
+    if folder is not None:
+        written = [folder / name for name in analysis.WRITTEN]
+        refuse_inputs(files_of_wall(path), written)
+        refuse_plans_own(path, written)
+        prepare_files(written, overwrite=arguments.overwrite)
     model, loads = load_case(case, wall.model)
     wall, solver = replace(wall, model=model), arguments.solver
     sha256 = hashlib.sha256(files_of_plan(path)[0].read_bytes()).hexdigest()
@@ -207,15 +211,3 @@ def _scatter_of(
 
         save(plot_scatter(found).figure, path)
     return analysis.ScatterCard(found, unit)
-
-
-def _prepare(arguments: argparse.Namespace) -> Path | None:
-    """Make room for what is asked for, if anything is; refuse to write over files unasked."""
-    if arguments.output is None:
-        return None
-    wall, folder = Path(arguments.wall_path), Path(arguments.output)
-    written = [folder / name for name in analysis.WRITTEN]
-    refuse_inputs(files_of_wall(wall), written)
-    refuse_plans_own(wall, written)
-    prepare_files(written, overwrite=arguments.overwrite)
-    return folder

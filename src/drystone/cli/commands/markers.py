@@ -37,36 +37,6 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if path.suffix.lower() != ".pdf":
         what = "marker sheets are written as .pdf."
         raise UsageError("E139", what, where=str(path), cure="Choose another ending.")
-    sheets = _sheets(arguments)
-    prepare_files([path], overwrite=arguments.overwrite)
-    write_marker_sheets(sheets, path)
-    size = f"{sheets.size_m * 1000:g}mm"
-    named = size if sheets.single else f"{sheets.page}:{size}"
-    options = ["--aruco", named]
-    if not sheets.single and sheets.ids != FIRST_SHEET:
-        options += ["--marker-ids", *map(str, sheets.ids)]
-    if arguments.json:
-        print_json(
-            {
-                "file": str(path),
-                "pages": len(sheets.pages),
-                "ids": list(sheets.ids),
-                "size_m": sheets.size_m,
-                "dictionary": sheets.dictionary,
-                "page": sheets.page,
-                "layout": named,
-                "options": options,
-            }
-        )
-        return ExitCode.DONE
-    print(
-        f"{path}: markers {sheets.ids[0]} to {sheets.ids[-1]}, {counted(len(sheets.pages), 'page')}"
-    )
-    print(f"Print at 100 %. Then: drystone segment PHOTO {' '.join(options)} -o DIR")
-    return ExitCode.DONE
-
-
-def _sheets(arguments: argparse.Namespace) -> MarkerSheets:
     single = arguments.single
     count = arguments.count or (2 if single else ON_A_SHEET)
     if not single and (count % ON_A_SHEET or arguments.ids % ON_A_SHEET):
@@ -75,4 +45,28 @@ def _sheets(arguments: argparse.Namespace) -> MarkerSheets:
         raise UsageError("E174", what, where="--count, --ids", cure=cure)
     size_m = parse_size_m(arguments.size or ("120mm" if single else "50mm"))
     ids = tuple(range(arguments.ids, arguments.ids + count))
-    return MarkerSheets(ids, size_m, arguments.dictionary, arguments.page, single)
+    sheets = MarkerSheets(ids, size_m, arguments.dictionary, arguments.page, single)
+    prepare_files([path], overwrite=arguments.overwrite)
+    write_marker_sheets(sheets, path)
+    size = f"{size_m * 1000:g}mm"
+    named = size if single else f"{sheets.page}:{size}"
+    options = ["--aruco", named]
+    if not single and ids != FIRST_SHEET:
+        options += ["--marker-ids", *map(str, ids)]
+    if arguments.json:
+        print_json(
+            {
+                "file": str(path),
+                "pages": len(sheets.pages),
+                "ids": list(ids),
+                "size_m": size_m,
+                "dictionary": sheets.dictionary,
+                "page": sheets.page,
+                "layout": named,
+                "options": options,
+            }
+        )
+        return ExitCode.DONE
+    print(f"{path}: markers {ids[0]} to {ids[-1]}, {counted(len(sheets.pages), 'page')}")
+    print(f"Print at 100 %. Then: drystone segment PHOTO {' '.join(options)} -o DIR")
+    return ExitCode.DONE

@@ -35,8 +35,13 @@ def add(command: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Print F_SF, F_AV, F_AH, F_LR, T_LEVEL and E_FLUSH."""
     wall = read_wall(Path(arguments.wall_path), reading_from(arguments))
-    if not wall.drawn:
-        _refuse_idle_scale(arguments)
+    if not wall.drawn and arguments.px_per_m is not None:
+        asked = arguments.wall
+        # Only a wall in metres is another one at another scale.
+        if asked is None or numbers.parse_wall(asked, 1.0) == numbers.parse_wall(asked, 2.0):
+            what = "would do nothing: no wall in metres is asked for, and no figure has a length."
+            cure = "Leave it out, or give --wall in metres, as in 1.4mx0.4m."
+            raise UsageError("E138", what, where=numbers.option_of(arguments.px_per_m), cure=cure)
     if wall.labels is None:
         raise UsageError("E134", "a block model has no pixels to measure.", where="measure")
     numbers.refuse_outside(arguments.px_per_m, numbers.wall_picture_px(wall))
@@ -59,18 +64,6 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     said = counted(metrics.stones, "stone")
     print_table(f"{arguments.wall_path}: {said}, {size}", rows)
     return ExitCode.DONE
-
-
-def _refuse_idle_scale(arguments: argparse.Namespace) -> None:
-    """Refuse a scale that nothing is asked in (E138): no figure of merit has a length."""
-    if arguments.px_per_m is None:
-        return
-    asked = arguments.wall
-    # Only a wall in metres is another one at another scale.
-    if asked is None or numbers.parse_wall(asked, 1.0) == numbers.parse_wall(asked, 2.0):
-        what = "would do nothing: no wall in metres is asked for, and no figure has a length."
-        cure = "Leave it out, or give --wall in metres, as in 1.4mx0.4m."
-        raise UsageError("E138", what, where=numbers.option_of(arguments.px_per_m), cure=cure)
 
 
 def _measured(wall: GivenWall, labels: Labels, arguments: argparse.Namespace) -> WallMetrics:

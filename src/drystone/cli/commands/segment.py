@@ -95,12 +95,23 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     _write(folder, result, doubts, details)
     sizes = sizes_of(result.found.labels)
     if arguments.json:
+        metres = None if result.px_per_m is None else 1.0 / result.px_per_m
+        listed = [
+            {
+                "id": size.id, "x_px": round(size.at_px[0], 1), "y_px": round(size.at_px[1], 1),
+                "area_px": size.area_px, "length_px": round(size.length_px, 1),
+                "width_px": round(size.width_px, 1),
+                "length_m": None if metres is None else round(size.length_px * metres, 4),
+                "width_m": None if metres is None else round(size.width_px * metres, 4),
+            }
+            for size in sizes
+        ]  # fmt: skip
         print_json(
             {
                 "stones": len(sizes),
                 "px_per_m": result.px_per_m,
                 **details,
-                "sizes": [_size_json(size, result.px_per_m) for size in sizes],
+                "sizes": listed,
                 "notices": [str(notice) for notice in notices],
             }
         )
@@ -198,17 +209,6 @@ def _details(
              "area_px": one.area_px, "why": one.why}
             for one in found.left_out
         ],
-    }  # fmt: skip
-
-
-def _size_json(size: StoneSize, px_per_m: float | None) -> dict[str, Any]:
-    metres = None if px_per_m is None else 1.0 / px_per_m
-    return {
-        "id": size.id, "x_px": round(size.at_px[0], 1), "y_px": round(size.at_px[1], 1),
-        "area_px": size.area_px, "length_px": round(size.length_px, 1),
-        "width_px": round(size.width_px, 1),
-        "length_m": None if metres is None else round(size.length_px * metres, 4),
-        "width_m": None if metres is None else round(size.width_px * metres, 4),
     }  # fmt: skip
 
 

@@ -59,11 +59,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     for name, one in chosen.items():
         limits = "" if one["range"] is None else f"  ({one['range']})"
         print(f"{name} = {json.dumps(one['value'])}{limits}")
-        print(textwrap.fill(one["meaning"].replace("`", ""), 88, **_INDENT))
+        meaning = one["meaning"].replace("`", "")
+        print(textwrap.fill(meaning, 88, initial_indent="    ", subsequent_indent="    "))
     return ExitCode.DONE
-
-
-_INDENT: Any = {"initial_indent": "    ", "subsequent_indent": "    "}
 
 
 def planner_tables() -> dict[str, type[Any]]:

@@ -13,7 +13,7 @@ from drystone.drawing.drawing import Dots, Drawing, Lines, Surface, pale_wall, s
 from drystone.drawing.outlines import Loop, wall_regions
 from drystone.kernels.raster import Floats
 from drystone.model.wall import Labels
-from drystone.statics.failing.bodies import ContactKind
+from drystone.statics.failing.mechanism import ContactKind
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 
 JOINT, NORMAL, POINT = "#0072b2", "#d55e00", "#8b0000"

@@ -18,7 +18,7 @@ from drystone.physics.building import BlockMove, BuildUp
 from drystone.physics.scatter import TiltResult
 from drystone.search.closed_loop import ClosedRun
 from drystone.search.rehearsal import Groups, RehearsalRun
-from drystone.verify.engine import check_engine
+from drystone.verify.claims import check_engine
 from drystone.verify.outlines import PolygonGroup
 from drystone.verify.report import CheckReport, Problem
 

@@ -11,10 +11,15 @@ import numpy as np
 from scipy import ndimage
 
 from drystone.contacts.blocks import ImageModel, model_from_labels
-from drystone.contacts.gaps import GapSweep, gap_sweep, model_with_closed_gaps, settle_gaps
+from drystone.contacts.gaps import (
+    GapSweep,
+    gap_sweep,
+    model_with_closed_gaps,
+    scarce_contacts,
+    settle_gaps,
+)
 from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.contacts.outlines import model_of_traced, outlines_of_labels
-from drystone.contacts.scarce import scarce_contacts
 from drystone.contacts.settled import SETBACK
 from drystone.drawing.words.analysis import STONES, ModelledWall, Shapes
 from drystone.errors import InputError, Notice, UsageError

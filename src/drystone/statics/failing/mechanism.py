@@ -2,17 +2,284 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
-from drystone.statics.failing.bodies import (
-    ContactKind,
-    Floats,
-    MovingGroup,
-    kinematics,
-    moving_groups,
-)
-from drystone.statics.model import GROUND, RigidBlockModel
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from drystone.statics.model import GROUND, Direction, RigidBlockModel
 from drystone.statics.result import Mechanism
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+ContactKind = Literal["closed", "opening", "sliding", "opening and sliding"]
+_KINDS: tuple[ContactKind, ...] = ("closed", "opening", "sliding", "opening and sliding")
+MotionKind = Literal["rocking", "sliding", "falling", "mixed"]
+
+_STILL = -1
+
+BED = 0.1
+"""A joint bears what is above it when its normal points up by at least this much."""
+
+
+@dataclass(frozen=True, eq=False)
+class Kinematics:
+    """A mechanism on the contacts of its model."""
+
+    ids: Ints
+    """(n + 1,): of every block, the ground last; what the mechanism does not name stands still."""
+    area: Floats  # (n + 1,)
+    centroid: Floats  # (n + 1, 2)
+    velocity: Floats  # (n + 1, 3)
+    blocks: Ints
+    """(m, 2): rows of the two blocks at every contact point, first the one that the normal points
+    into."""
+    point: Floats  # (m, 2): where, and the normal of its interface
+    normal: Floats  # (m, 2)
+    friction: Floats  # (m,): coefficient of friction
+    length: float  # characteristic length: root of the mean area of a block
+    tolerance: float  # share of the largest velocity below which one counts as none
+
+    @cached_property
+    def speed(self) -> Floats:
+        """Of every block: of its centroid, or of its turning at the characteristic length."""
+        centroid = np.hypot(self.velocity[:, 0], self.velocity[:, 1])
+        return np.maximum(centroid, self.length * np.abs(self.velocity[:, 2]))
+
+    @cached_property
+    def least(self) -> float:
+        """Velocity from which on one counts."""
+        return self.tolerance * float(self.speed.max())
+
+    @cached_property
+    def relative(self) -> Floats:
+        """Opening and sliding velocity at every contact point, sliding along (y, -x)."""
+        velocities = []
+        for rows in self.blocks.T:
+            arm = self.point - self.centroid[rows]
+            along_x, along_y, turning = self.velocity[rows].T
+            at = np.column_stack((along_x - turning * arm[:, 1], along_y + turning * arm[:, 0]))
+            velocities.append(at)
+        apart = velocities[0] - velocities[1]
+        tangent = np.column_stack((self.normal[:, 1], -self.normal[:, 0]))
+        return np.column_stack(((apart * self.normal).sum(axis=1), (apart * tangent).sum(axis=1)))
+
+    @cached_property
+    def turning(self) -> Floats:
+        """Turning of the first block against the second at every contact, times `length`."""
+        first, second = self.velocity[self.blocks.T, 2]
+        return np.asarray(self.length * (first - second))
+
+    @cached_property
+    def slips(self) -> Bools:
+        """Whether the blocks slip along a contact point."""
+        return np.asarray(np.abs(self.relative[:, 1]) > self.least)
+
+    @cached_property
+    def opens(self) -> Bools:
+        """Whether a contact point opens by more than the dilatancy of its slip."""
+        dilatancy = self.friction * np.abs(self.relative[:, 1])
+        return np.asarray(self.relative[:, 0] - dilatancy > self.least)
+
+    @property
+    def kinds(self) -> tuple[ContactKind, ...]:
+        """Opening and slip in words."""
+        codes = self.opens.astype(int) + 2 * self.slips.astype(int)
+        return tuple(_KINDS[code] for code in codes.tolist())
+
+
+def kinematics(model: RigidBlockModel, mechanism: Mechanism, tolerance: float) -> Kinematics:
+    """Lay a mechanism over the contacts of its model; ValueError for a block that it lacks."""
+    place = {block.id: row for row, block in enumerate(model.blocks)} | {GROUND: len(model.blocks)}
+    missing = sorted(set(mechanism.block_ids) - place.keys())
+    if missing:
+        raise ValueError(f"the mechanism moves blocks that the model lacks: {missing}")
+    velocity = np.zeros((len(place), 3))
+    velocity[[place[block] for block in mechanism.block_ids]] = mechanism.velocity
+    area = np.array([block.area for block in model.blocks])
+    which = model.contact_interfaces
+    pairs = [(place[i.block], place[i.other]) for i in model.interfaces]
+    normals = np.array([i.normal for i in model.interfaces], float).reshape(-1, 2)
+    friction = np.array([model.friction(i) for i in model.interfaces], float)
+    return Kinematics(
+        ids=np.array([*(block.id for block in model.blocks), GROUND], np.int64),
+        area=np.append(area, 0.0),
+        centroid=np.array([*(block.centroid for block in model.blocks), (0.0, 0.0)]),
+        velocity=velocity,
+        blocks=np.array(pairs, np.int64).reshape(-1, 2)[which],
+        point=np.concatenate([np.empty((0, 2)), *(i.points for i in model.interfaces)]),
+        normal=normals[which],
+        friction=friction[which],
+        length=float(np.sqrt(area.mean())) if len(area) else 1.0,
+        tolerance=tolerance,
+    )
+
+
+@dataclass(frozen=True)
+class Toe:
+    """The end of a joint about which a body turns."""
+
+    point: tuple[float, float]  # wall frame
+    block: int  # of the body
+    other: int  # stays in touch with it there; may be GROUND
+    side: Direction | None
+    """To which side the body tips over it; None when it hangs there rather than stands."""
+
+
+@dataclass(frozen=True)
+class MovingGroup:
+    """Blocks that move as one rigid body."""
+
+    blocks: tuple[int, ...]  # ids, ascending
+    motion: MotionKind
+    """"rocking": turns about a toe on what stands still, or on another body.  "sliding": slides
+    without turning on what stands still, or on another body.  "falling": goes down and touches
+    nothing any more.  "mixed": all else, as turning and sliding at once, or being carried by
+    several bodies."""
+    velocity: tuple[float, float, float]
+    """To the right, up, and turning counter-clockwise, at the body's centroid."""
+    centroid: tuple[float, float]
+    area: float
+    speed: float  # of its fastest block, as share of that of the mechanism's fastest
+    toe: Toe | None  # what a rocking body turns about
+    against: tuple[int, ...]
+    """Blocks outside of the body on which it moves as `motion` says, ascending; GROUND among them.
+    """
+    on_bed: bool  # whether it does so on joints that bear it; False for joints at its sides
+
+    @property
+    def centre(self) -> tuple[float, float] | None:
+        """Instantaneous centre of rotation in the wall frame; None for what does not turn."""
+        vx, vy, turning = self.velocity
+        if turning == 0.0:
+            return None
+        return self.centroid[0] - vy / turning, self.centroid[1] + vx / turning
+
+    @property
+    def momentum(self) -> float:
+        """Area times speed of the centroid."""
+        return self.area * float(np.hypot(*self.velocity[:2]))
+
+
+def moving_groups(kin: Kinematics) -> tuple[MovingGroup, ...]:
+    """Return the bodies of a mechanism by momentum, largest first.
+
+    Two blocks are of one body when a contact point between them neither opens nor slides and they
+    do not turn against each other, and through other blocks.
+    """
+    body = _bodies(kin)
+    groups = [_group(kin, body, number) for number in range(int(body.max(initial=_STILL)) + 1)]
+    # In shares of the largest and rounded, so that equal ones keep the order of their ids.
+    largest = max((group.momentum for group in groups), default=0.0) or 1.0
+    return tuple(sorted(groups, key=lambda g: (-round(g.momentum / largest, 9), g.blocks)))
+
+
+def _bodies(kin: Kinematics) -> Ints:
+    """Give every block the number of its body; -1 for all that stands still."""
+    moves = kin.speed > kin.least
+    rigid = ~(kin.opens | kin.slips) & (np.abs(kin.turning) <= kin.least)
+    rigid &= moves[kin.blocks].all(axis=1)
+    rows, cols = kin.blocks[rigid].T
+    count = len(moves)
+    joined = coo_array((np.ones(len(rows)), (rows, cols)), shape=(count, count))
+    _, parts = connected_components(joined, directed=False)
+    body = np.full(count, _STILL, np.int64)
+    body[moves] = np.unique(parts[moves], return_inverse=True)[1]
+    return body
+
+
+def _group(kin: Kinematics, body: Ints, number: int) -> MovingGroup:
+    rows = np.flatnonzero(body == number)
+    area = kin.area[rows]
+    centroid = area @ kin.centroid[rows] / area.sum()
+    velocity = area @ kin.velocity[rows] / area.sum()
+    if kin.length * abs(velocity[2]) <= kin.least:
+        velocity[2] = 0.0
+    border = _Border.of(kin, body, number)
+    motion, at = border.motion(down=velocity[1] < 0, turning=velocity[2] != 0.0)
+    toe = border.toe(at) if motion == "rocking" else None
+    vx, vy, turning = velocity.tolist()
+    return MovingGroup(
+        blocks=tuple(sorted(kin.ids[rows].tolist())),
+        motion=motion,
+        velocity=(vx, vy, turning),
+        centroid=(float(centroid[0]), float(centroid[1])),
+        area=float(area.sum()),
+        speed=float(kin.speed[rows].max() / kin.speed.max()),
+        toe=toe,
+        against=tuple(np.unique(kin.ids[border.outside[at]]).tolist()),
+        on_bed=bool(border.bears[at].any()),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Border:
+    """The contact points of a body with others."""
+
+    kin: Kinematics
+    contact: Ints  # (k,): which contact points
+    inside: Ints  # (k,): rows of their blocks
+    outside: Ints  # (k,)
+    other: Ints  # (k,): the other body, -1 for what stands still
+    turning: Floats  # (k,): of the body against the other one, times the characteristic length
+    bears: Bools  # (k,): whether the body stands on it
+
+    @classmethod
+    def of(cls, kin: Kinematics, body: Ints, number: int) -> "_Border":
+        first, second = body[kin.blocks.T]
+        contact = np.flatnonzero((first == number) != (second == number))
+        is_first = first[contact] == number
+        pairs = np.where(is_first[:, None], kin.blocks[contact], kin.blocks[contact, ::-1])
+        sign = np.where(is_first, 1.0, -1.0)
+        inside, outside = pairs.T
+        turning, bears = sign * kin.turning[contact], sign * kin.normal[contact, 1] > BED
+        return cls(kin, contact, inside, outside, body[outside], turning, bears)
+
+    def motion(self, *, down: bool, turning: bool) -> tuple[MotionKind, Ints]:
+        """Tell how the body moves, and at which of the contact points.
+
+        A body that does not turn itself does not rock, though what touches it may.
+        """
+        kin, still = self.kin, self.other == _STILL
+        opens, slips = kin.opens[self.contact], kin.slips[self.contact]
+        turns = np.abs(self.turning) > kin.least
+        pivots, slides, kept = ~opens & ~slips & turns, ~opens & slips & ~turns, ~opens & turns
+        # What stands still says more than what moves, and what is below more than what is beside.
+        for motion, at in (
+            ("rocking", pivots & still & self.bears),
+            ("rocking", pivots & still),
+            ("sliding", slides & still & self.bears),
+            ("sliding", slides & self.bears),
+            ("rocking", self._on_one(pivots & self.bears)),
+            ("mixed", kept & self.bears),
+            ("sliding", slides),
+            ("rocking", self._on_one(pivots)),
+            ("mixed", kept),
+        ):
+            if at.any() and (turning or motion != "rocking"):
+                return motion, np.flatnonzero(at)  # type: ignore[return-value]
+        return "falling" if down else "mixed", np.empty(0, np.int64)
+
+    def _on_one(self, pivots: Bools) -> Bools:
+        """Return the pivots when they are all on one other body, otherwise none."""
+        return pivots & (len(np.unique(self.other[pivots])) == 1)
+
+    def toe(self, at: Ints) -> Toe:
+        """Return the lowest of the contact points that a body rocks about."""
+        points = self.kin.point[self.contact[at]]
+        k = at[np.lexsort((points[:, 0], points[:, 1]))[0]]
+        x, y = self.kin.point[self.contact[k]].tolist()
+        side: Direction | None = None
+        if self.bears[k]:
+            side = "left" if self.turning[k] > 0 else "right"
+        block, other = (int(self.kin.ids[rows[k]]) for rows in (self.inside, self.outside))
+        return Toe((x, y), block, other, side)
+
 
 TOLERANCE = 1e-4
 """Velocities below this share of the largest one count as none: an interior point method leaves
@@ -110,12 +377,10 @@ class Names:
     def place(self, ids: Iterable[int]) -> str:
         """Name what something moves on: "4", "the ground and 4", "wedge 301"."""
         ordered = sorted(ids, key=lambda i: (i != GROUND, i in self.wedges, i))
-        return _shortened([self._one(block) for block in ordered])
-
-    def _one(self, block: int) -> str:
-        if block == GROUND:
-            return "the ground"
-        return f"{'wedge ' * (block in self.wedges)}{self._number(block)}"
+        words = [
+            f"{'wedge ' * (i in self.wedges)}{self._number(i)}" for i in ordered if i != GROUND
+        ]
+        return _shortened(["the ground"] * (GROUND in ordered) + words)
 
     def _number(self, block: int) -> str:
         step = self.steps.get(block)

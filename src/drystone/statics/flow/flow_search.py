@@ -74,12 +74,6 @@ class NonassociativeSettings:
     seed: int = 0  # of the random slip rates
     let_go: bool = True  # it is looked first whether the blocks can fall when they are let go
 
-    @property
-    def all_starts(self) -> tuple[Start, ...]:
-        """The fixed and the random ones."""
-        more = (Start(f"random {i + 1}", "random", 30.0) for i in range(self.random_starts))
-        return (*self.starts, *more)
-
 
 @dataclass(frozen=True, eq=False)
 class FlowState:
@@ -103,38 +97,6 @@ class ContactRates:
         """Take them from the columns of a program."""
         first, second = program.matrix[:, 1::2], program.matrix[:, 2::2]
         return cls(csc_array(first + second) / 2.0, csc_array(first - second) / 2.0)
-
-
-class ForcesOfMotion:
-    """The least load multiplier, along the sign, with forces that go with a given motion."""
-
-    def __init__(self, program: EquilibriumProgram, rates: ContactRates, sign: float) -> None:
-        self._program, self._rates, self._sign = program, rates, sign
-        self._session = HighsSession(program)
-
-    def find(self, velocity: Floats) -> tuple[FlowState, Floats] | None:
-        """Return the state of least load, or None when no forces go with the motion.
-
-        Opening contacts are left without force, sliding ones with the edge that resists.  With it
-        comes how much alpha would fall for a unit of force on each edge (m, 2) ruled out so.
-        """
-        fastest = float(np.abs(velocity).max())
-        opens = self._rates.normal.T @ velocity > NOTHING * fastest
-        slip = self._rates.slip.T @ velocity
-        barred = np.column_stack(
-            (opens | (slip > NOTHING * fastest), opens | (slip < -NOTHING * fastest))
-        ).ravel()
-        columns = np.arange(1, 1 + len(barred), dtype=np.int32)
-        upper = np.where(barred, 0.0, INFINITY)
-        self._session.highs.changeColsBounds(len(columns), columns, np.zeros(len(columns)), upper)
-        costs = np.zeros(1 + len(barred))
-        costs[0] = self._sign
-        found = self._session.minimise(costs)
-        state = _state(found, self._sign, velocity)
-        if state is None:
-            return None
-        gain = found.duals @ self._program.matrix[:, 1:]
-        return state, np.where(barred & (gain > NOTHING), gain, 0.0).reshape(-1, 2)
 
 
 class MotionsOfForces:
@@ -224,10 +186,9 @@ class Search:
         self._program, self._sign, self._upright = program, sign, upright
         self._settings = settings
         self._look = look
-        rates = ContactRates.of(program)
-        self._slip = rates.slip
-        self._forces = ForcesOfMotion(program, rates, sign)
-        self._motions = MotionsOfForces(program, rates, sign)
+        self._rates = ContactRates.of(program)
+        self._forces = HighsSession(program)
+        self._motions = MotionsOfForces(program, self._rates, sign)
 
     @property
     def moves(self) -> bool:
@@ -240,13 +201,15 @@ class Search:
         # Without an associative mechanism, where no load is too great for one, all slip alike.
         mechanism = np.ones(len(self._upright))
         if first is not None:
-            mechanism = np.abs(self._slip.T @ first.velocity)
-        rng = np.random.default_rng(self._settings.seed)
-        for start in self._settings.all_starts:
-            rounds, state = self._rounds(self._rates(start, mechanism, rng))
+            mechanism = np.abs(self._rates.slip.T @ first.velocity)
+        settings = self._settings
+        rng = np.random.default_rng(settings.seed)
+        more = (Start(f"random {i + 1}", "random", 30.0) for i in range(settings.random_starts))
+        for start in (*settings.starts, *more):
+            rounds, state = self._rounds(self._slip_rates(start, mechanism, rng))
             yield start.name, rounds, state and self._descended(state)
 
-    def _rates(self, start: Start, mechanism: Floats, rng: np.random.Generator) -> Floats:
+    def _slip_rates(self, start: Start, mechanism: Floats, rng: np.random.Generator) -> Floats:
         largest = float(mechanism.max(initial=0.0)) or 1.0
         shares = {
             "even": np.ones_like(mechanism),
@@ -268,7 +231,7 @@ class Search:
             velocity = self._motions.find(state.edges)
             if velocity is not None:
                 return number, FlowState(state.alpha, state.edges, velocity)
-            way = np.abs(self._slip.T @ state.velocity) - rates
+            way = np.abs(self._rates.slip.T @ state.velocity) - rates
             if number % BETWEEN:
                 rates = rates + (SHORTEST + number * GOLDEN % 1.0) * way
             else:
@@ -283,12 +246,36 @@ class Search:
         costs = np.concatenate(([-self._sign], np.repeat(rates, 2)))
         return _state(session.minimise(costs), self._sign)
 
+    def _least_forces(self, velocity: Floats) -> tuple[FlowState, Floats] | None:
+        """Return the state of least load whose forces go with a motion, or None.
+
+        Opening contacts are left without force, sliding ones with the edge that resists.  With it
+        comes how much alpha would fall for a unit of force on each edge (m, 2) ruled out so.
+        """
+        fastest = float(np.abs(velocity).max())
+        opens = self._rates.normal.T @ velocity > NOTHING * fastest
+        slip = self._rates.slip.T @ velocity
+        barred = np.column_stack(
+            (opens | (slip > NOTHING * fastest), opens | (slip < -NOTHING * fastest))
+        ).ravel()
+        columns = np.arange(1, 1 + len(barred), dtype=np.int32)
+        upper = np.where(barred, 0.0, INFINITY)
+        self._forces.highs.changeColsBounds(len(columns), columns, np.zeros(len(columns)), upper)
+        costs = np.zeros(1 + len(barred))
+        costs[0] = self._sign
+        found = self._forces.minimise(costs)
+        state = _state(found, self._sign, velocity)
+        if state is None:
+            return None
+        gain = found.duals @ self._program.matrix[:, 1:]
+        return state, np.where(barred & (gain > NOTHING), gain, 0.0).reshape(-1, 2)
+
     def _descended(self, state: FlowState) -> FlowState:
         """Improve forces and motion in turn until alpha has not fallen for some steps."""
         stalled = 0
         while stalled < self._settings.patience:
             self._look()
-            found = self._forces.find(state.velocity)
+            found = self._least_forces(state.velocity)
             if found is None or found[0].alpha > state.alpha + NOTHING:
                 return state
             better, wanted = found

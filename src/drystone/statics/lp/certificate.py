@@ -26,9 +26,15 @@ def certify(program: EquilibriumProgram, solution: Solution, sign: float) -> Cer
         return optimum_of(found, float(solution.columns[0]), sign)
     if solution.status is LimitStatus.UNSTABLE and solution.duals is not None:
         return no_alpha_of(_figures(program, None, -solution.duals))
-    if solution.status is LimitStatus.UNBOUNDED and solution.columns is not None:
-        return _of_growth(program, solution.columns, sign)
-    return None
+    if solution.status is not LimitStatus.UNBOUNDED or solution.columns is None:
+        return None
+    # A state of self-stress that grows carries any live load.
+    ray = solution.columns
+    if not sign * ray[0] > 0.0:
+        return None
+    ray = ray / abs(ray[0])
+    residual, violation = _largest(np.abs(program.matrix @ ray)), _largest(-ray[1:])
+    return Certificate(residual, violation, lower=sign * np.inf)
 
 
 def in_equilibrium(program: EquilibriumProgram, solution: Solution) -> bool:
@@ -85,18 +91,6 @@ def _figures(program: EquilibriumProgram, columns: Floats | None, velocity: Floa
     largest, inadmissible = _largest(np.abs(velocity)), _largest(-powers[1:])
     live, rhs = float(powers[0]), float(program.rhs @ velocity)
     return Figures(residual, violation, total, largest, inadmissible, live, rhs)
-
-
-def _of_growth(program: EquilibriumProgram, ray: Floats, sign: float) -> Certificate | None:
-    """Certify a state of self-stress that carries any live load."""
-    if not sign * ray[0] > 0.0:
-        return None
-    ray = ray / abs(ray[0])
-    return Certificate(
-        residual=_largest(np.abs(program.matrix @ ray)),
-        violation=_largest(-ray[1:]),
-        lower=sign * np.inf,
-    )
 
 
 def _largest(values: Floats) -> float:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from drystone.kernels.cones import GROUND_BODY, Body, cone_edges
 from drystone.kernels.simplex import Added, Cones
 from drystone.statics.lp.program import Units
-from drystone.statics.model import GROUND, NO_SLIP, Addition, Block, Interface
+from drystone.statics.model import GROUND, NO_SLIP, Addition, Block
 
 Ints = NDArray[np.int32]
 
@@ -52,9 +52,19 @@ class ConeProgram:
         new = self._new_bodies(addition.blocks)
         if new is None:
             return None
-        cones = self._cones(new, addition.interfaces, mu)
-        if cones is None:
-            return None
+        old = self.bodies
+        bodies, normals, frictions, points = [], [], [], []
+        for interface in addition.interfaces:
+            one, two = interface.block, interface.other
+            first = new.get(one) or old.get(one)
+            second = new.get(two) or old.get(two)
+            if first is None or second is None or first[0] < 0:
+                return None
+            bodies.append((first, second))
+            normals.append(interface.normal)
+            frictions.append(min(mu if interface.mu is None else interface.mu, NO_SLIP))
+            points.append(interface.points)
+        cones = Cones(*cone_edges(bodies, normals, frictions, points, self.units.length))
         weight = self.units.weight
         weights = np.array([block.weight / weight for block in addition.blocks], np.float64)
         gone = NONE_CLOSED
@@ -86,20 +96,3 @@ class ConeProgram:
             new[block.id] = (place, x, y)
             place += 1
         return new
-
-    def _cones(
-        self, new: Mapping[int, Body], interfaces: tuple[Interface, ...], mu: float
-    ) -> Cones | None:
-        old = self.bodies
-        bodies, normals, frictions, points = [], [], [], []
-        for interface in interfaces:
-            one, two = interface.block, interface.other
-            first = new.get(one) or old.get(one)
-            second = new.get(two) or old.get(two)
-            if first is None or second is None or first[0] < 0:
-                return None
-            bodies.append((first, second))
-            normals.append(interface.normal)
-            frictions.append(min(mu if interface.mu is None else interface.mu, NO_SLIP))
-            points.append(interface.points)
-        return Cones(*cone_edges(bodies, normals, frictions, points, self.units.length))
