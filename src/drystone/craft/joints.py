@@ -95,14 +95,12 @@ class Joint:
     @property
     def bottom(self) -> Points:
         """Lower end of a head joint."""
-        end: Points = self.points[0] - np.array([0.0, 0.5 * self.spacing])
-        return end
+        return np.asarray(self.points[0] - np.array([0.0, 0.5 * self.spacing]))
 
     @property
     def top(self) -> Points:
         """Upper end of a head joint."""
-        end: Points = self.points[-1] + np.array([0.0, 0.5 * self.spacing])
-        return end
+        return np.asarray(self.points[-1] + np.array([0.0, 0.5 * self.spacing]))
 
     @property
     def x0(self) -> float:

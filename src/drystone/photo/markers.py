@@ -262,5 +262,4 @@ def marker_modules(name: str, marker_id: int) -> NDArray[np.bool_]:
         raise UsageError("E174", what, where="--ids", cure=cure)
     across = int(dictionary.markerSize) + 2
     picture = load_cv2().aruco.generateImageMarker(dictionary, marker_id, across)
-    black: NDArray[np.bool_] = np.asarray(picture) < 128
-    return black
+    return np.asarray(np.asarray(picture) < 128)

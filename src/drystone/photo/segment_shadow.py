@@ -81,7 +81,13 @@ def find_shadows(ground: GroundModel, foreground: Mask, usable: Mask) -> Shadows
     edge = around & ((depth <= WINDOW_PX) | _grown(body, WINDOW_PX // 2))
     # A shadow may be as long as the largest stones are wide.
     reach = max(10, int(3 * float(ndimage.distance_transform_edt(sure).max())))
-    zone = _behind(sure, direction, reach)
+    zone = np.zeros_like(sure)  # behind stones, seen from the light
+    height, width = sure.shape
+    for far in range(0, reach, 2):
+        down, right = (round(float(part) * far) for part in direction)
+        to = (_overlap(down, height), _overlap(right, width))
+        zone[to] |= sure[_overlap(-down, height), _overlap(-right, width)]
+    zone = _grown(zone, WINDOW_PX // 2)
     body = _open_ended(body, sure, direction)
     edge &= _grown(body, WINDOW_PX + 3)
     return Shadows((body | edge) & zone, float(np.exp(level)), alike)
@@ -143,17 +149,6 @@ def _open_ended(body: Mask, sure: Mask, direction: Vector) -> Mask:
     kept = on_stone < 0.5 * total
     kept[0] = False
     return np.asarray(kept[areas])
-
-
-def _behind(sure: Mask, direction: Vector, reach: int) -> Mask:
-    """Return what lies behind stones, seen from the light."""
-    behind = np.zeros_like(sure)
-    height, width = sure.shape
-    for far in range(0, reach, 2):
-        down, right = (round(float(part) * far) for part in direction)
-        to = (_overlap(down, height), _overlap(right, width))
-        behind[to] |= sure[_overlap(-down, height), _overlap(-right, width)]
-    return _grown(behind, WINDOW_PX // 2)
 
 
 def _overlap(by: int, size: int) -> slice:

@@ -56,10 +56,8 @@ def policy_named(name: str, settings: PolicySettings, weights: SelectionSettings
     that of another package cannot be loaded.
     """
     make = BUILT_IN.get(name)
-    return make(settings, weights) if make is not None else _of_another_package(name)
-
-
-def _of_another_package(name: str) -> Policy:
+    if make is not None:
+        return make(settings, weights)
     found = () if name in (PAPER, *RULES) else tuple(entry_points(group=GROUP, name=name))
     if not found:
         raise _unknown(name)

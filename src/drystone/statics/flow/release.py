@@ -112,8 +112,7 @@ def masses(model: RigidBlockModel, program: EquilibriumProgram) -> Floats:
     free = [block for block in model.blocks if not block.fixed]
     mass = np.array([block.weight for block in free]) / program.weight
     square = np.array([block.area for block in free]) / 6.0 / program.length**2
-    own: Floats = np.column_stack((mass, mass, mass * square))[program.rows >= 0]
-    return own
+    return np.asarray(np.column_stack((mass, mass, mass * square))[program.rows >= 0])
 
 
 class _States:
