@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from drystone.model.placement import Wedge
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
-from drystone.stabilise.support import Support
+from drystone.stabilise.stabilise import Support
 from drystone_lab.reproduce import fig9
 from drystone_lab.reproduce.fig9 import unstable_trials
 from tests.lab.reproduce.small_walls import SHARP, built, gids, of, rows
