@@ -61,6 +61,15 @@ def test_bricks_in_bond_survive_a_robot_and_a_brick_on_a_post_does_not_survive_a
     assert run.first_fall not in {i for i, _ in run.blocks}
 
 
+def test_falls_begin_with_the_stone_under_whose_load_another_falls():
+    plank_and_load = [[(1, box(0.0, 0.0))], [(2, box(5.0, 20.0, 60.0, 10.0))]]
+    run = rehearse(plank_and_load, NONE, np.random.default_rng(0))
+    assert (run.first_fall, run.begins) == (None, None)
+    plank_and_load += [[(3, box(45.0, 30.0, 20.0, 20.0))], [(4, box(5.0, 30.0, 20.0, 10.0))]]
+    run = rehearse(plank_and_load, NONE, np.random.default_rng(0))
+    assert (run.first_fall, run.begins) == (2, 3)
+
+
 def test_the_engine_judges_the_same_errors():
     pytest.importorskip("pymunk")
     (bond,) = runs(BOND, ROBOT, 1, rehearse_in_engine)

@@ -67,11 +67,19 @@ class RehearsalRun:
     blocks: tuple[Outlined, ...]  # where all that has not fallen lies
     # Of a wall that stands in the engine: by how much it may be tilted, over mu; None without.
     tilt: float | None = None
+    # The stone that was laid when one fell first, that one or another below; None: not known.
+    laid_last: int | None = None
 
     @property
     def first_fall(self) -> int | None:
-        """The first stone that fell; None when none did."""
+        """The first stone that fell, in the order of placement; None when none did."""
         return next((end.stone for end in self.stones if end.fallen), None)
+
+    @property
+    def begins(self) -> int | None:
+        """The stone with which falls begin, as far as that is known; None when none fell."""
+        fell = self.first_fall
+        return fell if fell is None or self.laid_last is None else self.laid_last
 
 
 def groups_of(wall: Wall) -> Groups:
@@ -123,23 +131,24 @@ def rehearse(
 
 def put_up(groups: Groups, put: Put, mu: float, settle: SettleSettings) -> RehearsalRun:
     """Build a wall once of blocks with their errors."""
-    wall = BuiltWall(mu, settle)
-    for stone, *wedges in put:
-        wall = wall.put((*wedges, stone))
-        if stone[0] in wall.laid:
-            wall = wall.loaded(stone[0])
-    ends = tuple(_end(group[0], wall.laid.get(group[0][0])) for group in groups)
+    wall, laid_last = BuiltWall(mu, settle), None
+    planned = {group[0][0]: as_planned(group[0][1]) for group in groups}
+    for (block, at), (stone, *wedges) in zip(planned.items(), put, strict=True):
+        wall = before = wall.put((*wedges, stone))
+        fell = block not in wall.laid or astray(wall.laid[block], at)
+        if block in wall.laid:
+            wall = wall.loaded(block)
+        if laid_last is None and (fell or not planned.keys().isdisjoint(wall.lost(before))):
+            laid_last = block  # wedges alone may be lost
+    ends = tuple(_end(block, at, wall.laid.get(block)) for block, at in planned.items())
     fallen = {end.stone for end in ends if end.fallen}
-    return RehearsalRun(
-        ends, tuple((i, b.corners) for i, b in wall.laid.items() if i not in fallen)
-    )
+    lies = tuple((i, b.corners) for i, b in wall.laid.items() if i not in fallen)
+    return RehearsalRun(ends, lies, laid_last=laid_last)
 
 
-def _end(planned: Outlined, built: Built | None) -> StoneEnd:
-    block, corners = planned
+def _end(block: int, at: Built, built: Built | None) -> StoneEnd:
     if built is None:
         return StoneEnd(block, True, None, None)
-    at = as_planned(corners)
     share = math.hypot(built.x - at.x, built.y - at.y) / built.size
     return StoneEnd(block, astray(built, at), share, built.angle_deg)
 
@@ -157,7 +166,8 @@ def rehearse_in_engine(
         # As complex numbers: the angle between the two outlines about their means.
         before, after = ((one - one.mean(axis=0)) @ (1, 1j) for one in (built.corners, corners))
         turn_deg = wrap_deg(built.angle_deg + math.degrees(cmath.phase(np.vdot(before, after))))
-        ends.append(_end(planned, replace(built, x=x, y=y, angle_deg=turn_deg)))
+        ended = replace(built, x=x, y=y, angle_deg=turn_deg)
+        ends.append(_end(block, as_planned(planned[1]), ended))
     fallen = {end.stone for end in ends if end.fallen}
     lies = tuple((i, corners) for i, corners in found.outlines.items() if i not in fallen)
     if fallen:

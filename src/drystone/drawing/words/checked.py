@@ -260,7 +260,7 @@ class Rehearsed:
     @cached_property
     def first(self) -> list[tuple[int, int]]:
         """Stones at which falls begin, and in how many runs: the most frequent first."""
-        found = Counter(run.first_fall for run in self.runs if run.first_fall is not None)
+        found = Counter(run.begins for run in self.runs if run.begins is not None)
         return sorted(found.items(), key=lambda one: (-one[1], one[0]))
 
     def _quantiles(self, values: Sequence[float]) -> dict[str, float] | None:
