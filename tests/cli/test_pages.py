@@ -11,6 +11,9 @@ from PIL import Image
 
 DOCS = Path(__file__).parents[2] / "docs"
 
+WIDTH, HEIGHT = 640, 440
+"""Of the photograph of a wall, px."""
+
 TRACED = (
     [(124, 780), (129, 625), (240, 611), (392, 617), (402, 700), (397, 780)],
     [(410, 780), (411, 700), (406, 626), (520, 632), (634, 633), (641, 780)],
@@ -35,12 +38,17 @@ def printed(page, kind):
     return "".join(blocks).splitlines()
 
 
+def photograph(path):
+    """Save a picture of the size that was traced: what it shows is not looked at."""
+    noise = np.random.default_rng(35).integers(0, 256, (HEIGHT, WIDTH, 3), np.uint8)
+    Image.fromarray(noise).save(path)
+    return path
+
+
 @pytest.fixture
 def traced(tmp_path, monkeypatch):
     """A folder, worked in, with a photograph and the trace as the page of outlines writes it."""
-    width, height, foot = 640, 440, 390
-    noise = np.random.default_rng(35).integers(0, 256, (height, width, 3), np.uint8)
-    Image.fromarray(noise).save(tmp_path / "wall.jpg")
+    photograph(tmp_path / "wall.jpg")
     shapes = [
         {"label": "stone", "points": [(x / 2, y / 2) for x, y in corners], "group_id": None,
          "shape_type": "polygon", "flags": {}}
@@ -48,8 +56,8 @@ def traced(tmp_path, monkeypatch):
     ]  # fmt: skip
     content = {
         "version": "5.5.0", "flags": {}, "shapes": shapes, "imagePath": "wall.jpg",
-        "imageData": None, "imageHeight": height, "imageWidth": width,
-        "drystone": {"px_per_m": 200.0, "ground": [[60, foot], [590, foot]]},
+        "imageData": None, "imageHeight": HEIGHT, "imageWidth": WIDTH,
+        "drystone": {"px_per_m": 200.0, "ground": [[60, 390], [590, 390]]},
     }  # fmt: skip
     (tmp_path / "outlines.json").write_text(json.dumps(content))
     monkeypatch.chdir(tmp_path)

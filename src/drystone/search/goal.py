@@ -243,8 +243,8 @@ def falls_of(build: Build, yard: Yard, runs: int, most: float = math.inf) -> Reh
     for put in errors_of(blocks, errors, [np.random.default_rng(run) for run in range(runs)]):
         yard.until.look()
         run = put_up(blocks, put, yard.settings.mu, yard.settings.settle)
-        if run.begins is not None:
-            first[run.begins] += 1
+        if run.first_fall is not None:
+            first[run.first_fall] += 1
         fallen += sum(end.fallen for end in run.stones)
         fallen += STOPPED * max(end.nearness for end in run.stones) ** NEARLY
         if fallen > most * all_stones:

@@ -140,10 +140,10 @@ def mechanism(build: Build, count: int, rng: Generator) -> Ids:
 
 
 def unsure(build: Build, count: int, rng: Generator) -> Ids:
-    """Take the stones around the one with which falls begin in a rehearsal."""
+    """Take the stones around the first one that falls in a rehearsal."""
     groups = groups_of(build.wall)
     errors = BuilderErrors.of_precision(HAND, mean_size(groups))
-    first = rehearse(groups, errors, rng, mu=build.model.mu).begins
+    first = rehearse(groups, errors, rng, mu=build.model.mu).first_fall
     if first is None:
         return disc(build, count, rng)
     ids, at = centres(build)

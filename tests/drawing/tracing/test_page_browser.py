@@ -15,7 +15,7 @@ from PIL import Image, ImageDraw
 
 from drystone.drawing.tracing.page import OutlinePage, write_outline_page
 from drystone.photo.segment_doubts import Doubt
-from tests.cli import traced
+from tests.cli import test_pages as pages
 from tests.cli.conftest import run  # noqa: F401 - a fixture
 from tests.drawing.report.test_viewer_browser import Heard, browser  # noqa: F401 - a fixture
 
@@ -327,12 +327,12 @@ def test_a_stone_that_is_redrawn_or_numbered_keeps_its_number(visit):
 
 
 def test_a_wall_is_traced_and_analysed(browser, run, tmp_path):  # noqa: F811
-    wall, folder, heard = traced.photograph(tmp_path / "wall.jpg"), tmp_path / "wall", Heard()
+    wall, folder, heard = pages.photograph(tmp_path / "wall.jpg"), tmp_path / "wall", Heard()
     assert run("trace", wall, "-o", folder).code == 0
     page = heard.page(browser.new_context(accept_downloads=True), folder / "outlines.html")
-    view = View(page, traced.WIDTH, traced.HEIGHT)
+    view = View(page, pages.WIDTH, pages.HEIGHT)
     page.keyboard.press("d")
-    for corners in traced.TRACED:
+    for corners in pages.TRACED:
         for x, y in (*corners, corners[0]):
             page.mouse.click(*view(x / 2, y / 2))
     says(page, "13 stones")
@@ -349,7 +349,7 @@ def test_a_wall_is_traced_and_analysed(browser, run, tmp_path):  # noqa: F811
     file, path = saved(page), folder / "outlines.json"
     path.write_text(json.dumps(file))
     shapes = [shapely.Polygon(shape["points"]) for shape in file["shapes"]]
-    for shape, corners in zip(shapes, traced.TRACED, strict=True):
+    for shape, corners in zip(shapes, pages.TRACED, strict=True):
         truth = shapely.Polygon(np.array(corners) / 2)
         assert shape.intersection(truth).area / shape.union(truth).area > 0.93
     ran = run("analyse", path, "--close-gaps", "auto", "--associative-only")
