@@ -1,15 +1,24 @@
-"""Rotation first, wedging second (§3.7, Fig. 20, DESIGN 4.6)."""
+"""Support, rotation first, wedging second (§3.7, Figs. 9 and 20, DESIGN 4.6)."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from drystone.model.stone import Stone
 from drystone.poses import PoseBook
 from drystone.stabilise.settings import StabiliseSettings
-from drystone.stabilise.stabilise import WedgeStock, make_stable, stabilise
+from drystone.stabilise.stabilise import (
+    Support,
+    WedgeStock,
+    make_stable,
+    rotate_to_rest,
+    stabilise,
+    support_polyline,
+)
 from tests.naive import support as naive
-from tests.stabilise.scenes import bar_on_the_ledge, ledge
+from tests.naive.overlap import overlaps
+from tests.stabilise.scenes import BOOK, bar_on_the_ledge, ledge, mirrored, stairs
 from tests.stabilise.test_wedge import check_wedge, holds
 from tests.strategies import posed_on_walls, repeatable
 
@@ -104,3 +113,92 @@ def test_a_gap_higher_than_a_wedge_may_be_is_not_taken_for_the_ground(depth, hel
     assert (result is not None) is held
     outcome = make_stable(occupied, trial, "left", PoseBook(), stock, settings)
     assert outcome.depth == trial[1] + 6 + 30 + 1
+
+
+@repeatable(100)
+@given(on_wall=posed_on_walls(), margin=st.sampled_from([0.0, 0.5, 1.5]))
+def test_support_is_that_of_every_pixel_on_its_own(on_wall, margin):
+    wall, posed, row, col = on_wall
+    support = support_polyline(wall.occupied, posed, row, col)
+    ends = naive.support_ends(wall.occupied, posed.mask, row, col)
+    assert ((support.left_x, support.left_row), (support.right_x, support.right_row)) == ends
+    x_c = col + posed.anchor[0]
+    stable = naive.rests_stably(wall.occupied, posed.mask, row, col, x_c, margin)
+    assert (support.falls(x_c, margin) == 0) == stable
+
+
+@pytest.mark.parametrize(
+    ("x_c", "margin", "falls"),
+    [
+        (1.9, 0.0, -1), (2.0, 0.0, 0), (6.0, 0.0, 0), (6.1, 0.0, 1),
+        (2.9, 1.0, -1), (3.0, 1.0, 0), (5.1, 1.0, 1), (3.9, 3.0, -1), (4.1, 3.0, 1),
+    ],
+)  # fmt: skip
+def test_it_falls_to_the_nearer_end(x_c, margin, falls):
+    assert Support(2, 6, 9, 9).falls(x_c, margin) == falls
+
+
+def rests(occupied, pose):
+    posed, row, col = pose
+    return naive.rests_stably(occupied, posed.mask, row, col, col + posed.anchor[0], 0.0)
+
+
+@pytest.mark.parametrize("side", ["right", "left"])
+def test_an_overhanging_bar_turns_towards_its_fall_until_it_rests(side):
+    occupied = ledge()
+    trial = bar_on_the_ledge(occupied, PoseBook())
+    if side == "left":
+        occupied, trial = mirrored(occupied, trial, PoseBook())
+    assert not rests(occupied, trial)
+    nowhere = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings(max_pivots=0))
+    assert nowhere.pose is None
+    result = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings())
+    assert result.pose is not None
+    turned, row, col = result.pose
+    assert result.pivots >= 1
+    # About asin(4 / 18): its free end comes down onto the ground.
+    expected = -12.8 if side == "right" else 12.8
+    assert turned.angle_deg == pytest.approx(expected, abs=2.5)
+    assert not overlaps(occupied, turned.mask, row, col)
+    assert np.array_equal(turned.mask, PoseBook().pose(turned.stone, turned.angle_deg).mask)
+    assert rests(occupied, (turned, row, col))
+    lowest = row + turned.height_px
+    assert lowest == occupied.shape[0]  # it stands on the ground and on the ledge's edge
+    support = support_polyline(occupied, turned, row, col)
+    edge = support.left_x if side == "right" else occupied.shape[1] - support.right_x
+    assert edge == pytest.approx(14, abs=6)  # a step of the turned edge lies on the ledge
+
+
+def test_a_stable_stone_is_left_alone():
+    occupied = ledge()
+    trial = bar_on_the_ledge(occupied, PoseBook(), col=0, length=20)
+    result = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings())
+    assert result.pivots == 0
+    assert result.pose == trial
+    assert result.depth == trial[1] + 6 + 1  # the rows of the bar, and the one below
+
+
+@repeatable(80)
+@given(
+    scene=stairs(),
+    settings=st.sampled_from(
+        [
+            StabiliseSettings(),
+            StabiliseSettings(margin=0.1, max_turn_deg=70.0, step_deg=2.0),
+            StabiliseSettings(max_turn_deg=40.0, max_pivots=2, new_pivot_px=0, max_shift_px=5),
+            StabiliseSettings(new_pivot_px=60),
+            StabiliseSettings(max_turn_deg=5.0),
+        ]
+    ),
+)
+def test_it_turns_as_a_walk_from_angle_to_angle_does(scene, settings):
+    occupied, trial = scene
+    result = rotate_to_rest(occupied, trial, BOOK, settings)
+    expected = naive.rotated(occupied, trial, BOOK, settings)
+    assert (result.pose and (result.pose, result.pivots)) == expected
+
+
+def test_a_stone_in_the_air_does_not_rest():
+    posed = PoseBook().pose(Stone(7, np.ones((6, 30), bool)), 0.0)
+    result = rotate_to_rest(ledge(), (posed, 3, 10), PoseBook(), StabiliseSettings())
+    assert result.pose is None
