@@ -119,6 +119,30 @@ def test_one_failed_direction_leaves_the_other_unknown(monkeypatch):
     assert "could not be certified" in both.left.message
 
 
+def test_where_clarabel_gives_up_it_is_asked_what_has_to_be_held(monkeypatch):
+    """As of walls of 650 stones of which a chip of a hundredth of the mean weight falls."""
+    bond = [[x + 0.5 * (row % 2), row * 1.0, 1, 1] for row in range(5) for x in range(6)]
+    walls = [boxes(*bond), boxes(*bond, [3.0, 5.3, 0.1, 0.1])]
+    expected = [lateral_resistance(wall, solver="clarabel") for wall in walls]
+    said = []
+    solve = clarabel.ClarabelSession._solved
+
+    def stopping(session, matrix, costs):
+        found = solve(session, matrix, costs)
+        said.append(found.status)
+        stopped = len(said) % 2  # each answer that is not about what has to be held
+        return (
+            replace(found, status=LimitStatus.OPTIMAL, said="MaxIterations") if stopped else found
+        )
+
+    monkeypatch.setattr(clarabel.ClarabelSession, "_solved", stopping)
+    again = [lateral_resistance(wall, solver="clarabel") for wall in walls]
+    assert said == 4 * [LimitStatus.OPTIMAL] + [LimitStatus.UNSTABLE, LimitStatus.OPTIMAL]
+    assert [statuses(one) for one in again] == [statuses(one) for one in expected]
+    assert again[0].value == pytest.approx(expected[0].value)
+    assert again[1].left.certificate.fall_work > 0.0
+
+
 @pytest.mark.parametrize("wrong", ["columns", "duals"])
 def test_a_wrong_optimal_answer_is_found_out_and_asked_again(wrong, monkeypatch):
     """As a warm-started solver once gave them (HiGHS issue 3194)."""

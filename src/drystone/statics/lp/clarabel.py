@@ -1,10 +1,11 @@
 """Clarabel: an interior point method that grows slowly with the number of blocks."""
 
+from dataclasses import replace
 from typing import Any
 
 import clarabel
 import numpy as np
-from scipy.sparse import csc_array, csc_matrix, diags_array, vstack
+from scipy.sparse import csc_array, csc_matrix, diags_array, hstack, vstack
 
 from drystone.statics.lp.program import EquilibriumProgram, Floats, Solution
 from drystone.statics.result import LimitStatus
@@ -27,6 +28,12 @@ _STATUS = {
     "AlmostDualInfeasible": LimitStatus.UNBOUNDED,
 }
 
+_STOPPED = ("InsufficientProgress", "MaxIterations", "NumericalError")
+"""What it says when it gives up: often of a wall of which a chip falls, which no load holds up."""
+
+HELD = 1e-9
+"""Shares of the dead load that have to be held, in all: above 0 to the digits of an answer."""
+
 
 def _settings(tolerance: float) -> Any:
     settings = clarabel.DefaultSettings()
@@ -39,31 +46,48 @@ class ClarabelSession:
     """One program in Clarabel; every objective is solved from the start."""
 
     def __init__(self, program: EquilibriumProgram) -> None:
-        rows, columns = program.matrix.shape
-        # x_0 = alpha is free, all other unknowns are >= 0:  -x + s = 0, s >= 0.
-        bounds = -diags_array(np.ones(columns), format="csc")[1:]
-        self._matrix = csc_matrix(vstack((program.matrix, bounds), format="csc"))
-        self._rhs = np.concatenate((program.rhs, np.zeros(columns - 1)))
-        self._cones = [clarabel.ZeroConeT(rows)]
-        if columns > 1:
-            self._cones.append(clarabel.NonnegativeConeT(columns - 1))
-        self._rows = rows
+        self._matrix, self._rhs = csc_array(program.matrix), program.rhs
 
     def minimise(self, costs: Floats) -> Solution:
-        """Minimise costs . x; see :meth:`drystone.statics.lp.highs.HighsSession.minimise`."""
-        nothing = csc_matrix((len(costs), len(costs)))
-        solver = clarabel.DefaultSolver(
-            nothing, costs, self._matrix, self._rhs, self._cones, _settings(_LINEAR)
-        )
-        found = solver.solve()
+        """Minimise costs . x; see :meth:`drystone.statics.lp.highs.HighsSession.minimise`.
+
+        Where no end is in sight, it is asked how much of the dead load has to be held from outside.
+        That has always an answer.  If some has to, the duals are a fall.
+        """
+        found = self._solved(self._matrix, costs)
+        if found.said in _STOPPED:
+            loaded = np.flatnonzero(self._rhs)
+            at = loaded, np.arange(len(loaded))
+            held = csc_array((self._rhs[loaded], at), shape=(len(self._rhs), len(loaded)))
+            shares = np.append(0.0 * costs, np.ones(len(loaded)))
+            fall = self._solved(hstack((self._matrix, held), format="csc"), shares)
+            if fall.columns is not None and fall.columns @ shares > HELD:
+                return replace(fall, status=LimitStatus.UNSTABLE, columns=None)
+        return found
+
+    def _solved(self, matrix: csc_array, costs: Floats) -> Solution:
+        rows, columns = matrix.shape
+        # x_0 = alpha is free, all other unknowns are >= 0:  -x + s = 0, s >= 0.
+        bounds = -diags_array(np.ones(columns), format="csc")[1:]
+        cones = [clarabel.ZeroConeT(rows)]
+        if columns > 1:
+            cones.append(clarabel.NonnegativeConeT(columns - 1))
+        found = clarabel.DefaultSolver(
+            csc_matrix((columns, columns)),
+            costs,
+            csc_matrix(vstack((matrix, bounds), format="csc")),
+            np.concatenate((self._rhs, np.zeros(columns - 1))),
+            cones,
+            _settings(_LINEAR),
+        ).solve()
         said = str(found.status)
         status = _STATUS.get(said, LimitStatus.FAILED)
-        columns = np.array(found.x)
-        duals = -np.array(found.z)[: self._rows]
         return Solution(
             status,
-            columns if status in (LimitStatus.OPTIMAL, LimitStatus.UNBOUNDED) else None,
-            duals if status in (LimitStatus.OPTIMAL, LimitStatus.UNSTABLE) else None,
+            np.array(found.x) if status in (LimitStatus.OPTIMAL, LimitStatus.UNBOUNDED) else None,
+            -np.array(found.z)[:rows]
+            if status in (LimitStatus.OPTIMAL, LimitStatus.UNSTABLE)
+            else None,
             said,
             NAME,
         )

@@ -150,7 +150,7 @@ def _sessions(
     many = MANY_BLOCKS_FOR_A_VERTEX if mechanism else MANY_BLOCKS
     if len(program.block_ids) < many:
         return list(kinds.values())
-    return [kinds[name] for name in ("clarabel", "highs", "highs-ipm", "refined")]
+    return [kinds[name] for name in ("clarabel", "highs-ipm", "highs", "refined")]
 
 
 def certified_extreme(program: EquilibriumProgram, session: Session, sign: float) -> Extreme:
