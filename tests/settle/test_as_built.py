@@ -50,6 +50,15 @@ def test_what_stays_is_not_touched():
     assert all(after.laid[i] is before.laid[i] for i in (1, 2))
 
 
+def test_what_lies_on_a_stone_that_is_pushed_away_falls():
+    """A brick in a gap that is too narrow pushes the one aside on which another is in balance."""
+    row = [[(1, box(-60.0, 0.0))], [(2, box(0.0, 0.0))], [(3, box(-9.5, 20.0, 20.0, 10.0))]]
+    before = built(row)
+    after = before.put([(4, NONE.built(box(-22.0, 0.0, 24.0, 15.0), RNG))]).loaded(4)
+    assert after.laid[2].x > before.laid[2].x + 1.0
+    assert after.lost(before) == [3]
+
+
 def test_what_is_held_stays_and_carries_what_comes():
     before = built([POST, PLANK])
     brick, aside = (NONE.built(box(x, 30.0, 20.0, 30.0), RNG) for x in (24.0, 200.0))
@@ -68,6 +77,12 @@ def test_what_is_taken_up_takes_along_what_lies_on_it():
     assert list(left.laid) == [1, 2, 3]
     assert left.polygons.corners.tolist() == wall.polygons.leading(3).corners.tolist()
     assert sorted(left.lost(wall)) == [4]
+
+
+def test_what_hangs_between_upright_faces_is_taken_up_with_either():
+    wall = built([[(1, box(0.0, 0.0))], [(2, box(60.0, 0.0))], [(3, box(39.0, 5.0, 22.0, 10.0))]])
+    assert wall.laid[3].y == pytest.approx(10.0, abs=0.1)
+    assert (list(wall.without([1]).laid), list(wall.without([2]).laid)) == ([2], [1])
 
 
 def test_a_wedge_that_waits_for_its_stone_is_not_put_down_again():

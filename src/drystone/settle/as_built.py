@@ -40,7 +40,7 @@ class Bed(NamedTuple):
     """What a block bears on."""
 
     points: Sequence[Bearing]  # from left to right
-    below: frozenset[int]  # the blocks among those whose they are
+    below: frozenset[int]  # the blocks whose they are; without points, those that hold it
 
 
 HELD = Bed((Bearing(-math.inf, 0.0, -1), Bearing(math.inf, 0.0, -1)), frozenset())
@@ -112,9 +112,12 @@ class BuiltWall:
         return [i for i, one, now in known if now is not one and (not now or astray(now, one))]
 
     def loaded(self, block: int) -> "BuiltWall":
-        """Let what carries a block move under it, each at most once."""
+        """Let what carries a block move under it, each at most once.
+
+        What was pushed on the way to it, and what lies on that, may move too.
+        """
         wall = _with_beds(self)
-        beneath = {block}
+        beneath = {block, *(one for one in wall.laid if one not in self.beds)}
         for one in reversed(list(wall.laid)):
             if one in beneath:
                 beneath |= wall.beds[one].below
@@ -142,7 +145,9 @@ def _with_beds(wall: BuiltWall) -> BuiltWall:
             if normal[1] >= UPWARD
             for x, y in points[:count].tolist()
         )
-        beds[block] = Bed(points, frozenset(point.below for point in points if point.below >= 0))
+        # What bears on nothing is held between upright faces.
+        below = {p.below for p in points} or {ids[other] for other in found.others if other >= 0}
+        beds[block] = Bed(points, frozenset(below - {-1}))
     return replace(wall, beds=beds)
 
 
