@@ -4,12 +4,20 @@ import math
 
 import numpy as np
 import pytest
+import scipy.stats
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.kernels.polygons import area_and_centroid
-from drystone.model.builder import HAND, LONGEST_EDGE, ROBOT, BuilderErrors, misjudged
+from drystone.model.builder import (
+    HAND,
+    LONGEST_EDGE,
+    ROBOT,
+    BuilderErrors,
+    misjudged,
+    stratified,
+)
 from tests.naive import builder as naive
 from tests.strategies import repeatable
 
@@ -62,3 +70,15 @@ def test_twice_the_errors_move_a_block_twice_as_far():
     assert once.x != 100.0
     assert once.y == pytest.approx(10.0)
     assert twice.size == pytest.approx(math.sqrt(800))
+
+
+def test_few_runs_have_every_size_of_error_once():
+    drawn = stratified(np.random.default_rng(1), 8, 300)
+    ranges = np.floor(8 * scipy.stats.norm.cdf(drawn)).astype(int)
+    assert (np.sort(ranges, axis=0) == np.arange(8)[:, None]).all()
+    # Numbers do not go together, nor do runs: each is free within its range.
+    assert len(set(map(tuple, ranges.T.tolist()))) > 290
+    assert abs(np.corrcoef(drawn.T)[0, 1:]).mean() < 0.45
+    assert drawn.std() == pytest.approx(1.0, abs=0.05)
+    alone = np.concatenate([stratified(np.random.default_rng(k), 1, 50)[0] for k in range(40)])
+    assert scipy.stats.kstest(alone, "norm").pvalue > 0.01

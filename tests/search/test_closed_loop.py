@@ -61,6 +61,16 @@ def test_what_another_throws_down_or_pushes_away_is_taken_up_and_laid_again():
         assert (sorted(i for i, _ in run.blocks), run.again) == ([1, 2, 3], again)
 
 
+def test_what_lies_in_the_way_of_a_stone_is_taken_up_for_it():
+    """A tall stone was planned in the air; then another comes where alone it can stand."""
+    tall, later = box(42.0, 17.0, 40.0, 110.0), box(42.0, 0.0, 60.0, 40.0)
+    groups = [[(1, box(0.0, 0.0, 40.0, 36.0))], [(2, tall)], [(3, later)]]
+    run = rehearse_closed(groups, NONE, np.random.default_rng(0))
+    assert fallen(run) == []
+    assert run.again > 0
+    assert dict(run.blocks)[2][:, 1].min() == pytest.approx(0.0, abs=0.1)
+
+
 def test_a_stone_without_any_place_is_not_in_the_wall():
     """A needle rests on no point, and lying it would be longer than the wall."""
     needle = [(2, np.array([[-2.0, 220.0], [0.0, 20.0], [2.0, 220.0], [0.0, 420.0]]))]

@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 import shapely
+from scipy.special import ndtri
 
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.kernels.profiles import Floats
@@ -82,6 +83,16 @@ class BuilderErrors:
             Built(outline, x + self.placement * shift, y, self.angle_deg * angle, math.sqrt(area))
             for outline, (shift, angle) in zip(outlines, numbers[:, -2:].tolist(), strict=True)
         ]
+
+
+def stratified(rng: np.random.Generator, runs: int, numbers: int) -> Floats:
+    """Draw numbers of standard deviation 1 for some runs, (runs, numbers).
+
+    Over the runs each number falls once into each of so many ranges of equal probability, in
+    random order (Latin hypercube).  So few runs already miss to all sides, as many free ones do.
+    """
+    parts = rng.permuted(np.tile(np.arange(runs), (numbers, 1)), axis=1)
+    return np.asarray(ndtri((parts + rng.random((numbers, runs))) / runs)).T
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,15 @@ from itertools import accumulate, takewhile
 import numpy as np
 
 from drystone.kernels.profiles import Floats
-from drystone.model.builder import HAND, NUMBERS, WEDGE_SHARE, BuilderErrors, Built, as_planned
+from drystone.model.builder import (
+    HAND,
+    NUMBERS,
+    WEDGE_SHARE,
+    BuilderErrors,
+    Built,
+    as_planned,
+    stratified,
+)
 from drystone.model.stone import Stone
 from drystone.model.wall import Group, Wall, outlined
 from drystone.planner.vary import TRIAL_DRAWS
@@ -122,9 +130,9 @@ class Seats:
         stone, trials = group.placement.stone_id, len(self._bare)
         key = stone, len(blocks)
         if key not in self._numbers:
-            rngs = [np.random.default_rng([TRIAL_DRAWS, k, stone]) for k in range(trials)]
-            drawn = [rng.standard_normal((len(blocks), NUMBERS)) for rng in rngs]
-            self._numbers[key] = np.array(drawn).reshape(trials, len(blocks), NUMBERS)
+            rng = np.random.default_rng([TRIAL_DRAWS, stone])
+            drawn = stratified(rng, trials, len(blocks) * NUMBERS)
+            self._numbers[key] = drawn.reshape(trials, len(blocks), NUMBERS)
         wedge = self._errors.times(WEDGE_SHARE)
         put = [
             [(i, built) for built in (wedge if j else self._errors).all_built(corners, numbers)]

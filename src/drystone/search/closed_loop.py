@@ -5,11 +5,13 @@ stone in his hand nor his own slip.  So the rest is planned again after every st
 stone of a plan is ever laid, so only that one is: it is let go where it was planned, and tried
 there with errors that he may make.  Where it would fall he tries beside it and turned a little.  A
 stone without a sure place stays in the heap, and what falls goes back there with what lies on it.
-The heap comes last: each stone goes to its own place if it rests there now, else to the lowest one
-on the wall where it rests surely.
+The heap comes last, the largest stone first: each goes to its own place if it rests there now, else
+to the lowest one on the wall where it rests surely.  Where there is none, what lies over its own
+place is taken up once more, and goes into the heap.
 """
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -18,7 +20,7 @@ import numpy as np
 
 from drystone.kernels.polygons import area_and_centroid
 from drystone.kernels.profiles import HeightProfile, bare, hanging, raised
-from drystone.model.builder import NUMBERS, BuilderErrors, Built, as_planned
+from drystone.model.builder import NUMBERS, BuilderErrors, Built, as_planned, stratified
 from drystone.model.outlines import Outlined
 from drystone.physics.building import build_up, tilt_of
 from drystone.physics.scatter import Variation
@@ -53,6 +55,9 @@ BESIDE = [(aside, turn) for turn in (0.0, -5.0, 5.0) for aside in (0.0, -0.1, 0.
 
 ROUNDS = 4
 """So often the heap is gone through."""
+
+ROOMS = 2
+"""So often what lies over the place of a stone of the heap is taken up for it."""
 
 QUARTERS = (0.0, 180.0, 90.0, 270.0)
 """Turns in which a stone of the heap is tried, degrees."""
@@ -93,12 +98,13 @@ class _Stone:
     """A stone of a plan with its wedges, as they were seen."""
 
     def __init__(self, group: Sequence[Outlined], errors: BuilderErrors) -> None:
-        rng = np.random.default_rng([TRIAL_DRAWS, group[0][0]])
-        self.id = group[0][0]
+        self.ids = [i for i, _ in group]
+        self.id = self.ids[0]
+        rng = np.random.default_rng([TRIAL_DRAWS, self.id])
         self.seen, *wedges = [as_planned(corners) for _, corners in group]
         self.wedges = [(i, one) for (i, _), one in zip(group[1:], wedges, strict=True)]
         # How it may be put down, the same wherever that is.
-        self.trials = errors.all_built(group[0][1], rng.standard_normal((TRIALS, NUMBERS)))
+        self.trials = errors.all_built(group[0][1], stratified(rng, TRIALS, NUMBERS))
 
     def pieces(
         self, start: Built, put: Sequence[tuple[int, Built]] | None = None
@@ -199,12 +205,19 @@ def rehearse_closed(
     work = _Work(groups, errors, rng, BuiltWall(mu, settle or SettleSettings()))
     for stone in work.stones:
         work.lay(stone, stone.planned(), SURE)
-    for _ in range(ROUNDS):
-        before = work.wall, work.again
-        for stone in [one for one in work.stones if one.id not in work.wall.laid]:
-            work.lay(stone, work.places(stone), 1 / TRIALS)
-        if (work.wall, work.again) == before:
+    rooms = Counter[int]()
+    while True:
+        for _ in range(ROUNDS):
+            before = work.wall, work.again
+            for stone in work.heap:
+                work.lay(stone, work.places(stone), 1 / TRIALS)
+            if (work.wall, work.again) == before:
+                break
+        lacking = next((one for one in work.heap if rooms[one.id] < ROOMS), None)
+        if lacking is None:
             break
+        rooms[lacking.id] += 1
+        work.make_room(lacking)
     laid, ends = work.wall.laid, []
     for (block, corners), *_ in groups:
         if (built := laid.get(block)) is None:
@@ -226,12 +239,27 @@ class _Work:
         self.stones = [_Stone(group, errors) for group in groups]
         self.rested: dict[int, Built] = {}
         self._errors, self._rng = errors, rng
-        (real,) = errors_of(groups, errors, [rng])
+        (real,) = errors_of(groups, errors, rng)
         self._real = {blocks[0][0]: blocks for blocks in real}
         corners = np.concatenate([group[0][1] for group in groups])
         (x0, _), (x1, y1) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
         size = mean_size(groups)
         self._box, self._cell = (x0, x1, y1 + OVER_TOP * size), size / COLUMNS
+
+    @property
+    def heap(self) -> list[_Stone]:
+        """Stones that do not lie in the wall, the largest first: small ones find a place later."""
+        heap = [one for one in self.stones if one.id not in self.wall.laid]
+        return sorted(heap, key=lambda one: -one.seen.size)
+
+    def make_room(self, stone: _Stone) -> None:
+        """Take up all that comes later than a stone and lies at its place or above."""
+        left, right = _reach(stone.seen)
+        later = {i for one in self.stones[self.stones.index(stone) + 1 :] for i in one.ids}
+        reaches = {i: _reach(at) for i, at in self.wall.laid.items() if i in later}
+        over = [i for i, (start, end) in reaches.items() if start < right and end > left]
+        self.again += len(self.wall.with_burden(over))
+        self.wall = self.wall.without(over)
 
     def places(self, stone: _Stone) -> Iterator[Built]:
         """List where a stone of the heap may go."""
@@ -259,6 +287,11 @@ class _Work:
             aside, turn = self._rng.standard_normal(2).tolist()
             x = stone.seen.x + self._errors.placement * aside
             real = replace(real, x=x, angle_deg=self._errors.angle_deg * turn)
+
+
+def _reach(built: Built) -> tuple[float, float]:
+    """Return from where to where along the wall a block reaches."""
+    return float(built.corners[:, 0].min()), float(built.corners[:, 0].max())
 
 
 def tilt_as_built(run: RehearsalRun, mu: float = 0.58) -> float:

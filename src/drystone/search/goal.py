@@ -240,7 +240,7 @@ def falls_of(build: Build, yard: Yard, runs: int, most: float = math.inf) -> Reh
         return RehearsalFalls(0.0, Counter())
     fallen, first, all_stones = 0.0, Counter[int](), runs * len(blocks)
     errors = BuilderErrors.of_precision(HAND, mean_size(blocks))
-    for put in errors_of(blocks, errors, [np.random.default_rng(run) for run in range(runs)]):
+    for put in errors_of(blocks, errors, np.random.default_rng(0), runs):
         yard.until.look()
         run = put_up(blocks, put, yard.settings.mu, yard.settings.settle)
         if run.first_fall is not None:

@@ -13,7 +13,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from drystone.kernels.polygons import area_and_centroid
-from drystone.model.builder import NUMBERS, WEDGE_SHARE, BuilderErrors, Built, as_planned
+from drystone.model.builder import (
+    NUMBERS,
+    WEDGE_SHARE,
+    BuilderErrors,
+    Built,
+    as_planned,
+    stratified,
+)
 from drystone.model.outlines import Outlined
 from drystone.model.wall import Wall, outlined
 from drystone.physics.building import BuildSettings, build_up, tilt_of
@@ -93,19 +100,19 @@ def mean_size(groups: Groups) -> float:
 
 
 def errors_of(
-    groups: Groups, errors: BuilderErrors, rngs: Sequence[np.random.Generator]
+    groups: Groups, errors: BuilderErrors, rng: np.random.Generator, runs: int = 1
 ) -> list[Put]:
-    """Return the blocks of a plan as they are and where they are put, in several runs."""
+    """Return the blocks of a plan as they are and where they are put, in a run or several."""
     wedge = errors.times(WEDGE_SHARE)
     blocks = [
         (i, corners, wedge if k else errors)
         for group in groups
         for k, (i, corners) in enumerate(group)
     ]
-    drawn = np.stack([rng.standard_normal((len(blocks), NUMBERS)) for rng in rngs], axis=1)
+    drawn = stratified(rng, runs, len(blocks) * NUMBERS).reshape(runs, -1, NUMBERS)
     put = [
         [(i, built) for built in missed.all_built(corners, numbers)]
-        for (i, corners, missed), numbers in zip(blocks, drawn, strict=True)
+        for (i, corners, missed), numbers in zip(blocks, drawn.swapaxes(0, 1), strict=True)
     ]
     ends = np.cumsum([len(group) for group in groups]).tolist()
     return [
@@ -126,7 +133,7 @@ def rehearse(
 
     Stones may stand out over the ends of the wall.
     """
-    return put_up(groups, errors_of(groups, errors, [rng])[0], mu, settle or SettleSettings())
+    return put_up(groups, errors_of(groups, errors, rng)[0], mu, settle or SettleSettings())
 
 
 def put_up(groups: Groups, put: Put, mu: float, settle: SettleSettings) -> RehearsalRun:
@@ -157,7 +164,7 @@ def rehearse_in_engine(
     groups: Groups, errors: BuilderErrors, rng: np.random.Generator, *, mu: float = 0.58
 ) -> RehearsalRun:
     """Build a wall once with the same errors in a rigid-body engine (extra `physics`)."""
-    put = errors_of(groups, errors, [rng])[0]
+    put = errors_of(groups, errors, rng)[0]
     found = build_up([[(i, one.corners) for i, one in group] for group in put], mu, IN_ENGINE)
     ends = []
     for (planned, *_), ((block, built), *_) in zip(groups, put, strict=True):
