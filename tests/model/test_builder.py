@@ -64,7 +64,8 @@ def test_an_outline_of_any_shape_stays_simple():
 def test_twice_the_errors_move_a_block_twice_as_far():
     errors = BuilderErrors(placement=2.0, angle_deg=1.0, outline=0.0)
     corners = BRICK + np.array((100.0, 10.0))
-    once, twice = (e.built(corners, np.random.default_rng(5)) for e in (errors, errors.times(2.0)))
+    drawn = stratified(np.random.default_rng(5), 1, 1)[0]
+    once, twice = (e.all_built(corners, drawn)[0] for e in (errors, errors.times(2.0)))
     assert twice.x - 100.0 == pytest.approx(2 * (once.x - 100.0))
     assert twice.angle_deg == pytest.approx(2 * once.angle_deg)
     assert once.x != 100.0
@@ -73,12 +74,13 @@ def test_twice_the_errors_move_a_block_twice_as_far():
 
 
 def test_few_runs_have_every_size_of_error_once():
-    drawn = stratified(np.random.default_rng(1), 8, 300)
+    drawn = stratified(np.random.default_rng(1), 8, 25).reshape(8, -1)
     ranges = np.floor(8 * scipy.stats.norm.cdf(drawn)).astype(int)
     assert (np.sort(ranges, axis=0) == np.arange(8)[:, None]).all()
     # Numbers do not go together, nor do runs: each is free within its range.
     assert len(set(map(tuple, ranges.T.tolist()))) > 290
     assert abs(np.corrcoef(drawn.T)[0, 1:]).mean() < 0.45
     assert drawn.std() == pytest.approx(1.0, abs=0.05)
-    alone = np.concatenate([stratified(np.random.default_rng(k), 1, 50)[0] for k in range(40)])
+    # A run alone is drawn freely.
+    alone = np.concatenate([stratified(np.random.default_rng(k), 1, 4).ravel() for k in range(40)])
     assert scipy.stats.kstest(alone, "norm").pvalue > 0.01

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from drystone.model.builder import NUMBERS, as_planned, stratified
+from drystone.model.builder import as_planned, stratified
 from drystone.settle.as_built import BuiltWall
 from drystone.settle.putting import astray
 
@@ -14,11 +14,10 @@ def falls(steps, errors, trial, mu, settle):
     """
     wall, fallen = BuiltWall(mu, settle), []
     for (stone, corners), *wedges in steps:
-        rng, count = np.random.default_rng([7, stone]), 1 + len(wedges)
-        drawn = stratified(rng, settle.trials, count * NUMBERS)[trial].reshape(count, 1, NUMBERS)
-        put = [(stone, *errors.all_built(corners, drawn[0]))]
-        for (i, cut), numbers in zip(wedges, drawn[1:], strict=True):
-            put.append((i, *errors.times(1 / 3).all_built(cut, numbers)))
+        drawn = stratified(np.random.default_rng([7, stone]), settle.trials, 1 + len(wedges))[trial]
+        put = [(stone, *errors.all_built(corners, drawn[:1]))]
+        for k, (i, cut) in enumerate(wedges, 1):
+            put.append((i, *errors.times(1 / 3).all_built(cut, drawn[k : k + 1])))
         planned = {i: as_planned(cut) for i, cut in [(stone, corners), *wedges]}
         before = wall.put([*put[1:][::-1], put[0]])
         lost = {}

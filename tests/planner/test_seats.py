@@ -80,5 +80,5 @@ def test_no_stone_is_laid_where_it_falls_more_often_than_is_bearable(careless):
     careful = finish(Planner(ROUNDED, ROUNDED_SITE, settings=greedy()))
     found = shares(careful.workshop.seats, careful.build.wall, walls_of(careful))
     assert None not in found
-    assert len(found) >= len(ROUNDED) - 3
+    assert len(found) >= 0.75 * len(ROUNDED)
     assert np.mean(found) < 0.02

@@ -5,7 +5,7 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 
-from drystone.model.builder import HAND, ROBOT, BuilderErrors
+from drystone.model.builder import HAND, ROBOT, BuilderErrors, stratified
 from drystone.search.rehearsal import mean_size, rehearse, rehearse_in_engine
 from tests.polygons import box_of as box
 
@@ -36,8 +36,9 @@ BOTH = pytest.mark.parametrize(
 
 @BOTH
 def test_where_a_stone_ends_is_asked_not_how_it_was_put(once):
-    (end,) = once([[(1, box(0.0, 0.0))]], TURNED, np.random.default_rng(1)).stones
-    put = TURNED.built(box(0.0, 0.0), np.random.default_rng(1))
+    (end,) = once([[(1, box(0.0, 0.0))]], TURNED, np.random.default_rng(6)).stones
+    drawn = stratified(np.random.default_rng(6), 1, 1)[0]
+    (put,) = TURNED.all_built(box(0.0, 0.0), drawn)
     assert abs(put.angle_deg) > 5.0
     assert (end.fallen, end.turn_deg) == (False, pytest.approx(0.0, abs=0.5))
 

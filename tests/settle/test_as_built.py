@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from drystone.model.builder import HAND, BuilderErrors
+from drystone.model.builder import HAND, BuilderErrors, as_planned, stratified
 from drystone.search.rehearsal import mean_size, rehearse
 from drystone.settle import as_built
 from drystone.settle.as_built import BuiltWall
@@ -15,14 +15,12 @@ from tests.settle.test_putting import SETTLE
 POST, PLANK = [(1, box(0.0, 0.0, 20.0))], [(2, box(-20.0, 20.0, 60.0, 10.0))]
 """A brick on the ground, and a plank in balance on it."""
 
-RNG = np.random.default_rng(0)
-"""What is drawn is multiplied by no errors."""
-
 
 def built(groups, errors=NONE):
     wall, rng = BuiltWall(0.58, SETTLE), np.random.default_rng(0)
     for (block, corners), *_ in groups:
-        wall = wall.put([(block, errors.built(corners, rng))]).loaded(block)
+        put = errors.all_built(corners, stratified(rng, 1, 1)[0])
+        wall = wall.put([(block, *put)]).loaded(block)
     return wall
 
 
@@ -44,7 +42,7 @@ def test_a_stone_far_above_tips_what_carries_all():
 
 def test_what_stays_is_not_touched():
     before = built([POST, PLANK])
-    brick = NONE.built(box(2.0, 30.0, 20.0, 30.0), RNG)
+    brick = as_planned(box(2.0, 30.0, 20.0, 30.0))
     after = before.put([(3, brick)]).loaded(3)
     assert list(after.laid) == [1, 2, 3]
     assert all(after.laid[i] is before.laid[i] for i in (1, 2))
@@ -54,14 +52,14 @@ def test_what_lies_on_a_stone_that_is_pushed_away_falls():
     """A brick in a gap that is too narrow pushes the one aside on which another is in balance."""
     row = [[(1, box(-60.0, 0.0))], [(2, box(0.0, 0.0))], [(3, box(-9.5, 20.0, 20.0, 10.0))]]
     before = built(row)
-    after = before.put([(4, NONE.built(box(-22.0, 0.0, 24.0, 15.0), RNG))]).loaded(4)
+    after = before.put([(4, as_planned(box(-22.0, 0.0, 24.0, 15.0)))]).loaded(4)
     assert after.laid[2].x > before.laid[2].x + 1.0
     assert after.lost(before) == [3]
 
 
 def test_what_is_held_stays_and_carries_what_comes():
     before = built([POST, PLANK])
-    brick, aside = (NONE.built(box(x, 30.0, 20.0, 30.0), RNG) for x in (24.0, 200.0))
+    brick, aside = (as_planned(box(x, 30.0, 20.0, 30.0)) for x in (24.0, 200.0))
     assert sorted(before.put([(3, brick)]).loaded(3).lost(before)) == [2]
     held = before.held({2: before.laid[2], 4: aside})
     after = held.put([(3, brick)]).loaded(3)
@@ -86,7 +84,7 @@ def test_what_hangs_between_upright_faces_is_taken_up_with_either():
 
 
 def test_a_wedge_that_waits_for_its_stone_is_not_put_down_again():
-    wedge, aside = (NONE.built(box(x, 0.0), RNG) for x in (0.0, 90.0))
+    wedge, aside = (as_planned(box(x, 0.0)) for x in (0.0, 90.0))
     wall = BuiltWall(0.58, SETTLE).put([(5, wedge)]).put([(5, aside)])
     assert (wall.laid[5].x, len(wall.polygons)) == (pytest.approx(20.0, abs=0.1), 1)
 

@@ -64,17 +64,11 @@ class BuilderErrors:
             outline=share * self.outline,
         )
 
-    def built(self, corners: Points, rng: np.random.Generator) -> "Built":
-        """Return a block as it is, and where it is put, for one that was seen and planned.
-
-        The same numbers are drawn whatever the errors, so twice the errors move it twice as far.
-        """
-        return self.all_built(corners, rng.standard_normal((1, NUMBERS)))[0]
-
     def all_built(self, corners: Points, numbers: Floats) -> list["Built"]:
-        """Return the same block for several errors: (n, :data:`NUMBERS`), of standard deviation 1.
+        """Return a block as it may be, and where it is put, for one that was seen and planned.
 
-        Errors are those of the block as it lies in the wall, however its photograph was turned.
+        Errors are `numbers` of standard deviation 1, (n, :data:`NUMBERS`), of the block as it lies
+        in the wall, however its photograph was turned.
         """
         area, x, y = area_and_centroid(corners)
         waves = numbers[:, :-2].reshape(-1, 2, len(MODES))
@@ -85,14 +79,15 @@ class BuilderErrors:
         ]
 
 
-def stratified(rng: np.random.Generator, runs: int, numbers: int) -> Floats:
-    """Draw numbers of standard deviation 1 for some runs, (runs, numbers).
+def stratified(rng: np.random.Generator, runs: int, blocks: int) -> Floats:
+    """Draw numbers of standard deviation 1 for some runs, (runs, blocks, :data:`NUMBERS`).
 
     Over the runs each number falls once into each of so many ranges of equal probability, in
     random order (Latin hypercube).  So few runs already miss to all sides, as many free ones do.
     """
-    parts = rng.permuted(np.tile(np.arange(runs), (numbers, 1)), axis=1)
-    return np.asarray(ndtri((parts + rng.random((numbers, runs))) / runs)).T
+    ranges = rng.permuted(np.tile(np.arange(runs), (blocks * NUMBERS, 1)), axis=1)
+    shares = (ranges + rng.random(ranges.shape)) / runs
+    return np.asarray(ndtri(shares)).T.reshape(runs, blocks, NUMBERS)
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,15 +14,7 @@ from itertools import accumulate, takewhile
 import numpy as np
 
 from drystone.kernels.profiles import Floats
-from drystone.model.builder import (
-    HAND,
-    NUMBERS,
-    WEDGE_SHARE,
-    BuilderErrors,
-    Built,
-    as_planned,
-    stratified,
-)
+from drystone.model.builder import HAND, WEDGE_SHARE, BuilderErrors, Built, as_planned, stratified
 from drystone.model.stone import Stone
 from drystone.model.wall import Group, Wall, outlined
 from drystone.planner.vary import TRIAL_DRAWS
@@ -131,8 +123,7 @@ class Seats:
         key = stone, len(blocks)
         if key not in self._numbers:
             rng = np.random.default_rng([TRIAL_DRAWS, stone])
-            drawn = stratified(rng, trials, len(blocks) * NUMBERS)
-            self._numbers[key] = drawn.reshape(trials, len(blocks), NUMBERS)
+            self._numbers[key] = stratified(rng, trials, len(blocks))
         wedge = self._errors.times(WEDGE_SHARE)
         put = [
             [(i, built) for built in (wedge if j else self._errors).all_built(corners, numbers)]

@@ -20,7 +20,7 @@ import numpy as np
 
 from drystone.kernels.polygons import area_and_centroid
 from drystone.kernels.profiles import HeightProfile, bare, hanging, raised
-from drystone.model.builder import NUMBERS, BuilderErrors, Built, as_planned, stratified
+from drystone.model.builder import BuilderErrors, Built, as_planned, stratified
 from drystone.model.outlines import Outlined
 from drystone.physics.building import build_up, tilt_of
 from drystone.physics.scatter import Variation
@@ -104,7 +104,7 @@ class _Stone:
         self.seen, *wedges = [as_planned(corners) for _, corners in group]
         self.wedges = [(i, one) for (i, _), one in zip(group[1:], wedges, strict=True)]
         # How it may be put down, the same wherever that is.
-        self.trials = errors.all_built(group[0][1], stratified(rng, TRIALS, NUMBERS))
+        self.trials = errors.all_built(group[0][1], stratified(rng, TRIALS, 1)[:, 0])
 
     def pieces(
         self, start: Built, put: Sequence[tuple[int, Built]] | None = None

@@ -13,14 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from drystone.kernels.polygons import area_and_centroid
-from drystone.model.builder import (
-    NUMBERS,
-    WEDGE_SHARE,
-    BuilderErrors,
-    Built,
-    as_planned,
-    stratified,
-)
+from drystone.model.builder import WEDGE_SHARE, BuilderErrors, Built, as_planned, stratified
 from drystone.model.outlines import Outlined
 from drystone.model.wall import Wall, outlined
 from drystone.physics.building import BuildSettings, build_up, tilt_of
@@ -109,10 +102,10 @@ def errors_of(
         for group in groups
         for k, (i, corners) in enumerate(group)
     ]
-    drawn = stratified(rng, runs, len(blocks) * NUMBERS).reshape(runs, -1, NUMBERS)
+    drawn = stratified(rng, runs, len(blocks)).swapaxes(0, 1)
     put = [
         [(i, built) for built in missed.all_built(corners, numbers)]
-        for (i, corners, missed), numbers in zip(blocks, drawn.swapaxes(0, 1), strict=True)
+        for (i, corners, missed), numbers in zip(blocks, drawn, strict=True)
     ]
     ends = np.cumsum([len(group) for group in groups]).tolist()
     return [
