@@ -54,7 +54,7 @@ def _key(proposal):
 
 
 def test_a_first_batch_that_cannot_be_used_is_not_the_last(monkeypatch):
-    step = _Step(rubble(), RUBBLE_SITE, 2, {"settle": {"shortlist": 3}})
+    step = _Step(rubble(), RUBBLE_SITE, 2, {"settle": {"shortlist": 3, "trials": 0}})
     first, second = step.all()[:2]
     unsound = {_key(p) for p in first}
     attempt = Attempt(step.workshop, step.settings, step.build)

@@ -16,7 +16,7 @@ from drystone.planner.search_settings import GoalSettings
 from drystone.planner.solves import Solves
 from drystone.search.goal import FoundWall, WallFigures, figures_of, merit_of, possible_filling
 from drystone.search.packed import MOST, STEPS, PackedWall, archived, score_of
-from drystone.search.rehearsal import groups_of, mean_size, rehearse
+from drystone.search.rehearsal import errors_of, groups_of, mean_size, put_up
 from drystone.search.yard import Yard
 from tests.planner.scenes import ROUNDED, ROUNDED_SITE, RUBBLE_SITE, finish, greedy, rubble
 from tests.strategies import repeatable
@@ -75,7 +75,8 @@ def test_what_nearly_falls_in_a_rehearsal_counts_too():
     planner = finish(Planner(ROUNDED, ROUNDED_SITE, seed=1, settings=careless))
     blocks = groups_of(planner.build.wall)
     errors = BuilderErrors.of_precision(0.03, mean_size(blocks))
-    runs = [rehearse(blocks, errors, np.random.default_rng(run)).stones for run in range(12)]
+    drawn = errors_of(blocks, errors, np.random.default_rng(0), 12)
+    runs = [put_up(blocks, put, careless.mu, careless.settle).stones for put in drawn]
     near = [[1 if e.fallen else max(e.share / 0.25, abs(e.turn_deg) / 12) for e in r] for r in runs]
     assert min(map(max, near)) < max(map(max, near)) == 1.0
     lost = [14 * max(shares) ** 4 + shares.count(1) for shares in near]
