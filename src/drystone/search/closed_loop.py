@@ -7,7 +7,7 @@ there with errors that he may make.  Where it would fall he tries beside it and 
 stone without a sure place stays in the heap, and what falls goes back there with what lies on it.
 The heap comes last, the largest stone first: each goes to its own place if it rests there now, else
 to the lowest one on the wall where it rests surely.  Where there is none, what lies over its own
-place is taken up once more, and goes into the heap.
+place is taken up, and goes into the heap.
 """
 
 import math
