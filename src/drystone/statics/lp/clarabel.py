@@ -46,7 +46,7 @@ class ClarabelSession:
     """One program in Clarabel; every objective is solved from the start."""
 
     def __init__(self, program: EquilibriumProgram) -> None:
-        self._matrix, self._rhs = csc_array(program.matrix), program.rhs
+        self._program, self._bounded = program, _bounded(program.matrix)
 
     def minimise(self, costs: Floats) -> Solution:
         """Minimise costs . x; see :meth:`drystone.statics.lp.highs.HighsSession.minimise`.
@@ -54,29 +54,25 @@ class ClarabelSession:
         Where no end is in sight, it is asked how much of the dead load has to be held from outside.
         That has always an answer.  If some has to, the duals are a fall.
         """
-        found = self._solved(self._matrix, costs)
+        found = self._solved(self._bounded, costs)
         if found.said in _STOPPED:
-            loaded = np.flatnonzero(self._rhs)
-            at = loaded, np.arange(len(loaded))
-            held = csc_array((self._rhs[loaded], at), shape=(len(self._rhs), len(loaded)))
-            shares = np.append(0.0 * costs, np.ones(len(loaded)))
-            fall = self._solved(hstack((self._matrix, held), format="csc"), shares)
+            held = diags_array(self._program.rhs, format="csc")[:, self._program.rhs != 0.0]
+            shares = np.append(0.0 * costs, np.ones(held.shape[1]))
+            fall = self._solved(_bounded(hstack((self._program.matrix, held))), shares)
             if fall.columns is not None and fall.columns @ shares > HELD:
                 return replace(fall, status=LimitStatus.UNSTABLE, columns=None)
         return found
 
-    def _solved(self, matrix: csc_array, costs: Floats) -> Solution:
-        rows, columns = matrix.shape
-        # x_0 = alpha is free, all other unknowns are >= 0:  -x + s = 0, s >= 0.
-        bounds = -diags_array(np.ones(columns), format="csc")[1:]
+    def _solved(self, matrix: csc_matrix, costs: Floats) -> Solution:
+        rows, columns = len(self._program.rhs), len(costs)
         cones = [clarabel.ZeroConeT(rows)]
         if columns > 1:
             cones.append(clarabel.NonnegativeConeT(columns - 1))
         found = clarabel.DefaultSolver(
             csc_matrix((columns, columns)),
             costs,
-            csc_matrix(vstack((matrix, bounds), format="csc")),
-            np.concatenate((self._rhs, np.zeros(columns - 1))),
+            matrix,
+            np.concatenate((self._program.rhs, np.zeros(columns - 1))),
             cones,
             _settings(_LINEAR),
         ).solve()
@@ -91,6 +87,12 @@ class ClarabelSession:
             said,
             NAME,
         )
+
+
+def _bounded(matrix: csc_array) -> csc_matrix:
+    """Add that x_0 = alpha is free, and all other unknowns are >= 0: -x + s = 0, s >= 0."""
+    bounds = -diags_array(np.ones(matrix.shape[1]), format="csc")[1:]
+    return csc_matrix(vstack((matrix, bounds), format="csc"))
 
 
 def least_constraint(
