@@ -1,8 +1,6 @@
 """Hypothesis strategies: random connected masks, stones, landscapes and small walls."""
 
-from collections.abc import Callable
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from hypothesis import settings
@@ -14,8 +12,6 @@ from drystone.model.site import Site
 from drystone.model.stone import Stone
 from drystone.model.wall import Wall
 from drystone.poses import PoseBook
-
-Draw = Callable[[st.SearchStrategy[Any]], Any]
 
 
 def repeatable(max_examples=60):

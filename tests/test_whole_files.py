@@ -41,12 +41,8 @@ def test_a_full_disk_names_the_file_and_leaves_it_as_it_was(tmp_path, monkeypatc
         write_whole(path, b"two")
     assert coded.value.where == str(path)
     assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [("a.txt", b"one")]
-
-
-def test_a_folder_that_is_none_is_an_error_of_the_path(tmp_path):
-    (tmp_path / "file").write_bytes(b"")
-    with pytest.raises(PlanError, match=r"a\.txt"):
-        write_whole(tmp_path / "file" / "a.txt", b"one")
+    with pytest.raises(PlanError, match=r"b\.txt"):
+        write_whole(path / "b.txt", b"one")
 
 
 def test_a_file_is_on_the_disk_before_it_has_its_name(tmp_path, monkeypatch):

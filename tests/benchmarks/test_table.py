@@ -12,25 +12,21 @@ WALL = {"elapsed": 2.0, "parts": dict.fromkeys(PARTS, 0.25), "steps": 3, "candid
 
 def entry(what, size, grows, seconds, twin=None, count=1, **facts):
     described = {"what": what, "size": size, "grows": grows, "twin": twin, "count": count}
-    described |= {"items": 0.0, "item": ""}
-    return {"stats": {"min": seconds, "mean": 9.9}, "extra_info": {**described, **facts}}
+    about = described | {"items": 0.0, "item": ""} | facts
+    return {"stats": {"min": seconds, "mean": 9.9}, "extra_info": about}
 
 
 def session(folder, kernels, *entries):
     path = folder / f"{kernels}.json"
-    about = {
-        "kernels": kernels,
-        "numpy": "NumPy 2",
-        "python_version": "3.11",
-        "cpu": {"brand_raw": "CPU"},
-    }
-    written = {"machine_info": about, "benchmarks": entries}
-    path.write_text(json.dumps(written), encoding="utf-8")
+    cpu = {"brand_raw": "CPU"}
+    about = {"kernels": kernels, "numpy": "NumPy 2", "python_version": "3.11", "cpu": cpu}
+    path.write_text(json.dumps({"machine_info": about, "benchmarks": entries}), encoding="utf-8")
     return table.read_session(path)
 
 
 @pytest.fixture
 def first(tmp_path):
+    memory = {"loaded": 80.0, "resident": 90.0, "traced": 3.25}
     return session(
         tmp_path,
         "compiled",
@@ -41,11 +37,8 @@ def first(tmp_path):
         entry("numbers added", table.FLOOR, 0.0, 1e-5, items=1000.0, item="numbers"),
         entry("wall, paper", "100 x 36", 0.0, 1.5, **WALL),
         entry("wall, paper", "100 x 36", 0.0, 30.0, twin="slow planner"),
-        entry(
-            "peak memory of a plan", "paper", 0.0, 9.0,
-            memory={"loaded": 80.0, "resident": 90.0, "traced": 3.25},
-        ),
-    )  # fmt: skip
+        entry("peak memory of a plan", "paper", 0.0, 9.0, memory=memory),
+    )
 
 
 @pytest.fixture
@@ -71,9 +64,9 @@ def test_functions_stand_beside_every_twin_of_their_size(first, numpy):
 
 
 def test_walls_stand_beside_the_slow_planner(first, numpy):
-    (row,) = table.wall_table(first, numpy).rows
-    assert row[:3] == ("wall, paper", "100 x 36", "1.5 s")
-    assert row[3:] == ("3 s", "30 s", "slow planner", "20", "2.0")
+    assert table.wall_table(first, numpy).rows == (
+        ("wall, paper", "100 x 36", "1.5 s", "3 s", "30 s", "slow planner", "20", "2.0"),
+    )
 
 
 def test_parts_and_the_rest_add_up_and_memory_is_told_in_megabytes(first, numpy):
@@ -85,13 +78,12 @@ def test_parts_and_the_rest_add_up_and_memory_is_told_in_megabytes(first, numpy)
     assert table.memory_table(first).rows == (("paper", "80.0", "90.0", "3.2"),)
 
 
-@pytest.mark.parametrize(
-    ("seconds", "text"),
-    [(0.0, "0 s"), (2.5e-6, "2.5 us"), (3.21e-2, "32.1 ms"), (98.76, "98.8 s"), (1234.5, "1234 s"),
-     (5e-10, "0.5 ns")],
-)  # fmt: skip
-def test_times_have_three_digits_and_a_unit(seconds, text):
-    assert table._time(seconds) == text
+def test_times_have_three_digits_and_a_unit():
+    texts = {
+        0.0: "0 s", 2.5e-6: "2.5 us", 3.21e-2: "32.1 ms", 98.76: "98.8 s", 1234.5: "1234 s",
+        5e-10: "0.5 ns",
+    }  # fmt: skip
+    assert {seconds: table._time(seconds) for seconds in texts} == texts
 
 
 def test_times_are_told_for_each_thing_that_must_be_touched(first, numpy):

@@ -1,6 +1,5 @@
 """`drystone check` in the engine, and its pictures of what fails."""
 
-import json
 import os
 import shutil
 import sys
@@ -9,7 +8,6 @@ from functools import partial
 from typing import Any
 
 import pytest
-import shapely
 from matplotlib.image import imread
 from PIL import Image
 
@@ -55,6 +53,8 @@ def test_a_plan_is_checked_from_its_own_folder(plan_copy, run, monkeypatch):
     for here, given in ((".", "."), (".", "plan.json"), ("deeper", "..")):
         monkeypatch.chdir(plan_copy / here)
         assert run("check", given).code == 0
+    (plan_copy.parent / "rubble.png").unlink()
+    run("check", plan_copy).refused("E202", "--stones", exit_code=3)
 
 
 @pytest.fixture(scope="module")
@@ -77,7 +77,7 @@ def test_a_wall_that_stands(standing, run):
         assert physics[f"alpha_{side}"] == metrics[f"alpha_{side}"]
         # The same physics, by forces and by motion; on the raster not quite the same joints.
         assert physics[f"tilt_{side}"] == pytest.approx(metrics[f"alpha_{side}"], rel=0.15)
-    placed = [s["stone"] for s in json.loads((standing / "plan.json").read_text())["steps"]]
+    placed = [step.stone for step in read_plan(standing).stone_steps]
     assert [move["id"] for move in physics["moves"]] == placed
     assert not (standing / "check.png").exists()
 
@@ -103,7 +103,6 @@ def test_a_stone_that_falls_is_named_and_drawn(plan_copy, run, monkeypatch):
     assert report["problems"][0]["step"] == report["physics"]["first_fall"]
     assert report["picture"] == str(plan_copy / "check.png")
     physics = report["physics"]
-    assert physics["fallen"]
     assert f"after step {physics['first_fall']}\n" in ran.out
     assert [move["id"] for move in physics["moves"] if move["fell"]] == physics["fallen"]
     assert (physics["tilt_left"], physics["tilt_right"]) == (None, None)
@@ -112,7 +111,6 @@ def test_a_stone_that_falls_is_named_and_drawn(plan_copy, run, monkeypatch):
 def test_a_claim_that_the_engine_contradicts_fails(standing, tmp_path, run, monkeypatch):
     """Also when all numbers of the plan are those of its limit analysis."""
     pytest.importorskip("pymunk", reason=NO_ENGINE)
-
     weak = tuple(
         TiltResult(side, (TiltTrial(side, 0.3, None, (), 0.0, 0.01),)) for side in ("left", "right")
     )
@@ -172,8 +170,7 @@ def test_views_of_an_overlap(plan_copy):
     plan, (view, *_) = tampered_views(plan_copy, push)
     assert view.title.startswith("E221 step ")
     # What is named by the problem, with what it has in common with its neighbours.
-    assert set(view.concerned) < {step.stone for step in plan.stone_steps}
-    assert view.concerned
+    assert set() < set(view.concerned) < {step.stone for step in plan.stone_steps}
     assert view.common
     assert view.size == (100.0, 36.0)
     assert len(view.planned) == len(plan.steps)
@@ -188,14 +185,6 @@ def test_views_of_a_wall_that_does_not_stand(plan_copy):
     down = view.ended[last] - view.planned[last]
     assert (down[:, 1] < -1.0).all()
     assert "begins to fall" in view.title
-
-
-def test_claims_that_cannot_be_seen_are_not_drawn(plan_copy, run):
-    rewrite(plan_copy / "plan.json", lambda plan: plan["metrics"].update(F_LR=0.99))
-    ran = run("check", plan_copy)
-    assert (ran.code, "picture" in ran.out) == (5, False)
-    assert not (plan_copy / "check.png").exists()
-    assert "picture" not in run("check", plan_copy, "--json").json()
 
 
 def test_a_picture_where_it_is_asked_for(plan_copy, tmp_path, run):
@@ -233,27 +222,6 @@ def test_the_engine_is_told_how_deep_outlines_overlap(plan_copy, run, monkeypatc
     assert "what overlaps cannot stay where it is" in run("check", plan_copy, "--physics").out
 
 
-def test_another_block_model_beside_the_plan_is_found(settled_copy, run):
-    path = settled_copy / "blocks.json"
-    ran = run("check", settled_copy)
-    assert (ran.code, "blocks.json" in ran.out) == (0, False)
-    blocks = json.loads(path.read_text("utf-8"))
-    block = blocks["blocks"][2]
-    x, y = shapely.Polygon(block["polygon"]).centroid.coords[0]
-    block["polygon"] = [[2 * x - a, 2 * y - b] for a, b in block["polygon"]]
-    path.write_text(json.dumps(blocks), "utf-8")
-    ran = run("check", settled_copy)
-    assert ran.code == 5
-    assert f"the outline of stone {block['id']} in blocks.json is" in ran.out
-    (problem,) = run("check", settled_copy, "--json").json()["problems"]
-    assert problem["code"] == "E238"
-    path.unlink()
-    ran = run("check", settled_copy)
-    assert ran.code == 0
-    (line,) = (row for row in ran.out.splitlines() if "blocks.json" in row)
-    assert line.startswith("note ")
-
-
 def test_stones_with_other_bytes_are_named_as_such(plan_copy, run):
     """The same picture, saved anew."""
     path = plan_copy / "rubble.png"
@@ -270,30 +238,24 @@ def test_stones_with_other_bytes_are_named_as_such(plan_copy, run):
 
 def test_words_of_the_engine(plan_copy):
     """Where the plan has no overlap it is the engine's doing that stones were pushed apart."""
-    plan = read_plan(plan_copy)
+    move = BlockMove(3, 1, 0.2, 0.01, 0.1, 0.46, fell=False)
+    built = BuildUp((move,), {}, {}, (0.0,), (1, 2), None, 0.58)
+    rows = dict(PhysicsCard(read_plan(plan_copy), built, None, None, overlap_px=0.0).rows())
+    assert rows["  pushed apart"].endswith("0.46 source px deep (stone 3): others had moved there")
+    assert rows["  restless"].endswith("when the time of steps 1, 2 was up")
 
-    def rows(found=0.0, planned=0.0, restless=()):
-        move = BlockMove(3, 1, 0.2, 0.01, 0.1, found, fell=False)
-        built = BuildUp((move,), {}, {}, (0.0,), restless, None, 0.58)
-        return dict(PhysicsCard(plan, built, None, None, overlap_px=planned).rows())
 
-    apart = "  pushed apart"
-    assert rows(0.46)[apart] == "up to 0.46 source px deep (stone 3): others had moved there"
-    deep = "up to 1.60 source px deep (stone 3): what overlaps cannot stay where it is"
-    assert rows(1.6, 1.5)[apart] == deep
-    assert apart not in rows(0.009)
-    for restless, said in (((1,), "step 1 was"), ((1, 2), "steps 1, 2 was")):
-        words = f"blocks still moved when the time of {said} up"
-        assert rows(restless=restless)["  restless"] == words
+def test_what_cannot_be_seen_is_not_drawn(plan_copy, tmp_path, run):
+    rewrite(plan_copy / "plan.json", lambda plan: plan["metrics"].update(F_LR=0.99))
+    ran = run("check", plan_copy)
+    assert (ran.code, "picture" in ran.out) == (5, False)
+    assert not (plan_copy / "check.png").exists()
+    rewrite(plan_copy / "plan.json", lambda plan: plan.update(steps=[]))
+    assert run("check", plan_copy, "--picture", tmp_path / "none.png").code == 5
+    assert not (tmp_path / "none.png").exists()
 
 
 def test_a_stone_that_hangs_by_friction_is_drawn_where_it_hangs():
     hanging = hanging_example()
     (view,) = views(hanging.plan, hanging.stones)
     assert ("E237" in view.title, list(view.concerned), bool(view.ended)) == (True, [3], False)
-
-
-def test_a_plan_without_stones_has_no_picture(plan_copy, tmp_path, run):
-    rewrite(plan_copy / "plan.json", lambda plan: plan.update(steps=[]))
-    assert run("check", plan_copy, "--picture", tmp_path / "none.png").code == 5
-    assert not (tmp_path / "none.png").exists()

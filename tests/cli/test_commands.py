@@ -70,18 +70,15 @@ def test_analyse_and_measure_a_plan(plan_copy, run):
         report = run("analyse", given, "--json").json()
         assert report["F_LR"] == pytest.approx(plan.metrics.F_LR)
         measured = run("measure", given, "--json").json()
-        assert list(measured) == [
-            "F_SF", "F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH", "stones", "width", "height",
-        ]  # fmt: skip
         assert (measured["width"], measured["height"]) == (100.0, 36.0)
         assert measured["stones"] == len(plan.stone_steps)
         for name in ("F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH"):
             assert measured[name] == pytest.approx(getattr(plan.metrics, name))
         assert measured["F_SF"] == pytest.approx(plan.metrics.F_SF, rel=0.02)
-        asked = run("measure", given, "--json", "--wall", "100x36").json()
-        assert asked == measured
-        wider = run("measure", given, "--json", "--wall", "200x36").json()
-        assert wider["F_SF"] == pytest.approx(measured["F_SF"] / 2)
+    wider = run("measure", plan_copy, "--json", "--wall", "200x36").json()
+    assert wider["F_SF"] == pytest.approx(measured["F_SF"] / 2)
+    rewrite(plan_copy / "plan.json", lambda plan: plan["settings"].pop("mu"))
+    assert run("analyse", plan_copy, "--json").json()["mu"] == 0.58
 
 
 def test_a_plan_needs_its_own_wall_image(plan_copy, run):
@@ -119,14 +116,6 @@ def test_the_stones_of_a_mask_are_told_apart_in_every_command(tmp_path, run):
     assert "W304" not in run("measure", _tower(tmp_path / "tower.png")).err
 
 
-def test_check_finds_the_stones_or_asks(plan_copy, tmp_path, run):
-    assert run("check", plan_copy).code == 0
-    (plan_copy / "rubble.png").rename(tmp_path / "rubble.png")  # above the folder
-    assert run("check", plan_copy).code == 0
-    (tmp_path / "rubble.png").unlink()
-    run("check", plan_copy).refused("E202", "--stones", exit_code=3)
-
-
 @pytest.mark.parametrize("kind", ["fourier", "polygon", "brick", "rubble"])
 def test_generate(kind, tmp_path, run):
     paths = [tmp_path / name for name in ("a.png", "new/b.tif", "c.png")]
@@ -139,20 +128,11 @@ def test_generate(kind, tmp_path, run):
     assert set(np.unique(first).tolist()) == {0, 1, 2, 3, 4}
     if kind != "brick":  # all bricks are alike
         assert first.shape != other.shape or (first != other).any()
-    assert run("stones", paths[0], "--json").json()["stones"] == 4
-
-
-def test_generate_takes_parameters(tmp_path, run):
-    written = []
+        return
     # Numbers are written as everywhere else, which TOML alone does not read.
-    for aspect in ("2", ".5", "0.5"):
-        path = tmp_path / f"{aspect}.png"
-        sizes = ("--set", "height_px=6", "--set", f"aspect={aspect}")
-        assert run("generate", "brick", "-o", path, "--count", 2, *sizes).code == 0
-        written.append(path.read_bytes())
-    labels = read_wall_image(tmp_path / "2.png")
-    assert [int((labels == stone).sum()) for stone in (1, 2)] == [72, 72]
-    assert written[0] != written[1] == written[2]
+    sizes = ("--count", 2, "--set", "height_px=6", "--set", "aspect=.5", "--overwrite")
+    assert run("generate", kind, "-o", paths[0], *sizes).code == 0
+    assert [int((read_wall_image(paths[0]) == stone).sum()) for stone in (1, 2)] == [18, 18]
 
 
 def test_demo_needs_nothing_and_can_be_checked(tmp_path, run, monkeypatch):
@@ -170,11 +150,6 @@ def test_demo_needs_nothing_and_can_be_checked(tmp_path, run, monkeypatch):
     assert not (tmp_path / "other").exists()
 
 
-def test_analyse_takes_a_plan_that_says_nothing_of_friction(plan_copy, run):
-    rewrite(plan_copy / "plan.json", lambda plan: plan["settings"].pop("mu"))
-    assert run("analyse", plan_copy, "--json").json()["mu"] == 0.58
-
-
 def test_measure(finished, tmp_path, run):
     tower = _tower(tmp_path / "tower.png")
     assert run("measure", tower, "--json").json()["F_SF"] == 1.0
@@ -183,28 +158,20 @@ def test_measure(finished, tmp_path, run):
     reduced = run("measure", tower, "--json", "--scale", ".5", "--wall", "40x50").json()
     assert (reduced["width"], reduced["height"]) == (20.0, 25.0)
     assert reduced["F_SF"] == pytest.approx(given["F_SF"])
-    metres = run("measure", tower, "--json", "--wall", ".4mx.5m", "--px-per-m", "100").json()
-    assert metres == given
+    asked = ("measure", tower, "--json", "--wall", ".4mx.5m")
+    assert run(*asked, "--px-per-m", "100").json() == given
+    assert run(*asked, "--ruler", "0,0,30,0=.3m").json() == given
+    # The picture is meant as it was given, also when a smaller one is measured.
+    assert run(*asked, "--scale", ".5", "--ruler", "0,0,30,50=.3m").code == 0
+    beyond = "E138 --ruler: the point 31,0 is outside the picture, which is 30 x 50 px"
+    for command in (asked, ("analyse", tower)):
+        run(*command, "--ruler", "0,0,31,0=1m").refused(beyond)
     assert "in a picture of 30 x 50 px" in run("measure", tower).out
     # A plan keeps its wall.
     whole = run("measure", finished, "--json").json()
     half = run("measure", finished, "--scale", ".5", "--json").json()
     assert half["F_SF"] == pytest.approx(whole["F_SF"])
     assert (half["width"], half["height"]) == (whole["width"] / 2, whole["height"] / 2)
-
-
-def test_a_ruler_lies_in_the_picture_of_a_wall(tmp_path, run):
-    tower = _tower(tmp_path / "tower.png")
-    asked = ("measure", tower, "--wall", ".2mx.4m", "--json")
-    inside = run(*asked, "--ruler", "0,0,30,0=.3m").json()
-    assert inside == run(*asked, "--px-per-m", 100).json()
-    # The picture is meant as it was given, also when a smaller one is measured.
-    assert run(*asked, "--scale", ".5", "--ruler", "0,0,30,50=.3m").code == 0
-    for beyond in ("0,0,9999,0=1m", "0,0,31,0=1m", "0,0,0,51=1m"):
-        outside = "outside the picture, which is 30 x 50 px"
-        run(*asked, "--ruler", beyond).refused("E138 --ruler: the point", outside)
-    said = "E138 --ruler: the point 31,0 is outside the picture"
-    run("analyse", tower, "--ruler", "0,0,31,0=1m").refused(said)
 
 
 def test_a_ruler_of_a_plan_lies_in_the_picture_of_its_stones(finished, run):
@@ -234,8 +201,7 @@ def test_cite_says_what_the_citation_file_says(run):
     assert ran.code == 0
     assert cff["version"] == version("drystone")
     (paper,) = cff["references"]
-    names = [f"{one['family-names']}" for one in paper["authors"]]
-    for said in (cff["title"], cff["version"], str(cff["date-released"]), cff["license"],
-                 str(paper["year"]), *names):  # fmt: skip
-        assert said in ran.out
+    told = [cff[name] for name in ("title", "version", "date-released", "license")]
+    for said in (*told, paper["year"], *(one["family-names"] for one in paper["authors"])):
+        assert str(said) in ran.out
     assert ran.out.count("{") == ran.out.count("}")

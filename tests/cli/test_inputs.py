@@ -56,20 +56,21 @@ def test_what_is_read_is_not_written_over(line, name, rubble, finished, tmp_path
     assert contents(tmp_path) == before
 
 
-def test_export_keeps_what_it_reads(plan_copy, run):
+def test_what_a_plan_has_is_not_written_over(rubble, plan_copy, run):
+    before, wall = contents(plan_copy), plan_copy / "wall.png"
+    drawn = ("-o", plan_copy, "--load", "gravity")
+    for asked, said in (
+        (("check", plan_copy, "--stones", rubble, "--picture", wall), f"E129 {wall}: is read here"),
+        *((("analyse", plan_copy / name, *drawn), "belongs to the plan")
+          for name in ("", "plan.json", "wall.png")),
+    ):  # fmt: skip
+        run(*asked, "--overwrite").refused("E129", said)
+        assert contents(plan_copy) == before
     plan = (plan_copy / "plan.json").rename(plan_copy / "poses.json")
-    before = contents(plan_copy)
-    ran = run("export", plan, "--to", "csv", "poses", "--px-per-m", 100, "--overwrite")
-    ran.refused(f"E129 {plan}: is read here")
+    asked = ("export", plan, "--to", "csv", "poses", "--px-per-m", 100, "--overwrite")
+    run(*asked).refused(f"E129 {plan}: is read here")
+    before["poses.json"] = before.pop("plan.json")
     assert contents(plan_copy) == before
-
-
-def test_check_keeps_the_wall_of_a_plan(rubble, plan_copy, run):
-    wall = plan_copy / "wall.png"
-    before = wall.read_bytes()
-    asked = ("check", plan_copy, "--stones", rubble, "--picture", wall, "--overwrite")
-    run(*asked).refused(f"E129 {wall}: is read here")
-    assert wall.read_bytes() == before
 
 
 def test_segment_keeps_its_photograph(photo, run):
@@ -100,8 +101,7 @@ def test_stones_keeps_what_it_reads(rubble, tmp_path, run):
     with Image.open(rubble) as picture:
         write_sidecar(PhotoSidecar(*picture.size), found)
     for source, picture in ((masks, masks / "1.png"), (found, found / LABELS)):
-        ran = run("stones", source, "-o", picture, "--overwrite")
-        ran.refused(f"E129 {picture}: is read here")
+        run("stones", source, "-o", picture, "--overwrite").refused(f"E129 {picture}: is read here")
         assert picture.read_bytes() == rubble.read_bytes()
     # Pictures may lie beside the stones of a photograph.
     assert run("stones", found, "-o", found / "drawn.png").code == 0

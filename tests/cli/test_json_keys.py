@@ -24,13 +24,10 @@ def keys(report, *within):
     return set(report).union(*(report[name] for name in within))
 
 
-def test_of_stones_and_measure(rubble, finished, run):
-    assert set(run("stones", rubble, "--json").json()) == listed("stones")
-    assert set(run("measure", finished, "--json").json()) == listed("measure")
-
-
-def test_of_craft(finished, run):
-    assert set(run("craft", finished, "--json").json()) == listed("craft")
+@pytest.mark.parametrize("command", ["stones", "measure", "craft"])
+def test_of_what_looks(command, rubble, finished, run):
+    given = rubble if command == "stones" else finished
+    assert set(run(command, given, "--json").json()) == listed(command)
 
 
 def test_of_rehearse(settled, run):
@@ -45,6 +42,7 @@ def test_of_plan(rubble, tmp_path, run):
     metrics = set(PlanMetrics.__dataclass_fields__)  # "the metrics" on the page
     found = keys(report, "profile").union(*report["pareto"])
     assert found - metrics == listed("plan") - metrics
+    assert metrics - found == {"alpha_left_coulomb", "alpha_right_coulomb"}
 
 
 def test_of_check(plan_copy, tmp_path, run):

@@ -106,8 +106,7 @@ def test_a_full_disk_ends_no_search_and_is_told_once(rubble, tmp_path, run, monk
     ran = run("plan", rubble, *SEARCH, "-o", tmp_path / "full")
     assert len(calls) > 2
     assert ran.code == whole.code
-    assert ran.err.count("W130") == 1
-    assert "No space left" in ran.err
+    assert (ran.err.count("W130"), "No space left" in ran.err) == (1, True)
     plans = [(tmp_path / name / "plan.json").read_bytes() for name in ("full", "whole")]
     assert plans[0] == plans[1]
 
@@ -117,7 +116,6 @@ def test_a_full_disk_ends_no_search_and_is_told_once(rubble, tmp_path, run, monk
     [
         ("drystone.cli.planning.write_plan_folder", ()),
         ("drystone.drawing.write_pictures", ("--json",)),
-        ("drystone.cli.planning.write_film", ()),
     ],
 )
 def test_the_card_of_a_wall_that_cannot_be_written_is_printed(

@@ -73,11 +73,6 @@ def test_a_cure_names_options_that_the_command_has(run, monkeypatch, tmp_path):
         assert said in run(*asked).err
 
 
-def test_debug_shows_the_traceback(run):
-    with pytest.raises(Exception, match="E100"):
-        run("stones", "nowhere.png", "--debug")
-
-
 def test_a_fault_of_drystone_says_so_in_one_line(run, monkeypatch):
     def fail(_):
         raise ZeroDivisionError("by\nnought")
@@ -94,18 +89,14 @@ def test_a_fault_of_drystone_says_so_in_one_line(run, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("name", "closed", "code"),
-    [("stones", ">&-", 0), ("stones", ">&- 2>&-", 0), ("none", "2>&-", 3), ("none", ">&-", 3)],
+    ("name", "closed", "code"), [("stones", ">&- 2>&-", 0), ("none", "2>&-", 3), ("none", ">&-", 3)]
 )
 def test_a_closed_output_is_no_error(name, closed, code, rubble, tmp_path):
     given = rubble if name == "stones" else tmp_path / "none.png"
     shell = f"exec {sys.executable} -m drystone stones {given} {closed}"
     done = subprocess.run(["sh", "-c", shell], capture_output=True, text=True, check=False)  # noqa: S603, S607
     assert (done.returncode, done.stdout) == (code, "")
-    assert done.stderr == (
-        "" if code == 0 or "2>" in closed else done.stderr.splitlines()[0] + "\n"
-    )
-    assert "Traceback" not in done.stderr
+    assert done.stderr.count("\n") == ("2>" not in closed)
 
 
 def test_names_are_printed_where_there_are_no_such_letters(rubble, monkeypatch, tmp_path):
@@ -146,22 +137,16 @@ def test_libraries_that_print_by_themselves_are_silent(tmp_path):
 def test_a_signal_that_a_module_turns_into_an_error_is_still_a_signal(
     sent, code, said, run, monkeypatch
 ):
-    def imported(_):
+    """Modules are loaded while a command line is parsed, and while a command runs."""
+
+    def imported(*_):
         try:
             signal.raise_signal(sent)
         except KeyboardInterrupt as interrupt:
             raise ImportError("initialization failed") from interrupt
-        return ExitCode.DONE
 
-    monkeypatch.setattr(command, "run", imported)
-    ran = run("stones", "x.png")
-    assert (ran.code, ran.err) == (code, f"drystone: {said}\n")
-
-
-def test_a_signal_that_comes_while_a_command_is_loaded(run, monkeypatch):
-    def loaded(*_):
-        signal.raise_signal(signal.SIGTERM)
-
-    monkeypatch.setattr(sys.modules["drystone.cli.main"], "build_parser", loaded)
-    ran = run("stones", "x.png")
-    assert (ran.code, ran.err) == (143, "drystone: terminated\n")
+    for place, name in ((command, "run"), (sys.modules["drystone.cli.main"], "build_parser")):
+        with monkeypatch.context() as patch:
+            patch.setattr(place, name, imported)
+            ran = run("stones", "x.png")
+        assert (ran.code, ran.err) == (code, f"drystone: {said}\n")

@@ -22,16 +22,10 @@ from drystone.model.stone import Source
     [
         ("560x160", None, (560.0, 160.0)),
         ("560X160.5", 200.0, (560.0, 160.5)),
-        ("560pxx160px", None, (560.0, 160.0)),
-        (" 560 x 160 ", None, (560.0, 160.0)),
-        ("1.4mx0.4m", 200.0, (280.0, 80.0)),
-        ("140cmx40cm", 200.0, (280.0, 80.0)),
         ("1400mmx.4m", 200.0, (280.0, 80.0)),
         ("5pxx3.5px", None, (5.0, 3.5)),
         ("8x8", 200.0, (8.0, 8.0)),
-        ("140x40cm", 200.0, (280.0, 80.0)),
-        ("140 x 40 cm", 200.0, (280.0, 80.0)),
-        ("1,4mx0,4m", 200.0, (280.0, 80.0)),
+        (" 140 x 40 cm", 200.0, (280.0, 80.0)),
         ("1,4mx0,400m", 200.0, (280.0, 80.0)),
         ("1,4 \N{MULTIPLICATION SIGN} ,4 m", 200.0, (280.0, 80.0)),
         ("560x160px", None, (560.0, 160.0)),
@@ -55,10 +49,8 @@ NO_SIZE = ["5", "x5", "5x", "5x5x5", "ax5", "-5x5", "5kmx5km", "1e3x5", "infxinf
     ("1.4x0.4", None, "E127 --wall: .* has no unit.* 1.4mx0.4m"),
     ("12x2", 200.0, "E127 --wall: .* has no unit.* 12mx2m"),
     ("1.4mx0.4", 200.0, "E127 --wall: .* px one way"),
-    ("280cmx80", 200.0, "E127 --wall: .* px one way"),
     ("280pxx400mm", 200.0, "E127 --wall: .* px one way"),
     ("1.4mx0.4m", None, "E131 --wall: .*--px-per-m"),
-    ("280mmx40cm", None, "E131 --wall: .*--px-per-m"),
 ])  # fmt: skip
 def test_what_is_no_size(text, px_per_m, said):
     with pytest.raises(UsageError, match=said):
@@ -96,15 +88,14 @@ def test_a_ruler_beyond_the_picture_is_refused(text):
 
 
 def test_where_the_size_of_a_picture_is_known():
-    assert picture_size_px(Source("stones.png", width_px=213, height_px=60)) == (213, 60)
-    # They say how far the stones reach, and a ruler lies beside them.
-    assert picture_size_px(Source("stones.json", width_px=213, height_px=60)) == (0, 0)
-    assert picture_size_px(Source("masks", width_px=56, height_px=46, files=("1.png",))) == (0, 0)
     size_px = {"width_px": 213, "height_px": 60}
-    assert picture_size_px({"path": "stones.png", "files": [], **size_px}) == (213, 60)
-    assert picture_size_px({"path": "stones.json", **size_px}) == (0, 0)
-    # A folder, whatever it is called.
-    assert picture_size_px({"path": "masks.png", "files": ["1.png"], **size_px}) == (0, 0)
+    for name, files, known in (
+        ("stones.png", (), (213, 60)),
+        ("stones.json", (), (0, 0)),  # how far the stones reach, and a ruler lies beside them
+        ("masks.png", ("1.png",), (0, 0)),  # a folder, whatever it is called
+    ):
+        assert picture_size_px(Source(name, files=files, **size_px)) == known
+        assert picture_size_px({"path": name, "files": list(files), **size_px}) == known
 
 
 def test_either_may_know_the_scale_and_who_says_another_is_named():

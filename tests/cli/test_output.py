@@ -18,26 +18,25 @@ def refuse_to_work(*_, **__):
 
 
 @pytest.mark.parametrize(
-    ("folders", "files", "said"),
+    ("name", "kind"),
     [
-        (["report.html"], [], "report.html: is a folder"),
-        (["wall.tif"], [], "wall.tif: is a folder"),
-        (["pareto.png"], [], "pareto.png: is a folder"),
-        ([], ["pareto"], "pareto: is a file"),
-        (["pareto"], ["pareto/02"], "02: is a file"),
-        (["pareto/01/plan.json"], [], "plan.json: is a folder"),
+        ("report.html", "folder"),
+        ("wall.tif", "folder"),
+        ("pareto.png", "folder"),
+        ("pareto", "file"),
+        ("pareto/02", "file"),
+        ("pareto/01/plan.json", "folder"),
     ],
 )
 def test_what_is_in_the_way_is_said_before_the_search(
-    folders, files, said, rubble, tmp_path, run, monkeypatch
+    name, kind, rubble, tmp_path, run, monkeypatch
 ):
     out = tmp_path / "out"
-    for name in folders:
-        (out / name).mkdir(parents=True)
-    out.mkdir(exist_ok=True)
-    for name in files:
+    (out / name).mkdir(parents=True)
+    if kind == "file":
+        (out / name).rmdir()
         (out / name).write_bytes(b"mine")
-    before = sorted(out.rglob("*"))
+    before, said = sorted(out.rglob("*")), f"{name.split('/')[-1]}: is a {kind}"
     monkeypatch.setattr(planning, "plan_wall", refuse_to_work)
     run("plan", rubble, *WALL, "--pareto", "-o", out, "--overwrite").refused("E129", said)
     assert sorted(out.rglob("*")) == before
@@ -74,7 +73,5 @@ def test_json_is_json_on_any_stdout(encoding, rubble, tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(out, encoding=encoding))
     assert main(["stones", str(named), "--json"]) == 0
     printed = out.getvalue().decode(encoding)
-    if encoding == "utf-8":
-        assert named.name in printed
-    told = json.loads(printed)
-    assert told["source"] == named.name
+    assert encoding != "utf-8" or named.name in printed
+    assert json.loads(printed)["source"] == named.name

@@ -9,7 +9,7 @@ import tifffile
 from PIL import Image
 
 from drystone.io.plan_json import read_plan
-from drystone.io.wall_image import read_wall_image, write_labels
+from drystone.io.wall_image import write_labels
 from drystone.planner.profile import PARTS
 from tests.cli.conftest import WALL
 
@@ -18,13 +18,6 @@ FILES = {
     "mechanism_right.png", "report.html", "build.gif",
 }  # fmt: skip
 
-SUMMARY = [
-    "plan", "status", "stopped", "shortfall", "placed", "stones", "unused", "wedges", "F_SF",
-    "F_SF_bound", "craft_broken", "F_AV", "F_AH", "F_LR", "F_LR_coulomb", "F_LR_half",
-    "F_LR_double", "F_LR_no_setback", "T_LEVEL", "E_FLUSH", "alpha_left", "alpha_right",
-    "wedge_area", "walls", "working_scale", "seconds",
-]  # fmt: skip
-
 
 def test_all_files_are_written(finished):
     assert {path.name for path in finished.iterdir()} == FILES
@@ -32,45 +25,29 @@ def test_all_files_are_written(finished):
         with Image.open(finished / name) as picture:
             assert min(picture.size) > 100
     assert (finished / "report.html").read_text(encoding="utf-8").startswith("<!")
-
-
-def test_the_contract_of_plan_json(finished):
     plan = json.loads((finished / "plan.json").read_text(encoding="utf-8"))
-    assert list(plan) == [
-        "schema", "version", "method", "seed", "settings", "units", "source", "wall", "steps",
-        "unused", "stopped", "metrics",
-    ]  # fmt: skip
-    assert plan["schema"] == "drystone-plan/1"
-    assert (plan["method"], plan["seed"]) == ("paper", 1)
     assert plan["units"] == {"length": "px", "px_per_m": None, "working_scale": 1.0}
     assert plan["wall"] == {"width": 100.0, "height": 36.0}
-    assert plan["source"]["path"] == "rubble.png"
-    stones = [step for step in plan["steps"] if step["kind"] == "stone"]
-    assert sorted([step["stone"] for step in stones] + plan["unused"]) == list(range(1, 9))
-    assert [step["step"] for step in plan["steps"]] == list(range(1, len(plan["steps"]) + 1))
+    assert (plan["method"], plan["seed"], plan["source"]["path"]) == ("paper", 1, "rubble.png")
+    stones = [step["stone"] for step in plan["steps"] if step["kind"] == "stone"]
+    assert sorted(stones + plan["unused"]) == list(range(1, 9))
 
 
 def test_json_has_the_summary_and_where_the_time_went(rubble, tmp_path, run):
     ran = run("plan", rubble, *WALL, "-o", tmp_path / "json", "--json", "--profile")
     summary = ran.json()
     profile = summary.pop("profile")
-    assert list(summary) == SUMMARY
     plan = read_plan(summary["plan"])
-    assert summary["placed"] == len(plan.stone_steps)
-    assert summary["stones"] == 8
-    assert summary["unused"] == list(plan.unused)
+    assert (summary["placed"], summary["stones"]) == (len(plan.stone_steps), 8)
+    assert (summary["unused"], summary["stopped"]) == (list(plan.unused), plan.stopped)
     assert summary["F_LR"] == plan.metrics.F_LR
-    assert summary["stopped"] == plan.stopped
     assert summary["seconds"] > 0
     assert (summary["status"], ran.code) in {("complete", 0), ("incomplete", 4)}
-    assert list(profile) == [
-        "seconds", "parts", "steps", "candidates", "solved_anew", "longest_step", "jobs", "kernels",
-    ]  # fmt: skip
     parts = profile["parts"]
     assert list(parts) == [*PARTS, "search", "other"]
     assert all(parts[part] > 0 for part in PARTS if part != "metrics")
-    assert parts["metrics"] == 0  # only methods that go back look at them while planning
-    assert parts["search"] == 0
+    # Only methods that go back look at metrics while planning.
+    assert parts["metrics"] == parts["search"] == 0
     assert sum(parts.values()) == pytest.approx(profile["seconds"])
     assert profile["candidates"] >= profile["steps"] >= 6
     assert 0 < profile["longest_step"] <= profile["seconds"]
@@ -112,15 +89,10 @@ def test_stones_too_large(rubble, tmp_path, run):
     assert ran.code in (0, 4)
     plan = read_plan(tmp_path / "out")
     said = run("plan", rubble, *small, "--overwrite").err.splitlines()[-1]
-    named = {int(text) for text in _listed(said)}
-    assert named
-    assert named <= set(plan.unused)
+    named = said.split("stones ")[1].split(" fit", maxsplit=1)[0].split(", ")
+    assert set() < {int(text) for text in named} <= set(plan.unused)
     assert ran.json()["unused"] == list(plan.unused)
     assert run("check", tmp_path / "out", "--stones", rubble).code == 0
-
-
-def _listed(message):
-    return message.split("stones ")[1].split(" fit", maxsplit=1)[0].split(", ")
 
 
 def test_ids_above_16_bits_survive(tmp_path, run):
@@ -129,24 +101,20 @@ def test_ids_above_16_bits_survive(tmp_path, run):
         labels[5 + 10 * place : 13 + 10 * place, 5 : 45 + 5 * place] = stone_id
     write_labels(labels, tmp_path / "stones.tif")
     out = tmp_path / "out"
-    ran = run("plan", tmp_path / "stones.tif", "--wall", "70x40", "--scale", "1", "--method",
-              "paper", "-o", out)  # fmt: skip
-    assert ran.code in (0, 4)
+    asked = ("--wall", "70x40", "--scale", "1", "--method", "paper", "-o", out)
+    assert run("plan", tmp_path / "stones.tif", *asked).code in (0, 4)
     assert not (out / "wall.png").exists()
     wall = tifffile.imread(out / "wall.tif")
     assert wall.dtype == np.uint32
     plan = read_plan(out)
-    placed = {step.stone for step in plan.stone_steps}
-    assert placed == {3, 300, 70_000}
+    assert {step.stone for step in plan.stone_steps} == {3, 300, 70_000}
     wedges = {step.id for step in plan.wedge_steps}
-    assert set(np.unique(wall).tolist()) - {0} == placed | wedges
-    assert (read_wall_image(out / "wall.tif") == wall).all()
+    assert set(np.unique(wall).tolist()) - {0} == {3, 300, 70_000} | wedges
     assert run("check", out, "--stones", tmp_path / "stones.tif").code == 0
     # A later plan of smaller ids into the same folder leaves no wall of the earlier one.
     labels[labels == 70_000] = 7
     write_labels(labels, tmp_path / "small.png")
-    run("plan", tmp_path / "small.png", "--wall", "70x40", "--scale", "1", "--method", "paper",
-        "-o", out, "--overwrite")  # fmt: skip
+    run("plan", tmp_path / "small.png", *asked, "--overwrite")
     assert (out / "wall.png").exists()
     assert not (out / "wall.tif").exists()
 

@@ -54,14 +54,11 @@ def test_a_finished_plan_is_left_as_it_is(finished, rubble, bricks, tmp_path, ru
     whole, low = tmp_path / "whole", shutil.copytree(finished, tmp_path / "low")
     full = ("plan", bricks, "--wall", "60x20", *WALL[2:], "-o", whole)
     assert run(*full).code == 0
-    for code, asked, out in (
-        (4, ("plan", rubble, *WALL, "--seed", 1, "-o", low), low),
-        (0, full, whole),
-    ):
+    lower = ("plan", rubble, *WALL, "--seed", 1, "-o", low)
+    for code, asked, out in ((4, lower, low), (0, full, whole)):
         before = {path.name: path.read_bytes() for path in out.iterdir()}
         again, as_json = run(*asked, "--resume"), run(*asked, "--resume", "--json")
-        assert (again.code, as_json.code) == (code, code)
-        assert "finished" in again.err
+        assert (again.code, as_json.code, "finished" in again.err) == (code, code, True)
         assert ("incomplete: the top is at" in again.err) == (code == 4)
         told = as_json.json()
         assert (told["status"], told["shortfall"], told["seconds"]) == ("finished", None, None)
@@ -225,77 +222,44 @@ def test_signals_while_the_end_is_written_lose_nothing(
     assert not (tmp_path / CHECKPOINT).exists()
 
 
-@pytest.mark.parametrize("walls", [2, 7])
-def test_a_search_that_is_killed_goes_on_from_its_checkpoint(walls, search, tmp_path, monkeypatch):
-    kill(search, tmp_path, walls, monkeypatch)
-    assert search.holds(tmp_path)
-    search(tmp_path).refused("E129")
-    ran = search(tmp_path, "--resume")
-    assert ran.err.startswith(f"drystone: going on after {walls} walls\n")
-    assert same(tmp_path, search.whole)
-
-
-def test_a_search_that_was_cut_off_ends_where_it_is_with_a_smaller_budget(
-    search, tmp_path, monkeypatch
-):
-    kill(search, tmp_path / "killed", 7, monkeypatch)
-    ran = search(tmp_path / "killed", "--resume", "--budget", 1)
+def test_a_search_that_is_killed_goes_on_from_its_checkpoint(search, tmp_path, monkeypatch):
+    """With a smaller budget it ends where it is."""
+    killed, ended = tmp_path / "killed", tmp_path / "ended"
+    kill(search, killed, 7, monkeypatch)
+    shutil.copytree(killed, ended)
+    assert search.holds(killed)
+    search(killed).refused("E129")
+    ran = search(killed, "--resume")
+    assert ran.err.startswith("drystone: going on after 7 walls\n")
+    assert same(killed, search.whole)
+    ran = search(ended, "--resume", "--budget", 1)
     assert ran.code in (0, 4)
     assert search(tmp_path / "seven", "--budget", 7).code == ran.code
-    assert same(tmp_path / "killed", tmp_path / "seven")
+    assert same(ended, tmp_path / "seven")
 
 
-def killed_at_a_stone(run, plan, monkeypatch):
-    """Kill a plan before anything of it is kept."""
-
+@pytest.mark.parametrize("earlier", [False, True], ids=["nothing", "an earlier plan"])
+def test_of_a_plan_that_was_killed_before_anything_was_kept_there_is_nothing_to_go_on_with(
+    earlier, rubble, finished, tmp_path, run, monkeypatch
+):
     def on_step(_, __):
         raise Killed
 
+    out = tmp_path / "out"
+    if earlier:
+        rewrite(shutil.copytree(finished, out) / "plan.json", lambda plan: plan.update(seed=3))
+    plan = ("plan", rubble, *WALL, "--seed", 1, "-o", out)
     with monkeypatch.context() as patch:
         patch.setattr(Callbacks, "on_step", on_step)
         with pytest.raises(Killed):
-            run(*plan)
-
-
-def test_of_a_plan_that_was_killed_before_anything_was_kept_there_is_nothing_to_go_on_with(
-    rubble, finished, tmp_path, run, monkeypatch
-):
-    plan = ("plan", rubble, *WALL, "--seed", 1, "-o", tmp_path)
-    killed_at_a_stone(run, plan, monkeypatch)
-    assert [path.name for path in tmp_path.iterdir()] == [CHECKPOINT]
-    (tmp_path / f".plan.json.{32 * 'a'}.part").write_bytes(b"half")
-    (tmp_path / LOCK).write_bytes(b"")
-    run(*plan, "--resume", "--seed", 2).refused("E136", "--seed")
+            run(*plan, "--overwrite")
+    (out / f".plan.json.{32 * 'a'}.part").write_bytes(b"half")
+    (out / LOCK).write_bytes(b"")
+    if not earlier:
+        run(*plan, "--resume", "--seed", 2).refused("E136", "--seed")
     ran = run(*plan, "--resume")
     assert ran.err.startswith("drystone: nothing to go on with yet, planning begins anew\n")
-    assert {path.name for path in tmp_path.iterdir()} == {path.name for path in finished.iterdir()}
-    assert (tmp_path / "plan.json").read_bytes() == (finished / "plan.json").read_bytes()
-
-
-def test_a_plan_whose_end_was_not_written_is_not_finished(search, tmp_path, monkeypatch):
-    def write_pictures(*_, **__):
-        raise Killed
-
-    with monkeypatch.context() as patch:
-        patch.setattr("drystone.drawing.write_pictures", write_pictures)
-        with pytest.raises(Killed):
-            search(tmp_path)
-    assert read_plan(tmp_path) == read_plan(search.whole)
-    assert not (tmp_path / "report.html").exists()
-    ran = search(tmp_path, "--resume")
-    assert "finished" not in ran.err
-    assert same(tmp_path, search.whole)
-
-
-def test_beside_the_checkpoint_of_a_new_plan_an_earlier_one_is_not_gone_on_with(
-    rubble, finished, tmp_path, run, monkeypatch
-):
-    plan, out = ("plan", rubble, *WALL, "-o", tmp_path / "out"), tmp_path / "out"
-    rewrite(shutil.copytree(finished, out) / "plan.json", lambda earlier: earlier.update(seed=3))
-    killed_at_a_stone(run, (*plan, "--seed", 1, "--overwrite"), monkeypatch)
-    assert read_plan(out).seed == 3
-    ran = run(*plan, "--seed", 1, "--resume")
-    assert ran.err.startswith("drystone: nothing to go on with yet, planning begins anew\n")
+    assert {path.name for path in out.iterdir()} == {path.name for path in finished.iterdir()}
     assert (out / "plan.json").read_bytes() == (finished / "plan.json").read_bytes()
 
 

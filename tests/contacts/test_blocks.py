@@ -65,6 +65,7 @@ def test_an_empty_image_has_no_blocks():
     picture = model_from_labels(np.zeros((4, 5), np.uint32))
     assert (picture.model.blocks, picture.model.interfaces) == ((), ())
     assert (picture.ground_row, picture.notices) == (4, ())
+    assert pieces_apart(np.zeros((0, 0), np.uint32)) == ()
 
 
 @pytest.mark.parametrize(
@@ -107,10 +108,6 @@ def test_stone_after_stone_gives_the_model_of_the_whole(labels, order, with_wedg
         assert block.centroid == pytest.approx(other.centroid, abs=1e-12)
 
 
-def told_exactly(model):
-    return told(model), model.added.closed
-
-
 @given(labels=pictures, first=st.integers(1, 4))
 @repeatable(100)
 def test_points_known_before_change_nothing(labels, first):
@@ -119,11 +116,10 @@ def test_points_known_before_change_nothing(labels, first):
     wall = np.where(labels == first, 0, labels)
     model, new = model_from_labels(labels).model, placed(labels, first)
     model = RigidBlockModel(model.blocks, find_interfaces(wall), model.mu)
-    anew = told_exactly(model_with(model, wall, new))
-    points = PointContacts.of(model.interfaces)
-    assert told_exactly(model_with(model, wall, new, points=points)) == anew
-    others = PointContacts.of(find_interfaces(labels))
-    assert told_exactly(model_with(model, wall, new, points=others)) == anew
+    anew = model_with(model, wall, new)
+    for interfaces in (model.interfaces, find_interfaces(labels)):
+        found = model_with(model, wall, new, points=PointContacts.of(interfaces))
+        assert (told(found), found.added.closed) == (told(anew), anew.added.closed)
 
 
 @given(labels=label_images() | dust_labels())
@@ -139,8 +135,3 @@ def test_the_notice_names_five_stones_and_counts_the_others():
     assert notice.code == "W304"
     assert notice.message.startswith("1 pixel of stone 1, 1 pixel of stone 2, ")
     assert "1 pixel of stone 5, pixels of 2 more lie apart from them" in notice.message
-
-
-def test_an_empty_image_has_no_pieces():
-    assert pieces_apart(np.zeros((0, 0), np.uint32)) == ()
-    assert pieces_apart(np.zeros((2, 3), np.uint32)) == ()

@@ -46,22 +46,18 @@ def pairs(model):
     return {(i.block, i.other) for i in model.interfaces}
 
 
-@pytest.mark.parametrize(("courses", "tall", "joint"), [(6, 38, 2), (6, 37, 3), (8, 38, 2)])
+@pytest.mark.parametrize(("courses", "tall", "joint"), [(6, 37, 3), (8, 38, 2)])
 def test_a_bond_with_open_joints_is_as_strong_as_the_tight_one(courses, tall, joint):
     labels = bond(courses, 20, tall, joint)
     tight = brick_model(courses, 3, (tall + joint) / 20, 0.58)
     closed = model_with_closed_gaps(labels, joint).model
+    assert closed.blocks == model_from_labels(labels).model.blocks
     assert pairs(closed) == pairs(tight)
     assert len(closed.interfaces) == len(tight.interfaces)
     found, true = lateral_resistance(closed), lateral_resistance(tight)
     assert found.left.alpha == pytest.approx(true.left.alpha, rel=0.02)
     assert found.right.alpha == pytest.approx(true.right.alpha, rel=0.02)
     assert lateral_resistance(model_with_closed_gaps(labels, joint - 1).model).value is None
-
-
-def test_weights_and_centroids_are_those_of_the_stones():
-    labels = bond(4, 12, 20, 2)
-    assert model_with_closed_gaps(labels, 2).model.blocks == model_from_labels(labels).model.blocks
 
 
 def test_stones_meet_in_the_middle_of_the_gap():
@@ -86,20 +82,17 @@ def test_a_tilted_gap_is_as_wide_as_it_is_across():
 def test_nothing_grows_into_free_air():
     labels = np.zeros((20, 30), np.uint32)
     labels[5:, :12], labels[8:, 14:26] = 1, 2
-    closed = close_gaps(labels, 6)
-    grown = np.argwhere(closed != labels)
-    assert grown.min(axis=0).tolist() == [8, 12]
-    assert grown.max(axis=0).tolist() == [19, 13]
-    assert (closed[8:, 12] == 1).all()
-    assert (closed[8:, 13] == 2).all()
+    expected = labels.copy()
+    expected[8:, 12], expected[8:, 13] = 1, 2
+    assert (close_gaps(labels, 6) == expected).all()
 
 
 def test_a_stone_does_not_grow_into_the_head_joint_below_it():
     labels = np.full((20, 30), 3)
     labels[8:, :14], labels[8:, 14:17], labels[8:, 17:] = 1, 0, 2
-    closed = close_gaps(labels, 4)
-    assert (closed[8:, 14:16] == 1).all()
-    assert (closed[8:, 16] == 2).all()
+    expected = labels.copy()
+    expected[8:, 14:16], expected[8:, 16] = 1, 2
+    assert (close_gaps(labels, 4) == expected).all()
 
 
 def test_a_stone_just_above_the_ground_stands_on_it():
@@ -132,17 +125,6 @@ def test_closing_keeps_stones_and_joins_only_those_within_reach(labels, reach):
     for one, other in pairs(model_from_labels(closed).model):
         if other != GROUND:
             assert distance(labels, one, other) <= reach
-
-
-def test_settled_stones_rest_without_overlap():
-    labels = bond(4, 10, 12, 3)
-    settled, moved = settle_gaps(labels)
-    assert moved[4] == (0, 3)
-    assert max(down for _, down in moved.values()) == 9
-    assert 1 not in moved
-    assert (settled == 0)[:9].all()
-    resting = {i.block for i in model_from_labels(settled).model.interfaces if i.normal[1] > 0.9}
-    assert resting == set(range(1, 15))
 
 
 def test_pushed_stones_touch_their_neighbours():
@@ -232,13 +214,6 @@ def test_a_stone_that_floats_and_one_that_touches_at_a_corner():
     assert found == (Scarce(4, 1, 1, 10.0), Scarce(5, 0, 2, 5.0))
 
 
-def test_the_ground_is_a_neighbour_too():
-    wall = np.zeros((12, 30), int)
-    wall[6:12, 0:10], wall[0:9, 20:28] = 1, 2
-    found = scarce_contacts(model_from_labels(wall).model, wall)
-    assert [(one.block, one.nearest, one.gap) for one in found] == [(2, 0, 3.0)]
-
-
 def test_polygons():
     data = {"blocks_xywh": [[0, 0, 4, 2], [0, 2.5, 4, 2], [6, 1, 2, 2]], "mu": 0.6}
     found = scarce_contacts(model_from_json(data), polygons_from_json(data))
@@ -264,9 +239,9 @@ def test_gaps_are_those_between_all_pixels(cells):
         own = np.argwhere(wall == one.block)
         strangers = {i: np.argwhere(wall == i) for i in np.unique(wall) if i not in (0, one.block)}
         strangers[0] = np.array(ground)
-        gaps = [
-            np.hypot(*(own[:, None] - other[None]).transpose(2, 0, 1)).min() - 1.0
+        gaps = {
+            i: np.hypot(*(own[:, None] - other[None]).transpose(2, 0, 1)).min() - 1.0
             for i, other in strangers.items()
             if i not in touched.get(one.block, set())
-        ]
-        assert one.gap == (min(gaps) if gaps else np.inf)
+        }
+        assert one.gap == min(gaps.values(), default=np.inf) == gaps.get(one.nearest, np.inf)

@@ -3,6 +3,7 @@ import math
 import numpy as np
 import pytest
 import shapely
+import shapely.ops
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -27,7 +28,8 @@ def square(x, y, size=2.0):
 
 def model_of(*polygons):
     """The model of some polygons, numbered from 1."""
-    return model_from_json({"blocks": [{"id": i, "polygon": p} for i, p in enumerate(polygons, 1)]})
+    listed = enumerate((np.asarray(polygon).tolist() for polygon in polygons), 1)
+    return model_from_json({"blocks": [{"id": i, "polygon": p} for i, p in listed]})
 
 
 def test_rectangles_touch_along_bed_and_head_joints():
@@ -47,11 +49,6 @@ def test_rectangles_touch_along_bed_and_head_joints():
     ]
 
 
-def test_corners_that_meet_only_at_a_corner_are_no_contact():
-    model = model_from_json({"blocks_xywh": [[0, 0, 1, 1], [1, 1, 1, 1]]})
-    assert told(model) == [(1, GROUND, [(0, 0), (1, 0)], (0, 1))]
-
-
 def test_polygons_in_either_sense_with_density_and_fixed():
     fixed = {"id": 7, "polygon": square(0, 0), "fixed": True}
     dense = {"id": 3, "polygon": square(0, 2)[::-1], "density": 2.5}
@@ -67,19 +64,31 @@ def test_a_tilted_joint_has_its_own_normal():
     assert model.interfaces[-1].normal == pytest.approx((-1 / 5**0.5, 2 / 5**0.5))
 
 
-def test_a_corner_that_stands_on_an_edge_is_a_contact_at_a_point():
-    roof = [[0, 0], [4, 0], [2, 2]]
-    beam = [[0, 2], [4, 2], [4, 3], [0, 3]]
-    for polygons, upper in (((roof, beam), 2), ((beam, roof), 1)):
-        (contact,) = (i for i in model_of(*polygons).interfaces if i.other != GROUND)
-        assert contact.points.tolist() == [[2, 2]]
-        assert contact.normal == (0, 1 if contact.block == upper else -1)
+UP, DOWN = (0, 1), (0, -1)
+ROOF, BEAM = [[0, 0], [4, 0], [2, 2]], [[0, 2], [4, 2], [4, 3], [0, 3]]
+ON_GROUND = (1, GROUND, [(0, 0), (2, 0)], UP)
 
 
-def test_a_block_on_its_corner_touches_the_ground_at_a_point():
-    diamond = [[0, 0], [1, 1], [0, 2], [-1, 1]]
-    model = model_of(diamond)
-    assert told(model) == [(1, GROUND, [(0, 0)], (0, 1))]
+@pytest.mark.parametrize(
+    ("polygons", "contacts"),
+    [
+        # Blocks that meet only at a corner do not touch.
+        ([square(0, 0), square(2, 2)], [ON_GROUND]),
+        # A corner on the ground, or on an edge, is a contact at a point.
+        ([[[0, 0], [1, 1], [0, 2], [-1, 1]]], [(1, GROUND, [(0, 0)], UP)]),
+        ([ROOF, BEAM], [(1, GROUND, [(0, 0), (4, 0)], UP), (2, 1, [(2, 2)], UP)]),
+        ([BEAM, ROOF], [(2, GROUND, [(0, 0), (4, 0)], UP), (2, 1, [(2, 2)], DOWN)]),
+        # So is what is left where a gap opens along an edge.
+        (
+            [square(0, 0), [[0.5, 2], [1.5, 2.0005], [1.5, 3], [0.5, 3]]],
+            [ON_GROUND, (2, 1, [(0.5, 2)], UP)],
+        ),
+        # A closed polygon with a corner that is repeated.
+        ([[[0, 0], *square(0, 0), [0, 0]]], [ON_GROUND]),
+    ],
+)
+def test_what_touches_where(polygons, contacts):
+    assert told(model_of(*polygons)) == contacts
 
 
 @pytest.mark.parametrize(("far", "size"), [(5.0, 1.0), (2e6, 1e-3), (1e8, 1e3)])
@@ -101,57 +110,31 @@ def test_a_far_block_changes_no_answer_nearby(far, size):
 @repeatable(40)
 def test_two_halves_of_a_polygon_touch_and_do_not_overlap(seed, size, far, angle_deg):
     """However rounding turns their common edge."""
-    rng = np.random.default_rng(seed)
-    angles = np.sort(rng.random(8)) * 2.0 * np.pi
+    angles = np.sort(np.random.default_rng(seed).random(8)) * 2.0 * np.pi
     corners = np.column_stack((np.cos(angles), 2.0 + np.sin(angles)))
     turn = math.radians(angle_deg)
     normal = np.array([math.cos(turn), math.sin(turn)])
-    sides = (corners - corners.mean(axis=0)) @ normal
-    cuts = []
-    for i in range(8):
-        j = (i + 1) % 8
-        if sides[i] * sides[j] < 0.0:
-            share = sides[i] / (sides[i] - sides[j])
-            cuts.append((i, corners[i] + share * (corners[j] - corners[i])))
-    assume(len(cuts) == 2)
-    (i, first), (j, second) = cuts
-    halves = [[first, *corners[i + 1 : j + 1], second]]
-    halves.append([second, *corners[j + 1 :], *corners[: i + 1], first])
-    areas = [shapely.Polygon(half).area for half in halves]
-    assume(min(areas) > 1e-3)
+    middle, along = corners.mean(axis=0), 9.0 * np.array([-normal[1], normal[0]])
+    cut = shapely.LineString([middle - along, middle + along])
+    whole = shapely.Polygon(corners)
+    halves = shapely.ops.split(whole, cut).geoms
+    edge = whole.intersection(cut).length
+    areas = [half.area for half in halves]
+    assume(len(halves) == 2 and min(areas) > 1e-3 and edge > 0.05)
+    first, second = map(shapely.get_coordinates, halves)
+    into = normal * np.sign((first.mean(axis=0) - middle) @ normal)
 
     def model(deep):
         """Push the second half into the first by so many tolerances."""
-        into = normal if sides[i + 1] > 0.0 else -normal
         shift = deep * 1e-5 * math.sqrt(min(areas)) * into
-        moved = [np.array(halves[0]), np.array(halves[1]) + shift]
-        return model_of(*((size * half + [size * far, 0.0]).tolist() for half in moved))
+        return model_of(*((size * half + [size * far, 0.0]) for half in (first, second + shift)))
 
-    edge = float(np.hypot(*(second - first)))
-    assume(edge > 0.05)
     for deep in (0.0, 0.8, -0.8):
         (joint,) = (i for i in model(deep).interfaces if i.other == 1)
         assert joint.length == pytest.approx(size * edge, rel=1e-2)
     with pytest.raises(InputError, match="blocks 1 and 2 overlap"):
         model(3.0)
     assert not any(i.other == 1 and i.length for i in model(-1.5).interfaces)
-
-
-def test_bars_that_cross_overlap_although_no_corner_is_inside():
-    bars = {"blocks_xywh": [[0, 1, 3, 1], [1, 0, 1, 3]]}
-    with pytest.raises(InputError, match="blocks 1 and 2 overlap"):
-        model_from_json(bars)
-
-
-def test_a_gap_that_opens_along_an_edge_leaves_a_contact_at_a_point():
-    lower, upper = [[0, 0], [2, 0], [2, 1], [0, 1]], [[0.5, 1], [1.5, 1.0005], [1.5, 2], [0.5, 2]]
-    assert told(model_of(lower, upper))[1:] == [(2, 1, [(0.5, 1)], (0, 1))]
-
-
-def test_a_closed_polygon_and_repeated_corners_are_read():
-    polygon = [*square(0, 0), [0, 0]]
-    polygon.insert(1, polygon[1])
-    assert told(model_of(polygon)) == [(1, GROUND, [(0, 0), (2, 0)], (0, 1))]
 
 
 @pytest.mark.parametrize("last", [(-1e-17, 0.0), (0.0, 1e-13), (-1e-16, 1e-16)])
@@ -223,7 +206,13 @@ MALFORMED = [
         ({**PAIR, "mu": -1}, "E302", ""),
         ({**PAIR, "mu": 10**400}, "E302", ""),
         ({"blocks_xywh": [[0, -1, 1, 3]]}, "E304", ""),
-        ({"blocks_xywh": [[0, 0, 2, 2], [1, 1, 2, 2]]}, "E304", ""),
+        # Bars that cross, of which no corner is inside of the other.
+        ({"blocks_xywh": [[0, 1, 3, 1], [1, 0, 1, 3]]}, "E304 .*blocks 1 and 2 overlap", ""),
+        (
+            {"blocks": [{"xywh": [0, 0, 2, 1]}]},
+            'E303 .*belongs into "blocks_xywh"',
+            "[[x, y, width, height]",
+        ),
     ],
 )
 def test_what_is_no_block_model_is_refused(data, code, cure):
@@ -264,25 +253,14 @@ def test_blocks_with_a_common_line_do_not_overlap():
     """In floats GEOS finds three of a hundred such pairs to overlap by up to their whole area."""
     rng = np.random.default_rng(3)
     for _ in range(100):
-        pair = (outline.tolist() for outline in outlines_along_a_line(rng))
-        assert {i.other for i in model_of(*pair).interfaces} == {1}
-
-
-def sectors(count):
-    """The model of blocks that all meet at one point."""
-    angles = np.linspace(0.0, math.pi, count + 1)
-    rim = np.column_stack([np.cos(angles), np.sin(angles)])
-    return model_of(*([[0, 0], *rim[i : i + 2].tolist()] for i in range(count)))
+        assert {i.other for i in model_of(*outlines_along_a_line(rng)).interfaces} == {1}
 
 
 def test_not_all_of_many_blocks_may_meet_at_one_point(monkeypatch):
-    assert len(sectors(20).blocks) == 20
+    angles = np.linspace(0.0, math.pi, 21)
+    rim = np.column_stack([np.cos(angles), np.sin(angles)])
+    sectors = [[[0, 0], *rim[i : i + 2].tolist()] for i in range(20)]
+    assert len(model_of(*sectors).blocks) == 20
     monkeypatch.setattr("drystone.contacts.given.MOST_TOUCHING", (20, 8))
     with pytest.raises(InputError, match=r"E303 .*more than 180 pairs of its 20 blocks touch"):
-        sectors(20)
-
-
-def test_rectangles_among_polygons_are_told_where_they_belong():
-    with pytest.raises(InputError, match='belongs into "blocks_xywh"') as caught:
-        model_from_json({"blocks": [{"xywh": [0, 0, 2, 1]}]})
-    assert (caught.value.code, "[[x, y, width, height]" in caught.value.cure) == ("E303", True)
+        model_of(*sectors)

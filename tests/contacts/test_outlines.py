@@ -30,10 +30,9 @@ def test_areas_of_published_stones_are_those_of_their_pixels(data_dir):
     stones = read_stones(data_dir / "almeida" / "PR.png")
     labels = np.zeros((stones.source.height_px, stones.source.width_px), np.uint32)
     for stone in stones:
-        bottom = labels.shape[0] - stone.bottom_px
-        rows = slice(bottom - stone.mask.shape[0], bottom)
-        cols = slice(stone.left_px, stone.left_px + stone.mask.shape[1])
-        labels[rows, cols][stone.mask] = stone.id
+        height, width = stone.mask.shape
+        rows = labels[labels.shape[0] - stone.bottom_px - height :][:height]
+        rows[:, stone.left_px : stone.left_px + width][stone.mask] = stone.id
     outlines = outlines_of_labels(labels)
     assert set(outlines) == {stone.id for stone in stones}
     for stone in stones:
@@ -117,11 +116,11 @@ def test_the_model_of_a_picture_has_the_load_multipliers_of_the_wall():
     exact = wall.model()
     assert len(model.interfaces) == len(exact.interfaces)
     found, true = lateral_resistance(model), lateral_resistance(exact)
-    assert found.left.alpha == pytest.approx(true.left.alpha, abs=0.02)
-    assert found.right.alpha == pytest.approx(true.right.alpha, abs=0.02)
+    ends = true.left.alpha, true.right.alpha
+    assert (found.left.alpha, found.right.alpha) == pytest.approx(ends, abs=0.02)
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_coarse_pictures_of_walls_stand_on_the_ground(seed):
     wall = tilted_wall(np.random.default_rng(seed), courses=3 + seed % 3)
     model = model_of_traced(outlines_of_labels(wall.picture(40, (0.3, 0.6))))

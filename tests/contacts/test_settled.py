@@ -17,9 +17,8 @@ from drystone.kernels.polygons import area_and_centroid
 from drystone.kernels.raster import turn
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
-from drystone.statics.result import LimitStatus
 from drystone_lab.pixels import tilted_wall
-from tests.polygons import box_of
+from tests.polygons import box_of, moved
 from tests.strategies import repeatable
 
 MU = 0.58
@@ -35,11 +34,6 @@ def alphas(model):
     return found.left.alpha, found.right.alpha
 
 
-def statuses(model):
-    found = lateral_resistance(model)
-    return found.left.status, found.right.status
-
-
 def settled_wall(seed, loose, lean):
     """A wall 200 high of polygons with gaps of about .01, moved and turned a little."""
     rng = np.random.default_rng(seed)
@@ -51,8 +45,7 @@ def settled_wall(seed, loose, lean):
         corners = shapely.get_coordinates(orient(smaller))[:-1]
         _, x, y = area_and_centroid(corners)
         turned = turn(corners - np.array([x, y]), np.degrees(rng.uniform(-lean, lean)))
-        moved = np.array([x, y + loose]) + rng.uniform(-loose, loose, 2)
-        placed.append(turned + moved)
+        placed.append(turned + np.array([x, y + loose]) + rng.uniform(-loose, loose, 2))
     return placed
 
 
@@ -85,22 +78,22 @@ def test_walls_of_boxes_are_as_strong_as_without_gaps(name, mu):
 @pytest.mark.parametrize("gap", [0.0, 0.01, 0.09])
 def test_a_corbel_inside_and_outside_of_its_limit(gap):
     base = box_of(0, 0.01, 40, 20)
-    inside, outside = box_of(19.99, 20.01 + gap, 40, 5), box_of(20.01, 20.01 + gap, 40, 5)
-    assert statuses(model_of(base, inside)) == (LimitStatus.OPTIMAL,) * 2
-    assert statuses(model_of(base, outside)) == (LimitStatus.UNSTABLE,) * 2
+    for left, stands in ((19.99, True), (20.01, False)):
+        wall = model_of(base, box_of(left, 20.01 + gap, 40, 5))
+        assert lateral_resistance(wall).stable == stands
 
 
 def test_a_square_in_a_notch_slides_out_over_a_face():
     """The faces lean by 45 degrees: alpha = tan(45 degrees + friction angle)."""
     notch = np.array([[-40.0, 0.0], [40.0, 0.0], [40.0, 80.0], [0.0, 40.0], [-40.0, 80.0]])
-    square = turn(box_of(0, 0, 20, 20), 45.0) + np.array([0.0, 40.0142])
+    square = moved(turn(box_of(0, 0, 20, 20), 45.0), 0.0, 40.0142)
     model = model_of(notch, square)
     fixed = replace(model, blocks=(replace(model.blocks[0], fixed=True), model.blocks[1]))
     expected = (1 + MU) / (1 - MU)
     assert alphas(fixed) == pytest.approx((expected, expected), abs=1e-5)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_settled_walls_are_as_strong_as_those_without_gaps(seed):
     exact = alphas(tilted_wall(np.random.default_rng(seed), courses=3).model())
     for loose, lean in ((0.0, 0.0), (0.02, 1e-4)):
@@ -166,27 +159,10 @@ def bricks(width, height, count, courses, gap, lap):
     ]
 
 
-def lapped(width, height, count, courses, lap):
-    """A wall with straight ends: every other course begins with a brick longer by the lap."""
-    wall = []
-    for course in range(courses):
-        edges = np.arange(count + 1) * width
-        if course % 2:
-            edges[1:-1] += lap
-        bottom = CLEARANCE + course * (height + CLEARANCE)
-        wall += [
-            box_of(left + CLEARANCE / 2, bottom, right - left - CLEARANCE, height)
-            for left, right in pairwise(edges)
-        ]
-    return wall
+FAMILIES = [(40.0, 20.0, 6, 5), (30.0, 30.0, 3, 4), (60.0, 20.0, 2, 9)]
 
 
-FAMILIES = [(40.0, 20.0, 6, 5), (36.0, 12.0, 6, 8), (30.0, 30.0, 3, 4), (60.0, 20.0, 2, 9)]
-
-
-@pytest.mark.parametrize(
-    ("family", "small"), [(FAMILIES[0], 0.01), (FAMILIES[2], 0.05), (FAMILIES[3], 0.02)]
-)
+@pytest.mark.parametrize(("family", "small"), [*zip(FAMILIES, (0.01, 0.05, 0.02), strict=True)])
 def test_gaps_and_laps_that_go_to_zero_change_nothing(family, small):
     """A corner over a corner at the crossing of four joints carries no more than an open joint."""
     whole = strength(bricks(*family, 0.0, 0.0))
@@ -197,27 +173,11 @@ def test_gaps_and_laps_that_go_to_zero_change_nothing(family, small):
 @pytest.mark.parametrize("family", FAMILIES)
 def test_columns_that_stand_apart_topple_one_by_one(family):
     """Set back by e on both sides, a column of width w and height H falls at (w - 2 e) / H."""
-    width, height, count, courses = family
+    width, height, _, courses = family
     back = max(TOLERANCE, 0.01 * np.sqrt(width * height))
-    apart = [
-        corners + np.array([0.5 * (corners[0, 0] // width), 0.0])
-        for corners in bricks(width, height, count, courses, 0.0, 0.0)
-    ]
+    apart = [moved(brick, 0.5 * (brick[0, 0] // width)) for brick in bricks(*family, 0.0, 0.0)]
     expected = min(1.0, (width - 2.0 * back) / (courses * height) / MU)
     assert strength(apart) == pytest.approx(expected, rel=1e-6)
-
-
-@pytest.mark.parametrize("family", FAMILIES[2:])
-def test_a_longer_lap_carries_no_less(family):
-    """Rigid blocks bond at once: from a stack to a wall in one step, at twice the set-back."""
-    width, height, *_ = family
-    back = max(TOLERANCE, 0.01 * np.sqrt(width * height))
-    laps = [0.0, 0.5 * back, 1.9 * back, 2.2 * back, 4.0 * back, 0.1 * width, 0.25 * width]
-    found = [strength(lapped(*family, lap)) for lap in laps]
-    stack = found[0]
-    assert found[1:3] == pytest.approx([stack, stack], rel=0.02)
-    assert all(later >= earlier - 0.02 for earlier, later in pairwise(found))
-    assert found[-1] > stack
 
 
 @given(st.floats(-5.0, 5.0), st.floats(0.0, 0.05), st.sampled_from([0.005, 0.01, 0.03]))
@@ -225,7 +185,7 @@ def test_a_longer_lap_carries_no_less(family):
 def test_a_corner_that_stands_on_a_face_stays_however_it_leans(angle_deg, gap, setback):
     """From the whole face to its corner nothing vanishes as a brick leans."""
     base, brick = box_of(0, 0, 100, 20), turn(box_of(-15, 0, 30, 60), angle_deg)
-    standing = brick + np.array([50.0, 20.0 + gap - brick[:, 1].min()])
+    standing = moved(brick, 50.0, 20.0 + gap - brick[:, 1].min())
     assert any(face.other == 1 for face in set_back([base, standing], setback).interfaces)
 
 
@@ -237,67 +197,51 @@ def test_a_brick_on_the_last_of_an_edge_has_nothing_below(aside):
     assert len(set_back(wall, 0.0).interfaces) > 1
 
 
-def bed_of(wall, setback=0.01):
-    """From where to where the second stone bears on the first."""
-    (face,) = (f for f in set_back(wall, setback).interfaces if (f.block, f.other) == (2, 1))
-    ends = sorted(face.points[:, 0].tolist())
-    return ends[0], ends[-1]
-
-
-def test_contacts_of_small_stones_are_set_back_by_the_tolerance_at_least():
-    wall = [box_of(0, 0.01, 4, 2), box_of(0, 2.02, 4, 2)]
-    assert bed_of(wall) == pytest.approx((TOLERANCE, 4 - TOLERANCE))
-    assert bed_of(wall, 0.1) == pytest.approx((0.1 * 8**0.5, 4 - 0.1 * 8**0.5))
-
-
 def test_a_face_ends_where_the_outline_turns_away():
     """A brick with its corners cut off at 45 degrees bears on what is left of its bottom."""
     back = 0.01 * 799**0.5
-    cut = np.array([[1.0, 0], [39, 0], [40, 1], [40, 20], [0, 20], [0, 1]]) + np.array([0, 20.02])
-    bed = bed_of([box_of(-20, 0.01, 80, 20), cut])
-    assert bed == pytest.approx((1 + back, 39 - back), abs=2e-3)
+    cut = np.array([[1.0, 20.02], [39, 20.02], [40, 21], [40, 40], [0, 40], [0, 21]])
+    wall = set_back([box_of(-20, 0.01, 80, 20), cut])
+    (face,) = (face for face in wall.interfaces if face.other == 1)
+    assert sorted(face.points[:, 0]) == pytest.approx([1 + back, 39 - back], abs=2e-3)
 
 
 def test_a_tip_in_an_inner_corner_has_stone_enough_behind_it():
     corner = np.array([[-20.0, 0], [60, 0], [60, 20], [0, 20], [0, 60], [-20, 60]])
     spike = np.array([[0.05, 20.02], [10.0, 50.0], [0.05, 50.0]])
-    wall = [corner + np.array([0.0, 0.01]), spike]
-    assert (0.0, 1.0) in [
-        face.normal for face in set_back(wall, 0.05).interfaces if face.block == 2
-    ]
+    found = set_back([moved(corner, 0.0, 0.01), spike], 0.05).interfaces
+    assert (0.0, 1.0) in [face.normal for face in found if face.block == 2]
 
 
 def test_rounded_stones_keep_contacts_of_corner_on_corner():
     """An outline that turns by little at every corner has no end of a face there."""
     turns = np.linspace(0.0, 2 * np.pi, 36, endpoint=False)
     disc = 20.0 * np.column_stack([np.cos(turns), np.sin(turns)])
-    wall = [disc + np.array([0.0, up]) for up in (20.01, 60.02)]
+    wall = [moved(disc, 0.0, up) for up in (20.01, 60.02)]
     assert [(face.block, face.other) for face in set_back(wall).interfaces] == [(1, GROUND), (2, 1)]
 
 
 def naive_model(boxes, setback):
     """Slow twin for upright boxes: common intervals of their sides, cut at both ends."""
     blocks, interfaces = [], []
-    ground = np.array([[-1e4, -1e4], [1e4, -1e4], [1e4, 0.0], [-1e4, 0.0]])
+    ground = box_of(-1e4, -1e4, 2e4, 1e4)
     for number, corners in enumerate(boxes, start=1):
         area, x, y = area_and_centroid(corners)
         blocks.append(Block(number, area, (x, y)))
-        for other, outline in [(GROUND, ground), *enumerate(boxes[: number - 1], start=1)]:
-            smaller = area if other == GROUND else min(area, area_and_centroid(outline)[0])
-            by = max(TOLERANCE, setback * smaller**0.5)
-            for axis in (0, 1):
-                across = 1 - axis
+        for other, outline in enumerate([ground, *boxes[: number - 1]]):
+            by = max(TOLERANCE, setback * min(area, area_and_centroid(outline)[0]) ** 0.5)
+            for axis, normal in ((0, (0.0, 1.0)), (1, (1.0, 0.0))):
                 low = max(corners[:, axis].min(), outline[:, axis].min())
                 high = min(corners[:, axis].max(), outline[:, axis].max())
                 for sign in (1.0, -1.0):  # which side of the box: its lower or left one first
-                    mine = (sign * corners[:, across]).min()
-                    theirs = (sign * outline[:, across]).max()
+                    mine = (sign * corners[:, 1 - axis]).min()
+                    theirs = (sign * outline[:, 1 - axis]).max()
                     if abs(mine - theirs) > TOLERANCE or high - low <= 2 * by:
                         continue
                     points = np.full((2, 2), sign * mine)
                     points[:, axis] = low + by, high - by
-                    normal = (sign, 0.0) if across == 0 else (0.0, sign)
-                    interfaces.append(Interface(number, other, points, normal))
+                    toward = sign * normal[0], sign * normal[1]
+                    interfaces.append(Interface(number, other, points, toward))
     return RigidBlockModel(tuple(blocks), tuple(interfaces), MU)
 
 
@@ -315,8 +259,8 @@ def test_walls_of_boxes_are_those_of_the_slow_twin(seed, setback):
         bottom += height + CLEARANCE
     found, twin = lateral_resistance(set_back(wall, setback)), naive_model(wall, setback)
     slow = lateral_resistance(twin)
-    assert (found.left.status, found.right.status) == (slow.left.status, slow.right.status)
     for one, other in ((found.left, slow.left), (found.right, slow.right)):
+        assert one.status == other.status
         assert one.alpha is None or one.alpha == pytest.approx(other.alpha, abs=2e-3)
 
 
@@ -325,7 +269,7 @@ def test_walls_of_boxes_are_those_of_the_slow_twin(seed, setback):
 def test_more_set_back_never_makes_a_wall_stronger(seed):
     rng = np.random.default_rng(seed)
     wall = [
-        turn(corners, rng.uniform(-0.02, 0.02)) + rng.uniform(-0.02, 0.02, 2)
+        moved(turn(corners, rng.uniform(-0.02, 0.02)), *rng.uniform(-0.02, 0.02, 2))
         for corners in bricks(30.0, 15.0, 3, 4, 0.03, rng.uniform(0.0, 15.0))
     ]
     found = [strength(wall, setback) for setback in (0.0, 0.005, 0.01, 0.03, 0.1)]

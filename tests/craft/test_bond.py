@@ -62,20 +62,6 @@ def test_a_running_bond_keeps_every_rule_of_bond(wall):
     assert bond_faults(wall) == bond_faults(Masonry({})) == 0.0
 
 
-def test_one_brick_cut_over_a_joint_makes_one_running_joint():
-    # Course 2: the brick over the joint at x = 4 is cut in two, and course 3 has its joint there.
-    widths = [[2.0] * 4, [1.0, 2.0, 1.0, 1.0, 2.0, 1.0], [2.0] * 4, [1.0, 2.0, 2.0, 2.0, 1.0]]
-    for wall in both(courses(widths)):
-        found = find("running_joints", wall)
-        assert [case.value for case in found.cases] == [3.0]
-        assert set(found.cases[0].stones) == {2, 3, 7, 8, 12, 13}
-        assert found.cases[0].lines[0][:, 0] == pytest.approx(
-            found.cases[0].lines[0][0, 0], abs=0.1
-        )
-        crossed = find("cross_joints", wall)
-        assert {case.stones for case in crossed.cases} == {(2, 3, 7, 8), (7, 8, 12, 13)}
-
-
 def test_heights_that_differ_on_both_sides_are_a_t_not_a_plus():
     tall = {1: box(0, 0, 2, 2), 2: box(2, 0, 2, 1), 3: box(2, 1, 2, 1), 4: box(0, 2, 4, 1)}
     found = find("running_joints", Masonry(tall))
@@ -97,26 +83,11 @@ def test_a_joint_with_a_step_smaller_than_the_offset_runs_on():
     assert find("running_joints", Masonry(near, settings=strict)).number == 1.0
 
 
-@pytest.mark.parametrize("thickness", [0.08, 0.3, 1.0])
-def test_a_slab_across_a_joint_ends_it(thickness):
-    top = 1.0 + thickness
-    loops = {1: box(0, 0, 2, 1), 2: box(2, 0, 2, 1), 3: box(0, 1, 4, thickness)}
-    wall = Masonry(loops | {4: box(0, top, 2, 1), 5: box(2, top, 2, 1)})
+def test_a_slab_across_a_joint_ends_it():
+    loops = {1: box(0, 0, 2, 1), 2: box(2, 0, 2, 1), 3: box(0, 1, 4, 0.08)}
+    wall = Masonry(loops | {4: box(0, 1.08, 2, 1), 5: box(2, 1.08, 2, 1)})
     assert find("running_joints", wall).number == 1.0
     assert find("cross_joints", wall).cases == ()
-
-
-@pytest.mark.parametrize(("lap", "verdict"), [(0.5, "good"), (0.25, "good"), (0.2, "broken")])
-def test_the_quarter_is_the_least_lap(lap, verdict):
-    first, second = [2.0] * 4, [2.0 * lap, 2.0, 2.0, 2.0, 2.0 - 2.0 * lap]
-    found = find("laps", Masonry(courses([first, second])))
-    assert found.verdict == verdict
-    inner = [case for case in found.cases if case.stones[0] in (6, 7, 8)]
-    assert len(inner) == (3 if verdict == "broken" else 0)
-    for case in inner:
-        assert case.value == pytest.approx(lap, abs=0.02)
-        stone = case.stones[0]
-        assert case.stones == (stone, stone - 5, stone - 4)
 
 
 def test_open_joints_of_a_tracing_change_nothing_but_stones_far_apart_have_none():
@@ -172,7 +143,9 @@ def test_coursed_walls_against_sums_of_widths(widths):
             for left, right in pairwise(under):
                 x = loops[left][1, 0]
                 expected[i, left, right] = min(x - x0, x1 - x) / (x1 - x0)
-    short = {case.stones: case.value for case in find("laps", wall).cases}
+    laps = find("laps", wall)
+    short = {case.stones: case.value for case in laps.cases}
+    assert not short or laps.verdict != "good"
     clearly = {key for key, lap in expected.items() if lap < 0.23}
     assert clearly <= set(short) <= {key for key, lap in expected.items() if lap < 0.27}
     assert all(value == pytest.approx(expected[key], abs=0.03) for key, value in short.items())

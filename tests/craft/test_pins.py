@@ -9,7 +9,7 @@ from scipy.optimize import OptimizeResult
 from drystone.contacts.given import model_from_json
 from drystone.craft import Masonry, pins
 from drystone.statics.limit import lateral_resistance
-from tests.craft.walls import box, find
+from tests.craft.walls import box, find, mirrored
 
 
 def modelled(loops, wedges):
@@ -47,17 +47,14 @@ def test_a_wedge_between_two_piers_only_fills():
     assert found.figures["wedges"] == 1.0
 
 
-@pytest.mark.parametrize("at", ["left", "right"])
-def test_a_wedge_that_sticks_out_is_named(at):
+def test_a_wedge_that_sticks_out_is_named():
     loops = {1: box(0, 0, 4, 1), 2: box(0.5, 1.2, 3, 1), 9: box(-0.1, 1, 1.1, 0.2),
              8: box(2.0, 1, 0.8, 0.2)}  # fmt: skip
-    if at == "right":
-        loops = {i: loop * [-1, 1] for i, loop in loops.items()}
-    found = find("pins", modelled(loops, {8, 9}))
-    assert found.verdict == "broken"
-    out = [case for case in found.cases if "sticks out" in case.words]
-    assert [case.stones for case in out] == [(9, 2)]
-    assert out[0].value == pytest.approx(0.6)
+    for wall in (loops, mirrored(loops)):
+        found = find("pins", modelled(wall, {8, 9}))
+        assert found.verdict == "broken"
+        (out,) = [case for case in found.cases if "sticks out" in case.words]
+        assert (out.stones, out.value) == ((9, 2), pytest.approx(0.6))
 
 
 def slab_with(wedge, *more):
@@ -125,9 +122,8 @@ def test_a_wedge_beyond_its_stone_but_between_others_does_not_stick_out():
     assert find("pins", modelled(loops, {8, 9})).figures["wedges that stick out"] == 1.0
 
 
-@pytest.mark.parametrize("angle", [-20.0, 0.0, 20.0])
-def test_a_slope_passes_on_the_whole_weight(angle):
-    rise = 2.0 * np.tan(np.radians(angle))
+def test_a_slope_passes_on_the_whole_weight():
+    rise = 2.0 * np.tan(np.radians(20.0))
     loops = {9: np.array([[0, 0], [2, 0], [2, 1 + rise], [0, 1]]),
              8: np.array([[0, 1], [2, 1 + rise], [2, 3], [0, 3]])}  # fmt: skip
     assert find("pins", modelled(loops, {9})).number == pytest.approx(1.0, abs=1e-6)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from drystone.craft import Masonry
-from tests.craft.walls import both, box, find, mirrored, open_joints, running_bond
+from tests.craft.walls import both, box, find, open_joints, running_bond
 
 FOOT = {1: box(0, 0, 2, 1), 2: box(2.6, 0, 2, 1)}
 """Two bricks with a gap between."""
@@ -53,14 +53,6 @@ def test_bricks_in_bond_keep_the_rules(rule, masonry):
 def test_a_stone_shall_sit(stone, words):
     number, cases = said("seats", wall(stone=stone))
     assert (number, [w for _, w in cases]) == ((0.0, []) if words is None else (1.0, [words]))
-
-
-def test_a_wall_and_its_mirror_image_are_named_alike():
-    loops = FOOT | {3: at(KITE, 1.0, 1.0), 4: box(3.9, 1, 2, 1)}
-    for rule in ("seats", "voids"):
-        assert said(rule, Masonry(loops))[0] == said(rule, Masonry(mirrored(loops)))[0]
-        one, other = (find(rule, Masonry(both_ways)) for both_ways in (loops, mirrored(loops)))
-        assert [c.stones for c in one.cases] == [c.stones for c in other.cases]
 
 
 def test_small_stones_shall_not_make_a_tower():

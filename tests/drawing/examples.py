@@ -1,14 +1,16 @@
 """A small wall, its plan and a mechanism, made by hand for the tests of pictures and reports."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from drystone.model.placement import Placement, Wedge
-from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
+from drystone.model.plan import PlanMetrics
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site
-from drystone.model.stone import Source, Stone, StoneSet
 from drystone.model.wall import Wall
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus, Mechanism
+from tests.verify.examples import SETTINGS, in_a_row, plan_of
 
 CLUSTERS = {3: 1, 5: 2, 8: 1, 12: 3, 300: 2}
 UNUSED = 40
@@ -25,11 +27,7 @@ def stone_set():
         UNUSED: np.ones((2, 2), bool),
     }
     masks[12][:4, 6:] = False  # an L
-    stones, left = [], 2
-    for stone_id, mask in masks.items():
-        stones.append(Stone(stone_id, mask, left_px=left, bottom_px=3))
-        left += mask.shape[1] + 2
-    return StoneSet(tuple(stones), Source("<b>PR.png", "0" * 64, left, 14))
+    return in_a_row(masks, "<b>PR.png", "0" * 64, 14)
 
 
 def wall(px_per_m=None):
@@ -63,35 +61,12 @@ def resistance():
 
 
 def plan(built=None, metrics=None):
+    """Of the wall, or of another one, with results and words that tests look for."""
     built = built or wall()
-    stones, units = stone_set(), built.site.units_per_px
-    indices = {"SF": 1.0, "LFR": 0.95, "GDS": 0.9, "NHR": 0.1, "IWR": 0.4, "IS": 0.0, "LLC": 0.7}
-    steps = []
-    for group in built.groups:
-        placement = group.placement
-        x, y = placement.centroid(built.site.height_px)
-        done = not group.wedges
-        source = stones.by_id(placement.stone_id).centroid
-        steps.append(
-            StoneStep(
-                len(steps) + 1, placement.stone_id, -12.5, source, (x * units, y * units),
-                placement.side, CLUSTERS[placement.stone_id], placement.rotation_moves, indices,
-                None, 0.41 if done else None, 0.39 if done else None,
-            )
-        )  # fmt: skip
-        for wedge in group.wedges:
-            box = ((20, 6), (23, 6), (23, 8), (20, 8))
-            polygon = tuple((x * units, y * units) for x, y in box)
-            steps.append(WedgeStep(len(steps) + 1, wedge.id, wedge.under, polygon, 0.41, 0.39))
-    source = {
-        "path": "<b>PR.png", "sha256": "0" * 64, "stones": len(stones),
-        "width_px": stones.source.width_px, "height_px": stones.source.height_px,
-    }  # fmt: skip
-    usual = PlanMetrics(0.4773, None, 4.25, 0.6724, 0.31, 0.12, 0.41, 0.39, 6.0 * units**2)
-    return Plan(
-        "0.1.0", "paper", 7,
-        {"mu": 0.58, "placement": {"rule": "eq12", "note": "<script>alert(1)</script>"}},
-        "m" if built.site.px_per_m else "px", built.site.px_per_m, built.site.scale, source,
-        built.site.width_px * units, built.site.height_px * units, tuple(steps), (UNUSED,),
-        "no acceptable place was found five times in a row", metrics or usual,
-    )  # fmt: skip
+    made = plan_of(built, stone_set(), SETTINGS, {}).plan
+    area = 6.0 * built.site.units_per_px**2
+    usual = PlanMetrics(0.4773, None, 4.25, 0.6724, 0.31, 0.12, 0.41, 0.39, area)
+    placement = {"rule": "eq12", "note": "<script>alert(1)</script>"}
+    settings = {**made.settings, "placement": placement}
+    stopped = "no acceptable place was found five times in a row"
+    return replace(made, settings=settings, stopped=stopped, metrics=metrics or usual)

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
@@ -13,13 +14,11 @@ from drystone.drawing.outlines import (
     wall_outlines,
     wall_regions,
 )
-from drystone.model.placement import Placement, Wedge
-from drystone.model.pose import PosedStone
-from drystone.model.site import Site
-from drystone.model.stone import Stone
-from drystone.model.wall import Wall
+from drystone.verify.outlines import plan_polygons
 from tests.naive import plotting as naive
+from tests.polygons import box
 from tests.verify.exact_examples import GAP_PX, exact_example
+from tests.verify.examples import example
 
 masks = hnp.arrays(bool, st.tuples(st.integers(1, 7), st.integers(1, 7)))
 
@@ -50,25 +49,15 @@ def test_regions_are_the_labels(labels):
 
 
 @pytest.mark.parametrize("px_per_m", [None, 200.0])
-def test_wall_outlines_turn_counter_clockwise_and_scale(px_per_m):
-    long = Stone(9, np.ones((2, 8), bool))
-    lean = np.array([[1, 1, 1], [0, 0, 1]], bool)
-    for stone, angle, size in ((long, 90.0, (2, 8)), (Stone(4, lean), 180.0, (3, 2))):
-        height, width = size[1] // 2 + 1, size[0] // 2 + 1
-        posed = PosedStone(
-            stone, angle, 0.5, np.ones((height, width), bool), (width / 2, height / 2)
-        )
-        site = Site(10, 10, scale=0.5, px_per_m=px_per_m)
-        wedge = Wedge(7, stone.id, np.ones((1, 2), bool), 9, 0)
-        wall = Wall.empty(site).add(Placement(posed, 10 - height, 3), (wedge,))
-        outlines = {i: loop * (px_per_m or 1.0) for i, loop in wall_outlines(wall).items()}
-        assert np.ptp(outlines[stone.id], axis=0) == pytest.approx(size, abs=0.05)
-        np.testing.assert_allclose(outlines[7], [[0, 0], [4, 0], [4, 2], [0, 2]])
-        outline = outlines[stone.id]
-        assert outline.mean(axis=0) == pytest.approx([6 + size[0] / 2, size[1] / 2], abs=2.1)
-    # The lone pixel of `lean` is at the lower right; half a turn takes it to the upper left.
-    top = outline[outline[:, 1] > outline[:, 1].max() - 0.1]
-    assert top[:, 0].max() < outline[:, 0].mean()
+def test_wall_outlines_lie_where_the_plan_has_its_blocks(px_per_m):
+    made = example(0.5, px_per_m)
+    expected = (pair for group in plan_polygons(made.plan, made.stones) for pair in group)
+    found = wall_outlines(made.wall)
+    for block, corners in expected:
+        outline = shapely.Polygon(found.pop(block) * (px_per_m or 1.0))
+        assert outline.exterior.is_ccw
+        assert outline.symmetric_difference(shapely.Polygon(corners)).area < 1e-6
+    assert found == {}
 
 
 @pytest.mark.parametrize("offset", [0.0, 1e6])
@@ -89,20 +78,15 @@ def test_regions_of_a_wall_stand_on_its_lowest_stone():
     assert [region.centroid for region in regions] == [(0.5, 0.5), (1.5, 1.0)]
     assert stands_on_ground(regions)
     assert wall_regions(np.zeros((3, 3), np.uint32)) == ()
-    polygons = {5: np.array([[0, 2], [1, 2], [1, 3.0]]), 3: np.array([[4, 2], [5, 2], [5, 3.0]])}
-    assert [region.id for region in wall_regions(polygons)] == [3, 5]
-    assert not stands_on_ground(wall_regions(polygons))
+    polygons = wall_regions({5: box(0, 2, 1, 3), 3: box(4, 2, 5, 3)})
+    assert [region.id for region in polygons] == [3, 5]
 
 
 @pytest.mark.parametrize("unit", [1.0, 1 / 200.0])
 def test_stones_that_settled_stand_on_the_ground(unit):
     """They hang .01 source px above it."""
-    wall = exact_example().wall
-    outlines = {block: loop * unit for block, loop in wall.outlines.blocks}
-    lowest = min(loop[:, 1].min() for loop in outlines.values())
-    assert lowest == pytest.approx(GAP_PX * unit, rel=1e-4)
-    assert stands_on_ground(wall_regions(outlines))
-    lifted = {block: loop + np.array([0, unit]) for block, loop in outlines.items()}
-    assert not stands_on_ground(wall_regions(lifted))
-    sunk = {block: loop - np.array([0, unit]) for block, loop in outlines.items()}
-    assert not stands_on_ground(wall_regions(sunk))
+    blocks = exact_example().wall.outlines.blocks
+    assert min(loop[:, 1].min() for _, loop in blocks) == pytest.approx(GAP_PX, rel=1e-4)
+    for lift, stands in ((0, True), (1, False), (-1, False)):
+        outlines = {block: (loop + np.array([0, lift])) * unit for block, loop in blocks}
+        assert stands_on_ground(wall_regions(outlines)) is stands

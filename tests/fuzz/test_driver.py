@@ -32,6 +32,9 @@ def found():
     assert ran.returncode == 1, ran.stderr
     report = json.loads(ran.stdout)
     assert report["executions"] == dict.fromkeys((one.name for one in PLANTED), EACH)
+    assert not OUTSIDE.exists()  # what is found is kept from happening
+    # Nothing is found where nothing is.
+    assert not {"fine", "refuses", "writes_within"} & {one["format"] for one in report["faults"]}
     return report["faults"]
 
 
@@ -64,15 +67,6 @@ def test_planted_defects_are_found(found, name, kind, where):
     assert 1 <= len(fault["numbers"]) < EACH
 
 
-def test_nothing_is_found_where_nothing_is(found):
-    assert not [f for f in found if f["format"] in ("fine", "refuses", "writes_within")]
-
-
-def test_what_is_found_is_kept_from_happening(found):
-    assert found
-    assert not OUTSIDE.exists()
-
-
 def test_jobs_change_nothing_and_files_come_back(tmp_path):
     formats = ("--seed", 14, "--formats", "raises", "prints")
     one, two = (
@@ -80,23 +74,19 @@ def test_jobs_change_nothing_and_files_come_back(tmp_path):
         for jobs in (1, 2)
     )
     assert json.loads(one.stdout)["faults"] == json.loads(two.stdout)["faults"]
-    kept, others = (sorted(files_in(tmp_path / jobs)) for jobs in "12")
-    assert kept == others
-    name = next(path.parent.name for path, _ in kept if path.name != "faults.txt")
+    kept = files_in(tmp_path / "1")
+    assert kept == files_in(tmp_path / "2")
+    name = next(path.parent.name for path in kept if path.name != "faults.txt")
     kind, _, number = name.split("-")
     run(*formats, "--write", f"{kind}:{number}", "--keep", tmp_path / "again")
-    assert [(Path(name) / path, data) for path, data in files_in(tmp_path / "again")] == [
-        (path, data) for path, data in kept if path.parent.name == name
-    ]
+    again = {Path(name) / path: data for path, data in files_in(tmp_path / "again").items()}
+    assert again == {path: data for path, data in kept.items() if path.parent.name == name}
 
 
 def files_in(folder):
-    """Names and contents of all files in a folder."""
-    return [
-        (path.relative_to(folder), path.read_bytes())
-        for path in folder.rglob("*")
-        if path.is_file()
-    ]
+    """Contents by name of all files in a folder."""
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    return {path.relative_to(folder): path.read_bytes() for path in files}
 
 
 @pytest.mark.parametrize("kind", ["PNG", "GIF", "BMP"])

@@ -1,29 +1,16 @@
-import math
-
 import numpy as np
 import pytest
 import shapely
 from hypothesis import given
-from hypothesis import strategies as st
 
 from drystone.errors import UsageError
 from drystone.generate.layout import draw_stone, is_whole, outline_mask, polygon_area
+from tests.polygons import simple_polygons
 from tests.strategies import repeatable
-
-FINE = st.floats(-20, 20).map(lambda value: round(value, 3))
-
-
-@st.composite
-def star_polygons(draw):
-    """Simple polygons: radii about a pole, in order."""
-    radii = draw(st.lists(st.floats(1.5, 15), min_size=3, max_size=12))
-    theta = np.arange(len(radii)) * 2 * math.pi / len(radii)
-    pole = np.array([draw(FINE), draw(FINE)])
-    return pole + np.array(radii)[:, None] * np.column_stack([np.cos(theta), np.sin(theta)])
 
 
 @repeatable()
-@given(star_polygons())
+@given(simple_polygons())
 def test_turning_direction_does_not_matter(outline):
     assert np.array_equal(outline_mask(outline), outline_mask(outline[::-1]))
     area = polygon_area(outline)

@@ -1,6 +1,5 @@
 """The table of bad input (docs/users.md): each row has its coded error or warning."""
 
-import io
 import re
 
 import numpy as np
@@ -16,11 +15,6 @@ from tests.io.pictures import areas, codes, discs, many_stones, said, two_stones
 LARGEST = ReadSettings(pieces="keep-largest")
 SPLIT = ReadSettings(pieces="split")
 METHODS = ["BILINEAR", "BICUBIC", "LANCZOS", "HAMMING"]
-
-
-def jpeg(path, values, quality=75):
-    Image.fromarray(values).save(path, "JPEG", quality=quality)
-    return path
 
 
 def photo(shape=(200, 300)):
@@ -42,32 +36,30 @@ def changed(values, *changes):
 # -- lossy and blended labels (E101), photos (E102) --------------------------------------------
 
 
-@pytest.mark.parametrize("quality", [50, 95])
-def test_jpeg_labels(tmp_path, quality):
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("stones.jpg", {"quality": 50}),
+        ("stones.png", {"format": "JPEG", "quality": 95}),
+        ("stones.tif", {"compression": "jpeg"}),
+    ],
+)
+def test_jpeg_labels(tmp_path, name, options):
     labels = many_stones(first=20, step=4).astype(np.uint8)
-    path = jpeg(tmp_path / "stones.jpg", labels, quality)
-    values, counts = np.unique(np.asarray(Image.open(path)), return_counts=True)
+    Image.fromarray(labels).save(tmp_path / name, **options)
+    values, counts = np.unique(np.asarray(Image.open(tmp_path / name)), return_counts=True)
     with pytest.raises(LabelImageError) as caught:
-        read_stones(path)
+        read_stones(tmp_path / name)
     error = caught.value
-    assert (error.code, error.where, error.exit_code) == ("E101", "stones.jpg", ExitCode.BAD_INPUT)
+    assert (error.code, error.where, error.exit_code) == ("E101", name, ExitCode.BAD_INPUT)
     assert f"{len(values)} values, {(counts < 10).sum()} of them on less than 10 px" in error.what
     assert "plain areas look like 48 stones" in error.what
     assert "PNG" in error.cure
 
 
-def test_jpeg_inside_tiff_and_under_another_name(tmp_path):
-    labels = many_stones(first=20, step=4).astype(np.uint8)
-    Image.fromarray(labels).save(tmp_path / "a.tif", compression="jpeg")
-    jpeg(tmp_path / "a.png", labels)
-    for name in ("a.tif", "a.png"):
-        with pytest.raises(LabelImageError, match=r"E101"):
-            read_stones(tmp_path / name)
-
-
 def test_jpeg_of_a_mask_can_be_read_as_a_mask(tmp_path):
     mask = (many_stones() > 0).astype(np.uint8) * 255
-    path = jpeg(tmp_path / "mask.jpg", mask)
+    Image.fromarray(mask).save(path := tmp_path / "mask.jpg")
     with pytest.raises(LabelImageError, match=r"E101.*mask=True.*drystone segment PHOTO"):
         read_stones(path)
     stones = read_stones(path, settings=ReadSettings(mask=True))
@@ -132,11 +124,7 @@ def slivers():
     ("labels", "count", "settings"),
     [
         (bricks(), 48, ReadSettings(background=30)),
-        (
-            touching(),
-            len(np.unique(touching())) - 1,
-            ReadSettings(min_area_px=1, pieces="keep-largest"),
-        ),
+        (touching(), 500, ReadSettings(min_area_px=1, pieces="keep-largest")),
         (slivers(), 31, None),
         (many_stones(40, 40, size=5, gap=1, first=1, step=977), 1600, None),
     ],
@@ -166,6 +154,7 @@ def pieces(second=375):
 
 
 HOLED = changed(two_stones(5, 9), (np.s_[6:10, 6:11], 0))
+WITHIN = changed(two_stones(5, 9), (np.s_[8:14, 8:14], 77))
 SPECKS = changed(two_stones(5, 9), (np.s_[1:4, 50:53], 11), (np.s_[38, 0], 12))
 LAST = np.select([pieces() == 9, pieces() == 5], [2**32 - 1, 1], 0)
 WHOLE = {5: 375, 9: 600}
@@ -174,19 +163,12 @@ WHOLE = {5: 375, 9: 600}
 @pytest.mark.parametrize(
     ("labels", "settings", "found", "codes_", "text"),
     [
-        (pieces(7), None, WHOLE, "W111", "stone 5: 7 px at column 40, row 2"),
         (pieces(7), SPLIT, WHOLE, "W111 W113", "10 of 7 px at column 40, row 2"),
         (pieces(), SPLIT, {**WHOLE, 10: 375, 11: 15}, "W111", "stone 5: 10 (375 px), 11 (15 px)"),
         (LAST, SPLIT, {1: 375, 2: 375, 3: 15, 2**32 - 1: 600}, "W111", "stone 1: 2 (375 px)"),
         (HOLED, None, WHOLE, "W112", "holes filled: stone 5: 20 px."),
         (HOLED, ReadSettings(holes="keep"), {5: 355, 9: 600}, "W112", "holes kept open"),
-        (
-            changed(two_stones(5, 9), (np.s_[8:14, 8:14], 77)),
-            None,
-            {**WHOLE, 77: 36},
-            "W112",
-            "stone 5: 36 px, 36 px of them other stones'",
-        ),
+        (WITHIN, None, {**WHOLE, 77: 36}, "W112", "stone 5: 36 px, 36 px of them other stones'"),
         (SPECKS, None, WHOLE, "W113", "2 specks < 10 px left out (10 px in all)"),
         (SPECKS, None, WHOLE, "W113", "11 of 9 px at column 50, row 1, 12 of 1 px at column 0"),
         (SPECKS, ReadSettings(min_area_px=1), {**WHOLE, 11: 9, 12: 1}, "", ""),
@@ -199,10 +181,6 @@ def test_what_is_left_out_or_added_is_said(labels, settings, found, codes_, text
     assert areas(stones) == found
     assert codes(stones) == codes_.split()
     assert text in said(stones)
-
-
-def test_holes_count_for_the_centroid():
-    assert read_stones(HOLED).by_id(5).centroid == (17.5, 27.5)
 
 
 def test_pieces_of_two_percent_are_refused_by_default():
@@ -244,14 +222,11 @@ def with_value(value, dtype=float):
         (np.zeros((0, 5), int), {}, r"E104.*no pixels"),
         (WHITE, {}, r"E105.*value 255 fills.*Use --background 255 "),
         (np.where(WHITE == 255, 255, 5), {}, r"E105.*Use --background 255 "),
-        (np.where(WHITE == 255, 255, 0), {}, r"E105.*Use --background 255 "),
         (np.where(WHITE == 5, 0, WHITE), {"background": 255}, r"E108.*value 0 .*background 255"),
         (with_value(np.inf), {}, r"E108.*1 px are not finite.*column 9, row 7"),
         (with_value(2.5), {}, r"E108.*1 px are not whole numbers.*column 9, row 7"),
-        (with_value(-3.0), {}, r"E108.*1 px are -3 ... 70000 outside.*column 9, row 7"),
         (with_value(2.0**32), {}, r"E108.*1 px are not from 0 to.*column 9, row 7"),
         (with_value(-2, np.int64), {}, r"E108.*outside 0 ... 2\^32-1.*column 9, row 7"),
-        (with_value(2**32, np.int64), {}, r"E108.*outside 0 ... 2\^32-1.*column 9, row 7"),
         (changed(MINUS, (np.s_[0, 0], 0)), {"background": -1}, r"E108"),
         *(
             (two_stones().astype(kind), {}, r"E108.*are not ids")
@@ -353,13 +328,12 @@ def test_folder_masks_of_any_stone_value(tmp_path):
 
 def test_folder_with_a_damaged_or_jpeg_mask(tmp_path):
     mask = (two_stones() == 300).astype(np.uint8) * np.uint8(255)
-    jpeg(tmp_path / "a.jpg", mask)
+    Image.fromarray(mask).save(tmp_path / "a.jpg")
     with pytest.raises(LabelImageError, match=r"E101.*a.jpg"):
         read_stones(tmp_path)
     assert abs(read_stones(tmp_path, settings=ReadSettings(mask=True)).by_id(1).area_px - 375) < 9
-    buffer = io.BytesIO()
-    Image.fromarray(mask).save(buffer, "PNG")
-    (tmp_path / "b.png").write_bytes(buffer.getvalue()[:60])
+    Image.fromarray(mask).save(path := tmp_path / "b.png")
+    path.write_bytes(path.read_bytes()[:60])
     with pytest.raises(InputError, match=r"E106.*b.png"):
         read_stones(tmp_path, settings=ReadSettings(mask=True))
 
@@ -390,23 +364,6 @@ def test_folder_of_a_plan(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "wrong",
-    [
-        {"pieces": "all"},
-        {"holes": "no"},
-        {"min_area_px": 0},
-        {"max_image_mpx": 0.0},
-        {"unit": "yard"},
-        {"px_per_m": 0.0},
-        {"px_per_m": float("inf")},
-    ],
-)
-def test_settings_that_mean_nothing(wrong):
-    with pytest.raises(UsageError, match=rf"E119 ReadSettings: {next(iter(wrong))}"):
-        ReadSettings(**wrong)
-
-
-@pytest.mark.parametrize(
     ("shape", "beside"), [((), True), ((7,), True), ((3, 4, 5, 6), False), ((0, 3), True)]
 )
 def test_an_array_of_other_dimensions_in_a_file(tmp_path, shape, beside):
@@ -415,3 +372,10 @@ def test_an_array_of_other_dimensions_in_a_file(tmp_path, shape, beside):
         write_sidecar(PhotoSidecar(3, 4, labels="stones.npy"), tmp_path)
     with pytest.raises(InputError, match=r"E1\d\d"):
         read_stones(tmp_path / "stones.npy")
+
+
+def test_settings_that_mean_nothing():
+    wrong = {"pieces": "all", "holes": "no", "min_area_px": 0, "max_image_mpx": 0.0, "unit": "yard"}
+    for name, value in (*wrong.items(), ("px_per_m", 0.0), ("px_per_m", float("inf"))):
+        with pytest.raises(UsageError, match=rf"E119 ReadSettings: {name}"):
+            ReadSettings(**{name: value})

@@ -28,11 +28,11 @@ def test_components_are_numbered_in_row_order(mask):
 @pytest.mark.parametrize(
     "mask",
     [
-        two_stones() > 0,
-        (two_stones() > 0).astype(np.uint8),
-        (two_stones() > 0).astype(np.uint8) * np.uint8(255),
-        (two_stones() > 0).astype(float),
-        (two_stones() > 0).astype(np.uint16) * np.uint16(300),
+        two_stones(1, 1, bool),
+        two_stones(1, 1, np.uint8),
+        two_stones(255, 255, np.uint8),
+        two_stones(1, 1, float),
+        two_stones(300, 300, np.uint16),
     ],
 )
 def test_two_values_are_a_mask(tmp_path, mask):
@@ -76,9 +76,7 @@ def test_antialiased_mask(tmp_path, colour):
     values = cover
     if colour:
         # Sub-pixel smoothing leaves a little colour in the edges.
-        values = np.dstack(
-            [cover, cover, np.where((cover > 40) & (cover < 255), cover - 20, cover)]
-        )
+        values = np.dstack([cover, cover, cover - np.uint8(20) * ((cover > 40) & (cover < 255))])
     Image.fromarray(values).save(tmp_path / "m.png")
     stones = read_stones(tmp_path / "m.png")
     assert len(stones) == 4
@@ -114,6 +112,9 @@ def test_colours_are_no_mask_although_equally_bright():
 
 
 def test_mask_is_forced():
+    cover = discs((70, 70), [(15, 15), (50, 50)], 10.3)
+    blurred = np.round(ndimage.gaussian_filter(cover, 2.0) * 200).astype(np.uint8)
+    assert len(read_stones(blurred, settings=ReadSettings(mask=True))) == 2
     labels = many_stones(2, 3, first=200, step=10)
     stones = read_stones(labels, settings=ReadSettings(mask=True))
     assert areas(stones) == dict.fromkeys(range(1, 7), 576)
@@ -129,12 +130,8 @@ def test_ids_are_not_forced_into_a_mask(tmp_path, count, lossy):
     Image.fromarray((labels * scale).astype(np.uint8)).save(path)
     with pytest.raises(UsageError, match=r"E118 ids.*plain areas are neither.*leave --mask"):
         read_stones(path, settings=ReadSettings(mask=True))
-
-
-def test_low_ids_beside_a_high_one_are_not_forced_into_the_background():
-    labels = many_stones(2, 5, first=1, step=1)
-    labels[labels == 10] = 255
-    with pytest.raises(UsageError, match=r"E118 array: 90%"):
+    labels[labels == count] = 255
+    with pytest.raises(UsageError, match=r"E118 array: \d\d%"):
         read_stones(labels, settings=ReadSettings(mask=True))
 
 
@@ -146,19 +143,9 @@ def test_a_mask_of_any_grey_can_be_forced_in_a_lossy_file(tmp_path, value, quali
     assert len(read_stones(tmp_path / "mask.jpg", settings=ReadSettings(mask=True))) == 12
 
 
-def test_a_blurred_mask_can_be_forced():
-    cover = discs((70, 70), [(15, 15), (50, 50)], 10.3)
-    values = np.round(ndimage.gaussian_filter(cover, 2.0) * 200).astype(np.uint8)
-    assert len(read_stones(values, settings=ReadSettings(mask=True))) == 2
-
-
-@given(
-    arrays(np.uint8, array_shapes(min_dims=2, max_dims=2, min_side=3, max_side=12)), st.booleans()
-)
+@given(arrays(np.uint8, array_shapes(min_dims=2, max_dims=2, min_side=3)), st.booleans())
 def test_forced_reading_never_crashes_and_loses_nothing(values, mask):
     """Every pixel is a stone's, a listed speck's, or background."""
-    if len(np.unique(values)) < 2:
-        return
     labels = values.astype(int) % 3 * 100
     settings = ReadSettings(mask=mask, min_area_px=1, pieces="split", holes="keep")
     if len(np.unique(labels)) < 2 or not (labels == 0).any():

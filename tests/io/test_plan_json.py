@@ -48,7 +48,13 @@ def plan(**values):
 
 def test_plan_survives_its_file(tmp_path):
     path = tmp_path / "plan.json"
-    for one in (plan(), plan(length_unit="m", px_per_m=437.25), plan(steps=(), unused=())):
+    more = {**plan().source, "photographer": {"name": "A. B."}}
+    settings = {"b": [1, 2.5], "a": {"z": None, "y": 0.5}, "c": "text", "d": True}
+    for one in (
+        plan(),
+        plan(length_unit="m", px_per_m=437.25),
+        plan(steps=(), unused=(), source=more, settings=settings),
+    ):
         write_plan(one, path)
         assert read_plan(path) == one
         assert read_plan(tmp_path) == one
@@ -71,7 +77,7 @@ def test_keys_are_those_of_the_schema_in_its_order():
 def test_equal_plans_give_equal_bytes(tmp_path):
     one = plan(source={**plan().source, "files": ["a.png"], "b": 1, "a": 2})
     other = plan(
-        settings=dict(reversed(list(one.settings.items()))),
+        settings=dict(reversed([*one.settings.items()])),
         source=dict(reversed(list(one.source.items()))),
         steps=(stone_step(indices=dict(reversed(INDICES.items())), angle_deg=12), *one.steps[1:]),
         width=560,
@@ -88,7 +94,7 @@ def test_equal_plans_give_equal_bytes(tmp_path):
     assert json.dumps(plan_to_json(zero)) == json.dumps(plan_to_json(minus))
 
 
-@repeatable(60)
+@repeatable(30)
 @given(st.floats(-1e9, 1e9), st.floats(1e-9, 1e9))
 def test_floats_keep_full_precision(angle_deg, width):
     one = plan(steps=(stone_step(angle_deg=angle_deg),), width=width)
@@ -96,27 +102,18 @@ def test_floats_keep_full_precision(angle_deg, width):
     assert found == one
 
 
-def test_settings_of_any_shape_are_kept():
-    settings = {"b": (1, 2.5), "a": {"z": None, "y": np.float64(0.5)}, "c": "text", "d": True}
-    data = plan_to_json(plan(settings=settings))
-    assert json.dumps(data["settings"]) == (
-        '{"a": {"y": 0.5, "z": null}, "b": [1, 2.5], "c": "text", "d": true}'
-    )
-
-
-@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
 @pytest.mark.parametrize(
     ("place", "change"),
     [
-        ("$.steps[0].angle_deg", lambda v: plan(steps=(stone_step(angle_deg=v),))),
-        ("$.settings.a[1]", lambda v: plan(settings={"a": [0, v]})),
-        ("$.metrics.F_AV", lambda v: plan(metrics=replace(plan().metrics, F_AV=v))),
+        ("$.steps[0].angle_deg", {"steps": (stone_step(angle_deg=math.nan),)}),
+        ("$.settings.a[1]", {"settings": {"a": [0, math.inf]}}),
+        ("$.metrics.F_AV", {"metrics": replace(plan().metrics, F_AV=-math.inf)}),
     ],
 )
-def test_numbers_that_are_not_finite_are_never_written(tmp_path, place, change, value):
+def test_numbers_that_are_not_finite_are_never_written(tmp_path, place, change):
     path = tmp_path / "plan.json"
     with pytest.raises(PlanError, match="E205") as caught:
-        write_plan(change(value), path)
+        write_plan(plan(**change), path)
     assert place in caught.value.where
     assert not path.exists()
 
@@ -154,24 +151,15 @@ def bad(path, value):
 @pytest.mark.parametrize(
     ("path", "value", "place"),
     [
-        ("steps/0/angle_deg", ..., "$.steps[0]"),
         ("steps/0/angel_deg", 12.0, "$.steps[0]"),
-        ("steps/0/stone", 2**32, "$.steps[0].stone"),
         ("steps/0/stone", 1.5, "$.steps[0].stone"),
         ("steps/0/side", "top", "$.steps[0].side"),
-        ("steps/0/centroid", [1.0], "$.steps[0].centroid"),
-        ("steps/0/indices/LFR", ..., "$.steps[0].indices"),
         ("steps/0/kind", ..., "$.steps[0]"),
-        ("steps/1/under", ..., "$.steps[1]"),
-        ("steps/1/polygon", [[0, 0], [1, 1]], "$.steps[1].polygon"),
         ("units/length", "m", "$.units.px_per_m"),
         ("units/px_per_m", 200.0, "$.units.px_per_m"),
-        ("units/working_scale", 1.5, "$.units.working_scale"),
-        ("source/sha256", "abc", "$.source.sha256"),
         ("wall/width", 10**400, "$.wall.width"),
         ("metrics/F_SF", None, "$.metrics.F_SF"),
         ("seed", True, "$.seed"),
-        ("colour", "red", "$"),
     ],
 )
 def test_plan_that_breaks_the_schema_is_refused_with_its_place(path, value, place):
@@ -212,22 +200,15 @@ def test_what_the_contract_does_not_ask_for_may_be_missing():
     assert found.metrics.T_LEVEL is None
 
 
-def test_more_about_the_source_is_kept():
-    data = bad("source/photographer", {"name": "A. B."})
-    assert plan_to_json(plan_from_json(data)) == data
-
-
 @pytest.mark.parametrize(
     ("text", "code"),
     [
         ("", "E203"),
-        ("{", "E203"),
         (b"\xff\xfe\x00", "E203"),
         ('{"schema": "drystone-plan/1", "seed": NaN}', "E203"),
         ('{"schema": "drystone-plan/1", "schema": "drystone-plan/1"}', "E203"),
         ("[" * 100_000, "E203"),
         ('{"schema": "drystone-plan/1", "seed": ' + "7" * 5000 + "}", "E203"),
-        ("[]", "E204"),
         ("{}", "E204"),
         ('{"schema": "drystone-plan/999"}', "E204"),
         ('{"schema": "drystone-plan/1"}', "E205"),
@@ -241,12 +222,10 @@ def test_file_that_is_no_plan_is_refused(tmp_path, text, code):
         read_plan(path)
     assert caught.value.code == code
     assert str(path) in caught.value.where
-
-
-def test_missing_plan_is_named(tmp_path):
+    path.unlink()
     with pytest.raises(PlanError, match="E202") as caught:
         read_plan(tmp_path)
-    assert str(tmp_path / "plan.json") in caught.value.where
+    assert str(path) in caught.value.where
 
 
 def test_schema_is_valid_and_describes_every_field():

@@ -6,8 +6,6 @@ from PIL import Image
 from scipy import ndimage
 
 from drystone.errors import InputError, LabelImageError
-from drystone.io.checks import _given
-from drystone.io.labels import Census
 from drystone.io.read_stones import ReadSettings, read_stones
 from drystone.io.walls import read_wall
 from tests.io.pictures import areas, codes, discs, many_stones, said, two_stones
@@ -59,15 +57,12 @@ def test_edges_of_a_watershed():
     stones = read_stones(watershed(), settings=ReadSettings(background=1))
     assert areas(stones) == dict.fromkeys(range(5, 23, 3), 576)
     assert "px are -1 (edges, as a watershed leaves them)" in said(stones)
+    with pytest.raises(LabelImageError, match=r"E104.*2400 px are -1 .*edges"):
+        read_stones(np.full((40, 60), -1))
     # Pockets of ground among edges are no stones of 0.
     pocket = watershed(0)
     pocket[32:36, 10:20] = -1
     assert len(read_stones(pocket)) == 6
-
-
-def test_what_became_ground_is_said_where_nothing_is_left():
-    with pytest.raises(LabelImageError, match=r"E104.*2400 px are -1 .*edges"):
-        read_stones(np.full((40, 60), -1))
 
 
 # -- nets of edges -----------------------------------------------------------------------------
@@ -99,8 +94,8 @@ def test_a_net_of_edges_is_no_stone(tmp_path, value, gap):
 
 
 def test_a_class_of_grains_with_a_class_of_edges_is_a_mask():
-    grains = (discs((120, 160), [(22 + 38 * i, 22 + 38 * j) for i in (0, 1, 2) for j in range(4)],
-                    15) > 0.5).astype(np.uint8)  # fmt: skip
+    centres = [(22 + 38 * i, 22 + 38 * j) for i in range(3) for j in range(4)]
+    grains = (discs((120, 160), centres, 15) > 0.5).astype(np.uint8)
     stones = read_stones(netted(grains, 4, 2))
     assert len(stones) == 12
     assert stones.total_area_px == grains.sum()
@@ -132,12 +127,6 @@ def test_a_thick_stone_around_others_is_no_net():
     stones = read_stones(labels)
     assert sorted(areas(stones)) == [1, 2, 3, 9]
     assert codes(stones) == ["W112"]
-
-
-def test_a_side_counts_more_than_a_corner():
-    index = np.array([[1, 2, 1], [2, 3, 2], [1, 2, 1]], np.int32)
-    given = _given(Census(index, np.array([0, 5, 6])), index == 3)
-    assert given[1, 1] == 2
 
 
 # -- blended pixels ----------------------------------------------------------------------------

@@ -11,7 +11,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.errors import InputError
-from drystone.io.outlines_in.silhouettes import region
 from drystone.io.outlines_in.svg import read_svg, subpaths, transform
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.known_stones import HEIGHT, METRIC, PX_PER_M, STONES, WIDTH, close, compare
@@ -125,9 +124,7 @@ def test_a_fill_closes_lines_that_are_open():
     [
         (' style="transform:scale(2)"', "says transform"),
         (' style="transform:none" transform="scale(2)"', "says transform"),
-        (' style="-webkit-transform:scale(2)"', "says transform"),
         (' style="x:3px"', "says x"),
-        (' style="width:30%"', "says width"),
         (' class="moved"', "says translate"),
         (' transform="scale(2)" style="transform-origin:5px 5px"', "transform-origin"),
     ],
@@ -176,10 +173,8 @@ ON = f'<g clip-path="url(#c)">{ALL}</g>'
 HALF = '<rect width="80" height="100"/>'
 WAYS = {
     "each": clip(HALF) + (LEFT + MIDDLE + RIGHT).format('clip-path="url(#c)"'),
-    "style": clip(HALF) + f"""<g style="clip-path: url('#c')">{ALL}</g>""",
     "sheet": clip(HALF) + f"<style>.k{{clip-path:url(#c)}}</style><g class='k'>{ALL}</g>",
     "after": f'<g clip-path="url( #c )">{ALL}</g>' + clip(HALF),
-    "path": clip('<path d="M0 0H80V100H0"/>') + ON,
     "two": clip('<rect width="50" height="99"/><rect x="40" width="40" height="99"/>')
     + ON,
     "moved": clip('<rect width="100" height="99" transform="scale(.5 1)"/>',
@@ -212,33 +207,25 @@ def test_what_is_outside_of_a_clip_is_not_there(way):
     assert "cut by their clip paths: stone_2 (50 % is left)." in said
 
 
+ROUND = '<circle id="stone_1" cx="50" cy="50" r="20" clip-path="url(#c)"/>'
+
+
 @pytest.mark.parametrize(
-    "body",
+    ("body", "count", "text"),
     [
-        clip('<rect width="190" height="99"/>') + ON,
-        clip('<path d="M0 0H200V100H0zM50 0V100H55V0z"/>') + ON,
-        clip(HALF) + f'<g clip-path="none">{ALL}</g>',
+        (clip('<rect width="190" height="99"/>') + ON, 3, ""),
+        (clip('<path d="M0 0H200V100H0zM50 0V100H55V0z"/>') + ON, 3, ""),
+        (clip(HALF) + f'<g clip-path="none">{ALL}</g>', 3, ""),
+        (clip('<circle cx="50" cy="50" r="21"/>') + ROUND, 1, ""),  # its box is not within
+        (f'<g clip-path="url(#b)">{ALL}</g>', 3, "that are not there, so nothing was cut: b."),
+        (clip("") + ON, 0, "outside of their clip paths, left out: stone_1, stone_2, stone_3."),
     ],
 )
-def test_what_is_within_a_clip_is_as_it_was(body):
+def test_clips_that_leave_all_or_nothing(body, count, text):
     found, said = bounds(body)
-    assert (len(found), said) == (3, "")
-
-
-def test_a_shape_within_a_clip_whose_box_is_not_is_as_it_was():
-    round_clip = clip('<circle cx="50" cy="50" r="21"/>')
-    circle = '<circle id="stone_1" cx="50" cy="50" r="20" clip-path="url(#c)"/>'
-    assert bounds(round_clip + circle) == ([pytest.approx([30, 30, 40, 40])], "")
-
-
-def test_a_clip_that_is_not_there_cuts_nothing_and_is_named():
-    found, said = bounds(f'<g clip-path="url(#nothing)">{ALL}</g>')
-    assert len(found) == 3
-    assert "clip paths that are not there, so nothing was cut: nothing." in said
-
-
-def test_an_empty_clip_leaves_nothing():
-    assert bounds(clip("") + ON)[0] == []
+    assert len(found) == count
+    assert text in said
+    assert bool(text) == bool(said)
 
 
 @pytest.mark.parametrize(
@@ -268,26 +255,8 @@ def test_clips_that_take_too_long_are_refused():
         bounds(clip(f'<path d="M{fine}"/>') + f'<g clip-path="url(#c)">{ALL * 40}</g>')
 
 
-@pytest.mark.parametrize(("rule", "area"), [("nonzero", 300.0), ("evenodd", 200.0)])
-def test_regions_by_both_rules(rule, area):
-    one = np.array([(0, 0), (20, 0), (20, 10), (0, 10)], float)
-    other = one + np.array([10, 0])
-    assert region([one, other], rule).area == area
-    assert region([one, other[::-1]], rule).area == 200.0
-    eight = np.array([(0, 0), (10, 10), (10, 0), (0, 10)], float)
-    assert region([eight], rule).area == 50.0
-
-
 @pytest.mark.parametrize(
-    ("own", "unit"),
-    [
-        ("mm", "mm"),
-        ("mm", "px"),
-        ("in", "m"),
-        ("pt", "cm"),
-        ("pc", "ft"),
-        ("q", "mm"),
-    ],
+    ("own", "unit"), [("mm", "mm"), ("mm", "px"), ("in", "m"), ("pt", "cm"), ("pc", "ft")]
 )
 def test_a_wrong_unit_of_a_drawing_is_corrected(tmp_path, own, unit):
     body = ALL.replace('id="', 'data-x="')
@@ -300,10 +269,8 @@ def test_a_wrong_unit_of_a_drawing_is_corrected(tmp_path, own, unit):
     if metres is None:
         assert (scale, stones.by_id(1).area_px) == (None, 1600)
         return
-    shares = 0.5 if own == unit else 1.0  # of a unit, what a user unit is
-    assert stones.by_id(1).area_px / scale**2 == pytest.approx(
-        (40 * shares * metres) ** 2, rel=0.02
-    )
+    side = 40 * metres * (0.5 if own == unit else 1.0)  # shares of a unit are what a user unit is
+    assert stones.by_id(1).area_px / scale**2 == pytest.approx(side**2, rel=0.02)
 
 
 def svg(body, width=f"{WIDTH * MM}mm", height=f"{HEIGHT * MM}mm", box=f"0 0 {WIDTH} {HEIGHT}"):
@@ -372,25 +339,16 @@ def test_stones_that_lie_far_apart_are_drawn_smaller(tmp_path):
     assert int(re.search(r"it is (\d+) px", notice.message)[1]) < 160
 
 
-def test_svg_definitions_are_used_under_nested_transforms(tmp_path):
-    """Every stone is defined turned and mirrored, and put back by the transforms around it."""
-    defined, used = [], []
-    for number, (i, polygons) in enumerate(STONES.items()):
-        cos, sin = math.cos(math.radians(17 * number)), math.sin(math.radians(17 * number))
-        turned = [
-            [[(x * cos - y * sin, x * sin + y * cos) for x, y in ring] for ring in rings]
-            for rings in polygons
-        ]
-        href = "href" if number % 2 else "xlink:href"
-        defined.append(f'<path id="stone_{i}" style="fill-rule: evenodd" d="{data_of(turned)}"/>')
-        used.append(f'<use {href}="#stone_{i}" transform="rotate({-17 * number})" id="u{i}"/>')
+def test_definitions_are_used_under_nested_transforms():
+    """Turned where they are defined, mirrored around, and put back."""
+    page = 'viewBox="0 0 200 100" xmlns:xlink="http://www.w3.org/1999/xlink"'
+    defined = STONE.format(' id="stone" transform="rotate(90)"')
+    used = "".join(f'<use {a}="#stone" transform="rotate(-90)"/>' for a in ("href", "xlink:href"))
     body = (
-        f"<defs>{''.join(defined)}</defs>"
-        f'<g transform="matrix(2 0 0 -2 30 {HEIGHT})"><g transform="scale(.5 -.5)">'
-        f'<a transform="translate(-25 {HEIGHT})"><g transform="translate(-5,{-HEIGHT})">'
-        f'<g transform="translate(0 {HEIGHT})">{"".join(used)}</g></g></a></g></g>'
+        f'<defs>{defined}</defs><g transform="matrix(2 0 0 -2 30 100)">'
+        f'<a transform="translate(-15 50)"><g transform="scale(.5 -.5)">{used}</g></a></g>'
     )
-    close(kept(svg(body), tmp_path))
+    assert bounds(body, page)[0] == [SEEN, SEEN]
 
 
 def test_svg_shapes_by_closed_forms(tmp_path):
@@ -408,9 +366,7 @@ def test_svg_shapes_by_closed_forms(tmp_path):
       <path id="stone9" d="M100 150h60v40h-60zM110 160v20h40v-20z"/>
       <path id="stone10" d="M180 150h60v40h-60zM190 160h40v20h-40z"/>
       <polyline points="0 0 5 5 9 0" fill="none" stroke="red"/> <text>stone</text> <line x2="4"/>
-      <path d="M0 0 L9 9 L4 9" fill="none" stroke="red"/> <circle r="5" display="none"/>
-      <g style="visibility:hidden"><circle r="5"/></g>
-      <clipPath><rect width="9" height="9"/></clipPath>
+      <path d="M0 0 L9 9 L4 9" fill="none" stroke="red"/>
     """
     stones = kept(svg(body, "320", "200"), tmp_path, ReadSettings(holes="keep"))
     areas = {stone.id: stone.area_px for stone in stones}
@@ -428,11 +384,10 @@ def test_svg_shapes_by_closed_forms(tmp_path):
         assert kind in notice.message
 
 
-def test_svg_layer_of_stones_is_all_that_counts(tmp_path):
-    body = f'<rect x="3" y="3" width="90" height="90"/><g id="STONES">{paths()}</g>'
-    stones = kept(svg(body), tmp_path)
-    close(stones)
-    assert "1 shapes outside the group STONES" in stones.notices[0].message
+def test_a_layer_of_stones_is_all_that_counts():
+    boxes, said = bounds(f'{RECT}<g id="STONES">{STONE.format("")}</g>')
+    assert boxes == [SEEN]
+    assert "1 shapes outside the group STONES" in said
 
 
 @pytest.mark.parametrize(
@@ -441,9 +396,7 @@ def test_svg_layer_of_stones_is_all_that_counts(tmp_path):
         ('<path id="a" d="M0 0 L5"/>', r"E114 .*the path 'a' cannot be used \(L has 1 numbers"),
         ('<use href="#nothing"/>', r"E114 .*'#nothing', which is not there"),
         ('<g id="a"><use href="#a"/></g>', r"E114 .*use each other too often or too deeply"),
-        ('<circle r="1%"/>', r"E114 .*a circle cannot be used \(r in %"),
         ('<circle r="1em"/>', r"E114 .*a circle cannot be used \(r in em"),
-        ('<rect width="9em" height="9%"/>', r"E114 .*a rect .*width in em"),
         ('<use href="#a" x="1em"/><g id="a"/>', r"E114 .*a use .*x in em"),
         ('<polygon points="1 2 3"/>', r"E114 .*a polygon cannot be used"),
         ("<text>nothing</text>", r"E104 .*no stones in it.*1 text"),
@@ -464,20 +417,15 @@ def area(data):
     [
         ("m 1 1 h4 v3 h-4 z m 10 0 h4 v3 h-4 z", 24.0),  # z comes back to where it began
         ("M10 10 A5 5 0 0 1 20 10 A5 5 0 0 1 10 10Z", math.pi * 25),
-        ("M0 0 A10 5 0 1 0 20 0 Z", math.pi * 25),  # half an ellipse of 10 and 5
-        ("M0,0A10,10,0,1,1,10,10L10,0Z", 0.75 * math.pi * 100),  # the large arc, with its corner
         ("M0 0 A1 1 0 0 1 20 0 Z", math.pi * 50),  # radii that cannot reach grow
         ("M0 0a10 10 0 0120 0z", math.pi * 50),  # flags without spaces
         ("M0 0 C 0 10 10 10 10 0 Z", 60.0),  # three fifths of the box of its handles
         ("M0 0 Q 5 10 10 0 Z", 100 / 3),  # two thirds of base times half the handle
-        ("M0 0 q 5 10 10 0 t 10 0 V 0 Z", None),
-        ("M0 0.5.5.5.5 1e0-.5 1z", None),
+        ("M0 0 q 5 10 10 0 t 10 0 V 10 H 0 Z", 200.0),
+        ("M0 0.5.5.5.5 1e0-.5 1z", 0.375),
     ],
 )
 def test_areas_by_closed_forms(data, expected):
-    if expected is None:
-        assert subpaths(data)[0].closed
-        return
     assert area(data) == pytest.approx(expected, rel=3e-4)
 
 
@@ -519,17 +467,10 @@ def test_arcs_lie_on_their_ellipse(rx, ry, turn_deg, first_deg, sweep_deg, forwa
         assert np.hypot(*(points - middle).T).min() <= 0.03 * max(rx, ry)
 
 
-def test_closed_and_open_lines():
-    lines = subpaths("M0 0 L4 0 4 4 M10 10 L14 10 14 14 10 10 M0 9 l1 0 0 1z")
-    assert [line.closed for line in lines] == [False, True, True]
-    assert len(lines[1].points) == 3
-
-
 @pytest.mark.parametrize(
     ("data", "text"),
     [
         ("L1 1", "not with a move"),
-        ("M1", "not a multiple of 2"),
         ("M1 1 L1 x", "'x' is not a number"),
         ("M1 1 z 4", "numbers after z"),
         ("M0 0 A1 1 0 2 0 3 3", "not a number"),

@@ -1,12 +1,14 @@
 """Walls as the simplex kernel sees them, for its tests: what is added, step by step."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.kernels import simplex
 from drystone.kernels.cones import GROUND_BODY, cone_edges
-from drystone.kernels.simplex import OPTIMAL, Added, Cones, Optimum
+from drystone.kernels.simplex import Added, Cones, Optimum
 from drystone.statics.model import GROUND
 from tests.naive import simplex as naive
 
@@ -20,15 +22,9 @@ needs_kernel = pytest.mark.skipif(
 )
 
 
-def assert_right(optimum, added, answer, *, anew=True):
-    """As the certificate says, and as the whole program says from the start."""
+def assert_right(optimum, added, answer):
+    """As the certificate says: by duality it leaves nothing to be solved again."""
     assert max(naive.errors(optimum, added, answer).values()) <= 1e-9
-    if not anew:
-        return
-    status, alpha = naive.solved(naive.whole(optimum, added), optimum.sign)
-    assert answer.status == status
-    if status == OPTIMAL:
-        assert answer.alpha == pytest.approx(alpha, abs=1e-9)
 
 
 def cones(first, second, entries):
@@ -93,16 +89,7 @@ def grown(labels, candidates=1, at_once=1):
 
 def with_columns(added, more):
     """The same with more columns."""
-    old = added.cones
-    return Added(
-        added.weights,
-        Cones(
-            np.concatenate((old.first, more.first)),
-            np.concatenate((old.second, more.second)),
-            np.ascontiguousarray(np.concatenate((old.entries, more.entries), axis=1)),
-        ),
-        added.closed,
-    )
+    return replace(added, cones=Added(added.weights, more, NOTHING).joined(added.cones))
 
 
 def some_columns(some, places):
@@ -111,56 +98,34 @@ def some_columns(some, places):
     return Cones(some.first[places], some.second[places], entries)
 
 
+def noisy(some, amount, rng):
+    """The columns with other entries, near to what they were."""
+    noise = 1.0 + amount * rng.standard_normal(some.entries.shape)
+    return replace(some, entries=some.entries * noise)
+
+
 def variants(optimum, added, seed):
     """What else could be added: degenerate, near to it, with contacts that go."""
     rng = np.random.default_rng(seed)
     new, old = added.cones, optimum.cones
+    none = some_columns(new, np.arange(0))
     found = {
         "twice": with_columns(added, new),
-        "nothing": Added(added.weights, some_columns(new, np.arange(0)), NOTHING),
-        "a point": Added(added.weights, some_columns(new, np.arange(len(new.first))[:2]), NOTHING),
-        "heavy": Added(added.weights * 40.0, new, NOTHING),
-        "light": Added(added.weights / 1000.0, new, NOTHING),
-    }  # fmt: skip
+        "nothing": replace(added, cones=none),
+        "a point": replace(added, cones=some_columns(new, np.arange(len(new.first))[:2])),
+        "heavy": replace(added, weights=added.weights * 40.0),
+        "light": replace(added, weights=added.weights / 1000.0),
+    }
     for amount in (1e-6, 1e-9):
-        noise = 1.0 + amount * rng.standard_normal(new.entries.shape)
-        found[f"nearly twice, {amount}"] = with_columns(
-            added, Cones(new.first, new.second, new.entries * noise)
-        )
+        found[f"nearly twice, {amount}"] = with_columns(added, noisy(new, amount, rng))
     if len(old.first):
         columns = np.sort(rng.choice(len(old.first), min(4, len(old.first)), replace=False))
-        basic = np.sort(optimum.basis.basic[optimum.basis.basic >= 0])[:3]
-        moved = some_columns(old, columns)
-        bent = moved.entries * (1.0 + 0.05 * rng.standard_normal(moved.entries.shape))
-        between = Cones(moved.first, moved.second, bent)
-        none = np.empty(0)
-        found["closed"] = Added(added.weights, new, columns.astype(np.int32))
-        found["closed, basic"] = Added(added.weights, new, basic.astype(np.int32))
-        found["only closed"] = Added(none, some_columns(new, np.arange(0)), basic.astype(np.int32))
-        found["only columns"] = Added(none, between, NOTHING)
+        basic = np.sort(optimum.basis.basic[optimum.basis.basic >= 0])[:3].astype(np.int32)
+        between = noisy(some_columns(old, columns), 0.05, rng)
+        found["closed"] = replace(added, closed=columns.astype(np.int32))
+        found["closed, basic"] = replace(added, closed=basic)
+        found["only closed"] = Added(np.empty(0), none, basic)
+        found["only columns"] = Added(np.empty(0), between, NOTHING)
         found["columns below"] = with_columns(added, between)
-        found["nothing, columns below"] = Added(added.weights, between, NOTHING)
+        found["nothing, columns below"] = replace(added, cones=between)
     return found
-
-
-def identical(one, other):
-    """Equal, number by number."""
-    same = (one.status, one.pivots, one.restarts) == (other.status, other.pivots, other.restarts)
-    alpha = one.alpha == other.alpha or (np.isnan(one.alpha) and np.isnan(other.alpha))
-    forces = np.array_equal(one.forces, other.forces)
-    return bool(same and alpha and forces and np.array_equal(one.velocity, other.velocity))
-
-
-def differing(one, other):
-    """Names of what is not equal in two optima."""
-    parts = (
-        (one.basis, other.basis, vars(one.basis)),
-        (one, other, ("sign", "alpha", "weights", "forces", "velocity")),
-        (one.cones, other.cones, ("first", "second", "entries")),
-    )
-    return [
-        name
-        for mine, others, names in parts
-        for name in names
-        if not np.array_equal(getattr(mine, name), getattr(others, name))
-    ]

@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 from drystone.kernels.asides import asides
 from drystone.kernels.polygons import no_polygons
 from tests.naive import asides as naive
-from tests.polygons import box_of as box
 from tests.strategies import repeatable
 
 
@@ -34,20 +33,3 @@ def test_polygons_go_as_far_aside_as_those_of_the_twin():
 
     check()
     assert listed[0] > 30
-
-
-@pytest.mark.parametrize(
-    ("other", "way"),
-    [
-        (box(37.0, 0.0), 3.5),  # beside it
-        (box(-37.0, 0.0), None),  # on the other side
-        (box(37.0, 15.0), None),  # only a corner: they share less than .3 of the height
-        (box(37.0, 13.0), 3.5),
-        (box(10.0, 13.0), None),  # less is needed upwards: it lies on the other
-        (box(10.0, -13.0), None),
-        (box(40.5, 0.0), None),  # apart
-    ],
-)
-def test_what_goes_aside(other, way):
-    found = asides(box(0.0, 0.0), no_polygons().added([box(90.0, 0.0), other]), 0.5, 1.0)
-    assert found == ([] if way is None else [(1, pytest.approx(way))])

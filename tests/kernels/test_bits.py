@@ -42,26 +42,26 @@ def test_rows_of_several_words_and_runs_longer_than_one(stretch, occupied, mask,
     assert resting(wide, stone).tolist() == [list(at) for at in expected]
 
 
-def test_long_masks_between_thin_posts_under_a_roof():
-    columns = st.integers(0, 299)
-    posts = st.lists(st.tuples(columns, st.integers(1, 9)), max_size=4)
+columns = st.integers(0, 299)
 
-    @repeatable(60)
-    @given(
-        posts=posts, length=st.integers(1, 300), heel=st.integers(0, 99), foot=st.integers(1, 99)
-    )
-    def check(posts, length, heel, foot):
-        occupied = np.zeros((12, 300), bool)
-        occupied[1] = True
-        for col, height in posts:
-            occupied[-height:, col] = True
-        mask = np.ones((3, length), bool)
-        mask[1:, :heel] = mask[1:, heel + 3 * foot :] = False
-        mask[1:, min(heel, length - 1)] = True
-        expected = naive.resting_by_areas(occupied, mask, slid)
-        assert resting(occupied, mask).tolist() == [list(at) for at in expected]
 
-    check()
+@repeatable(60)
+@given(
+    posts=st.lists(st.tuples(columns, st.integers(1, 9)), max_size=4),
+    length=st.integers(1, 300),
+    heel=st.integers(0, 99),
+    foot=st.integers(1, 99),
+)
+def test_long_masks_between_thin_posts_under_a_roof(posts, length, heel, foot):
+    occupied = np.zeros((12, 300), bool)
+    occupied[1] = True
+    for col, height in posts:
+        occupied[-height:, col] = True
+    mask = np.ones((3, length), bool)
+    mask[1:, :heel] = mask[1:, heel + 3 * foot :] = False
+    mask[1:, min(heel, length - 1)] = True
+    expected = naive.resting_by_areas(occupied, mask, slid)
+    assert resting(occupied, mask).tolist() == [list(at) for at in expected]
 
 
 def slid(scene, mask):

@@ -1,6 +1,7 @@
 """Columns of the limit analysis, and figures of its answers: against loops and linear algebra."""
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
@@ -79,14 +80,13 @@ def test_what_is_no_number_is_found_out_wherever_it_is():
     wall, weights, added, alpha, forces, velocity = some_answer(3, 4, 2)
     touched = set(naive.program(wall, weights, added)[0].any(axis=1).nonzero()[0].tolist())
     nan = float("nan")
-    for k in range(len(forces)):
-        for wrong in (nan, math.inf, -math.inf):
-            spoilt = forces.copy()
-            spoilt[k] = wrong
-            found = figures(wall, weights, added, alpha, spoilt, velocity)
-            assert not found.residual < math.inf
-            assert not found.total < math.inf
-            assert math.isnan(found.residual) or not math.isnan(wrong)
+    for k, wrong in product(range(len(forces)), (nan, math.inf, -math.inf)):
+        spoilt = forces.copy()
+        spoilt[k] = wrong
+        found = figures(wall, weights, added, alpha, spoilt, velocity)
+        assert not found.residual < math.inf
+        assert not found.total < math.inf
+        assert math.isnan(found.residual) or not math.isnan(wrong)
     for k in touched:
         spoilt = velocity.copy()
         spoilt[k] = nan
@@ -99,8 +99,10 @@ def test_what_is_no_number_is_found_out_wherever_it_is():
 
 def test_vectors_of_another_program_are_refused():
     wall, weights, added, alpha, forces, velocity = some_answer(3, 4, 2)
-    for wrong in (forces[1:], np.append(forces, 0.0)):
+    for wrong in (
+        (forces[1:], velocity),
+        (np.append(forces, 0.0), velocity),
+        (forces, velocity[3:]),
+    ):
         with pytest.raises(ValueError, match="another program"):
-            figures(wall, weights, added, alpha, wrong, velocity)
-    with pytest.raises(ValueError, match="another program"):
-        figures(wall, weights, added, alpha, forces, velocity[3:])
+            figures(wall, weights, added, alpha, *wrong)

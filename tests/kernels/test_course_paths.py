@@ -36,14 +36,9 @@ def laid(rows, height_px, beds=()):
     sizes = np.array([len(row) for row in rows], np.int32)
     numbers = np.arange(len(widths), dtype=np.int32)
     side = sum(rows[0]) * PIXEL_UNITS
-    ground = Ground(
-        np.zeros(2 * sum(rows[0]), np.int32),
-        np.zeros((0, 2), np.int32),
-        np.zeros((0, STARTS), np.int32),
-        np.array(beds, np.int32).reshape(-1, 3),
-        side,
-        side,
-    )
+    nothing = (np.zeros((0, size), np.int32) for size in (2, STARTS))
+    over = np.array(beds, np.int32).reshape(-1, 3)
+    ground = Ground(np.zeros(2 * sum(rows[0]), np.int32), *nothing, over, side, side)
     terms = evaluate(poses, Arrangement(numbers, 0 * numbers, sizes, sizes), ground, RULES).terms
     return RULES.target - float(terms[-1, 15]), float(terms[-1, 14])
 
@@ -69,12 +64,9 @@ def test_ups_and_downs_and_distance_make_a_bed_joint_longer():
     top = 100 * PIXEL_UNITS
     heights = [top - start for start in path_starts(top)]
     straight = 302 * PIXEL_UNITS
-    flat = [(y, y, 0) for y in heights]
-    assert laid([[300]], 100, flat)[1] == 0.0
-    rough = [(y, y, 256) for y in heights]
-    assert laid([[300]], 100, rough)[1] == pytest.approx(100 * 106 / straight)
-    aside = [(y + 50, y - 70, 0) for y in heights]
-    assert laid([[300]], 100, aside)[1] == pytest.approx(100 * 120 / straight)
+    for aside, ups, longer in ((0, 0, 0), (0, 256, 106), (60, 0, 120)):
+        beds = [(y + aside, y - aside, ups) for y in heights]
+        assert laid([[300]], 100, beds)[1] == pytest.approx(100 * longer / straight)
 
 
 def test_paths_also_run_along_the_ground_and_over_the_top():

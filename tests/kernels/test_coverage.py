@@ -33,14 +33,11 @@ def test_cells_inside_are_full_and_cells_outside_empty_to_the_last_bit(x, y):
     corners = np.column_stack([18.3 * np.cos(angle) + 0.1 + x, 11.7 * np.sin(angle) + 0.7 + y])
     shares, left, bottom = coverage(corners)
     shape = shapely.Polygon(corners)
-    for row in range(shares.shape[0]):
-        for col in range(shares.shape[1]):
-            cell = shapely.box(0, 0, 1, 1)
-            cell = shapely.transform(
-                cell, lambda p, c=col, r=row: p + np.array([left + c, bottom + len(shares) - 1 - r])
-            )
-            assert (shares[row, col] == 1.0) == shape.contains(cell)
-            assert (shares[row, col] == 0.0) == (shape.intersection(cell).area < 1e-12)
+    rows, cols = np.indices(shares.shape)
+    top = bottom + len(shares) - rows
+    cells = shapely.box(left + cols, top - 1, left + cols + 1, top)
+    assert ((shares == 1.0) == shapely.contains(shape, cells)).all()
+    assert ((shares == 0.0) == (shapely.area(shapely.intersection(shape, cells)) < 1e-12)).all()
 
 
 @pytest.mark.parametrize("size", [1e-3, 1e-9, 1e-160])
@@ -50,19 +47,13 @@ def test_a_speck_has_one_cell(size):
     assert shares[0, 0] == pytest.approx(0.24 * size**2, abs=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("corners", "message"),
-    [
-        ([[0.0, 0.0], [1.0, 0.0]], "three corners"),
-        ([[0.0, 0.0, 1.0]] * 3, "three corners"),
-        ([0.0, 1.0, 2.0], "three corners"),
-        ([[0.0, 0.0], [1.0, 0.0], [np.nan, 1.0]], "finite"),
-        ([[0.0, 0.0], [1.0, -np.inf], [0.0, 1.0]], "finite"),
-    ],
-)
-def test_what_is_no_polygon_is_refused(corners, message):
-    with pytest.raises(ValueError, match=message):
-        coverage(np.array(corners))
+def test_what_is_no_polygon_is_refused():
+    for corners in ([[0.0, 0.0], [1.0, 0.0]], [[0.0, 0.0, 1.0]] * 3, [0.0, 1.0, 2.0]):
+        with pytest.raises(ValueError, match="three corners"):
+            coverage(np.array(corners))
+    for wrong in (np.nan, -np.inf):
+        with pytest.raises(ValueError, match="finite"):
+            coverage(np.array([[0.0, 0.0], [1.0, wrong], [0.0, 1.0]]))
 
 
 @st.composite
@@ -78,7 +69,7 @@ def scenes(draw):
     return total, shares, draw(st.integers(-7, 10)), draw(st.integers(-7, 10))
 
 
-@repeatable(300)
+@repeatable(200)
 @given(scene=scenes())
 def test_newly_filled_cells_are_those_that_turn_to_half(scene):
     total, _, _, _ = scene
@@ -95,11 +86,7 @@ def test_newly_filled_cells_are_those_that_turn_to_half(scene):
     assert mask[:, [0, -1]].any(axis=0).all()
 
 
-def test_half_is_filled_and_what_was_half_is_not_new():
-    total = np.array([[0.25, 0.5, 0.25, 0.0]])
-    shares = np.array([[0.25, 0.5, 0.24, 0.5]])
-    found = newly_filled(total, shares, 0, 0)
-    assert (found[0].tolist(), found[1:]) == ([[True, False, False, True]], (0, 0))
+def test_half_is_filled_but_for_rounding():
     third = np.full((1, 1), 1.0 / 3.0)
     assert newly_filled(third, np.full((1, 1), 0.5 - 1.0 / 3.0 - 1e-13), 0, 0) is not None
 

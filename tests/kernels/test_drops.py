@@ -102,7 +102,7 @@ def _stone(rng, cell, brick):
     return random_polygon(rng, int(rng.integers(3, 12)), float(rng.uniform(1.5, 12.0)) * cell)
 
 
-@repeatable(250)
+@repeatable(150)
 @given(
     scene=scenes(), constant=st.floats(-2.0, 2.0), count=st.integers(0, 5), apart=st.integers(0, 6)
 )
@@ -123,7 +123,7 @@ def test_the_cheapest_places_are_those_of_a_loop_over_all(scene, constant, count
     assert len(found) == count or not free
 
 
-@repeatable(100)
+@repeatable(60)
 @given(batch=batches())
 def test_stones_in_a_row_are_dropped_as_each_by_itself(batch):
     profile, stones, terms, constants, wanted = batch
@@ -138,7 +138,7 @@ def test_stones_in_a_row_are_dropped_as_each_by_itself(batch):
         assert mine.tobytes() == alone.tobytes()
 
 
-@repeatable(200)
+@repeatable(120)
 @given(batch=batches(fewest=1))
 def test_the_cheapest_drops_are_all_there_up_to_the_limit(batch):
     profile, stones, terms, constants, wanted = batch
@@ -179,20 +179,15 @@ ONE, TWO, THREE = box_of(14, 0, 8, 2), box_of(22, 0, 4, 2), box_of(26, 0, 8, 2)
     [
         # The gap ends at what is as high as the middle of the stone.
         ("gap", 6.0, [box_of(0, 0, 4, 3)], 6 * 2 / 32),
-        ("gap", 6.0, [box_of(0, 0, 4, 2.5)], (6 * 2 + 3.5 * 4) / 32),
         # A neighbour may end below the middle; of those that end at one place the highest counts.
         ("step", 16.0, foot(20.0), 1.0),
         ("step", 16.0, foot(20.1), 0.0),
-        ("step", 10.0, [LOW, HIGH], 1.0),
         ("step", 10.0, [HIGH, LOW], 1.0),
-        ("step", 10.0, [LOW], 2.0),
         # A stone less than half a pixel up stands on the ground.
         ("joint", 16.0, [box_of(16, 0, 12, 0.9)], 0.5),
         ("joint", 16.0, [box_of(16, 0, 12, 1)], 1 - (1.0 + 8 / 12) / 2),
         # Joints up to the middle of the stone count; of equally near ones that of the first stone.
         ("joint", 16.0, [UNDER, box_of(8, 0, 6, 5)], 1 - (2 / 6 + 10 / 20) / 2),
-        ("joint", 16.0, [UNDER, box_of(8, 0, 6, 5.1)], 1 - (18 / 20 + 10 / 20) / 2),
-        ("joint", 16.0, [ONE, TWO, THREE], 1 - (6 / 8 + 2 / 4) / 2),
         ("joint", 16.0, [ONE, THREE, TWO], 1 - (6 / 8 + 2 / 8) / 2),
         # What is a column and a half above something is not on it.
         ("unbalanced", 12.0, [box_of(10, 0, 4, 3)], 2 / 8),
@@ -211,17 +206,9 @@ def test_of_equal_costs_the_lower_place_comes_first_then_the_one_further_left():
     profile = wall_of([box_of(0, 0, 8, 3), box_of(20, 0, 4, 3)], 20, 2.0)
     stone = hanging(box_of(-4, -3, 8, 6), 2.0)
     found = drops(profile, stone, terms_of(clearance_px=0.02), 0.75, 20, 4.0)
-    assert found.tolist() == [
-        [8.0, 3.02, 0.75, 0.0],
-        [12.0, 3.02, 0.75, 0.0],
-        [24.0, 3.02, 0.75, 0.0],
-        [28.0, 3.02, 0.75, 0.0],
-        [32.0, 3.02, 0.75, 0.0],
-        [0.0, 6.02, 0.75, 0.0],
-        [4.0, 6.02, 0.75, -0.0],
-        [16.0, 6.02, 0.75, 0.0],
-        [20.0, 6.02, 0.75, 0.0],
-    ]
+    places = [(x, 3.02) for x in (8.0, 12.0, 24.0, 28.0, 32.0)]
+    places += [(x, 6.02) for x in (0.0, 4.0, 16.0, 20.0)]
+    assert found.tolist() == [[x, y, 0.75, 0.0] for x, y in places]
 
 
 def test_equal_costs_of_different_kinds_are_in_order_too():
@@ -234,23 +221,16 @@ def test_equal_costs_of_different_kinds_are_in_order_too():
     assert list(rows).index(0.0) < list(rows).index(12.0)
 
 
-@pytest.mark.parametrize(
-    ("width", "expected"), [(38.0, [0.0, 2.0]), (40.0, [0.0]), (40.0 + 1e-10, [0.0]), (40.1, [])]
-)
-def test_a_stone_fits_between_the_ends_of_the_wall(width, expected):
-    stone = hanging(box_of(-width / 2, -3.0, width, 6.0), 2.0)
-    found = drops(bare(20), stone, terms_of(), 0.0, 9, 0.0)
-    assert found.shape == (len(expected), 4)
-    assert found[:, 0].tolist() == expected
-    assert drops(bare(19), stone, terms_of(), 0.0, 9, 0.0).shape == (len(expected[1:]), 4)
-
-
-@pytest.mark.parametrize(("height", "slack", "fits"), [(20, 0, 1), (21, 0, 0), (21, 1, 1)])
-def test_a_stone_ends_below_the_walls_height(height, slack, fits):
-    stone = hanging(box_of(-4, -3, 8, height), 2.0)
-    # What stands out has no room over it.
-    terms = terms_of(slack_px=slack, headroom=1.0)
-    assert drops(bare(20), stone, terms, 0.0, 1, 0.0)[:, 2].tolist() == [0.0] * fits
+def test_a_stone_fits_between_the_ends_of_the_wall_and_below_its_height():
+    for width, expected in ((38.0, [0.0, 2.0]), (40.0 + 1e-10, [0.0]), (40.1, [])):
+        stone = hanging(box_of(-width / 2, -3.0, width, 6.0), 2.0)
+        assert drops(bare(20), stone, terms_of(), 0.0, 9, 0.0)[:, 0].tolist() == expected
+        assert drops(bare(19), stone, terms_of(), 0.0, 9, 0.0).shape == (len(expected[1:]), 4)
+    for height, slack, fits in ((20, 0, 1), (21, 0, 0), (21, 1, 1)):
+        # What stands out has no room over it.
+        terms = terms_of(slack_px=slack, headroom=1.0)
+        found = drops(bare(20), hanging(box_of(-4, -3, 8, height), 2.0), terms, 0.0, 1, 0.0)
+        assert found[:, 2].tolist() == [0.0] * fits
 
 
 def test_what_cannot_be_is_refused():

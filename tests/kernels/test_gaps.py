@@ -35,10 +35,17 @@ def scenes(draw):
     return np.ascontiguousarray(somewhere()), no_polygons().added(others)
 
 
+def gaps(corners, others, reach, corner=0.0, beyond=0.0):
+    """The gaps around a polygon among some others."""
+    around = no_polygons().added(list(others))
+    edges = polygon_edges(corners)
+    return gaps_around(corners, edges, around, WIDTH, reach, corner, beyond=beyond)
+
+
 def test_the_smallest_gap_is_the_distance():
     apart = [0]
 
-    @repeatable(150)
+    @repeatable(100)
     @given(scenes())
     def check(scene):
         corners, around = scene
@@ -63,21 +70,15 @@ def test_the_smallest_gap_is_the_distance():
 
 def test_both_ends_of_flush_faces_are_seen_from_both_sides():
     """Of bricks that lie exactly over each other no end is left to rounding."""
-    below, above = at(SQUARE, 4.0, 1.0), at(SQUARE, 4.0, 3.25)
-    around = no_polygons().added([below])
-    found = gaps_around(above, polygon_edges(above), around, WIDTH, 0.5, 0.0)
+    found = gaps(at(SQUARE, 4.0, 3.25), [at(SQUARE, 4.0, 1.0)], 0.5)
     facing = {gap[:5] for gap in found}
     assert facing == {(0.25, 0.0, 1.0, x, y) for x in (4.0, 6.0) for y in (3.0, 3.25)}
 
 
 def test_what_may_stand_out_over_the_ends_has_its_gaps_there():
-    corners = at(SQUARE, 57.9, 9.0)
-    edges = polygon_edges(corners)
-    found = gaps_around(corners, edges, no_polygons(), WIDTH, 0.5, 0.0, beyond=0.25)
-    assert [gap[:3] for gap in found] == 2 * [pytest.approx((0.35, -1.0, 0.0))]
-    corners = at(SQUARE, -0.1, 9.0)
-    found = gaps_around(corners, edges, no_polygons(), WIDTH, 0.5, 0.0, beyond=0.25)
-    assert [gap[:3] for gap in found] == 2 * [pytest.approx((0.15, 1.0, 0.0))]
+    for x, gap, normal_x in ((57.9, 0.35, -1.0), (-0.1, 0.15, 1.0)):
+        found = gaps(at(SQUARE, x, 9.0), [], 0.5, beyond=0.25)
+        assert [gap[:3] for gap in found] == 2 * [pytest.approx((gap, normal_x, 0.0))]
 
 
 @repeatable(60)
@@ -103,7 +104,7 @@ def test_no_overlap_is_missed_and_what_is_apart_does_not_cross():
     """What only touches may count either way: settled outlines keep a clearance."""
     seen = set()
 
-    @repeatable(300)
+    @repeatable(200)
     @given(scenes())
     def check(scene):
         corners, around = scene
@@ -143,44 +144,29 @@ def test_what_lies_inside_crosses_at_whatever_height():
 
 def test_of_the_edges_around_a_corner_inside_only_the_nearest_counts():
     sliver = np.array([[0.0, 4.0], [20.0, 4.0], [20.0, 6.0], [0.0, 6.0]])
-    around = no_polygons().added([sliver])
-    wedge = np.array([[10.0, 5.7], [12.0, 9.0], [8.0, 9.0]])
-    found = gaps_around(wedge, polygon_edges(wedge), around, WIDTH, 3.5, 0.3)
+    found = gaps(np.array([[10.0, 5.7], [12.0, 9.0], [8.0, 9.0]]), [sliver], 3.5, 0.3)
     assert [(gap.gap, gap.normal_y) for gap in found if gap.gap < 0] == [(pytest.approx(-0.3), 1.0)]
 
 
-def test_bricks_meet_with_their_faces_at_their_corners():
-    around = no_polygons().added([SQUARE + 1.0])
-    above = at(SQUARE, 2.99, 3.02)
-    found = gaps_around(above, polygon_edges(above), around, WIDTH, 0.5, 0.3)
-    assert {(round(gap.gap, 9), gap.normal_y) for gap in found} == {(0.02, 1.0)}
-    beside = at(SQUARE, 3.1, 3.02)
-    found = gaps_around(beside, polygon_edges(beside), around, WIDTH, 0.5, 0.3)
-    # Both faces part them; the one across does better, and the corners are further apart.
-    assert all(gap.gap == pytest.approx(0.1) and gap.normal_x == 1.0 for gap in found)
-    assert all(gap.away == pytest.approx(math.hypot(0.1, 0.02)) for gap in found)
-    assert found
-    # Far corners meet along what parts them.
-    found = gaps_around(beside, polygon_edges(beside), around, WIDTH, 0.5, 0.05)
-    assert all(gap.gap == gap.away for gap in found)
-
-
-@pytest.mark.parametrize(("side", "x"), [(1.0, 3.1), (-1.0, -1.1)])
-def test_of_the_faces_that_part_two_corners_the_best_is_taken(side, x):
+@pytest.mark.parametrize(
+    ("x", "normal"), [(2.99, (0.02, 0.0, 1.0)), (3.1, (0.1, 1.0, 0.0)), (-1.1, (0.1, -1.0, 0.0))]
+)
+def test_bricks_meet_with_the_face_that_parts_their_corners_best(x, normal):
     """On whichever side: the faces come in the order of the corners, not of merit."""
-    around = no_polygons().added([at(SQUARE, 10.0, 1.0)])
-    beside = at(SQUARE, 9.0 + x, 3.02)
-    found = gaps_around(beside, polygon_edges(beside), around, WIDTH, 0.5, 0.3)
-    assert {(round(gap.gap, 9), gap.normal_x, gap.normal_y) for gap in found} == {(0.1, side, 0.0)}
+    brick, below = at(SQUARE, x + 9.0, 3.02), at(SQUARE, 10.0, 1.0)
+    found = gaps(brick, [below], 0.5, 0.3)
+    assert {(round(gap.gap, 9), *gap[1:3]) for gap in found} == {normal}
+    if x != 2.99:  # the corners are further apart; far ones meet along what parts them
+        assert {round(gap.away, 9) for gap in found} == {round(math.hypot(0.1, 0.02), 9)}
+        assert all(gap.gap == gap.away for gap in gaps(brick, [below], 0.5, 0.05))
 
 
 @pytest.mark.parametrize("tilted", [-1.0, 1.0])
 def test_a_face_that_an_edge_at_the_corner_runs_through_parts_nothing(tilted):
     """A stone on its corner beside that of a brick lies over it: its own slope parts them best."""
-    around = no_polygons().added([at(SQUARE, 10.0, 1.0)])
     x = 12.1 if tilted > 0.0 else 9.9
     on_end = at(np.array([[0.0, 0.0], [2.0, 0.2], [0.0, 4.0], [-2.0, 0.2]]), x, 3.02)
-    found = gaps_around(on_end, polygon_edges(on_end), around, WIDTH, 0.3, 0.3)
+    found = gaps(on_end, [at(SQUARE, 10.0, 1.0)], 0.3, 0.3)
     expected = np.array([0.06, tilted * 0.2, 2.0]) / math.hypot(0.2, 2.0)
     assert min(found)[:3] == pytest.approx(tuple(expected))
     assert all(abs(gap.normal_x) < 0.5 for gap in found)
@@ -188,14 +174,10 @@ def test_a_face_that_an_edge_at_the_corner_runs_through_parts_nothing(tilted):
 
 def test_edges_without_length_change_nothing():
     doubled = np.repeat(SQUARE, [1, 2, 1, 3], axis=0)
-    with np.errstate(invalid="ignore"):
-        around = no_polygons().added([doubled + 1.0])
     for shift in ((0.5, 3.1), (3.2, 3.3), (2.9, 3.05), (-1.0, 0.8), (0.5, 2.9)):
-        corners = SQUARE + shift + 0.0
-        edges = polygon_edges(corners)
-        plain = gaps_around(corners, edges, no_polygons().added([SQUARE + 1.0]), WIDTH, 1.0, 0.3)
-        found = gaps_around(corners, edges, around, WIDTH, 1.0, 0.3)
-        assert set(found) == set(plain)
+        with np.errstate(invalid="ignore"):
+            found = gaps(SQUARE + shift, [doubled + 1.0], 1.0, 0.3)
+        assert set(found) == set(gaps(SQUARE + shift, [SQUARE + 1.0], 1.0, 0.3))
 
 
 def test_a_corner_on_an_edge_touches_it():
@@ -204,25 +186,20 @@ def test_a_corner_on_an_edge_touches_it():
     for share in np.linspace(0.01, 0.99, 99):
         touch = corners[0] + share * (corners[1] - corners[0])
         body = touch + np.array([[0.0, 0.0], [2.0, 1.3], [1.4, 1.9]])
-        around = no_polygons().added([corners + 5.0])
-        found = gaps_around(body + 5.0, polygon_edges(body + 5.0), around, WIDTH, 0.5, 0.0)
+        found = gaps(body + 5.0, [corners + 5.0], 0.5)
         assert min(gap.gap for gap in found) == pytest.approx(0.0, abs=1e-12)
 
 
 def test_a_notch_has_no_region_behind_it():
     bent = np.array([[-9.0, 0.0], [0.0, -4.0], [9.0, 0.0], [9.0, 1.0], [0.0, -3.0], [-9.0, 1.0]])
     below = np.array([[0.0, -4.5], [-4.0, -9.0], [4.0, -9.0]])
-    around = no_polygons().added([at(bent, 20.0, 20.0)])
-    corners = at(below, 20.0, 20.0)
-    found = gaps_around(corners, polygon_edges(corners), around, WIDTH, 3.0, 0.0)
+    found = gaps(at(below, 20.0, 20.0), [at(bent, 20.0, 20.0)], 3.0)
     # Both outer corners see each other; the apex below is seen from the notch, too.
     assert sorted(gap.gap for gap in found) == [0.5, 0.5, 1.5]
     assert {gap[1:5] for gap in found} == {(0.0, -1.0, 20.0, 15.5)}
 
 
 def test_corners_in_one_point_meet_along_the_line_between_their_edges():
-    around = no_polygons().added([SQUARE + 5.0])
-    corners = SQUARE + 7.0 + 1e-12
-    found = gaps_around(corners, polygon_edges(corners), around, WIDTH, 1.0, 0.0)
+    found = gaps(SQUARE + 7.0 + 1e-12, [SQUARE + 5.0], 1.0)
     half = math.sqrt(0.5)
     assert [gap[:3] for gap in found] == 2 * [pytest.approx((0.0, half, half))]

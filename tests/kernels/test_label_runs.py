@@ -28,7 +28,7 @@ def test_runs_paint_the_image_and_are_as_long_as_they_can_be(labels):
 
 
 @given(labels=label_images())
-@repeatable(150)
+@repeatable(100)
 def test_pieces_are_those_of_every_label_alone(labels):
     runs = label_runs(labels)
     numbers = runs_in_pieces(runs)

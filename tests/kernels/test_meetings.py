@@ -60,7 +60,7 @@ def pairs(draw):
 
 
 @given(pairs())
-@repeatable(200)
+@repeatable(120)
 def test_a_contact_is_where_the_gap_is(pair):
     corners, other = pair
     ring, solid = shapely.LinearRing(corners), shapely.Polygon(other)
@@ -80,7 +80,7 @@ def test_a_contact_is_where_the_gap_is(pair):
 
 
 @given(pairs(), st.floats(0.0, 360.0), st.integers(0, 5))
-@repeatable(150)
+@repeatable(80)
 def test_contacts_move_with_the_polygons(pair, angle, first):
     corners, other = pair
     up = np.array([7.0, 900.0])  # clear of the ground however they turn
@@ -99,13 +99,6 @@ def test_contacts_move_with_the_polygons(pair, angle, first):
     one, two = order(before, there.mean(axis=1)), order(after, after.points.mean(axis=1))
     assert after.points[two] == pytest.approx(there[one], abs=1e-6)
     assert after.normals[two] == pytest.approx(normals[one], abs=1e-6)
-
-
-@pytest.mark.parametrize("gap", [-0.05, 0.0, 0.01, 0.099])
-def test_a_brick_on_the_ground(gap):
-    expected = [(-1, [[0.0, gap], [40.0, gap]], [0.0, 1.0])]
-    assert told(brick + at(0.0, gap)) == expected
-    assert told(np.roll(brick, 2, axis=0) + at(0.0, gap)) == expected
 
 
 def test_the_ground_comes_first_then_others_in_their_order():
@@ -140,14 +133,20 @@ def test_contacts_with_one_polygon_are_in_order_along_the_placed_one():
 
 
 LOW, UP = brick + at(0.0, 30.0), [0.0, 1.0]
+LEFT, RIGHT = [-(0.5**0.5), 0.5**0.5], [0.5**0.5, 0.5**0.5]
 TIP = np.array([[-5.0, 30.0], [5.0, 30.0], [0.0, 60.0]])
 HOLLOW = np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [10.0, 0.05], [0.0, 20.0]])
+PEAK = np.array([[-10.0, 10.0], [10.0, 10.0], [10.0, 30.0], [0.0, 30.3], [-10.0, 30.0]])
 
 
 @pytest.mark.parametrize(
     ("corners", "others", "contacts"),
     [
-        # Out of reach.
+        # On the ground, whichever corner is the first; and out of reach.
+        *(
+            (np.roll(brick, first, axis=0) + at(0.0, gap), [], [(-1, [[0, gap], [40, gap]], UP)])
+            for first, gap in ((0, -0.05), (2, 0.0), (0, 0.01), (2, 0.099))
+        ),
         (brick + at(0.0, 0.101), [], []),
         (brick + at(0.0, 30.0), [brick + at(0.0, 50.11), brick + at(40.11, 30.0)], []),
         # Half a brick on a brick; an overlap shorter than the tolerance is one point.
@@ -161,7 +160,6 @@ HOLLOW = np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [10.0, 0.05], [0.0, 20
         # An edge that ends just beyond a spike: the point is on the edge, over the tip.
         (brick + at(-0.05, 60.01), [TIP], [(0, [[0.0, 60.01]], UP)]),
         (brick + at(-39.95, 60.01), [TIP], [(0, [[0.0, 60.01]], UP)]),
-        (brick + at(-0.5, 60.01), [TIP], [(0, [[0.0, 60.01]], UP)]),
         # Corners that no face separates do not touch.
         (spike[::-1] * [1.0, -1.0] + at(40.05, 50.05), [LOW], []),
         # A spike on a face, on the ground, and a face on a spike.
@@ -174,7 +172,13 @@ HOLLOW = np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [10.0, 0.05], [0.0, 20
         (
             spike + at(0.0, 40.014),
             [notch],
-            [(0, [[0.0, 40.014]], [-(0.5**0.5), 0.5**0.5]), (0, [[0.0, 40.014]], [0.5**0.5] * 2)],
+            [(0, [[0.0, 40.014]], LEFT), (0, [[0.0, 40.014]], RIGHT)],
+        ),
+        # Edges at an angle touch at the corner, however short they are.
+        *(
+            (turn(flat, angle) + at(0.2, 50.01), [LOW], [(0, [[0.2, 50.01]], UP)])
+            for flat in (brick, brick / [80.0, 1.0])
+            for angle in (2.9, 60.0)
         ),
     ],
 )
@@ -191,22 +195,6 @@ def test_of_equal_faces_the_level_one_is_taken_also_when_rounding_says_otherwise
         assert told(brick + at(-right, 50.02), LOW) == [(0, [[left, 50.02]], UP)]
 
 
-@pytest.mark.parametrize(("angle", "length"), [(0.05, 39.5), (0.5, 8.313), (2.0, 0.577)])
-def test_edges_that_lean_touch_where_the_gap_is_small(angle, length):
-    ((_, points, normal),) = told(turn(brick, angle) + at(0.5, 50.01), brick + at(0.0, 30.0))
-    assert points[0] == [0.5, 50.01]
-    assert np.hypot(*np.subtract(points[1], points[0])) == pytest.approx(length, rel=0.1)
-    assert normal == [0.0, 1.0]
-
-
-@pytest.mark.parametrize("angle", [2.9, 3.0, 10.0, 60.0])
-@pytest.mark.parametrize("width", [0.5, 1.0, 40.0])
-def test_edges_at_an_angle_touch_at_the_corner(angle, width):
-    flat = brick * [width / 40.0, 1.0]
-    found = told(turn(flat, angle) + at(0.2, 50.01), brick + at(0.0, 30.0))
-    assert found == [(0, [[0.2, 50.01]], [0.0, 1.0])]
-
-
 def test_a_face_shrinks_to_its_corner_without_a_jump():
     lengths = []
     for angle in np.linspace(0.0, 3.2, 3201):
@@ -214,6 +202,7 @@ def test_a_face_shrinks_to_its_corner_without_a_jump():
         assert points[0] == [0.5, 50.01] or len(points) == 1
         lengths.append(np.hypot(*np.subtract(points[-1], points[0])))
     assert lengths[0] == pytest.approx(39.5)
+    assert [lengths[50], lengths[500]] == pytest.approx([39.5, 8.313], rel=0.1)
     assert lengths[-1] == 0.0
     steps = np.diff(lengths)
     assert steps.max() <= 1e-6
@@ -221,49 +210,43 @@ def test_a_face_shrinks_to_its_corner_without_a_jump():
     assert steps.min() > -1.0
 
 
-@pytest.mark.parametrize("sign", [-1.0, 1.0])
-def test_the_normal_is_that_of_the_edge_under_the_nearer_end(sign):
+@pytest.mark.parametrize("lean", [-0.4, 0.4])
+def test_the_normal_is_that_of_the_edge_under_the_nearer_end(lean):
     long, short = brick * [3.0, 1.0] - at(60.0, 0.0), brick * [0.1, 1.0] - at(2.0, 0.0)
-    lean = sign * 0.5
-    ((_, _, normal),) = told(turn(short, lean) + at(0.0, 70.04), long + at(0.0, 50.0))
-    assert normal == [0.0, 1.0]
-    ((_, _, normal),) = told(turn(long, lean) + at(0.0, 70.04), short + at(0.0, 50.0))
-    assert normal == pytest.approx(turn(np.array([[0.0, 1.0]]), lean)[0].tolist(), abs=1e-6)
+    own = turn(np.array([[0.0, 1.0]]), lean)[0].tolist()
+    up = 50.01 if lean > 0.0 else 50.13
+    for upper, lower, expected in (
+        (turn(short, lean) + at(0.0, 70.04), long + at(0.0, 50.0), UP),
+        (turn(long, lean) + at(0.0, 70.04), short + at(0.0, 50.0), own),
+        # Half a brick further: one end is a corner of the upper one, the other of the lower one.
+        (turn(brick, lean) + at(20.0, up), LOW, UP if lean > 0.0 else own),
+    ):
+        ((_, _, normal),) = told(upper, lower)
+        assert normal == pytest.approx(expected, abs=1e-6)
 
 
 def test_a_square_in_a_notch_touches_both_faces():
-    s = 0.5**0.5
-    found = told(diamond + at(0.0, 40.0 + 0.01 / s), notch)
-    assert [(len(p), n) for _, p, n in found] == [
-        (2, [-0.707107, 0.707107]),
-        (2, [0.707107, 0.707107]),
-    ]
+    found = told(diamond + at(0.0, 40.0142), notch, ndigits=3)
+    assert [(len(p), n) for _, p, n in found] == [(2, [-0.707, 0.707]), (2, [0.707, 0.707])]
 
 
 def test_a_flat_bend_is_told_once():
-    bent = np.array([[-10.0, 10.0], [10.0, 10.0], [10.0, 30.0], [0.0, 30.3], [-10.0, 30.0]])
-    ((_, points, normal),) = told(spike + at(0.0, 30.31), bent)
+    ((_, points, normal),) = told(spike + at(0.0, 30.31), PEAK)
     assert points == [[0.0, 30.31]]
     assert normal[1] > 0.999
-    shallow = np.array([[-10.0, 10.0], [10.0, 10.0], [10.0, 30.3], [0.0, 30.0], [-10.0, 30.3]])
+    shallow = PEAK + np.array([[0.0, 0.0], [0.0, 0.0], [0.0, 0.3], [0.0, -0.3], [0.0, 0.3]])
     assert len(told(spike + at(0.0, 30.02), shallow)) == 1
 
 
+FOOT, BESIDE = brick + at(0.0, 0.01), brick + at(40.01, 0.01)
 SETTLED = [
-    (brick + at(0.0, 0.01), []),
-    (brick + at(20.0, 20.02), [brick + at(0.0, 0.01), brick + at(40.01, 0.01)]),
-    (
-        brick + at(40.01, 20.02),
-        [brick + at(0.0, 0.01), brick + at(40.01, 0.01), brick + at(0.0, 20.02)],
-    ),
-    (brick + at(0.0, 20.02), [brick + at(0.0, 0.01)]),
-    (turn(brick, 0.03) + at(0.0, 20.02), [brick + at(0.0, 0.01)]),
-    (turn(brick, 1.0) + at(0.0, 20.02), [brick + at(0.0, 0.01)]),
-    (turn(brick, 3.0) + at(0.0, 20.02), [brick + at(0.0, 0.01)]),
+    (FOOT, []),
+    (brick + at(40.01, 20.02), [FOOT, BESIDE, brick + at(0.0, 20.02)]),
+    *((turn(brick, angle) + at(0.0, 20.02), [FOOT]) for angle in (0.0, 0.03, 3.0)),
     (turn(brick, -3.0) + at(0.0, 25.0), [brick * [2.0, 1.0] + at(0.0, 0.01)]),
     (diamond + at(0.0, 40.0142), [notch]),
     (spike + at(0.0, 40.0142), [notch]),
-    (spike + at(40.0, 20.02), [brick + at(0.0, 0.01), brick + at(40.01, 0.01)]),
+    (spike + at(40.0, 20.02), [FOOT, BESIDE]),
 ]
 
 
@@ -289,12 +272,3 @@ def test_bad_input():
     for tolerance in (0.0, -1.0, float("nan")):
         with pytest.raises(ValueError, match="above 0"):
             meetings(brick, no_polygons(), tolerance)
-
-
-@pytest.mark.parametrize("lean", [-0.3, 0.3])
-def test_of_edges_beyond_each_other_the_corner_that_is_nearer_decides(lean):
-    """Half a brick further: one end is a corner of the upper one, the other of the lower one."""
-    leaning = turn(brick, lean) + at(20.0, 50.01 if lean > 0.0 else 50.13)
-    ((_, _, normal),) = told(leaning, brick + at(0.0, 30.0))
-    across = turn(np.array([[0.0, 1.0]]), lean if lean < 0.0 else 0.0)[0]
-    assert normal == pytest.approx(across.tolist(), abs=1e-6)

@@ -44,7 +44,7 @@ def test_ids_of_more_than_32_bits_survive():
     parts=st.lists(st.tuples(masks(9), around, around), min_size=1),
     strided=st.booleans(),
 )
-@repeatable(250)
+@repeatable(100)
 def test_a_patch_is_the_painted_image_around_all_parts(labels, parts, strided):
     """Parts may leave the image: what is drawn there is seen too.  Views are read in place."""
     parts = [(2**32 - 1 - k, row, col, mask) for k, (mask, row, col) in enumerate(parts)]

@@ -5,16 +5,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.profiles import HeightProfile, bare, extremes, hanging, in_a_row, raised
+from drystone.kernels.profiles import bare, extremes, hanging, in_a_row, raised
 from tests.naive.drops import column_span, height_profile
 from tests.polygons import box_of, simple_polygons
 from tests.strategies import repeatable
 
 CELLS = st.sampled_from([0.5, 1.0, 2.0, 1 / 0.35, 40.0])
+# GEOS cuts wrongly at 1e-307.
+LEFTS = st.floats(-20.0, 20.0).map(lambda x: round(x, 9))
 
 
-@repeatable(80)
-@given(polygon=simple_polygons(), cell=CELLS, left=st.floats(-20.0, 20.0))
+@repeatable(60)
+@given(polygon=simple_polygons(), cell=CELLS, left=LEFTS)
 def test_extremes_are_those_of_the_polygon_cut_into_columns(polygon, cell, left):
     columns = 9
     bottoms, tops = extremes(polygon, left, cell, columns)
@@ -33,11 +35,9 @@ def test_a_profile_is_raised_where_a_polygon_is_higher(data, cell):
     ]
     profile = bare(12)
     for index, polygon in enumerate(polygons):
-        before = HeightProfile(*(part.copy() for part in profile))
-        after = raised(profile, polygon, index, cell)
-        for old, kept in zip(before, profile, strict=True):
-            assert old.tobytes() == kept.tobytes()
-        profile = after
+        for part in profile:
+            part.flags.writeable = False
+        profile = raised(profile, polygon, index, cell)
     tops, owners = height_profile(polygons, 12, cell)
     assert profile.tops == pytest.approx(np.array(tops), abs=1e-8)
     assert profile.owners.dtype == np.int32
@@ -72,9 +72,8 @@ def test_a_hanging_polygon_starts_on_a_column_edge(polygon, cell):
 def test_stones_in_a_row_are_those_one_after_the_other(polygons):
     stones = [hanging(polygon, 2.0) for polygon in polygons]
     row = in_a_row(stones)
-    assert (row.bottoms.dtype, row.first.dtype, row.boxes.shape) == (
-        np.float64, np.int64, (len(stones), 4),
-    )  # fmt: skip
+    assert (row.bottoms.dtype, row.first.dtype) == (np.float64, np.int64)
+    assert row.boxes.shape == (len(stones), 4)
     assert row.first[0] == 0
     assert row.first[-1] == len(row.bottoms)
     for k, stone in enumerate(stones):
@@ -82,15 +81,12 @@ def test_stones_in_a_row_are_those_one_after_the_other(polygons):
         assert tuple(row.boxes[k].tolist()) == stone[2:]
 
 
-def test_a_polygon_is_not_over_columns_into_which_it_reaches_by_little():
-    profile = raised(bare(6), box_of(2.0, 0.0, 4.0, 3.0), 0, 2.0)
-    assert profile.tops.tolist() == [0.0, 3.0, 3.0, 0.0, 0.0, 0.0]
-    tiny = raised(bare(6), box_of(2.0 - 1e-10, 0.0, 4.0 + 2e-10, 3.0), 0, 2.0)
-    assert tiny.tops.tolist() == profile.tops.tolist()
-    little = raised(bare(6), box_of(2.0 - 0.49, 0.0, 4.0 + 0.98, 3.0), 0, 2.0)
-    assert little.tops.tolist() == profile.tops.tolist()
-    over = raised(bare(6), box_of(2.0 - 0.51, 0.0, 4.0 + 1.02, 3.0), 0, 2.0)
-    assert over.tops.tolist() == [3.0, 3.0, 3.0, 3.0, 0.0, 0.0]
+@pytest.mark.parametrize(
+    ("reach", "taken"), [(0.0, [1, 2]), (1e-10, [1, 2]), (0.49, [1, 2]), (0.51, [0, 1, 2, 3])]
+)
+def test_a_polygon_is_not_over_columns_into_which_it_reaches_by_little(reach, taken):
+    profile = raised(bare(6), box_of(2.0 - reach, 0.0, 4.0 + 2 * reach, 3.0), 0, 2.0)
+    assert profile.tops.tolist() == [3.0 * (column in taken) for column in range(6)]
 
 
 def test_of_equal_heights_the_first_owns_the_column():

@@ -28,10 +28,3 @@ def test_high_walls():
     block = silhouette(np.ones((2, 2), bool))
     found = RaySums(occupied).filled_share(block, np.array([[0, 3]]))
     assert found.tolist() == [2 * 599 / (2 * 600 + 2 * 3)]
-
-
-def test_no_position_is_no_share():
-    none = np.zeros((0, 2), np.int64)
-    sums, outline = RaySums(np.eye(3, dtype=bool)), silhouette(np.ones((2, 2), bool))
-    assert sums.filled_share(outline, none).shape == (0,)
-    assert sums.empty_beside(outline, none).shape == (0,)

@@ -34,7 +34,7 @@ def programs(draw):
 def test_gains_what_scipy_gains():
     seen = set()
 
-    @repeatable(300)
+    @repeatable(200)
     @given(programs())
     def check(program):
         rows, gain, most = program

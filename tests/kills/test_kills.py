@@ -14,7 +14,7 @@ SMALL = "[search]\npasses = 3\nchains = 2\nshare_every = 2\n"
 """A search that soon comes to its chains."""
 
 
-WALL = ("plan", "{stones}", "--wall", "100x36", "--scale", "1", "-o", "{folder}")
+WALL = "plan {stones} --wall 100x36 --scale 1 -o {folder} "
 
 
 @pytest.fixture(scope="module")
@@ -29,19 +29,15 @@ def place(tmp_path_factory):
 @pytest.mark.parametrize(
     ("way", "jobs", "sent", "pause", "group"),
     [
-        (("--method", "paper"), (), "INT", "stone 3", True),
-        (("--budget", "9"), (), "TERM", "wall 2", False),
-        (("--budget", "9"), ("--jobs", "2"), "KILL", "wall 5", False),
+        ("--method paper", "", "INT", "stone 3", True),
+        ("--settings {small} --budget 9", "", "TERM", "wall 2", False),
+        ("--settings {small} --budget 9", " --jobs 2", "KILL", "wall 5", False),
     ],
 )
 def test_nothing_runs_on_and_nothing_is_lost(way, jobs, sent, pause, group, place):
-    small = ("--settings", str(place / "small.toml")) if "paper" not in way else ()
-    plan = tuple(word.format(stones=place / "few.png", folder="{folder}") for word in WALL)
-    case = Case(
-        sent, (*plan, *way, *small, *jobs), ("--jobs", "1", "--resume"), plan_bytes,
-        place / "few.png", pause,
-    )  # fmt: skip
-    folder, whole = place / sent, place / way[-1]
+    stones, folder, whole = place / "few.png", place / sent, place / way.split()[-1]
+    said = f"{WALL}{way}{jobs}".format(stones=stones, small=place / "small.toml", folder="{folder}")
+    case = Case(sent, tuple(said.split()), ("--jobs", "1", "--resume"), plan_bytes, stones, pause)
     one = killed(case, sent, folder, partial(case.waits, folder), group=group)
     assert one.faults == []
     assert one.code == {"INT": 130, "TERM": 143, "KILL": -9}[sent]

@@ -8,10 +8,9 @@ from drystone_lab.paired import Difference, median_difference
 
 
 def test_pairs_are_kept_together():
-    found = median_difference([10.0, 200.0, 3000.0], [9.0, 198.0, 2997.0])
-    assert (found.median, found.low, found.high, found.pairs) == (2.0, 1.0, 3.0, 3)
-    back = median_difference([9.0, 198.0, 2997.0], [10.0, 200.0, 3000.0])
-    assert (back.median, back.low, back.high) == (-2.0, -3.0, -1.0)
+    some, others = [10.0, 200.0, 3000.0], [9.0, 198.0, 2997.0]
+    assert median_difference(some, others) == Difference(2.0, 1.0, 3.0, 3)
+    assert median_difference(others, some) == Difference(-2.0, -3.0, -1.0, 3)
 
 
 @pytest.mark.parametrize("count", [5, 9, 15])

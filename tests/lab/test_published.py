@@ -28,17 +28,16 @@ def tables():
 def test_closed_forms_hold(tables):
     *others, shifted = closed_forms()[:10:3]
     rows = {(row["case"], row["towards"]): row for row in tables[0]}
-    assert list(rows) == [
-        *((case.name, "both") for case in others), (shifted.name, "-x"), (shifted.name, "+x")
-    ]  # fmt: skip
-    assert rows[shifted.name, "-x"]["expected"] == pytest.approx(shifted.left)
-    assert rows[shifted.name, "+x"]["expected"] == pytest.approx(shifted.right)
+    sides = {(shifted.name, "-x"): shifted.left, (shifted.name, "+x"): shifted.right}
+    assert list(rows) == [*((case.name, "both") for case in others), *sides]
+    for side, factor in sides.items():
+        assert rows[side]["expected"] == pytest.approx(factor)
     for row in tables[0]:
-        assert row["alpha"] == pytest.approx(row["expected"], abs=1e-6)
+        expected = pytest.approx(row["expected"], abs=1e-6)
+        assert row["alpha"] == expected
         # The quick version asks for both flow rules of every third one.
-        other = pytest.approx(row["expected"], abs=1e-6)
         both_rules = row["case"] in (others[0].name, shifted.name)
-        assert row["without dilatancy"] == (other if both_rules else None)
+        assert row["without dilatancy"] == (expected if both_rules else None)
         assert row["certificate gap"] <= 1e-8
         assert row["verdict"] == "pass"
 
@@ -47,7 +46,7 @@ def test_walls_of_ferris(tables):
     first, third = tables[1]
     assert (first["case"], third["case"]) == ("example 1, 33 blocks", "example 3, 46 blocks")
     assert (first["alpha"], third["alpha"]) == pytest.approx((0.64286, 0.40369), abs=5e-6)
-    assert (first["verdict"], third["verdict"]) == ("pass", "pass")
+    assert first["verdict"] == third["verdict"] == "pass"
     assert first["without dilatancy"] is None  # not asked for in the quick version
     assert 0.350 <= third["without dilatancy"] <= 0.361
     assert [each.number for each in WALLS if each.may_not_converge] == [6]
@@ -97,13 +96,10 @@ def test_a_wrong_factor_misses(answers, wall, found, other, said):
 
 @pytest.mark.parametrize("error", [1.3e-5, -1.3e-5])
 def test_a_wrong_arch_misses(monkeypatch, error):
-    monkeypatch.setattr(
-        statics_cases, "stands", lambda _count, thickness, _mu: thickness > 0.2 + error
-    )
-    row = published._arch_row(statics_cases.ArchCase(9, 0.6, 0.2))
-    assert row[-1] == "miss"
-    assert published._arch_row(statics_cases.ArchCase(9, 0.6, None))[-1] == "miss"
-    assert published._arch_row(statics_cases.ArchCase(9, 0.6, 0.2 + error))[-1] == "pass"
+    monkeypatch.setattr(statics_cases, "stands", lambda _count, t, _mu: t > 0.2 + error)
+    for expected, verdict in ((0.2, "miss"), (None, "miss"), (0.2 + error, "pass")):
+        case = statics_cases.ArchCase(9, 0.6, expected)
+        assert published._arch_row(case)[-1] == verdict
 
 
 def test_the_page_shows_every_case():
@@ -118,9 +114,7 @@ def test_the_page_shows_every_case():
 def test_directions_with_different_factors_have_rows_of_their_own():
     left = CaseRow("case", 0.65, "-x", 0.4, 0.4, 0.0, 1e-9, "", 0.35, "pass")
     right = left._replace(towards="+x", difference=1e-7, gap=2e-9)
-    (both,) = published._together(left, right)
-    assert both == right._replace(towards="both")
+    assert list(published._together(left, right)) == [right._replace(towards="both")]
     for change in ({"without_dilatancy": 0.3501}, {"alpha": 0.4001}, {"verdict": "miss"}):
-        assert published._together(left, right._replace(**change)) == [
-            left, right._replace(**change)
-        ]  # fmt: skip
+        other = right._replace(**change)
+        assert list(published._together(left, other)) == [left, other]

@@ -18,18 +18,6 @@ def test_walls_have_no_gaps_and_no_joint_along_the_grid(courses):
     assert min(joint.length for joint in joints) > 0.9 * SHORTEST
 
 
-def test_a_picture_has_the_pixels_of_the_wall():
-    wall = tilted_wall(np.random.default_rng(1), 3)
-    labels = wall.picture(50, (0.25, 0.75))
-    assert labels.any(axis=1).all()
-    assert np.unique(labels).tolist() == list(range(len(wall.polygons) + 1))
-    for number, polygon in enumerate(wall.polygons, start=1):
-        row, col = np.nonzero(labels == number)
-        shape = shapely.Polygon(polygon * 50 + (0.25, 0.75))
-        lowest = labels.shape[0] - 1  # centres below .75 belong to nothing, and that row is cut off
-        assert shapely.contains_xy(shape, col + 0.5, lowest - row + 1.5).all()
-
-
 def test_load_multipliers_converge_as_the_resolution_grows():
     heights = (40, 80, 160)
     errors = refinement_errors(heights, walls=3, offsets=1)

@@ -1,9 +1,8 @@
 """Ways to look for a wall stop when the time is used up, and give the best wall until then."""
 
 import os
-from collections.abc import Iterator
 from dataclasses import replace
-from itertools import chain, count, repeat
+from itertools import chain, count, product, repeat, starmap
 from types import SimpleNamespace
 
 import numpy as np
@@ -68,45 +67,34 @@ def test_the_first_wall_counts_however_long_it_takes_and_without_courses_has_non
     assert (looked.walls, looked.found.courses) == (1, None)
 
 
-class Fake:
-    """In place of a planner: builds nothing, and its wall is worth what is said."""
-
-    merits: Iterator[float]
-    seeds: list[int]
-
-    def __init__(self, *_, seed, **__):
-        self.seeds.append(seed)
-
-    @staticmethod
-    def steps():
-        return ()
-
-
 @pytest.fixture
 def worth(monkeypatch):
-    """Walls that are worth what is said, in place of built ones."""
+    """Walls that are worth what is said, in place of built ones, and the seeds of all but one."""
+    seeds = []
+
+    def planner(*_, seed, **__):
+        seeds.append(seed)
+        return SimpleNamespace(steps=lambda: ())
 
     def of(*merits):
         values = iter(merits)
-        Fake.seeds = []
         found = SimpleNamespace(of=lambda _: SimpleNamespace(merit=next(values)))
         monkeypatch.setattr(search_runs, "FoundWall", found)
-        monkeypatch.setattr(search_runs, "Planner", Fake)
-        return SimpleNamespace(
-            seed=3,
-            workshop=SimpleNamespace(stones=None, site=None),
-            settings=SimpleNamespace(search=SimpleNamespace(wedge_below=0.25)),
-        )
+        monkeypatch.setattr(search_runs, "Planner", planner)
+        settings = SimpleNamespace(search=SimpleNamespace(wedge_below=0.25))
+        workshop = SimpleNamespace(stones=None, site=None)
+        return SimpleNamespace(seed=3, seeds=seeds, workshop=workshop, settings=settings)
 
     return of
 
 
 def test_restarts_keep_the_best_of_different_seeds(worth):
-    states = search_runs._restarts(worth(1.0, 3.0, 2.0, 4.0), 0.0, ticking())
+    first = worth(1.0, 3.0, 2.0, 4.0)
+    states = search_runs._restarts(first, 0.0, ticking())
     found = [next(states) for _ in range(4)]
     assert [state.walls for state in found] == [1, 2, 3, 4]
     assert [state.best().merit for state in found] == [1.0, 3.0, 3.0, 4.0]
-    assert Fake.seeds == [3 + search_runs.BETWEEN_SEEDS * k for k in (1, 2, 3)]
+    assert first.seeds == [3 + search_runs.BETWEEN_SEEDS * k for k in (1, 2, 3)]
 
 
 def test_wedges_go_into_walls_that_are_nearly_the_best(worth, monkeypatch):
@@ -145,7 +133,7 @@ def test_what_is_asked_on_the_way_changes_nothing(name, times):
     assert asked[0].walls < alone.walls
 
 
-TARGET, NINE = BRICKS, BRICKS.stones(None)
+WALLS = [(BRICKS, BRICKS.stones(None))]
 ONE_WAY = BenchSettings(quick=True, policies=("restarts",))
 
 
@@ -156,10 +144,8 @@ def done(monkeypatch):
 
     def do(task):
         tasks.append(task)
-        figures = dict.fromkeys((*search_runs.FIGURES, *search_runs.SPENT), 0.5) | {
-            "placed": task.seed
-        }
-        return [{**figures, "CPU s": seconds} for seconds in task.times]
+        figures = dict.fromkeys((*search_runs.FIGURES, *search_runs.SPENT), 0.5)
+        return [figures | {"placed": task.seed, "CPU s": seconds} for seconds in task.times]
 
     monkeypatch.setattr(search_runs, "do", do)
     return tasks
@@ -168,53 +154,40 @@ def done(monkeypatch):
 def test_what_the_table_holds_is_not_done_again(done, tmp_path):
     said = []
     kept = replace(ONE_WAY, runs=tmp_path / "runs.csv", say=said.append)
-    walls = [(TARGET, NINE)]
-    first = search_runs.searched(walls, [1, 2], (1.0, 3.0), kept)
+    first = search_runs.searched(WALLS, [1, 2], (1.0, 3.0), kept)
     assert [(task.seed, task.times) for task in done] == [(1, (1.0, 3.0)), (2, (1.0, 3.0))]
-    assert first.keys() == {
-        search_runs.SearchRun(TARGET.name, "restarts", seed, seconds)
-        for seed in (1, 2)
-        for seconds in (1.0, 3.0)
-    }
-    again = search_runs.searched(walls, [2, 1], (3.0,), kept)
+    runs = product([BRICKS.name], ["restarts"], (1, 2), (1.0, 3.0))
+    assert first.keys() == set(starmap(search_runs.SearchRun, runs))
+    again = search_runs.searched(WALLS, [2, 1], (3.0,), kept)
     assert len(done) == 2
     assert [(run.seed, one["placed"]) for run, one in again.items()] == [(2, 2), (1, 1)]
     # A time that is not there is looked for anew; what was there stays.
-    search_runs.searched(walls, [1], (2.0, 3.0), kept)
-    assert done[2:] == [search_runs.SearchTask(TARGET.name, "restarts", 1, (2.0, 3.0), None, True)]
+    search_runs.searched(WALLS, [1], (2.0, 3.0), kept)
+    assert done[2:] == [search_runs.SearchTask(BRICKS.name, "restarts", 1, (2.0, 3.0), None, True)]
     assert len(search_runs.read_results(tmp_path / "runs.csv")) == len(said) == 5
     assert said[-1].startswith("bricks, restarts, seed 1, 2 s: 1 of 9 stones, ")
 
 
 def test_seeds_are_outermost_and_ways_take_turns(done):
-    both = replace(ONE_WAY, policies=("restarts", "search"))
-    search_runs.searched([(TARGET, NINE)], [5, 6], (1.0,), both)
-    assert [(task.seed, task.way) for task in done] == [
-        (5, "restarts"), (5, "search"), (6, "restarts"), (6, "search")
-    ]  # fmt: skip
+    search_runs.searched(WALLS, [5, 6], (1.0,), replace(ONE_WAY, policies=("restarts", "search")))
+    found = [(task.seed, task.way) for task in done]
+    assert found == list(product((5, 6), ("restarts", "search")))
 
 
 def test_runs_with_other_settings_are_others(done, tmp_path):
     plain = replace(ONE_WAY, runs=tmp_path / "runs.csv")
     aimed = replace(plain, changes=(("goal.F_AH", 1.5), ("goal.F_AV", 40)))
-    walls = [(TARGET, NINE)]
-    search_runs.searched(walls, [1], (1.0,), plain)
-    (run,) = search_runs.searched(walls, [1], (1.0,), aimed)
-    assert run == search_runs.SearchRun(
-        TARGET.name, "restarts, goal.F_AH = 1.5, goal.F_AV = 40", 1, 1.0
-    )
+    _, (run,), _ = (search_runs.searched(WALLS, [1], (1.0,), one) for one in (plain, aimed, aimed))
+    assert run == (BRICKS.name, "restarts, goal.F_AH = 1.5, goal.F_AV = 40", 1, 1.0)
     assert [task.changes for task in done] == [(), aimed.changes]
-    search_runs.searched(walls, [1], (1.0,), aimed)
-    assert len(done) == 2
     assert len(search_runs.read_results(tmp_path / "runs.csv")) == 2
 
 
 def test_settings_are_what_a_way_goes_by():
-    task = search_runs.SearchTask(TARGET.name, "restarts", 1, (1e-6,), None, True)
+    task = search_runs.SearchTask(BRICKS.name, "restarts", 1, (1e-6,), None, True)
     (plain,) = search_runs.do(task)
     (halved,) = search_runs.do(replace(task, changes=(("goal.filling", 0.0),)))
-    weight = method_settings("best").goal.filling
-    lost = weight * plain["F_SF"] / plain["possible F_SF"]
+    lost = method_settings("best").goal.filling * plain["F_SF"] / plain["possible F_SF"]
     assert halved["merit"] == pytest.approx(plain["merit"] - lost)
 
 
@@ -228,26 +201,17 @@ class Deadly(str):
 
 
 def test_processes_do_what_one_does_and_what_ended_is_kept_when_one_dies(tmp_path, monkeypatch):
-    # The first wall is always finished, and here none is begun after it.
-    walls, times = [(TARGET, NINE)], (1e-6,)
-    one = search_runs.searched(walls, [1], times, ONE_WAY)
+    times = (1e-6,)  # the first wall is always finished, and here none is begun after it
+    one = search_runs.searched(WALLS, [1], times, ONE_WAY)
     last = search_runs.SearchWay(Deadly("unknown"), search_runs.WAYS[0].states)
     monkeypatch.setattr(search_runs, "chosen_ways", lambda _: (search_runs.WAYS[0], last))
     settings = replace(ONE_WAY, runs=tmp_path / "runs.csv", jobs=2)
     with pytest.raises(DrystoneError, match="E402") as caught:
-        search_runs.searched(walls, [1], times, settings)
+        search_runs.searched(WALLS, [1], times, settings)
     assert caught.value.where == "bricks, unknown, seed 1"
     found = search_runs.read_results(tmp_path / "runs.csv")
     timeless = [{run: {**r, "CPU s": 0} for run, r in each.items()} for each in (one, found)]
     assert timeless[0] == timeless[1]
-
-
-def test_ways_are_chosen_by_name():
-    assert search_runs.chosen_ways(()) == search_runs.WAYS
-    chosen = search_runs.chosen_ways(("search", "restarts with wedges"))
-    assert [way.name for way in chosen] == ["restarts with wedges", "search"]
-    with pytest.raises(UsageError, match="E138"):
-        search_runs.chosen_ways(("search", "annealing"))
 
 
 def result(*values):
@@ -269,11 +233,13 @@ def test_what_is_read_is_what_was_written_and_the_last_of_two_equal_runs_counts(
         search_runs.append_results(path, [one])
     assert search_runs.read_results(path) == RUNS
     lines = path.read_text(encoding="utf-8").splitlines()
-    assert lines[0] == ",".join(search_runs.COLUMNS)
-    assert len(lines) == 3
-    (run, _), (_, second) = RUNS.items()
+    assert (lines[0], len(lines)) == (",".join(search_runs.COLUMNS), 3)
+    (run, first), (_, second) = RUNS.items()
     search_runs.append_results(path, [(run, second)])
     assert search_runs.read_results(path)[run] == second
+    words = search_runs.in_words(first, 60)
+    assert words.startswith("58 of 60 stones, F_SF 0.3, F_AV -, F_AH 1e-07, ")
+    assert words.endswith("merit -1.25, 17 walls")
 
 
 @pytest.mark.parametrize(
@@ -291,9 +257,3 @@ def test_other_files_are_not_taken_for_tables(change, line, tmp_path):
     path.write_text(change(path.read_text(encoding="utf-8")), encoding="utf-8")
     with pytest.raises(UsageError, match=f"^E148 {path}:{line}: "):
         search_runs.read_results(path)
-
-
-def test_a_result_in_words():
-    words = search_runs.in_words(next(iter(RUNS.values())), 60)
-    assert words.startswith("58 of 60 stones, F_SF 0.3, F_AV -, F_AH 1e-07, ")
-    assert words.endswith("merit -1.25, 17 walls")

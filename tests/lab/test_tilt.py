@@ -10,10 +10,7 @@ from drystone_lab.table import BenchSettings
 
 
 def compared(associative, nonassociative, motion, *, fell=False):
-    intervals = {"first motion": motion, "fall": motion}
-    simulated = SimpleNamespace(
-        fell_at_rest=fell, settled_shift=0.1, interval=lambda event: intervals[event]
-    )
+    simulated = SimpleNamespace(fell_at_rest=fell, settled_shift=0.1, interval=lambda _: motion)
     return SimpleNamespace(
         direction="left",
         simulated=simulated,
@@ -44,8 +41,7 @@ def test_a_picture_is_tilted_and_predicted():
     pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
     wall = SimpleNamespace(name="stone", stages=(np.ones((40, 20), np.uint32),), mu=0.58)
     for row in tilt._rows(wall, BenchSettings(quick=True)):
-        assert row[2] == pytest.approx(0.5)
-        assert row[3] == pytest.approx(0.5)
+        assert row[2:4] == pytest.approx((0.5, 0.5))
         low, high = (float(end) for end in row[4].split(" to "))
         assert low == pytest.approx(0.5, abs=0.01)
         assert low < high < low + 0.01

@@ -50,19 +50,11 @@ def test_joints_are_their_slow_twin(labels):
 
 
 @repeatable()
-@given(walls(), st.floats(0.05, 2.5))
-def test_reduced_is_its_slow_twin(labels, scale):
+@given(walls(), st.floats(0.05, 2.5) | st.just(1.0))
+def test_reduced_is_its_slow_twin_and_a_copy(labels, scale):
     reduced = reduce_labels(labels, scale)
     assert np.array_equal(reduced, naive.reduce_labels(labels, scale))
     assert reduced.dtype == labels.dtype
-    assert set(np.unique(reduced)) <= set(np.unique(labels))
-
-
-@repeatable()
-@given(walls())
-def test_scale_one_copies(labels):
-    reduced = reduce_labels(labels, 1.0)
-    assert np.array_equal(reduced, labels)
     assert not np.shares_memory(reduced, labels)
 
 

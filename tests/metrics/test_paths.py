@@ -42,11 +42,8 @@ def test_pixels_lead_along_the_joints_from_top_to_bottom(labels):
         steps = np.abs(np.diff(path.pixels, axis=0))
         assert (steps.max(axis=1) == 1).all()
         assert path.length_px == pytest.approx(np.hypot(*steps.T).sum())
-    for path in paths.horizontal_paths(joint):
-        rows, cols = path.pixels.T
-        assert joint[rows, cols].all()
-        assert (cols[0], cols[-1]) == (0, joint.shape[1] - 1)
-        assert rows[0] == rows[-1]
+    turned = [path.pixels[:, ::-1].tolist() for path in paths.horizontal_paths(joint.T)]
+    assert turned == [path.pixels.tolist() for path in paths.vertical_paths(joint)]
 
 
 def test_starts_stand_ten_pixels_from_the_ends_and_a_tenth_of_the_width_apart():
@@ -63,8 +60,8 @@ def test_where_a_stone_is_in_the_way_there_is_no_path(stone):
     assert paths.vertical_arrangement(joint) is None
 
 
-@repeatable()
-@given(walls(max_px=40))
+@repeatable(30)
+@given(walls(max_px=36))
 def test_arrangements_are_their_slow_twins(labels):
     joint = joint_mask(labels)
     vertical = paths.vertical_arrangement(joint)

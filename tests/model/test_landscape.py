@@ -5,7 +5,6 @@ from hypothesis import given
 
 from drystone.model.landscape import Box, Landscape
 from drystone.model.placement import Placement
-from drystone.model.site import Site
 from drystone.model.stone import Stone
 from drystone.model.wall import Wall
 from drystone.placement.best import best_spots
@@ -60,12 +59,3 @@ def test_places_found_from_the_right_hold_the_true_stone(wall):
         next_wall = wall.add(Placement(posed, spot.row, col, "right"))  # refuses any overlap
         window = next_wall.labels[next_wall.placements[-1].window]
         assert np.array_equal(window == L_STONE.id, L_STONE.mask)
-
-
-def test_from_the_right_the_first_stone_stands_at_the_right_end():
-    wall = Wall.empty(Site(12, 6))
-    posed = PoseBook().pose(L_STONE, 0.0)
-    for side, expected in (("left", 0), ("right", 9)):
-        landscape = Landscape.of(wall, "left" if side == "left" else "right")
-        spot = best_spots(landscape, [landscape.view(posed)], PlacementSettings())[0]
-        assert (spot.row, landscape.view_col(posed, spot.col)) == (3, expected)

@@ -92,7 +92,7 @@ def stacked(draw):
 ANYWHERE = st.tuples(st.floats(-180, 180), st.floats(-1, 1), st.sampled_from([0.0, 1.0, 1e3, 1e8]))
 
 
-@repeatable(200)
+@repeatable(120)
 @given(stacked(), ANYWHERE, st.sampled_from([0.0, 1e-16, 1e-15, 1e-13, 1e-11, 1e-9]), st.booleans())
 def test_what_touches_does_not_overlap(pair, seen, gap, into):
     """Rounding, and up to 1e-9 of the size between both, make no overlap."""

@@ -20,27 +20,21 @@ def test_units():
     assert Site.from_source(560, 160, 0.5, px_per_m=400.0).units_per_px == 0.005
 
 
-def test_a_site_without_a_pixel_is_refused():
+def test_a_site_of_too_few_or_too_many_pixels_is_refused_with_the_cure():
     with pytest.raises(UsageError, match=r"E121 --wall: .*Give a larger wall"):
         Site.from_source(2, 160, 0.2)
-
-
-def test_a_wall_of_too_many_pixels_is_refused_with_the_cure():
     with pytest.raises(UsageError, match=r"E121.*--scale"):
         Site.from_source(9999, 9999)
     assert Site.from_source(9999, 9999, scale=0.5).width_px == 5000
 
 
-@pytest.mark.parametrize("size", [(math.nan, 20), (60, math.inf)])
-def test_a_size_that_is_no_finite_number_is_refused(size):
-    with pytest.raises(UsageError, match=r"E127 --wall: .* is not a wall size"):
-        Site.from_source(*size)
-
-
-@pytest.mark.parametrize("px_per_m", [0.0, -400.0, math.nan, math.inf])
-def test_a_scale_that_is_none_is_refused(px_per_m):
-    with pytest.raises(UsageError, match=r"E138 --px-per-m: .* is not a scale"):
-        Site.from_source(560, 160, px_per_m=px_per_m)
+def test_numbers_that_are_no_size_or_scale_are_refused():
+    for size in ((math.nan, 20), (60, math.inf)):
+        with pytest.raises(UsageError, match=r"E127 --wall: .* is not a wall size"):
+            Site.from_source(*size)
+    for px_per_m in (0.0, -400.0, math.nan, math.inf):
+        with pytest.raises(UsageError, match=r"E138 --px-per-m: .* is not a scale"):
+            Site.from_source(560, 160, px_per_m=px_per_m)
 
 
 def test_outlines_must_stay_within_the_lengths_in_source_px():

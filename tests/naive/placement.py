@@ -19,20 +19,6 @@ def all_positions(occupied, mask):
     return [(row, col) for row in rows for col in cols]
 
 
-def touching_positions(occupied, mask):
-    """Fig. 8: free, and overlapping the landscape (with its ground) dilated by one pixel."""
-    height, width = occupied.shape
-    scene = np.vstack([occupied, np.ones((1, width), bool)])
-    dilated = np.zeros_like(scene)
-    for row, col in zip(*np.nonzero(scene), strict=True):
-        dilated[max(0, row - 1) : row + 2, max(0, col - 1) : col + 2] = True
-    return [
-        at
-        for at in all_positions(occupied, mask)
-        if not overlaps(occupied, mask, *at) and overlaps(dilated[:height], mask, *at)
-    ]
-
-
 def resting_positions(occupied, mask):
     """Free, and one pixel lower not free or in the ground (DESIGN 4.4)."""
     return [

@@ -2,22 +2,18 @@
 
 import numpy as np
 
+from tests.naive.outline import inside
+
 
 def covered(loops, shape):
-    """Fill loops pixel by pixel: a pixel is inside when a ray to its right crosses an odd number
-    of edges."""
+    """Fill loops pixel by pixel: a pixel is inside of an odd number of them."""
     height, width = shape
-    mask = np.zeros(shape, bool)
-    for row in range(height):
-        for col in range(width):
-            x, y = col + 0.5, height - row - 0.5
-            crossings = 0
-            for loop in loops:
-                for (x0, y0), (x1, y1) in zip(loop, np.roll(loop, -1, axis=0), strict=True):
-                    if x0 == x1 and x0 > x and min(y0, y1) < y < max(y0, y1):
-                        crossings += 1
-            mask[row, col] = crossings % 2 == 1
-    return mask
+    found = [
+        sum(inside(loop.tolist(), col + 0.5, height - row - 0.5) for loop in loops) % 2
+        for row in range(height)
+        for col in range(width)
+    ]
+    return np.array(found, bool).reshape(shape)
 
 
 def signed_area(loop):

@@ -1,45 +1,27 @@
-"""Oracles of the simplex kernel: the whole program, written out and solved from the start."""
+"""Oracles of the simplex kernel: the whole program, written out, and solved in fractions."""
 
-from dataclasses import dataclass
 from fractions import Fraction
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linprog
 
 from tests.naive import columns
 
-Floats = NDArray[np.float64]
 OPTIMAL, UNSTABLE, UNBOUNDED = 0, 1, 2
 
 
-@dataclass(frozen=True, eq=False)
-class Whole:
+class Whole(NamedTuple):
     """matrix x + alpha live = rhs, x >= 0, alpha free."""
 
-    matrix: Floats
-    live: Floats
-    rhs: Floats
+    matrix: NDArray[np.float64]
+    live: NDArray[np.float64]
+    rhs: NDArray[np.float64]
 
 
 def whole(optimum, added):
     """The program of a wall with a stone, without what is closed."""
     return Whole(*columns.program(optimum.cones, optimum.weights, added))
-
-
-def solved(program, sign):
-    """Status and alpha, by HiGHS from the start."""
-    count = program.matrix.shape[1]
-    found = linprog(
-        np.append(np.zeros(count), -sign),
-        A_eq=np.column_stack((program.matrix, program.live)),
-        b_eq=program.rhs,
-        bounds=[(0, None)] * count + [(None, None)],
-        method="highs",
-        options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
-    )
-    status = {0: OPTIMAL, 2: UNSTABLE, 3: UNBOUNDED}[found.status]
-    return status, float(found.x[-1]) if status == OPTIMAL else None
 
 
 def exactly_solved(program, sign):

@@ -23,12 +23,15 @@ def test_a_sheet_has_its_markers_in_the_corners_of_the_page():
     assert parse_layout("A4:").size_m == 0.05
 
 
-def test_single_markers_have_a_size_and_no_place():
+def test_single_markers_have_a_size_and_no_place_and_fit_on_a_page():
     layout = parse_layout("0.12 m", printed=0.9)
-    assert layout.page is None
-    assert layout.side_m == pytest.approx(0.108)
-    assert layout.group(7) == 7
+    assert (layout.page, layout.group(7), layout.side_m) == (None, 7, pytest.approx(0.108))
     assert layout.corners_m(7)[2] == pytest.approx([0.108, 0.108])
+    assert single_position_m("A4", 0.12) == pytest.approx([0.045, 0.03])
+    with pytest.raises(UsageError, match="does not fit"):
+        single_position_m("A4", 0.2)
+    with pytest.raises(UsageError, match="not plausible"):
+        parse_layout("A4", printed=97.0)
 
 
 @pytest.mark.parametrize("page", PAGES_MM)
@@ -58,14 +61,3 @@ def test_the_largest_size_is_said_and_fits():
     sheet_positions_m("A4", largest / 1000)
     with pytest.raises(UsageError):
         sheet_positions_m("A4", (largest + 1) / 1000)
-
-
-def test_an_absurd_check_line_is_refused():
-    with pytest.raises(UsageError, match="not plausible"):
-        parse_layout("A4", printed=97.0)
-
-
-def test_a_single_marker_must_fit_on_its_page():
-    assert single_position_m("A4", 0.12) == pytest.approx([0.045, 0.03])
-    with pytest.raises(UsageError, match="does not fit"):
-        single_position_m("A4", 0.2)

@@ -52,6 +52,8 @@ def test_single_markers_measure_the_ground(side_px, limit, tilt_deg):
     assert distance_error_percent(view, to_photo, 0.2, 0.15) < limit
     assert view.ids == (0, 7)
     assert view.residual_percent < 0.15
+    if not tilt_deg:
+        assert view.px_per_m == pytest.approx(side_px / SIDE, rel=0.002)
 
 
 @pytest.mark.parametrize(("side_px", "tilt_deg", "limit"), [(60, 30.0, 0.2), (150, 0.0, 0.07)])
@@ -59,11 +61,6 @@ def test_a_sheet_measures_the_ground(side_px, limit, tilt_deg):
     view, to_photo = view_of(side_px, tilt_deg, sheet_on_ground(), SHEET, (0.3, 0.4))
     assert distance_error_percent(view, to_photo, 0.25, 0.35) < limit
     assert view.residual_mm < 0.1
-
-
-def test_the_scale_is_that_of_the_middle_of_the_photo():
-    view, _ = view_of(100, 0.0, APART, MarkerLayout(SIDE), (0.45, 0.34))
-    assert view.px_per_m == pytest.approx(100 / SIDE, rel=0.002)
 
 
 def test_a_sheet_agrees_with_opencv():
@@ -94,10 +91,8 @@ def test_the_picture_stays_upright_and_is_never_mirrored(angle):
     ):
         view = scale_and_view(found, layout, SIZE)
         local = jacobian(view.photo_to_ground, np.array(SIZE) / 2.0)
-        assert np.linalg.det(local) > 0
+        assert min(np.linalg.det(local), local[0, 0], local[1, 1]) > 0
         assert local[1, 0] == pytest.approx(local[0, 1], abs=1e-9)
-        assert local[0, 0] > 0
-        assert local[1, 1] > 0
         corners = apply(view.photo_to_ground, np.array([[0, 0], [SIZE[0], 0], SIZE, [0, SIZE[1]]]))
         assert corners.min(axis=0) == pytest.approx([0, 0], abs=1e-12)
 
@@ -145,19 +140,17 @@ STRAIGHT = camera(1200, SIZE, distance_m=0.6)
 def test_no_marker_and_one_marker_are_no_scale():
     assert code_of(())[0] == "E170"
     code, text = code_of(seen(STRAIGHT, APART[:1]))
-    assert code == "E170"
-    assert "only marker 0" in text
+    assert (code, "only marker 0" in text) == ("E170", True)
 
 
 def test_markers_of_another_sheet_are_left_out():
     stray = (17, 0.0, 0.0, 0.0, 0.3)
     view = scale_and_view(seen(STRAIGHT, [*sheet_on_ground((0, 1)), stray]), SHEET, SIZE)
     assert view.ids == (0, 1)
-    assert [notice.code for notice in view.notices] == ["W170"]
-    assert "17" in view.notices[0].message
+    (notice,) = view.notices
+    assert (notice.code, "17" in notice.message) == ("W170", True)
     code, text = code_of(seen(STRAIGHT, [stray, (18, 0.0, 0.2, 0.0, SIDE)]), SHEET)
-    assert code == "E170"
-    assert "17, 18" in text
+    assert (code, "17, 18" in text) == ("E170", True)
     assert "add --marker-ids 17 18. Else: Print markers" in text
     assert "--marker-ids" not in code_of(seen(STRAIGHT, [stray]), SHEET)[1]
 
@@ -192,26 +185,22 @@ def test_markers_that_disagree_are_refused(found, layout, code, said):
 def test_small_and_slanted_markers_are_left_out():
     far = camera(400, SIZE, distance_m=0.6)
     code, text = code_of(seen(far, APART))
-    assert code == "E170"
-    assert "smaller than 40 px: 0 (33 px), 2 (33 px)" in text
+    assert (code, "smaller than 40 px: 0 (33 px), 2 (33 px)" in text) == ("E170", True)
     flat = camera(2400, SIZE, tilt_deg=75.0, distance_m=1.2)
     code, text = code_of(seen(flat, [(0, 0.0, -0.1, 0, SIDE), (1, 0.0, 0.1, 0, SIDE)]))
-    assert code == "E170"
-    assert "too flat an angle" in text
+    assert (code, "too flat an angle" in text) == ("E170", True)
 
 
-def test_small_markers_that_are_used_are_said():
-    view = scale_and_view(seen(camera(800, SIZE, distance_m=0.6), APART), MarkerLayout(SIDE), SIZE)
-    assert [notice.code for notice in view.notices] == ["W172"]
-    assert "67 px" in view.notices[0].message
-
-
-def test_a_bent_sheet_is_doubted():
+def test_small_markers_and_a_bent_sheet_are_used_and_doubted():
+    small = seen(camera(800, SIZE, distance_m=0.6), APART)
     found = list(seen(STRAIGHT, sheet_on_ground(), 0.0))
-    bent = found[3].corners_px + np.array([2.8, -1.7])
-    view = scale_and_view((*found[:3], FoundMarker(3, bent, "aruco")), SHEET, SIZE)
-    assert [notice.code for notice in view.notices] == ["W172"]
-    assert "off on average" in view.notices[0].message
+    found[3] = FoundMarker(3, found[3].corners_px + np.array([2.8, -1.7]), "aruco")
+    for corners, layout, said in (
+        (small, MarkerLayout(SIDE), "67 px"),
+        (tuple(found), SHEET, "off on average"),
+    ):
+        (notice,) = scale_and_view(corners, layout, SIZE).notices
+        assert (notice.code, said in notice.message) == ("W172", True)
 
 
 def test_the_horizon_in_the_photo_is_refused():

@@ -23,16 +23,19 @@ SMALL = PhotoLevel(
 )
 
 
-def disc(shape, row, col, radius):
-    rows, cols = np.indices(shape)
-    return (rows - row) ** 2 + (cols - col) ** 2 <= radius**2
+ROWS, COLS = np.indices((300, 400))
 
 
-def drawn(*stones, ground=(60, 110, 180), shape=(300, 400), noise=2.0):
-    """A picture of masks in colours, with noise."""
-    picture = np.empty((*shape, 3))
+def disc(row, col, radius):
+    return (ROWS - row) ** 2 + (COLS - col) ** 2 <= radius**2
+
+
+def drawn(*stones, ground=(60, 110, 180), noise=2.0):
+    """A picture of masks, in colours of their own or not, with noise."""
+    picture = np.empty((*ROWS.shape, 3))
     picture[:] = ground
-    for mask, colour in stones:
+    for stone in stones:
+        mask, colour = stone if isinstance(stone, tuple) else (stone, (170, 160, 150))
         picture[mask] = colour
     picture += np.random.default_rng(0).normal(0, noise, picture.shape)
     return np.clip(picture, 0, 255).astype(np.uint8)
@@ -61,10 +64,8 @@ def test_easy_photographs_are_found_with_tight_outlines(changes):
 
 
 def test_photographs_repeat_and_their_truth_is_in_their_frame():
-    one, other = photograph(SMALL), photograph(SMALL)
-    assert one.jpeg == other.jpeg
-    assert np.array_equal(one.truth, other.truth)
-    assert photograph(replace(SMALL, seed=9)).jpeg != one.jpeg
+    one = photograph(SMALL)
+    assert photograph(SMALL).jpeg == one.jpeg != photograph(replace(SMALL, seed=9)).jpeg
     shown = one.truth_in(np.eye(3), (SMALL.height_px, SMALL.width_px))
     image = pixels(one).astype(float)
     # The tarpaulin is blue, and no rock is.
@@ -74,8 +75,8 @@ def test_photographs_repeat_and_their_truth_is_in_their_frame():
 
 
 def test_a_disc_has_its_size_to_a_px():
-    mask = disc((300, 400), 150.3, 200.6, 60)
-    found = segment(drawn((mask, (170, 160, 150))))
+    mask = disc(150.3, 200.6, 60)
+    found = segment(drawn(mask))
     wrong = np.count_nonzero((found.labels > 0) ^ mask)
     # A px all round would be 377.
     assert wrong < 120
@@ -85,10 +86,8 @@ def test_a_disc_has_its_size_to_a_px():
 
 
 def test_cast_shadows_are_not_added_to_stones():
-    level = replace(
-        SMALL, shadow=0.5, sun_deg=45.0, ground="plywood", rocks=("limestone", "basalt")
-    )
-    made = photograph(level)
+    rocks = ("limestone", "basalt")
+    made = photograph(replace(SMALL, shadow=0.5, sun_deg=45.0, ground="plywood", rocks=rocks))
     result = segment_photo(pixels(made))
     got = score(made, result)
     assert got.recall == 1.0
@@ -101,17 +100,14 @@ def test_cast_shadows_are_not_added_to_stones():
 def test_dark_stones_of_the_grounds_hue_are_not_shadows():
     # No more light than a shadow has, but all round: no side is the shaded one.
     ground = np.array([150, 150, 148])
-    stones = [
-        (disc((300, 400), 80 + 140 * (k // 3), 70 + 130 * (k % 3), 40), ground * 0.72)
-        for k in range(6)
-    ]
+    stones = [(disc(80 + 140 * (k // 3), 70 + 130 * (k % 3), 40), ground * 0.72) for k in range(6)]
     found = segment(drawn(*stones, ground=ground))
     assert found.count == 6
     assert found.shadow_level == 1.0
 
 
 def test_touching_stones_are_cut_where_they_touch():
-    one, other = disc((300, 400), 150, 130, 60), disc((300, 400), 150, 245, 58)
+    one, other = disc(150, 130, 60), disc(150, 245, 58)
     picture = drawn((one, (150, 150, 150)), (other, (150, 150, 150)))
     found = segment(picture)
     assert found.count == 2
@@ -123,39 +119,33 @@ def test_touching_stones_are_cut_where_they_touch():
 
 
 def test_a_waist_is_doubted_with_its_place_and_width():
-    rows, cols = np.indices((300, 400))
-    half = 24 + 18 * ((cols - 200) / 80) ** 2
-    stone = (np.abs(rows - 150) < half) & (np.abs(cols - 200) < 90)
-    found = segment(drawn((stone, (180, 170, 150))))
+    half = 24 + 18 * ((COLS - 200) / 80) ** 2
+    stone = (np.abs(ROWS - 150) < half) & (np.abs(COLS - 200) < 90)
+    found = segment(drawn(stone))
     assert found.count == 1
     (doubt,) = [one for one in doubts_of(found, 200.0) if one.code == "W175"]
     assert doubt.stones == (1,)
     assert doubt.at_px == pytest.approx((200, 150), abs=8)
     assert "it may be two stones" in doubt.text
     assert float(doubt.text.split(" cm wide")[0].split()[-1]) == pytest.approx(24, abs=3)
-
-
-def test_a_broad_contact_is_doubted():
-    rows, cols = np.indices((300, 400))
-    ell = (np.abs(rows - 150) < 80) & (np.abs(cols - 150) < 35)
-    ell |= (np.abs(rows - 200) < 30) & (cols >= 150) & (cols < 320)
-    found = segment(drawn((ell, (180, 170, 150))))
-    (doubt,) = [one for one in doubts_of(found) if one.code == "W175"]
+    # A broad contact has no waist.
+    ell = (np.abs(ROWS - 150) < 80) & (np.abs(COLS - 150) < 35)
+    ell |= (np.abs(ROWS - 200) < 30) & (COLS >= 150) & (COLS < 320)
+    (doubt,) = [one for one in doubts_of(segment(drawn(ell))) if one.code == "W175"]
     assert "has a hollow outline: it may be two stones" in doubt.text
 
 
 def test_convex_stones_are_never_cut():
-    rows, cols = np.indices((300, 400))
-    bar = (np.abs(rows - 150) < 18) & (np.abs(cols - 200) < 160)
-    wedge = (rows > 200) & (rows < 280) & (cols > 40) & (cols < 40 + 2 * (rows - 200))
-    found = segment(drawn((bar, (180, 170, 150)), (wedge, (90, 90, 90))))
+    bar = (np.abs(ROWS - 150) < 18) & (np.abs(COLS - 200) < 160)
+    wedge = (ROWS > 200) & (ROWS < 280) & (COLS > 40) & (COLS < 40 + 2 * (ROWS - 200))
+    found = segment(drawn(bar, (wedge, (90, 90, 90))))
     assert found.count == 2
     assert not found.necks
 
 
 def test_stones_at_the_edge_are_left_out_and_said():
-    whole, cut = disc((300, 400), 150, 200, 50), disc((300, 400), 150, 10, 50)
-    found = segment(drawn((whole, (170, 160, 150)), (cut, (170, 160, 150))))
+    whole, cut = disc(150, 200, 50), disc(150, 10, 50)
+    found = segment(drawn(whole, cut))
     assert found.count == 1
     assert found.labels[150, 200] == 1
     assert found.labels[150, 10] == 0
@@ -165,37 +155,33 @@ def test_stones_at_the_edge_are_left_out_and_said():
 
 def test_numbers_follow_the_rows():
     places = [(70, 80), (75, 200), (65, 320), (220, 80), (225, 320)]
-    stones = [(disc((300, 400), *place, 35), (170, 160, 150)) for place in places]
-    found = segment(drawn(*stones))
+    found = segment(drawn(*(disc(*place, 35) for place in places)))
     assert [found.labels[place] for place in places] == [1, 2, 3, 4, 5]
 
 
 def test_holes_are_filled_but_not_what_stones_enclose():
-    ring = disc((300, 400), 150, 200, 60) & ~disc((300, 400), 150, 200, 8)
-    assert segment(drawn((ring, (170, 160, 150)))).labels[150, 200] == 1
+    ring = disc(150, 200, 60) & ~disc(150, 200, 8)
+    assert segment(drawn(ring)).labels[150, 200] == 1
     frame = np.zeros((300, 400), bool)
     frame[40:260, 60:340] = True
     frame[90:210, 110:290] = False
-    assert segment(drawn((frame, (170, 160, 150)))).labels[150, 200] == 0
+    assert segment(drawn(frame)).labels[150, 200] == 0
 
 
-def test_light_and_dark_ground_can_be_said():
-    picture = drawn((np.indices((300, 400))[1] < 190, (230, 225, 215)), ground=(40, 40, 45))
-    spot = disc((300, 400), 150, 90, 40)
-    picture[spot] = (110, 90, 70)
-    picture[disc((300, 400), 150, 300, 40)] = (120, 60, 40)
-    light = segment(picture, settings=SegmentSettings(ground="light"))
-    dark = segment(picture, settings=SegmentSettings(ground="dark"))
-    assert light.ground.colour[0] > 80
-    assert dark.ground.colour[0] < 30
-    assert light.labels[150, 90]
-    assert dark.labels[150, 300]
+@pytest.mark.parametrize("ground", ["light", "dark"])
+def test_light_and_dark_ground_can_be_said(ground):
+    """The left half is light, the right one dark, and each has a stone."""
+    brown, red = (disc(150, 90, 40), (110, 90, 70)), (disc(150, 300, 40), (120, 60, 40))
+    picture = drawn((COLS < 190, (230, 225, 215)), brown, red, ground=(40, 40, 45))
+    found = segment(picture, settings=SegmentSettings(ground=ground))
+    assert (found.ground.colour[0] > 80) == (ground == "light")
+    assert found.labels[150, 90 if ground == "light" else 300]
 
 
 def test_small_and_unusual_stones_are_said():
-    stones = [(disc((300, 400), 70, 55 + 96 * k, 42), (170, 160, 150)) for k in range(4)]
-    small = (disc((300, 400), 220, 100, 12), (170, 160, 150))
-    speck = (disc((300, 400), 220, 250, 4), (170, 160, 150))
+    stones = [disc(70, 55 + 96 * k, 42) for k in range(4)]
+    small = disc(220, 100, 12)
+    speck = disc(220, 250, 4)
     found = segment(drawn(*stones, small, speck))
     assert found.count == 5
     (one,) = found.left_out
@@ -203,12 +189,8 @@ def test_small_and_unusual_stones_are_said():
     assert any("stone 5" in doubt.text for doubt in doubts_of(found) if doubt.code == "W179")
     least = SegmentSettings(min_area_px=600)
     assert segment(drawn(*stones, small, speck), settings=least).count == 4
-
-
-def test_low_contrast_is_said():
-    faint = disc((300, 400), 150, 200, 60)
-    found = segment(drawn((faint, (66, 126, 190)), ground=(60, 110, 180), noise=0.5))
-    assert "W178" in codes(found)
+    faint = drawn((disc(150, 200, 60), (66, 126, 190)), noise=0.5)
+    assert "W178" in codes(segment(faint))
 
 
 def clouds():
@@ -222,7 +204,7 @@ def test_no_stones_and_no_ground_are_errors(ground):
     rng, everywhere = np.random.default_rng(0), np.ones((300, 400), bool)
     settings = SegmentSettings(ground=ground)
     plain = np.clip(rng.normal(150, 3, (300, 400, 3)), 0, 255).astype(np.uint8)
-    disc_on_paper = drawn((disc((300, 400), 150, 200, 60), (170, 160, 150)))
+    disc_on_paper = drawn(disc(150, 200, 60))
     for picture, papers, codes in (
         (np.full((100, 100, 3), 0, np.uint8), None, {"E175"}),
         (np.full((100, 100, 3), 255, np.uint8), None, {"E175"}),
@@ -236,18 +218,12 @@ def test_no_stones_and_no_ground_are_errors(ground):
         assert refused.value.code in codes
 
 
-def test_large_photographs_are_reduced_and_the_scale_with_them():
-    picture = drawn((disc((300, 400), 150, 200, 60), (170, 160, 150)))
+def test_large_photographs_are_reduced_and_areas_may_be_in_square_centimetres():
+    picture = drawn(disc(150, 100, 40), disc(150, 300, 20))
     result = segment_photo(picture, 100.0, max_px=30_000)
     assert result.found.labels.shape == (150, 200)
     assert result.px_per_m == pytest.approx(50.0)
     assert result.from_photo == pytest.approx(np.diag([0.5, 0.5, 1.0]))
-
-
-def test_areas_in_square_centimetres():
-    stones = [(disc((300, 400), 150, 100, 40), (170, 160, 150)),
-              (disc((300, 400), 150, 300, 20), (170, 160, 150))]  # fmt: skip
-    picture = drawn(*stones)
     # 1 px is .25 cm2: the discs have 1257 and 314 cm2.
     assert segment_photo(picture, 200.0, min_area=(400, "cm2")).found.count == 1
     assert segment_photo(picture, 200.0, min_area=(400, "px")).found.count == 2
@@ -266,7 +242,7 @@ def test_markers_are_no_stones_when_the_scale_is_given():
 
 def test_without_opencv_markers_are_not_looked_for(monkeypatch):
     monkeypatch.setitem(sys.modules, "cv2", None)
-    result = segment_photo(drawn((disc((300, 400), 150, 200, 60), (170, 160, 150))), 100.0)
+    result = segment_photo(drawn(disc(150, 200, 60)), 100.0)
     assert (result.found.count, result.unasked, result.notices) == (1, (), ())
 
 

@@ -6,7 +6,6 @@ import pytest
 from drystone.errors import InputError
 from drystone.physics.scatter import TiltResult, Variation, compare_with_tilt, tilt_test
 from drystone.physics.scene import EngineScene, EngineSettings
-from drystone.physics.table import TiltingTable
 from drystone.physics.tilt import TiltSettings, TiltTrial, tilt_once
 from drystone_lab.statics_cases import MU, WALLS
 from tests.polygons import box_of
@@ -29,6 +28,7 @@ BOND = tuple(
     )
     for left, width in ranges
 )
+SUPPORTED = scene_of((0, 0, 3, 1), (1, 1, 1, 2), mu=0.7, fixed=(1,))
 HOOK = np.array([[0, 0], [4, 0], [4, 3], [3, 3], [3, 1], [1, 1], [1, 3], [0, 3]], float)
 
 
@@ -42,12 +42,7 @@ HOOK = np.array([[0, 0], [4, 0], [4, 3], [3, 3], [3, 1], [1, 1], [1, 3], [0, 3]]
         pytest.param(scene_of(*OFFSET, mu=0.9), "right", 0.2, id="offset stack, over its edge"),
         pytest.param(scene_of(*OFFSET, mu=0.9), "left", 0.7, id="offset stack, the other way"),
         pytest.param(scene_of(*BOND, mu=0.4), "right", 0.4, id="running bond slides"),
-        pytest.param(
-            scene_of((0, 0, 3, 1), (1, 1, 1, 2), mu=0.7, fixed=(1,)),
-            "right",
-            0.5,
-            id="on a support",
-        ),
+        pytest.param(SUPPORTED, "right", 0.5, id="on a support"),
     ],
 )
 def test_closed_forms(scene, direction, expected):
@@ -72,35 +67,22 @@ def test_concave_stones_keep_their_hollow():
 def test_what_does_not_stand_is_said():
     trial = tilt_once(scene_of((0, 0, 1, 1), (0.6, 1, 1, 1), mu=0.6), "left")
     assert trial.fell_at_rest
-    assert trial.alpha is None
-    assert trial.first_motion is None
-    assert trial.moved[0] == 2
+    assert (trial.alpha, trial.first_motion, trial.moved[0]) == (None, None, 2)
 
 
 def test_what_never_falls_has_no_alpha():
     settings = TiltSettings(greatest=0.3)
     trial = tilt_once(scene_of((0, 0, 2, 1), mu=0.58), "right", None, settings)
-    assert trial.alpha is None
-    assert not trial.fell_at_rest
-    assert trial.moved == ()
+    assert (trial.alpha, trial.moved, trial.fell_at_rest) == (None, (), False)
 
 
 def test_same_input_same_result():
     scene = scene_of(*OFFSET, mu=0.9)
     plain = Variation("plain", EngineSettings(), TiltSettings())
-    noisy = Variation(
-        "noisy",
-        EngineSettings(corner_radius=2e-3),
-        TiltSettings(from_level=True),
-        shuffled=True,
-        placement_noise=1e-3,
-        outline_noise=1e-3,
-    )
-    results = [
-        tilt_test(scene, "right", np.random.default_rng(5), (plain, noisy)) for _ in range(2)
-    ]
-    assert results[0] == results[1]
-    result = results[0]
+    engine, settings = EngineSettings(corner_radius=2e-3), TiltSettings(from_level=True)
+    both = plain, Variation("noisy", engine, settings, True, 1e-3, 1e-3)
+    result, again = (tilt_test(scene, "right", np.random.default_rng(5), both) for _ in range(2))
+    assert result == again
     low, high = result.interval("fall")
     assert low <= min(result.alphas) <= result.alpha <= max(result.alphas) <= high < low + 0.03
     assert result.alphas[1] == pytest.approx(0.2, abs=0.01)
@@ -114,27 +96,6 @@ def test_noise_stays_within_its_size():
     for block, corners in moved.outlines.items():
         change = np.abs(corners - np.asarray(scene.shapes[block].exterior.coords)[:-1])
         assert 0.0 < change.max() <= 3e-3 * scene.length
-
-
-def test_rounded_corners_keep_faces_where_they_are():
-    scene = scene_of((0, 0, 1, 1), (0, 1, 1, 1), mu=0.6)
-    table = TiltingTable(scene, EngineSettings(corner_radius=0.01))
-    table.tilt(0.0)
-    given = table.poses()
-    table.advance(5.0)
-    assert table.shifts(given).max() < 2e-3
-
-
-def test_copies_go_their_own_way():
-    table = TiltingTable(scene_of((0, 0, 1, 1), mu=0.2), EngineSettings())
-    before = table.poses()
-    twin = table.copy()
-    twin.tilt(0.5)
-    twin.advance(2.0)
-    assert twin.shifts(before)[0] > 0.2
-    assert table.shifts(before)[0] == 0.0
-    # Downhill is towards +x.
-    assert twin.poses()[0, 0] > before[0, 0]
 
 
 @pytest.mark.parametrize(

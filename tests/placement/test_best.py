@@ -65,7 +65,7 @@ def test_every_rule_keeps_the_clearance(rule):
     """Of all places that a rule may take, none is without the room asked for on the way down."""
     narrow = 0
 
-    @repeatable(60)
+    @repeatable(35)
     @given(scene=posed_on_walls(), clearance=st.integers(0, 3))
     def check(scene, clearance):
         nonlocal narrow

@@ -27,20 +27,11 @@ def test_any_position_that_is_free_and_one_pixel_lower_is_not(occupied, mask):
     assert found(occupied, mask) == resting
 
 
-@repeatable(40)
-@given(occupied=landscapes(12), mask=masks(5))
-def test_resting_positions_are_feasible_in_the_sense_of_the_paper(occupied, mask):
-    touching = {tuple(at) for at in naive.touching_positions(occupied, mask)}
-    assert {tuple(at) for at in found(occupied, mask)} <= touching
-
-
 @repeatable(80)
 @given(occupied=landscapes(14), mask=masks())
 def test_from_above_is_where_a_lowered_stone_comes_to_rest(occupied, mask):
     lowered = [list(at) for at in naive.positions_from_above(occupied, mask)]
     assert found(occupied, mask, "above") == lowered
-    everywhere = found(occupied, mask)
-    assert all(at in everywhere for at in lowered)
 
 
 @pytest.mark.parametrize("reach", ["any", "above"])

@@ -1,13 +1,22 @@
 """Small stone sets and planners."""
 
+import json
+from itertools import islice
+
 import numpy as np
 
 from drystone import generate
+from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.model.site import Site
 from drystone.model.stone import Source, Stone, StoneSet
 from drystone.model.wall import outlined
 from drystone.planner.deadline import Deadline
+from drystone.planner.events import Stopped
+from drystone.planner.planner import Planner
 from drystone.planner.settings import method_settings
+from drystone.search.plan_result import finish as finished
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
+from drystone.verify.check import check_plan
 
 RUBBLE_SITE = Site(100, 36)
 """What :func:`rubble` is for."""
@@ -92,11 +101,38 @@ def after_looks(count):
     return Deadline(float(count), Ticks())
 
 
-def finish(planner):
-    """Take all steps."""
-    for _ in planner.steps():
+def finish(planner, steps=None):
+    """Take all steps, or so many."""
+    for _ in islice(planner.steps(), steps):
         pass
     return planner
+
+
+def of_rubble(settings=None, steps=None, *, seed=0, **more):
+    """A planner of :func:`rubble` that has taken all its steps, or so many."""
+    return finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=settings, **more), steps)
+
+
+def result_of(planner):
+    """The result with what a planner has built, whatever for."""
+    provenance = {"version": "0", "method": "custom", "seed": 1}
+    provenance["settings"] = planner.settings.as_dict()
+    stopped = planner.stopped or Stopped("interrupted", "asked for")
+    return finished(planner, stopped, provenance, 0.0)
+
+
+def proven(result, stones):
+    """See that a plan, written and read again, is true; return what was checked."""
+    plan = plan_from_json(json.loads(json.dumps(plan_to_json(result.plan))))
+    report = check_plan(plan, stones, wall_labels=result.wall.labels)
+    assert report.problems == ()
+    return report
+
+
+def gave_up(mu=0.58):
+    """What a solver says that gave up on both directions."""
+    left, right = (LimitResult(LimitStatus.FAILED, side) for side in ("left", "right"))
+    return LateralResistance(left, right, mu)
 
 
 def outlines(planner):

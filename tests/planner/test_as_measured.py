@@ -6,7 +6,7 @@ from drystone.errors import InputError
 from drystone.model.site import Site
 from drystone.planner.measured import MeasuredPose
 from drystone.planner.planner import Planner
-from tests.planner.scenes import blocks, greedy, ids
+from tests.planner.scenes import blocks, finish, greedy, ids
 
 BOTH = pytest.mark.parametrize(
     "settings", [greedy(), greedy({"geometry": "raster"})], ids=["exact", "raster"]
@@ -27,8 +27,8 @@ def wall(settings, spots, sizes):
 
 def now(one):
     """Where the planner has its stones."""
-    spots = {p.stone_id: p.centroid(60) for p in one.build.wall.placements}
-    return at(spots)
+    height_px = one.workshop.site.height_px
+    return at({p.stone_id: p.centroid(height_px) for p in one.build.wall.placements})
 
 
 LOWER, UPPER = (30.0, 5.0), (30.0, 15.0)
@@ -55,6 +55,7 @@ def test_a_stone_that_was_put_there_is_built_in_its_turn(settings, planned, thir
     assert seen.largest_moved_px < 0.5
     assert ids(one) == order
     assert all(action.stands for action in one.build.actions)
+    assert ids(finish(one))[:3] == order
 
 
 @BOTH
@@ -119,3 +120,20 @@ def test_a_stone_longer_than_the_wall_is_not_in_it():
     one = Planner(blocks({1: (20, 10), 2: (46, 10)}), Site(45, 40), settings=settings)
     with pytest.raises(InputError, match="E198 observe: stone 2"):
         one.observe({2: MeasuredPose(22.0, 5.0, 0.0)})
+
+
+def test_the_nearest_place_where_the_wall_stands_is_taken():
+    # A beam on a post.  A block as heavy as the beam tips it where its centroid is further from
+    # the middle than the post is wide: 1800 (d - 15) > 1800 * 15.
+    one = Planner(
+        blocks({1: (30, 60), 2: (120, 15), 3: (30, 60)}), Site(200, 140), settings=greedy()
+    )
+    below = {1: (100.0, 30.0), 2: (100.0, 67.5)}
+    seen = one.observe(at({**below, 3: (133.0, 105.0)}))
+    assert (seen.stands, seen.added) == (True, (1, 2, 3))
+    assert 120.0 < now(one)[3].x < 130.0
+    # Much further out there is no such place near it.
+    far = one.observe(at({**below, 3: (150.0, 105.0)}))
+    assert not far.stands
+    assert "stones 3." in far.notices[0].message
+    assert now(one)[3].x == pytest.approx(150.0, abs=0.5)

@@ -1,5 +1,7 @@
 """Units and areas of a finished plan, against hand-made walls."""
 
+from itertools import count
+
 import numpy as np
 import pytest
 
@@ -19,8 +21,7 @@ from drystone.search.plan_wall import plan_wall
 from drystone.statics.incremental import IncrementalAnalysis, IncrementalResult
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
-from tests.planner.scenes import blocks, rubble
+from tests.planner.scenes import blocks, gave_up, greedy, rubble
 
 SCALE, PX_PER_M = 0.5, 200.0
 
@@ -44,25 +45,6 @@ def wedged_build():
     return Build.empty(site, model.mu, 80.0).add(action)
 
 
-def test_areas_are_in_square_metres_when_a_scale_is_known():
-    build = wedged_build()
-    metrics = plan_metrics(build, build.actions[-1].resistance)
-    # 16 working px of 2 source px each way, 200 source px in a metre
-    assert metrics.wedge_area == pytest.approx(16 * (2 / 200) ** 2)
-
-
-def test_the_filling_counts_source_areas_not_pixels():
-    """A stone of 5 x 3 source px is 3 x 2 or 2 x 2 px at half size, never 3.75."""
-    build = wedged_build()
-    stone = Stone(1, np.ones((3, 5), bool))
-    posed = PoseBook(SCALE).pose(stone, 0.0)
-    assert posed.area_px != stone.area_px * SCALE**2
-    result = plan_wall(StoneSet((stone,)), 10, 8, method="paper", scale=SCALE)
-    assert result.metrics.F_SF == pytest.approx(15 / 80)
-    metrics = plan_metrics(build, build.actions[-1].resistance)
-    assert metrics.F_SF == pytest.approx(40 * 8 / (60 * 40))
-
-
 def test_the_multipliers_of_a_group_stand_at_its_last_step_only():
     build = wedged_build()
     steps = plan_steps(build, {7: 1})
@@ -70,12 +52,7 @@ def test_the_multipliers_of_a_group_stand_at_its_last_step_only():
     assert [step.step for step in steps] == [1, 2, 3]
     assert [step.alpha_left is None for step in steps] == [True, True, False]
     assert steps[-1].alpha_right == build.actions[0].resistance.right.alpha
-
-
-def test_a_wedge_polygon_is_in_metres():
-    build = wedged_build()
-    wedge = plan_steps(build, {7: 1})[1]
-    corners = np.array(wedge.polygon) * 100
+    corners = np.array(steps[1].polygon) * 100  # metres
     assert corners.min(axis=0) == pytest.approx([2.0, 0.0])
     assert corners.max(axis=0) == pytest.approx([6.0, 2.0])
 
@@ -86,56 +63,6 @@ def test_a_plan_says_which_method_made_it():
     own = method_settings("paper").updated({"sampling": "full"})
     assert plan_wall(stones, 40, 10, scale=1.0, settings=own).plan.method == "custom"
     assert plan_wall(stones, 40, 10, scale=1.0, settings=own, method="paper").plan.method == "paper"
-
-
-def test_candidates_on_which_the_solver_gave_up_are_counted_and_said(monkeypatch):
-    stones = blocks({1: (20, 10), 2: (20, 10), 3: (20, 10)})
-    assert plan_wall(stones, 60, 10, scale=1.0, method="paper").notices == ()
-    calls = iter(range(1000))
-
-    def fails_first(analysis, model):
-        if next(calls) > 0:
-            return analyse(analysis, model)
-        gave_up = [LimitResult(LimitStatus.FAILED, side) for side in ("left", "right")]
-        return IncrementalResult(
-            LateralResistance(gave_up[0], gave_up[1], model.mu), solved_cold=True
-        )
-
-    analyse = IncrementalAnalysis.resistance_with
-    monkeypatch.setattr(IncrementalAnalysis, "resistance_with", fails_first)
-    result = plan_wall(stones, 60, 10, scale=1.0, method="paper")
-    (notice,) = result.notices
-    assert notice.code == "W303"
-    assert "gave up on 1 candidates" in notice.message
-    assert result.solves == Solves(failed=1, cold=1)
-
-
-@pytest.mark.parametrize("rounds", [0, 1])
-def test_candidates_that_were_solved_again_are_counted_and_change_nothing(rounds, monkeypatch):
-    settings = method_settings("best").updated({"search": {"budget": rounds + 1}})
-    stones = rubble(seed=1)
-
-    def planned():
-        return plan_wall(stones, 100, 36, scale=1.0, seed=1, settings=settings)
-
-    plain = planned()
-    assert (plain.notices, plain.solves) == ((), Solves())
-    asked = []
-
-    def from_the_start(_, model):
-        asked.append(model)
-        return IncrementalResult(lateral_resistance(model), solved_cold=True)
-
-    monkeypatch.setattr(IncrementalAnalysis, "resistance_with", from_the_start)
-    again = planned()
-    assert again.notices == ()  # it costs time alone
-    assert again.solves.failed == 0
-    # Each candidate is judged in two models; what is built again as it was is no candidate.
-    if rounds == 0:
-        assert again.solves.cold == len(asked) // 2
-    else:
-        assert 20 < again.solves.cold < len(asked)
-    assert again.wall.labels.tobytes() == plain.wall.labels.tobytes()
 
 
 def test_a_wall_in_which_nothing_can_be_placed_is_an_incomplete_plan():
@@ -150,3 +77,52 @@ def test_a_wall_in_which_nothing_can_be_placed_is_an_incomplete_plan():
     assert result.status == "incomplete"
     assert result.plan.steps == ()
     assert result.metrics.F_LR is None
+
+
+def test_areas_are_in_square_metres_and_of_the_source():
+    build = wedged_build()
+    metrics = plan_metrics(build, build.actions[-1].resistance)
+    # 16 working px of 2 source px each way, 200 source px in a metre
+    assert metrics.wedge_area == pytest.approx(16 * (2 / 200) ** 2)
+    assert metrics.F_SF == pytest.approx(40 * 8 / (60 * 40))
+    # A stone of 5 x 3 source px is 3 x 2 or 2 x 2 px at half size, never 3.75.
+    stones = StoneSet((Stone(1, np.ones((3, 5), bool)),))
+    result = plan_wall(stones, 10, 8, method="paper", scale=SCALE)
+    assert result.metrics.F_SF == pytest.approx(15 / 80)
+
+
+@pytest.mark.parametrize("failing", [0, 1])
+def test_candidates_on_which_the_solver_gave_up_are_counted_and_said(failing, monkeypatch):
+    """Also where it gave up on the sturdy model alone, which is the second."""
+    calls, analyse = count(), IncrementalAnalysis.resistance_with
+
+    def fails_once(analysis, model):
+        if next(calls) != failing:
+            return analyse(analysis, model)
+        return IncrementalResult(gave_up(model.mu), solved_cold=True)
+
+    monkeypatch.setattr(IncrementalAnalysis, "resistance_with", fails_once)
+    stones = blocks({1: (20, 10), 2: (20, 10), 3: (20, 10)})
+    result = plan_wall(stones, 60, 10, scale=1.0, settings=greedy())
+    (notice,) = (one for one in result.notices if one.code == "W303")
+    assert "gave up on 1 candidates" in notice.message
+    assert result.solves == Solves(failed=1, cold=1)
+
+
+def test_candidates_that_were_solved_again_are_counted_and_change_nothing(monkeypatch):
+    plain, again = [], []
+    for found in (plain, again):
+        for budget in (1, 2):
+            settings = greedy({"search": {"budget": budget}})
+            found.append(plan_wall(rubble(seed=1), 100, 36, scale=1.0, seed=1, settings=settings))
+        monkeypatch.setattr(
+            IncrementalAnalysis,
+            "resistance_with",
+            lambda _, model: IncrementalResult(lateral_resistance(model), solved_cold=True),
+        )
+    for one, other in zip(plain, again, strict=True):
+        assert (one.notices, one.solves) == ((), Solves())
+        assert (other.notices, other.solves.failed) == ((), 0)  # it costs time alone
+        assert other.wall.labels.tobytes() == one.wall.labels.tobytes()
+    # Those of the second wall are counted as well.
+    assert again[1].solves.cold > again[0].solves.cold > 20

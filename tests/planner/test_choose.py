@@ -12,6 +12,7 @@ from drystone.model.stone import Stone
 from drystone.model.wall import Group, Wall
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.choose import better_side, choose_by_algorithm2, choose_by_score
+from drystone.planner.holding import holds
 from drystone.poses import PoseBook
 from drystone.selection.algorithm2 import SelectionSettings
 from drystone.selection.scored import ScoreSettings
@@ -135,3 +136,11 @@ def test_what_carries_nothing_does_not_stand():
 def test_resistance_counts_among_those_analysed(settings, chosen):
     best, _ = _by_score({1: 0.0, 2: 0.3, 3: 0.4}, {1: 0.1, 2: 0.9, 3: 1.0}, **settings)
     assert best.stone_id == chosen
+
+
+@pytest.mark.parametrize(("left", "stays"), [(20, True), (8, True), (40, False)])
+def test_an_engine_lets_a_brick_stay_where_its_middle_is_borne(left, stays):
+    pytest.importorskip("pymunk")
+    below, brick = (PoseBook().pose(Stone(i, np.ones((10, 30), bool)), 0.0) for i in (1, 2))
+    wall = Wall.empty(Site(100, 40)).add(Placement(below, 30, 20, "left"))
+    assert holds(wall, Group(Placement(brick, 20, left, "left")), 0.58) is stays

@@ -12,52 +12,37 @@ from drystone.planner.offers import offer, support_px, turned_deg
 from drystone.planner.planner import Planner
 from drystone.selection.policies.settings import PolicySettings
 from drystone.statics.model import Block, Interface, RigidBlockModel
-from tests.planner.scenes import RUBBLE_SITE, blocks, finish, greedy, rubble
-
-
-def _candidates(settings, site=RUBBLE_SITE):
-    planner = finish(Planner(rubble(1), site, seed=2, settings=settings))
-    return list(planner.build.actions)
-
+from tests.planner.scenes import RUBBLE_SITE, blocks, finish, greedy, of_rubble, rubble
 
 EXACT = greedy()
 RASTER = greedy({"geometry": "raster"})
 
 
+@pytest.mark.parametrize("scale", [1.0, 0.5])
 @pytest.mark.parametrize("settings", [EXACT, RASTER])
-def test_an_offer_is_where_the_stone_is(settings):
-    for candidate in _candidates(settings):
-        seen, placement = offer(candidate, RUBBLE_SITE), candidate.stabilised.placement
+def test_an_offer_is_where_the_stone_is_in_working_px(settings, scale):
+    site = Site.from_source(100, 36, scale)
+    for candidate in finish(Planner(rubble(1), site, seed=2, settings=settings)).build.actions:
+        seen, placement = offer(candidate, site), candidate.stabilised.placement
+        assert (seen.wall_width_px, seen.wall_height_px) == (site.width_px, site.height_px)
         assert (seen.stone_id, seen.side) == (candidate.stone_id, candidate.side)
         assert seen.indices is candidate.indices
         assert seen.wedges == len(candidate.stabilised.wedges)
-        assert seen.centroid_px == placement.centroid(RUBBLE_SITE.height_px)
+        assert seen.centroid_px == placement.centroid(site.height_px)
         assert seen.left_px < seen.centroid_px[0] < seen.right_px
         assert seen.bottom_px < seen.centroid_px[1] < seen.top_px
         # A pixel that an outline covers by less than half is not filled.
         rows, cols = placement.window
         assert seen.left_px == pytest.approx(cols.start, abs=1)
         assert seen.right_px == pytest.approx(cols.stop, abs=1)
-        assert seen.top_px == pytest.approx(RUBBLE_SITE.height_px - rows.start, abs=1)
-        assert seen.bottom_px == pytest.approx(RUBBLE_SITE.height_px - rows.stop, abs=1)
-        assert seen.area_px == pytest.approx(placement.posed.stone.area_px, rel=0.05)
+        assert seen.top_px == pytest.approx(site.height_px - rows.start, abs=1)
+        assert seen.bottom_px == pytest.approx(site.height_px - rows.stop, abs=1)
+        assert seen.area_px == pytest.approx(placement.posed.stone.area_px * scale**2, rel=0.1)
         assert 0 <= seen.turned_deg <= 15
         assert seen.support_px is not None  # all of these rest on something
         (left, low), (right, high) = seen.support_px
         assert seen.left_px - 1e-9 <= left <= right <= seen.right_px + 1e-9
         assert min(low, high) >= seen.bottom_px - 0.2
-
-
-def test_offers_are_working_px_at_any_resolution():
-    sites = Site(100, 36), Site.from_source(100, 36, 0.5)
-    full, half = (offer(_candidates(EXACT, site)[0], site) for site in sites)
-    for seen, site in ((full, sites[0]), (half, sites[1])):
-        assert 0 <= seen.bottom_px < seen.top_px <= site.height_px + 1
-        assert (seen.wall_width_px, seen.wall_height_px) == (site.width_px, site.height_px)
-        assert seen.left_px - 0.1 <= seen.support_px[0][0]
-        assert seen.support_px[1][0] <= seen.right_px + 0.1
-        area = (seen.right_px - seen.left_px) * (seen.top_px - seen.bottom_px)
-        assert 0.5 * area < seen.area_px <= area
 
 
 @pytest.mark.parametrize("geometry", ["raster", "exact"])
@@ -104,17 +89,15 @@ def test_turns_are_the_short_way(before, after, turn):
     assert turned_deg(before, after) == turn
 
 
-class _Last:
-    def __init__(self):
-        self.seen = []
-
-    def choose(self, candidates, rng):  # noqa: ARG002
-        self.seen.append([one.stone_id for one in candidates])
-        return len(candidates) - 1
-
-
 def test_only_walls_that_stand_are_offered():
-    made = _candidates(RASTER)[:5]
+    seen = []
+
+    class Last:
+        def choose(self, candidates, rng):  # noqa: ARG002
+            seen.append([one.stone_id for one in candidates])
+            return len(candidates) - 1
+
+    made = of_rubble(RASTER).build.actions[:5]
     kept = [
         made[0],
         replace(made[1], sturdy=False),
@@ -122,20 +105,18 @@ def test_only_walls_that_stand_are_offered():
         replace(made[3], indices=replace(made[3].indices, LLC=0.0)),
         made[4],
     ]
-    policy, rng = _Last(), np.random.default_rng(0)
 
     def choose(candidates):
         return choose_by_policy(
             [one.proposal for one in candidates],
             lambda _: candidates,
-            policy,
+            Last(),
             name="last",
             build=Build.empty(RUBBLE_SITE, 0.58, 100.0),
             settings=PolicySettings(),
-            rng=rng,
+            rng=np.random.default_rng(0),
         )
 
     assert choose(kept) is made[4]
-    assert policy.seen == [[made[0].stone_id, made[4].stone_id]]
     assert choose(kept[1:4]) is None
-    assert len(policy.seen) == 1
+    assert seen == [[made[0].stone_id, made[4].stone_id]]

@@ -1,16 +1,19 @@
 """Algorithm 1: the loop, its ways to stop, and that it can be left and taken up again."""
 
+from itertools import islice
+
 import pytest
 
 from drystone.errors import UsageError
 from drystone.model.site import Site
 from drystone.planner.attempt import Attempt
+from drystone.planner.deadline import Deadline, TimeIsUp
 from drystone.planner.events import Callbacks, Stopped
 from drystone.planner.measured import MeasuredPose
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings, StopSettings
 from drystone.search.plan_result import result_of
-from tests.planner.scenes import RUBBLE_SITE, blocks, bricks, finish, greedy, order, rubble, same
+from tests.planner.scenes import Ticks, blocks, bricks, finish, greedy, of_rubble, same
 
 
 @pytest.mark.parametrize(
@@ -50,19 +53,15 @@ def attempts(monkeypatch):
     return chosen
 
 
-@pytest.mark.parametrize("failures", [1, 3, 5])
-def test_it_stops_after_failures_in_a_row(failures, attempts):
-    settings = PlannerSettings(stop=StopSettings(failures=failures))
+@pytest.mark.parametrize(("sampling", "failures"), [("variant", 1), ("variant", 3), ("full", 1)])
+def test_it_stops_after_failures_in_a_row(sampling, failures, attempts):
+    """With all stones tried there is nothing to draw anew: one failure is enough, of five."""
+    stop = StopSettings() if sampling == "full" else StopSettings(failures=failures)
+    settings = PlannerSettings(sampling=sampling, stop=stop)
     planner = finish(Planner(bricks(5), Site(30, 10), settings=settings))
     assert planner.stopped == Stopped("failures", "no stone that is left can be placed")
     assert attempts[0] is not None
     assert attempts[1:] == [None] * failures
-
-
-def test_full_sampling_ends_at_the_first_failure(attempts):
-    planner = finish(Planner(bricks(5), Site(30, 10), settings=PlannerSettings(sampling="full")))
-    assert planner.stopped.reason == "failures"
-    assert attempts[1:] == [None]
 
 
 def test_a_success_forgives_failures(monkeypatch, attempts):
@@ -92,75 +91,55 @@ def test_every_attempt_draws_its_own_numbers(monkeypatch):
     assert len(drawn) == len(set(drawn)) == 2 * (1 + 5)  # one stone, five failures
 
 
-@pytest.mark.parametrize("settings", [PlannerSettings(), greedy()], ids=["paper", "best"])
+BOTH = pytest.mark.parametrize("settings", [PlannerSettings(), greedy()], ids=["paper", "best"])
+
+
+@BOTH
 def test_steps_can_be_left_and_taken_up_again(settings):
-    whole = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
-    parts = Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
+    whole, parts = of_rubble(settings, seed=1), of_rubble(settings, 0, seed=1)
     numbers = []
-    for _ in range(3):
-        for step in parts.steps():
+    for steps in (2, 2, 1, None):
+        for step in islice(parts.steps(), steps):
+            assert parts.stopped is None
+            assert step.build is parts.build
+            assert step.build.actions[-1] is step.action
+            assert step.candidates >= 1
             numbers.append(step.number)
-            if step.number % 2 == 0:
-                assert parts.stopped is None
-                break
-    numbers += [step.number for step in parts.steps()]
     assert same(parts, whole)
     assert numbers == list(range(1, len(whole.build.actions) + 1))
-    assert len(numbers) > 4
+    assert len(numbers) > 5
 
 
-def test_steps_tell_what_was_done():
-    planner = Planner(rubble(), RUBBLE_SITE)
-    for number, step in enumerate(planner.steps(), 1):
-        assert step.number == number
-        assert step.build is planner.build
-        assert step.build.actions[-1] is step.action
-        assert len(step.build.actions) == number
-        assert step.candidates >= 1
-
-
-def test_callbacks_come_in_order_before_the_step_is_yielded():
+def test_callbacks_come_before_the_step_is_yielded_and_their_interrupt_keeps_it():
     told = []
 
-    class Watch(Callbacks):
-        def on_step(self, step):
-            told.append(f"told {step.number}")
-
-    planner = Planner(bricks(3), Site(60, 20), callbacks=Watch())
-    told.extend(f"got {step.number}" for step in planner.steps())
-    assert told == ["told 1", "got 1", "told 2", "got 2", "told 3", "got 3"]
-
-
-def test_an_interrupt_in_a_callback_keeps_the_step():
     class Impatient(Callbacks):
         def on_step(self, step):
+            told.append(f"told {step.number}")
             if step.number == 2:
                 raise KeyboardInterrupt
 
-    whole = finish(Planner(rubble(), RUBBLE_SITE, seed=1))
-    planner = Planner(rubble(), RUBBLE_SITE, seed=1, callbacks=Impatient())
+    planner = of_rubble(None, 0, seed=1, callbacks=Impatient())
     with pytest.raises(KeyboardInterrupt):
-        finish(planner)
+        told.extend(f"got {step.number}" for step in planner.steps())
+    assert told == ["told 1", "got 1", "told 2"]
     assert len(planner.build.actions) == 2
-    assert same(finish(planner), whole)
+    assert same(finish(planner), of_rubble(seed=1))
 
 
-@pytest.mark.parametrize("settings", [PlannerSettings(), greedy()], ids=["paper", "best"])
-@pytest.mark.parametrize("built", [1, 3])
-def test_a_restored_wall_goes_on_as_if_never_interrupted(built, settings):
-    whole = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
-    first = Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
-    for step in first.steps():
-        if step.number == built:
-            break
-    heights = {
-        action.stone_id: action.course_height_px
-        for action in first.build.actions
-        if action.course_height_px is not None
-    }
-    again = Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
-    again.restore(first.build.wall, heights)
+@BOTH
+def test_a_restored_wall_goes_on_as_if_never_interrupted(settings):
+    whole, first, again = (of_rubble(settings, steps, seed=1) for steps in (None, 3, 0))
+    again.restore(first.build.wall, first.build.course_heights_px())
     assert same(finish(again), whole)
+
+
+def test_a_time_limit_strikes_once_the_clock_is_past_it():
+    until = Deadline.after(2.0, Ticks())  # looks at the clock: it is 1
+    until.look()
+    until.look()
+    with pytest.raises(TimeIsUp):
+        until.look()
 
 
 def test_why_it_stopped_is_of_the_wall_that_is_there():
@@ -186,15 +165,6 @@ def test_a_lost_stone_is_one_fewer_to_stop_for():
     unused = planner.workshop.remaining(planner.build)
     planner.observe(planner.build.wall.labels, lost=unused[:1])
     assert planner.stopped is None
-
-
-def test_seeds_matter_only_for_random_samples():
-    def built(sampling, seed):
-        settings = PlannerSettings().updated({"sampling": sampling})
-        return order(finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=settings)))
-
-    assert built("full", 1) == built("full", 2)
-    assert built("uniform", 1) != built("uniform", 2)
 
 
 def test_what_cannot_be_planned():

@@ -11,16 +11,15 @@ from drystone.planner.profile import Profile
 from drystone.planner.proposing import SPARE, RasterProposer, StoneTrial, one_by_one
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settling import ExactProposer
-from tests.planner.scenes import RUBBLE_SITE, greedy, rubble
+from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble
 
 
 class _Watched:
     """Trials of a step on pixels, and which of them were placed and stabilised."""
 
-    def __init__(self, monkeypatch, rule, count=8, built=2):
-        settings = greedy({"geometry": "raster", "selection_rule": rule})
-        planner = Planner(rubble(count=count), RUBBLE_SITE, settings=settings)
-        next(step for step in planner.steps() if step.number == built)
+    def __init__(self, monkeypatch, built):
+        settings = greedy({"geometry": "raster"})
+        planner = finish(Planner(rubble(count=30), RUBBLE_SITE, settings=settings), built)
         workshop, build = planner.workshop, planner.build
         self.proposer = RasterProposer(workshop, settings, build, Profile())
         self.analysed = settings.score.analysed
@@ -50,7 +49,7 @@ class _Watched:
 def test_by_cost_the_cheapest_come_first_and_the_others_only_when_asked_for(built, monkeypatch):
     # Looked at often, so that it stops as soon as it may.
     monkeypatch.setattr("drystone.planner.proposing.TOGETHER", 2)
-    step = _Watched(monkeypatch, "score", count=30, built=built)
+    step = _Watched(monkeypatch, built)
     batches = step.proposer.proposals(step.trials, one_by_one)
     first = next(batches)
     assert len(step.stable) < 0.7 * len(step.trials)
@@ -72,7 +71,7 @@ def test_by_cost_the_cheapest_come_first_and_the_others_only_when_asked_for(buil
 
 
 def test_a_promise_is_the_least_that_a_stone_costs_where_it_stays(monkeypatch):
-    step = _Watched(monkeypatch, "score", count=30, built=6)
+    step = _Watched(monkeypatch, 6)
     stays = 0
     for trial in step.trials:
         spotted = step.proposer.spotted(trial)
@@ -90,8 +89,7 @@ def test_a_promise_is_the_least_that_a_stone_costs_where_it_stays(monkeypatch):
 @pytest.mark.parametrize("rule", ["score", "algorithm2"])
 def test_what_is_proposed_is_of_the_trials_and_none_of_it_is_in_the_way(geometry, rule):
     settings = greedy({"geometry": geometry, "selection_rule": rule})
-    planner = Planner(rubble(2), RUBBLE_SITE, settings=settings)
-    next(step for step in planner.steps() if step.number == 2)
+    planner = finish(Planner(rubble(2), RUBBLE_SITE, settings=settings), 2)
     workshop, build = planner.workshop, planner.build
     kind = RasterProposer if geometry == "raster" else ExactProposer
     proposer = kind(workshop, settings, build, Profile())

@@ -1,4 +1,4 @@
-"""Plans are the same bytes with any number of threads, and the same walls with any kernels."""
+"""Equal runs give equal bytes: with any number of jobs, in another process, with any kernels."""
 
 import json
 import os
@@ -11,43 +11,59 @@ import pytest
 from drystone.io.plan_json import write_plan
 from drystone.io.wall_image import write_wall_image
 from drystone.kernels.backend import VARIABLE, describe
+from drystone.planner.settings import method_settings
 from drystone.search.plan_wall import plan_wall
-from tests.planner.scenes import WITH_WEDGES, few_stones, greedy
-from tests.regression.test_same_plan import planned
+from tests.planner.scenes import WITH_WEDGES, few_stones, greedy, rubble
 
+RUBBLE = {"scale": 1.0, "seed": 7}
+FEW = {"scale": 0.5, "seed": 3, "px_per_m": 437.3}
+ENERGY = {"selection_rule": "score", "search": {"budget": 2}}
+PIVOT = {"selection_rule": "algorithm2", "settle": {"method": "pivot"}, "mu": 0.4}
 WALLS = {
-    "energy": {"selection_rule": "score", "search": {"budget": 2}},
-    "pivot": {"selection_rule": "algorithm2", "settle": {"method": "pivot"}, "mu": 0.4},
-    "wedges": dict(WITH_WEDGES),
+    "paper": (rubble(5, 10), (100, 36), RUBBLE, method_settings("paper")),
+    "best": (rubble(5, 10), (100, 36), RUBBLE, method_settings("best").updated(ENERGY)),
+    "energy": (few_stones(), (84, 34), FEW, greedy(ENERGY)),
+    "pivot": (few_stones(), (84, 34), FEW, greedy(PIVOT)),
+    "wedges": (few_stones(), (84, 34), FEW, greedy(WITH_WEDGES)),
 }
-"""What is changed in the default method, on outlines."""
+"""Stones, size, options and settings; the last three are on outlines, in metres, at half size."""
 
 PLAN, IMAGE = "plan.json", "wall.png"
 SCRIPT = """
 import sys
 from pathlib import Path
 from drystone.kernels.backend import describe
-from tests.planner.test_same_bytes import WALLS, exact
-from tests.regression.test_same_plan import planned
+from tests.planner.test_same_bytes import planned
 for name in sys.argv[2:]:
-    folder = Path(sys.argv[1]) / name
-    exact(name, folder) if name in WALLS else planned(name, folder)
+    planned(name, Path(sys.argv[1]) / name)
 print(describe())
 """
 
 
-def exact(name, folder, n_jobs=1):
-    """The bytes of plan.json and wall.png of a few stones on outlines; in metres, at half size."""
-    stones, settings = few_stones(), greedy(WALLS[name])
-    result = plan_wall(
-        stones, 84, 34, scale=0.5, seed=3, settings=settings, n_jobs=n_jobs, px_per_m=437.3
-    )
+def planned(name, folder, n_jobs=1):
+    """The bytes of plan.json and wall.png of a small wall."""
+    stones, size, options, settings = WALLS[name]
+    result = plan_wall(stones, *size, settings=settings, n_jobs=n_jobs, **options)
     assert len(result.wall.groups) >= 3
     assert result.wall.wedges or name != "wedges"
     folder.mkdir()
     write_plan(result.plan, folder / PLAN)
     image = write_wall_image(result.wall.labels, folder)
     return (folder / PLAN).read_bytes(), image.read_bytes()
+
+
+def elsewhere(folder, names, changes):
+    """Plan walls in another process, with other variables; which kernels it has."""
+    folder.mkdir()
+    ran = subprocess.run(  # noqa: S603 - our own code
+        [sys.executable, "-c", SCRIPT, str(folder), *names],
+        check=True,
+        stdout=subprocess.PIPE,
+        text=True,
+        cwd=Path(__file__).parents[2],
+        env={**os.environ, "PYTHONPATH": "src", **changes},
+    )
+    return ran.stdout.strip()
 
 
 LOADS = {"LLC", "F_LR", "F_LR_coulomb", "F_LR_no_setback", "alpha_left", "alpha_right"}
@@ -71,32 +87,31 @@ def parted(plan):
 def alone(tmp_path_factory):
     """The bytes of every wall as one thread plans it, with the kernels that are here."""
     folder = tmp_path_factory.mktemp("alone")
-    return {name: exact(name, folder / name) for name in WALLS}
+    return {name: planned(name, folder / name) for name in WALLS}
 
 
 @pytest.mark.parametrize("name", WALLS)
-def test_threads_do_not_shape_walls_of_outlines(name, alone, tmp_path):
-    assert exact(name, tmp_path / "3", n_jobs=3) == alone[name]
+def test_threads_and_processes_do_not_shape_walls(name, alone, tmp_path):
+    n_jobs = 2 if name in ("paper", "best") else 3
+    assert planned(name, tmp_path / "jobs", n_jobs=n_jobs) == alone[name]
+
+
+def test_the_order_of_sets_does_not_shape_the_plan(alone, tmp_path):
+    """Another process, with another seed of Python's hashes."""
+    elsewhere(tmp_path / "there", ["best"], {"PYTHONHASHSEED": "123"})
+    there = [(tmp_path / "there" / "best" / file).read_bytes() for file in (PLAN, IMAGE)]
+    assert there == [*alone["best"]]
 
 
 def test_kernels_do_not_shape_the_plan(alone, tmp_path):
     if describe() == "Python":
         pytest.skip("the kernels here run in Python already")
-    there = tmp_path / "there"
-    there.mkdir()
-    ran = subprocess.run(  # noqa: S603 - our own code
-        [sys.executable, "-c", SCRIPT, str(there), "paper", *WALLS],
-        check=True,
-        stdout=subprocess.PIPE,
-        text=True,
-        cwd=Path(__file__).parents[2],
-        env={**os.environ, VARIABLE: "python"},
-    )
-    assert ran.stdout.strip() == "Python"
-    for name, here in {"paper": planned("paper", tmp_path / "paper"), **alone}.items():
-        plan, image = ((there / name / file).read_bytes() for file in (PLAN, IMAGE))
-        assert here[1] == image
-        (poses, loads), (same, near) = (parted(json.loads(one)) for one in (here[0], plan))
+    names = [name for name in WALLS if name != "best"]
+    assert elsewhere(tmp_path / "there", names, {VARIABLE: "python"}) == "Python"
+    for name in names:
+        plan, image = ((tmp_path / "there" / name / file).read_bytes() for file in (PLAN, IMAGE))
+        assert alone[name][1] == image
+        (poses, loads), (same, near) = (parted(json.loads(one)) for one in (alone[name][0], plan))
         assert poses == same
         assert len(loads) >= 9
         assert loads == pytest.approx(near, abs=1e-12)

@@ -10,9 +10,12 @@ from drystone.planner.workshop import Workshop
 from tests.planner.scenes import blocks
 
 
+def workshop_of(sizes):
+    return Workshop.prepare(blocks(sizes), Site(40, 20), PlannerSettings())
+
+
 def test_stock():
-    stones = blocks({7: (20, 10), 300: (8, 4), 12: (12, 6)})
-    workshop = Workshop.prepare(stones, Site(40, 20), PlannerSettings())
+    workshop = workshop_of({7: (20, 10), 300: (8, 4), 12: (12, 6)})
     stock = workshop.stock
     assert (stock.narrowest_px, stock.largest_id) == (8.0, 300)
     assert stock.mean_height_px == pytest.approx(20 / 3)
@@ -22,35 +25,26 @@ def test_stock():
     assert Stock.of(map(workshop.initial, (7, 12, 300))) == stock
 
 
-def test_rest_lays_stones_flat_on_each_other_and_any_way_beside():
-    stones = blocks({1: (20, 10), 2: (8, 4)})
-    workshop = Workshop.prepare(stones, Site(40, 20), PlannerSettings())
+@pytest.mark.parametrize(
+    ("sizes", "heights", "widths"),
+    [
+        # Flat on each other; beside each other 4 or 8, 10 or 20, and sums of one of each.
+        ({1: (20, 10), 2: (8, 4)}, [0, 4, 10, 14], [0, 4, 8, 10, 14, 18, 20, 24, 28]),
+        # Also where they are of one height and of different widths.
+        ({1: (20, 6), 2: (14, 6)}, [0, 6, 12], [0, 6, 12, 14, 20, 26, 34]),
+    ],
+)
+def test_rest_lays_stones_flat_on_each_other_and_any_way_beside(sizes, heights, widths):
+    workshop = workshop_of(sizes)
     rest = Rest.of(workshop.sides, workshop.site)
-    # Flat: 4, 10, 14.  Beside each other: 4 or 8, 10 or 20, and sums of one of each.
-    heights, widths = {0, 4, 10, 14}, {0, 4, 8, 10, 20, 14, 18, 24, 28}
-    assert np.flatnonzero(rest.height_px == 0).tolist() == sorted(heights)
-    assert np.flatnonzero(rest.width_px == 0).tolist() == sorted(widths)
-    assert rest.height_px.shape == (21,)
-    assert rest.width_px.shape == (41,)
+    assert (rest.height_px.shape, rest.width_px.shape) == ((21,), (41,))
+    assert np.flatnonzero(rest.height_px == 0).tolist() == heights
+    assert np.flatnonzero(rest.width_px == 0).tolist() == widths
 
 
 def test_sides_that_are_left():
-    stones = blocks({1: (20, 10), 2: (8, 4), 3: (10, 20), 4: (8, 4)})
-    workshop = Workshop.prepare(stones, Site(40, 20), PlannerSettings())
-    poses = {i: workshop.initial(i) for i in (1, 2, 3, 4)}
-    sides = workshop.sides
-    assert sides == {(10, 20): 2, (4, 8): 2}
+    workshop = workshop_of({1: (20, 10), 2: (8, 4), 3: (10, 20), 4: (8, 4)})
+    poses, sides = {i: workshop.initial(i) for i in (1, 2, 3, 4)}, workshop.sides
     left = sides - sides_of([poses[1], poses[2]])
-    assert left == {(10, 20): 1, (4, 8): 1}
+    assert left == {(10, 20): 1, (4, 8): 1} == sides_of([poses[3], poses[4]])
     assert sides == {(10, 20): 2, (4, 8): 2}
-    assert left - sides_of([poses[4]]) == {(10, 20): 1}
-    rest = Rest.of(sides_of([poses[3], poses[4]]), workshop.site)
-    assert rest.width_px.tolist() == Rest.of(left, workshop.site).width_px.tolist()
-    assert rest.height_px.tolist() == Rest.of(left, workshop.site).height_px.tolist()
-
-
-def test_stones_of_one_height_and_different_widths_lie_on_each_other():
-    stones = blocks({1: (20, 6), 2: (14, 6), 3: (6, 9)})
-    workshop = Workshop.prepare(stones, Site(40, 20), PlannerSettings())
-    rest = Rest.of(workshop.sides, workshop.site)
-    assert np.flatnonzero(rest.height_px == 0).tolist() == [0, 6, 12, 18]

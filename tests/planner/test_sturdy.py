@@ -5,22 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from drystone.contacts.settled import PlacedPolygons, model_with_outlines
+from drystone.contacts.settled import model_with_outlines
 from drystone.model.outlines import Outlines
 from drystone.model.site import Site
 from drystone.model.wall import outlined
-from drystone.planner.attempt import Attempt
-from drystone.planner.planner import Planner
-from drystone.planner.solves import Solves
 from drystone.planner.sturdy import ROUNDS, falls_when_let_go, sturdy_model_with
 from drystone.settle.settings import SettleSettings
 from drystone.statics.flow.release import fall_of
-from drystone.statics.incremental import IncrementalAnalysis, IncrementalResult
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.lp.program import assemble
 from drystone.statics.model import Block, Interface, RigidBlockModel
-from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
-from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble
+from tests.planner.scenes import greedy, of_rubble
 from tests.polygons import box
 
 GRIPPED = 0.75 * 0.58
@@ -30,17 +25,21 @@ SITE = Site(100, 60)
 BOTH_RULES = pytest.mark.parametrize("rule", ["score", "algorithm2"])
 
 
-def models(*outlines, settings=None):
-    """The model of some stones with all contacts, and the sturdy one."""
+def grown(steps, settings=None):
+    """The model of some steps, each a stone with its wedges, with all contacts; the sturdy one."""
     settings = settings or SettleSettings()
     placed = Outlines.empty(SITE)
     full = sturdy = RigidBlockModel((), (), 0.58)
-    for number, corners in enumerate(outlines, 1):
-        new = [(number, corners)]
+    for new in steps:
         full = model_with_outlines(full, new, placed, settings.contact_px)
         sturdy = sturdy_model_with(sturdy, new, placed, settings)
         placed = placed.added(new, SITE.scale)
     return full, sturdy
+
+
+def models(*outlines, settings=None):
+    """The same of single stones."""
+    return grown([[one] for one in enumerate(outlines, 1)], settings)
 
 
 def stands(model):
@@ -103,17 +102,6 @@ def test_a_gap_beyond_half_the_tolerance_carries_nothing():
         assert stands(sturdy) == held
 
 
-def test_wedges_are_part_of_it():
-    placed = Outlines.empty(SITE)
-    empty = RigidBlockModel((), (), 0.58)
-    stone, wedge = box(10.0, 10.0, 40.0, 20.0), box(20.0, 0.01, 30.0, 9.99)
-    alone = sturdy_model_with(empty, [(1, stone)], placed, SettleSettings())
-    wedged = sturdy_model_with(empty, [(1, stone), (7, wedge)], placed, SettleSettings())
-    assert not stands(alone)
-    assert stands(wedged)
-    assert [block.id for block in wedged.blocks] == [1, 7]
-
-
 def seat(*points, centroid):
     """A stone that touches the one below at points x, y, with normals at so many degrees."""
     below = RigidBlockModel(
@@ -158,70 +146,25 @@ def test_what_falls_is_found_with_few_arrays_as_with_all_of_them():
 
 
 def test_a_stone_that_falls_when_it_is_let_go_is_not_sturdy(monkeypatch):
-    planner = Planner(rubble(), RUBBLE_SITE, settings=greedy({"vary": 0.0}))
-    first = next(iter(planner.steps())).action
-    asked = []
+    monkeypatch.setattr("drystone.planner.evaluate.falls_when_let_go", lambda _: True)
+    planner = of_rubble(greedy())
+    assert (planner.build.actions, planner.stopped.reason) == ((), "failures")
 
-    def falls(model):
-        asked.append(model)
-        return True
 
-    monkeypatch.setattr("drystone.planner.evaluate.falls_when_let_go", falls)
-    again = Attempt(planner.workshop, planner.settings, planner.build)
-    assert first.sturdy
-    assert again.choose(np.random.default_rng(0)) is None
-    assert asked
+def test_wedges_are_part_of_it():
+    stone, wedge = (1, box(10.0, 10.0, 40.0, 20.0)), (7, box(20.0, 0.01, 30.0, 9.99))
+    assert not stands(grown([[stone]])[1])
+    wedged = grown([[stone, wedge]])[1]
+    assert stands(wedged)
+    assert [block.id for block in wedged.blocks] == [1, 7]
 
 
 @BOTH_RULES
 def test_every_state_is_sturdy_and_known_as_the_wall_grows(rule):
-    planner = finish(
-        Planner(rubble(1), RUBBLE_SITE, seed=1, settings=greedy({"selection_rule": rule}))
-    )
-    placed = PlacedPolygons.of([])
-    sturdy = RigidBlockModel((), (), 0.58)
-    for action in planner.build.actions:
-        blocks = outlined(action.stabilised.placement, action.stabilised.wedges)
-        around = Outlines(placed.polygons, placed.ids, Outlines.empty(RUBBLE_SITE).shares)
-        sturdy = sturdy_model_with(sturdy, blocks, around, planner.settings.settle)
-        placed = PlacedPolygons(
-            (*placed.ids, *(i for i, _ in blocks)), placed.polygons.added(c for _, c in blocks)
-        )
-        assert action.sturdy
-        assert action.sturdy_model.blocks == sturdy.blocks
-        assert len(action.sturdy_model.interfaces) == len(sturdy.interfaces)
-        assert stands(sturdy)
-    assert len(planner.build.actions) > 4
-
-
-@pytest.mark.parametrize("which", ["full", "sturdy"])
-def test_failures_of_the_solver_are_counted_in_either_model(which, monkeypatch):
-    settings = greedy({"vary": 0.0})
-    planner = Planner(rubble(), RUBBLE_SITE, settings=settings)
-    next(step for step in planner.steps() if step.number == 2)
-    build = planner.build
-    one = build.analysis if which == "full" else build.sturdy_analysis
-    real = IncrementalAnalysis.resistance_with
-
-    def gives_up(analysis, model):
-        if analysis is not one:
-            return real(analysis, model)
-        failed = [LimitResult(LimitStatus.FAILED, side) for side in ("left", "right")]
-        return IncrementalResult(
-            LateralResistance(failed[0], failed[1], model.mu), solved_cold=True
-        )
-
-    monkeypatch.setattr(IncrementalAnalysis, "resistance_with", gives_up)
-    attempt = Attempt(planner.workshop, settings, build)
-    assert attempt.choose(np.random.default_rng(0)) is None
-    judged = list(attempt._judged.values())
-    assert judged
-    assert all(candidate.solves == Solves(1, 1) for candidate in judged)
-    assert attempt.solves == Solves(len(judged), len(judged))
-
-
-def test_walls_of_pixels_have_no_sturdy_model():
-    planner = finish(Planner(rubble(), RUBBLE_SITE, settings=greedy({"geometry": "raster"})))
-    assert planner.build.sturdy_model is None
-    assert planner.build.sturdy_analysis is None
-    assert all(a.sturdy and a.sturdy_model is None for a in planner.build.actions)
+    build = of_rubble(greedy({"selection_rule": rule}), seed=1).build
+    assert len(build.actions) > 4
+    assert all(action.sturdy for action in build.actions)
+    _, sturdy = grown([outlined(group.placement, group.wedges) for group in build.wall.groups])
+    assert build.sturdy_model.blocks == sturdy.blocks
+    assert len(build.sturdy_model.interfaces) == len(sturdy.interfaces)
+    assert stands(sturdy)

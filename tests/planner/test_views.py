@@ -59,10 +59,3 @@ def test_a_wall_that_differs_in_the_last_bit_of_a_corner_is_another_one():
     assert bits(found.of(built, "left", 0.58)) == bits(at_once(built, "left"))
     split = Polygons(built.corners, np.array([0, 4, 14], np.int32), built.boxes, built.edges)
     assert found.of(split, "left", 0.58).scene.polygons.first.tolist() == [0, 4, 14]
-
-
-def test_the_view_of_the_same_wall_is_the_same_one_and_the_last_piece_has_a_column():
-    built = no_polygons().added(heap(5, 3))
-    view = SideView.bare(100.0, "right", 0.58, 1.3).grown(built)
-    assert view.grown(built) is view
-    assert len(view.profile.tops) == 77

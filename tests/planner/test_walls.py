@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from drystone.generate import RubbleSettings, rubble_stones
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Placement
 from drystone.model.site import Site
@@ -15,7 +14,7 @@ from drystone.planner.settings import PlannerSettings
 from drystone.search.plan_result import mean_top
 from drystone.search.plan_wall import plan_wall, working_scale
 from drystone.verify import check_plan
-from tests.planner.scenes import blocks, bricks, greedy, rubble
+from tests.planner.scenes import RUBBLE_SITE, blocks, bricks, greedy, rubble
 
 
 def _longest_run(free):
@@ -26,16 +25,11 @@ def _longest_run(free):
     return longest
 
 
-def _small_rubble(seed):
-    settings = RubbleSettings(count=12, width_px=120, height_px=50, courses=2)
-    return rubble_stones(settings, np.random.default_rng(seed))
-
-
 @pytest.mark.parametrize(
     ("stones", "site"),
     [
-        (_small_rubble(0), Site(120, 50)),
-        (_small_rubble(1), Site(120, 50)),
+        (rubble(0, 10), RUBBLE_SITE),
+        (rubble(1, 10), RUBBLE_SITE),
         (bricks(9, halves=2), Site(60, 40)),
     ],
     ids=["rubble 0", "rubble 1", "bricks"],
@@ -67,21 +61,15 @@ def _scene(sizes, places, settings):
         posed = workshop.initial(stone_id)
         wall = wall.add(Placement(posed, 40 - bottom - posed.height_px, left))
     planner.restore(wall, {})
-    return planner, Evaluator(settings, workshop.stock)
+    return planner
 
 
-def _proposed(planner, build, stone_id):
-    proposer = RasterProposer(planner.workshop, planner.settings, build, Profile())
-    return proposer.stabilised(proposer.spotted(_trial(planner, stone_id)))
-
-
-def _judged(evaluator, build, proposal):
-    return evaluator.judge(build, Landscape.of(build.wall, proposal.side), proposal)
-
-
-def _trial(planner, stone_id):
-    workshop, build = planner.workshop, planner.build
-    return StoneTrial(workshop.poses(stone_id), Landscape.of(build.wall))
+def _candidate(planner, stone_id):
+    workshop, settings, build = planner.workshop, planner.settings, planner.build
+    proposer = RasterProposer(workshop, settings, build, Profile())
+    view = Landscape.of(build.wall)
+    proposal = proposer.stabilised(proposer.spotted(StoneTrial(workshop.poses(stone_id), view)))
+    return Evaluator(settings, workshop.stock).judge(build, view, proposal)
 
 
 @pytest.mark.parametrize(
@@ -89,29 +77,22 @@ def _trial(planner, stone_id):
 )
 def test_a_stone_bridges_two_pillars_without_a_wedge(settings):
     sizes = {1: (20, 20), 2: (20, 20), 3: (60, 8)}
-    planner, evaluator = _scene(sizes, {1: (0, 0), 2: (40, 0)}, settings)
-    proposal = _proposed(planner, planner.build, 3)
-    placement = proposal.stabilised.placement
+    candidate = _candidate(_scene(sizes, {1: (0, 0), 2: (40, 0)}, settings), 3)
+    placement = candidate.stabilised.placement
     assert (placement.row, placement.col, placement.rotation_moves) == (12, 0, 0)
-    assert proposal.stabilised.wedges == ()
-    candidate = _judged(evaluator, planner.build, proposal)
+    assert candidate.stabilised.wedges == ()
     assert candidate.resistance.stable
     assert candidate.resistance.value > 0.3
 
 
-def _half_supported(ids):
+@pytest.mark.parametrize("ids", [(3, 5, 7), (70_000, 300, 5), (300, 1, 70_000)])
+def test_wedges_are_numbered_after_the_largest_id(ids):
     """A slab that one pillar carries at its end, and a lower pillar does not reach."""
     high, low, slab = ids
     settings = PlannerSettings().updated({"stabilise": {"method": "wedge"}})
     sizes = {high: (20, 20), low: (20, 16), slab: (60, 8)}
-    planner, evaluator = _scene(sizes, {high: (0, 0), low: (40, 0)}, settings)
-    proposal = _proposed(planner, planner.build, slab)
-    return planner.build.add(_judged(evaluator, planner.build, proposal))
-
-
-@pytest.mark.parametrize("ids", [(3, 5, 7), (7, 300, 5), (70_000, 300, 5), (300, 1, 70_000)])
-def test_wedges_are_numbered_after_the_largest_id(ids):
-    build = _half_supported(ids)
+    planner = _scene(sizes, {high: (0, 0), low: (40, 0)}, settings)
+    build = planner.build.add(_candidate(planner, slab))
     wedges = build.wall.wedges
     assert [wedge.id for wedge in wedges] == [max(ids) + 1]
     assert wedges[0].under == ids[2]
@@ -132,13 +113,7 @@ def test_the_result_in_one_call():
     assert check_plan(result.plan, stones, wall_labels=result.wall.labels).ok
 
 
-def test_what_is_just_too_low_does_not_read_as_high_enough(monkeypatch):
-    monkeypatch.setattr("drystone.search.plan_result.mean_top", lambda _: 0.8999)
-    result = plan_wall(bricks(3), 60, 20, scale=1.0, method="paper")
-    assert "at 0.899 of the wall's height on average, less than 0.9" in result.shortfall
-
-
-def test_what_is_incomplete():
+def test_what_is_incomplete(monkeypatch):
     # Half of the wall's height with all stones: not filled, and its top is too low.
     result = plan_wall(bricks(3), 60, 20, scale=1.0, method="paper")
     assert (result.status, result.message) == ("incomplete", "all stones placed")
@@ -150,6 +125,10 @@ def test_what_is_incomplete():
     tall = plan_wall(blocks({1: (58, 20)}), 60, 20, scale=1.0, method="paper")
     assert tall.metrics.F_SF < 0.99
     assert (tall.status, tall.success, tall.shortfall) == ("complete", True, "")
+    # What is just too low does not read as high enough.
+    monkeypatch.setattr("drystone.search.plan_result.mean_top", lambda _: 0.8999)
+    result = plan_wall(bricks(3), 60, 20, scale=1.0, method="paper")
+    assert "at 0.899 of the wall's height on average, less than 0.9" in result.shortfall
 
 
 def test_the_working_resolution():

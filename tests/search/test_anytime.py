@@ -25,8 +25,17 @@ from drystone.search.plan_wall import plan_wall
 from drystone.search.processes import processes
 from drystone.search.whole_search import run_to_end
 from drystone.search.yard import Yard
-from drystone.verify.check import check_plan
-from tests.planner.scenes import RUBBLE_SITE, after_looks, blocks, finish, greedy, rubble
+from tests.planner.scenes import (
+    RUBBLE_SITE,
+    after_looks,
+    blocks,
+    finish,
+    greedy,
+    ids,
+    of_rubble,
+    proven,
+    rubble,
+)
 
 SMALL = {"passes": 3, "chains": 2, "share_every": 2, "cycle": 3}
 """A search that does everything within ten walls."""
@@ -53,6 +62,10 @@ def planner_of(budget, seed=1, patience=12):
     search = {"budget": budget, "patience": patience, **SMALL}
     settings = greedy({"search": search})
     return Planner(rubble(), RUBBLE_SITE, seed=seed, settings=settings, workshop=WORKSHOP)
+
+
+def planned_wall(settings, **options):
+    return plan_wall(rubble(), 100, 36, scale=1.0, settings=settings, **options)
 
 
 def first(*asked, **more):
@@ -111,11 +124,9 @@ def test_chains_go_on_from_planned_walls_that_promise_more_until_they_are_long()
     assert anytime._shared(long)[0].now is alone
     # Half of the promise is as much as they are apart, and a little more.
     nearly = packed(1.0 - 0.4 * anytime.PROMISE, planned=True)
-    half = [
-        replace(link, done=anytime.PROMISING // 2) for link in anytime._links([alone, nearly], 0, 2)
-    ]
+    links = anytime._links([alone, nearly], 0, 2)
+    half = [replace(link, done=anytime.PROMISING // 2) for link in links]
     assert anytime._shared(half)[1].best is nearly
-    assert anytime._shared(half[:1] * 2) == half[:1] * 2
 
 
 def test_the_first_wall_is_wedged_as_the_others_are():
@@ -206,19 +217,15 @@ def test_the_clock_ends_a_search_and_the_plan_says_after_how_many_walls(monkeypa
     monkeypatch.setattr("drystone.search.plan_wall.GRACE", 1e6)
     settings = greedy({"search": {"budget": 1, **SMALL}})
     # On a busy machine that may be the first wall alone.
-    timed = plan_wall(
-        rubble(), 100, 36, scale=1.0, seed=2, settings=settings, seconds=1.0, first_whole=True
-    )
+    timed = planned_wall(settings, seed=2, seconds=1.0, first_whole=True)
     used = timed.plan.settings["search"]["budget"]
     assert 1 <= used < UNLIMITED
     # A budget ends a search that has more time.
-    again = plan_wall(
-        rubble(), 100, 36, scale=1.0, seed=2, settings=settings, budget=used, seconds=1e6
-    )
+    again = planned_wall(settings, seed=2, budget=used, seconds=1e6)
     assert again.plan == timed.plan
     assert again.choice == ()
     policy = greedy({"selection_rule": "lowest", "search": {"budget": 1}})
-    result = plan_wall(rubble(), 100, 36, scale=1.0, settings=policy, seconds=100.0)
+    result = planned_wall(policy, seconds=100.0)
     assert result.plan.settings["search"]["budget"] == 1
 
 
@@ -233,11 +240,10 @@ def test_an_interrupt_and_a_process_that_dies_keep_the_best_wall_so_far(error, m
                 raise error
 
     settings = greedy({"search": {"budget": 50, **SMALL}})
-    stones = rubble()
-    result = plan_wall(stones, 100, 36, scale=1.0, seed=1, settings=settings, callbacks=Impatient())
+    result = planned_wall(settings, seed=1, callbacks=Impatient())
     assert [one.walls for one in told] == [walls for walls in (1, 2, 3, 5) if walls <= most]
     assert result.plan.settings["search"]["budget"] == most
-    assert check_plan(result.plan, stones, wall_labels=result.wall.labels).problems == ()
+    proven(result, rubble())
     if error is BrokenProcessPool:
         assert [notice.code for notice in result.notices] == ["W122"]
         return
@@ -273,22 +279,19 @@ def test_a_search_goes_on_from_where_it_stood_to_the_walls_that_it_would_have_fo
 def test_a_plan_that_is_kept_is_that_of_an_interrupt_and_leads_to_the_whole_one():
     settings = greedy({"search": {"budget": 9, **SMALL}})
     told = []
-    stones = rubble()
-    whole = plan_wall(stones, 100, 36, scale=1.0, seed=1, settings=settings, keep=told.append)
+    whole = planned_wall(settings, seed=1, keep=told.append)
     placed = [one for one in told if one.progress is None]
     assert len(placed) > 3
     assert [one.progress.walls for one in told if one.progress] == [1, 2, 3, 5, 7, 9]
     for one in (told[len(placed) + 1], told[-1]):
         partial = one.plan()
         assert partial.status == "interrupted"
-        assert check_plan(partial.plan, stones, wall_labels=partial.wall.labels).problems == ()
+        proven(partial, rubble())
     assert [step.stone for step in partial.plan.stone_steps] == [
         group.stone_id for group in one.progress.best.groups
     ]
     for one in told[len(placed) + 1 :: 3]:
-        again = plan_wall(
-            stones, 100, 36, scale=1.0, seed=1, settings=settings, state=one.progress.state
-        )
+        again = planned_wall(settings, seed=1, state=one.progress.state)
         assert again.plan == whole.plan
 
 
@@ -338,16 +341,6 @@ def test_batches_number_every_wall_but_the_very_first(count):
     assert numbers(SearchSettings(budget=60, passes=count)) == listed
 
 
-def test_a_batch_goes_on_as_it_began():
-    found = [packed(float(k % 3), planned=k % 2 > 0) for k in range(3 * anytime.BATCH)]
-    search = SearchSettings(budget=60)
-    for begun in range(0, len(found), anytime.BATCH):
-        numbers, share = anytime.next_batch(found[:begun], search) or (range(0), 0.0)
-        for done in range(begun + 1, begun + anytime.BATCH):
-            rest = range(done, numbers.stop)
-            assert anytime.next_batch(found[:done], search) == (rest, share)
-
-
 def test_the_share_follows_the_better_half():
     planned_win = [packed(k, planned=k >= 4) for k in range(8)]
     greedy_win = [packed(k, planned=k < 4) for k in range(8)]
@@ -356,14 +349,6 @@ def test_the_share_follows_the_better_half():
     assert anytime.planned_share(planned_win) == (4 + usual) / (4 + anytime.WEIGHT)
     assert anytime.planned_share(greedy_win) == usual / (4 + anytime.WEIGHT)
     assert anytime.planned_share(planned_win[::-1]) == anytime.planned_share(planned_win)
-
-
-def test_planned_walls_are_worth_more_than_they_are_yet():
-    one, other = packed(1.0, planned=True), packed(1.0, planned=False)
-    assert [anytime.promised(one), anytime.promised(one, 0.5), anytime.promised(one, 0.0)] == [
-        1 + anytime.PROMISE, 1 + 0.5 * anytime.PROMISE, 1.0,
-    ]  # fmt: skip
-    assert anytime.promised(other) == anytime.promised(other, 0.5) == 1.0
     # In the better half by their promise alone.
     behind = [packed(1.0, planned=False), packed(1.1 - anytime.PROMISE, planned=True)] * 4
     assert anytime.planned_share(behind) > anytime.SHARE
@@ -377,22 +362,20 @@ def test_first_walls_end_when_they_beat_none_that_was_not_planned():
         *(packed(0.3, planned=k % 2 > 0) for k in range(anytime.STALE)),
     ]
     assert anytime.stale(level)
-    assert not anytime.stale(level[:-1])
     # It is looked at when a batch begins; one that is begun is built to its end.
     more = [packed(0.3, planned=False)] * (anytime.BATCH - len(level) % anytime.BATCH)
     assert anytime.next_batch(level, SearchSettings(budget=60)) is not None
     assert anytime.next_batch([*level, *more], SearchSettings(budget=60)) is None
-    assert not anytime.stale([*level, packed(2.0, planned=False)])
-    assert not anytime.stale([*level, packed(2.0, planned=True), *level[1:]])
     # A planned wall that is a little behind promises more.
-    assert not anytime.stale([packed(1.0 - anytime.PROMISE / 2, planned=True), *level])
+    best, behind = packed(2.0, planned=True), packed(1.0 - anytime.PROMISE / 2, planned=True)
+    for walls in (level[:-1], [*level, packed(2.0, planned=False)], [*level, best, *level[1:]]):
+        assert not anytime.stale(walls)
+    assert not anytime.stale([behind, *level])
 
 
 def test_what_none_beats_is_kept_and_becomes_plans_that_hold():
     settings, told = greedy({"search": {"budget": 12, **SMALL}}), []
-    result = plan_wall(
-        rubble(), 100, 36, scale=1.0, seed=4, settings=settings, choice=True, keep=told.append
-    )
+    result = planned_wall(settings, seed=4, choice=True, keep=told.append)
     found = [one.progress for one in told if one.progress]
     assert max(len(progress.kept) for progress in found) > 1
     for progress in found:
@@ -401,22 +384,18 @@ def test_what_none_beats_is_kept_and_becomes_plans_that_hold():
     assert len(result.choice) > 1
     assert result.choice[0].plan == result.plan
     for one in result.choice:
-        report = check_plan(one.plan, rubble(), wall_labels=one.wall.labels)
-        assert report.problems == ()
-
-
-def ids(wall):
-    return [placement.stone_id for placement in wall.placements]
+        proven(one, rubble())
 
 
 def test_a_search_finds_a_wall_with_what_is_pinned():
-    free = plan_wall(rubble(), 60, 36, scale=1.0, seed=1, settings=greedy())
-    pin = [stone.id for stone in rubble() if stone.id not in ids(free.wall)][:2]
+    def planned(changes):
+        result = plan_wall(rubble(), 60, 36, scale=1.0, seed=1, settings=greedy(changes))
+        assert result.notices == ()
+        return {placement.stone_id for placement in result.wall.placements}
+
+    pin = sorted({stone.id for stone in rubble()} - planned({}))[:2]
     assert len(pin) == 2
-    settings = greedy({"pin": pin, "search": {"budget": 6, **SMALL}})
-    result = plan_wall(rubble(), 60, 36, scale=1.0, seed=1, settings=settings)
-    assert set(pin) <= set(ids(result.wall))
-    assert result.notices == ()
+    assert set(pin) <= planned({"pin": pin, "search": {"budget": 6, **SMALL}})
 
 
 def test_a_full_wall_is_incomplete_without_a_pinned_stone():
@@ -430,30 +409,25 @@ def test_a_full_wall_is_incomplete_without_a_pinned_stone():
     assert result.shortfall == "stones that are pinned are missing"
     assert [notice.code for notice in result.notices] == ["W120"]
     planner = finish(Planner(large, Site(60, 20), settings=pinned))
-    found = FoundWall.of(planner)
-    assert found.figures.missing == 1
+    assert FoundWall.of(planner).figures.missing == 1
 
 
 def test_in_a_given_order_the_last_stones_are_built_again():
-    settings = greedy({"order": "given", "search": {"budget": 2}})
-    planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
+    planner = of_rubble(greedy({"order": "given", "search": {"budget": 2}}), seed=1)
     found, rng = FoundWall.of(planner), np.random.default_rng(0)
-    count = len(planner.build.actions)
-    most = round(settings.search.largest * count)
-    before = [action.stone_id for action in planner.build.actions]
+    before = ids(planner)
+    stay = len(before) - round(planner.settings.search.largest * len(before))
     walls = set()
     for _ in range(8):
         again = recreated(found, Yard.of(planner), rng)
-        after = [action.stone_id for action in again.build.actions]
-        assert after[: count - most] == before[: count - most]
+        assert [action.stone_id for action in again.build.actions][:stay] == before[:stay]
         walls.add(again.build.wall.labels.tobytes())
     assert walls - {planner.build.wall.labels.tobytes()}
 
 
 def test_a_search_keeps_a_given_order():
     settings = greedy({"order": "given", "search": {"budget": 12, **SMALL}})
-    planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
-    found = searched(planner)
+    found = searched(of_rubble(settings, seed=1))
     assert found[-1].best.merit > found[0].best.merit
     for wall in (wall for progress in found for wall in (progress.best, *progress.kept)):
         order = [group.stone_id for group in wall.groups]

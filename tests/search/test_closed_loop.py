@@ -4,17 +4,12 @@ import numpy as np
 import pytest
 import shapely
 
-from drystone.model.builder import HAND, BuilderErrors
+from drystone.model.builder import HAND
 from drystone.search.closed_loop import rehearse_closed, tilt_as_built
-from drystone.search.rehearsal import mean_size, rehearse
+from drystone.search.rehearsal import rehearse
 from tests.polygons import box_of as box
-from tests.search.test_rehearsal import BOND, NONE, TOWER
+from tests.search.test_rehearsal import BOND, NONE, TOWER, runs
 from tests.settle.test_as_built import PLANK, POST
-
-
-def runs(groups, once, precision=HAND, count=8):
-    errors = BuilderErrors.of_precision(precision, mean_size(groups))
-    return [once(groups, errors, np.random.default_rng(seed)) for seed in range(count)]
 
 
 def fallen(run):
@@ -33,7 +28,7 @@ def test_without_errors_it_is_the_wall_of_open_loop(groups):
 
 
 def test_fewer_walls_lose_a_stone_than_in_open_loop():
-    closed, plain = (runs(TOWER, once, count=16) for once in (rehearse_closed, rehearse))
+    closed, plain = (runs(TOWER, HAND, 16, once) for once in (rehearse_closed, rehearse))
     assert sum(map(bool, map(fallen, plain))) >= 3
     assert sum(map(bool, map(fallen, closed))) == 0
     assert any(run.again for run in closed)
@@ -82,7 +77,7 @@ def test_a_stone_without_any_place_is_not_in_the_wall():
 def test_a_wall_as_it_was_built_is_tilted():
     pytest.importorskip("pymunk")
     low = [[(k + 1, box(41.0 * k, 0.0))] for k in range(2)]
-    (run,) = runs(low, rehearse_closed, count=1)
+    (run,) = runs(low, HAND, 1, rehearse_closed)
     assert tilt_as_built(run) == pytest.approx(1.0, abs=0.1)  # it slides
     # A column that is thrice as high as wide topples at a third; one on an edge falls at once.
     high = rehearse([[(1, box(0.0, 0.0, 20.0, 60.0))]], NONE, np.random.default_rng(0))

@@ -81,12 +81,6 @@ def test_the_engine_judges_the_same_errors():
     assert tower.first_fall not in {i for i, _ in tower.blocks}
 
 
-def test_the_same_random_numbers_give_the_same_wall():
-    first, again = runs(BOND, HAND, 1)[0], runs(BOND, HAND, 1)[0]
-    assert first.stones == again.stones
-    assert all((a == b).all() for (_, a), (_, b) in zip(first.blocks, again.blocks, strict=True))
-
-
 def test_wedges_come_before_their_stone():
     """A brick that only a wedge keeps level."""
     leaning = [(2, box(4.0, 25.0)), (3, box(30.0, 20.0, 10.0, 5.0))]

@@ -10,14 +10,11 @@ from drystone.model.site import Site
 from drystone.model.wall import Group
 from drystone.model.wedge_shape import WedgeShape
 from drystone.planner.planner import Planner
-from drystone.planner.replay import Replayed
-from drystone.planner.solves import Solves
 from drystone.search.goal import FoundWall
 from drystone.search.packed import PackedWall, found_again
 from drystone.search.plan_wall import plan_wall
 from drystone.search.warm_start import begin_with
 from drystone.search.yard import Yard
-from drystone.verify.check import check_plan
 from tests.planner.scenes import (
     RUBBLE_SITE,
     WITH_WEDGES,
@@ -25,29 +22,31 @@ from tests.planner.scenes import (
     few_stones,
     finish,
     greedy,
+    ids,
+    of_rubble,
     outlines,
+    proven,
     rubble,
 )
 from tests.search.test_anytime import SMALL
 
 
 def built(seed=3):
-    settings = greedy()
-    return finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=settings))
+    return of_rubble(greedy(), seed=seed)
 
 
 def new(settings):
-    return Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
+    return of_rubble(settings, 0, seed=1)
 
 
 def test_banned_stones_are_taken_out_with_what_falls_then():
     old = built(seed=2)
-    before = [action.stone_id for action in old.build.actions]
+    before = ids(old)
     fell, stayed = set(), set()
     for banned in before[::2]:
         planner = new(greedy({"ban": [banned]}))
         gone = begin_with(planner, old.build.wall, {})
-        used = [action.stone_id for action in planner.build.actions]
+        used = ids(planner)
         assert gone[0] == banned
         assert [stone_id for stone_id in before if stone_id not in gone] == used
         assert all(a.sturdy and a.resistance.stable for a in planner.build.actions)
@@ -90,30 +89,17 @@ def test_a_stone_stays_without_a_wedge_that_nothing_is_beside():
         assert len(planner.build.wall.wedges) == wedges
 
 
-def test_steps_that_the_solver_gave_up_on_are_counted(monkeypatch):
-    old = built()
-
-    def trouble(start, *_args, **_options):
-        return Replayed(start, (), Solves(failed=2, cold=3))
-
-    monkeypatch.setattr("drystone.search.yard.replayed", trouble)
-    planner = new(old.settings)
-    begin_with(planner, old.build.wall, {})
-    assert planner.solves == Solves(2, 3)
-
-
 def test_what_stands_out_further_than_now_allowed_is_taken_out():
     # A course may use all of 1 px; begun again with a smaller allowance, check would refuse it.
     old = built()
     corners = [action.stabilised.placement.settled.corners for action in old.build.actions]
     width, height = RUBBLE_SITE.extent_px
     out = [max(-c[:, 0].min(), c[:, 0].max() - width, c[:, 1].max() - height) for c in corners]
-    before = [action.stone_id for action in old.build.actions]
     furthest = max(out)
     assert furthest > 0.0
     planner = new(old.settings.updated({"settle": {"beyond_px": furthest - 1e-3}}))
     gone = begin_with(planner, old.build.wall, {})
-    assert before[out.index(furthest)] in gone
+    assert ids(old)[out.index(furthest)] in gone
     planner = new(old.settings.updated({"settle": {"beyond_px": furthest}}))
     assert begin_with(planner, old.build.wall, {}) == ()
 
@@ -133,15 +119,15 @@ def test_outlines_are_those_of_this_search_whatever_those_of_the_plan_were():
 
 def test_in_a_given_order_only_what_ascends_is_used():
     old = built()
-    ids = [action.stone_id for action in old.build.actions]
-    assert ids != sorted(ids)
+    before = ids(old)
+    assert before != sorted(before)
     planner = new(greedy({"order": "given"}))
     gone = begin_with(planner, old.build.wall, {})
-    used = [action.stone_id for action in planner.build.actions]
+    used = ids(planner)
     assert used == sorted(used)
-    assert used[0] == ids[0]
-    assert set(gone) == set(ids) - set(used)
-    done = [action.stone_id for action in finish(planner).build.actions]
+    assert used[0] == before[0]
+    assert set(gone) == set(before) - set(used)
+    done = ids(finish(planner))
     assert done == sorted(done)
     assert done[: len(used)] == used
 
@@ -150,15 +136,13 @@ def test_a_plan_that_begins_with_a_wall_is_no_worse():
     # What a fall is worth could outweigh a stone.
     settings = greedy({"search": {"budget": 8, **SMALL}, "goal": {"fallen": 0.0}})
     before = plan_wall(rubble(), 100, 36, scale=1.0, seed=1, settings=settings)
-    heights = {step.stone: step.course_height for step in before.plan.stone_steps}
     for budget in (1, 6):
         again = plan_wall(
             rubble(), 100, 36, scale=1.0, seed=9, settings=settings, budget=budget,
             begin=before.wall,
-            course_heights_px={stone: px for stone, px in heights.items() if px is not None},
+            course_heights_px=before.plan.course_heights_px,
         )  # fmt: skip
-        report = check_plan(again.plan, rubble(), wall_labels=again.wall.labels)
-        assert report.problems == ()
+        proven(again, rubble())
         now, then = ((len(one.plan.stone_steps), one.metrics.F_SF) for one in (again, before))
         assert now >= then
         if budget == 1:

@@ -18,10 +18,8 @@ from drystone.kernels.polygons import (
 from drystone.settle.wedge import (
     CreviceSlabs,
     WedgeLimits,
-    _holds,
     _near,
     falling_side,
-    in_order,
     met_below,
     parts,
     squeezed_out,
@@ -89,12 +87,6 @@ def test_bends_do_not_end_a_wedge_but_steps_do():
     assert wedge[:, 0].max() == pytest.approx(16.99)
 
 
-def test_too_low_or_too_high_a_gap_takes_no_wedge():
-    for smallest, largest, found in ((0.5, 1.98, False), (2.0, 6.0, False), (1.98, 2.0, True)):
-        limits = WedgeLimits(least_thickness=smallest, greatest_height=largest)
-        assert (wedge_for(PLANK, SCENE, limits) is not None) == found
-
-
 def test_where_the_gap_is_too_narrow_there_is_no_wedge():
     """From the centre of mass to the end of the stone, and as far as the next wall inwards."""
     stone = box(10.0, 2.01, 15.2, 4.0)
@@ -125,25 +117,12 @@ def test_no_face_is_steeper_than_friction_holds(above):
     assert wedge_for(stone, scene, slippery) is None
 
 
-def test_no_wedge_stands_upright_in_a_narrow_place():
-    """Right of the post a slot narrower than high, then a ledge, then more room."""
-    limits = WedgeLimits(least_thickness=0.3, greatest_height=6.0, margin=0.03)
-    scene = SCENE.added([box(15.5, 0.01, 16.5, 1.9)])
-    wedge = wedge_for(PLANK, scene, limits)
-    assert wedge[:, 0].min() == pytest.approx(16.51)
-    assert wedge_for(PLANK, scene.added([box(17.5, 0.01, 20, 1.9)]), limits) is None
-
-
-@pytest.mark.parametrize("mirrored", [False, True])
-def test_a_wedge_at_the_end_of_the_wall_has_something_beside_it(mirrored):
+def test_a_wedge_at_the_end_of_the_wall_has_something_beside_it():
     """Or there is room for a stone between the one on it and the end of the wall."""
 
     def found(right, *beside):
-        shift = right - 20.0
-        stone, *others = (moved(one, shift) for one in (PLANK, POST, *beside))
+        stone, *others = (moved(one, right - 20.0) for one in (PLANK, POST, *beside))
         around = no_polygons().added(others)
-        if mirrored:
-            stone, around = mirrored_polygon(stone, WIDTH), around.mirrored(WIDTH)
         return wedge_for(stone, around, replace(LIMITS, room_px=8.0)) is not None
 
     assert found(WIDTH - 8.0)
@@ -163,11 +142,13 @@ def test_what_is_under_the_stone_itself_covers_its_wedge():
     assert not squeezed_out(wedge, hook, beside, WIDTH, limits)
 
 
-def test_a_stone_that_rests_or_touches_nothing_needs_no_wedge():
-    assert falling_side(box(10.0, 2.01, 17.0, 4.0), 13.5, SCENE, LIMITS) == 0
+def test_a_stone_that_rests_or_touches_nothing_has_no_wedge():
     assert wedge_for(box(10.0, 2.01, 17.0, 4.0), SCENE) is None
-    assert falling_side(moved(PLANK, 0.0, 0.2), 15.0, SCENE, LIMITS) == 0
     assert wedge_for(moved(PLANK, 0.0, 0.2), SCENE) is None
+    # A gap that is too low or too high takes none.
+    for smallest, largest, found in ((0.5, 1.98, False), (2.0, 6.0, False), (1.98, 2.0, True)):
+        limits = WedgeLimits(least_thickness=smallest, greatest_height=largest)
+        assert (wedge_for(PLANK, SCENE, limits) is not None) == found
 
 
 def test_to_which_side_a_stone_falls():
@@ -183,24 +164,13 @@ def test_to_which_side_a_stone_falls():
     assert falling_side(moved(leaning, 0.0, 0.02), 11.9, roof, LIMITS) == 0
 
 
-def test_a_wedge_must_rest_and_hold_the_stone():
-    stone = PLANK, centroid(PLANK)
-    good, near_post = box(16, 0.01, 18, 2), box(14.02, 0.01, 14.5, 2)
-    assert _holds(good, stone, SCENE, WIDTH, LIMITS)
-    assert not _holds(near_post, stone, SCENE, WIDTH, LIMITS)
-    # It hangs in the air; it stands on one corner.
-    assert not _holds(box(16, 1, 18, 2), stone, SCENE, WIDTH, LIMITS)
-    tipping = np.array([[16.0, 0.01], [18.0, 2.0], [15.9, 2.0]])
-    assert not _holds(tipping, stone, SCENE, WIDTH, LIMITS)
-
-
 def test_the_margin_that_the_stone_keeps_is_asked_for():
     """The plank lifts off when gravity leans to the left by more than (15 - 11) / 1."""
     assert wedge_for(PLANK, SCENE, replace(LIMITS, rest=0.99)) is not None
     assert wedge_for(PLANK, SCENE, replace(LIMITS, rest=1.01)) is None
 
 
-@repeatable(250)
+@repeatable(120)
 @given(piles(), st.sampled_from([0.0, 0.1]))
 def test_wedges_touch_hold_and_overlap_nothing(pile, margin):
     stone, around = pile
@@ -238,12 +208,12 @@ def stays_in(wedge, stone, others, room):
     )
 
 
-@repeatable(150)
-@given(piles())
-def test_a_mirrored_scene_gives_the_mirrored_wedge(pile):
+@repeatable(80)
+@given(piles(), st.sampled_from([LIMITS, STRICT]))
+def test_a_mirrored_scene_gives_the_mirrored_wedge(pile, limits):
     stone, around = pile
-    one = wedge_for(stone, around)
-    other = wedge_for(mirrored_polygon(stone, WIDTH), around.mirrored(WIDTH))
+    one = wedge_for(stone, around, limits)
+    other = wedge_for(mirrored_polygon(stone, WIDTH), around.mirrored(WIDTH), limits)
     assert (one is None) == (other is None)
     if one is not None and other is not None:
         assert mirrored_polygon(other, WIDTH) == pytest.approx(one, abs=1e-9)
@@ -267,52 +237,26 @@ def test_parts_are_where_upright_lines_are_as_long_as_a_wedge(pile, shares):
 def test_limits_are_checked():
     good = {"least_thickness": 1.0, "greatest_height": 2.0}
     WedgeLimits(**good)
-    bad = [
+    for change in (
         {"least_thickness": 0.0}, {"greatest_height": 0.9}, {"margin": -0.1}, {"margin": 0.5},
         {"mu": 0.0}, {"clearance_px": 0.0}, {"clearance_px": 0.06},
-    ]  # fmt: skip
-    for change in bad:
+    ):  # fmt: skip
         with pytest.raises(ValueError, match="must"):
             WedgeLimits(**{**good, **change})
-
-
-@repeatable()
-@given(piles(), st.data())
-def test_polygons_in_order_are_those_added_in_order(pile, data):
-    stone, around = pile
-    wall = around.added([stone])
-    chosen = data.draw(st.lists(st.sampled_from(range(len(wall))), unique=True))
-    found = in_order(wall, chosen)
-    expected = no_polygons().added([wall.polygon(i) for i in chosen])
-    for one, other in zip(
-        (found.corners, found.first, found.boxes, found.edges),
-        (expected.corners, expected.first, expected.boxes, expected.edges),
-        strict=True,
-    ):
-        assert one.dtype == other.dtype
-        assert one.tolist() == other.tolist()
-        assert one.flags.c_contiguous
 
 
 def test_a_stone_meets_what_is_beside_it_and_so_far_below_as_a_wedge_is_high():
     stone = box(10.0, 20.0, 20.0, 24.0)
     reach = LIMITS.contact_px + 4.0 * LIMITS.clearance_px
     deep = 20.0 - reach - LIMITS.greatest_height
-    around = [
-        stone,
-        box(10.0, deep - 2.0, 20.0, deep + 0.01),
-        box(10.0, deep - 2.0, 20.0, deep - 0.01),
-        box(20.01 - reach, 20.0, 20.0, 24.0),
-        box(5.0, 20.0, 10.01 - reach, 24.0),
-        box(5.0, 20.0, 9.99 - reach, 24.0),
-        box(19.99 + reach, 20.0, 25.0, 24.0),
-        box(20.01 + reach, 20.0, 25.0, 24.0),
-        box(10.0, 23.99 + reach, 20.0, 30.0),
-        box(10.0, 24.01 + reach, 20.0, 30.0),
-    ]
+    around = [stone]
+    for more in (0.01, -0.01):  # that they reach into what is met
+        around.append(box(10.0, deep - 2.0, 20.0, deep + more))
+        around.append(box(5.0, 20.0, 10.0 - reach + more, 24.0))
+        around.append(box(20.0 + reach - more, 20.0, 25.0, 24.0))
+        around.append(box(10.0, 24.0 + reach - more, 20.0, 30.0))
     wall = no_polygons().added(around)
     met = met_below(stone, wall.boxes, LIMITS)
-    assert np.flatnonzero(met).tolist() == [0, 1, 3, 4, 6, 8]
-    near = _near(stone, wall, LIMITS, 0)
-    assert near.boxes.tolist() == wall.boxes[[1, 3, 4, 6, 8]].tolist()
-    assert len(_near(stone, wall, LIMITS)) == 6
+    assert np.flatnonzero(met).tolist() == [0, 1, 2, 3, 4]
+    assert _near(stone, wall, LIMITS, 0).boxes.tolist() == wall.boxes[1:5].tolist()
+    assert len(_near(stone, wall, LIMITS)) == 5

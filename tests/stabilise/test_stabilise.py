@@ -17,8 +17,7 @@ from drystone.stabilise.stabilise import (
     support_polyline,
 )
 from tests.naive import support as naive
-from tests.naive.overlap import overlaps
-from tests.stabilise.scenes import BOOK, bar_on_the_ledge, ledge, mirrored, stairs
+from tests.stabilise.scenes import BOOK, bar_on_the_ledge, ledge, stairs
 from tests.stabilise.test_wedge import check_wedge, holds
 from tests.strategies import posed_on_walls, repeatable
 
@@ -65,7 +64,7 @@ def test_a_stone_balanced_on_a_point_is_wedged_on_both_sides_or_refused():
     assert holds(occupied, trial, result.wedges, 0.1)
 
 
-@repeatable(120)
+@repeatable(80)
 @given(
     scene=posed_on_walls(), method=st.sampled_from(METHODS), margin=st.sampled_from([0.0, 0.1, 0.2])
 )
@@ -115,7 +114,7 @@ def test_a_gap_higher_than_a_wedge_may_be_is_not_taken_for_the_ground(depth, hel
     assert outcome.depth == trial[1] + 6 + 30 + 1
 
 
-@repeatable(100)
+@repeatable(60)
 @given(on_wall=posed_on_walls(), margin=st.sampled_from([0.0, 0.5, 1.5]))
 def test_support_is_that_of_every_pixel_on_its_own(on_wall, margin):
     wall, posed, row, col = on_wall
@@ -138,37 +137,6 @@ def test_it_falls_to_the_nearer_end(x_c, margin, falls):
     assert Support(2, 6, 9, 9).falls(x_c, margin) == falls
 
 
-def rests(occupied, pose):
-    posed, row, col = pose
-    return naive.rests_stably(occupied, posed.mask, row, col, col + posed.anchor[0], 0.0)
-
-
-@pytest.mark.parametrize("side", ["right", "left"])
-def test_an_overhanging_bar_turns_towards_its_fall_until_it_rests(side):
-    occupied = ledge()
-    trial = bar_on_the_ledge(occupied, PoseBook())
-    if side == "left":
-        occupied, trial = mirrored(occupied, trial, PoseBook())
-    assert not rests(occupied, trial)
-    nowhere = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings(max_pivots=0))
-    assert nowhere.pose is None
-    result = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings())
-    assert result.pose is not None
-    turned, row, col = result.pose
-    assert result.pivots >= 1
-    # About asin(4 / 18): its free end comes down onto the ground.
-    expected = -12.8 if side == "right" else 12.8
-    assert turned.angle_deg == pytest.approx(expected, abs=2.5)
-    assert not overlaps(occupied, turned.mask, row, col)
-    assert np.array_equal(turned.mask, PoseBook().pose(turned.stone, turned.angle_deg).mask)
-    assert rests(occupied, (turned, row, col))
-    lowest = row + turned.height_px
-    assert lowest == occupied.shape[0]  # it stands on the ground and on the ledge's edge
-    support = support_polyline(occupied, turned, row, col)
-    edge = support.left_x if side == "right" else occupied.shape[1] - support.right_x
-    assert edge == pytest.approx(14, abs=6)  # a step of the turned edge lies on the ledge
-
-
 def test_a_stable_stone_is_left_alone():
     occupied = ledge()
     trial = bar_on_the_ledge(occupied, PoseBook(), col=0, length=20)
@@ -178,7 +146,7 @@ def test_a_stable_stone_is_left_alone():
     assert result.depth == trial[1] + 6 + 1  # the rows of the bar, and the one below
 
 
-@repeatable(80)
+@repeatable(60)
 @given(
     scene=stairs(),
     settings=st.sampled_from(

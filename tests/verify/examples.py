@@ -19,6 +19,14 @@ from drystone.search.plan_result import finish
 SETTINGS = PlannerSettings(orientations="quarter", two_sided=True)
 WEDGE, SLAB, L_STONE = 301, 7, 12
 WALL_PX = (84.0, 30.0)
+LAID = (
+    (3, 0.0, 0, 0),
+    (5, 0.0, 40, 0),
+    (SLAB, 180.0, 10, 20),
+    (L_STONE, 90.0, 64, 0),
+    (300, -90.0, 74, 0),
+)
+"""Stones, how they are turned, and where their boxes begin."""
 
 
 @dataclass(frozen=True)
@@ -42,11 +50,16 @@ def stone_set():
         300: np.ones((10, 12), bool),
         9: np.ones((4, 4), bool),
     }
+    return in_a_row(masks, "stones.png", "ab" * 32, 30)
+
+
+def in_a_row(masks, path, sha256, height_px):
+    """Return stones that lie beside each other in an image."""
     stones, left = [], 2
     for stone_id, mask in masks.items():
         stones.append(Stone(stone_id, mask, left_px=left, bottom_px=3))
         left += mask.shape[1] + 2
-    return StoneSet(tuple(stones), Source("stones.png", "ab" * 32, left, 30))
+    return StoneSet(tuple(stones), Source(path, sha256, left, height_px))
 
 
 @cache
@@ -57,13 +70,7 @@ def example(scale=1.0, px_per_m=None):
     """
     stones, site = stone_set(), Site.from_source(*WALL_PX, scale, px_per_m)
     built = Wall.empty(site)
-    for stone_id, angle_deg, left, bottom in (
-        (3, 0.0, 0, 0),
-        (5, 0.0, 40, 0),
-        (SLAB, 180.0, 10, 20),
-        (L_STONE, 90.0, 64, 0),
-        (300, -90.0, 74, 0),
-    ):
+    for stone_id, angle_deg, left, bottom in LAID:
         posed = PoseBook(scale).pose(stones.by_id(stone_id), angle_deg)
         row = site.height_px - round(bottom * scale) - posed.height_px
         side = "right" if stone_id == 300 else "left"

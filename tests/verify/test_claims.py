@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from drystone.contacts.settled import PlacedPolygons, model_of_outlines
@@ -11,6 +10,7 @@ from drystone.physics.scatter import TiltResult
 from drystone.physics.tilt import TiltTrial
 from drystone.statics.limit import lateral_resistance
 from drystone.verify.claims import CONFIRMED, check_engine, claimed_alpha
+from tests.polygons import box
 from tests.verify.exact_examples import exact_example
 from tests.verify.examples import SLAB, WEDGE
 
@@ -71,13 +71,10 @@ def test_a_tilt_below_the_claim_is_named(plan, found, said):
         assert f"tilted to the {side} " in problem.message
 
 
-def test_the_resolution_of_the_tilt_is_no_contradiction():
-    plan = claiming(0.5, 0.5)
-    assert codes(check_engine(plan, built(), tilts(0.4, 0.4, resolution=0.1))) == []
-    assert codes(check_engine(plan, built(), tilts(0.4, 0.4, resolution=0.02))) == ["E242"] * 2
-
-
-def test_what_comes_down_on_the_level_table_carries_nothing():
+def test_the_resolution_of_the_tilt_is_no_contradiction_and_what_falls_at_rest_carries_nothing():
+    for resolution, named in ((0.1, 0), (0.02, 2)):
+        found = tilts(0.4, 0.4, resolution=resolution)
+        assert codes(check_engine(claiming(0.5, 0.5), built(), found)) == ["E242"] * named
     problems = check_engine(claiming(0.5, 0.4), built(), tilts(None, None, fell_at_rest=True))
     assert codes(problems) == ["E242"] * 2
     assert "alpha = 0.000 in the engine, 0% of the 0.500" in problems[0].message
@@ -86,8 +83,7 @@ def test_what_comes_down_on_the_level_table_carries_nothing():
 def test_a_stack_that_claims_full_interlock_is_found_out():
     """Bricks in a stack tip at width over height, whatever a plan claims of them."""
     pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
-    brick = np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]])
-    groups = [[(IDS[k], brick + np.array([0.0, k * 20.0]))] for k in range(2)]
+    groups = [[(IDS[k], box(0.0, k * 20.0, 20.0, (k + 1) * 20.0))] for k in range(2)]
     stack = build_up(groups, 0.9)
     assert stack.stands
     tilted = tilt_of(stack)

@@ -8,8 +8,8 @@ import shapely
 from shapely import affinity
 
 from drystone.drawing.assembly import handling
-from drystone.errors import UsageError
 from tests.drawing.export.robot_plans import METRIC, PX_PER_M, THICKNESS_M, assembly, source_stones
+from tests.polygons import box_of
 
 
 @pytest.mark.parametrize("name", METRIC)
@@ -31,18 +31,6 @@ def test_pixels_of_a_stone_land_inside_its_outline(name):
         assert outline.area * PX_PER_M**2 == pytest.approx(len(x), rel=0.06)
 
 
-def test_a_plan_in_px_and_one_in_metres_give_the_same_parts():
-    for name in ("exact", "raster"):
-        px, metres = assembly(name), assembly(f"{name}-m")
-        areas = [wall.plan.metrics.wedge_area for wall in (px, metres)]
-        assert areas[0] == pytest.approx(areas[1] * PX_PER_M**2)
-        for one, other in zip(px.parts, metres.parts, strict=True):
-            assert one.name == other.name
-            assert one.corners == pytest.approx(other.corners, abs=1e-9)
-            assert one.centroid == pytest.approx(other.centroid, abs=1e-9)
-            assert px.mass_kg(one) == pytest.approx(metres.mass_kg(other), rel=1e-9)
-
-
 def test_the_grip_is_the_least_width_of_any_direction():
     for part in assembly("exact").parts:
         width, angle_deg = part.grip
@@ -57,26 +45,12 @@ def test_the_grip_is_the_least_width_of_any_direction():
 def test_wedges_are_in_no_photo():
     wall = assembly("exact")
     (wedge,) = wall.wedges
-    assert wall.pick_pose(wedge) is None
-    assert handling.pick_to_place(wall, wedge) is None
-    assert handling.pick_approach(wall, wedge) is None
-    assert handling.grasp(wall, wedge)["direction_photo"] is None
     assert (wedge.kind, wedge.name, wedge.angle_deg) == ("wedge", "wedge_010", 0.0)
     assert wedge.under == 8
     with pytest.raises(TypeError, match="wedge_010 is in no image"):
         wall.source_corners(wedge)
     with pytest.raises(ValueError, match="read-only"):
         wedge.corners[0, 0] = 1.0
-
-
-def test_without_a_scale_there_is_no_pose_and_no_mass():
-    wall = assembly("exact", None)
-    part = wall.parts[0]
-    assert wall.unit == "px"
-    assert wall.px_per_unit == 1.0
-    for ask in (wall.place_pose, wall.pick_pose, wall.mass_kg):
-        with pytest.raises(UsageError, match=r"E131 .*--px-per-m.*--ruler.*markers"):
-            ask(part)
 
 
 def test_stones_begin_above_everything_that_stands():
@@ -97,14 +71,14 @@ def test_stones_begin_above_everything_that_stands():
         top = max(top, part.corners[:, 1].max())
 
 
-@pytest.mark.parametrize("name", ["exact", "raster"])
+@pytest.mark.parametrize("name", METRIC)
 def test_what_is_in_the_way_down_is_what_small_steps_down_run_into(name):
     wall = assembly(name)
     found = []
     for part in wall.stones:
         outline = shapely.Polygon(part.corners)
-        there = shapely.union_all([shapely.Polygon(p.corners)
-                                   for p in wall.parts if p.step < part.step])  # fmt: skip
+        earlier = (p for p in wall.parts if p.step < part.step)
+        there = shapely.union_all([shapely.Polygon(p.corners) for p in earlier])
         lift_m = handling.place_approach(wall, part)["stand_off_m"]
         widest = 0.0
         for lift in np.linspace(1e-6, lift_m, 60):
@@ -124,12 +98,13 @@ def test_what_is_in_the_way_down_is_what_small_steps_down_run_into(name):
 def test_what_a_stone_rests_on_is_not_in_its_way(overlap_m):
     wall = assembly("exact")
     first, second, *_ = wall.parts
-    box = np.array([[0.0, 0.0], [0.3, 0.0], [0.3, 0.1], [0.0, 0.1]])
-    below = replace(first, corners=box, centroid=(0.15, 0.05))
-    above = replace(second, corners=box + np.array([0.0, 0.1 - overlap_m]), centroid=(0.15, 0.15))
-    beside = replace(second, corners=box + np.array([0.3 - overlap_m, 0.0]), centroid=(0.45, 0.05))
-    for part in (above, beside):
-        pair = replace(wall, parts=(below, part))
-        assert handling.blocked_m(pair, part) == pytest.approx(0.0, abs=1e-11)
-    under = replace(second, corners=box - np.array([0.2, 0.1]), centroid=(-0.05, -0.05))
-    assert handling.blocked_m(replace(wall, parts=(below, under)), under) == pytest.approx(0.1)
+    below = replace(first, corners=box_of(0.0, 0.0, 0.3, 0.1), centroid=(0.15, 0.05))
+    for left, low, blocked in (
+        (0.0, 0.1 - overlap_m, 0.0),
+        (0.3 - overlap_m, 0.0, 0.0),
+        (-0.2, -0.1, 0.1),
+    ):
+        corners, centroid = box_of(left, low, 0.3, 0.1), (left + 0.15, low + 0.05)
+        part = replace(second, corners=corners, centroid=centroid)
+        found = handling.blocked_m(replace(wall, parts=(below, part)), part)
+        assert found == pytest.approx(blocked, abs=1e-11)

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 import shapely
 
-from drystone.drawing.assembly.read import outer_loop, read_assembly, scaled
+from drystone.drawing.assembly.read import outer_loop, read_assembly
 from drystone.drawing.outlines import label_regions
 from drystone.errors import DrystoneError
-from drystone.statics.limit import lateral_resistance
-from tests.drawing.export.robot_plans import PX_PER_M, assembly, write_plan_folder
+from tests.drawing.export.robot_plans import METRIC, PX_PER_M, assembly, write_plan_folder
 
 
 def test_folder_and_file_are_the_same_plan(tmp_path):
@@ -30,7 +29,7 @@ def test_folder_and_file_are_the_same_plan(tmp_path):
 
 
 def test_areas_of_outlines_are_those_of_the_blocks():
-    for name in ("exact", "exact-m", "raster", "raster-m"):
+    for name in METRIC:
         wall = assembly(name)
         areas = {block.id: block.area for block in wall.model.blocks}
         for part in wall.parts:
@@ -44,24 +43,19 @@ def test_areas_of_outlines_are_those_of_the_blocks():
             assert part.centroid == pytest.approx((x, y), abs=near_m)
 
 
-def test_a_scale_changes_no_load_multiplier():
-    wall = assembly("exact", None)
-    other = lateral_resistance(scaled(wall.model, 1 / PX_PER_M))
-    assert other.left.alpha == pytest.approx(wall.resistance.left.alpha, abs=1e-8)
-    assert wall.resistance.left.alpha == pytest.approx(wall.plan.metrics.alpha_left, abs=1e-6)
-
-
 def test_one_scale_only_and_a_thickness_needs_one(tmp_path):
-    for name in ("exact-m", "raster"):
-        (tmp_path / name).mkdir()
-        write_plan_folder(name, tmp_path / name)
-    metric, px = tmp_path / "exact-m", tmp_path / "raster"
+    metric, px = tmp_path / "raster-m", tmp_path / "exact"
+    for folder in (metric, px):
+        folder.mkdir()
+        write_plan_folder(folder.name, folder)
     assert read_assembly(metric, px_per_m=PX_PER_M).px_per_m == PX_PER_M
     with pytest.raises(DrystoneError, match=r"E131 .*137 px a metre, not 200"):
         read_assembly(metric, px_per_m=200.0)
     with pytest.raises(DrystoneError, match="E131"):
         read_assembly(px, thickness_m=0.3)
-    assert read_assembly(px, thickness_m=0.3, px_per_m=100.0).thickness == 0.3
+    told, wall = read_assembly(px, thickness_m=0.3, px_per_m=100.0), read_assembly(px)
+    assert told.thickness == 0.3
+    assert told.parts[0].corners == pytest.approx(wall.parts[0].corners / 100)
 
 
 def under(step, stone):
@@ -73,8 +67,8 @@ def under(step, stone):
     [
         ("exact", lambda s: [*s, s[-1] | {"step": len(s) + 1}], "E213", "was placed before"),
         ("exact", lambda s: [under(one, 9999) for one in s], "E214", "does not follow stone 9999"),
-        ("raster", lambda s: s[::-1], "E214", "this is step 1 of the plan"),
-        ("raster", lambda s: [one | {"step": one["step"] + 1} for one in s], "E214",
+        ("raster-m", lambda s: s[::-1], "E214", "this is step 1 of the plan"),
+        ("raster-m", lambda s: [one | {"step": one["step"] + 1} for one in s], "E214",
          "this is step 1 of the plan"),
     ],
 )  # fmt: skip

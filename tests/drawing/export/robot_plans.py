@@ -1,4 +1,4 @@
-"""Assemblies of four small plans, for exports that are read back."""
+"""Assemblies of small plans, for exports that are read back."""
 
 import json
 import tempfile

@@ -42,7 +42,7 @@ def test_no_two_formats_write_one_file_and_none_one_of_the_plan():
 
 @pytest.mark.parametrize("name", [name for name, one in FORMATS.items() if one.metric])
 def test_there_is_none_in_metres_without_a_scale(name, tmp_path):
-    with pytest.raises(UsageError, match="E131"):
+    with pytest.raises(UsageError, match=r"E131 .*--px-per-m.*--ruler.*markers"):
         FORMATS[name].write(assembly(px_per_m=None), tmp_path, SETTINGS)
     assert not list(tmp_path.iterdir())
 

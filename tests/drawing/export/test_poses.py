@@ -38,6 +38,10 @@ def test_pick_and_place_follow_the_formula_of_the_plan(name, tmp_path):
             expected = Rotation.from_quat(list(turned.values())).as_matrix()
             assert matrix[:3, :3] == pytest.approx(expected, abs=1e-14)
             assert matrix[:, 3].tolist() == [*xyz(pose["point"]), 1.0]
+            way = pose["approach"]
+            end = np.array(xyz(way["start"])) + way["stand_off_m"] * np.array(xyz(way["direction"]))
+            assert end == pytest.approx(matrix[:3, 3], abs=1e-12)
+            assert way["stand_off_m"] >= 0.05
         if not isinstance(step, StoneStep):
             assert part["pick"] is part["pick_to_place"] is None
             continue
@@ -51,21 +55,9 @@ def test_pick_and_place_follow_the_formula_of_the_plan(name, tmp_path):
         assert np.array(part["pick_to_place"]) @ photo == pytest.approx(moved, abs=1e-12)
 
 
-def test_approaches_end_at_their_poses(tmp_path):
-    read = written("exact", tmp_path)
-    assert read["clearance_m"] == 0.05
-    for part in read["parts"]:
-        for pose in filter(None, (part["place"], part["pick"])):
-            way = pose["approach"]
-            end = np.array(xyz(way["start"])) + way["stand_off_m"] * np.array(xyz(way["direction"]))
-            assert end == pytest.approx(xyz(pose["point"]), abs=1e-12)
-            assert way["stand_off_m"] >= 0.05
-        assert part["place"]["approach"]["blocked_m"] * PX_PER_M < 1.0
-
-
 def test_grasps_masses_and_sizes(tmp_path):
     read, wall = written("exact", tmp_path), assembly("exact")
-    assert read["density_kg_m3"] == 2450.0
+    assert (read["density_kg_m3"], read["clearance_m"]) == (2450.0, 0.05)
     assert read["thickness_m"] == THICKNESS_M
     for found, part in zip(read["parts"], wall.parts, strict=True):
         area = shapely.Polygon(part.corners).area
@@ -79,14 +71,16 @@ def test_grasps_masses_and_sizes(tmp_path):
             turn = np.array(found["pick"]["matrix"])[:3, :3]
             photo = turn @ xyz(held["direction_part"])
             assert photo == pytest.approx(xyz(held["direction_photo"]), abs=1e-12)
+        else:
+            assert held["direction_photo"] is None
         assert found["size_m"]["y"] == held["thickness_m"] == THICKNESS_M
         assert held["width_m"] <= min(found["size_m"]["x"], found["size_m"]["z"]) + 1e-12
+        assert found["place"]["approach"]["blocked_m"] * PX_PER_M < 1.0
 
 
 def test_the_order_of_work_can_be_followed(tmp_path):
     read = written("exact", tmp_path)
-    there = {0}
-    names = [part["name"] for part in read["parts"]]
+    there, names = {0}, [part["name"] for part in read["parts"]]
     for part in read["parts"]:
         assert part["neighbours"]
         assert set(part["neighbours"]) <= there
@@ -96,9 +90,7 @@ def test_the_order_of_work_can_be_followed(tmp_path):
             assert read["parts"][index]["under"] == part["id"]
         waits = bool(part["wedges_after"])
         assert (part["alpha"]["left"] is None) == (part["alpha"]["right"] is None) == waits
-    assert [part["wedges_after"] for part in read["parts"] if part["wedges_after"]] == [
-        ["wedge_010"]
-    ]
+    assert [name for part in read["parts"] for name in part["wedges_after"]] == ["wedge_010"]
 
 
 def test_frames_units_and_provenance_are_said(tmp_path):

@@ -54,7 +54,7 @@ def stl(paths):
 
 
 def seven(pose):
-    assert [[*one] for one in pose.values()] == [["x", "y", "z"], ["x", "y", "z", "w"]]
+    assert [[*one] for one in pose.values()] == [[*"xyz"], [*"xyzw"]]
     found = [value for one in pose.values() for value in one.values()]
     # A message field of floats takes no whole numbers and no words.
     assert all(type(value) is float for value in found)
@@ -70,13 +70,10 @@ def matrix_of(pose):
 def scene_yaml(paths):
     read = yaml.safe_load(paths[0].read_text(encoding="utf-8"))
     assert read["is_diff"] is True
-    objects = read["world"]["collision_objects"]
-    assert [one["id"] for one in read["object_colors"]] == [one["id"] for one in objects]
-    for paint in (one["color"] for one in read["object_colors"]):
-        assert [*paint] == ["r", "g", "b", "a"]
-        assert all(0.0 <= value <= 1.0 for value in paint.values())
-        assert paint["a"] == 1.0
-    for one in objects:
+    objects, colours = read["world"]["collision_objects"], read["object_colors"]
+    for one, paint in zip(objects, colours, strict=True):
+        assert (one["id"], [*paint["color"]]) == (paint["id"], ["r", "g", "b", "a"])
+        assert all(0.0 <= value <= paint["color"]["a"] == 1.0 for value in paint["color"].values())
         # Of moveit_msgs/CollisionObject; all other fields keep their defaults.
         assert set(one) == {"header", "id", "pose", "meshes", "mesh_poses"}
         assert one["header"] == {"frame_id": "wall"}
@@ -106,11 +103,9 @@ def scene_text(paths):
         points = np.array(numbers(3 * vertices)).reshape(-1, 3)
         faces = np.array([int(next(words)) for _ in range(3 * triangles)]).reshape(-1, 3)
         assert numbers(7) == [0.0] * 6 + [1.0]
-        assert numbers(4)[3] == 1.0
-        assert next(words) == "0"
+        assert numbers(5)[3:] == [1.0, 0.0]
         yield object_id, mesh_of(points, faces, matrix_of(pose))
-    assert marker == "."
-    assert next(words, None) is None
+    assert [marker, *words] == ["."]
 
 
 def urdf(paths):
@@ -129,7 +124,13 @@ def urdf(paths):
 def compas_json(paths):
     read = compas.json_load(str(paths[0]))
     assert read["units"] == "m"
-    for element in read["elements"]:
+    for element, part in zip(read["elements"], assembly("exact").parts, strict=True):
+        poses = assembly("exact").place_pose(part), assembly("exact").pick_pose(part)
+        for frame, pose in zip((element["place"], element["pick"]), poses, strict=True):
+            assert isinstance(frame, Frame) == (pose is not None)
+            if pose is not None:
+                matrix = np.array(Transformation.from_frame(frame).matrix)
+                assert matrix == pytest.approx(pose.matrix, abs=1e-9)
         mesh = element["mesh"]
         assert (mesh.name, mesh.is_manifold(), mesh.is_closed()) == (element["name"], True, True)
         moved = mesh.transformed(Transformation.from_frame(element["place"]))
@@ -155,21 +156,20 @@ def test_every_part_is_closed_and_at_its_place_in_order(reader, exact, tmp_path)
     wall, (written, read, off) = exact, READERS[reader]
     found = list(read(FORMATS[written].write(wall, tmp_path, SETTINGS)))
     order = [part.name for part in wall.parts]
-    names = [one for one, _ in found]
     if written == "glb":
-        names.sort(key=order.index)
+        found.sort(key=lambda one: order.index(one[0]))
     each = 2 if written == "urdf" else 1  # seen and touched
-    assert names == [part for part in order for _ in range(each)]
-    for part_name, mesh in found:
-        assert_in_place(mesh, wall.parts[order.index(part_name)], off)
+    parts = [part for part in wall.parts for _ in range(each)]
+    for (name, mesh), part in zip(found, parts, strict=True):
+        assert name == part.name
+        assert_in_place(mesh, part, off)
 
 
 def test_colours_of_obj_are_those_of_the_clusters(exact, tmp_path):
     path, _ = FORMATS["obj"].write(exact, tmp_path, SETTINGS)
     scene = trimesh.load_scene(path, split_objects=True, group_material=False, process=False)
     for part in exact.parts:
-        expected = "wedge" if part.kind == "wedge" else f"cluster_{part.cluster}"
-        assert scene.geometry[part.name].visual.material.name == expected
+        assert scene.geometry[part.name].visual.material.name == material(part)[0]
     (wedge,) = exact.wedges
     assert scene.geometry[wedge.name].visual.material.diffuse.tolist() == [0x8B, 0, 0, 255]
     # Numbers have all digits.
@@ -181,9 +181,8 @@ def test_colours_of_obj_are_those_of_the_clusters(exact, tmp_path):
 def test_nodes_of_glb_have_the_poses_steps_and_colours_of_the_wall(exact, tmp_path):
     (path,) = FORMATS["glb"].write(exact, tmp_path, SETTINGS)
     data = path.read_bytes()
-    assert struct.unpack("<4sII", data[:12]) == (b"glTF", 2, len(data))
-    size, kind = struct.unpack("<I4s", data[12:20])
-    assert kind == b"JSON"
+    *header, size, kind = struct.unpack("<4sIII4s", data[:20])
+    assert (*header, kind) == (b"glTF", 2, len(data), b"JSON")
     gltf = json.loads(data[20 : 20 + size])
     nodes = {node["name"]: node for node in gltf["nodes"]}
     for part in exact.parts:
@@ -199,20 +198,6 @@ def test_nodes_of_glb_have_the_poses_steps_and_colours_of_the_wall(exact, tmp_pa
                  for one in rgb(colour)]  # fmt: skip
         factor = paint["pbrMetallicRoughness"]["baseColorFactor"]
         assert factor == pytest.approx([*light, 1.0], abs=0.003)
-
-
-def test_frames_of_compas_are_those_of_the_poses(exact, tmp_path):
-    (path,) = FORMATS["compas"].write(exact, tmp_path, SETTINGS)
-    read = compas.json_load(str(path))
-    for element, part in zip(read["elements"], exact.parts, strict=True):
-        poses = exact.place_pose(part), exact.pick_pose(part)
-        for frame, pose in zip((element["place"], element["pick"]), poses, strict=True):
-            if pose is None:
-                assert frame is None
-                continue
-            assert isinstance(frame, Frame)
-            matrix = np.array(Transformation.from_frame(frame).matrix)
-            assert matrix == pytest.approx(pose.matrix, abs=1e-9)
 
 
 def test_a_urdf_loads_with_mass_centre_and_inertia_of_its_meshes(exact, tmp_path):
@@ -236,9 +221,7 @@ def test_a_urdf_loads_with_mass_centre_and_inertia_of_its_meshes(exact, tmp_path
         told = [[said.ixx, said.ixy, said.ixz], [said.ixy, said.iyy, said.iyz],
                 [said.ixz, said.iyz, said.izz]]  # fmt: skip
         assert np.array(told) == pytest.approx(tensor, abs=1e-9 * size)
-    colours = {}
-    for paint in ET.fromstring(path.read_text()).iter("material"):  # noqa: S314 - our own file
-        (rgba,) = paint
-        colours.setdefault(paint.attrib["name"], set()).add(rgba.attrib["rgba"])
-    assert "wedge" in colours
-    assert all(len(found) == 1 for found in colours.values())
+    paints = ET.fromstring(path.read_text()).iter("material")  # noqa: S314 - our own file
+    colours = {(paint.attrib["name"], paint[0].attrib["rgba"]) for paint in paints}
+    assert {material(part)[0] for part in exact.parts} == {name for name, _ in colours}
+    assert len(dict(colours)) == len(colours)

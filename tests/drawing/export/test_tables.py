@@ -46,17 +46,6 @@ def test_a_row_a_step_in_metres(tmp_path):
         assert row["alpha_left"] == ("" if alpha is None else repr(alpha))
 
 
-def test_without_a_scale_lengths_are_px_and_masses_are_missing(tmp_path):
-    found, metric = rows(tmp_path, None), rows(tmp_path)
-    assert {"x_px", "y_px", "width_px", "height_px", "area_px2"} <= set(found[0])
-    assert not any(name.endswith(("_m", "_m2")) for name in found[0])
-    for row, other in zip(found, metric, strict=True):
-        assert row["mass_kg"] == ""
-        for name in ("x", "y", "width", "height"):
-            px, metres = float(row[f"{name}_px"]), float(other[f"{name}_m"])
-            assert px == pytest.approx(metres * PX_PER_M, rel=1e-9)
-
-
 def test_instructions_say_what_to_do(tmp_path):
     found = {row["name"]: row["instruction"] for row in rows(tmp_path, None)}
     for name, words in (
@@ -73,9 +62,8 @@ def test_all_hold_what_the_csv_holds(px_per_m, tmp_path):
     wall = assembly("exact", px_per_m)
     (path,) = FORMATS["parquet"].write(wall, tmp_path, SETTINGS)
     found = parquet.read_table(path).to_pylist()
-    shapes = written(tmp_path, px_per_m)["features"]
-    listed = rows(tmp_path, px_per_m)
-    for one, shape, row in zip(found, shapes, listed, strict=True):
+    others = written(tmp_path, px_per_m)["features"], rows(tmp_path, px_per_m)
+    for one, shape, row in zip(found, *others, strict=True):
         assert shape["properties"] == one
         assert list(one) == list(row)
         for name, value in one.items():
@@ -84,9 +72,14 @@ def test_all_hold_what_the_csv_holds(px_per_m, tmp_path):
             else:
                 assert ("" if value is None else str(value)) == row[name]
     # An empty column of masses keeps its type.
-    schema = parquet.read_schema(path)
+    schema, unit = parquet.read_schema(path), wall.unit
     types = {name: schema.field(name).type for name in schema.names}
-    unit = wall.unit
+    assert {f"x_{unit}", f"y_{unit}", f"width_{unit}", f"height_{unit}", f"area_{unit}2"} <= {
+        *types
+    }
+    assert (found[0]["mass_kg"] is None) == (px_per_m is None)
+    low, high = wall.parts[0].corners.min(axis=0), wall.parts[0].corners.max(axis=0)
+    assert [found[0][f"{side}_{unit}"] for side in ("width", "height")] == pytest.approx(high - low)
     assert types["step"] == types["under"] == types["cluster"] == pa.int64()
     assert types[f"x_{unit}"] == types["mass_kg"] == types["alpha_left"] == pa.float64()
     assert types["kind"] == types["side"] == types["instruction"] == pa.string()
@@ -101,20 +94,18 @@ def written(folder, px_per_m):
     return json.loads(path.read_text(encoding="utf-8"))
 
 
-@pytest.mark.parametrize(
-    ("px_per_m", "unit", "factor"), [(PX_PER_M, "m", 1 / PX_PER_M), (None, "px", 1)]
-)
-def test_polygons_are_closed_and_those_of_the_parts(px_per_m, unit, factor, tmp_path):
+@pytest.mark.parametrize("px_per_m", [PX_PER_M, None])
+def test_polygons_are_closed_and_those_of_the_parts(px_per_m, tmp_path):
     wall, read = assembly("exact", px_per_m), written(tmp_path, px_per_m)
+    unit, factor = wall.unit, 1.0 / (px_per_m or 1.0)
     shapes = shapely.get_parts(shapely.from_geojson(json.dumps(read)))
-    areas = {block.id: block.area for block in wall.model.blocks}
     assert len(shapes) == len(read["features"]) == len(wall.parts)
     for shape, feature, part in zip(shapes, read["features"], wall.parts, strict=True):
         (ring,) = feature["geometry"]["coordinates"]
         assert ring[0] == ring[-1]
         assert shape.is_valid
         assert shape.exterior.is_ccw
-        assert shape.area == pytest.approx(areas[part.id], rel=1e-9)
+        assert shape.area == pytest.approx(part.area, rel=1e-9)
         assert shape.area == pytest.approx(feature["properties"][f"area_{unit}2"], rel=1e-9)
         assert feature["id"] == feature["properties"]["name"] == part.name
     assert (read["type"], read["unit"], read["px_per_m"]) == ("FeatureCollection", unit, px_per_m)

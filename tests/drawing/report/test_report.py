@@ -73,6 +73,11 @@ class Page(HTMLParser):
         return json.loads(self.scripts[0])
 
 
+def written_page(folder, view):
+    """Return a report that was written to a folder without pictures."""
+    return Page(write_report(folder / "report.html", view, pictures=folder).read_text("utf-8"))
+
+
 def example_view(plan=None, wall=None):
     """Return the view of the wall made by hand, or of another one, with a plan that says more."""
     wall = examples.wall() if wall is None else wall
@@ -135,20 +140,16 @@ def test_the_report_says_every_step_result_input_and_notice(report):
 def test_a_plan_on_outlines_says_so(tmp_path):
     made = exact_example()
     plan = made.plan
-    page = Page(
-        write_report(tmp_path / "one.html", example_view(plan, made.wall)).read_text("utf-8")
-    )
+    page = written_page(tmp_path, example_view(plan, made.wall))
     assert "Geometry exact" in page.text
     assert "within the contact tolerance, 0.1 px of the image" in page.text
     assert "pixels have edges" not in page.text
     for (block, corners), part in zip(made.wall.outlines.blocks, page.data["parts"], strict=True):
         assert part["id"] == block
         np.testing.assert_allclose(part["points"][0], corners, atol=0.0006)
-    settle = {**plan.settings["settle"], "contact_px": 0.25}
-    other = replace(plan, settings={**plan.settings, "settle": settle})
-    assert "0.25 px of the image" in assumptions(other)[-1]
-    without = {name: value for name, value in plan.settings.items() if name != "settle"}
-    assert "0.1 px of the image" in assumptions(replace(plan, settings=without))[-1]
+    for settle, reach in (({"contact_px": 0.25}, 0.25), ({}, 0.1)):
+        other = replace(plan, settings={**plan.settings, "settle": settle})
+        assert f"{reach} px of the image" in assumptions(other)[-1]
 
 
 def test_names_are_escaped(report):
@@ -165,11 +166,10 @@ def test_names_are_escaped(report):
 def test_the_file_needs_nothing_else(report, pictures):
     page = Page(report)
     images = page.all("img")
-    sources = [attrs["src"] for attrs in images]
-    embedded = [base64.b64decode(s.removeprefix("data:image/png;base64,")) for s in sources]
-    names = ("picture.png", "mechanism_left.png")
-    assert embedded == [(pictures / name).read_bytes() for name in names]
-    assert all(attrs["alt"] for attrs in images)
+    for attrs, name in zip(images, ("picture.png", "mechanism_left.png"), strict=True):
+        embedded = base64.b64decode(attrs["src"].removeprefix("data:image/png;base64,"))
+        assert embedded == (pictures / name).read_bytes()
+        assert attrs["alt"]
     rest = re.sub(r'src="[^"]*"', "", report).replace("http://www.w3.org/2000/svg", "")
     assert not re.search(r"https?:|url\((?!#)|@import", rest)
     assert all("src" not in attrs for attrs in page.all("script"))
@@ -177,9 +177,7 @@ def test_the_file_needs_nothing_else(report, pictures):
     (policy,) = (a["content"] for a in page.all("meta") if "http-equiv" in a)
     assert policy.startswith("default-src 'none'; ")
     assert "no picture of a mechanism to the right" in page.text
-
-
-def test_script_and_style_cannot_end_their_elements_and_no_markup_is_made_of_data():
+    # Script and style cannot end their elements, and no markup is made of data.
     assert not re.search(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write", viewer_script())
     assert "</script" not in viewer_script()
     assert "</style" not in viewer_style()
@@ -193,8 +191,7 @@ def test_missing_metrics_are_not_defined_and_never_zero(tmp_path):
         assert values[name] == "not defined"
     assert values[f"{ALPHA} right"] == "0.300"
     assert [number(value) for value in (float("nan"), -1e-9)] == ["not defined", "0.000"]
-    path = write_report(tmp_path / "report.html", example_view(plan), pictures=tmp_path)
-    page = Page(path.read_text(encoding="utf-8"))
+    page = written_page(tmp_path, example_view(plan))
     assert page.texts.count("not defined") == 4
     assert "no picture of the wall" in page.text
 
@@ -213,7 +210,7 @@ def test_a_missing_index_is_a_dash_and_metres_are_told_in_centimetres(tmp_path):
     plan = examples.plan(wall)
     step = replace(plan.stone_steps[0], indices={**plan.stone_steps[0].indices, "LLC": None})
     view = example_view(replace(plan, steps=(step, *plan.steps[1:])), wall)
-    text = write_report(tmp_path / "one.html", view).read_text(encoding="utf-8")
+    text = write_report(tmp_path / "one.html", view).read_text("utf-8")
     cells = re.findall(r"<td>(.*?)</td>", text.split('id="step-1"')[1].split("</tr>")[0])
     assert set(INDICES) == set(INDEX_NAMES)
     told = ["\N{EN DASH}" if i == "LLC" else number(step.indices[i]) for i in INDICES]
@@ -222,8 +219,7 @@ def test_a_missing_index_is_a_dash_and_metres_are_told_in_centimetres(tmp_path):
 
 
 def test_a_wall_that_was_not_planned_has_a_table_of_blocks(tmp_path, monkeypatch):
-    shown = analysed(examples.wall().labels, title="found")
-    page = Page(write_report(tmp_path / "found.html", shown).read_text(encoding="utf-8"))
+    page = written_page(tmp_path, analysed(examples.wall().labels, title="found"))
     assert "Steps of construction" not in page.text
     assert "6 stones, " in page.text
     assert page.text.count("There is no picture of a mechanism") == 2
@@ -258,12 +254,8 @@ def test_viewer_and_sheet_refuse_a_photograph_alike(zoom, until, said, tmp_path)
     path = folder / "photo.jpg"
     Image.new("RGB", (zoom * source["width_px"], source["height_px"])).save(path)
     path.write_bytes(path.read_bytes()[:until])
-    refusals = []
-    for use in (
-        ds.view,
-        lambda plan: FORMATS["pdf"].files(ds.read_assembly(plan), ExportSettings()),
-    ):
-        with pytest.raises(InputError, match=f"E189 .*{said}") as caught:
-            use(folder)
-        refusals.append(str(caught.value))
-    assert refusals[0] == refusals[1]
+    with pytest.raises(InputError, match=f"E189 .*{said}") as viewed:
+        ds.view(folder)
+    with pytest.raises(InputError, match=f"E189 .*{said}") as printed:
+        FORMATS["pdf"].files(ds.read_assembly(folder), ExportSettings())
+    assert str(viewed.value) == str(printed.value)

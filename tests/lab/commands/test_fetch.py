@@ -15,11 +15,8 @@ def _toys(monkeypatch):
 def test_the_sets_are_listed_one_a_line(run):
     ran = run("fetch", "--list")
     assert (ran.code, ran.err) == (0, "")
-    assert (
-        [line.split(":")[0] for line in ran.out.splitlines()]
-        == list(SETS)
-        == ["almeida", "thangavelu", "rubble", "bricks", "fourier"]
-    )
+    names = [line.split(":")[0] for line in ran.out.splitlines()]
+    assert names == list(SETS) == ["almeida", "thangavelu", "rubble", "bricks", "fourier"]
 
 
 @pytest.mark.usefixtures("_toys")
@@ -60,15 +57,9 @@ def test_a_local_copy_wins(run, tmp_path, monkeypatch):
 def test_no_network_ends_with_a_cure(run, tmp_path, monkeypatch):
     monkeypatch.setattr(fetch, "RAW", nobody())
     ran = run("fetch", "toy", "--to", tmp_path)
-    assert (ran.code, ran.out) == (3, "")
-    assert "drystone: E161" in ran.err
-    assert "By hand: save http" in ran.err
+    ran.refused("drystone: E161", "By hand: save http", exit_code=3)
 
 
 @pytest.mark.parametrize(("names", "said"), [([], "no set is named"), (["ferris"], "'ferris'")])
 def test_a_set_must_be_one_that_there_is(run, names, said):
-    ran = run("fetch", *names)
-    assert ran.code == 2
-    assert "E138 fetch: " in ran.err
-    assert said in ran.err
-    assert "almeida or thangavelu or" in ran.err
+    run("fetch", *names).refused("E138 fetch: ", said, "almeida or thangavelu or")

@@ -33,11 +33,10 @@ def test_points_are_the_values_lines_their_medians_and_crosses_claims():
     assert list(_line(ax, "group-none").get_ydata()) == [0.5, 0.4]
     assert set(_line(ax, "median-both").get_ydata()) == {median(VALUES["both"])}
     assert set(_line(ax, "median-none").get_ydata()) == {0.45}
-    assert [line for line in ax.lines if line.get_gid() == "median-empty"] == []
+    assert "median-empty" not in [line.get_gid() for line in ax.lines]
     assert [text.get_text() for text in ax.get_xticklabels()] == list(VALUES)
     assert ax.get_ylabel() == "F_SF"
-    cross = _line(ax, "claim-none")
-    assert (list(cross.get_xdata()), list(cross.get_ydata())) == ([1], [0.6])
+    assert _line(ax, "claim-none").get_xydata().tolist() == [[1, 0.6]]
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["the paper"]
     assert plot_groups(VALUES).get_legend() is None
 
@@ -46,8 +45,7 @@ def test_points_are_the_values_lines_their_medians_and_crosses_claims():
 def test_panels_fill_rows(count, columns):
     figure = group_panels({f"figure {k}": VALUES for k in range(count)}, title="t")
     assert [ax.get_ylabel() for ax in figure.axes] == [f"figure {k}" for k in range(count)]
-    specs = [ax.get_subplotspec() for ax in figure.axes]
-    assert {spec.get_gridspec().ncols for spec in specs if spec is not None} == {columns}
+    assert {ax.get_subplotspec().get_gridspec().ncols for ax in figure.axes} == {columns}
 
 
 def test_one_figure_over_another():
@@ -70,14 +68,13 @@ def test_parts_stand_on_top_of_each_other_and_reach_the_time_of_the_step():
     figure = growth.step_time_panels({"variant": STEPS, "full": STEPS[:1]})
     ax, right = figure.axes
     assert (ax.get_title(), right.get_title()) == ("variant", "full")
-    (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()] == [*growth.PART_COLOURS, growth.REST]
+    parts = [*growth.PART_COLOURS, growth.REST]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == parts
+    assert [bars.get_label() for bars in ax.containers] == parts
     assert ax.get_legend() is right.get_legend() is None
-    by_part = {bars.get_label(): bars.patches for bars in ax.containers}
-    assert list(by_part) == [*growth.PART_COLOURS, growth.REST]
     for k, step in enumerate(STEPS):
         foot = 0.0
-        for part, bars in by_part.items():
+        for part, bars in zip(parts, ax.containers, strict=True):
             assert bars[k].get_y() == pytest.approx(foot)
             if part != growth.REST:
                 assert bars[k].get_height() == pytest.approx(1e3 * step.parts.get(part, 0.0))
@@ -90,7 +87,7 @@ def test_points_laws_and_claims_are_drawn_where_they_are():
     growth.plot_growth(ax, SERIES, CLAIMS)
     points, line, bare, wall, step = ax.get_lines()
     assert points.get_xydata().tolist() == [[10.0, 1.0], [100.0, 10.0]]
-    np.testing.assert_allclose(line.get_xydata(), [[10.0, 1.0], [100.0, 10.0]])
+    np.testing.assert_allclose(line.get_xydata(), points.get_xydata())
     assert bare.get_xydata().tolist() == [[10.0, 0.5]]
     assert [wall.get_marker(), step.get_marker()] == ["x", "v"]
     assert step.get_xydata().tolist() == [[90.0, 25.0]]
@@ -110,17 +107,14 @@ POINTS = [
 
 def test_points_bands_looks_and_legend():
     ax = plot_predictions(POINTS, "friction")
-    for bars, point in zip(ax.containers, POINTS, strict=True):
-        line, _, (bar,) = bars
+    for (line, _, (bar,)), point in zip(ax.containers, POINTS, strict=True):
         assert line.get_xydata().tolist() == [[point.measured, point.predicted]]
         ends = [[point.measured, point.low], [point.measured, point.high]]
         assert bar.get_segments()[0].tolist() == ends
-    lines = [bars[0] for bars in ax.containers]
-    assert [line.get_color() for line in lines] == [COLOURS[0], COLOURS[1], COLOURS[0]]
-    assert [line.get_marker() for line in lines] == [MARKERS[0], MARKERS[0], MARKERS[1]]
+    looks = [(bars[0].get_color(), bars[0].get_marker()) for bars in ax.containers]
+    assert looks == [(COLOURS[c], MARKERS[m]) for c, m in ((0, 0), (1, 0), (0, 1))]
     assert ax.get_xlim() == ax.get_ylim() == (0.0, pytest.approx(84.0))
-    (equal,) = [line for line in ax.get_lines() if line.get_gid() == "equal"]
-    np.testing.assert_array_equal(*equal.get_xydata().T)
+    np.testing.assert_array_equal(*_line(ax, "equal").get_xydata().T)
     words = [text.get_text() for text in ax.get_legend().get_texts()]
     assert words == ["turns", "level", "granite", "sandstone", "friction", "equal", "20 % off"]
 
@@ -128,8 +122,6 @@ def test_points_bands_looks_and_legend():
 def test_versions_without_a_value_have_no_point():
     ax = Figure().add_subplot()
     plot_history(ax, ["1", "2", "3"], {"paper": [0.5, None, 0.7]}, "F_SF")
-    (line,) = ax.lines
-    assert line.get_xdata().tolist() == [0, 2]
-    assert line.get_ydata().tolist() == [0.5, 0.7]
+    assert ax.lines[0].get_xydata().tolist() == [[0, 0.5], [2, 0.7]]
     assert [tick.get_text() for tick in ax.get_xticklabels()] == ["1", "2", "3"]
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("version", "F_SF")

@@ -10,8 +10,8 @@ from drystone_lab.public import bench
 from drystone_lab.public.store import Stamp, kept_runs
 from drystone_lab.runs import workers
 from drystone_lab.runs.outcome import execute, one_by_one
-from drystone_lab.runs.spec import RunSpec, generated
 from drystone_lab.table import BenchSettings
+from tests.lab.runs import bricks
 
 STAMP = Stamp("1.0", "2026-01-01T00:00:00+00:00", "Linux x86_64")
 SETTINGS = BenchSettings(policies=("paper", "random"), quick=True)
@@ -40,10 +40,8 @@ def figures(tables):
 
 def test_every_method_builds_every_wall_with_every_seed(counted):
     walls, everything, seconds, *_ = run_public(replace(SETTINGS, seed=3))
-    assert [(row["wall"], row["method"], row["seeds"]) for row in walls.records()] == [
-        ("bricks 2:1", "paper", 2),
-        ("bricks 2:1", "random", 2),
-    ]
+    found = [(row["wall"], row["method"], row["seeds"]) for row in walls.records()]
+    assert found == [("bricks 2:1", "paper", 2), ("bricks 2:1", "random", 2)]
     assert {(spec.seed, dict(spec.changes).get("selection_rule")) for spec in counted} == {
         (3, None), (4, None), (3, "random"), (4, "random"),
     }  # fmt: skip
@@ -56,23 +54,18 @@ def test_every_method_builds_every_wall_with_every_seed(counted):
 def test_runs_of_a_store_are_not_done_again(tmp_path, counted):
     settings = replace(SETTINGS, store=tmp_path, seeds=1)
     before = figures(run_public(settings))
-    assert len(counted) == 2
-    assert figures(run_public(settings)) == before
-    assert len(counted) == 2
-    run_public(replace(settings, seeds=2))
-    assert len(counted) == 4
-    assert figures(run_public(replace(settings, again=True))) == before
-    assert len(counted) == 6
+    for changed, count in (({}, 2), ({"seeds": 2}, 4), ({"again": True}, 6)):
+        found = figures(run_public(replace(settings, **changed)))
+        assert len(counted) == count
+        assert (found == before) == ("seeds" not in changed)
     rows = kept_runs(tmp_path)
-    assert [(row.method, row.seed) for row in rows] == [
-        ("paper", 0), ("paper", 1), ("random", 0), ("random", 1),
-    ]  # fmt: skip
+    runs = [("paper", 0), ("paper", 1), ("random", 0), ("random", 1)]
+    assert [(row.method, row.seed) for row in rows] == runs
     assert {row.version for row in rows} == {"1.0"}
     assert len(list((tmp_path / "runs").iterdir())) == 4
     row = rows[0]
     assert (row.suite, row.suite_version, row.placed, row.shaken) == ("bricks", 1, 30, "no")
-    changes = (("sampling", "full"),)
-    run_public(replace(settings, policies=("paper",), changes=changes))
+    run_public(replace(settings, policies=("paper",), changes=(("sampling", "full"),)))
     assert [row.settings for row in kept_runs(tmp_path)].count('{"sampling": "full"}') == 1
 
 
@@ -94,31 +87,22 @@ def test_a_damaged_store_is_found_before_the_runs(tmp_path, counted):
 
 def test_shaken_walls_are_shaken_once(tmp_path, monkeypatch):
     pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
-
-    keys = []
-
-    def pga_of(_spec, outcome, _data):
-        keys.append(outcome.key)
-        return None if len(keys) == 1 else 0.25
-
-    monkeypatch.setattr(bench, "pga_of", pga_of)
+    amplitudes = iter([None, 0.25])
+    monkeypatch.setattr(bench, "pga_of", lambda *_: next(amplitudes))
     settings = replace(SETTINGS, policies=("paper",), store=tmp_path, shake=True)
     run_public(replace(settings, shake=False, seeds=1))  # of the two, one is kept already
     first = run_public(settings)[0]
     assert first.records()[0]["PGA, g"] == 0.25
     assert run_public(settings)[0] == first
-    assert len(keys) == 2
+    assert list(amplitudes) == []
     run_public(replace(settings, shake=False))
-    assert [(run.shaken, run.pga_g) for run in kept_runs(tmp_path)] == [
-        ("falls", None),
-        ("yes", 0.25),
-    ]
+    found = [(run.shaken, run.pga_g) for run in kept_runs(tmp_path)]
+    assert found == [("falls", None), ("yes", 0.25)]
 
 
 def test_a_wall_of_bricks_on_the_table(monkeypatch):
     """What is shaken is the finished wall, in the paper's friction."""
     pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
-
     seen = []
 
     def shake(scene, _engine, *, watched):
@@ -126,8 +110,7 @@ def test_a_wall_of_bricks_on_the_table(monkeypatch):
         return ShakeTrial(0.3, 0.0, (), 0.0)
 
     monkeypatch.setattr(bench, "shake_once", shake)
-    source = generated("brick", 1, count=6, height_px=10, aspect=2)
-    spec = RunSpec(source=source, width=60, height=20)
+    spec = bricks.run(0)
     assert bench.pga_of(spec, execute(spec, None), None) == 0.3
     ((scene, watched),) = seen
     assert scene.mu == 0.58

@@ -25,6 +25,7 @@ def result(wall, method, seed, **figures):
 
 
 def f_sf_table(found):
+    """The one pair of F_SF by row, or all, and the notes below."""
     return next(table for table in pair_tables(found) if table.title.startswith("F_SF"))
 
 
@@ -32,10 +33,9 @@ def results(values):
     """Results of F_SF by method: seed after seed on the first wall, then on the second."""
     return BenchResults(
         tuple(
-            result(wall, method, seed, F_SF=column[half * len(column) // 2 + seed])
+            result(WALLS[place >= len(column) // 2], method, place % (len(column) // 2), F_SF=value)
             for method, column in values.items()
-            for half, wall in enumerate(WALLS)
-            for seed in range(len(column) // 2)
+            for place, value in enumerate(column)
         )
     )
 
@@ -96,27 +96,21 @@ def test_pairs_are_won_and_have_a_mean(first, second, higher, won, mean, pairs):
 
 def test_a_clear_winner_is_shown_and_ranked_first():
     rng = np.random.default_rng(3)
-    low = rng.uniform(0.5, 0.6, 24).tolist()
-    high = [value + gain for value, gain in zip(low, rng.uniform(0.1, 0.2, 24), strict=True)]
-    *tables, ranking = pair_tables(results({"weak": low, "strong": high}))
-    row = next(table for table in tables if table.title.startswith("F_SF")).records()[0]
-    assert row["shows"] == "strong"
-    assert row["won"] == 0.0
-    assert row["pairs"] == 24
-    first, second = ranking.records()
+    low = rng.uniform(0.5, 0.6, 24)
+    found = results({"weak": low.tolist(), "strong": (low + rng.uniform(0.1, 0.2, 24)).tolist()})
+    row = f_sf_table(found).records()[0]
+    assert (row["shows"], row["won"], row["pairs"]) == ("strong", 0.0, 24)
+    first, second = pair_tables(found)[-1].records()
     assert (first["method"], first["F_SF"], second["F_SF"]) == ("strong", 1.0, 2.0)
     assert first["mean rank"] == pytest.approx((1.0 + 4 * 1.5) / 5)
     assert first["not told apart from the next in"] == "placed, F_AV, F_AH, F_LR"
     assert second["not told apart from the next in"] is None
-
-
-def test_few_pairs_show_nothing_and_it_is_said():
-    *tables, ranking = pair_tables(results({"weak": [0.1, 0.2, 0.1, 0.2], "strong": [0.5] * 4}))
-    table = next(table for table in tables if table.title.startswith("F_SF"))
+    # Few pairs show nothing, and it is said.
+    found = results({"weak": [0.1, 0.2, 0.1, 0.2], "strong": [0.5] * 4})
+    table, (first, _) = f_sf_table(found), pair_tables(found)[-1].records()
     assert table.records()[0]["shows"] == "strong?"
     assert any("no p can be below 0.62" in note for note in table.notes)
-    apart = ranking.records()[0]["not told apart from the next in"]
-    assert apart == "placed, F_SF, F_AV, F_AH, F_LR"
+    assert first["not told apart from the next in"] == "placed, F_SF, F_AV, F_AH, F_LR"
 
 
 def test_copies_are_no_evidence():
@@ -141,14 +135,12 @@ def test_walls_count_for_those_two_methods_that_depend_on_the_seed():
 
 
 def test_ties_of_one_figure_are_pairs():
-    found = BenchResults(
-        tuple(
-            result(WALLS[0], method, seed, F_SF=0.5, F_AV=value + seed)
-            for method, value in (("a", 7.0), ("b", 8.0))
-            for seed in range(3)
-        )
+    found = tuple(
+        result(WALLS[0], method, seed, F_SF=0.5, F_AV=value + seed)
+        for method, value in (("a", 7.0), ("b", 8.0))
+        for seed in range(3)
     )
-    table = f_sf_table(found)
+    table = f_sf_table(BenchResults(found))
     assert table.records()[0]["pairs"] == 3
     assert not any("depend on the seed" in note for note in table.notes)
 
@@ -169,51 +161,37 @@ def test_equal_values_share_a_rank_and_undefined_ones_are_last(values, ranks):
 def made(**columns):
     return BenchResults(
         tuple(
-            result(wall, "one", seed, **{name: column[wall][seed]
-                                         for name, column in columns.items()})
-            for wall in WALLS
+            result(wall, "one", seed, **{name: values[k][seed] for name, values in columns.items()})
+            for k, wall in enumerate(WALLS)
             for seed in range(3)
         )
-    )  # fmt: skip
-
-
-VALUES = {WALLS[0]: [0.7, 0.8, 0.9], WALLS[1]: [0.5, 0.5, 0.53]}
+    )
 
 
 def test_mean_spread_and_best():
-    walls, everything, times = comparison(made(F_SF=VALUES, F_AH=VALUES))
+    values = [0.7, 0.8, 0.9], [0.5, 0.5, 0.53]
+    walls, everything, times = comparison(made(F_SF=values, F_AH=values))
     first, second = walls.records()
-    assert first["F_SF"] == pytest.approx(0.8)
-    assert first["±F_SF"] == pytest.approx(0.1)
+    assert (first["F_SF"], first["±F_SF"]) == (pytest.approx(0.8), pytest.approx(0.1))
     assert (first["best F_SF"], first["best F_AH"]) == (0.9, 0.7)
-    assert second["±F_SF"] == pytest.approx(stdev([0.5, 0.5, 0.53]), rel=1e-3)
+    assert second["±F_SF"] == pytest.approx(stdev(values[1]), rel=1e-3)
     (row,) = everything.records()
     assert row["F_SF"] == pytest.approx(fmean([0.8, 0.51]))
-    assert row["±F_SF"] == pytest.approx(
-        ((0.1**2 + stdev([0.5, 0.5, 0.53]) ** 2) / 2) ** 0.5, rel=1e-3
-    )
+    assert row["±F_SF"] == pytest.approx(math.hypot(0.1, stdev(values[1])) / 2**0.5, rel=1e-3)
     assert row["best F_SF"] == pytest.approx(fmean([0.9, 0.53]))
     assert [row["s"] for row in times.records()] == [1.0, 1.0]
 
 
 def test_what_is_not_defined_is_counted_and_never_zero():
-    values = {WALLS[0]: [None, 0.4, 0.6], WALLS[1]: [None, None, None]}
-    walls, everything, _ = comparison(made(F_LR=values))
+    walls, everything, _ = comparison(made(F_LR=([None, 0.4, 0.6], [None] * 3)))
     first, second = walls.records()
-    assert first["F_LR"] == pytest.approx(0.5)
+    assert first["F_LR"] == everything.records()[0]["F_LR"] == pytest.approx(0.5)
     assert second["F_LR"] is second["best F_LR"] is second["±F_LR"] is None
-    assert everything.records()[0]["F_LR"] == pytest.approx(0.5)
-    assert any(
-        note.startswith("F_LR is not defined for walls of one 4 of 6") for note in walls.notes
-    )
+    assert any("F_LR is not defined for walls of one 4 of 6" in note for note in walls.notes)
     # Amplitudes are there when walls were shaken.
     assert "PGA, g" not in walls.columns
-    values = {WALLS[0]: [0.2, None, 0.3], WALLS[1]: [0.1, 0.1, 0.1]}
-    walls, _, _ = comparison(made(pga_g=values, shaken=dict.fromkeys(WALLS, ["yes"] * 3)))
+    walls, *_ = comparison(made(pga_g=([0.2, None, 0.3], [0.1] * 3), shaken=[["yes"] * 3] * 2))
     assert walls.records()[0]["PGA, g"] == pytest.approx(0.25)
     # Of the yardstick nothing was built, and so it is of walls in which no stone found a place.
-    assert any(
-        "walls of one 1 of 6: nothing was built, or it does not stand at rest in the engine; left"
-        in note
-        for note in walls.notes
-    )
+    said = "one 1 of 6: nothing was built, or it does not stand at rest in the engine; left"
+    assert any(f"walls of {said}" in note for note in walls.notes)

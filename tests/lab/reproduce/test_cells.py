@@ -15,15 +15,15 @@ def test_medians_and_ranges():
         outcome(placed=9, F_SF=0.7500049, F_LR=0.75),
     ]
     cells = dict(zip(COLUMNS, summary(walls), strict=True))
-    assert cells["walls"] == 3
-    assert cells["stones"] == 10
-    assert (cells["placed median"], cells["placed range"]) == (9, "8 to 10")
-    assert (cells["F_SF median"], cells["F_SF range"]) == (0.75, "0.700 to 0.900")
-    assert (cells["F_LR median"], cells["F_LR range"]) == (0.5, "0.25 to 0.75")
-    assert cells["F_AV median"] == 1.0
-    # A figure that no wall has.
-    cells = dict(zip(COLUMNS, summary([outcome(F_LR=None)] * 2), strict=True))
-    assert (cells["F_LR median"], cells["F_LR range"]) == (None, None)
+    assert (cells["walls"], cells["stones"], cells["F_AV median"]) == (3, 10, 1.0)
+    none = dict(zip(COLUMNS, summary([outcome(F_LR=None)] * 2), strict=True))
+    for found, name, middle, span in (
+        (cells, "placed", 9, "8 to 10"),
+        (cells, "F_SF", 0.75, "0.700 to 0.900"),
+        (cells, "F_LR", 0.5, "0.25 to 0.75"),
+        (none, "F_LR", None, None),
+    ):
+        assert (found[f"{name} median"], found[f"{name} range"]) == (middle, span)
     assert figures_of(walls, "F_LR") == [0.25, 0.75]
 
 
@@ -61,6 +61,5 @@ def test_claims_that_cannot_be_told_do_not_count():
     told = sentences(found)
     assert told[0] == "Of 2 claims of the paper that can be told, 1 agree."
     assert [one.split(":")[0] for one in told[1:]] == ["Agrees", "Differs", "Cannot be told"]
-    assert [row["agrees"] for row in claims_table("Claims", found).records()] == [
-        True, False, None
-    ]  # fmt: skip
+    records = claims_table("Claims", found).records()
+    assert [row["agrees"] for row in records] == [True, False, None]

@@ -18,51 +18,41 @@ def naive_edges(labels):
     """Pixel pairs side by side or above each other that belong to different blocks."""
     height, width = labels.shape
     found = set()
-    for row in range(height):
-        for col in range(width):
-            here = int(labels[row, col])
-            right = int(labels[row, col + 1]) if col + 1 < width else 0
-            x, y = col + 1, height - row
-            if here and right and here != right:
-                up = here > right
-                found.add(((x, y - 1), (x, y)) if up else ((x, y), (x, y - 1)))
-            below = int(labels[row + 1, col]) if row + 1 < height else -1
-            if here and (below == -1 or (below and below != here)):
-                ends = ((col, y - 1), (col + 1, y - 1))
-                found.add(ends if here > below else ends[::-1])
+    for row, col in np.argwhere(labels > 0).tolist():
+        here, x, y = int(labels[row, col]), col + 1, height - row
+        right = int(labels[row, x]) if x < width else 0
+        if right and here != right:
+            found.add(((x, y - 1), (x, y)) if here > right else ((x, y), (x, y - 1)))
+        below = int(labels[row + 1, col]) if row + 1 < height else -1
+        if below and below != here:
+            ends = ((col, y - 1), (col + 1, y - 1))
+            found.add(ends if here > below else ends[::-1])
     return found
 
 
 def test_edges_are_where_pixels_of_two_blocks_meet(labels):
-    starts, ends = fig12.boundary_edges(labels)
-    found = [
-        ((a, b), (c, d)) for (a, b), (c, d) in zip(starts.tolist(), ends.tolist(), strict=True)
-    ]
+    found = [tuple(map(tuple, edge)) for edge in np.stack(fig12.boundary_edges(labels), 1).tolist()]
     assert len(found) == len(set(found)) > 10
     assert set(found) == naive_edges(labels)
 
 
 def test_three_stones_stand_on_the_ground_and_on_each_other(folder, labels):
+    run = built(folder, RUBBLE)
     ids = set(np.unique(labels).tolist()) - {0}
     assert len(ids) == 3
-    wall = built(folder, RUBBLE).wall.labels
     for stone in ids:
-        assert np.count_nonzero(labels == stone) == np.count_nonzero(wall == stone)
+        assert np.count_nonzero(labels == stone) == np.count_nonzero(run.wall.labels == stone)
     on_ground = set(np.unique(labels[-1]).tolist()) - {0}
     assert len(on_ground) == 2
     (top,) = ids - on_ground
     pairs = {frozenset((i.block, i.other)) for i in model_from_labels(labels).model.interfaces}
     assert all(frozenset((top, below)) in pairs for below in on_ground)
+    # Where none stands on two, the first three are taken.
+    first = {stage.stone.stone for stage in run.stages[:3]}
+    assert set(np.unique(fig12.three_stones(run.stages[2].after)).tolist()) == first | {0}
 
 
-def test_the_first_three_stones_are_taken_where_none_stands_on_two(folder):
-    stages = built(folder, RUBBLE).stages
-    wall = stages[2].after
-    first = {stage.stone.stone for stage in stages[:3]}
-    assert set(np.unique(fig12.three_stones(wall)).tolist()) == first | {0}
-
-
-def test_interfaces_end_on_corners_of_pixel_edges(output, labels):
+def test_interfaces_end_on_corners_of_pixel_edges_and_are_drawn(output, labels):
     corners = {point for edge in naive_edges(labels) for point in edge}
     table = rows(output, "interfaces")
     for row in table:
@@ -72,6 +62,11 @@ def test_interfaces_end_on_corners_of_pixel_edges(output, labels):
         assert row["length px"] == pytest.approx(np.hypot(*np.subtract(*ends)), abs=1e-4)
         assert np.hypot(row["normal x"], row["normal y"]) == pytest.approx(1, abs=1e-3)
     assert {row["other"] for row in table} > {"ground"}
+    drawn = gids(output, "fig12")
+    for row in rows(output, "blocks"):
+        assert drawn.count(f"block-{row['stone']}") == 3
+        assert f"centre-{row['stone']}" in drawn
+    assert {"edges", "normals", "interfaces"} <= set(drawn)
 
 
 def test_the_mean_of_the_normals_of_pixels_is_across_the_ends():
@@ -86,14 +81,6 @@ def test_the_mean_of_the_normals_of_pixels_is_across_the_ends():
     (run,) = [i for i in model_from_labels(labels).model.interfaces if i.other == 1]
     np.testing.assert_allclose(fig12._mean_normal(run), mean, atol=1e-12)
     assert 0 < fig12._apart_deg(run) < 10
-
-
-def test_the_picture_shows_pixels_edges_and_blocks(output):
-    drawn = gids(output, "fig12")
-    ids = [row["stone"] for row in rows(output, "blocks")]
-    assert all(drawn.count(f"block-{i}") == 3 for i in ids)
-    assert all(f"centre-{i}" in drawn for i in ids)
-    assert {"edges", "normals", "interfaces"} <= set(drawn)
 
 
 LABELS = np.repeat(np.array([[0, 7, 7], [3, 3, 5]], np.uint32), 4, axis=0).repeat(4, axis=1)

@@ -1,4 +1,5 @@
 import math
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -28,16 +29,14 @@ def naive_ward(features, threshold):
     """Join the two clusters at the least Ward distance until it is above the threshold."""
     groups = [[k] for k in range(len(features))]
 
-    def distance(one, other):
-        a, b = features[one], features[other]
+    def distance(pair):
+        a, b = (features[groups[k]] for k in pair)
         weight = 2 * len(a) * len(b) / (len(a) + len(b))
         return math.sqrt(weight) * math.dist(a.mean(axis=0), b.mean(axis=0))
 
     while len(groups) > 1:
-        pairs = [(distance(groups[i], groups[j]), i, j) for j in range(len(groups))
-                 for i in range(j)]  # fmt: skip
-        least, i, j = min(pairs)
-        if least > threshold:
+        i, j = least = min(combinations(range(len(groups)), 2), key=distance)
+        if distance(least) > threshold:
             break
         groups[i] += groups.pop(j)
     return {frozenset(group) for group in groups}
@@ -55,10 +54,12 @@ def test_clusters_are_those_of_joining_step_by_step(output, stones, features):
         assert (row["mean eccentricity"], row["mean size"]) == pytest.approx(mean, rel=2e-3)
 
 
-def test_counts_over_the_threshold(output, features):
+def test_counts_over_the_threshold(output, features, stones):
     (row,) = rows(output, "thresholds")
     for distance in fig5.DISTANCES:
         assert row[f"{distance:g}"] == len(naive_ward(features, distance)), distance
+    drawn = gids(output, "fig5")
+    assert all(drawn.count(f"stone-{stone.id}") == 2 for stone in stones)
 
 
 def test_the_span_of_thresholds_has_the_paper_s_count(stones, features):
@@ -68,11 +69,6 @@ def test_the_span_of_thresholds_has_the_paper_s_count(stones, features):
     assert len(naive_ward(features, low - 2e-3)) > 7 > len(naive_ward(features, high + 2e-3))
 
 
-def test_the_picture_shows_every_stone_twice(output, stones):
-    drawn = gids(output, "fig5")
-    assert all(drawn.count(f"stone-{stone.id}") == 2 for stone in stones)
-
-
 def test_the_stones_pr_fall_into_the_paper_s_clusters(tmp_path, data_dir):
     output = fig5.CLUSTERS.make(context(tmp_path, data_dir))
     assert len(rows(output, "clusters")) == fig5.PAPER_CLUSTERS
@@ -80,15 +76,13 @@ def test_the_stones_pr_fall_into_the_paper_s_clusters(tmp_path, data_dir):
     assert [row["count"] for row in rows(output, "thresholds")] == [32, 34, 61]
 
 
-FEATURES = np.array([[0.2, 1.0], [0.8, 0.5], [0.81, 0.5]])
-
-
 def test_stones_are_at_their_features_in_the_colour_of_their_cluster():
+    features, clusters = np.array([[0.2, 1.0], [0.8, 0.5], [0.81, 0.5]]), {3: 1, 5: 2, 8: 2}
     ax = Figure().add_subplot()
-    fig5.plot_features(ax, FEATURES, [3, 5, 8], {3: 1, 5: 2, 8: 2})
+    fig5.plot_features(ax, features, [3, 5, 8], clusters)
     lines = {line.get_gid(): line for line in ax.lines}
     assert list(lines) == ["stone-3", "stone-5", "stone-8"]
-    for line, at, cluster in zip(lines.values(), FEATURES, (1, 2, 2), strict=True):
+    for line, at, cluster in zip(lines.values(), features, clusters.values(), strict=True):
         np.testing.assert_allclose(line.get_xydata(), [at])
         assert to_hex(line.get_markerfacecolor()) == cluster_colour(cluster)
     assert lines["stone-3"].get_marker() != lines["stone-5"].get_marker()

@@ -13,8 +13,6 @@ from tests.naive.support import rests_stably
 
 EVERY = 4
 """Columns that are looked at slowly: each of so many."""
-
-
 MADE = of(fig6_7.INDICES, RUBBLE)
 
 
@@ -66,21 +64,17 @@ def test_counting_again_agrees_everywhere(moment, places):
 
 
 def test_the_stone_of_fig7_stands_where_the_run_left_it(folder, output, moment):
-    run = built(folder, RUBBLE)
-    placed = run.stages[moment.number - 1].group.placement
+    stage = built(folder, RUBBLE).stages[moment.number - 1]
     table = rows(output, "fig7")
-    assert {row["stone"] for row in table} == {placed.stone_id}
+    assert {row["stone"] for row in table} == {stage.group.placement.stone_id}
     assert {row["index"] for row in table} >= {"NHR", "IWR"}
-    claimed = run.stages[moment.number - 1].stone.indices
     for row in table:
-        assert row["value"] == pytest.approx(claimed[row["index"]], abs=1e-4)
+        assert row["value"] == pytest.approx(stage.stone.indices[row["index"]], abs=1e-4)
 
 
 def test_pictures_show_what_is_measured(output):
     six = gids(output, "fig6")
-    assert six.count("stone") == 12
-    assert {"box", "begun", "rays"} <= set(six)
-    assert [six.count(mark) for mark in ("begun", "rays", "box")] == [2, 2, 2]
+    assert [six.count(mark) for mark in ("stone", "begun", "rays", "box")] == [12, 2, 2, 2]
     seven = set(gids(output, "fig7"))
     assert {"stone", "rays", "begun", "box", "top", "joint", "offset", "slope", "name"} <= seven
 
@@ -92,15 +86,12 @@ LABELS[2:6, :5] = 3
 MASK = np.ones((3, 4), bool)
 POSED = PosedStone(Stone(9, MASK), 0.0, 1.0, MASK, (2.0, 1.5))
 SWEPT = np.zeros((10, 20), bool)
+SWEPT = np.zeros((10, 20), bool)
 SWEPT[3:6, :5] = SWEPT[6:, 5:9] = True
-
-
-@pytest.fixture
-def action():
-    return fig6_7.ActionView(
-        LABELS, POSED, 3, 5, SWEPT, 8, (3, Box(0, 5, 4, 8)),
-        ((1, Box(0, 6, 0, 4)), (2, Box(6, 12, 0, 4))), (0, 3),
-    )  # fmt: skip
+ACTION = fig6_7.ActionView(
+    LABELS, POSED, 3, 5, SWEPT, 8, (3, Box(0, 5, 4, 8)),
+    ((1, Box(0, 6, 0, 4)), (2, Box(6, 12, 0, 4))), (0, 3),
+)  # fmt: skip
 
 
 def fills(ax):
@@ -111,8 +102,8 @@ def drawn(ax, gid):
     return [line.get_xydata().tolist() for line in ax.lines if line.get_gid() == gid]
 
 
-def test_only_what_is_asked_for_is_marked(action):
-    ax = fig6_7.plot_action(action, {"neighbour"})
+def test_only_what_is_asked_for_is_marked():
+    ax = fig6_7.plot_action(ACTION, {"neighbour"})
     assert fills(ax)["block-3"] == fig6_7.NEIGHBOUR
     assert fills(ax)["block-1"] == fills(ax)["block-2"] == fig6_7.BUILT
     assert fills(ax)["stone"] == fig6_7.STONE
@@ -120,20 +111,13 @@ def test_only_what_is_asked_for_is_marked(action):
     # Tops at 7 and at 8, over both stones; the difference between them.
     assert drawn(ax, "top") == [[[0, 7], [9, 7]], [[0, 8], [9, 8]]]
     assert drawn(ax, "difference") == [[[4.5, 7], [4.5, 8]]]
-
-
-def test_joints_are_the_top_corners_of_the_stones_below(action):
-    ax = fig6_7.plot_action(action, {"joints"})
+    # Joints are the top corners of the stones below.
+    ax = fig6_7.plot_action(ACTION, {"joints", "rays", "box", "begun", "slope"})
     assert fills(ax)["block-1"] == fills(ax)["block-2"] == fig6_7.BELOW
     assert drawn(ax, "joint") == [[[6, 4]], [[6, 4]]]
     assert drawn(ax, "offset") == [[[5, 4], [6, 4]], [[9, 4], [6, 4]]]
-
-
-def test_rays_box_and_slope(action):
-    ax = fig6_7.plot_action(action, {"rays", "box", "begun", "slope"})
-    (rays,) = ax.images
-    np.testing.assert_array_equal(rays.get_array()[..., 3] > 0, SWEPT)
+    assert drawn(ax, "slope") == [[[5.5, 7], [8.5, 7]]]
+    np.testing.assert_array_equal(ax.images[0].get_array()[..., 3] > 0, SWEPT)
     patches = {patch.get_gid(): patch for patch in ax.patches}
     assert patches["box"].get_bbox().bounds == (5, 4, 4, 3)
     assert patches["begun"].get_bbox().bounds == (0, 0, 20, 8)
-    assert drawn(ax, "slope") == [[[5.5, 7], [8.5, 7]]]

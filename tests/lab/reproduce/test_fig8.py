@@ -21,41 +21,36 @@ def trial(folder):
 
 def naive_maps(occupied, mask):
     """Position by position: overlap with the landscape, and with what is beside it."""
-    height, width = occupied.shape
     bounds = np.pad(occupied, 1, constant_values=True)
     grown = bounds.copy()
-    for r, c in np.argwhere(bounds):
-        for i, j in ((r - 1, c), (r + 1, c), (r, c - 1), (r, c + 1)):
-            if 0 <= i < bounds.shape[0] and 0 <= j < bounds.shape[1]:
-                grown[i, j] = True
-    shape = (height - mask.shape[0] + 1, width - mask.shape[1] + 1)
+    for r, c in np.argwhere(bounds[1:-1, 1:-1]) + 1:
+        grown[[r - 1, r + 1, r, r], [c, c, c - 1, c + 1]] = True
+    grown[[1, -2]] = grown[:, [1, -2]] = True
+    shape = np.array(occupied.shape) - mask.shape + 1
     free, floating = np.zeros(shape, bool), np.zeros(shape, bool)
-    for row, col in np.ndindex(shape):
+    for row, col in np.ndindex(*shape):
         window = np.s_[row : row + mask.shape[0], col : col + mask.shape[1]]
         free[row, col] = not np.any(occupied[window] & mask)
         floating[row, col] = not np.any(grown[1:-1, 1:-1][window] & mask)
     return free, floating
 
 
-def test_maps_are_those_of_every_position(trial):
+def test_maps_are_those_of_every_position_and_so_are_counts(output, trial):
     moment, (posed, *_) = trial
     maps = fig8.PositionMaps.of(moment.wall.occupied, posed.mask)
     free, floating = naive_maps(moment.wall.occupied, posed.mask)
     np.testing.assert_array_equal(maps.free, free)
     np.testing.assert_array_equal(maps.floating, floating)
     assert not np.any(maps.touching & maps.floating)
-
-
-def test_counts(output, trial):
-    moment, (posed, *_) = trial
-    occupied = moment.wall.occupied
-    free, floating = naive_maps(occupied, posed.mask)
     below = np.vstack([free[1:], np.zeros_like(free[:1])])
     resting = np.count_nonzero(free & ~below)
     counts = [row["count"] for row in rows(output, "positions")]
     assert counts == [
         free.size, free.sum(), floating.sum(), free.sum() - floating.sum(), resting, 1,
     ]  # fmt: skip
+    drawn = set(gids(output, "fig8"))
+    assert len([gid for gid in drawn if gid.startswith("layer-")]) == 4
+    assert {"values", "chosen", "best"} <= drawn
 
 
 def test_the_chosen_position_is_worth_most(output, trial):
@@ -75,13 +70,6 @@ def test_the_chosen_position_is_worth_most(output, trial):
     assert best["best: Eq. 12"] == chosen["best: Eq. 12"] <= touching["best: Eq. 12"]
     others = moment.positions(posed)[::9].tolist()
     assert max(map(value, map(tuple, others))) <= value((row, col)) + 1e-12
-
-
-def test_the_picture_shows_all_sets(output):
-    drawn = gids(output, "fig8")
-    layers = {gid for gid in drawn if gid.startswith("layer-")}
-    assert len(layers) == 4
-    assert {"values", "chosen", "best"} <= set(drawn)
 
 
 SITE = np.zeros((6, 10), np.uint32)

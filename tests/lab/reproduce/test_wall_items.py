@@ -1,6 +1,7 @@
 """The items about the walls of §5.1 and §5.2, on small generated walls."""
 
 from dataclasses import replace
+from itertools import product
 from statistics import median
 from types import SimpleNamespace
 
@@ -15,7 +16,7 @@ from drystone_lab.reproduce import base_case, noise, other_stones, times, ways
 from drystone_lab.runs.spec import generated
 from drystone_lab.timed_walls import TimedWall
 from drystone_lab.walls import Target
-from tests.lab.reproduce.small_walls import of, on, rows
+from tests.lab.reproduce.small_walls import of, on, outcome, rows
 
 SEEDS = (1, 2)
 RUBBLE = Target(
@@ -24,46 +25,58 @@ RUBBLE = Target(
 SHARP = replace(RUBBLE, name="sharp", source=replace(RUBBLE.source, seed=8), number=5)
 
 
+COMPARED = {
+    "beta": (ways.BETA, "beta", "0.7", ("placement.beta", 0.7), [4]),
+    "fig16": (ways.SAMPLING, "sampling", "full", ("sampling", "full"), [4, 6]),
+    "fig20": (ways.STABILISATION, "stabilise", "wedge", ("stabilise.method", "wedge"), [1]),
+    "fig21": (ways.BOTH_ENDS, "built", "two-sided", ("two_sided", True), [2, 5]),
+}
+"""Items by table: column and name of a way, its setting, panels of pictures."""
+
+
+@pytest.fixture(scope="module")
+def made(here):
+    return {name: on(item, RUBBLE).make(here) for name, (item, *_) in COMPARED.items()}
+
+
 def _outcomes(here, *changes):
     return list(here.run([RUBBLE.run(seed, *changes) for seed in SEEDS]))
 
 
-def _filled(outcomes):
-    return [outcome.figures["F_SF"] for outcome in outcomes]
+def _values(outcomes, figure="F_SF"):
+    return [outcome.figures[figure] for outcome in outcomes]
 
 
-def _drawn(output):
-    return {picture.name: len(picture.figure.axes) for picture in output.pictures}
+@pytest.mark.parametrize("name", COMPARED)
+def test_a_row_has_the_median_of_the_walls_of_its_way(made, here, name):
+    _, column, way, change, panels = COMPARED[name]
+    (row,) = [row for row in rows(made[name], name) if row[column] == way]
+    filled = median(_values(_outcomes(here, change)))
+    assert row["F_SF median"] == pytest.approx(filled, abs=1e-4)
+    assert [len(picture.figure.axes) for picture in made[name].pictures] == panels
 
 
-def test_beta(here):
-    output = on(ways.BETA, RUBBLE).make(here)
-    table = {row["beta"]: row for row in rows(output, "beta")}
-    assert list(table) == ["0", "0.5", "0.7", "0.9"]
-    base, other = _outcomes(here, ("placement.beta", 0.7)), _outcomes(here, ("placement.beta", 0.9))
-    assert table["0.7"]["F_SF median"] == pytest.approx(median(_filled(base)), abs=1e-4)
-    pairs = [r for r in rows(output, "beta_pairs") if r["other beta"] == "0.9"]
-    better = sum(a > b + 1e-9 for a, b in zip(_filled(base), _filled(other), strict=True))
-    assert pairs[0] == {**pairs[0], "figure": "F_SF", "better": better}
-    assert sum(pairs[0][name] for name in ("better", "equal", "worse")) == len(SEEDS)
-    assert _drawn(output) == {"beta": 4}
+def test_pairs_are_of_one_seed(made, here):
+    base, other = (_values(_outcomes(here, ("placement.beta", beta))) for beta in (0.7, 0.9))
+    pair = next(row for row in rows(made["beta"], "beta_pairs") if row["other beta"] == "0.9")
+    better = sum(a > b + 1e-9 for a, b in zip(base, other, strict=True))
+    assert (pair["figure"], pair["better"]) == ("F_SF", better)
+    assert sum(pair[name] for name in ("better", "equal", "worse")) == len(SEEDS)
 
 
-def test_sampling(here):
-    output = on(ways.SAMPLING, RUBBLE).make(here)
-    table = {row["sampling"]: row for row in rows(output, "fig16")}
+def test_sampling(made, here):
+    table = {row["sampling"]: row for row in rows(made["fig16"], "fig16")}
     full = _outcomes(here, ("sampling", "full"))
-    counts = [outcome.figures["candidates"] for outcome in full]
+    counts = _values(full, "candidates")
     # Each step of the full batch tries all stones that are left.
     stones, placed = (full[0].figures[name] for name in ("stones", "placed"))
     assert min(counts) >= sum(stones - step for step in range(placed))
     assert table["full"]["candidates median"] == median(counts)
     ratio = median(counts) / table["variant"]["candidates median"]
-    claims = [row["here"] for row in rows(output, "claims")]
+    claims = [row["here"] for row in rows(made["fig16"], "claims")]
     assert f"full {ratio:.2f}" in claims[0]
     kinds = 1 if full[0].plan["steps"] == full[1].plan["steps"] else 2
     assert f"its seeds give {kinds} different walls" in claims[-1]
-    assert _drawn(output) == {"fig16": 4, "fig16_seeds": 6}
 
 
 def test_wedges(here):
@@ -94,31 +107,19 @@ def test_the_largest_wedges_are_shown_once():
     assert [wedge.id for wedge in base_case.shown(wall)] == [2, 4, 5]
 
 
-def test_stabilisation(here):
-    output = on(ways.STABILISATION, RUBBLE).make(here)
-    table = {row["stabilise"]: row for row in rows(output, "fig20")}
+def test_stabilisation(made, here):
+    table = {row["stabilise"]: row for row in rows(made["fig20"], "fig20")}
     assert list(table) == ["both", "rotation", "wedge", "none"]
     assert table["rotation"]["wedges median"] == table["none"]["wedges median"] == 0
     wedged = _outcomes(here, ("stabilise.method", "wedge"))
-    shares = [100 * o.figures["wedge_area"] / (100 * 40) for o in wedged]
+    shares = [100 * area / (100 * 40) for area in _values(wedged, "wedge_area")]
     assert table["wedge"]["wedges % of wall median"] == pytest.approx(median(shares), abs=1e-4)
-    (ax,) = output.pictures[0].figure.axes
+    (ax,) = made["fig20"].pictures[0].figure.axes
     assert ax.get_xlabel().startswith("rubble: ")
     points = {line.get_gid(): line.get_xydata() for line in ax.lines}
-    assert np.allclose(points["group-wedge"], np.column_stack([shares, _filled(wedged)]))
+    assert np.allclose(points["group-wedge"], np.column_stack([shares, _values(wedged)]))
     best = max(table, key=lambda way: table[way]["F_SF median"])
-    assert f"largest with {best}" in rows(output, "claims")[0]["here"]
-
-
-def test_both_ends(here):
-    output = on(ways.BOTH_ENDS, RUBBLE).make(here)
-    one, two = rows(output, "fig21")
-    assert (one["built"], two["built"]) == ("one-sided", "two-sided")
-    both = _outcomes(here, ("two_sided", True))
-    assert two["F_SF median"] == pytest.approx(median(_filled(both)), abs=1e-4)
-    sides = {step["side"] for outcome in both for step in outcome.plan["steps"] if "side" in step}
-    assert sides == {"left", "right"}
-    assert _drawn(output) == {"fig21": 2, "fig21_seeds": 5}
+    assert f"largest with {best}" in rows(made["fig20"], "claims")[0]["here"]
 
 
 def test_all_methods(here):
@@ -128,22 +129,20 @@ def test_all_methods(here):
     assert len(table) == 8
     for row in table:
         sampling, side = row["method"].split(", ")
-        spec = wall.run(
-            here.seed, ("sampling", sampling),
-            *([("two_sided", True)] if side == "two-sided" else []),
-        )  # fmt: skip
-        (outcome,) = here.run([spec])
+        two_sided = [("two_sided", True)] if side == "two-sided" else []
+        (outcome,) = here.run([wall.run(here.seed, ("sampling", sampling), *two_sided)])
         assert row["F_SF"] == pytest.approx(outcome.figures["F_SF"], abs=1e-4)
         assert row["placed"] == outcome.figures["placed"]
-    assert _drawn(output) == {"figB31": 8}
+        sides = {step.get("side", "left") for step in outcome.plan["steps"]}
+        assert len(sides) == 1 + len(two_sided)
+    assert [(one.name, len(one.figure.axes)) for one in output.pictures] == [("figB31", 8)]
 
 
 def test_noise(here):
-    output = on(noise.NOISE, *(replace(SHARP, number=n, stand_in=True) for n in (30, 80))).make(
-        here
-    )
+    walls = (replace(SHARP, number=number, stand_in=True) for number in (30, 80))
+    output = on(noise.NOISE, *walls).make(here)
     levels = {(row["noise, %"], row["rule"]): row for row in rows(output, "levels")}
-    assert list(levels) == [(30, "paper"), (30, "random"), (80, "paper"), (80, "random")]
+    assert list(levels) == list(product((30, 80), ("paper", "random")))
     walls = rows(output, "walls")
     filled = [r["F_SF"] for r in walls if (r["noise, %"], r["rule"]) == (30, "paper")]
     assert levels[30, "paper"]["F_SF median"] == pytest.approx(median(filled), abs=1e-4)
@@ -159,9 +158,8 @@ def test_orientations(here):
     output = on(noise.TURNED, RUBBLE, seeds=1).make(here)
     few, many = rows(output, "walls")
     assert (few["orientations"], many["orientations"]) == ("quarter", "10deg")
-    gain = many["F_SF"] - few["F_SF"]
     claim = rows(output, "claims")[0]
-    assert f"{gain:+.3f} in the median" in claim["here"]
+    assert f"{many['F_SF'] - few['F_SF']:+.3f} in the median" in claim["here"]
     assert claim["agrees"] is None  # one pair tells nothing
 
 
@@ -182,20 +180,20 @@ def test_rounded_stones(here):
     assert [picture.name for picture in output.pictures] == ["fig26", "fig27"]
 
 
-def test_more_walls_tell_a_difference():
-    def holds(*firsts, count=5):
-        walls = [
-            SimpleNamespace(
-                wall=SimpleNamespace(name=shape),
-                outcomes=[SimpleNamespace(figures=dict.fromkeys(("F_SF", "F_AV"), first + k / 100))
-                          for k in range(count)],
-            )
-            for shape in other_stones.SHAPES
-            for first in firsts
-        ]  # fmt: skip
-        return next(other_stones.rounded_findings(SimpleNamespace(all=walls))).holds
-
-    assert [holds(0.5, 0.6), holds(0.6, 0.5), holds(0.5, 0.6, count=3)] == [True, False, None]
+@pytest.mark.parametrize(
+    ("firsts", "count", "holds"),
+    [((0.5, 0.6), 5, True), ((0.6, 0.5), 5, False), ((0.5, 0.6), 3, None)],
+)
+def test_more_walls_tell_a_difference(firsts, count, holds):
+    walls = [
+        SimpleNamespace(
+            wall=SimpleNamespace(name=shape),
+            outcomes=[outcome(F_SF=first + k / 100, F_AV=first + k / 100) for k in range(count)],
+        )
+        for shape in other_stones.SHAPES
+        for first in firsts
+    ]
+    assert next(other_stones.rounded_findings(SimpleNamespace(all=walls))).holds is holds
 
 
 def test_variants(here):

@@ -19,15 +19,6 @@ def test_size_and_surplus_are_those_asked_for(kind):
     assert site.width_px / site.height_px == pytest.approx(2.0, rel=0.03)
 
 
-def test_equal_seeds_equal_walls():
-    def masks(seed):
-        stones, _ = draw_wall(DrawSettings(stones=5), np.random.default_rng(seed))
-        return [stone.mask.tobytes() for stone in stones]
-
-    assert masks(4) == masks(4)
-    assert masks(4) != masks(5)
-
-
 def test_order_keeps_every_stone():
     bricks = brick_stones(BrickSettings(count=8, halves=4), np.random.default_rng(1))
     again = in_order(bricks, np.random.default_rng(2))

@@ -22,15 +22,13 @@ GIVEN = dict(zip(("stones", "site"), bricks(), strict=True))
 
 
 def made(**changes):
-    env = gymnasium.make(drystone_lab.rl.ENVIRONMENT, **({"draw": SMALL} | changes)).unwrapped
-    assert isinstance(env, WallEnv)
-    return env
+    return gymnasium.make(drystone_lab.rl.ENVIRONMENT, **({"draw": SMALL} | changes)).unwrapped
 
 
 def played(env, seed):
     """Play an episode at random; return its rewards, the last info, and the bytes of it all."""
     rng = np.random.default_rng(0)
-    seen, info = env.reset(seed=seed)
+    _, info = env.reset(seed=seed)
     rewards, over, bits = [], False, b""
     while not over:
         action = rng.choice(np.flatnonzero(env.action_masks()))
@@ -49,8 +47,7 @@ def test_passes_the_checks_of_gymnasium(name):
 
 
 def test_rewards_sum_up_to_the_merit_of_the_wall():
-    env = made()
-    all_rewards = []
+    env, all_rewards = made(), []
     for seed in range(5):
         rewards, info, _ = played(env, seed)
         possible = min(1.0, SMALL.surplus)
@@ -73,16 +70,17 @@ def test_a_seed_repeats_the_episode():
 def test_masks_say_what_is_offered():
     env = made(offers=20)
     seen, info = env.reset(seed=1)
-    assert env.action_masks().dtype == bool
-    count = len(env.episode.offers)
-    assert env.action_masks().tolist() == [k < count for k in range(20)]
-    assert info["action_mask"].tolist() == env.action_masks().astype(int).tolist()
-    rows = seen["offers"]
+    count, rows = len(env.episode.offers), seen["offers"]
     assert 0 < count < 20
-    assert not rows[count:].any()
-    assert np.array_equal(
-        rows[:count, : len(FEATURES)], features(env.episode.offers).astype(np.float32)
+    assert env.action_masks().dtype == bool
+    assert (
+        env.action_masks().tolist()
+        == info["action_mask"].tolist()
+        == [k < count for k in range(20)]
     )
+    assert not rows[count:].any()
+    shown = features(env.episode.offers).astype(np.float32)
+    assert np.array_equal(rows[:count, : len(FEATURES)], shown)
     played(env, 1)
     assert not env.action_masks().any()
 
@@ -103,14 +101,14 @@ def test_illegal_action_puts_the_stone_aside_or_is_an_error_that_changes_nothing
 
 def test_no_action_before_the_start_or_after_the_end():
     env = made()
-    with pytest.raises(UsageError, match="no wall was begun"):
-        env.step(np.int64(0))
-    played(env, 1)
-    with pytest.raises(UsageError, match="finished"):
-        env.step(np.int64(0))
-    env.reset(seed=1)
-    with pytest.raises(UsageError, match="none of"):
-        env.step(np.int64(8))
+    for begin, action, said in (
+        (lambda: None, 0, "no wall was begun"),
+        (lambda: played(env, 1), 0, "finished"),
+        (lambda: env.reset(seed=1), 8, "none of"),
+    ):
+        begin()
+        with pytest.raises(UsageError, match=said):
+            env.step(np.int64(action))
 
 
 @pytest.mark.parametrize("profile", [[0.5] * 4 + [0.0] * 4, [0.5, 0.25, 0.0]])
@@ -132,14 +130,13 @@ def test_given_stones_arrive_in_a_random_order_of_the_seed():
 
     def order(seed):
         _, info = env.reset(seed=seed, options=GIVEN)
-        arrived = []
         while info["stone"]:
-            arrived.append(info["stone"])
+            yield info["stone"]
             info = env.step(np.int64(0))[4]
-        return arrived
 
-    assert order(1) == order(1)
-    assert len({tuple(order(seed)) for seed in range(6)}) > 1
+    orders = [tuple(order(seed)) for seed in (1, *range(6))]
+    assert orders[0] == orders[2]
+    assert len(set(orders)) > 1
 
 
 @pytest.mark.parametrize(
@@ -190,19 +187,18 @@ def test_a_wall_in_which_nothing_can_be_built_is_over_with_any_action(illegal):
 
 
 def test_a_deep_copy_goes_on_by_itself():
+    def equal(first, second):
+        return all(np.array_equal(first[key], second[key]) for key in first)
+
     wrapped = gymnasium.make(drystone_lab.rl.ENVIRONMENT, draw=SMALL)
     wrapped.reset(seed=1)
     wrapped.action_space.seed(1)
     wrapped.step(np.int64(0))
     other, third = deepcopy(wrapped), deepcopy(wrapped)
-    seen, reward, *_ = other.step(np.int64(1))
-    again = third.step(np.int64(1))
+    (seen, reward, *_), again = other.step(np.int64(1)), third.step(np.int64(1))
     assert reward == again[1]
-    assert all(np.array_equal(seen[key], again[0][key]) for key in seen)
-    env = wrapped.unwrapped
-    assert isinstance(env, WallEnv)
-    assert len(env.episode.build.actions) == 1
+    assert equal(seen, again[0])
+    assert len(wrapped.unwrapped.episode.build.actions) == 1
     # Both draw the same walls, and neither draws for the other.
-    first, second = wrapped.reset()[0], other.reset()[0]
-    assert all(np.array_equal(first[key], second[key]) for key in first)
+    assert equal(wrapped.reset()[0], other.reset()[0])
     assert wrapped.action_space.sample() == other.action_space.sample()

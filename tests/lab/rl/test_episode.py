@@ -14,19 +14,17 @@ from tests.lab.rl.walls import SMALL, bricks
 
 
 def test_builds_the_wall_of_the_planner_with_the_same_policy():
-    rng = np.random.default_rng(0)
+    settings = replace(ARRIVING, selection_rule="lowest")
     for seed in range(2):
         stones, site = draw_wall(SMALL, np.random.default_rng(seed))
         episode = Episode(prepared(stones, site))
         while not episode.over:
-            episode.take(LOWEST.choose(episode.offers, rng))
-        settings = replace(ARRIVING, selection_rule="lowest")
+            episode.take(LOWEST.choose(episode.offers, np.random.default_rng(0)))
         planner = Planner(stones, site, settings=settings)
         list(planner.steps())
         assert np.array_equal(episode.build.wall.labels, planner.build.wall.labels)
-        figures = figures_of(planner.build)
         possible = possible_filling(planner.workshop)
-        assert episode.merit == merit_of(figures, possible, settings.goal)
+        assert episode.merit == merit_of(figures_of(planner.build), possible, settings.goal)
         assert episode.aside == len(stones) - len(planner.build.actions)
 
 
@@ -52,13 +50,11 @@ def test_full_wall_is_over_with_stones_left():
 
 def test_keeps_the_lowest_of_the_offers():
     workshop = prepared(*bricks())
-    every, few = Episode(workshop), Episode(workshop, most=3)
-    heights = [offer.centroid_px[1] for offer in every.offers]
+    every, few = Episode(workshop).offers, Episode(workshop, most=3).offers
+    heights, kept = ([offer.centroid_px[1] for offer in offers] for offers in (every, few))
     assert len(heights) > 3
-    kept = [offer.centroid_px[1] for offer in few.offers]
     assert sorted(kept) == sorted(heights)[:3]
-    assert set(few.offers) <= set(every.offers)
-    assert [o for o in every.offers if o in few.offers] == list(few.offers)
+    assert [offer for offer in every if offer in few] == list(few)
 
 
 @pytest.mark.parametrize("position", [-1, 8])

@@ -11,7 +11,7 @@ from drystone.selection.policies.learned import FEATURES, learned, model_from_js
 from drystone_lab.rl import train
 from drystone_lab.rl.draw import DrawSettings, draw_wall
 from drystone_lab.rl.episode import Episode, prepared
-from tests.lab.rl.walls import SMALL, bricks
+from tests.lab.rl.walls import bricks
 
 TINY = train.TrainSettings(
     seed=3, rounds=1, walls=12, validation=6, strength=10.0,
@@ -45,8 +45,7 @@ def test_shipped_weights_are_of_the_settings_of_today():
     trained, settings = shipped_model().trained, train.TrainSettings()
     for name in ("seed", "rounds", "walls", "strength"):
         assert trained[name] == getattr(settings, name)
-    assert trained["kinds"] == list(train.TRAINED_ON)
-    assert trained["stones"] == settings.draw.stones
+    assert (trained["kinds"], trained["stones"]) == ([*train.TRAINED_ON], settings.draw.stones)
     assert trained["merit_learned"] > trained["merit_random"]
 
 
@@ -81,30 +80,29 @@ def test_command_refuses(wrong, tmp_path):
     assert caught.value.code == 2
 
 
+WEIGHTS = [1.0, -2.0, 0.0]
+
+
 def made(count, weights, noise=0.0):
     """Return branchings whose merits are weighted sums of features, and a sum of their own."""
     rng = np.random.default_rng(5)
-    found = []
     for _ in range(count):
         features = rng.normal(size=(4, len(weights)))
         merits = features @ np.array(weights) + rng.normal() + noise * rng.normal(size=4)
-        found.append(train.Branching(features, merits))
-    return found
+        yield train.Branching(features, merits)
 
 
-def test_fit_finds_the_weights_whatever_the_walls_are_worth():
-    weights = [1.0, -2.0, 0.0]
-    ones = np.ones(3)
-    assert train.fitted(made(50, weights), ones, 1e-9) == pytest.approx(weights, abs=1e-6)
-    noisy = train.fitted(made(2000, weights, noise=1.0), ones, 1e-9)
-    assert noisy == pytest.approx(weights, abs=0.06)
-    scale = np.array([2.0, 0.5, 1.0])
-    found = train.fitted(made(50, weights), scale, 1e-9)
-    assert found / scale == pytest.approx(weights, abs=1e-6)
+@pytest.mark.parametrize(
+    ("count", "noise", "scale", "off"),
+    [(50, 0.0, (1, 1, 1), 1e-6), (2000, 1.0, (1, 1, 1), 0.06), (50, 0.0, (2.0, 0.5, 1), 1e-6)],
+)
+def test_fit_finds_the_weights_whatever_the_walls_are_worth(count, noise, scale, off):
+    found = train.fitted(list(made(count, WEIGHTS, noise)), np.array(scale, float), 1e-9)
+    assert found / scale == pytest.approx(WEIGHTS, abs=off)
 
 
 def test_fit_is_drawn_to_zero():
-    data = made(50, [1.0, -2.0, 0.0])
+    data = list(made(50, WEIGHTS))
     assert train.fitted(data, np.ones(3), 1e9) == pytest.approx(np.zeros(3), abs=1e-4)
     # 50 times 4 places less their mean: as many zeros halve them.
     assert train.fitted(data, np.ones(3), 150.0)[1] == pytest.approx(-1.0, abs=0.2)
@@ -115,16 +113,6 @@ def test_spread_is_within_branchings():
     two = [train.Branching(rows, np.zeros(2)), train.Branching(rows + 10.0, np.zeros(2))]
     assert train.spread_of(two).tolist() == [1.0, 1.0]
     assert train.spread_of([train.Branching(2 * rows, np.zeros(2))]).tolist() == [2.0, 1.0]
-
-
-def test_branching_finishes_the_wall_from_every_place():
-    workshop = prepared(*draw_wall(SMALL, np.random.default_rng(2)))
-    one = train.branching(workshop, train.at_random, (1, 2))
-    again = train.branching(workshop, train.at_random, (1, 2))
-    assert one.features.shape == (len(one.merits), len(FEATURES))
-    assert len(one.merits) > 1
-    assert one.merits.tolist() == again.merits.tolist()
-    assert (one.merits > 0).all()
 
 
 def test_no_branching_where_no_stone_fits():

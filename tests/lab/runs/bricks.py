@@ -2,7 +2,7 @@
 
 import os
 import signal
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -23,20 +23,12 @@ def run(seed, source=SOURCE):
 
 def endless():
     """Return a run that does not end within a test."""
-    return RunSpec(
-        source=SOURCE, width=60, height=20, method="best", changes=(("search.budget", 10**6),)
-    )
+    return replace(run(0), method="best", changes=(("search.budget", 10**6),))
 
 
 @dataclass(frozen=True, kw_only=True)
 class Deadly(RunSpec):
-    """A run at which its process dies: every time, or once when a file can be made.
-
-    Parameters
-    ----------
-    once : str
-        The file; empty for every time.
-    """
+    """A run at which its process dies: every time, or once when a file can be made."""
 
     once: str = ""
 

@@ -16,16 +16,12 @@ from tests.lab.runs.bricks import NOT_SIX, deadly, endless, kept, run
 
 
 def test_options_name_who_works(monkeypatch):
-    for who in ("processes", "cluster"):
+    for who, asked in (("processes", (3, None)), ("cluster", (None, "tcp://a:1"))):
         monkeypatch.setattr(
-            workers, f"{who}_at_work", lambda asked, who=who: nullcontext((who, asked))
+            workers, f"{who}_at_work", lambda number, who=who: nullcontext((who, number))
         )
-    for asked, found in (
-        ((3, None), ("processes", 3)),
-        ((None, "tcp://a:1"), ("cluster", "tcp://a:1")),
-    ):
         with work_of(*asked) as work:
-            assert work == found
+            assert work == (who, asked[0] or asked[1])
     with pytest.raises(UsageError, match="E138"), work_of(1, "tcp://a:1"):
         pass
 
@@ -42,8 +38,7 @@ class AtOnce(Executor):
         return future
 
     def shutdown(self, wait=True, *, kill_workers=False):
-        assert wait
-        assert kill_workers
+        assert (wait, kill_workers) == (True, True)
 
 
 def interrupt_soon(_):
@@ -59,10 +54,8 @@ def test_deaths_and_interrupts_lose_nothing_that_ended(tmp_path):
             runner.run([run(1), deadly(2)])
         assert [kept(store, spec) for spec in (run(1), deadly(2))] == [True, False]
         # Another process is in the place of the dead one.
-        outcomes = runner.run([run(1), run(3), run(4), run(5)])
-        assert [one.plan for one in outcomes[:2]] == [
-            one.plan for one in one_by_one([run(1), run(3)], None)
-        ]
+        found = [one.plan for one in runner.run([run(1), run(3), run(4), run(5)])]
+        assert found[:2] == [one.plan for one in one_by_one([run(1), run(3)], None)]
         with pytest.raises(KeyboardInterrupt):
             Runner(store, work=work, say=interrupt_soon).run([run(6), endless()])
         assert kept(store, run(6))
@@ -85,18 +78,11 @@ def test_processes_have_one_thread_and_are_used_again_or_not(monkeypatch, fresh)
         ids = set(processes.work(pid, range(2)))
     assert os.getpid() not in ids
     assert len(ids) == (2 if fresh else 1)
-    assert not [one for one in ids if alive(one)]
+    for one in ids:
+        with pytest.raises(ProcessLookupError):
+            os.kill(one, 0)
 
 
 def pid(_):
     """Return the number of this process."""
     return os.getpid()
-
-
-def alive(process):
-    """Return True when there is a process of this number."""
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    return True

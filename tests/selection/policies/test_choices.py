@@ -1,6 +1,8 @@
-"""Each policy picks what it should among candidates made by hand."""
+"""Each policy picks what it should, among candidates made by hand and as a slow twin does."""
 
+import math
 from collections import Counter
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,7 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.selection.algorithm2 import SelectionSettings
-from drystone.selection.policies.choices import lacking_support, slope_rad
 from drystone.selection.policies.registry import BUILT_IN, policy_named
 from drystone.selection.policies.settings import PolicySettings
 from tests.selection.offers import offered
@@ -26,33 +27,12 @@ def chosen(name, *offers, **settings):
     return stone_id
 
 
-def low(height):
-    """A centroid at some height."""
-    return {"centroid_px": (15.0, height)}
-
-
 def test_random_takes_all_with_the_same_chance():
     policy = policy_named("random", PolicySettings(), SelectionSettings())
     rng, offers = np.random.default_rng(0), [offered(i) for i in range(1, 5)]
     drawn = Counter(policy.choose(offers, rng) for _ in range(4000))
     assert sorted(drawn) == [0, 1, 2, 3]
     assert all(900 < count < 1100 for count in drawn.values())
-
-
-def test_the_lowest_centroid_comes_first():
-    assert chosen("lowest", offered(1, **low(3.0)), offered(2, **low(2.5))) == 2
-    # ... whatever else speaks for another.
-    better = offered(1, indices={"LFR": 1.0, "LLC": 0.9}, **low(2.6))
-    assert chosen("lowest", better, offered(2, indices={"LFR": 0.1}, **low(2.5))) == 2
-
-
-def test_of_equal_heights_the_tightest_then_the_building_side():
-    loose, tight = offered(1, indices={"LFR": 0.6}), offered(2, indices={"LFR": 0.7})
-    assert chosen("lowest", loose, tight) == 2
-    inner = offered(1, left_px=12.0, right_px=22.0)
-    assert chosen("lowest", inner, offered(2)) == 2
-    right = offered(2, side="right", left_px=85.0, right_px=95.0)
-    assert chosen("lowest", offered(1), right) == 2  # 5 px from its end, not 10
 
 
 @pytest.mark.parametrize("name", [name for name in BUILT_IN if name != "random"])
@@ -80,138 +60,114 @@ def test_every_index_is_in_the_sum(better, worse):
     assert chosen("scalarised", offered(1, indices=worse), offered(2, indices=better)) == 2
 
 
-NARROW = {"support_px": ((12.0, 0.0), (14.5, 0.0))}
-"""A support of a quarter of the stone's width."""
+def first_lowest(offers, _=None):
+    """The lowest, then the tightest, then the nearest to the building side."""
+
+    def rank(one):
+        at_left = one.side == "left"
+        from_end = one.left_px if at_left else one.wall_width_px - one.right_px
+        return one.centroid_px[1], -one.indices.LFR, from_end, one.stone_id
+
+    return min(offers, key=rank).stone_id
 
 
-@pytest.mark.parametrize(
-    "fails",
-    [
-        NARROW,
-        {"support_px": None},
-        {"indices": {"IWR": 0.19}},
-        {"indices": {"boundary": True, "IS": -0.01, "IWR": 0.9}},
-        {"indices": {"NHR": 0.26}},
-        {"indices": {"LFR": 0.69}},
-    ],
-)
-def test_what_fails_a_filter_is_out_however_low_it_is(fails):
-    assert chosen("filter", offered(1, **low(0.5), **fails), offered(2, **low(30.0))) == 2
+def width(one):
+    """Of what bears a stone from below."""
+    return 0.0 if one.support_px is None else one.support_px[1][0] - one.support_px[0][0]
 
 
-@pytest.mark.parametrize(
-    "passes",
-    [
-        {"indices": {"IWR": 0.2, "IS": -1.0}},
-        {"indices": {"boundary": True, "IS": 0.0, "IWR": 0.0}},
-        {"indices": {"NHR": 0.25}},
-        {"indices": {"LFR": 0.7, "LLC": 0.01, "GDS": 0.0, "SF": 0.1}},
-    ],
-)
-def test_of_what_passes_all_the_lowest_is_taken(passes):
-    assert chosen("filter", offered(2), offered(1, **low(1.0), **passes)) == 1
+def sieved(offers, at):
+    """Filters one after the other; one that nothing passes is left out; of the rest the lowest."""
+    for passes in (
+        lambda o: width(o) >= at.min_support * (o.right_px - o.left_px),
+        lambda o: (
+            o.indices.IS >= at.min_slope
+            if o.indices.boundary
+            else o.indices.IWR >= at.min_interlocking
+        ),
+        lambda o: o.indices.NHR <= at.max_step,
+        lambda o: o.indices.LFR >= at.min_filling,
+    ):
+        offers = [offer for offer in offers if passes(offer)] or offers
+    return first_lowest(offers)
 
 
-def test_filters_have_an_order():
-    """An earlier rule outweighs a later one; a filter that none passes changes nothing."""
-    loose, stepped = {"LFR": 0.1}, {"NHR": 0.9}
-    assert chosen("filter", offered(1, indices=stepped), offered(2, indices=loose)) == 2
-    unbonded = {"IWR": 0.0}
-    assert chosen("filter", offered(1, indices=unbonded), offered(2, indices=stepped)) == 2
-    assert chosen("filter", offered(1, **NARROW), offered(2, indices=unbonded)) == 2
-    both = [offered(1, indices=loose, **low(1.5)), offered(2, indices=loose, **low(1.0))]
-    assert chosen("filter", *both) == 2
+def cheapest_tower(offers, at):
+    """Four terms, each as a share of the largest; what nothing bears has the largest."""
+
+    def terms(one):
+        if one.support_px is None:
+            return 1.0, one.turned_deg, None, None
+        (left, low), (right, high) = one.support_px
+        aside = abs(one.centroid_px[0] - (left + right) / 2)
+        lacking = 1.0 - (right - left) / (one.right_px - one.left_px)
+        return lacking, one.turned_deg, aside, math.atan2(abs(high - low), right - left)
+
+    def shares(values):
+        most = max((value for value in values if value is not None), default=0.0)
+        if most == 0.0:
+            return [float(value is None) for value in values]
+        return [1.0 if value is None else value / most for value in values]
+
+    weights = at.w_area, at.w_energy, at.w_distance, at.w_normal
+    columns = [shares(column) for column in zip(*map(terms, offers), strict=True)]
+    costs = (np.array(weights) @ np.array(columns)).round(9)
+    return min(zip(costs, (one.stone_id for one in offers), strict=True))[1]
 
 
-@pytest.mark.parametrize(
-    ("name", "value", "indices"),
-    [
-        ("min_interlocking", 0.5, {}),
-        ("max_step", 0.05, {}),
-        ("min_filling", 0.85, {}),
-        ("min_slope", 0.2, {"boundary": True}),
-    ],
-)
-def test_thresholds_are_settings(name, value, indices):
-    good = {"IWR": 1.0, "IS": 1.0, "NHR": 0.0, "LFR": 1.0, **indices}
-    offers = offered(1, indices=indices, **low(1.0)), offered(2, indices=good)
-    assert chosen("filter", *offers) == 1
-    assert chosen("filter", *offers, **{name: value}) == 2
+TWINS = {"lowest": first_lowest, "filter": sieved, "towers": cheapest_tower}
 
+SETTINGS = {
+    "min_support": (0.3, 0.25),
+    "min_interlocking": (0.2, 0.5),
+    "max_step": (0.25, 0.05),
+    "min_filling": (0.7, 0.85),
+    "min_slope": (0.0, 0.2),
+    "w_area": (0.179, 0.0),
+    "w_energy": (0.472, 0.2),
+    "w_distance": (0.094, 0.5),
+    "w_normal": (0.254, 0.0),
+}
+"""What they are by themselves, and another value."""
 
-@pytest.mark.parametrize(
-    ("term", "worse"),
-    [
-        ("w_area", {"support_px": ((11.0, 0.0), (19.0, 0.0))}),
-        ("w_energy", {"turned_deg": 0.5}),
-        ("w_distance", {"centroid_px": (16.0, 2.0)}),
-        ("w_normal", {"support_px": ((10.0, 0.0), (20.0, 1.0))}),
-    ],
-)
-def test_towers_weigh_four_terms(term, worse):
-    offers = offered(1, **worse), offered(2)
-    assert chosen("towers", *offers) == 2
-    assert chosen("towers", *offers, **{term: 0.0}) == 1  # then they are equal
+VALUES = {
+    "IWR": (0.19, 0.2, 0.5),
+    "IS": (-0.01, 0.0, 0.2),
+    "NHR": (0.05, 0.25, 0.26),
+    "LFR": (0.69, 0.7, 0.85),
+    "boundary": (False, True),
+}
+"""At thresholds, and beside them."""
 
-
-def test_towers_weigh_as_their_source():
-    """The worst of one term each: the one of the smallest weight is taken."""
-    offers = [
-        offered(1, turned_deg=9.0),
-        offered(2, support_px=((13.0, 0.0), (17.0, 0.0))),
-        offered(3, support_px=((10.0, 0.0), (20.0, 9.0))),
-        offered(4, centroid_px=(18.0, 2.0)),
-    ]
-    order = []
-    while len(left := [offer for offer in offers if offer.stone_id not in order]) > 1:
-        order.append(chosen("towers", *left))
-    assert order == [4, 2, 3]  # .094, .179, .254; .472 is left
-
-
-def test_stones_without_support_are_the_last_of_a_tower():
-    hanging = offered(1, support_px=None)
-    sloping = offered(2, support_px=((10.0, 0.0), (11.0, 5.0)), centroid_px=(18.0, 2.0))
-    assert chosen("towers", hanging, sloping) == 2
-    assert chosen("towers", hanging, offered(2)) == 2
-    assert chosen("towers", hanging, offered(2), w_area=0.0) == 2
-    assert lacking_support(hanging) == 1.0
-    assert slope_rad(offered(support_px=((3.0, 1.0), (3.0, 1.0)))) == 0.0
-
-
-finite = st.floats(0.0, 1.0)
+SUPPORTS = [
+    None,
+    *(((10.0, 0.0), end) for end in ((12.5, 0.0), (13.0, 0.0), (20.0, 0.0), (19.0, 4.0))),
+]
 
 
 @st.composite
-def offers(draw):
-    """Some candidates of different stones."""
-    made = []
-    for stone_id in range(1, draw(st.integers(1, 6)) + 1):
-        names = ("SF", "LFR", "GDS", "NHR", "IWR", "IS", "LLC")
-        indices = {name: draw(finite) for name in names} | {"boundary": draw(st.booleans())}
-        left, right = sorted(draw(st.tuples(st.floats(10, 20), st.floats(10, 20))))
-        support = draw(st.sampled_from([None, ((left, 0.0), (right, draw(finite)))]))
-        turned = draw(st.floats(0, 15))
-        height = draw(st.floats(1, 30))
-        made.append(
-            offered(stone_id, indices=indices, support_px=support, turned_deg=turned, **low(height))
+def candidates(draw):
+    """Some offers of different stones, many of them alike in something."""
+
+    def one_of(*values):
+        return draw(st.sampled_from(values))
+
+    return [
+        offered(
+            stone_id,
+            indices={name: one_of(*values) for name, values in VALUES.items()},
+            support_px=one_of(*SUPPORTS),
+            turned_deg=one_of(0.0, 3.0, 9.0),
+            centroid_px=(one_of(15.0, 16.0, 18.0), one_of(1.0, 2.0, 30.0)),
+            side=one_of("left", "right"),
         )
-    return made
+        for stone_id in range(1, draw(st.integers(1, 6)) + 1)
+    ]
 
 
-@repeatable(40)
-@given(offers=offers(), name=st.sampled_from([n for n in BUILT_IN if n != "random"]))
-def test_the_order_of_the_candidates_does_not_matter(offers, name):
-    assert chosen(name, *offers) in {offer.stone_id for offer in offers}
-
-
-@repeatable(40)
-@given(offers=offers())
-def test_what_filters_choose_passes_what_any_of_the_first_filter_passes(offers):
-    stone_id = chosen("filter", *offers)
-    borne = {o.stone_id for o in offers if o.support_width_px >= 0.3 * o.width_px}
-    assert not borne or stone_id in borne
-    tight = [o for o in offers if o.stone_id in borne and o.indices.third >= 0.2]
-    tight = [o for o in tight if o.indices.NHR <= 0.25 and o.indices.LFR >= 0.7]
-    if tight:
-        (taken,) = (o for o in offers if o.stone_id == stone_id)
-        assert taken.centroid_px[1] <= min(o.centroid_px[1] for o in tight)
+@repeatable(400)
+@given(candidates(), st.sampled_from([*TWINS]), st.sets(st.sampled_from([*SETTINGS])))
+def test_policies_choose_as_their_slow_twins(offers, name, changed):
+    at = {key: values[key in changed] for key, values in SETTINGS.items()}
+    settings = {key: at[key] for key in changed}
+    assert chosen(name, *offers, **settings) == TWINS[name](offers, SimpleNamespace(**at))

@@ -83,11 +83,6 @@ def test_the_largest_value_is_chosen():
     assert weighing(LFR=2.0).values(offers).tolist() == pytest.approx([1.6, 1.8, 1.6])
 
 
-def test_ties_go_to_the_lower_id_then_the_first():
-    offers = [offered(2), offered(1, angle_deg=90.0), offered(1, angle_deg=-90.0)]
-    assert learned(weighing()).choose(offers, RNG) == 1
-
-
 def worse(**changes):
     indices = {"LFR": 0.5, "GDS": 0.2, "LLC": 0.1} | changes.pop("indices", {})
     return offered(1, indices=indices, **changes)
@@ -118,12 +113,6 @@ def test_file_is_read_as_it_was_written():
     assert again.to_json() == model.to_json()
 
 
-def test_weights_of_the_package_are_whole():
-    assert shipped_model() is shipped_model()
-    assert len(shipped_model().weights) == len(FEATURES)
-    assert any(shipped_model().weights)
-
-
 def edited(**changes):
     return json.dumps(json.loads(shipped_model().to_json()) | changes)
 
@@ -133,11 +122,9 @@ def edited(**changes):
     [
         (edited(schema="drystone-values/0"), "version"),
         (edited(weights=dict.fromkeys(FEATURES, 1.0)), "checksum"),
-        (edited(sha256=""), "checksum"),
-        ("[]", "version None"),
+        ("{}", "version None"),
         ("[1]", "not a file of weights"),
         ("{", "not a file of weights"),
-        ("{}", "version None"),
     ],
 )
 def test_refuses_other_files(text, why):

@@ -2,7 +2,6 @@
 
 from importlib.metadata import EntryPoint, EntryPoints
 
-import numpy as np
 import pytest
 
 from drystone.errors import UsageError
@@ -10,14 +9,12 @@ from drystone.selection.algorithm2 import SelectionSettings
 from drystone.selection.policies import registry
 from drystone.selection.policies.registry import BUILT_IN, GROUP, policy_named, rule_of
 from drystone.selection.policies.settings import PolicySettings
-from tests.selection.offers import offered
 
 
 class First:
     """A policy of another package."""
 
-    def choose(self, candidates, rng):  # noqa: ARG002
-        return 0
+    def choose(self, candidates, rng): ...
 
 
 class NeedsMore(First):
@@ -42,19 +39,18 @@ def named(name):
 HERE = __name__
 
 
-def test_those_built_in_are_there(installed):
-    installed()
-    assert [rule_of(name) for name in BUILT_IN] == list(BUILT_IN)
+def test_those_built_in_and_those_of_other_packages_are_there(installed):
+    ours = f"{HERE}:First"
+    installed(("first", ours), ("other", "nowhere:Other"), ("random", ours))
+    assert [rule_of(name) for name in (*BUILT_IN, "first")] == [*BUILT_IN, "first"]
     assert rule_of("paper") == "algorithm2"
-
-
-def test_one_of_another_package_is_made_anew(installed):
-    installed(("first", f"{HERE}:First"), ("other", "nowhere:Other"))
-    assert rule_of("first") == "first"
     policy = named("first")
     assert type(policy).__name__ == "First"
-    assert policy.choose([offered()], np.random.default_rng(0)) == 0
-    assert named("first") is not policy
+    assert named("first") is not policy  # it is made anew
+    # Names of ours cannot be taken.
+    assert type(named("random")).__module__.startswith("drystone.")
+    with pytest.raises(UsageError, match="E146"):
+        named("paper")  # it is the planner's own rule
 
 
 @pytest.mark.parametrize("name", ["fist", "algorithm2", "score", "First", " "])
@@ -67,13 +63,6 @@ def test_unknown_ones_are_refused_with_the_known_ones(name, installed):
         known = f"paper, {', '.join(BUILT_IN)}, first."
         asked = "Did you mean `first`? " if name in ("fist", "First") else ""
         assert caught.value.cure == f"{asked}Choose one of {known}"
-
-
-def test_names_of_ours_cannot_be_taken(installed):
-    installed(("random", f"{HERE}:First"))
-    assert type(named("random")).__module__.startswith("drystone.")
-    with pytest.raises(UsageError, match="E146"):
-        named("paper")  # it is the planner's own rule
 
 
 @pytest.mark.parametrize(

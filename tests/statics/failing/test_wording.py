@@ -19,9 +19,7 @@ def sliding(*blocks, on, on_bed=True, motion="sliding", turning=0.0):
 @pytest.mark.parametrize(
     ("ids", "words"),
     [
-        ([3], "stone 3"),
         ([12, 7, 3], "stones 3, 7 and 12"),
-        ([301], "wedge 301"),
         ([301, 3, 300], "stone 3, wedges 300 and 301"),
         ([1, 2, 3, 4, 5, 6], "stones 1, 2, 3, 4, 5 and 6"),
         ([7, 1, 2, 3, 4, 5, 6], "stones 1, 2, 3, 4, 5 ... and 2 more"),
@@ -34,9 +32,7 @@ def test_lists_of_stones(ids, words):
 
 def test_bodies_that_move_alike_share_a_clause():
     groups = [
-        rocking(1, toe=1, on=GROUND, side="left"),
-        rocking(2, toe=2, on=GROUND, side="left"),
-        rocking(3, toe=3, on=GROUND, side="right"),
+        rocking(k, toe=k, on=GROUND, side=s) for k, s in ((1, "left"), (2, "left"), (3, "right"))
     ]
     assert in_words(groups, Names()) == (
         "Rocking of blocks 1 and 2, each about its left toe; block 3 rocks about its right toe."
@@ -54,7 +50,6 @@ def test_four_motions_are_spelled_out():
 @pytest.mark.parametrize(
     ("group", "alone", "falling"),
     [
-        (sliding(2, on=(1,)), "Sliding of block 2 on 1.", "block 2 slides on 1."),
         (
             sliding(2, 4, on=(1,), on_bed=False),
             "Sliding of blocks 2 and 4 along 1.",

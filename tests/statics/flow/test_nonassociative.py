@@ -41,12 +41,8 @@ def test_the_least_of_all_sets_of_contact_states(seed, count, mu, direction):
         return
     limits = all_limits(model, direction)
     assert result.alpha == pytest.approx(min(limit.least for limit in limits), abs=1e-7)
-
-
-def test_the_twin_knows_walls_below_their_associative_load():
-    model = model_from_labels(irregular(7, 2, 24, 18), 0.7).model
-    (least,) = {round(limit.least, 6) for limit in all_limits(model, "right")}
-    assert least < lateral_resistance(model).right.alpha - 0.05
+    if (seed, direction) == (7, "right"):  # well below the load with dilatancy
+        assert result.alpha < lateral_resistance(model).right.alpha - 0.05
 
 
 @pytest.mark.parametrize(("seed", "direction"), [(13, "left"), (13, "right"), (24, "left")])
@@ -98,12 +94,9 @@ def test_walls_that_stand_only_when_contacts_are_jammed():
     assert "dead load alone" in result.message
 
 
-def test_nothing_free_has_no_limit():
+def test_other_loads_and_none_where_nothing_is_free():
     fixed = boxes([0, 0, 1, 1], fixed=(1,))
     assert nonassociative_load(fixed, "left").status is LimitStatus.UNBOUNDED
-
-
-def test_other_loads():
     model = boxes([0, 0, 1, 2], mu=0.7)
     table = tilting_table(model)
     twice = nonassociative_load(model, "left", loads=Loads(table.dead, 2.0 * table.live))
@@ -167,22 +160,18 @@ def fabricated(alpha, error=0.0, method=""):
     return NonassociativeResult(*found, method=method, check=check)
 
 
-def test_the_least_verified_answer_is_told():
+def test_the_least_verified_answer_is_told_but_no_motion_against_the_load():
     answers = [fabricated(0.5), fabricated(0.3, method="second"), fabricated(0.1, error=1e-3)]
     told = nonassociative._least_verified("right", 0.6, 9, answers)
     assert (told.alpha, told.method, told.answers) == (0.3, "second", (0.3, 0.5))
     assert told.status is LimitStatus.OPTIMAL
-
-
-def test_a_motion_against_the_load_is_no_number():
-    told = nonassociative._least_verified("right", 0.6, 9, [fabricated(0.5), fabricated(-0.1)])
-    assert (told.status, told.alpha) == (LimitStatus.UNSTABLE, None)
-    assert told.answers == (-0.1, 0.5)
-    assert "even against a load of 0.1000" in told.message
+    against = nonassociative._least_verified("right", 0.6, 9, [fabricated(0.5), fabricated(-0.1)])
+    assert (against.status, against.alpha) == (LimitStatus.UNSTABLE, None)
+    assert against.answers == (-0.1, 0.5)
+    assert "even against a load of 0.1000" in against.message
 
 
 @pytest.mark.parametrize("part", [f.name for f in fields(FlowCheck)])
-def test_a_check_that_is_no_number_does_not_hold(part):
-    right = FlowCheck(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    assert not replace(right, **{part: float("nan")}).holds
-    assert not replace(right, **{part: 1e-6}).holds
+def test_a_check_with_an_error_or_no_number_does_not_hold(part):
+    for error in (float("nan"), 1e-6):
+        assert not replace(FlowCheck(*[0.0] * 6), **{part: error}).holds

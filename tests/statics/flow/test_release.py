@@ -86,13 +86,6 @@ def test_a_block_in_a_slot_falls_as_its_twin_says(left, right, mu):
     assert (fall(model) is not None) == falls
 
 
-@pytest.mark.parametrize(("seed", "count", "mu"), [(4, 2, 0.7), (8, 2, 0.4), (0, 3, 0.7)])
-def test_no_fall_where_there_is_none(seed, count, mu):
-    model = model_from_labels(irregular(seed, count, 24, 18), mu).model
-    assert greatest_power_of_a_fall(model) == 0.0
-    assert fall(model) is None
-
-
 @pytest.mark.parametrize(
     "model",
     [brick_model(5, 4, 1.0, 0.58), arch(15, 0.3, 0.9), arch(20, 0.4, 0.5), slot(-0.5, 0.5, 0.58)],

@@ -8,9 +8,9 @@ import pytest
 from drystone.contacts.blocks import model_from_labels
 from drystone.statics.lp.cone_program import ConeProgram
 from drystone.statics.lp.program import Units, assemble
-from drystone.statics.model import GROUND, Addition, RigidBlockModel
+from drystone.statics.model import RigidBlockModel
 from tests.naive import columns as naive
-from tests.statics.growth import empty, upwards, with_block
+from tests.statics.growth import empty, with_block
 from tests.statics.walls import coursed, irregular
 
 UNITS = Units(13.0, 170.0)
@@ -54,28 +54,3 @@ def test_it_grows_as_the_other_program_does(labels):
         repeats = [2 * len(interface.points) for interface in model.interfaces]
         expected = np.repeat(np.arange(len(repeats)), repeats)
         assert cones.interfaces.tolist() == expected.tolist()
-
-
-def test_columns_of_contacts_that_closed_are_told_in_order():
-    *_, (cones, _, model) = grown(varied(coursed(5, 4, 90, 3)))
-    added = cones.columns_of(Addition(model, (), (), (1, 4)), model.mu)
-    ends = np.cumsum([0] + [2 * len(i.points) for i in model.interfaces])
-    assert added.closed.tolist() == [*range(ends[1], ends[2]), *range(ends[4], ends[5])]
-    assert added.closed.dtype == np.int32
-
-
-def test_what_is_not_for_the_kernel_is_left_to_others():
-    whole, blocks = upwards(coursed(2, 3, 60))
-    *_, (cones, _, model) = grown(RigidBlockModel(tuple(blocks[:-1]), whole.interfaces, whole.mu))
-    added = with_block(model, blocks[-1], whole=whole).added
-    (stone,), (one, *others) = added.blocks, added.interfaces
-    assert cones.columns_of(added, whole.mu) is not None
-    for other in (
-        replace(added, blocks=(replace(stone, fixed=True),)),
-        replace(added, blocks=(replace(stone, held=("turn",)),)),
-        replace(added, blocks=(replace(stone, density=0.0),)),
-        replace(added, interfaces=(replace(one, block=GROUND), *others)),
-        replace(added, interfaces=(replace(one, other=999), *others)),
-        replace(added, interfaces=(replace(one, block=999), *others)),
-    ):
-        assert cones.columns_of(other, whole.mu) is None

@@ -30,13 +30,6 @@ def test_a_speck_on_a_block_overturns_by_its_own_shape(side, height, solver):
     assert speed[0].max() < 1e-6 * speed[1].max()
 
 
-def test_a_speck_of_pixels_does_too():
-    labels = np.zeros((1003, 1000), np.uint32)
-    labels[3:], labels[:3, 300] = 1, 2
-    both = lateral_resistance(model_from_labels(labels).model)
-    assert (both.left.alpha, both.right.alpha) == pytest.approx((1 / 3, 1 / 3))
-
-
 def test_a_speck_that_stands_on_nothing_brings_the_wall_down():
     model = model_from_json({"blocks_xywh": [[0, 0, 900, 900], [899.6, 900, 1, 2]]})
     assert lateral_resistance(model).left.status is LimitStatus.UNSTABLE
