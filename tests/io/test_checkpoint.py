@@ -72,7 +72,7 @@ def test_without_a_search_it_says_what_is_planned(tmp_path):
 @pytest.fixture(scope="module")
 def stood():
     """Where chains stand, in the second round, with what they are of."""
-    search = {**SMALL, "budget": 24, "patience": 1}
+    search = {**SMALL, "budget": 20, "patience": 1}
     settings = greedy({"geometry": "exact", "search": search})
     planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
     state = states_of(searched(planner))[-1]

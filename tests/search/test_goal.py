@@ -10,13 +10,21 @@ from hypothesis import strategies as st
 
 from drystone.craft.bond import bond_faults
 from drystone.craft.masonry import Masonry
-from drystone.model.builder import BuilderErrors
+from drystone.model.builder import BuilderErrors, put_down_with, stratified
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import GoalSettings
 from drystone.planner.solves import Solves
-from drystone.search.goal import FoundWall, WallFigures, figures_of, merit_of, possible_filling
+from drystone.search.goal import (
+    FoundWall,
+    Rehearsals,
+    WallFigures,
+    figures_of,
+    merit_of,
+    possible_filling,
+)
 from drystone.search.packed import MOST, STEPS, PackedWall, archived, score_of
-from drystone.search.rehearsal import errors_of, groups_of, mean_size, put_up
+from drystone.search.rehearsal import groups_of, mean_size, put_up
+from drystone.search.wedging import one_more_wedge
 from drystone.search.yard import Yard
 from tests.planner.scenes import ROUNDED, ROUNDED_SITE, RUBBLE_SITE, finish, greedy, rubble
 from tests.strategies import repeatable
@@ -70,18 +78,49 @@ def test_what_is_judged_carries_no_more(seed):
     assert judged.judged(Yard.of(planner)) is judged
 
 
-def test_what_nearly_falls_in_a_rehearsal_counts_too():
-    careless = greedy({"settle": {"trials": 0}})
-    planner = finish(Planner(ROUNDED, ROUNDED_SITE, seed=1, settings=careless))
-    blocks = groups_of(planner.build.wall)
+@pytest.fixture(scope="module")
+def careless():
+    """A planner that has built a wall of which stones fall."""
+    settings = greedy({"settle": {"trials": 0}, "search": {"budget": 2}})
+    return finish(Planner(ROUNDED, ROUNDED_SITE, seed=1, settings=settings))
+
+
+def test_what_nearly_falls_in_a_rehearsal_counts_too(careless):
+    blocks, settings = groups_of(careless.build.wall), careless.settings
     errors = BuilderErrors.of_precision(0.03, mean_size(blocks))
-    drawn = errors_of(blocks, errors, np.random.default_rng(0), 12)
-    runs = [put_up(blocks, put, careless.mu, careless.settle).stones for put in drawn]
+    put = []
+    for group in blocks:
+        seeds = ([8, 0, group[0][0], k] for k in range(len(group)))
+        numbers = [stratified(np.random.default_rng(seed), 12, 1) for seed in seeds]
+        put.append(put_down_with(errors, group, np.concatenate(numbers, axis=1)))
+    runs = [
+        put_up(blocks, run, settings.mu, settings.settle).stones for run in zip(*put, strict=True)
+    ]
     near = [[1 if e.fallen else max(e.share / 0.25, abs(e.turn_deg) / 12) for e in r] for r in runs]
     assert min(map(max, near)) < max(map(max, near)) == 1.0
     lost = [14 * max(shares) ** 4 + shares.count(1) for shares in near]
-    judged = FoundWall.of(planner).judged(Yard.of(planner))
+    judged = FoundWall.of(careless).judged(Yard.of(careless))
     assert judged.figures.fallen == pytest.approx(np.mean(lost) / len(blocks))
+
+
+def test_walls_that_are_rehearsed_together_fall_as_each_alone(careless):
+    """What is remembered of the first one, and the order of the runs, change nothing."""
+    yard = Yard.of(careless)
+    together = Rehearsals(yard, 8, 3)  # fewer than those in which `ENOUGH` fall
+    before = together.falls(careless.build)
+    others = [
+        build for stone in before.first for build, _ in one_more_wedge(careless.build, stone, yard)
+    ]
+    assert others
+    for build in others:
+        assert len(build.wall.wedges) == len(careless.build.wall.wedges) + 1
+        found = together.falls(build)
+        assert found == Rehearsals(yard, 8, 3).falls(build) != Rehearsals(yard, 8, 4).falls(build)
+        assert together.falls(build, found.share) == found
+        assert together.falls(build, 0.99 * found.share) is None
+    assert together.falls(careless.build) == before
+    unwedged = replace(yard, settings=yard.settings.updated({"stabilise": {"method": "rotation"}}))
+    assert not [*one_more_wedge(careless.build, next(iter(before.first)), unwedged)]
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """What a builder misses by: the errors that walls are judged under (DESIGN 4.10)."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,6 +12,7 @@ from scipy.special import ndtri
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.kernels.profiles import Floats
 from drystone.kernels.raster import turn
+from drystone.model.outlines import Outlined
 
 ROBOT, HAND = 0.015, 0.03
 """Precision p of a good robot, and of a hand."""
@@ -77,6 +79,21 @@ class BuilderErrors:
             Built(outline, x + self.placement * shift, y, self.angle_deg * angle, math.sqrt(area))
             for outline, (shift, angle) in zip(outlines, numbers[:, -2:].tolist(), strict=True)
         ]
+
+
+def put_down_with(
+    errors: BuilderErrors, group: Sequence[Outlined], numbers: Floats
+) -> list[list[tuple[int, "Built"]]]:
+    """Return a stone and its wedges as they are and where they are put, for each of some runs.
+
+    The stone comes first.  `numbers`, (runs, blocks, :data:`NUMBERS`), have standard deviation 1.
+    """
+    wedge = errors.times(WEDGE_SHARE)
+    put = [
+        [(i, built) for built in (wedge if k else errors).all_built(corners, numbers[:, k])]
+        for k, (i, corners) in enumerate(group)
+    ]
+    return [list(run) for run in zip(*put, strict=True)]
 
 
 def stratified(rng: np.random.Generator, runs: int, blocks: int) -> Floats:

@@ -14,7 +14,14 @@ from itertools import accumulate, takewhile
 import numpy as np
 
 from drystone.kernels.profiles import Floats
-from drystone.model.builder import HAND, WEDGE_SHARE, BuilderErrors, Built, as_planned, stratified
+from drystone.model.builder import (
+    HAND,
+    BuilderErrors,
+    Built,
+    as_planned,
+    put_down_with,
+    stratified,
+)
 from drystone.model.stone import Stone
 from drystone.model.wall import Group, Wall, outlined
 from drystone.planner.vary import TRIAL_DRAWS
@@ -110,8 +117,7 @@ class Seats:
         return digests[-1], walls
 
     def _keep(self, digest: bytes, walls: list[BuiltWall]) -> list[BuiltWall]:
-        held = sum(2 * wall.polygons.corners.nbytes + 400 * len(wall.laid) for wall in walls)
-        return self._known.keep(digest, walls, held)
+        return self._known.keep(digest, walls, sum(wall.held_bytes for wall in walls))
 
     def _pieces(self, group: Group) -> list[list[tuple[int, Built]]]:
         """Return how a stone is put down in all trials, with the same errors wherever it is.
@@ -124,14 +130,8 @@ class Seats:
         if key not in self._numbers:
             rng = np.random.default_rng([TRIAL_DRAWS, stone])
             self._numbers[key] = stratified(rng, trials, len(blocks))
-        wedge = self._errors.times(WEDGE_SHARE)
-        put = [
-            [(i, built) for built in (wedge if j else self._errors).all_built(corners, numbers)]
-            for j, ((i, corners), numbers) in enumerate(
-                zip(blocks, self._numbers[key].swapaxes(0, 1), strict=True)
-            )
-        ]
-        return [list(pieces[::-1]) for pieces in zip(*put, strict=True)]
+        put = put_down_with(self._errors, blocks, self._numbers[key])
+        return [pieces[::-1] for pieces in put]
 
 
 def _planned(group: Group) -> dict[int, Built]:

@@ -11,8 +11,8 @@ from drystone.selection.scored import ScoreSettings
 WEIGHT_DRAWS, CHAIN_DRAWS, FIRST_DRAWS, REPAIR_DRAWS = (k * 1_000_000 for k in (2, 3, 4, 5))
 """Follow a plan's seed, and keep these streams apart from those of its steps, numbered from 0."""
 
-TRIAL_DRAWS = 7
-"""Begins the streams of errors of builders, which are the same for all seeds of plans."""
+TRIAL_DRAWS, REHEARSAL_DRAWS = 7, 8
+"""Begin the streams of errors of builders, which are the same for all seeds of plans."""
 
 
 def varied(settings: PlannerSettings, spread: float, rng: np.random.Generator) -> PlannerSettings:

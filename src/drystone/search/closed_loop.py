@@ -239,7 +239,7 @@ class _Work:
         self.stones = [_Stone(group, errors) for group in groups]
         self.rested: dict[int, Built] = {}
         self._errors, self._rng = errors, rng
-        (real,) = errors_of(groups, errors, rng)
+        real = errors_of(groups, errors, rng)
         self._real = {blocks[0][0]: blocks for blocks in real}
         corners = np.concatenate([group[0][1] for group in groups])
         (x0, _), (x1, y1) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()

@@ -2,8 +2,9 @@
 
 import math
 from collections import Counter
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import takewhile
 from typing import NamedTuple
 
 import numpy as np
@@ -12,15 +13,19 @@ from drystone.craft.bond import bond_faults
 from drystone.craft.masonry import Masonry
 from drystone.craft.settings import CraftSettings
 from drystone.metrics.measure import measure_labels
-from drystone.model.builder import HAND, BuilderErrors
+from drystone.model.builder import HAND, BuilderErrors, Built, put_down_with, stratified
+from drystone.model.outlines import Outlined
+from drystone.model.wall import Group
 from drystone.planner.build import Build
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import GoalSettings
 from drystone.planner.solves import Solves
+from drystone.planner.vary import REHEARSAL_DRAWS
 from drystone.planner.workshop import Workshop
 from drystone.search.courses import CoursePlan
-from drystone.search.rehearsal import errors_of, groups_of, mean_size, put_up
+from drystone.search.rehearsal import RunState, groups_of, mean_size, put_up
 from drystone.search.yard import Yard
+from drystone.settle.as_built import BuiltWall
 from drystone.statics.flow.flow_search import STARTS, NonassociativeSettings
 from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.result import LimitStatus, Mechanism
@@ -45,8 +50,14 @@ NEARLY = 4
 MOVES = 0.5
 """A stone takes part in a failure when it is at least so fast, over the fastest."""
 
-RUNS, LAST_RUNS = 12, 24
-"""So often a wall of a search is rehearsed, and the best ones at the end."""
+RUNS, LAST_RUNS = 12, 60
+"""So often a wall of a search is rehearsed at most, and the best ones at the end."""
+
+ENOUGH = 16
+"""So many runs in which stones fall tell as much as is needed."""
+
+KNOWN_BYTES = 1 << 27
+"""What is remembered of the runs of a wall at most, about: sixty of a wall of fifty stones."""
 
 
 @dataclass(frozen=True)
@@ -189,36 +200,44 @@ class FoundWall:
         return cls(build, figures, merit, solves or Solves(), courses)
 
     def judged(
-        self, yard: Yard, flow: NonassociativeSettings | None = None, least: float = -math.inf
+        self,
+        yard: Yard,
+        flow: NonassociativeSettings | None = None,
+        least: float = -math.inf,
+        rehearsals: "Rehearsals | None" = None,
     ) -> "FoundWall":
-        """Return the same wall with what it carries without dilatancy, unless that is known.
+        """Return the same wall with what falls of it, and what it carries without dilatancy.
 
-        It is asked for again when settings are given.  The least that is found counts
-        (DESIGN 4.8); where nothing is found the associative value stands, above which none can be.
-        It has no merit as soon as that cannot be more than `least`.
+        What is known is asked for again when rehearsals, or settings of the flow, are given.  The
+        least load that is found counts (DESIGN 4.8); where none is found the associative value
+        stands, above which none can be.
+        The wall has no merit as soon as that cannot be more than `least`.
         """
         figures, model, goal = self.figures, self.build.model, yard.settings.goal
         if self.merit <= least:
             return replace(self, merit=-math.inf)
         if figures is None or self.build.wall.outlines is None:
             return self
-        if figures.F_LR_coulomb is not None and flow is None:
+        known = figures.F_LR_coulomb
+        if known is not None and flow is None and rehearsals is None:
             return self
         falls = self.falls
         if goal.fallen:
             most = figures.fallen + (self.merit - least) / goal.fallen
-            runs = RUNS if flow is None else LAST_RUNS
-            falls = falls_of(self.build, yard, runs, most)
+            falls = (rehearsals or Rehearsals(yard, RUNS)).falls(self.build, most)
             if falls is None:
                 return replace(self, merit=-math.inf)
             figures = replace(figures, fallen=falls.share)
-        found = nonassociative_resistance(model, settings=flow or QUICK, look=yard.until.look)
         carried, movers = figures.F_LR, self.movers
-        for end in (found.left, found.right):
-            alpha = 0.0 if end.status is LimitStatus.UNSTABLE else end.alpha
-            if alpha is not None and alpha / found.mu <= carried:
-                carried = alpha / found.mu
-                movers = _movers(self.build, end.mechanism)
+        if known is not None and flow is None:
+            carried = known
+        else:
+            found = nonassociative_resistance(model, settings=flow or QUICK, look=yard.until.look)
+            for end in (found.left, found.right):
+                alpha = 0.0 if end.status is LimitStatus.UNSTABLE else end.alpha
+                if alpha is not None and alpha / found.mu <= carried:
+                    carried = alpha / found.mu
+                    movers = _movers(self.build, end.mechanism)
         figures = replace(figures, F_LR_coulomb=carried)
         merit = merit_of(figures, possible_filling(yard.workshop), goal)
         return replace(self, figures=figures, merit=merit, falls=falls, movers=movers)
@@ -233,20 +252,74 @@ def _movers(build: Build, mechanism: Mechanism | None) -> tuple[int, ...]:
     return tuple(s for s in fastest if speeds[s] >= MOVES * speeds[fastest[0]] > 0.0)
 
 
-def falls_of(build: Build, yard: Yard, runs: int, most: float = math.inf) -> RehearsalFalls | None:
-    """Rehearse a wall of outlines; None as soon as its share is known to be above `most`."""
-    blocks = groups_of(build.wall)
-    if not blocks:
-        return RehearsalFalls(0.0, Counter())
-    fallen, first, all_stones = 0.0, Counter[int](), runs * len(blocks)
-    errors = BuilderErrors.of_precision(HAND, mean_size(blocks))
-    for put in errors_of(blocks, errors, np.random.default_rng(0), runs):
-        yard.until.look()
-        run = put_up(blocks, put, yard.settings.mu, yard.settings.settle)
-        if run.first_fall is not None:
-            first[run.first_fall] += 1
-        fallen += sum(end.fallen for end in run.stones)
-        fallen += STOPPED * max(end.nearness for end in run.stones) ** NEARLY
-        if fallen > most * all_stones:
+class Rehearsals:
+    """Rehearses walls of the same stones, each stone with the same errors in all of them.
+
+    So walls that differ little are compared by what differs.  The first wall decides how often all
+    are rehearsed: until stones of it have fallen in :data:`ENOUGH` runs.  It is remembered how it
+    came to stand: others are built on from where they differ from it, and first in the runs in
+    which it lost most.
+    """
+
+    def __init__(self, yard: Yard, runs: int, draws: int = 0) -> None:
+        self._yard, self._draws = yard, (REHEARSAL_DRAWS, draws)
+        self._drawn = self._runs = runs
+        self._errors: BuilderErrors | None = None
+        bare = RunState(BuiltWall(yard.settings.mu, yard.settings.settle))
+        # Of the first wall, once it was rehearsed: its steps, states and losses in each run.
+        self._first: Sequence[Group] = ()
+        self._states = [[bare] for _ in range(runs)]
+        self._lost = [0.0] * runs
+
+    def falls(self, build: Build, most: float = math.inf) -> RehearsalFalls | None:
+        """Rehearse a wall of outlines.
+
+        None as soon as its share is known to be above `most`, or would be if it loses no less than
+        the first wall in the runs in which that lost no stone.
+        """
+        blocks, groups = groups_of(build.wall), build.wall.groups
+        if not blocks:
+            return RehearsalFalls(0.0, Counter())
+        settings = self._yard.settings
+        errors = self._errors or BuilderErrors.of_precision(HAND, mean_size(blocks))
+        put = [list(run) for run in zip(*(self._put(errors, one) for one in blocks), strict=True)]
+        pairs = zip(groups, self._first, strict=False)
+        same = sum(1 for _ in takewhile(lambda two: two[0] is two[1], pairs))
+        first, held, lost = Counter[int](), 0, [0.0] * self._runs
+        rest = math.fsum(self._lost)
+        for k in sorted(range(self._runs), key=self._lost.__getitem__, reverse=True):
+            least = math.fsum([*lost, rest if self._lost[k] < STOPPED else 0.0])
+            if least > most * self._runs * len(blocks):
+                return None
+            self._yard.until.look()
+            states = self._states[k][: same + 1]
+            run = put_up(blocks, put[k], settings.mu, settings.settle, states)
+            if run.first_fall is not None:
+                first[run.first_fall] += 1
+            lost[k] = sum(end.fallen for end in run.stones)
+            lost[k] += STOPPED * max(end.nearness for end in run.stones) ** NEARLY
+            rest -= self._lost[k]
+            if self._first:
+                continue
+            held += sum(one.wall.held_bytes for one in states)
+            if held < KNOWN_BYTES:
+                self._states[k] = states
+            if first.total() == ENOUGH:
+                self._runs = k + 1
+                break
+        share = math.fsum(lost) / self._runs / len(blocks)
+        if share > most:
             return None
-    return RehearsalFalls(fallen / all_stones, first)
+        if not self._first:
+            self._first, self._errors, self._lost = groups, errors, lost[: self._runs]
+        return RehearsalFalls(share, first)
+
+    def _put(
+        self, errors: BuilderErrors, group: Sequence[Outlined]
+    ) -> list[list[tuple[int, Built]]]:
+        """Return how a stone and its wedges are put down in all runs."""
+        numbers = [
+            stratified(np.random.default_rng([*self._draws, group[0][0], k]), self._drawn, 1)
+            for k in range(len(group))
+        ]
+        return put_down_with(errors, group, np.concatenate(numbers, axis=1))

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from drystone.kernels.polygons import area_and_centroid
-from drystone.model.builder import WEDGE_SHARE, BuilderErrors, Built, as_planned, stratified
+from drystone.model.builder import BuilderErrors, Built, as_planned, put_down_with, stratified
 from drystone.model.outlines import Outlined
 from drystone.model.wall import Wall, outlined
 from drystone.physics.building import BuildSettings, build_up, tilt_of
@@ -92,26 +92,11 @@ def mean_size(groups: Groups) -> float:
     return float(np.mean([area_and_centroid(group[0][1])[0] ** 0.5 for group in groups]))
 
 
-def errors_of(
-    groups: Groups, errors: BuilderErrors, rng: np.random.Generator, runs: int = 1
-) -> list[Put]:
-    """Return the blocks of a plan as they are and where they are put, in a run or several."""
-    wedge = errors.times(WEDGE_SHARE)
-    blocks = [
-        (i, corners, wedge if k else errors)
-        for group in groups
-        for k, (i, corners) in enumerate(group)
-    ]
-    drawn = stratified(rng, runs, len(blocks)).swapaxes(0, 1)
-    put = [
-        [(i, built) for built in missed.all_built(corners, numbers)]
-        for (i, corners, missed), numbers in zip(blocks, drawn, strict=True)
-    ]
-    ends = np.cumsum([len(group) for group in groups]).tolist()
-    return [
-        [list(run[end - len(group) : end]) for group, end in zip(groups, ends, strict=True)]
-        for run in zip(*put, strict=True)
-    ]
+def errors_of(groups: Groups, errors: BuilderErrors, rng: np.random.Generator) -> Put:
+    """Return the blocks of a plan as they are and where they are put in a run."""
+    ends = np.cumsum([len(group) for group in groups])
+    numbers = np.split(stratified(rng, 1, int(ends[-1])), ends[:-1], axis=1)
+    return [put_down_with(errors, *one)[0] for one in zip(groups, numbers, strict=True)]
 
 
 def rehearse(
@@ -126,24 +111,47 @@ def rehearse(
 
     Stones may stand out over the ends of the wall.
     """
-    return put_up(groups, errors_of(groups, errors, rng)[0], mu, settle or SettleSettings())
+    return put_up(groups, errors_of(groups, errors, rng), mu, settle or SettleSettings())
 
 
-def put_up(groups: Groups, put: Put, mu: float, settle: SettleSettings) -> RehearsalRun:
-    """Build a wall once of blocks with their errors."""
-    wall, laid_last = BuiltWall(mu, settle), None
+@dataclass(frozen=True, eq=False)
+class RunState:
+    """How far a wall is built in a run."""
+
+    wall: BuiltWall
+    laid_last: int | None = None  # see `RehearsalRun`
+
+
+def put_up(
+    groups: Groups,
+    put: Put,
+    mu: float,
+    settle: SettleSettings,
+    states: list[RunState] | None = None,
+) -> RehearsalRun:
+    """Build a wall once of blocks with their errors.
+
+    `states` are those of the run after its first stones, from none on, where that was built
+    before; those after the others are added to them.
+    """
+    states = [RunState(BuiltWall(mu, settle))] if states is None else states
     planned = {group[0][0]: as_planned(group[0][1]) for group in groups}
-    for (block, at), (stone, *wedges) in zip(planned.items(), put, strict=True):
-        wall = before = wall.put((*wedges, stone))
-        fell = block not in wall.laid or astray(wall.laid[block], at)
-        if block in wall.laid:
-            wall = wall.loaded(block)
-        if laid_last is None and (fell or not planned.keys().isdisjoint(wall.lost(before))):
-            laid_last = block  # wedges alone may be lost
+    steps = list(zip(planned.items(), put, strict=True))
+    for (block, at), (stone, *wedges) in steps[len(states) - 1 :]:
+        before = states[-1]
+        wall = laid = before.wall.put((*wedges, stone))
+        fell = block not in laid.laid or astray(laid.laid[block], at)
+        if block in laid.laid:
+            wall = laid.loaded(block)
+        # Wedges alone may be lost.
+        falls = fell or not planned.keys().isdisjoint(wall.lost(laid))
+        begins = block if falls and before.laid_last is None else before.laid_last
+        states.append(RunState(wall, begins))
+    wall = states[-1].wall
     ends = tuple(_end(block, at, wall.laid.get(block)) for block, at in planned.items())
     fallen = {end.stone for end in ends if end.fallen}
     lies = tuple((i, b.corners) for i, b in wall.laid.items() if i not in fallen)
-    return RehearsalRun(ends, lies, laid_last=laid_last)
+    return RehearsalRun(ends, lies, laid_last=states[-1].laid_last)
 
 
 def _end(block: int, at: Built, built: Built | None) -> StoneEnd:
@@ -157,7 +165,7 @@ def rehearse_in_engine(
     groups: Groups, errors: BuilderErrors, rng: np.random.Generator, *, mu: float = 0.58
 ) -> RehearsalRun:
     """Build a wall once with the same errors in a rigid-body engine (extra `physics`)."""
-    put = errors_of(groups, errors, rng)[0]
+    put = errors_of(groups, errors, rng)
     found = build_up([[(i, one.corners) for i, one in group] for group in put], mu, IN_ENGINE)
     ends = []
     for (planned, *_), ((block, built), *_) in zip(groups, put, strict=True):

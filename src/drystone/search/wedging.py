@@ -10,13 +10,20 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from drystone.contacts.settled import PlacedPolygons
 from drystone.kernels.polygons import Points
 from drystone.model.placement import Wedge
 from drystone.model.wall import Group
 from drystone.planner.build import Build
 from drystone.planner.deadline import Deadline
 from drystone.planner.solves import Solves
-from drystone.search.wedge_draft import Motion, WedgeDraft, WedgePlace
+from drystone.search.wedge_draft import (
+    MOST_UNDER_ONE,
+    Motion,
+    WedgeDraft,
+    WedgePlace,
+    wedge_places,
+)
 from drystone.search.yard import Yard
 from drystone.statics.model import RigidBlockModel
 
@@ -103,6 +110,26 @@ def wedged_up(build: Build, yard: Yard, most: int) -> tuple[Build, Solves]:
         begun = steps.again(yard.planner().build, build.wall.groups)
     wall = begun if begun is None or not begun.actions else _wedged(begun, steps, most)
     return build if wall is None or wall is begun else wall, sum(steps.trouble, Solves())
+
+
+def one_more_wedge(build: Build, stone_id: int, yard: Yard) -> Iterator[tuple[Build, Solves]]:
+    """List walls of outlines with one more wedge under a stone, which stand after every step.
+
+    The wall knows its states.
+    """
+    may = yard.settings.stabilise.method in ("both", "wedge") and yard.settings.search.wedges
+    groups = build.wall.groups
+    step = next(k for k, group in enumerate(groups) if group.placement.stone_id == stone_id)
+    if not may or len(groups[step].wedges) >= MOST_UNDER_ONE:
+        return
+    first = sum(1 + len(group.wedges) for group in groups[:step])
+    placed = PlacedPolygons(build.wall.exact.ids, build.wall.exact.polygons)
+    width = build.wall.site.extent_px[0]
+    for place in wedge_places(placed, step, first, width, yard.limits):
+        steps = _Steps(yard, build.course_heights_px())
+        wall = steps.changed(build, [_Change(step, place.corners)])
+        if wall is not None:
+            yield wall, sum(steps.trouble, Solves())
 
 
 def _wedged(wall: Build, steps: _Steps, most: int) -> Build:

@@ -19,10 +19,11 @@ from drystone.planner.sturdy import ROUNDS
 from drystone.planner.vary import REPAIR_DRAWS
 from drystone.search.anytime import searching
 from drystone.search.chain import forget, without
-from drystone.search.goal import FoundWall, WallFigures
+from drystone.search.goal import LAST_RUNS, FoundWall, Rehearsals, WallFigures
 from drystone.search.interrupts import held
 from drystone.search.packed import PackedWall, archived, found_again
 from drystone.search.state import Progress, SearchState
+from drystone.search.wedging import one_more_wedge
 from drystone.search.yard import Yard
 from drystone.statics.flow.flow_search import NonassociativeSettings
 from drystone.statics.flow.release import fall_of
@@ -34,7 +35,10 @@ THOROUGH = NonassociativeSettings()
 """How the load without dilatancy is looked for at the end."""
 
 REPAIRS, WORTH = 8, 0.1
-"""So often the best wall is repaired at most, and no further than that gains so much merit."""
+"""So often repairs of the best wall are looked for at most; each gains at least so much merit."""
+
+WEDGED = 4
+"""So many of the stones that fall first get one more wedge in turn, wherever there is room."""
 
 JUDGED_AGAIN = 8
 """So many of the best walls of a search are looked at thoroughly at most."""
@@ -198,13 +202,14 @@ def surest(
     those that were, and None where none was.
     """
     yard = Yard.of(planner, until)
+    rehearsals = Rehearsals(yard, LAST_RUNS, 1)
     best, stays = None, False
     try:
         for wall in islice(walls, JUDGED_AGAIN):
             least = best.merit if best and stays else -math.inf
             if wall.merit <= least:
                 break
-            judged = found_again(wall, yard).judged(yard, THOROUGH, least)
+            judged = found_again(wall, yard).judged(yard, THOROUGH, least, rehearsals)
             if judged.merit <= least:
                 continue
             found = stays_at_every_step(judged.build, until), judged.merit
@@ -220,10 +225,21 @@ def repaired(planner: Planner, best: FoundWall, until: Deadline = NEVER) -> Foun
 
     Weak are the stones that fall first in its rehearsals, and those that move when it fails.  Of
     both the weakest one is taken out, or all are, and what they leave is built up again or stays
-    open; so the best of these walls goes on, at most :data:`REPAIRS` times, while it is worth it.
+    open; or one of the first that fall gets one more wedge.  What is better is rehearsed again
+    with other errors, for the best of many has luck with those that chose it; the best goes on.
     """
-    yard = Yard.of(planner, until)
-    for turn in range(REPAIRS):
+    yard, found = Yard.of(planner, until), list[FoundWall]()
+    for turn in range(REPAIRS + 1):
+        rehearsals = Rehearsals(yard, LAST_RUNS, 2 + turn)
+        best = best.judged(yard, rehearsals=rehearsals)
+        least = best.merit + WORTH
+        again = (one.judged(yard, least=least, rehearsals=rehearsals) for one in found)
+        better = max(again, key=lambda one: one.merit, default=best)
+        if turn and (better.merit <= least or not stays_at_every_step(better.build, until)):
+            break
+        best, least = better, better.merit + WORTH
+        if turn == REPAIRS:
+            break
         first = [stone for stone, _ in best.falls.first.most_common()] if best.falls else []
         weak = [frozenset(some) for s in (first, best.movers) for some in (s[:1], s) if some]
         walls, rng = [], np.random.default_rng([planner.seed, REPAIR_DRAWS, turn])
@@ -231,15 +247,12 @@ def repaired(planner: Planner, best: FoundWall, until: Deadline = NEVER) -> Foun
             build, _, solves = without(best.build, chosen, yard)
             walls += [FoundWall.measured(build, yard, solves)]
             walls += [FoundWall.of(yard.built_up(build, rng), before=solves)]
-        better = best
-        for wall in sorted(walls, key=lambda one: -one.merit):
-            judged = wall.judged(yard, THOROUGH, better.merit)
-            if judged.merit > better.merit:
-                better = judged
-        if better is best or not stays_at_every_step(better.build, until):
-            break
-        before, best = best.merit, better
-        if best.merit < before + WORTH:
+        for stone in first[:WEDGED]:
+            wedged = one_more_wedge(best.build, stone, yard)
+            walls += [FoundWall.measured(build, yard, solves) for build, solves in wedged]
+        judged = (wall.judged(yard, THOROUGH, least, rehearsals) for wall in walls)
+        found = [wall for wall in judged if wall.merit > least]
+        if not found:
             break
     return best
 
@@ -280,12 +293,18 @@ def with_the_rest(
     whether time was up before all was tried.
     """
     last, _ = as_found(planner, best)
-    build, merit, cut = last.build, best.merit, False
+    build, merit, cut = last.build, -math.inf, False
+    yard = Yard.of(planner, until)
+    rehearsals = Rehearsals(yard, LAST_RUNS)
     try:
         for _ in last.steps(until):
             now = FoundWall.of(last)
-            if now.merit > merit:
-                now = now.judged(Yard.of(planner, until), THOROUGH)
+            if now.merit <= best.merit:
+                continue
+            if merit == -math.inf:  # by the same rehearsals
+                before = FoundWall.measured(build, yard)
+                merit = before.judged(yard, THOROUGH, rehearsals=rehearsals).merit
+            now = now.judged(yard, THOROUGH, merit, rehearsals)
             if now.merit > merit:
                 build, merit = last.build, now.merit
     except TimeIsUp:

@@ -60,6 +60,11 @@ class BuiltWall:
     polygons: Polygons = field(default_factory=no_polygons)
     beds: Mapping[int, Bed] = field(default_factory=dict)  # where they are known
 
+    @property
+    def held_bytes(self) -> int:
+        """About how much memory it takes."""
+        return 2 * self.polygons.corners.nbytes + 400 * len(self.laid)
+
     def put(self, pieces: Iterable[tuple[int, Built]]) -> "BuiltWall":
         """Put blocks down on what does not move; those that rest nowhere are left out.
 
