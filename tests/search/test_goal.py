@@ -103,6 +103,16 @@ def test_what_nearly_falls_in_a_rehearsal_counts_too(careless):
     assert judged.figures.fallen == pytest.approx(np.mean(lost) / len(blocks))
 
 
+def test_bad_luck_in_some_rehearsals_is_forgotten_in_others(careless):
+    yard = Yard.of(careless)
+    true = FoundWall.of(careless).judged(yard, rehearsals=Rehearsals(yard, 12, 5))
+    figures = replace(true.figures, fallen=true.figures.fallen + 0.1)
+    unlucky = replace(true, figures=figures, merit=true.merit - 0.1 * yard.settings.goal.fallen)
+    for least, merit in [(true.merit - 0.01, true.merit), (true.merit + 0.01, -math.inf)]:
+        again = unlucky.judged(yard, least=least, rehearsals=Rehearsals(yard, 12, 5))
+        assert again.merit == pytest.approx(merit)
+
+
 def test_walls_that_are_rehearsed_together_fall_as_each_alone(careless):
     """What is remembered of the first one, and the order of the runs, change nothing."""
     yard = Yard.of(careless)

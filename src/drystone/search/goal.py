@@ -214,16 +214,19 @@ class FoundWall:
         The wall has no merit as soon as that cannot be more than `least`.
         """
         figures, model, goal = self.figures, self.build.model, yard.settings.goal
-        if self.merit <= least:
+        again = flow is not None or rehearsals is not None
+        # In other rehearsals less may fall, or nothing.
+        most = self.merit + (goal.fallen * figures.fallen if figures and again else 0.0)
+        if most <= least:
             return replace(self, merit=-math.inf)
         if figures is None or self.build.wall.outlines is None:
             return self
         known = figures.F_LR_coulomb
-        if known is not None and flow is None and rehearsals is None:
+        if known is not None and not again:
             return self
         falls = self.falls
         if goal.fallen:
-            most = figures.fallen + (self.merit - least) / goal.fallen
+            most = (most - least) / goal.fallen
             falls = (rehearsals or Rehearsals(yard, RUNS)).falls(self.build, most)
             if falls is None:
                 return replace(self, merit=-math.inf)

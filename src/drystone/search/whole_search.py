@@ -207,8 +207,6 @@ def surest(
     try:
         for wall in islice(walls, JUDGED_AGAIN):
             least = best.merit if best and stays else -math.inf
-            if wall.merit <= least:
-                break
             judged = found_again(wall, yard).judged(yard, THOROUGH, least, rehearsals)
             if judged.merit <= least:
                 continue
