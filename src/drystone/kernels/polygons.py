@@ -1,10 +1,23 @@
 """Simple polygons in one array: the outlines of placed stones, ready for kernels."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
+from itertools import accumulate
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
+
+if not cython.compiled:
+    from math import floor, sqrt
+
+    from drystone.kernels.lists import doubles, doubles_out
 
 Points = NDArray[np.float64]
 
@@ -29,27 +42,29 @@ class Polygons(NamedTuple):
         """Return the corners of one polygon."""
         return self.corners[self.first[index] : self.first[index + 1]]
 
-    def added(self, polygons: Iterable[Points]) -> "Polygons":
+    def added(self, polygons: Iterable[Points]) -> Polygons:
         """Return these polygons with more after them."""
         new = [np.ascontiguousarray(polygon, np.float64) for polygon in polygons]
-        sizes = np.array([len(polygon) for polygon in new], np.int64)
-        ends = self.first[-1] + np.cumsum(sizes)
-        boxes = [np.concatenate([polygon.min(axis=0), polygon.max(axis=0)]) for polygon in new]
+        if not new:
+            return self
+        corners = np.concatenate(new)
+        *starts, end = accumulate(map(len, new), initial=0)
+        least, most = np.minimum.reduceat(corners, starts), np.maximum.reduceat(corners, starts)
         return Polygons(
-            np.concatenate([self.corners, *new]),
-            np.concatenate([self.first, ends.astype(np.int32)]),
-            np.vstack([self.boxes, *boxes]),
+            np.concatenate([self.corners, corners]),
+            np.concatenate([self.first, self.first[-1] + np.array([*starts[1:], end], np.int32)]),
+            np.concatenate([self.boxes, np.concatenate([least, most], axis=1)]),
             np.concatenate([self.edges, *map(polygon_edges, new)]),
         )
 
-    def leading(self, count: int) -> "Polygons":
+    def leading(self, count: int) -> Polygons:
         """Return the first so many polygons, without a copy."""
         end = int(self.first[count])
         return Polygons(
             self.corners[:end], self.first[: count + 1], self.boxes[:count], self.edges[:end]
         )
 
-    def mirrored(self, width: float) -> "Polygons":
+    def mirrored(self, width: float) -> Polygons:
         """Return the mirror images about the middle of a wall of a given width.
 
         Corners are given in reverse, so that polygons are counter-clockwise again.
@@ -74,6 +89,11 @@ def on_grid(points: Points) -> Points:
     return np.asarray(np.floor(points * GRID + 0.5) / GRID)
 
 
+def place_on_grid(x: float, y: float) -> tuple[float, float]:
+    """Return the nearest place whose coordinates are multiples of 2^-20."""
+    return floor(x * GRID + 0.5) / GRID, floor(y * GRID + 0.5) / GRID
+
+
 def no_polygons() -> Polygons:
     """Return an empty collection."""
     return Polygons(np.zeros((0, 2)), np.zeros(1, np.int32), np.zeros((0, 4)), np.zeros((0, 3)))
@@ -81,12 +101,16 @@ def no_polygons() -> Polygons:
 
 def polygon_edges(corners: Points) -> Points:
     """Return the edges of a polygon as rows (unit vector x, y, length), from each corner on."""
-    edges = np.empty((len(corners), 3))
-    x, y, length = edges.T
-    x[:-1], y[:-1] = (corners[1:] - corners[:-1]).T
-    x[-1], y[-1] = corners[0] - corners[-1]
-    np.sqrt(x * x + y * y, out=length)
-    edges[:, :2] /= edges[:, 2:]
+    count: cython.Py_ssize_t = len(corners)
+    edges = np.empty((count, 3))
+    corners = np.ascontiguousarray(corners, np.float64)
+    at: cython.p_double = doubles(corners)
+    to: cython.p_double = doubles_out(edges)
+    for i in range(count):
+        k = 2 * (i + 1) if i + 1 < count else 0
+        x, y = at[k] - at[2 * i], at[k + 1] - at[2 * i + 1]
+        length = sqrt(x * x + y * y)
+        to[3 * i], to[3 * i + 1], to[3 * i + 2] = x / length, y / length, length
     return edges
 
 
@@ -103,16 +127,23 @@ def area_and_centroid(corners: Points) -> tuple[float, float, float]:
     >>> area_and_centroid(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]))
     (2.0, 1.0, 0.5)
     """
-    # From the first corner, so that polygons far from the origin keep their digits; in plain
-    # floats, which for some dozen corners are quicker than arrays.
-    points = (corners - corners[0]).tolist()
-    twice = sum_x = sum_y = 0.0
-    before_x, before_y = points[-1]
-    for x, y in points:
+    count: cython.Py_ssize_t = len(corners)
+    corners = np.ascontiguousarray(corners, np.float64)
+    at: cython.p_double = doubles(corners)
+    # From the first corner, so that polygons far from the origin keep their digits.
+    first_x: cython.double = at[0]
+    first_y: cython.double = at[1]
+    before_x: cython.double = at[2 * count - 2] - first_x
+    before_y: cython.double = at[2 * count - 1] - first_y
+    twice: cython.double = 0.0
+    sum_x: cython.double = 0.0
+    sum_y: cython.double = 0.0
+    for i in range(count):
+        x, y = at[2 * i] - first_x, at[2 * i + 1] - first_y
         cross = before_x * y - x * before_y
         twice += cross
         sum_x += (before_x + x) * cross
         sum_y += (before_y + y) * cross
         before_x, before_y = x, y
-    scale = 3.0 * twice
-    return twice / 2.0, float(corners[0, 0]) + sum_x / scale, float(corners[0, 1]) + sum_y / scale
+    scale: cython.double = 3.0 * twice
+    return twice / 2.0, first_x + sum_x / scale, first_y + sum_y / scale

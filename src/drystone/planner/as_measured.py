@@ -10,7 +10,7 @@ import numpy as np
 
 from drystone.errors import InputError
 from drystone.kernels.gaps import crosses_any
-from drystone.kernels.polygons import Points, on_grid
+from drystone.kernels.polygons import Points, place_on_grid
 from drystone.model.placement import Placement, Settled, Side
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
@@ -259,7 +259,7 @@ def _on_outlines(
         if not crosses_any(turned.corners + np.array(start), scene.polygons):
             # Where it was let go it does not rest.
             x = start[0] if scene.side == "left" else scene.width_px - start[0]
-            x, y = on_grid(np.array([x, start[1]])).tolist()
+            x, y = place_on_grid(x, start[1])
             there = Settled(x, y, placed_outline(turned.outline, turned.angle_deg, x, y))
             repose = Repose(there, turned.angle_deg, turned=False, margin=-1.0)
             yield from taken_in(repose, None)

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from drystone.kernels.meetings import meetings
-from drystone.kernels.polygons import Polygons, no_polygons, on_grid, polygon_edges
+from drystone.kernels.polygons import Polygons, no_polygons, place_on_grid, polygon_edges
 from drystone.kernels.raster import turn
 from drystone.kernels.settling import Status
 from drystone.model.builder import Built
@@ -77,15 +77,17 @@ class BuiltWall:
             rest, pushed = put_down(built, polygons, self.mu, self.settle)
             if rest is None:
                 continue
-            ids = list(laid)
-            shifts = {ids[place]: shift for place, shift in pushed.items()}
-            for one, shift in shifts.items():
-                laid[one] = replace(laid[one], x=laid[one].x + shift)
-            for one, bed in list(beds.items()) if shifts else ():
-                if bed is not HELD and (one in shifts or not bed.below.isdisjoint(shifts)):
-                    del beds[one]
+            if pushed:
+                polygons = moved(polygons, pushed)
+                ids = list(laid)
+                shifts = {ids[place]: shift for place, shift in pushed.items()}
+                for one, shift in shifts.items():
+                    laid[one] = replace(laid[one], x=laid[one].x + shift)
+                for one, bed in list(beds.items()):
+                    if bed is not HELD and (one in shifts or not bed.below.isdisjoint(shifts)):
+                        del beds[one]
             laid[block] = rest
-            polygons = moved(polygons, pushed).added([rest.corners])
+            polygons = polygons.added([rest.corners])
         return replace(self, laid=laid, polygons=polygons, beds=beds)
 
     def held(self, blocks: Mapping[int, Built]) -> "BuiltWall":
@@ -143,15 +145,18 @@ def _with_beds(wall: BuiltWall) -> BuiltWall:
             continue
         around = wall.polygons.leading(place)
         found = meetings(built.corners, around, touching(built.size, wall.settle))
-        told = zip(found.others, found.counts, found.points, found.normals, strict=True)
+        others = [ids[other] if other >= 0 else -1 for other in found.others.tolist()]
+        told = zip(
+            *(part.tolist() for part in (found.counts, found.points, found.normals)), strict=True
+        )
         points = sorted(
-            Bearing(x, y, ids[other] if other >= 0 else -1)
-            for other, count, points, normal in told
-            if normal[1] >= UPWARD
-            for x, y in points[:count].tolist()
+            Bearing(x, y, other)
+            for other, (count, points, (_, up)) in zip(others, told, strict=True)
+            if up >= UPWARD
+            for x, y in points[:count]
         )
         # What bears on nothing is held between upright faces.
-        below = {p.below for p in points} or {ids[other] for other in found.others if other >= 0}
+        below = {p.below for p in points} or set(others)
         beds[block] = Bed(points, frozenset(below - {-1}))
     return replace(wall, beds=beds)
 
@@ -205,8 +210,8 @@ def _rolled(wall: BuiltWall, block: int, load: tuple[float, float]) -> BuiltWall
             if (found.x, found.y, found.angle) == (*load, 0.0):
                 return wall
             turn_deg = math.degrees(found.angle)
-            (way,) = turn(np.array([(built.x - x, built.y - y)]), turn_deg)
-            x, y = on_grid(way + (found.x, found.y)).tolist()  # noqa: RUF005 - an array
+            ((way_x, way_y),) = turn(np.array([(built.x - x, built.y - y)]), turn_deg).tolist()
+            x, y = place_on_grid(way_x + found.x, way_y + found.y)
             angle_deg = wrap_deg(built.angle_deg + turn_deg)
             rest = Built(built.outline, x, y, angle_deg, built.size)
             break

@@ -5,10 +5,8 @@
 
 import math
 
-import numpy as np
-
 from drystone.kernels import putting, settling
-from drystone.kernels.polygons import Points, Polygons, on_grid, polygon_edges
+from drystone.kernels.polygons import Points, Polygons, place_on_grid, polygon_edges
 from drystone.kernels.raster import turn
 from drystone.kernels.settling import Settling, SettlingRules
 from drystone.model.builder import Built
@@ -53,7 +51,7 @@ def put_down(
     )
     if found is None:
         return None, {}
-    x, y = on_grid(np.array([found.x, found.y])).tolist()
+    x, y = place_on_grid(found.x, found.y)
     angle_deg = wrap_deg(built.angle_deg + math.degrees(found.angle))
     return Built(built.outline, x, y, angle_deg, size), pushed
 

@@ -4,13 +4,11 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from drystone.kernels.polygons import (
     Points,
     Polygons,
     mirrored_polygon,
-    on_grid,
+    place_on_grid,
     polygon_edges,
 )
 from drystone.kernels.raster import turn
@@ -234,7 +232,7 @@ def repose(stone: Turned, scene: SettlingScene, found: Settling) -> Repose:
     x = found.x if scene.side == "left" else scene.width_px - found.x
     angle_deg = stone.angle_deg + sign * math.degrees(found.angle)
     angle_deg = (angle_deg + 180.0) % 360.0 - 180.0
-    x, y = on_grid(np.array([x, found.y])).tolist()
+    x, y = place_on_grid(x, found.y)
     corners = placed_outline(stone.outline, angle_deg, x, y)
     return Repose(Settled(x, y, corners), angle_deg, found.angle != 0.0, found.margin)
 

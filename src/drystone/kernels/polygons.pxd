@@ -1,0 +1,5 @@
+from libc.math cimport floor, sqrt
+
+from drystone.kernels.memory cimport doubles, doubles_out
+
+ctypedef double *p_double
