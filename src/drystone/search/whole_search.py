@@ -37,6 +37,9 @@ THOROUGH = NonassociativeSettings()
 REPAIRS, WORTH = 8, 0.1
 """So often repairs of the best wall are looked for at most; each gains at least so much merit."""
 
+LOOK_RUNS = 24
+"""So often repairs are rehearsed until it is known which could be better."""
+
 WEDGED = 4
 """So many of the stones that fall first get one more wedge in turn, wherever there is room."""
 
@@ -149,7 +152,9 @@ def _ended(planner: Planner, progress: Progress, grace: Deadline, *, lost: bool)
     best = found = PackedWall.of(sure) if sure else progress.best
     try:
         if sure:
-            best = PackedWall.of(repaired(planner, sure, grace))
+            # A turn takes as long as a few walls.
+            turns = min(REPAIRS, progress.walls // 2)
+            best = PackedWall.of(repaired(planner, sure, grace, turns))
     except TimeIsUp:
         unsure = True
     last, stopped, cut = with_the_rest(planner, best, grace)
@@ -218,7 +223,9 @@ def surest(
     return best, False
 
 
-def repaired(planner: Planner, best: FoundWall, until: Deadline = NEVER) -> FoundWall:
+def repaired(
+    planner: Planner, best: FoundWall, until: Deadline = NEVER, turns: int = REPAIRS
+) -> FoundWall:
     """Return a wall without what is weak in it, where that is better.
 
     Weak are the stones that fall first in its rehearsals, and those that move when it fails.  Of
@@ -226,18 +233,10 @@ def repaired(planner: Planner, best: FoundWall, until: Deadline = NEVER) -> Foun
     open; or one of the first that fall gets one more wedge.  What is better is rehearsed again
     with other errors, for the best of many has luck with those that chose it; the best goes on.
     """
-    yard, found = Yard.of(planner, until), list[FoundWall]()
-    for turn in range(REPAIRS + 1):
-        rehearsals = Rehearsals(yard, LAST_RUNS, 2 + turn)
-        best = best.judged(yard, rehearsals=rehearsals)
-        least = best.merit + WORTH
-        again = (one.judged(yard, least=least, rehearsals=rehearsals) for one in found)
-        better = max(again, key=lambda one: one.merit, default=best)
-        if turn and (better.merit <= least or not stays_at_every_step(better.build, until)):
-            break
-        best, least = better, better.merit + WORTH
-        if turn == REPAIRS:
-            break
+    yard = Yard.of(planner, until)
+    for turn in range(turns):
+        look = Rehearsals(yard, LOOK_RUNS, 2 + 2 * turn)
+        least = best.judged(yard, rehearsals=look).merit + WORTH
         first = [stone for stone, _ in best.falls.first.most_common()] if best.falls else []
         weak = [frozenset(some) for s in (first, best.movers) for some in (s[:1], s) if some]
         walls, rng = [], np.random.default_rng([planner.seed, REPAIR_DRAWS, turn])
@@ -248,10 +247,17 @@ def repaired(planner: Planner, best: FoundWall, until: Deadline = NEVER) -> Foun
         for stone in first[:WEDGED]:
             wedged = one_more_wedge(best.build, stone, yard)
             walls += [FoundWall.measured(build, yard, solves) for build, solves in wedged]
-        judged = (wall.judged(yard, THOROUGH, least, rehearsals) for wall in walls)
+        judged = (wall.judged(yard, THOROUGH, least, look) for wall in walls)
         found = [wall for wall in judged if wall.merit > least]
         if not found:
             break
+        again = Rehearsals(yard, LAST_RUNS, 3 + 2 * turn)
+        least = best.judged(yard, rehearsals=again).merit + WORTH
+        judged = (wall.judged(yard, None, least, again) for wall in found)
+        better = max(judged, key=lambda one: one.merit)
+        if better.merit <= least or not stays_at_every_step(better.build, until):
+            break
+        best = better
     return best
 
 
