@@ -1,20 +1,9 @@
 # cython: language_level=3
-"""Memory of compiled kernels; :mod:`drystone.kernels.lists` is what it is without a compiler.
+"""What of :mod:`drystone.kernels.memory` is not in its ``.pxd``."""
 
-A pointer is valid as long as its array: whoever asks for one keeps the array.
-"""
-
-from cpython.buffer cimport (
-    PyBUF_C_CONTIGUOUS,
-    PyBUF_FORMAT,
-    PyBUF_STRIDES,
-    PyBUF_WRITABLE,
-    PyBuffer_Release,
-    PyObject_GetBuffer,
-)
+from cpython.buffer cimport PyBUF_FORMAT, PyBuffer_Release, PyObject_GetBuffer
 from cpython.bytearray cimport PyByteArray_AS_STRING
-from libc.stdlib cimport free, qsort, realloc
-from libc.string cimport memmove
+from libc.stdlib cimport qsort, realloc
 
 
 cdef void *start(object array, const char *kinds, Py_ssize_t size, int access) except? NULL:
@@ -34,74 +23,6 @@ cdef void *start(object array, const char *kinds, Py_ssize_t size, int access) e
     return at
 
 
-cdef double *doubles(object array) except? NULL:
-    return <double *>start(array, b"d", 8, PyBUF_C_CONTIGUOUS)
-
-
-cdef int *ints(object array) except? NULL:
-    return <int *>start(array, b"il", 4, PyBUF_C_CONTIGUOUS)
-
-
-cdef long long *longs(object array) except? NULL:
-    return <long long *>start(array, b"lq", 8, PyBUF_C_CONTIGUOUS)
-
-
-cdef unsigned char *flags(object array) except? NULL:
-    return <unsigned char *>start(array, b"?B", 1, PyBUF_C_CONTIGUOUS)
-
-
-cdef unsigned char *pixels(object array) except? NULL:
-    return <unsigned char *>start(array, b"?B", 1, PyBUF_STRIDES)
-
-
-cdef unsigned int *labels_in(object array) except? NULL:
-    return <unsigned int *>start(array, b"IL", 4, PyBUF_STRIDES)
-
-
-cdef Py_ssize_t stride(object array, int axis) except? -1:
-    return array.strides[axis] // array.itemsize
-
-
-cdef double *doubles_out(object array) except? NULL:
-    return <double *>start(array, b"d", 8, PyBUF_C_CONTIGUOUS | PyBUF_WRITABLE)
-
-
-cdef int *ints_out(object array) except? NULL:
-    return <int *>start(array, b"il", 4, PyBUF_C_CONTIGUOUS | PyBUF_WRITABLE)
-
-
-cdef long long *longs_out(object array) except? NULL:
-    return <long long *>start(array, b"lq", 8, PyBUF_C_CONTIGUOUS | PyBUF_WRITABLE)
-
-
-cdef unsigned char *flags_out(object array) except? NULL:
-    return <unsigned char *>start(array, b"?B", 1, PyBUF_C_CONTIGUOUS | PyBUF_WRITABLE)
-
-
-cdef double *new_doubles(Py_ssize_t count) except? NULL nogil:
-    return <double *>resized(NULL, count * sizeof(double))
-
-
-cdef int *new_ints(Py_ssize_t count) except? NULL nogil:
-    return <int *>resized(NULL, count * sizeof(int))
-
-
-cdef long long *new_longs(Py_ssize_t count) except? NULL nogil:
-    return <long long *>resized(NULL, count * sizeof(long long))
-
-
-cdef double *more_doubles(double *at, Py_ssize_t count) except? NULL nogil:
-    return <double *>resized(at, count * sizeof(double))
-
-
-cdef int *more_ints(int *at, Py_ssize_t count) except? NULL nogil:
-    return <int *>resized(at, count * sizeof(int))
-
-
-cdef long long *more_longs(long long *at, Py_ssize_t count) except? NULL nogil:
-    return <long long *>resized(at, count * sizeof(long long))
-
-
 cdef void *resized(void *at, Py_ssize_t size) except? NULL nogil:
     cdef void *more = realloc(at, size)
     if more == NULL:
@@ -110,32 +31,10 @@ cdef void *resized(void *at, Py_ssize_t size) except? NULL nogil:
     return more
 
 
-cdef double *kept_doubles(list room, Py_ssize_t count):
-    return <double *>kept(room, count * sizeof(double))
-
-
-cdef int *kept_ints(list room, Py_ssize_t count):
-    return <int *>kept(room, count * sizeof(int))
-
-
-cdef long long *kept_longs(list room, Py_ssize_t count):
-    return <long long *>kept(room, count * sizeof(long long))
-
-
-cdef unsigned char *kept_flags(list room, Py_ssize_t count):
-    return <unsigned char *>kept(room, count)
-
-
 cdef char *kept(list room, Py_ssize_t size):
     zeros = bytearray(size)
     room.append(zeros)
     return PyByteArray_AS_STRING(zeros)
-
-
-cdef void move_ints(
-    int *to, Py_ssize_t at, const int *source, Py_ssize_t start, Py_ssize_t count
-) noexcept nogil:
-    memmove(to + at, source + start, count * sizeof(int))
 
 
 cdef void sort_doubles(double *at, Py_ssize_t count) noexcept nogil:
@@ -160,7 +59,3 @@ cdef int compared_rows(const void *one, const void *two) noexcept nogil:
         if a[i] != b[i]:
             return 1 if a[i] > b[i] else -1
     return 0
-
-
-cdef void release(void *at) noexcept nogil:
-    free(at)

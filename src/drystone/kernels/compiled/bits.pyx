@@ -7,10 +7,11 @@ words of 64 positions; there nearly all positions meet something, most of them a
 """
 
 from libc.stdint cimport uint64_t
-from libc.stdlib cimport free, malloc
 from libc.string cimport memcpy, memset
 
-from drystone.kernels.memory cimport ints, longs, longs_out, more_longs
+from drystone.kernels.memory cimport (
+    ints, kept, kept_ints, kept_longs, longs, longs_out, more_longs, release
+)
 
 import numpy as np
 
@@ -46,16 +47,10 @@ cdef class Columns:
     cdef int *heads
     cdef Py_ssize_t cols, count
 
-    def __cinit__(self, Py_ssize_t cols, Py_ssize_t count):
+    def __cinit__(self, list room, Py_ssize_t cols, Py_ssize_t count):
         self.cols, self.count = cols, count
-        self.rows = <int *> malloc((2 * cols + count) * sizeof(int))
-        if self.rows == NULL:
-            raise MemoryError
-        self.following = self.rows + cols
-        self.heads = self.following + cols
-
-    def __dealloc__(self):
-        free(self.rows)
+        self.rows, self.following = kept_ints(room, cols), kept_ints(room, cols)
+        self.heads = kept_ints(room, count)
 
     cdef void drop(self, const int *top, const int *bottom, Py_ssize_t width) noexcept nogil:
         """Fill in the row at which a mask comes to rest; negative above the image."""
@@ -100,7 +95,7 @@ cdef class Found:
     cdef Py_ssize_t count, room
 
     def __dealloc__(self):
-        free(self.at)
+        release(self.at)
 
     cdef int add(self, Py_ssize_t row, Py_ssize_t col) except -1 nogil:
         if self.count == self.room:
@@ -131,21 +126,13 @@ cdef class Lines:
     cdef uint64_t *now  # the same of this row
     cdef Py_ssize_t words, count, longest, longest_row
 
-    def __cinit__(self, Py_ssize_t cols, Py_ssize_t room):
+    def __cinit__(self, list room, Py_ssize_t cols, Py_ssize_t runs):
         self.words = (cols + 63) // 64
-        self.covered = <uint64_t *> malloc(
-            4 * self.words * sizeof(uint64_t) + room * sizeof(Run)
-        )
-        if self.covered == NULL:
-            raise MemoryError
+        self.covered = <uint64_t *> kept_longs(room, 4 * self.words)
         self.landing = self.covered + self.words
         self.above = self.landing + self.words
         self.now = self.above + self.words
-        self.runs = <Run *> (self.now + self.words)
-        memset(self.covered, 0, self.words * sizeof(uint64_t))
-
-    def __dealloc__(self):
-        free(self.covered)
+        self.runs = <Run *> kept(room, runs * sizeof(Run))
 
     cdef int take(self, Py_ssize_t row, bint full, bint full_below, Found found) except -1 nogil:
         """Add positions of the row above: the mask lands, or meets nothing but would below."""
@@ -202,8 +189,9 @@ cdef class BitLandscape:
             return np.empty((0, 2), np.int64)
         cdef const int *bottom = ints(mask.bottom)
         cdef const int *runs = ints(mask.runs)
-        cdef Columns columns = Columns(cols, rows + 2)
-        cdef Lines lines = Lines(cols, count * ((width + PIECE - 1) // PIECE))
+        cdef list room = []
+        cdef Columns columns = Columns(room, cols, rows + 2)
+        cdef Lines lines = Lines(room, cols, count * ((width + PIECE - 1) // PIECE))
         cdef Found found = Found()
         with nogil:
             self.prepare(runs, count, lines)

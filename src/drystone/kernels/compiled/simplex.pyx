@@ -1,27 +1,24 @@
 # cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True, initializedcheck=False
 """The simplex method of :mod:`drystone.kernels.simplex`, which says what it solves and how.
 
-Vanderbei, Linear Programming: Foundations and Extensions (4th edition, 2014) has all that is used:
-chapter 6 (simplex method in matrix notation), 7.3 (parametric method), 5.6 (dual simplex method),
-3.3 and 3.4 (perturbation, Bland's rule), 2.3 (phases 1 and 2), 8.3 (products of eta matrices).
-
 From top to bottom: data; columns; basis inverse; ratio tests; state; tableau of the new bodies;
 start; phases; what is written out; what Python sees.  Sums are added in a fixed order: plans must
 be the same bytes on every machine.
 """
 
+from cpython.bytearray cimport (
+    PyByteArray_AS_STRING, PyByteArray_FromStringAndSize, PyByteArray_GET_SIZE
+)
 from libc.math cimport fabs, frexp, ldexp
 from libc.stdint cimport uint64_t
 from libc.stdlib cimport free, malloc
 from libc.string cimport memcpy, memset
 
-from drystone.kernels.memory cimport doubles, doubles_out, ints, ints_out
+from drystone.kernels.memory cimport doubles, doubles_out, ints, ints_out, p_double, p_int
 
 import numpy as np
 
-ctypedef double *p_double
 ctypedef const double *c_double
-ctypedef int *p_int
 ctypedef const int *c_int
 
 # ---- Data ----------------------------------------------------------------------------------------
@@ -78,12 +75,6 @@ cdef struct Columns:
     c_int first, second
     const double *entries
 
-# The optimal basis of the wall.
-cdef struct WallBasis:
-    Py_ssize_t size, alpha_row
-    const int *basic
-    c_double values, inverse, transposed, reduced_costs, secondary_costs
-
 # The basis inverse: F times the inverse of the wall, bordered by an identity for the new bodies
 # and by minus the live load on them in the column of alpha.  F is an identity but for a few eta
 # columns: `eta[t * size : ...]` is that of row `eta_row[t]`, and `slot` is the way back.
@@ -99,12 +90,14 @@ cdef struct Inverse:
     const double **lines
 
 cdef struct State:
-    WallBasis wall
+    # Of the wall; its optimal basis has its inverse in `inverse`.
     Columns old
-    Columns new
-    Py_ssize_t columns, size, alpha_row
+    const int *wall_basic
+    c_double wall_reduced_costs, wall_secondary_costs
     const int *closed
     Py_ssize_t closed_count
+    Columns new
+    Py_ssize_t columns, size, alpha_row
     Inverse inverse
     double speed, pivot
     int pivots, restarts
@@ -114,13 +107,12 @@ cdef struct State:
     # artificial one or a closed column, has to be 0.
     p_double rhs, live, values, direction, feasible, velocity, ray, inverse_row, pivot_column
     p_double residual, secondary_values
-    int *basic
-    char *fixed
+    p_int basic, fixed
     # Three more than that, for the ground.
-    p_double with_ground, total
+    double *with_ground
     # One number a column.
     p_double reduced_costs, secondary_costs, pivot_row, opened
-    char *open
+    int *open
     # One number a new column.
     p_int new_first, new_second
     # One number a row or a column, whichever are more.
@@ -180,24 +172,18 @@ cdef void clear_basic(State *state, double *values) noexcept nogil:
         values[state.closed[i]] = 0.0
 
 
-cdef Columns *part_of(State *state, Py_ssize_t *number) noexcept nogil:
-    if number[0] < state.old.count:
-        return &state.old
-    number[0] -= state.old.count
-    return &state.new
-
-
 cdef Py_ssize_t entries_of(
     State *state, Py_ssize_t variable, Py_ssize_t *rows, double *entries
 ) noexcept nogil:
     """Write the rows and entries, up to six, of any variable but alpha; return how many."""
     cdef Py_ssize_t q, row, count = 0, number = variable
-    cdef Columns *part
+    cdef Columns *part = &state.old
     if variable <= ARTIFICIAL:
         rows[0] = ARTIFICIAL - variable
         entries[0] = 1.0
         return 1
-    part = part_of(state, &number)
+    if number >= state.old.count:
+        part, number = &state.new, number - state.old.count
     for q in range(6):
         row = (part.first[number] + q if q < 3 else part.second[number] + q - 3) - 3
         if row >= 0:
@@ -414,20 +400,14 @@ cdef Py_ssize_t harris(
     Harris, Pivot selection methods of the Devex LP code, Mathematical Programming 5 (1973).
     """
     cdef Py_ssize_t i, first = 0, kept = 0
-    cdef double value, ratio, pivot, least = 0.0
+    cdef double ratio, least = 0.0
     for i in range(count):
-        value = values[listed[i]]
-        value = value if value > 0.0 else 0.0
-        ratio = (value + slack) / (sign * pivots[listed[i]])
+        ratio = (max(0.0, values[listed[i]]) + slack) / (sign * pivots[listed[i]])
         if i == 0 or ratio < least:
-            least = ratio
-            first = i
+            least, first = ratio, i
     for i in range(count):
-        value = values[listed[i]]
-        value = value if value > 0.0 else 0.0
-        pivot = sign * pivots[listed[i]]
         # The first one also where it is so large that the slack is lost.
-        if value <= least * pivot or i == first:
+        if max(0.0, values[listed[i]]) <= least * (sign * pivots[listed[i]]) or i == first:
             listed[kept] = listed[i]
             kept += 1
     return kept
@@ -486,77 +466,47 @@ cdef Py_ssize_t primal_ratio_test(State *state) noexcept nogil:
 
 # ---- State ---------------------------------------------------------------------------------------
 
-cdef char *take_memory(char *memory, Py_ssize_t *used, Py_ssize_t size) noexcept nogil:
-    """Take so many bytes of a block, on a border of 64 bytes."""
-    cdef char *taken = memory + used[0] if memory != NULL else NULL
-    used[0] += (size + 63) // 64 * 64
-    return taken
-
-
-cdef Py_ssize_t tableau_size(Py_ssize_t rows, Py_ssize_t count) noexcept nogil:
-    return (rows + 2) * (count + rows + 1)
-
-
-cdef Py_ssize_t lay_out(State *state, char *memory) noexcept nogil:
-    """Share out a block of memory for the sizes given; return how many bytes it takes."""
-    cdef Py_ssize_t used = 0, size = state.size, columns = state.columns
-    cdef Py_ssize_t new = size - state.wall.size
-    cdef Py_ssize_t longest = size if size > columns else columns
-    cdef double **rows[13]
-    cdef double **per_column[4]
-    cdef Py_ssize_t i
-    rows[:] = [
-        &state.rhs, &state.live, &state.values, &state.direction, &state.feasible,
-        &state.velocity, &state.ray, &state.inverse_row, &state.pivot_column, &state.residual,
-        &state.secondary_values, &state.with_ground, &state.total,
+cdef Py_ssize_t lay_out(State *state, char *memory, Py_ssize_t room) noexcept nogil:
+    """Share out a block of memory, with room for more columns; return how many bytes it takes."""
+    cdef Py_ssize_t i, used = 0, size = state.size, new = size - state.inverse.old
+    cdef Py_ssize_t columns = state.new.count + room
+    # More than any row or list needs, and begins of lines at borders of 64 bytes.
+    cdef Py_ssize_t longest = (size + state.old.count + columns + 11) // 8 * 8
+    cdef void **lines[28]
+    lines[:] = [
+        <void **>&state.rhs, <void **>&state.live, <void **>&state.values,
+        <void **>&state.direction, <void **>&state.feasible, <void **>&state.velocity,
+        <void **>&state.ray, <void **>&state.inverse_row, <void **>&state.pivot_column,
+        <void **>&state.residual, <void **>&state.secondary_values, <void **>&state.with_ground,
+        <void **>&state.reduced_costs, <void **>&state.secondary_costs, <void **>&state.pivot_row,
+        <void **>&state.opened, <void **>&state.small_ray, <void **>&state.inverse.factors,
+        <void **>&state.inverse.lines, <void **>&state.inverse.eta_row, <void **>&state.inverse.slot,
+        <void **>&state.basic, <void **>&state.fixed, <void **>&state.open, <void **>&state.listed,
+        <void **>&state.new_first, <void **>&state.new_second, <void **>&state.small_basic,
     ]
-    per_column[:] = [
-        &state.reduced_costs, &state.secondary_costs, &state.pivot_row, &state.opened,
-    ]
-    for i in range(13):
-        rows[i][0] = <double *>take_memory(memory, &used, (size + 3) * sizeof(double))
-    for i in range(4):
-        per_column[i][0] = <double *>take_memory(memory, &used, columns * sizeof(double))
-    state.basic = <int *>take_memory(memory, &used, size * sizeof(int))
-    state.fixed = take_memory(memory, &used, size)
-    state.open = take_memory(memory, &used, columns)
-    state.new_first = <int *>take_memory(memory, &used, state.new.count * sizeof(int))
-    state.new_second = <int *>take_memory(memory, &used, state.new.count * sizeof(int))
-    state.listed = <int *>take_memory(memory, &used, (longest + 1) * sizeof(int))
-    i = tableau_size(new, state.new.count + 1)
-    state.tableau = <double *>take_memory(memory, &used, i * sizeof(double))
-    state.small_ray = <double *>take_memory(
-        memory, &used, (new + state.new.count + 1) * sizeof(double)
-    )
-    state.small_basic = <int *>take_memory(memory, &used, new * sizeof(int))
-    state.inverse.eta_row = <int *>take_memory(memory, &used, size * sizeof(int))
-    state.inverse.slot = <int *>take_memory(memory, &used, size * sizeof(int))
-    state.inverse.factors = <double *>take_memory(memory, &used, (size + 1) * sizeof(double))
-    state.inverse.lines = <const double **>take_memory(
-        memory, &used, (size + 1) * sizeof(double *)
-    )
+    for i in range(28):
+        lines[i][0] = memory + used
+        used += longest * sizeof(double)
+    state.tableau = <double *>(memory + used)
+    used += (new + 2) * (columns + new + 2) * sizeof(double)
     # Mostly not touched: a few eta columns only.
-    state.inverse.eta = <double *>take_memory(memory, &used, size * size * sizeof(double))
-    return used
+    state.inverse.eta = <double *>(memory + used)
+    return used + size * size * sizeof(double)
 
 
 cdef void reset(State *state) noexcept nogil:
     """Begin with the basis of the wall, and artificial variables on the new bodies."""
-    cdef Py_ssize_t i, j, old = state.wall.size, more = state.new.count
+    cdef Py_ssize_t i, j, old = state.inverse.old
     cdef double alpha
-    state.inverse.rows = state.wall.inverse
-    state.inverse.cols = state.wall.transposed
-    state.inverse.values = state.wall.values
-    state.inverse.old = old
-    state.inverse.alpha_row = state.alpha_row = state.wall.alpha_row
+    state.alpha_row = state.inverse.alpha_row
     state.inverse.live = state.live + old
     state.inverse.new = state.size - old
     state.inverse.size = state.size
     border(&state.inverse)
     for i in range(old):
-        j = state.basic[i] = state.wall.basic[i]
+        j = state.basic[i] = state.wall_basic[i]
         state.fixed[i] = j <= ARTIFICIAL or (j >= 0 and not state.open[j])
-        state.values[i] = state.feasible[i] = state.wall.values[i]
+        state.values[i] = state.feasible[i] = state.inverse.values[i]
         state.direction[i] = 0.0
     for i in range(old, state.size):
         state.basic[i] = <int>(ARTIFICIAL - i)
@@ -564,13 +514,13 @@ cdef void reset(State *state) noexcept nogil:
         state.values[i] = state.rhs[i]
         state.feasible[i] = state.direction[i] = 0.0
     if old:
-        alpha = state.wall.values[state.wall.alpha_row]
+        alpha = state.inverse.values[state.alpha_row]
         for i in range(old, state.size):
             state.values[i] -= state.live[i] * alpha
     for j in range(state.old.count):
-        state.reduced_costs[j] = state.wall.reduced_costs[j]
-        state.secondary_costs[j] = state.wall.secondary_costs[j]
-    perturbation(state.old.count, more, state.secondary_costs + state.old.count)
+        state.reduced_costs[j] = state.wall_reduced_costs[j]
+        state.secondary_costs[j] = state.wall_secondary_costs[j]
+    perturbation(state.old.count, state.new.count, state.secondary_costs + state.old.count)
     for j in range(state.old.count, state.columns):
         state.reduced_costs[j] = 0.0
         state.secondary_costs[j] = 1.0 + state.secondary_costs[j]
@@ -656,30 +606,23 @@ cdef bint compute_basic_values(State *state) noexcept nogil:
 
 cdef double compute_residual(State *state) noexcept nogil:
     """Compute rhs minus basis times basic values; return the largest."""
-    cdef Py_ssize_t i, q, number
-    cdef double value, largest = 0.0
-    cdef double *total = state.total
-    cdef Columns *part
-    memset(total, 0, (state.size + 3) * sizeof(double))
+    cdef Py_ssize_t[6] rows
+    cdef double[6] entries
+    cdef Py_ssize_t i, q
+    cdef double largest = 0.0
+    cdef double *total = state.residual
+    memset(total, 0, state.size * sizeof(double))
     for i in range(state.size):
         if state.basic[i] >= 0:
-            number = state.basic[i]
-            value = state.values[i]
-            part = part_of(state, &number)
-            for q in range(3):
-                total[part.first[number] + q] += part.entries[q * part.count + number] * value
-            for q in range(3):
-                total[part.second[number] + q] += (
-                    part.entries[(3 + q) * part.count + number] * value
-                )
-    value = state.values[state.alpha_row]
+            for q in range(entries_of(state, state.basic[i], rows, entries)):
+                total[rows[q]] += entries[q] * state.values[i]
     for i in range(state.size):
-        total[3 + i] = state.live[i] * value + total[3 + i]
+        total[i] = state.live[i] * state.values[state.alpha_row] + total[i]
     for i in range(state.size):
         if state.basic[i] <= ARTIFICIAL:
-            total[3 + ARTIFICIAL - state.basic[i]] += state.values[i]
+            total[ARTIFICIAL - state.basic[i]] += state.values[i]
     for i in range(state.size):
-        state.residual[i] = state.rhs[i] - total[3 + i]
+        state.residual[i] = state.rhs[i] - total[i]
         largest = max(largest, fabs(state.residual[i]))
     return largest
 
@@ -884,7 +827,7 @@ cdef Py_ssize_t tableau_row(
     Artificial variables that are 0 go first: in phase 2 they must not grow again.
     """
     cdef Py_ssize_t i, best = -1, width = count + rows + 1
-    cdef double pivot, value, ratio, most = 0.0, least = 0.0
+    cdef double pivot, ratio, most = 0.0, least = 0.0
     cdef bint bounded = False
     for i in range(rows):
         pivot = fabs(tableau[i * width + column])
@@ -897,20 +840,16 @@ cdef Py_ssize_t tableau_row(
     for i in range(rows):
         pivot = tableau[i * width + column]
         if pivot > TABLEAU_PIVOT:
-            value = tableau[i * width + width - 1]
-            ratio = ((value if value > 0.0 else 0.0) + 1e-12) / pivot
+            ratio = (max(0.0, tableau[i * width + width - 1]) + 1e-12) / pivot
             if not bounded or ratio < least:
-                bounded = True
-                least = ratio
+                bounded, least = True, ratio
     for i in range(rows):
         pivot = tableau[i * width + column]
         if pivot > TABLEAU_PIVOT:
-            value = tableau[i * width + width - 1]
-            if not (value if value > 0.0 else 0.0) <= least * pivot:
+            if not max(0.0, tableau[i * width + width - 1]) <= least * pivot:
                 pivot = 0.0
             if best < 0 or pivot > most:
-                best = i
-                most = pivot
+                best, most = i, pivot
     return best
 
 
@@ -939,14 +878,13 @@ cdef int start(State *state) noexcept nogil:
 
     Where there is none, reduced costs below 0 are left for the phases to deal with.
     """
-    cdef bint wall = state.wall.size > 0
     cdef int found
     cdef Py_ssize_t count
     reset(state)
     if state.size == 0:
         return FAILED
     price_new_columns(state)
-    if state.size == state.wall.size:
+    if state.size == state.inverse.old:
         return UNFINISHED
     found = solve_new_bodies(state, &count)
     if found == SMALL_INFEASIBLE:
@@ -955,7 +893,7 @@ cdef int start(State *state) noexcept nogil:
             return UNSTABLE
     if found == SMALL_OPTIMAL and adopt_small_basis(state, count):
         return UNFINISHED
-    if not wall:
+    if state.inverse.old == 0:
         return FAILED
     state.restarts += 1
     reset(state)
@@ -965,7 +903,7 @@ cdef int start(State *state) noexcept nogil:
 
 cdef void price_new_columns(State *state) noexcept nogil:
     """Drive closed columns out of the basis, then price new columns by the wall's velocities."""
-    if state.wall.size == 0:
+    if state.inverse.old == 0:
         memset(state.velocity, 0, state.size * sizeof(double))
         return
     if state.closed_count:
@@ -978,7 +916,7 @@ cdef void drive_out_closed(State *state) noexcept nogil:
     """Replace closed columns by others of the wall, or by an artificial variable."""
     cdef Py_ssize_t i, row, number, artificial
     cdef double one = 1.0, sign
-    for row in range(state.wall.size):
+    for row in range(state.inverse.old):
         if state.basic[row] < 0 or not state.fixed[row]:
             continue
         compute_pivot_row(state, row)
@@ -1007,76 +945,56 @@ cdef int solve_new_bodies(State *state, Py_ssize_t *count) noexcept nogil:
     eliminated by the first row.
     """
     cdef Py_ssize_t i, j, q, row, old = state.inverse.old, new = state.size - old
-    cdef Py_ssize_t columns = state.new.count, width
+    cdef Py_ssize_t columns = state.new.count, first = 0 if old else 1
+    cdef Py_ssize_t width = columns + (2 if old else 0) + new
     cdef double *tableau = state.tableau
-    cdef p_double costs, last
-    if old == 0:
-        # With room for the row that is eliminated.
-        width = columns + new
-        costs = tableau
-        tableau = tableau + width
-    else:
-        width = columns + 1 + new + 1
-        costs = state.reduced_costs + state.old.count
-    memset(state.tableau, 0, (width * (new + 2)) * sizeof(double))
+    # Without a wall: the row that is eliminated.
+    cdef double *costs = state.reduced_costs + state.old.count if old else tableau
+    cdef double *last = tableau + (new + 1) * width
+    memset(tableau, 0, width * (new + 2) * sizeof(double))
     for j in range(columns):
         for q in range(6):
             row = (state.new.first[j] + q if q < 3 else state.new.second[j] + q - 3) - 3 - old
             if row >= 0:
-                state.tableau[row * width + j] = state.new.entries[q * columns + j]
-    if old:
-        count[0] = columns + 1
-        for i in range(0, new, 3):
-            for j in range(columns):
-                tableau[i * width + j] -= state.live[old + i] * costs[j]
-        for i in range(new):
-            tableau[i * width + columns] = -state.live[old + i]
-            tableau[i * width + width - 1] = state.values[old + i]
-        last = tableau + (new + 1) * width
-        memcpy(last, costs, columns * sizeof(double))
-        last[columns] = 1.0
-        return solve_small(
-            tableau, new, columns + 1, state.small_basic, state.small_ray, state.small_ray + new
-        )
-    count[0] = columns
-    for j in range(columns):
-        costs[j] /= state.live[0]
-    for i in range(3, new, 3):
+                tableau[row * width + j] = state.new.entries[q * columns + j]
+    if not old:
         for j in range(columns):
-            state.tableau[i * width + j] -= state.live[i] * costs[j]
-    for i in range(1, new):
-        state.tableau[i * width + width - 1] = state.values[i]
-    last = tableau + new * width
+            costs[j] /= state.live[0]
+    for i in range(3 * first, new, 3):
+        for j in range(columns):
+            tableau[i * width + j] -= state.live[old + i] * costs[j]
+    for i in range(first, new):
+        if old:
+            tableau[i * width + columns] = -state.live[old + i]
+        tableau[i * width + width - 1] = state.values[old + i]
     memcpy(last, costs, columns * sizeof(double))
+    if old:
+        last[columns] = 1.0
+    count[0] = columns + 1 - first
     return solve_small(
-        tableau, new - 1, columns, state.small_basic, state.small_ray, state.small_ray + new
+        tableau + first * width, new - first, count[0], state.small_basic, state.small_ray,
+        state.small_ray + new,
     )
 
 
 cdef void extend_ray(State *state) noexcept nogil:
     """Extend a fall of the new bodies to the wall, so that the live load does no work on it."""
-    cdef Py_ssize_t i, old = state.inverse.old
+    cdef Py_ssize_t i, old = state.inverse.old, first = old if old else 1
     cdef double work = 0.0
-    if old:
-        memcpy(state.ray + old, state.small_ray, (state.size - old) * sizeof(double))
-        for i in range(old, state.size):
-            work += state.live[i] * state.ray[i]
-        for i in range(old):
-            state.ray[i] = -work * state.velocity[i]
-        return
-    state.ray[0] = 0.0
-    memcpy(state.ray + 1, state.small_ray, (state.size - 1) * sizeof(double))
-    for i in range(state.size):
+    memcpy(state.ray + first, state.small_ray, (state.size - first) * sizeof(double))
+    for i in range(first, state.size):
         work += state.live[i] * state.ray[i]
-    state.ray[0] = -work / state.live[0]
+    if not old:
+        state.ray[0] = -work / state.live[0]
+    for i in range(old):
+        state.ray[i] = -work * state.velocity[i]
 
 
 cdef bint adopt_small_basis(State *state, Py_ssize_t count) noexcept nogil:
     """Replace the artificial variables by the basis of the small program."""
     cdef Py_ssize_t i, j, variable, old = state.inverse.old, columns = state.new.count
     cdef Py_ssize_t rows = state.size - old - (old == 0)
-    cdef Py_ssize_t width = count + rows + 1
-    cdef const double *costs = state.tableau + (rows + 1 + (old == 0)) * width
+    cdef const double *costs = state.tableau + (state.size - old + 1) * (count + rows + 1)
     cdef bint wall_rests = False
     if old == 0:
         memcpy(state.pivot_column, state.live, state.size * sizeof(double))
@@ -1339,22 +1257,6 @@ cdef void write_rest(
 
 # ---- What Python sees ----------------------------------------------------------------------------
 
-cdef class Scratch:
-    """A block of memory."""
-
-    cdef char *memory
-    cdef Py_ssize_t size
-
-    def __cinit__(self, Py_ssize_t size):
-        self.memory = <char *>malloc(size)
-        self.size = size
-        if self.memory == NULL:
-            raise MemoryError
-
-    def __dealloc__(self):
-        free(self.memory)
-
-
 cdef class Program:
     """The program of a wall with its optimal basis, and scratch memory for those who ask.
 
@@ -1381,18 +1283,20 @@ cdef class Program:
         self.sign = optimum.sign
         self.spare = []
         memset(&self.blank, 0, sizeof(State))
-        self.blank.wall = WallBasis(
-            len(basis.basic), basis.alpha_row, ints(basis.basic), doubles(basis.values),
-            doubles(basis.inverse), doubles(basis.transposed), doubles(basis.reduced_costs),
-            doubles(basis.secondary_costs),
-        )
+        self.blank.wall_basic = ints(basis.basic)
+        self.blank.wall_reduced_costs = doubles(basis.reduced_costs)
+        self.blank.wall_secondary_costs = doubles(basis.secondary_costs)
+        self.blank.inverse.old, self.blank.inverse.alpha_row = len(basis.basic), basis.alpha_row
+        self.blank.inverse.rows = doubles(basis.inverse)
+        self.blank.inverse.cols = doubles(basis.transposed)
+        self.blank.inverse.values = doubles(basis.values)
         self.blank.old = Columns(len(first), ints(first), ints(second), doubles(cones.entries))
 
     def solve_added(self, added, int max_pivots):
         """Return the fields of an `Answer`."""
         cdef State state
         cdef double unit = self.unit_with(added.weights)
-        cdef Scratch scratch = self.opened(&state, added, unit)
+        cdef bytearray scratch = self.opened(&state, added, unit)
         cdef int status
         cdef Py_ssize_t i
         cdef double *written
@@ -1416,7 +1320,7 @@ cdef class Program:
         """Return the fields of the `Basis` of the wall with the stone."""
         cdef State state
         cdef double unit = self.unit_with(added.weights)
-        cdef Scratch scratch = self.opened(&state, added, unit)
+        cdef bytearray scratch = self.opened(&state, added, unit)
         cdef Py_ssize_t left = state.columns - state.closed_count
         basic, values = np.empty(state.size, np.int32), np.empty(state.size)
         inverse = np.empty((state.size, state.size))
@@ -1448,7 +1352,7 @@ cdef class Program:
         frexp(doubles(weights)[0], &exponent)
         return ldexp(1.0, exponent)
 
-    cdef Scratch opened(self, State *state, added, double unit):
+    cdef bytearray opened(self, State *state, added, double unit):
         """Take memory and write the program into it; the caller gives the memory back."""
         cones = added.cones
         cdef const double *weights = doubles(added.weights)
@@ -1456,7 +1360,7 @@ cdef class Program:
         cdef c_int second = ints(cones.second)
         cdef c_int closed = ints(added.closed)
         cdef Py_ssize_t i, count = len(cones.first), size = self.bodies + len(added.weights)
-        cdef Scratch scratch
+        cdef bytearray scratch = None
         if len(cones.second) != count or cones.entries.shape != (6, count):
             raise ValueError("the arrays of the columns have different lengths")
         state[0] = self.blank
@@ -1464,24 +1368,19 @@ cdef class Program:
         state.new.count = count
         state.columns = state.old.count + count
         state.size = 3 * size
-        try:
+        if self.spare:
             scratch = self.spare.pop()
-        except IndexError:
-            scratch = None
-        if scratch is None or scratch.size < lay_out(state, NULL):
+        if scratch is None or PyByteArray_GET_SIZE(scratch) < lay_out(state, NULL, 0):
             # With some room for columns, as not all stones touch equally many.
-            state.new.count += 32
-            state.columns += 32
-            scratch = Scratch(lay_out(state, NULL))
-            state.new.count -= 32
-            state.columns -= 32
-        lay_out(state, scratch.memory)
+            scratch = PyByteArray_FromStringAndSize(NULL, lay_out(state, NULL, 32))
+        lay_out(state, PyByteArray_AS_STRING(scratch), 0)
         state.new.first = state.new_first
         state.new.second = state.new_second
         state.new.entries = doubles(cones.entries)
         state.closed = closed
         state.closed_count = len(added.closed)
-        memset(state.open, 1, state.columns)
+        for i in range(state.columns):
+            state.open[i] = True
         for i in range(state.closed_count):
             if not 0 <= closed[i] < state.old.count:
                 raise ValueError(f"there is no column {closed[i]} to close")
