@@ -19,14 +19,10 @@ def coverage(corners):
     return shares, left, bottom
 
 
-def newly_filled(total, shares, row, col):
+def newly_filled(total, shares):
     """The cells (row, col) of the grid that change from less than half to at least half."""
-    cells = set()
-    for i in range(shares.shape[0]):
-        for j in range(shares.shape[1]):
-            at = row + i, col + j
-            inside = 0 <= at[0] < total.shape[0] and 0 <= at[1] < total.shape[1]
-            before = float(total[at]) if inside else 0.0
-            if before < 0.5 - 1e-12 <= before + float(shares[i, j]):
-                cells.add(at)
-    return cells
+    return {
+        at
+        for at in np.ndindex(total.shape)
+        if total[at] < 0.5 - 1e-12 <= float(total[at]) + float(shares[at])
+    }

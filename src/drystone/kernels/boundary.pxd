@@ -1,8 +1,6 @@
 from drystone.kernels.memory cimport (
-    flags, kept_flags, kept_ints, kept_longs, longs, longs_out, sort_rows
+    flags, kept_flags, kept_ints, kept_longs, longs, longs_out, p_int, sort_rows
 )
-
-ctypedef int *p_int
 
 
 cdef class BoundaryWork:

@@ -1,6 +1,4 @@
-from drystone.kernels.memory cimport doubles, doubles_out, ints, ints_out, new_doubles, release
-
-ctypedef double *p_double
+from drystone.kernels.memory cimport doubles, doubles_out, ints, ints_out, kept_doubles, p_double
 
 
 cdef class Check:

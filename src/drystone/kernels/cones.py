@@ -20,7 +20,7 @@ except ImportError:
     from drystone.kernels import shim as cython
 
 if not cython.compiled:
-    from drystone.kernels.lists import doubles, doubles_out, ints, ints_out, new_doubles, release
+    from drystone.kernels.lists import doubles, doubles_out, ints, ints_out, kept_doubles
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -66,27 +66,20 @@ def cone_edges(
     # The lock of the interpreter is kept: all of it takes less time than getting that back.
     arm: cython.double = length
     point: cython.Py_ssize_t = 0
-    end: cython.Py_ssize_t
     edge: cython.Py_ssize_t
-    one: cython.int
-    two: cython.int
-    one_x: cython.double
-    one_y: cython.double
-    two_x: cython.double
-    two_y: cython.double
-    normal_x: cython.double
-    normal_y: cython.double
-    along: cython.double
-    x: cython.double
-    y: cython.double
     for (body, other), normal, friction, count in zip(
         bodies, normals, frictions, counts, strict=True
     ):
-        one, one_x, one_y = body
-        two, two_x, two_y = other
-        normal_x, normal_y = normal
-        along = friction
-        end = 2 * (point + count)
+        one: cython.int = body[0]
+        one_x: cython.double = body[1]
+        one_y: cython.double = body[2]
+        two: cython.int = other[0]
+        two_x: cython.double = other[1]
+        two_y: cython.double = other[2]
+        normal_x: cython.double = normal[0]
+        normal_y: cython.double = normal[1]
+        along: cython.double = friction
+        end: cython.Py_ssize_t = 2 * (point + count)
         for edge in range(2 * point, end):
             x, y = normal_x + along * normal_y, normal_y - along * normal_x
             along = -along
@@ -137,12 +130,11 @@ def figures(
     # The lock of the interpreter is kept: all of it takes less time than getting that back.
     n: cython.Py_ssize_t = len(weights)
     rows: cython.Py_ssize_t = len(velocity)
+    room: list = []
     check: Check = Check()
-    check.forces, check.loaded = doubles(forces), len(forces) > 0
-    check.velocity = doubles(velocity)
-    check.left = new_doubles(rows + 1)
-    for i in range(rows):
-        check.left[i] = 0.0
+    check.forces, check.loaded, check.force = doubles(forces), len(forces) > 0, 0
+    check.velocity, check.left = doubles(velocity), kept_doubles(room, rows)
+    check.violation = check.total = check.inadmissible = 0.0
     heavy: cython.p_double = doubles(weights)
     new_heavy: cython.p_double = doubles(added.weights)
     closed: cython.p_int = ints(added.closed)
@@ -178,13 +170,6 @@ def figures(
 @cython.cclass
 class Check:
     """Forces and velocities, and what was found of all columns so far."""
-
-    def __init__(self) -> None:
-        self.force = 0
-        self.violation = self.total = self.inadmissible = 0.0
-
-    def __dealloc__(self) -> None:
-        release(self.left)
 
 
 def check_columns(check, first, second, entries, size, start, stop):

@@ -1,6 +1,4 @@
-from drystone.kernels.memory cimport ints, kept_ints, move_ints
-
-ctypedef int *p_int
+from drystone.kernels.memory cimport ints, kept_ints, move_ints, p_int
 
 
 cdef class Dice:

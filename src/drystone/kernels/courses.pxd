@@ -1,11 +1,9 @@
 from drystone.kernels.course_moves cimport (
     Dice, Draft, change, copy, drawn, left_of, parts_of, start, start_of
 )
-from drystone.kernels.memory cimport doubles, ints, kept_doubles, kept_ints, longs, move_ints
-
-ctypedef double *p_double
-ctypedef int *p_int
-ctypedef long long *p_long
+from drystone.kernels.memory cimport (
+    doubles, ints, kept_doubles, kept_ints, longs, move_ints, p_double, p_int, p_long
+)
 
 
 cdef class Scene:

@@ -121,45 +121,33 @@ def add_up(shares, width, height):
                 shares[at] = share
 
 
-def newly_filled(total: Grid, shares: Grid, row: int, col: int) -> tuple[Mask, int, int] | None:
-    """Return the cells of a grid that a new block fills: before less than half, then at least.
+def newly_filled(total: Grid, shares: Grid) -> tuple[Mask, int, int] | None:
+    """Return the cells that a new block fills: before less than half, then at least.
 
-    `total` (h, w) is what is covered already, `shares` what the block covers, from (row, col) on;
-    it may reach over the edges of the grid.  Returns the filled cells, cropped, and their top-left
-    corner; None when there is none, or one is outside of the grid.
+    `total` (h, w) is what is covered already, `shares` (h, w) what the block covers.  Returns the
+    filled cells, cropped, and their top-left corner; None when there is none.
     """
     total, shares = np.ascontiguousarray(total), np.ascontiguousarray(shares)
     before: cython.p_double = doubles(total)
     new: cython.p_double = doubles(shares)
-    high: cython.Py_ssize_t = total.shape[0]
-    wide: cython.Py_ssize_t = total.shape[1]
     height: cython.Py_ssize_t = shares.shape[0]
     width: cython.Py_ssize_t = shares.shape[1]
-    down: cython.Py_ssize_t = row
-    along: cython.Py_ssize_t = col
     top: cython.Py_ssize_t = height
     left: cython.Py_ssize_t = width
     bottom: cython.Py_ssize_t = -1
     right: cython.Py_ssize_t = -1
-    at: cython.Py_ssize_t = 0
     all_filled = np.zeros((height, width), bool)
     filled: cython.p_uchar = flags_out(all_filled)
     for i in range(height):
         for j in range(width):
-            was = 0.0
-            if 0 <= down + i < high and 0 <= along + j < wide:
-                was = before[(down + i) * wide + along + j]
-            if was < ENOUGH and was + new[at] >= ENOUGH:
+            at = i * width + j
+            if before[at] < ENOUGH and before[at] + new[at] >= ENOUGH:
                 filled[at] = True
                 top, bottom = min(top, i), i
                 left, right = min(left, j), max(right, j)
-            at += 1
-    if bottom < 0 or down + top < 0 or down + bottom >= high:
+    if bottom < 0:
         return None
-    if along + left < 0 or along + right >= wide:
-        return None
-    mask = all_filled[top : bottom + 1, left : right + 1].copy()
-    return mask, down + top, along + left
+    return all_filled[top : bottom + 1, left : right + 1].copy(), top, left
 
 
 def windows(

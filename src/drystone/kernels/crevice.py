@@ -56,23 +56,19 @@ def crevice(stone: Points, around: Polygons, clearance: float) -> Crevice:
     The chains keep a clearance from both: nowhere less, at corners up to 1.42 times as much.  With
     a clearance of 0 they are the boundaries themselves.
     """
-    return Crevice(*_crevice(np.ascontiguousarray(stone, np.float64), around, clearance))
-
-
-def _crevice(stone, around, clearance):
-    """Return lid and floor, moved into the free space."""
+    stone = np.ascontiguousarray(stone, np.float64)
     corners: cython.p_double = doubles(stone)
     left: cython.double = corners[0]
     right: cython.double = corners[0]
     for i in range(2, 2 * len(stone), 2):
         left, right = min(left, corners[i]), max(right, corners[i])
-    lid: Corners
-    floor: Corners
-    lid, floor = boundaries(stone, around, 4.0 * clearance)
+    lid: Rows
+    floor: Rows
+    lid, floor = boundaries(stone, around, left, right, 4.0 * clearance)
     flip(lid.at, 2 * lid.count)
     lid = raised(lid, clearance, left, right)
     flip(lid.at, 2 * lid.count)
-    return as_array(lid), as_array(raised(floor, clearance, left, right))
+    return Crevice(as_array(lid), as_array(raised(floor, clearance, left, right)))
 
 
 def between(space: Crevice, x_left: float, x_right: float) -> Points | None:
@@ -105,7 +101,9 @@ def slabs(space: Crevice, x_left: float, x_right: float) -> tuple[Points, Points
     Returns x (n + 1,) where slabs begin, and the end of the last; y of the floor, then of the lid,
     (n, 2), at the left and at the right of each.
     """
-    x = _distinct(np.concatenate([space.lid[:, 0], space.floor[:, 0]]), x_left, x_right)
+    x = np.sort(np.concatenate([space.lid[:, 0], space.floor[:, 0]]))
+    x = x[(x > x_left + SAME) & (x < x_right - SAME)]
+    x = np.concatenate([[x_left], x[np.diff(x, prepend=-np.inf) > SAME], [x_right]])
     return x, _heights(space.floor, x), _heights(space.lid, x)
 
 
@@ -121,15 +119,6 @@ def _within(chain: Chain, x_left: float, x_right: float) -> Chain:
     return chain[(chain[:, 0] > x_left) & (chain[:, 0] < x_right)]
 
 
-def _distinct(x: Points, left: float, right: float) -> Points:
-    """Return numbers in order, from one limit to another, without those that are the same."""
-    inside = np.sort(x[(x > left + SAME) & (x < right - SAME)])
-    if not len(inside):
-        return np.array([left, right])
-    new = np.append(True, inside[1:] - inside[:-1] > SAME)
-    return np.concatenate([[left], inside[new], [right]])
-
-
 def _line(edges: Points, x: Points) -> Points:
     """Return y of segments at one x each."""
     share = (x - edges[:, 0]) / (edges[:, 2] - edges[:, 0])
@@ -137,12 +126,12 @@ def _line(edges: Points, x: Points) -> Points:
 
 
 @cython.cclass
-class Segments:
-    """Segments from left to right, x0, y0, x1, y1, one after the other."""
+class Rows:
+    """Segments from left to right, x0, y0, x1, y1, or corners of a chain, one after the other."""
 
-    def __init__(self, room: int) -> None:
+    def __init__(self, numbers: int) -> None:
         self.room, self.count = [], 0
-        self.at = kept_doubles(self.room, 4 * room)
+        self.at = kept_doubles(self.room, numbers)
 
 
 @cython.cclass
@@ -154,15 +143,6 @@ class Slabs:
         self.x, self.middle = kept_doubles(self.room, room), kept_doubles(self.room, room)
         self.ceiling, self.best = kept_doubles(self.room, room), kept_doubles(self.room, room)
         self.which = kept_ints(self.room, room)
-
-
-@cython.cclass
-class Corners:
-    """A chain: corners from left to right."""
-
-    def __init__(self, room: int) -> None:
-        self.room, self.count = [], 0
-        self.at = kept_doubles(self.room, 2 * room)
 
 
 def as_array(chain):
@@ -182,12 +162,8 @@ def flip(at, end):
 
 def add(out, x0, y0, x1, y1):
     """Add a segment, unless it is upright or goes to the left."""
-    k: cython.Py_ssize_t = 4 * out.count
-    if not x1 - x0 > NEAR:
-        return False
-    out.at[k], out.at[k + 1], out.at[k + 2], out.at[k + 3] = x0, y0, x1, y1
-    out.count += 1
-    return True
+    if x1 - x0 > NEAR:
+        put(out, x0, y0, x1, y1)
 
 
 def line(at, k, x):
@@ -196,7 +172,7 @@ def line(at, k, x):
     return at[k + 1] + (at[k + 3] - at[k + 1]) * share
 
 
-def boundaries(stone, around, reach):
+def boundaries(stone, around, left, right, reach):
     """Return lid and floor as they are, from `reach` left of the stone to so far right of it."""
     corners: cython.p_double = doubles(stone)
     others: cython.p_double = doubles(around.corners)
@@ -204,18 +180,14 @@ def boundaries(stone, around, reach):
     boxes: cython.p_double = doubles(around.boxes)
     size: cython.Py_ssize_t = len(stone)
     room: cython.Py_ssize_t = len(around.corners) + 1
-    lids: Segments = Segments(size + 2)
-    edges: Segments = Segments(room)
+    lids: Rows = Rows(4 * (size + 2))
+    edges: Rows = Rows(4 * room)
     bottom: cython.p_int = kept_ints(edges.room, room)
-    left: cython.double = corners[0]
-    right: cython.double = corners[0]
     top: cython.double = corners[1]
     low_left: cython.double = INFINITY
     low_right: cython.double = INFINITY
     for i in range(size):
-        left, right = min(left, corners[2 * i]), max(right, corners[2 * i])
         top = max(top, corners[2 * i + 1])
-    for i in range(size):
         if corners[2 * i] == left:
             low_left = min(low_left, corners[2 * i + 1])
         if corners[2 * i] == right:
@@ -253,7 +225,7 @@ def boundaries(stone, around, reach):
     flip(lids.at, 4 * lids.count)
     highest(lids, cuts)
     flip(lids.at, 4 * lids.count)
-    picked: Segments = Segments(cuts.count)
+    picked: Rows = Rows(4 * cuts.count)
     for i in range(cuts.count):
         pick(picked, lids, cuts.which[i] if cuts.which[i] >= 0 else lids.count - 1)
         cuts.ceiling[i] = line(picked.at, 4 * i, cuts.middle[i])
@@ -292,7 +264,7 @@ def raised(chain, clearance, left, right):
     longer until they meet; where the chain turns by more than 90 degrees, by the clearance, and
     joined straight.
     """
-    edges: Segments = Segments(2 * chain.count)
+    edges: Rows = Rows(8 * chain.count)
     points: cython.Py_ssize_t = 0
     if clearance != 0.0:
         moved(chain, clearance, edges)
@@ -318,7 +290,7 @@ def raised(chain, clearance, left, right):
                 points += 1
     slice_up(cuts, points, left, right)
     highest(edges, cuts)
-    picked: Segments = Segments(cuts.count)
+    picked: Rows = Rows(4 * cuts.count)
     for i in range(cuts.count):
         pick(picked, edges, cuts.which[i] if cuts.which[i] >= 0 else edges.count - 1)
     return chained(picked, cuts)
@@ -327,7 +299,7 @@ def raised(chain, clearance, left, right):
 def moved(chain, clearance, out):
     """List the edges of a chain moved up and made longer, then those that join them."""
     edges: cython.Py_ssize_t = chain.count - 1
-    joints: Segments = Segments(chain.count)
+    joints: Rows = Rows(4 * chain.count)
     at: cython.p_double = chain.at
     one: cython.double[2] = [0.0, 0.0]
     two: cython.double[2] = [0.0, 0.0]
@@ -393,7 +365,7 @@ def highest(edges, cuts):
 
 def chained(picked, cuts):
     """Return the chain of segments that are given for each slab."""
-    out: Corners = Corners(2 * cuts.count)
+    out: Rows = Rows(4 * cuts.count)
     i: cython.Py_ssize_t = 0
     last_x: cython.double = 0.0
     last_y: cython.double = 0.0

@@ -1,8 +1,6 @@
-from drystone.kernels.memory cimport doubles, doubles_out, flags, longs, longs_out
-
-ctypedef double *p_double
-ctypedef long long *p_long
-ctypedef unsigned char *p_uchar
+from drystone.kernels.memory cimport (
+    doubles, doubles_out, flags, longs, longs_out, p_double, p_long, p_uchar
+)
 
 
 cdef class Terms:

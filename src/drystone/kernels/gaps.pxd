@@ -1,10 +1,7 @@
 from drystone.kernels.memory cimport (
-    doubles, ints, more_doubles, more_ints, new_doubles, new_ints, release
+    doubles, ints, more_doubles, more_ints, new_doubles, new_ints, p_double, p_int, release
 )
 from libc.math cimport sqrt
-
-ctypedef double *p_double
-ctypedef int *p_int
 
 
 cdef class Body:
@@ -30,6 +27,10 @@ cdef Heap heap_of(object around, double width)
 cdef MovingStone stone_of(object corners, object edges)
 cdef void measure(Body body) noexcept nogil
 cdef int find_gaps(MovingStone stone, Heap heap, double reach, double corner) except -1 nogil
+cdef int to_line(
+    MovingStone stone, double start, double nx, double ny, double beyond, double reach,
+    double other
+) except -1 nogil
 cdef int crosses(MovingStone stone, Heap heap) except -1 nogil
 cdef void select(Heap heap, Py_ssize_t i) noexcept nogil
 cdef int keep(

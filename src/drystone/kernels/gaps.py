@@ -31,6 +31,8 @@ if not cython.compiled:
     )
 
 GROUND, END = -1, -2
+GROUND_BELOW = cython.declare(cython.double, GROUND)
+WALL_END = cython.declare(cython.double, END)
 
 # A little more than 1, for what rounding makes of distances.
 FARTHER = cython.declare(cython.double, 1.0 + 1e-9)
@@ -159,22 +161,21 @@ def find_gaps(stone, heap, reach, corner):
         one_way(stone, heap, stone, reach, corner, 1.0, i)
         one_way(heap, stone, stone, reach, corner, -1.0, i)
     if stone.low < reach:
-        for i in range(stone.count):
-            x, y = stone.corners[2 * i], stone.corners[2 * i + 1]
-            if y < reach:
-                keep(stone, y, 0.0, 1.0, x, y, y, -1)
+        to_line(stone, 0.0, 0.0, 1.0, 0.0, reach, GROUND_BELOW)
     if stone.left + heap.beyond < reach:
-        for i in range(stone.count):
-            x, y = stone.corners[2 * i], stone.corners[2 * i + 1]
-            room = x + heap.beyond
-            if room < reach:
-                keep(stone, room, 1.0, 0.0, x, y, room, -2)
+        to_line(stone, 0.0, 1.0, 0.0, heap.beyond, reach, WALL_END)
     if heap.width - stone.right + heap.beyond < reach:
-        for i in range(stone.count):
-            x, y = stone.corners[2 * i], stone.corners[2 * i + 1]
-            room = heap.width - x + heap.beyond
-            if room < reach:
-                keep(stone, room, -1.0, 0.0, x, y, room, -2)
+        to_line(stone, heap.width, -1.0, 0.0, heap.beyond, reach, WALL_END)
+    return 0
+
+
+def to_line(stone, start, nx, ny, beyond, reach, other):
+    """List the gaps of a stone's corners to the ground, or to an end of the wall."""
+    for i in range(stone.count):
+        x, y = stone.corners[2 * i], stone.corners[2 * i + 1]
+        room = start + (nx * x + ny * y) + beyond
+        if room < reach:
+            keep(stone, room, nx, ny, x, y, room, other)
     return 0
 
 

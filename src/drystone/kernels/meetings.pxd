@@ -1,15 +1,14 @@
 from drystone.kernels.memory cimport (
-    doubles, doubles_out, ints, ints_out, kept_doubles, kept_ints, more_doubles, new_doubles, release
+    doubles, doubles_out, ints, ints_out, kept_doubles, kept_ints, more_doubles, new_doubles,
+    p_double, p_int, release
 )
 from libc.math cimport sqrt
-
-ctypedef double *p_double
-ctypedef int *p_int
 
 
 cdef class Sides:
     cdef list room
     cdef Py_ssize_t count
+    cdef double first, last, low, high
     cdef p_double x, y, along_x, along_y, length, left, bottom, right, top
     cdef p_int convex
 

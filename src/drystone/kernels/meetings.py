@@ -166,7 +166,10 @@ def _told(found):
 
 @cython.cclass
 class Sides:
-    """The edges of a polygon and the corners at their starts: unit vectors, lengths, boxes."""
+    """The edges of a polygon and the corners at their starts: unit vectors, lengths, boxes.
+
+    `first`, `last`, `low` and `high` are the box of all.
+    """
 
     def __init__(self, room: int) -> None:
         self.count, self.room = 0, []
@@ -195,24 +198,17 @@ def meet_all(mine, theirs, corners, others, first, boxes, count, tolerance, setb
     beyond: cython.double = 1.0 + 4.0 * tolerance
     ground: cython.double[8] = [0.0, -beyond, 0.0, -beyond, 0.0, 0.0, 0.0, 0.0]
     set_sides(mine, corners, 0)
-    left: cython.double = mine.left[0]
-    bottom: cython.double = mine.bottom[0]
-    right: cython.double = mine.right[0]
-    top: cython.double = mine.top[0]
-    for k in range(1, mine.count):
-        left, bottom = min(left, mine.left[k]), min(bottom, mine.bottom[k])
-        right, top = max(right, mine.right[k]), max(top, mine.top[k])
-    if bottom - reach <= 0.0:
+    if mine.low - reach <= 0.0:
         # The piece of ground below, a box that reaches further on all sides.
-        ground[0] = ground[6] = left - beyond
-        ground[2] = ground[4] = right + beyond
+        ground[0] = ground[6] = mine.first - beyond
+        ground[2] = ground[4] = mine.last + beyond
         theirs.count = 4
         set_sides(theirs, ground, 0)
         meet(mine, theirs, -1, tolerance, set_back_by(area(mine), tolerance, setback), found)
     for k in range(count):
-        if not (boxes[4 * k] <= right + reach and boxes[4 * k + 2] >= left - reach):
+        if not (boxes[4 * k] <= mine.last + reach and boxes[4 * k + 2] >= mine.first - reach):
             continue
-        if not (boxes[4 * k + 1] <= top + reach and boxes[4 * k + 3] >= bottom - reach):
+        if not (boxes[4 * k + 1] <= mine.high + reach and boxes[4 * k + 3] >= mine.low - reach):
             continue
         theirs.count = first[k + 1] - first[k]
         set_sides(theirs, others, 2 * first[k])
@@ -236,6 +232,11 @@ def set_sides(sides, corners, first):
         sides.along_x[k], sides.along_y[k] = step_x / length, step_y / length
         sides.left[k], sides.right[k] = min(sides.x[k], x), max(sides.x[k], x)
         sides.bottom[k], sides.top[k] = min(sides.y[k], y), max(sides.y[k], y)
+    sides.first = sides.last = sides.x[0]
+    sides.low = sides.high = sides.y[0]
+    for k in range(1, n):
+        sides.first, sides.last = min(sides.first, sides.x[k]), max(sides.last, sides.x[k])
+        sides.low, sides.high = min(sides.low, sides.y[k]), max(sides.high, sides.y[k])
     for k in range(n):
         x = sides.along_x[before] * sides.along_y[k] - sides.along_y[before] * sides.along_x[k]
         sides.convex[k] = x > 0.0
@@ -245,18 +246,11 @@ def set_sides(sides, corners, first):
 def meet(p, q, other, tolerance, by, found):
     """Add the contacts of two polygons, in order along the first."""
     reach: cython.double = BESIDE * tolerance
-    q_left: cython.double = q.left[0]
-    q_bottom: cython.double = q.bottom[0]
-    q_right: cython.double = q.right[0]
-    q_top: cython.double = q.top[0]
     begin: cython.Py_ssize_t = found.count
-    for j in range(1, q.count):
-        q_left, q_bottom = min(q_left, q.left[j]), min(q_bottom, q.bottom[j])
-        q_right, q_top = max(q_right, q.right[j]), max(q_top, q.top[j])
     for i in range(p.count):
         left, bottom = p.left[i] - reach, p.bottom[i] - reach
         right, top = p.right[i] + reach, p.top[i] + reach
-        if q_left > right or q_right < left or q_bottom > top or q_top < bottom:
+        if q.first > right or q.last < left or q.low > top or q.high < bottom:
             continue
         for j in range(q.count):
             if q.left[j] > right or q.right[j] < left or q.bottom[j] > top or q.top[j] < bottom:
@@ -319,11 +313,7 @@ def facing_edges(p, i, q, j, tolerance, found):
             return 0
         part[0] = part[1] = c[LOW] if low_first else c[HIGH]
     over = c[LAST] if low_first else p.length[i] - c[FIRST]
-    share = 0.5 + over / (2.0 * tolerance)
-    if share < 0.0:
-        share = 0.0
-    elif share > 1.0:
-        share = 1.0
+    share = min(max(0.5 + over / (2.0 * tolerance), 0.0), 1.0)
     nx = share * -uy + (1.0 - share) * q.along_y[j]
     ny = share * ux + (1.0 - share) * -q.along_x[j]
     length = sqrt(nx * nx + ny * ny)
@@ -446,12 +436,7 @@ def set_back(p, q, at, k, by, tolerance):
             at[k + X0], at[k + Y0] = p.x[edge] + start * ux, p.y[edge] + start * uy
             at[k + X1], at[k + Y1] = p.x[edge] + end * ux, p.y[edge] + end * uy
             return True
-        start = (start + end) / 2.0
-        if start < 0.0:
-            start = 0.0
-        elif start > p.length[edge]:
-            start = p.length[edge]
-        at[k + START] = start
+        at[k + START] = start = min(max((start + end) / 2.0, 0.0), p.length[edge])
         at[k + X0], at[k + Y0] = p.x[edge] + start * ux, p.y[edge] + start * uy
     at[k + COUNT], at[k + X1], at[k + Y1] = 1.0, at[k + X0], at[k + Y0]
     if min(runs_on(p, edge, start, by, -1), runs_on(p, edge, start, by, 1)) >= by:
@@ -463,9 +448,7 @@ def set_back(p, q, at, k, by, tolerance):
 def projected(s, i, x, y):
     """Return how far along an edge a point is beside it; its ends for what is beyond them."""
     along: cython.double = (x - s.x[i]) * s.along_x[i] + (y - s.y[i]) * s.along_y[i]
-    if along < 0.0:
-        return 0.0
-    return s.length[i] if along > s.length[i] else along
+    return min(max(along, 0.0), s.length[i])
 
 
 def runs_on(s, i, along, enough, sense):

@@ -1,9 +1,7 @@
-from drystone.kernels.asides cimport Work, aside, work_for
-from drystone.kernels.gaps cimport Heap, MovingStone, heap_of, measure, select
-from drystone.kernels.memory cimport doubles, kept_doubles
+from drystone.kernels.gaps cimport Body, Heap, MovingStone, heap_of, measure, over, select
+from drystone.kernels.memory cimport doubles, kept_doubles, p_double
+from drystone.kernels.profiles cimport sweep_all
 from drystone.kernels.settling cimport Way, let_go, settling_of, way_of
-
-ctypedef double *p_double
 
 
 cdef class Press:
@@ -11,8 +9,7 @@ cdef class Press:
     cdef Way block
     cdef MovingStone one
     cdef Heap heap
-    cdef Work work
-    cdef p_double corners, boxes
+    cdef p_double corners, boxes, turned, bottoms, tops, low, high
     cdef double bottom, top, most, gap
 
 
@@ -25,3 +22,9 @@ cdef void take(Press press, Py_ssize_t i) noexcept
 cdef list neighbours(Press press, double sign)
 cdef double deepest(Press press, double sign) except -1.0
 cdef double overlap(Press press, Py_ssize_t i, double sign) except -1.0
+cdef double aside(Press press, double sign) except -2.0
+cdef double depth(Press press, Py_ssize_t axis, double start, double end, double sign) noexcept
+cdef int ends_of(
+    Press press, Body body, Py_ssize_t axis, double start, double cell, double *bottoms,
+    double *tops
+) noexcept

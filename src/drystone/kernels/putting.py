@@ -18,12 +18,18 @@ except ImportError:
     from drystone.kernels import shim as cython
 
 if not cython.compiled:
-    from drystone.kernels.asides import aside, work_for
-    from drystone.kernels.gaps import Heap, MovingStone, heap_of, measure, select
+    from drystone.kernels.gaps import Heap, MovingStone, heap_of, measure, over, select
     from drystone.kernels.lists import doubles, kept_doubles
+    from drystone.kernels.profiles import sweep_all
     from drystone.kernels.settling import Way, let_go, settling_of, way_of
 
 RESTS = cython.declare(cython.int, 0)
+
+# Two polygons lie beside each other when they share so much of the height of the lower one.
+BESIDE = cython.declare(cython.double, 0.3)
+
+# Along so many lines it is looked how far two polygons overlap.
+LINES = cython.declare(cython.Py_ssize_t, 32)
 
 
 def put_down(
@@ -78,7 +84,7 @@ def put_down(
 
 @cython.cclass
 class Press:
-    """A block, and what lies around it."""
+    """A block, what lies around it, and room for corners and for the ends of two polygons."""
 
 
 def press_of(way, around, lying):
@@ -88,8 +94,10 @@ def press_of(way, around, lying):
     press.heap = heap_of(lying, 0.0)
     press.heap.beyond = way.beyond
     press.corners, press.boxes = doubles(around.corners), doubles(around.boxes)
-    press.work = work_for(press.room, way.count + len(around.corners))
-    press.one.corners = kept_doubles(press.room, 2 * (way.count + len(around.corners)))
+    most: cython.Py_ssize_t = 2 * (way.count + len(around.corners))
+    press.one.corners, press.turned = kept_doubles(press.room, most), kept_doubles(press.room, most)
+    press.bottoms, press.tops = kept_doubles(press.room, LINES), kept_doubles(press.room, LINES)
+    press.low, press.high = kept_doubles(press.room, LINES), kept_doubles(press.room, LINES)
     press.one.first = 0
     return press
 
@@ -171,9 +179,9 @@ def neighbours(press, sign):
     """List who overlaps it on one side, and by how much; the gap is part of it."""
     found = []
     for i in range(press.heap.size):
-        over: cython.double = overlap(press, i, sign)
-        if over > 0.0:
-            found.append((i, over))
+        way: cython.double = overlap(press, i, sign)
+        if way > 0.0:
+            found.append((i, way))
     return found
 
 
@@ -191,5 +199,53 @@ def overlap(press, i, sign):
     if not (heap.boxes[4 * i + 1] < press.top and heap.boxes[4 * i + 3] > press.bottom):
         return 0.0
     select(heap, i)
-    over: cython.double = aside(press.one, heap, sign, press.work)
-    return over + press.gap if over >= 0.0 else 0.0
+    way: cython.double = aside(press, sign)
+    return way + press.gap if way >= 0.0 else 0.0
+
+
+def aside(press, sign):
+    """Return how far the one looked at must go aside to a side, 1 or -1; -1 for nothing.
+
+    That is nothing where it does not overlap, or needs less upwards: then one lies on the other.
+    """
+    one: MovingStone = press.one
+    other: Heap = press.heap
+    if other.left >= one.right or one.left >= other.right:
+        return -1.0
+    if sign * (other.left + other.right - one.left - one.right) <= 0.0:
+        return -1.0
+    low: cython.double = max(one.low, other.low)
+    high: cython.double = min(one.high, other.high)
+    if high - low < BESIDE * min(one.high - one.low, other.high - other.low):
+        return -1.0
+    if not over(one, other):
+        return -1.0
+    left: cython.double = max(one.left, other.left)
+    right: cython.double = min(one.right, other.right)
+    above: cython.double = 1.0 if other.low + other.high - one.low - one.high >= 0.0 else -1.0
+    across: cython.double = depth(press, 1, low, high, sign)
+    return across if across < depth(press, 0, left, right, above) else -1.0
+
+
+def depth(press, axis, start, end, sign):
+    """Return how far along the other axis, 0 or 1, a polygon must go to clear one on some way."""
+    deepest: cython.double = 0.0
+    cell: cython.double = (end - start) / LINES
+    ends_of(press, press.one, axis, start, cell, press.bottoms, press.tops)
+    ends_of(press, press.heap, axis, start, cell, press.low, press.high)
+    for j in range(LINES):
+        if sign > 0.0:
+            deepest = max(deepest, press.tops[j] - press.low[j])
+        else:
+            deepest = max(deepest, press.high[j] - press.bottoms[j])
+    return deepest
+
+
+def ends_of(press, body, axis, start, cell, bottoms, tops):
+    """Find the ends of a polygon along all lines across an axis."""
+    for i in range(body.count):
+        k = 2 * (body.first + i)
+        press.turned[2 * i] = body.corners[k + axis]
+        press.turned[2 * i + 1] = body.corners[k + 1 - axis]
+    sweep_all(press.turned, body.count, start, cell, bottoms, tops, LINES)
+    return 0

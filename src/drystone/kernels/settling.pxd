@@ -1,10 +1,8 @@
 from drystone.kernels.firmness cimport LpRows, arm_of, enough_rows, firmness
 from drystone.kernels.gaps cimport Heap, MovingStone, crosses, find_gaps, heap_of, measure
-from drystone.kernels.memory cimport doubles, new_doubles, release
+from drystone.kernels.memory cimport doubles, kept_doubles, p_double
 from drystone.kernels.seidel cimport solve3
 from libc.math cimport cos, isfinite, sin
-
-ctypedef double *p_double
 
 
 cdef class State(MovingStone):
@@ -12,6 +10,7 @@ cdef class State(MovingStone):
 
 
 cdef class Way:
+    cdef list room
     cdef p_double corners, edges
     cdef State here, there
     cdef LpRows work

@@ -33,7 +33,7 @@ if not cython.compiled:
 
     from drystone.kernels.firmness import LpRows, arm_of, enough_rows, firmness
     from drystone.kernels.gaps import Heap, MovingStone, crosses, find_gaps, heap_of, measure
-    from drystone.kernels.lists import doubles, new_doubles, release
+    from drystone.kernels.lists import doubles, kept_doubles
     from drystone.kernels.seidel import solve3
 
 RESTS = cython.declare(cython.int, 0)
@@ -120,10 +120,6 @@ class Way:
 class State(MovingStone):
     """A pose, and what is around the stone there; the turn in radians."""
 
-    def __dealloc__(self) -> None:
-        release(self.corners)
-        release(self.edges)
-
 
 def settle(
     outline: Points,
@@ -151,6 +147,7 @@ def way_of(outline, edges, rules):
     """Return what is let go, of which both arrays have to outlive it."""
     require_friction(rules.mu)
     way: Way = Way()
+    way.room = []
     way.corners, way.edges, way.count = doubles(outline), doubles(edges), len(outline)
     way.arm = arm_of(way.corners, way.count, 0.0, 0.0)
     (
@@ -197,11 +194,11 @@ def let_go(way, heap, x, y, turn):
 
 
 def state_of(way):
-    """Return a state with memory of its own, nowhere yet."""
+    """Return a state, nowhere yet."""
     state: State = State()
     state.first, state.count = 0, way.count
-    state.corners = new_doubles(2 * way.count)
-    state.edges = new_doubles(3 * way.count)
+    state.corners = kept_doubles(way.room, 2 * way.count)
+    state.edges = kept_doubles(way.room, 3 * way.count)
     return state
 
 

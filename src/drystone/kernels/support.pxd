@@ -1,10 +1,8 @@
-from drystone.kernels.memory cimport longs, longs_out, pixels, stride
-
-ctypedef unsigned char *pixels_at
+from drystone.kernels.memory cimport longs, longs_out, p_uchar, pixels, stride
 
 
 cdef class Pair:
-    cdef pixels_at wall, stone
+    cdef p_uchar wall, stone
     cdef Py_ssize_t down, across, stone_down, stone_across, rows, columns, height, width
 
 

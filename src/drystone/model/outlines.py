@@ -69,7 +69,11 @@ class Shares:
         """
         # A site that is no whole number of cells may lack one that a stone at its end half fills.
         inside, part = windows(self.total.shape, shares.shape, self._row(shares, bottom), left)
-        return newly_filled(self.total, shares[part], inside[0].start, inside[1].start)
+        found = newly_filled(self.total[inside], shares[part])
+        if found is None:
+            return None
+        mask, row, col = found
+        return mask, inside[0].start + row, inside[1].start + col
 
     def _row(self, shares: Grid, bottom: int) -> int:
         """Return the row of the site image in which the top of some shares is."""
