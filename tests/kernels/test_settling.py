@@ -7,9 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.firmness import rest_margin
 from drystone.kernels.polygons import mirrored_polygon, no_polygons, polygon_edges
-from drystone.kernels.settling import Status, settle
+from drystone.kernels.settling import Status, rest_margin, settle
 from tests.kernels.heaps import WIDTH, drops, rules
 from tests.naive.settling import placed
 from tests.polygons import box_about as box

@@ -8,8 +8,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.firmness import rest_margin
-from drystone.kernels.settling import Status
+from drystone.kernels.settling import Status, rest_margin
 from tests.kernels.heaps import WIDTH, drops
 from tests.naive.settling import best_nearby, contacts, distances, overlap_area, placed, unbalanced
 from tests.strategies import repeatable

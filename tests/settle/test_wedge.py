@@ -9,12 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.kernels.crevice import crevice
-from drystone.kernels.firmness import rest_margin
 from drystone.kernels.polygons import (
     area_and_centroid,
     mirrored_polygon,
     no_polygons,
 )
+from drystone.kernels.settling import rest_margin
 from drystone.settle.wedge import (
     CreviceSlabs,
     WedgeLimits,

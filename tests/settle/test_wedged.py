@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from drystone.kernels.firmness import rest_margin
 from drystone.kernels.polygons import GRID, area_and_centroid, mirrored_polygon, no_polygons
+from drystone.kernels.settling import rest_margin
 from drystone.settle.rest import SettlingScene, Turned
 from drystone.settle.settings import SettleSettings
 from drystone.settle.wedge import WedgeLimits

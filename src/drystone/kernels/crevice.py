@@ -101,9 +101,10 @@ def slabs(space: Crevice, x_left: float, x_right: float) -> tuple[Points, Points
     Returns x (n + 1,) where slabs begin, and the end of the last; y of the floor, then of the lid,
     (n, 2), at the left and at the right of each.
     """
-    x = np.sort(np.concatenate([space.lid[:, 0], space.floor[:, 0]]))
-    x = x[(x > x_left + SAME) & (x < x_right - SAME)]
-    x = np.concatenate([[x_left], x[np.diff(x, prepend=-np.inf) > SAME], [x_right]])
+    x = np.concatenate([space.lid[:, 0], space.floor[:, 0]])
+    x = np.sort(x[(x > x_left + SAME) & (x < x_right - SAME)])
+    new = np.append(True, x[1:] - x[:-1] > SAME)[: len(x)]
+    x = np.concatenate([[x_left], x[new], [x_right]])
     return x, _heights(space.floor, x), _heights(space.lid, x)
 
 

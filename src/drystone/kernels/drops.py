@@ -115,11 +115,68 @@ def drops(
         raise ValueError(f"what is said of each stone is there for {sorted(known)} stones")
     if wanted.each < 1:
         raise ValueError(f"{wanted.each} of a group")
-    numbers = _numbers(len(profile.tops), stones, terms, wanted)
-    most = min(max(0, wanted.spots), int(numbers[:, 0].max(initial=0)))
-    few = max(0, wanted.cheapest), wanted.each
-    rows, taken, limit = _dropped(profile, stones, terms, constants, numbers, most, few)
-    return [mine[:size] for mine, size in zip(rows, taken.tolist(), strict=True)], limit
+    size: cython.Py_ssize_t = len(constants)
+    columns: cython.Py_ssize_t = len(profile.tops)
+    numbers = _numbers(columns, stones, terms, wanted)
+    # A stone has so many rows; few are the drops that limit how dear others may be.
+    most: cython.Py_ssize_t = min(max(0, wanted.spots), int(numbers[:, 0].max(initial=0)))
+    few: cython.Py_ssize_t = max(0, wanted.cheapest)
+    widest: cython.Py_ssize_t = 1
+    number: cython.p_longlong = longs(numbers)
+    first: cython.p_longlong = longs(stones.first)
+    for at in range(size):
+        if number[3 * at] > 0:
+            widest = max(widest, first[at + 1] - first[at])
+    room = max(1, columns)
+    tops = np.ascontiguousarray(profile.tops)
+    boxes = np.ascontiguousarray(shown(profile))
+    rest_width = np.ascontiguousarray(terms.rest_width_px)
+    rest_height = np.ascontiguousarray(terms.rest_height_px)
+    constants = np.ascontiguousarray(constants)
+    # What is cheap by itself first: it limits how dear the others may be.
+    order_of = np.argsort(constants, kind="stable").astype(np.int64)
+    rows, taken = np.empty((size, most, 4)), np.zeros(size, np.int64)
+    out: cython.p_double = doubles_out(rows)
+    ends: cython.p_longlong = longs_out(taken)
+    order: cython.p_longlong = longs(order_of)
+    constant: cython.p_double = doubles(constants)
+    extents: cython.p_double = doubles(stones.boxes)
+    space = np.empty((3 + widest, room))
+    more_space, stages = np.empty(room, np.int64), np.empty(room, np.uint8)
+    costs, groups = np.empty(max(1, few)), np.empty(max(1, few), np.int64)
+    wall: DropWall = DropWall()
+    wall.tops, wall.columns = doubles(tops), columns
+    wall.boxes, wall.shown = doubles(boxes), len(boxes)
+    wall.higher = longs(more_space)
+    wall.rest_width, wall.longest_width = longs(rest_width), len(rest_width) - 1
+    wall.rest_height, wall.longest_height = longs(rest_height), len(rest_height) - 1
+    wall.sums = doubles(space[3:])
+    weights: Terms = terms_of(terms)
+    found: Places = Places()
+    found.lift, found.lean = doubles(space[0]), doubles(space[1])
+    found.cost, found.stage = doubles(space[2]), flags(stages)
+    found.bottoms = doubles(stones.bottoms)
+    kept: Kept = Kept()
+    kept.cost, kept.group, kept.count = doubles(costs), longs(groups), 0
+    kept.most, kept.each, kept.limit = few, wanted.each, INFINITY
+    with cython.nogil:
+        rise(wall)
+        add_up(wall, widest)
+        for turn in range(size):
+            at = order[turn]
+            found.count = number[3 * at]
+            if found.count <= 0:
+                continue
+            found.first, found.columns = first[at], first[at + 1] - first[at]
+            found.left, found.bottom = extents[4 * at], extents[4 * at + 1]
+            found.right, found.top = extents[4 * at + 2], extents[4 * at + 3]
+            lay_down(wall, weights, constant[at], found)
+            ends[at] = take(
+                wall, weights, number[3 * at + 1], kept.limit + CLOSE, found,
+                out, 4 * most * at, most,
+            )  # fmt: skip
+            keep(kept, out, 4 * most * at, ends[at], number[3 * at + 2])
+    return [mine[:count] for mine, count in zip(rows, taken.tolist(), strict=True)], kept.limit
 
 
 def _numbers(
@@ -186,73 +243,6 @@ def terms_of(terms):
     least: cython.double = min(read.gap, read.of_slot, read.of_step, read.joint, read.unbalanced)
     read.rising = read.mean_area > 0.0 and least >= 0.0
     return read
-
-
-def _dropped(profile, stones, terms, constants, numbers, most, few):
-    """Drop all stones; return their places in rows, how many there are, and the limit.
-
-    `numbers` as of :func:`_numbers`; a stone has so many rows at `most`; of `few` is how many of
-    the cheapest are wanted, and how many of those of a group.
-    """
-    size: cython.Py_ssize_t = len(constants)
-    columns: cython.Py_ssize_t = len(profile.tops)
-    widest: cython.Py_ssize_t = 1
-    number: cython.p_longlong = longs(numbers)
-    first: cython.p_longlong = longs(stones.first)
-    for at in range(size):
-        if number[3 * at] > 0:
-            widest = max(widest, first[at + 1] - first[at])
-    room = max(1, columns)
-    tops = np.ascontiguousarray(profile.tops)
-    boxes = np.ascontiguousarray(shown(profile))
-    rest_width = np.ascontiguousarray(terms.rest_width_px)
-    rest_height = np.ascontiguousarray(terms.rest_height_px)
-    constants = np.ascontiguousarray(constants)
-    # What is cheap by itself first: it limits how dear the others may be.
-    order_of = np.argsort(constants, kind="stable").astype(np.int64)
-    rows, taken = np.empty((size, most, 4)), np.zeros(size, np.int64)
-    out: cython.p_double = doubles_out(rows)
-    ends: cython.p_longlong = longs_out(taken)
-    order: cython.p_longlong = longs(order_of)
-    constant: cython.p_double = doubles(constants)
-    extents: cython.p_double = doubles(stones.boxes)
-    space = np.empty((3 + widest, room))
-    more_space, stages = np.empty(room, np.int64), np.empty(room, np.uint8)
-    costs, groups = np.empty(max(1, few[0])), np.empty(max(1, few[0]), np.int64)
-    wall: DropWall = DropWall()
-    wall.tops, wall.columns = doubles(tops), columns
-    wall.boxes, wall.shown = doubles(boxes), len(boxes)
-    wall.higher = longs(more_space)
-    wall.rest_width, wall.longest_width = longs(rest_width), len(rest_width) - 1
-    wall.rest_height, wall.longest_height = longs(rest_height), len(rest_height) - 1
-    wall.sums = doubles(space[3:])
-    weights: Terms = terms_of(terms)
-    found: Places = Places()
-    found.lift, found.lean = doubles(space[0]), doubles(space[1])
-    found.cost, found.stage = doubles(space[2]), flags(stages)
-    found.bottoms = doubles(stones.bottoms)
-    kept: Kept = Kept()
-    kept.cost, kept.group, kept.count = doubles(costs), longs(groups), 0
-    kept.most, kept.each, kept.limit = few[0], few[1], INFINITY
-    rows_each: cython.Py_ssize_t = most
-    with cython.nogil:
-        rise(wall)
-        add_up(wall, widest)
-        for turn in range(size):
-            at = order[turn]
-            found.count = number[3 * at]
-            if found.count <= 0:
-                continue
-            found.first, found.columns = first[at], first[at + 1] - first[at]
-            found.left, found.bottom = extents[4 * at], extents[4 * at + 1]
-            found.right, found.top = extents[4 * at + 2], extents[4 * at + 3]
-            lay_down(wall, weights, constant[at], found)
-            ends[at] = take(
-                wall, weights, number[3 * at + 1], kept.limit + CLOSE, found,
-                out, 4 * rows_each * at, rows_each,
-            )  # fmt: skip
-            keep(kept, out, 4 * rows_each * at, ends[at], number[3 * at + 2])
-    return rows, taken, kept.limit
 
 
 def keep(kept, rows, start, count, group):

@@ -98,17 +98,23 @@ class Heap(Body):
 
 @cython.cclass
 class MovingStone(Body):
-    """A polygon that moves, and the gaps that were found around it, seven numbers each."""
+    """A polygon that moves, and the gaps that were found around it, seven numbers each.
+
+    It has room for numbers of edges that are near, and for the linear programs of its motions.
+    """
 
     def __init__(self) -> None:
-        self.room = 64
-        self.gaps = new_doubles(7 * self.room)
-        self.near_room = 64
-        self.near = new_ints(self.near_room)
+        self.room = self.near_room = 64
+        self.gaps, self.near = new_doubles(7 * self.room), new_ints(self.near_room)
+        self.row_room = 32
+        self.rows = new_doubles(4 * self.row_room)
+        self.scratch = new_doubles(3 * (self.row_room + 2))
 
     def __dealloc__(self) -> None:
         release(self.gaps)
         release(self.near)
+        release(self.rows)
+        release(self.scratch)
 
 
 def heap_of(around, width):

@@ -19,10 +19,6 @@ cdef class MeetingRows:
 
 
 cdef object _told(MeetingRows found)
-cdef int meet_all(
-    Sides mine, Sides theirs, double *corners, double *others, int *first, double *boxes,
-    Py_ssize_t count, double tolerance, double setback, MeetingRows found
-) except -1 nogil
 cdef void set_sides(Sides sides, double *corners, Py_ssize_t first) noexcept nogil
 cdef int meet(
     Sides p, Sides q, Py_ssize_t other, double tolerance, double by, MeetingRows found

@@ -137,9 +137,28 @@ def meetings(corners: Points, around: Polygons, tolerance: float, setback: float
     boxes: cython.p_double = doubles(around.boxes)
     near: cython.double = tolerance
     back: cython.double = setback
+    reach: cython.double = BESIDE * tolerance
+    beyond: cython.double = 1.0 + 4.0 * tolerance
+    ground: cython.double[8] = [0.0, -beyond, 0.0, -beyond, 0.0, 0.0, 0.0, 0.0]
     mine.count = len(corners)
     with cython.nogil:
-        meet_all(mine, theirs, at, others, first, boxes, count, near, back, found)
+        set_sides(mine, at, 0)
+        if mine.low - reach <= 0.0:
+            # The piece of ground below, a box that reaches further on all sides.
+            ground[0] = ground[6] = mine.first - beyond
+            ground[2] = ground[4] = mine.last + beyond
+            theirs.count = 4
+            set_sides(theirs, ground, 0)
+            meet(mine, theirs, -1, near, set_back_by(area(mine), near, back), found)
+        for k in range(count):
+            if not (boxes[4 * k] <= mine.last + reach and boxes[4 * k + 2] >= mine.first - reach):
+                continue
+            if not (boxes[4 * k + 1] <= mine.high + reach and boxes[4 * k + 3] >= mine.low - reach):
+                continue
+            theirs.count = first[k + 1] - first[k]
+            set_sides(theirs, others, 2 * first[k])
+            size: cython.double = min(area(mine), area(theirs)) if back != 0.0 else 0.0
+            meet(mine, theirs, k, near, set_back_by(size, near, back), found)
     return _told(found)
 
 
@@ -190,31 +209,6 @@ class MeetingRows:
 
     def __dealloc__(self) -> None:
         release(self.at)
-
-
-def meet_all(mine, theirs, corners, others, first, boxes, count, tolerance, setback, found):
-    """Find the contacts with the ground and with every polygon that is near."""
-    reach: cython.double = BESIDE * tolerance
-    beyond: cython.double = 1.0 + 4.0 * tolerance
-    ground: cython.double[8] = [0.0, -beyond, 0.0, -beyond, 0.0, 0.0, 0.0, 0.0]
-    set_sides(mine, corners, 0)
-    if mine.low - reach <= 0.0:
-        # The piece of ground below, a box that reaches further on all sides.
-        ground[0] = ground[6] = mine.first - beyond
-        ground[2] = ground[4] = mine.last + beyond
-        theirs.count = 4
-        set_sides(theirs, ground, 0)
-        meet(mine, theirs, -1, tolerance, set_back_by(area(mine), tolerance, setback), found)
-    for k in range(count):
-        if not (boxes[4 * k] <= mine.last + reach and boxes[4 * k + 2] >= mine.first - reach):
-            continue
-        if not (boxes[4 * k + 1] <= mine.high + reach and boxes[4 * k + 3] >= mine.low - reach):
-            continue
-        theirs.count = first[k + 1] - first[k]
-        set_sides(theirs, others, 2 * first[k])
-        size: cython.double = min(area(mine), area(theirs)) if setback != 0.0 else 0.0
-        meet(mine, theirs, k, tolerance, set_back_by(size, tolerance, setback), found)
-    return 0
 
 
 def set_sides(sides, corners, first):

@@ -55,7 +55,7 @@ _DETOURS = np.array(
     ],
     np.int64,
 )
-"""What each step adds to :func:`_least` from cells above the row, on it and below it."""
+"""What each step adds to the keys of :func:`_searched` above the row, on it and below it."""
 
 
 def row_lengths(open_px: Mask, rows: NDArray[np.intp]) -> NDArray[np.int64]:
@@ -86,10 +86,11 @@ def step_counts(length: int) -> tuple[int, int]:
 def _searched(open_px: Mask, rows: NDArray[np.intp]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Search along rows, one after the other, in one array of keys; return lengths and keys.
 
-    The key of a cell is how much longer than :func:`_least` the shortest way through it is, as far
-    as known.  Nothing is reset between rows: each row's keys begin so much lower than those of the
-    row before that older keys are as good as none.  The last row's begin at 0; they are final on
-    shortest ways.
+    The key of a cell is by how much, as far as known, the shortest way through it is longer than
+    the row at least: what is left to go takes a straight step for every column, and for every row
+    on the way back what a diagonal step is longer.  Nothing is reset between rows: each row's keys
+    begin so much lower than those of the row before that older keys are as good as none.  The last
+    row's begin at 0; they are final on shortest ways.
     """
     height, width = open_px.shape
     cells = np.full((height + 2, width + 2), _CLOSED, np.int64)
@@ -108,20 +109,10 @@ def _searched(open_px: Mask, rows: NDArray[np.intp]) -> tuple[NDArray[np.int64],
 def _searched_lengths(open_px: Mask, row: int) -> NDArray[np.int64]:
     """Return how far from the first pixel of a row others are; -1: not known, or no way."""
     _, keys = _searched(open_px, np.array([row]))
-    ahead = _least(open_px.shape[0], open_px.shape[1], row)
+    height, width = open_px.shape
+    aside = _ASIDE * np.abs(np.arange(height, dtype=np.int64) - row)[:, None]
     reached = (keys != _CLOSED) & (keys < _FAR)
-    return np.where(reached, keys - ahead + ahead[row, 0], _CLOSED)
-
-
-def _least(height: int, width: int, row: int) -> NDArray[np.int64]:
-    """Return what is left to go from each cell to the end of a row, if not more.
-
-    A straight step for every column, and for every row on the way back to the row what a diagonal
-    step is longer.
-    """
-    columns = STRAIGHT * np.arange(width - 1, -1, -1, dtype=np.int64)
-    aside = _ASIDE * np.abs(np.arange(height, dtype=np.int64) - row)
-    return np.asarray(aside[:, None] + columns)
+    return np.where(reached, keys + STRAIGHT * np.arange(width) - aside, _CLOSED)
 
 
 def _followed_back(lengths: NDArray[np.int64], row: int) -> NDArray[np.intp] | None:

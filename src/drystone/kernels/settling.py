@@ -6,8 +6,12 @@ it, linearised, falls below a clearance; then the true gaps are looked at.  Sinc
 straight, a move may come too near to something: it is brought apart again at the least cost, or
 halved where that gains nothing.
 Gravity may lean towards the side from which the wall is built, which closes the joints beside the
-stone.  At the end a friction test says whether the stone rests, and how far gravity may lean
-until it moves.
+stone.
+
+At the end a friction test says whether the stone rests, and how far gravity may lean until it
+moves.  Motions are velocities (x, y, turn).  At each contact the corner may move into the cone that
+friction leaves; the polygon rests when no such motion goes down, and it is as firm as gravity may
+lean until one does.
 
 No step passes through anything.  A step moves no corner by more than (1 + sqrt 2) radii, and all
 gaps within 2.5 radii keep their corners on the right side of a face, or of a line through a
@@ -20,8 +24,9 @@ from __future__ import annotations
 from enum import IntEnum
 from typing import NamedTuple
 
-from drystone.kernels.firmness import require_friction
-from drystone.kernels.polygons import Points, Polygons
+import numpy as np
+
+from drystone.kernels.polygons import Points, Polygons, polygon_edges
 
 try:
     import cython
@@ -29,12 +34,19 @@ except ImportError:
     from drystone.kernels import shim as cython
 
 if not cython.compiled:
-    from math import cos, isfinite, sin
+    from math import cos, isfinite, sin, sqrt
 
-    from drystone.kernels.firmness import LpRows, arm_of, enough_rows, firmness
-    from drystone.kernels.gaps import Heap, MovingStone, crosses, find_gaps, heap_of, measure
-    from drystone.kernels.lists import doubles, kept_doubles
-    from drystone.kernels.seidel import solve3
+    from drystone.kernels.gaps import (
+        Heap,
+        MovingStone,
+        crosses,
+        find_gaps,
+        heap_of,
+        measure,
+        stone_of,
+    )
+    from drystone.kernels.lists import doubles, more_doubles, new_doubles, release
+    from drystone.kernels.seidel import solve2, solve3
 
 RESTS = cython.declare(cython.int, 0)
 FALLS = cython.declare(cython.int, 1)
@@ -56,6 +68,14 @@ APART = cython.declare(cython.double, 24.0)
 
 # A contact with a normal steeper than this supports.
 UPWARD = cython.declare(cython.double, 0.3)
+
+GAINED = cython.declare(cython.double, 1e-6)
+FASTEST = cython.declare(cython.double, 1e3)
+FIRMEST = cython.declare(cython.double, 10.0)
+
+# A contact whose normal goes down further holds a stone down: where upright faces do not grip, it
+# does not count either.
+HOLDS_DOWN = cython.declare(cython.double, -0.1)
 
 
 class Status(IntEnum):
@@ -120,6 +140,10 @@ class Way:
 class State(MovingStone):
     """A pose, and what is around the stone there; the turn in radians."""
 
+    def __dealloc__(self) -> None:
+        release(self.corners)
+        release(self.edges)
+
 
 def settle(
     outline: Points,
@@ -143,11 +167,41 @@ def settle(
     return settling_of(way, let_go(way, heap, x, y, turn))
 
 
+def rest_margin(
+    corners: Points,
+    centroid: tuple[float, float],
+    around: Polygons,
+    width: float,
+    mu: float,
+    tolerance: float,
+    corner: float = 0.3,
+    steep: float = -1.0,
+) -> float:
+    """Return how far gravity may lean, over mu, until a placed polygon moves; at most 10.
+
+    -1 when it does not rest.  Gaps up to the tolerance touch; the ends of the wall carry nothing.
+    `corner` and `steep` are those of :class:`SettlingRules`.
+    """
+    require_friction(mu)
+    corners = np.ascontiguousarray(corners, np.float64)
+    stone: MovingStone = stone_of(corners, polygon_edges(corners))
+    x: cython.double = centroid[0]
+    y: cython.double = centroid[1]
+    find_gaps(stone, heap_of(around, width), tolerance, corner)
+    arm: cython.double = arm_of(doubles(corners), stone.count, x, y)
+    return firmness(stone, x, y, arm, mu, tolerance, steep)
+
+
+def require_friction(mu: float) -> None:
+    """Refuse a coefficient of friction that margins cannot be shares of."""
+    if not mu > 0.0:
+        raise ValueError(f"mu must be positive, not {mu}")
+
+
 def way_of(outline, edges, rules):
     """Return what is let go, of which both arrays have to outlive it."""
     require_friction(rules.mu)
     way: Way = Way()
-    way.room = []
     way.corners, way.edges, way.count = doubles(outline), doubles(edges), len(outline)
     way.arm = arm_of(way.corners, way.count, 0.0, 0.0)
     (
@@ -155,7 +209,7 @@ def way_of(outline, edges, rules):
         way.most_turn, way.most_shift, way.gain, way.overlap, way.steep, way.beyond, way.sticks,
         way.turns, way.steps,
     ) = rules  # fmt: skip
-    way.here, way.there, way.work = state_of(way), state_of(way), LpRows()
+    way.here, way.there = state_of(way), state_of(way)
     return way
 
 
@@ -171,20 +225,19 @@ def let_go(way, heap, x, y, turn):
     """Let a stone go at a pose, and return how that ended."""
     here: State = way.here
     there: State = way.there
-    work: LpRows = way.work
     status: cython.int = OVERLAPS
     way.made, way.margin, way.touching = 0, -1.0, 0
     here.x, here.y, here.turn = x, y, turn
     with cython.nogil:
         look(here, way, heap)
         if here.least >= -way.overlap and isfinite(way.arm + x + y + turn):
-            status = descend(way, heap, here, there, work)
+            status = descend(way, heap, here, there)
             if status != FAR:
                 if not here.least >= 0.5 * way.clearance or crosses(here, heap):
                     status = OVERLAPS
                 else:
                     # Whatever stopped it: does the stone rest?
-                    way.margin = margin_of(way, here, work)
+                    way.margin = margin_of(way, here)
                     for k in range(0, 7 * here.found, 7):
                         if here.gaps[k + 5] <= way.tolerance and here.gaps[k + 6] != END:
                             way.touching += 1
@@ -194,11 +247,11 @@ def let_go(way, heap, x, y, turn):
 
 
 def state_of(way):
-    """Return a state, nowhere yet."""
+    """Return a state with memory of its own, nowhere yet."""
     state: State = State()
     state.first, state.count = 0, way.count
-    state.corners = kept_doubles(way.room, 2 * way.count)
-    state.edges = kept_doubles(way.room, 3 * way.count)
+    state.corners = new_doubles(2 * way.count)
+    state.edges = new_doubles(3 * way.count)
     return state
 
 
@@ -234,12 +287,12 @@ def exchange(a, b):
     a.turn, a.least, b.turn, b.least = b.turn, b.least, a.turn, a.least
 
 
-def margin_of(way, here, work):
+def margin_of(way, here):
     """Return how firmly a stone rests."""
-    return firmness(here, here.x, here.y, way.arm, way.mu, way.tolerance, way.steep, work)
+    return firmness(here, here.x, here.y, way.arm, way.mu, way.tolerance, way.steep)
 
 
-def descend(way, heap, here, there, work):
+def descend(way, heap, here, there):
     """Go down step by step until nothing is gained; say why it stopped."""
     start_x: cython.double = here.x
     start_turn: cython.double = here.turn
@@ -249,17 +302,17 @@ def descend(way, heap, here, there, work):
     half: cython.double = 0.5 * way.clearance
     move: cython.double[3] = [0.0, 0.0, 0.0]
     while way.made < way.steps:
-        if way.stop >= 0.0 and here.least >= half and margin_of(way, here, work) >= way.stop:
+        if way.stop >= 0.0 and here.least >= half and margin_of(way, here) >= way.stop:
             return RESTS
         if here.least < half and here.least < start_least * (1.0 - way.made / APART):
             return UNFINISHED
         way.made += 1
         better = False
-        if best_move(here, way, radius, work, move):
+        if best_move(here, way, radius, move):
             gained = -way.lean * move[0] - move[1]
             if here.least >= half and not gained > way.gain:
                 return FALLS
-            better = tried(way, heap, here, there, work, move, radius, gained)
+            better = tried(way, heap, here, there, move, radius, gained)
         if not better:
             radius *= 0.5
             if radius < SMALLEST * way.near:
@@ -275,7 +328,7 @@ def descend(way, heap, here, there, work):
     return UNFINISHED
 
 
-def tried(way, heap, here, there, work, move, radius, gained):
+def tried(way, heap, here, there, move, radius, gained):
     """Make a move; False when it leads nowhere."""
     half: cython.double = 0.5 * way.clearance
     back: cython.double[3] = [0.0, 0.0, 0.0]
@@ -290,7 +343,7 @@ def tried(way, heap, here, there, work, move, radius, gained):
         small = 4.0 * (way.clearance - there.least)
         if not small <= radius:
             return False
-        if not best_move(there, way, small, work, back):
+        if not best_move(there, way, small, back):
             return False
         there.x, there.y = there.x + back[0], there.y + back[1]
         there.turn = there.turn + back[2] / way.arm
@@ -301,7 +354,7 @@ def tried(way, heap, here, there, work, move, radius, gained):
     return not crosses(there, heap)
 
 
-def best_move(state, way, radius, work, move):
+def best_move(state, way, radius, move):
     """Find the move within a radius that goes down most while all gaps, linearised, stay open.
 
     The turn is given as the way of the furthest corner.
@@ -311,8 +364,8 @@ def best_move(state, way, radius, work, move):
     gaps: cython.p_double = state.gaps
     rows: cython.p_double
     reach: cython.double = SPREAD * radius + way.clearance
-    enough_rows(work, state.found + 2)
-    rows = work.rows
+    enough_rows(state, state.found + 2)
+    rows = state.rows
     for attempt in range(2):
         i, pivot = 0, -1
         for k in range(0, 7 * state.found, 7):
@@ -339,7 +392,7 @@ def best_move(state, way, radius, work, move):
                 rows[i + 2] = turning(state, pivot, nx, ny) / way.arm
                 rows[i + 3] = 0.2 * way.clearance
                 i += 4
-        if solve3(rows, i // 4, gain, most, work.scratch, move):
+        if solve3(rows, i // 4, gain, most, state.scratch, move):
             return True
     return False
 
@@ -347,3 +400,72 @@ def best_move(state, way, radius, work, move):
 def turning(state, k, nx, ny):
     """Return how fast a turn about the centroid moves the point of a gap along a direction."""
     return (state.gaps[k + 3] - state.x) * ny - (state.gaps[k + 4] - state.y) * nx
+
+
+def enough_rows(stone, count):
+    """Make room for so many rows of a linear program."""
+    if count > stone.row_room:
+        stone.row_room = 2 * count
+        stone.rows = more_doubles(stone.rows, 4 * stone.row_room)
+        stone.scratch = more_doubles(stone.scratch, 3 * (stone.row_room + 2))
+    return 0
+
+
+def arm_of(corners, count, x, y):
+    """Return the distance of the furthest corner from a point."""
+    most: cython.double = 0.0
+    for i in range(count):
+        dx, dy = corners[2 * i] - x, corners[2 * i + 1] - y
+        dx = dx * dx + dy * dy
+        # What is not a number stays.
+        if dx > most or dx != dx:
+            most = dx
+    return sqrt(most)
+
+
+def firmness(stone, x, y, arm, mu, tolerance, steep):
+    """Return how far gravity may lean, over mu, until a stone moves; -1 when it does not rest.
+
+    Gaps that touch count, but the ends of the wall carry nothing.  Turns are ways of a corner as
+    far out as the arm.  Contacts whose normal goes up by less than `steep` have no friction, and
+    those whose normal goes down by more than .1 do not count; with -1 all count.  A stone that is
+    held by friction on upright faces, or by what it is hooked under, stands only if it was
+    pressed in before.
+    """
+    gain: cython.double[3] = [0.0, -1.0, 0.0]
+    most: cython.double[3] = [1.0, 1.0, 1.0]
+    found: cython.double[3] = [0.0, 0.0, 0.0]
+    least: cython.double = FIRMEST
+    gaps: cython.p_double = stone.gaps
+    rows: cython.p_double
+    scratch: cython.p_double
+    count: cython.Py_ssize_t = 0
+    enough_rows(stone, 2 * stone.found + 2)
+    rows, scratch = stone.rows, stone.scratch
+    for k in range(0, 7 * stone.found, 7):
+        if gaps[k + 5] > tolerance or gaps[k + 6] == END:
+            continue
+        if steep >= 0.0 and gaps[k + 2] < HOLDS_DOWN:
+            continue
+        grip = mu if gaps[k + 2] >= steep else 0.0
+        for sign in range(-1, 2, 2):
+            gx = gaps[k + 1] + sign * grip * gaps[k + 2]
+            gy = gaps[k + 2] - sign * grip * gaps[k + 1]
+            i = 4 * count
+            rows[i], rows[i + 1], rows[i + 3] = -gx, -gy, 0.0
+            rows[i + 2] = -((gaps[k + 3] - x) * gy - (gaps[k + 4] - y) * gx) / arm
+            count += 1
+    if count < 4:
+        return -1.0
+    if not solve3(rows, count, gain, most, scratch, found) or found[1] < -GAINED:
+        return -1.0
+    # With a speed of 1 aside: by how much must it rise at least?
+    gain[0], gain[1] = -1.0, 0.0
+    most[0] = most[1] = FASTEST
+    for sign in range(-1, 2, 2):
+        for i in range(count):
+            scratch[3 * i], scratch[3 * i + 1] = rows[4 * i + 1], rows[4 * i + 2]
+            scratch[3 * i + 2] = -sign * rows[4 * i]
+        if solve2(scratch, count, gain, most, found):
+            least = min(least, found[0] / mu)
+    return max(least, 0.0)

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.kernels.crevice import SAME, Crevice, between, crevice, slabs
-from drystone.kernels.firmness import rest_margin
 from drystone.kernels.polygons import Points, Polygons, area_and_centroid, mirrored_polygon, on_grid
+from drystone.kernels.settling import rest_margin
 from drystone.model.wedge_shape import ROUNDING, WedgeRule, WedgeShape, open_sides
 
 Span = tuple[float, float]
