@@ -112,7 +112,7 @@ cdef struct State:
     double *with_ground
     # One number a column.
     p_double reduced_costs, secondary_costs, pivot_row, opened
-    int *open
+    char *open
     # One number a new column.
     p_int new_first, new_second
     # One number a row or a column, whichever are more.
@@ -172,18 +172,24 @@ cdef void clear_basic(State *state, double *values) noexcept nogil:
         values[state.closed[i]] = 0.0
 
 
+cdef Columns *part_of(State *state, Py_ssize_t *number) noexcept nogil:
+    if number[0] < state.old.count:
+        return &state.old
+    number[0] -= state.old.count
+    return &state.new
+
+
 cdef Py_ssize_t entries_of(
     State *state, Py_ssize_t variable, Py_ssize_t *rows, double *entries
 ) noexcept nogil:
     """Write the rows and entries, up to six, of any variable but alpha; return how many."""
     cdef Py_ssize_t q, row, count = 0, number = variable
-    cdef Columns *part = &state.old
+    cdef Columns *part
     if variable <= ARTIFICIAL:
         rows[0] = ARTIFICIAL - variable
         entries[0] = 1.0
         return 1
-    if number >= state.old.count:
-        part, number = &state.new, number - state.old.count
+    part = part_of(state, &number)
     for q in range(6):
         row = (part.first[number] + q if q < 3 else part.second[number] + q - 3) - 3
         if row >= 0:
@@ -470,23 +476,34 @@ cdef Py_ssize_t lay_out(State *state, char *memory, Py_ssize_t room) noexcept no
     """Share out a block of memory, with room for more columns; return how many bytes it takes."""
     cdef Py_ssize_t i, used = 0, size = state.size, new = size - state.inverse.old
     cdef Py_ssize_t columns = state.new.count + room
-    # More than any row or list needs, and begins of lines at borders of 64 bytes.
-    cdef Py_ssize_t longest = (size + state.old.count + columns + 11) // 8 * 8
-    cdef void **lines[28]
-    lines[:] = [
+    # Lines begin at borders of 64 bytes.
+    cdef Py_ssize_t height = (size + 10) // 8 * 64, width = (state.columns + room + 7) // 8 * 64
+    cdef void **rows[19]
+    cdef void **wide[7]
+    rows[:] = [
         <void **>&state.rhs, <void **>&state.live, <void **>&state.values,
         <void **>&state.direction, <void **>&state.feasible, <void **>&state.velocity,
         <void **>&state.ray, <void **>&state.inverse_row, <void **>&state.pivot_column,
         <void **>&state.residual, <void **>&state.secondary_values, <void **>&state.with_ground,
-        <void **>&state.reduced_costs, <void **>&state.secondary_costs, <void **>&state.pivot_row,
-        <void **>&state.opened, <void **>&state.small_ray, <void **>&state.inverse.factors,
-        <void **>&state.inverse.lines, <void **>&state.inverse.eta_row, <void **>&state.inverse.slot,
-        <void **>&state.basic, <void **>&state.fixed, <void **>&state.open, <void **>&state.listed,
-        <void **>&state.new_first, <void **>&state.new_second, <void **>&state.small_basic,
+        <void **>&state.inverse.factors, <void **>&state.inverse.lines,
+        <void **>&state.inverse.eta_row, <void **>&state.inverse.slot, <void **>&state.basic,
+        <void **>&state.fixed, <void **>&state.small_basic,
     ]
-    for i in range(28):
-        lines[i][0] = memory + used
-        used += longest * sizeof(double)
+    wide[:] = [
+        <void **>&state.reduced_costs, <void **>&state.secondary_costs, <void **>&state.pivot_row,
+        <void **>&state.opened, <void **>&state.open, <void **>&state.new_first,
+        <void **>&state.new_second,
+    ]
+    for i in range(19):
+        rows[i][0] = memory + used
+        used += height
+    for i in range(7):
+        wide[i][0] = memory + used
+        used += width
+    # What is listed are rows or columns; a small ray is followed by scratch for columns.
+    state.listed = <int *>(memory + used)
+    state.small_ray = <double *>(memory + used + height + width)
+    used += 2 * (height + width)
     state.tableau = <double *>(memory + used)
     used += (new + 2) * (columns + new + 2) * sizeof(double)
     # Mostly not touched: a few eta columns only.
@@ -606,23 +623,30 @@ cdef bint compute_basic_values(State *state) noexcept nogil:
 
 cdef double compute_residual(State *state) noexcept nogil:
     """Compute rhs minus basis times basic values; return the largest."""
-    cdef Py_ssize_t[6] rows
-    cdef double[6] entries
-    cdef Py_ssize_t i, q
-    cdef double largest = 0.0
-    cdef double *total = state.residual
-    memset(total, 0, state.size * sizeof(double))
+    cdef Py_ssize_t i, q, number
+    cdef double value, largest = 0.0
+    cdef double *total = state.with_ground
+    cdef Columns *part
+    memset(total, 0, (state.size + 3) * sizeof(double))
     for i in range(state.size):
         if state.basic[i] >= 0:
-            for q in range(entries_of(state, state.basic[i], rows, entries)):
-                total[rows[q]] += entries[q] * state.values[i]
+            number = state.basic[i]
+            value = state.values[i]
+            part = part_of(state, &number)
+            for q in range(3):
+                total[part.first[number] + q] += part.entries[q * part.count + number] * value
+            for q in range(3):
+                total[part.second[number] + q] += (
+                    part.entries[(3 + q) * part.count + number] * value
+                )
+    value = state.values[state.alpha_row]
     for i in range(state.size):
-        total[i] = state.live[i] * state.values[state.alpha_row] + total[i]
+        total[3 + i] = state.live[i] * value + total[3 + i]
     for i in range(state.size):
         if state.basic[i] <= ARTIFICIAL:
-            total[ARTIFICIAL - state.basic[i]] += state.values[i]
+            total[3 + ARTIFICIAL - state.basic[i]] += state.values[i]
     for i in range(state.size):
-        state.residual[i] = state.rhs[i] - total[i]
+        state.residual[i] = state.rhs[i] - total[3 + i]
         largest = max(largest, fabs(state.residual[i]))
     return largest
 
@@ -1186,20 +1210,16 @@ cdef void write_forces(State *state, double unit, double *forces) noexcept nogil
 cdef void write_inverse(State *state, double *rows, double *cols) noexcept nogil:
     """Write the inverse and its transpose, made anew if eta columns have cost it digits."""
     cdef Py_ssize_t i, size = state.size
-    cdef double *matrix
+    cdef double *anew = state.inverse.eta  # which is not needed any more
     for i in range(size):
         inverse_row(&state.inverse, i, rows + i * size)
     transpose(rows, cols, size)
     if inverse_error(state, cols) <= INVERSE_ERROR:
         return
-    matrix = <double *>malloc(size * size * sizeof(double))
-    if matrix == NULL:
-        return
-    write_basis_matrix(state, matrix)
-    if invert(matrix, size, state.pivot_column, state.listed):
-        memcpy(rows, matrix, size * size * sizeof(double))
+    write_basis_matrix(state, anew)
+    if invert(anew, size, state.pivot_column, state.listed):
+        memcpy(rows, anew, size * size * sizeof(double))
         transpose(rows, cols, size)
-    free(matrix)
 
 
 cdef double inverse_error(State *state, const double *cols) noexcept nogil:
@@ -1237,9 +1257,7 @@ cdef void write_rest(
     """Write what is basic, reduced costs, and secondary ones that begin anew."""
     cdef Py_ssize_t i, j, kept = 0
     price(state, rows + state.alpha_row * state.size, state.pivot_row, 0)
-    for i in range(state.size):
-        if state.basic[i] >= 0:
-            state.pivot_row[state.basic[i]] = 0.0
+    clear_basic(state, state.pivot_row)
     perturbation(0, state.columns - state.closed_count, secondary_costs)
     for j in range(state.columns):
         if state.open[j]:
@@ -1379,8 +1397,7 @@ cdef class Program:
         state.new.entries = doubles(cones.entries)
         state.closed = closed
         state.closed_count = len(added.closed)
-        for i in range(state.columns):
-            state.open[i] = True
+        memset(state.open, 1, state.columns)
         for i in range(state.closed_count):
             if not 0 <= closed[i] < state.old.count:
                 raise ValueError(f"there is no column {closed[i]} to close")
