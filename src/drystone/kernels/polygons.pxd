@@ -1,5 +1,3 @@
 from libc.math cimport floor, sqrt
 
-from drystone.kernels.memory cimport doubles, doubles_out
-
-ctypedef double *p_double
+from drystone.kernels.memory cimport doubles, doubles_out, p_double
