@@ -146,15 +146,6 @@ def test_a_hole_moves_the_centroid_and_nothing_else(mask):
     )
 
 
-@pytest.mark.parametrize(
-    ("mask", "tolerance", "message"),
-    [(np.zeros((2, 2), bool), 0.35, "no pixel"), (np.ones((2, 2), bool), -0.1, "0 or more")],
-)
-def test_what_has_no_outline_is_refused(mask, tolerance, message):
-    with pytest.raises(ValueError, match=message):
-        stone_outline(mask, tolerance)
-
-
 def test_the_tolerance_is_halved_until_nothing_crosses():
     mask = pixels("###", "..#", "##.")
     np.testing.assert_array_equal(stone_outline(mask, 1.4), stone_outline(mask, 0.7))

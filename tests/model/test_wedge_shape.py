@@ -72,14 +72,10 @@ def test_limits_by_the_stones_and_by_the_scale():
     assert tiny.greatest_height == tiny.least_thickness == pytest.approx(6.0)
 
 
-def test_settings_and_limits_are_checked():
+def test_settings_are_checked():
     for name in ("thickness", "thickness_mm", "height", "area"):
         with pytest.raises(ValueError, match="above 0"):
             WedgeSettings(**{name: 0.0})
-    good = {"least_thickness": 1.0, "greatest_height": 2.0, "greatest_area": 9.0}
-    for wrong in ({"greatest_height": 0.9}, *({name: 0.0} for name in (*good, "mu"))):
-        with pytest.raises(ValueError, match="must be positive"):
-            WedgeRule(**{**good, **wrong})
 
 
 @repeatable(40)

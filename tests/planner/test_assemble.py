@@ -12,10 +12,9 @@ from drystone.model.site import Site
 from drystone.model.stone import Stone, StoneSet
 from drystone.model.wall import Group, Wall
 from drystone.planner.assemble import plan_metrics, plan_steps
-from drystone.planner.build import Build, Candidate, Proposal
+from drystone.planner.build import Build, Candidate, Proposal, Solves
 from drystone.planner.evaluate import action_indices
 from drystone.planner.settings import method_settings
-from drystone.planner.solves import Solves
 from drystone.poses import PoseBook
 from drystone.search.plan_wall import plan_wall
 from drystone.statics.incremental import IncrementalAnalysis, IncrementalResult

@@ -5,9 +5,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from drystone.planner.build import Solves
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.solves import Solves
 from drystone.search.whole_search import run_to_end
 from drystone.statics.incremental import SIMPLEX, HighsAnalysis, IncrementalAnalysis
 from drystone.statics.limit import lateral_resistance

@@ -12,7 +12,7 @@ from drystone.model.stone import Stone
 from drystone.model.wall import Group, Wall
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.choose import better_side, choose_by_algorithm2, choose_by_score
-from drystone.planner.holding import holds
+from drystone.planner.offers import holds
 from drystone.poses import PoseBook
 from drystone.selection.algorithm2 import SelectionSettings
 from drystone.selection.scored import ScoreSettings

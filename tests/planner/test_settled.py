@@ -7,7 +7,7 @@ from drystone.kernels.polygons import no_polygons
 from drystone.model.site import Site
 from drystone.model.stone import Stone
 from drystone.model.wall import Wall
-from drystone.planner.settled import settled_in, stands_out_px
+from drystone.settle.placing import settled_in, stands_out_px
 from drystone.settle.rest import SettlingScene, Turned, come_to_rest
 from drystone.settle.settings import SettleSettings
 

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from drystone.model.site import Site
+from drystone.planner.build import Solves
 from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.events import Callbacks
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import UNLIMITED, SearchSettings
-from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search import anytime, chain
 from drystone.search.chain import in_cycle, planned_first, recreated, wedged

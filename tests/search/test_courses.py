@@ -11,7 +11,7 @@ from drystone.generate.rubble import RubbleSettings, rubble_stones
 from drystone.kernels.backend import describe
 from drystone.kernels.courses import evaluate
 from drystone.model.stone import Stone
-from drystone.planner.course_settings import CourseSettings
+from drystone.planner.search_settings import CourseSettings
 from drystone.poses import PoseBook
 from drystone.search.course_task import ground_of, task_of
 from drystone.search.courses import CoursePlan, PlannedStone, placed, plan_courses, resumed

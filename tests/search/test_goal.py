@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from drystone.craft.bond import bond_faults
 from drystone.craft.masonry import Masonry
 from drystone.model.builder import BuilderErrors, put_down_with, stratified
+from drystone.planner.build import Solves
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import GoalSettings
-from drystone.planner.solves import Solves
 from drystone.search.goal import (
     FoundWall,
     Rehearsals,

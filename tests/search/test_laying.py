@@ -8,7 +8,7 @@ import pytest
 
 from drystone.model.site import Site
 from drystone.planner.evaluate import Evaluator, Loaded
-from drystone.planner.laying_settings import LayingSettings
+from drystone.planner.search_settings import LayingSettings
 from drystone.planner.seats import Seats
 from drystone.statics.incremental import IncrementalResult
 from drystone.statics.limit import lateral_resistance

@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 from drystone.kernels.profiles import hanging
-from drystone.planner.laying_settings import LayingSettings
+from drystone.planner.search_settings import LayingSettings
 from drystone.planner.views import SideView
 from drystone.search.letting_go import Aim, Hand
 from drystone.settle.rest import Turned

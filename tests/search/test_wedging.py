@@ -12,10 +12,10 @@ from drystone.kernels.polygons import on_grid
 from drystone.model.placement import Settled, Wedge
 from drystone.model.site import Site
 from drystone.model.wall import Group, outlined
+from drystone.planner.build import Solves
 from drystone.planner.deadline import Deadline, TimeIsUp
 from drystone.planner.planner import Planner
 from drystone.planner.replay import Replayed, replayed
-from drystone.planner.solves import Solves
 from drystone.search import yard
 from drystone.search.wedge_draft import WedgeDraft
 from drystone.search.wedging import wedged_up

@@ -234,17 +234,6 @@ def test_parts_are_where_upright_lines_are_as_long_as_a_wedge(pile, shares):
                 assert (room > 0.0) == any(start <= x <= stop for start, stop in found)
 
 
-def test_limits_are_checked():
-    good = {"least_thickness": 1.0, "greatest_height": 2.0}
-    WedgeLimits(**good)
-    for change in (
-        {"least_thickness": 0.0}, {"greatest_height": 0.9}, {"margin": -0.1}, {"margin": 0.5},
-        {"mu": 0.0}, {"clearance_px": 0.0}, {"clearance_px": 0.06},
-    ):  # fmt: skip
-        with pytest.raises(ValueError, match="must"):
-            WedgeLimits(**{**good, **change})
-
-
 def test_a_stone_meets_what_is_beside_it_and_so_far_below_as_a_wedge_is_high():
     stone = box(10.0, 20.0, 20.0, 24.0)
     reach = LIMITS.contact_px + 4.0 * LIMITS.clearance_px

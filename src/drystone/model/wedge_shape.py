@@ -57,13 +57,6 @@ class WedgeSettings(Ranged):
     height: float = ranged(0.25, above=0)
     area: float = ranged(0.1, above=0)
 
-    def least_thickness(self, size: float, per_m: float | None) -> float:
-        """Return the least thickness of a wedge, in the unit of the size.
-
-        `size` is the root of the median stone's area, `per_m` units of length in a metre, if known.
-        """
-        return self.thickness * size if per_m is None else self.thickness_mm * per_m / 1000.0
-
 
 class WedgeShape(NamedTuple):
     """Measures of a wedge, in the unit of its corners."""
@@ -128,17 +121,9 @@ class WedgeRule:
     least_thickness: float  # at any place; a wedge does not end in an edge
     greatest_height: float  # of its upright box
     greatest_area: float = math.inf
-    # coefficient of friction: no face is steeper, nor do the two open wider, or the load
-    # would push the wedge out
+    # coefficient of friction: no face is steeper, nor do the two open wider, or the load would
+    # push the wedge out
     mu: float = 0.58
-
-    def __post_init__(self) -> None:
-        if not 0 < self.least_thickness <= self.greatest_height or not self.greatest_area > 0:
-            raise ValueError(
-                "sizes of a wedge must be positive, the largest not below the smallest"
-            )
-        if not self.mu > 0:
-            raise ValueError("mu must be positive")
 
     @classmethod
     def of(
@@ -148,7 +133,7 @@ class WedgeRule:
 
         `per_m` is units of length in a metre, when that is known.
         """
-        least = sizes.least_thickness(size, per_m)
+        least = sizes.thickness * size if per_m is None else sizes.thickness_mm * per_m / 1000.0
         return cls(
             least_thickness=least,
             greatest_height=max(least, sizes.height * size),

@@ -1,7 +1,7 @@
 """A wall built again as it was measured: stones brought apart, and lowered until they rest."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 from operator import itemgetter
@@ -21,9 +21,9 @@ from drystone.planner.evaluate import Evaluator
 from drystone.planner.measured import MeasuredPlace
 from drystone.planner.replay import judged, replayed
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.settled import settled_in, stands_out_px
 from drystone.planner.workshop import Workshop
 from drystone.poses import wrap_deg
+from drystone.settle.placing import settled_in, stands_out_px
 from drystone.settle.rest import Repose, SettlingScene, Turned, come_to_rest, lay, placed_outline
 from drystone.settle.wedged import wedged
 from drystone.stabilise.stabilise import WedgeStock, stabilise
@@ -58,6 +58,9 @@ ROOM = 3
 SAME_ANGLE_DEG = 2.0
 """Stones that are pixels may have the planned angle instead of one that is so near."""
 
+
+Start = tuple[float, float]
+"""Where a stone is let go, in the view."""
 
 Rested = tuple[Repose, Points | None]
 """Where a stone rests, and the wedge that holds it there."""
@@ -223,17 +226,13 @@ def _on_outlines(
     limits = wedge_limits(settings, workshop.stock, wall.site)
     starts = _starts(turned, one.place, scene, settle.clearance_px)
 
-    def held(start: tuple[float, float]) -> Rested | None:
-        found = wedged(turned, scene, start, settle, limits)
-        return None if found is None else (found.repose, found.wedge)
+    def held(starts: Iterable[Start]) -> list[Rested]:
+        found = (wedged(turned, scene, start, settle, limits) for start in starts)
+        return [(one.repose, one.wedge) for one in found if one is not None]
 
-    def laid(start: tuple[float, float]) -> Rested | None:
-        found = lay(turned, scene, start, settle)
-        return None if found is None else (found, None)
-
-    def settled(start: tuple[float, float]) -> Rested | None:
-        found = come_to_rest(turned, scene, start, settle)
-        return None if found is None else (found, None)
+    def alone(way: Callable[..., Repose | None], starts: Iterable[Start]) -> list[Rested]:
+        found = (way(turned, scene, start, settle) for start in starts)
+        return [(one, None) for one in found if one is not None]
 
     def taken_in(repose: Repose, wedge: Points | None) -> Iterator[Group]:
         """Give a stone with the pixels that it fills, unless it fills none or leaves the wall."""
@@ -246,12 +245,10 @@ def _on_outlines(
                 yield one.marked(found)
 
     on_wedges = one.planned is not None and bool(one.planned.wedges)
-    first = (held if on_wedges else laid)(starts[0])
-    if first is not None and one.rested_px(first) <= ENOUGH_PX:
-        yield from taken_in(*first)
-    tried = [way(start) for way in (laid, settled) for start in starts]
-    tried += [held(start) for start in starts[:WEDGED]]
-    rested = [found for found in tried if found is not None]
+    for first in held(starts[:1]) if on_wedges else alone(lay, starts[:1]):
+        if one.rested_px(first) <= ENOUGH_PX:
+            yield from taken_in(*first)
+    rested = alone(lay, starts) + alone(come_to_rest, starts) + held(starts[:WEDGED])
     for found in _different(sorted(rested, key=one.rested_px)):
         if one.rested_px(found) <= one.reach_px:
             yield from taken_in(*found)
@@ -280,8 +277,8 @@ def _different(rested: Iterable[Rested]) -> Iterator[Rested]:
 
 def _starts(
     turned: Turned, place: MeasuredPlace, scene: SettlingScene, clearance_px: float
-) -> list[tuple[float, float]]:
-    """Return where a stone is let go, in the view: within the wall, nearest first."""
+) -> list[Start]:
+    """Return where a stone is let go: within the wall, nearest first."""
     low, high = turned.corners.min(axis=0), turned.corners.max(axis=0)
     x = place.x_px if scene.side == "left" else scene.width_px - place.x_px
     least_x, most_x = clearance_px - float(low[0]), scene.width_px - clearance_px - float(high[0])

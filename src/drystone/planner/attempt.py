@@ -16,14 +16,13 @@ from drystone.model.landscape import Landscape
 from drystone.model.placement import Side
 from drystone.model.pose import PosedStone
 from drystone.planner import choose
-from drystone.planner.build import Build, Candidate, Proposal
+from drystone.planner.build import Build, Candidate, Proposal, Solves
 from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.profile import Profile
 from drystone.planner.proposing import Proposer, RasterProposer, StoneTrial, one_by_one
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settling import ExactProposer
-from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.selection.policies.registry import policy_named
 from drystone.selection.policy import Policy

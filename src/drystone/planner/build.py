@@ -8,11 +8,26 @@ from drystone.indices import Indices
 from drystone.model.placement import Side
 from drystone.model.site import Site
 from drystone.model.wall import Group, Wall
-from drystone.planner.solves import Solves
 from drystone.statics.incremental import IncrementalAnalysis, incremental_analysis
 from drystone.statics.lp.program import Units
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
+
+
+@dataclass(frozen=True)
+class Solves:
+    """How often the solver had trouble with a candidate while walls were built."""
+
+    failed: int = 0  # it gave up, and the candidate was passed over
+    cold: int = 0  # it had to start anew, which costs time alone
+
+    def __add__(self, other: "Solves") -> "Solves":
+        """Add up."""
+        return Solves(self.failed + other.failed, self.cold + other.cold)
+
+    def __sub__(self, other: "Solves") -> "Solves":
+        """Return the trouble since then."""
+        return Solves(self.failed - other.failed, self.cold - other.cold)
 
 
 @dataclass(frozen=True, eq=False)

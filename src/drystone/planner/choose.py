@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from drystone.planner.build import Build, Candidate, Proposal
-from drystone.planner.holding import holds
-from drystone.planner.offers import offer
+from drystone.planner.offers import holds, offer
 from drystone.selection.algorithm2 import (
     TIE_DIGITS,
     Action,

@@ -19,11 +19,10 @@ from drystone.model.landscape import Landscape, view_box
 from drystone.model.outlines import Outlined
 from drystone.model.placement import Placement
 from drystone.model.wall import Group, outlined
-from drystone.planner.build import Build, Candidate, Proposal
+from drystone.planner.build import Build, Candidate, Proposal, Solves
 from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.solves import Solves
 from drystone.planner.stock import Stock
 from drystone.planner.sturdy import falls_when_let_go, sturdy_model_with
 from drystone.statics.incremental import IncrementalAnalysis, IncrementalResult

@@ -10,7 +10,7 @@ from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone.planner.attempt import Attempt
-from drystone.planner.build import Build, Candidate
+from drystone.planner.build import Build, Candidate, Solves
 from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.events import Callbacks, Step, Stopped
@@ -18,7 +18,6 @@ from drystone.planner.observe import Measurement, Observation, observed, without
 from drystone.planner.profile import Profile
 from drystone.planner.replay import judged
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.solves import Solves
 from drystone.planner.vary import WEIGHT_DRAWS, varied
 from drystone.planner.workshop import Workshop
 

@@ -7,14 +7,13 @@ from typing import NamedTuple
 from drystone.kernels.gaps import crosses_any
 from drystone.model.landscape import Landscape
 from drystone.model.wall import Group, Wall, outlined
-from drystone.planner.build import Build, Candidate, Proposal
+from drystone.planner.build import Build, Candidate, Proposal, Solves
 from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.dropping import wedge_limits
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.settled import settled_again
-from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
+from drystone.settle.placing import settled_again
 from drystone.settle.wedge import WedgeLimits, squeezed_out
 
 

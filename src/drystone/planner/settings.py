@@ -11,9 +11,13 @@ from drystone.errors import UsageError
 from drystone.model.settings import Ranged, check_finite, ranged, updated
 from drystone.model.wedge_shape import WedgeSettings
 from drystone.placement.settings import PlacementSettings
-from drystone.planner.course_settings import CourseSettings
-from drystone.planner.laying_settings import LayingSettings
-from drystone.planner.search_settings import UNLIMITED, GoalSettings, SearchSettings
+from drystone.planner.search_settings import (
+    UNLIMITED,
+    CourseSettings,
+    GoalSettings,
+    LayingSettings,
+    SearchSettings,
+)
 from drystone.poses import orientation_step_deg
 from drystone.selection.algorithm2 import SelectionSettings
 from drystone.selection.policies.registry import BUILT_IN, PAPER, RULES

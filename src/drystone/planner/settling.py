@@ -16,8 +16,8 @@ from drystone.model.wall import Group
 from drystone.planner.build import Proposal
 from drystone.planner.dropping import Drop, Dropped, drop_terms, in_order, shortlist, wedge_limits
 from drystone.planner.proposing import Apply, Key, Proposer, StoneTrial, one_by_one
-from drystone.planner.settled import settled_in
 from drystone.planner.views import SideView
+from drystone.settle.placing import settled_in
 from drystone.settle.rest import Repose, come_to_rest
 from drystone.settle.wedge import WedgeLimits
 from drystone.settle.wedged import wedged

@@ -14,9 +14,9 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
+from drystone.planner.build import Solves
 from drystone.planner.deadline import TimeIsUp
 from drystone.planner.search_settings import SearchSettings
-from drystone.planner.solves import Solves
 from drystone.search.chain import Job, more_links, one_pass, wedged
 from drystone.search.goal import FoundWall
 from drystone.search.operators import Credits

@@ -7,7 +7,7 @@ from itertools import pairwise
 from numpy.random import Generator
 
 from drystone.planner.build import Build
-from drystone.planner.laying_settings import LayingSettings
+from drystone.planner.search_settings import LayingSettings
 from drystone.search.course_task import task_of
 from drystone.search.courses import CoursePlan, plan_courses
 from drystone.search.goal import Courses, FoundWall

@@ -14,11 +14,10 @@ from functools import lru_cache
 import numpy as np
 from numpy.random import Generator
 
-from drystone.planner.build import Build
+from drystone.planner.build import Build, Solves
 from drystone.planner.deadline import Deadline, TimeIsUp
 from drystone.planner.replay import Replayed
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.solves import Solves
 from drystone.planner.vary import CHAIN_DRAWS, FIRST_DRAWS
 from drystone.planner.workshop import Workshop
 from drystone.search.by_courses import newly_planned, relaid, replanned

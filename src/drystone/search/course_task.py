@@ -27,7 +27,7 @@ from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import StoneProfile, bare, extremes, hanging, raised
 from drystone.kernels.raster import turn
 from drystone.model.stone import Stone
-from drystone.planner.course_settings import CourseSettings
+from drystone.planner.search_settings import CourseSettings
 from drystone.poses import PoseBook
 
 PINNED = 10

@@ -16,10 +16,9 @@ from drystone.metrics.measure import measure_labels
 from drystone.model.builder import HAND, BuilderErrors, Built, put_down_with, stratified
 from drystone.model.outlines import Outlined
 from drystone.model.wall import Group
-from drystone.planner.build import Build
+from drystone.planner.build import Build, Solves
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import GoalSettings
-from drystone.planner.solves import Solves
 from drystone.planner.vary import REHEARSAL_DRAWS
 from drystone.planner.workshop import Workshop
 from drystone.search.courses import CoursePlan

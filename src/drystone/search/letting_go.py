@@ -9,7 +9,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import Floats, StoneProfile, hanging
-from drystone.planner.laying_settings import LayingSettings
+from drystone.planner.search_settings import LayingSettings
 from drystone.planner.views import SideView
 from drystone.poses import wrap_deg
 from drystone.settle.rest import Repose, Turned, repose, rests, touch_down

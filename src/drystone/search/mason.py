@@ -16,16 +16,15 @@ from drystone.model.landscape import Landscape
 from drystone.model.outlines import Outlined
 from drystone.model.placement import Side
 from drystone.model.stone import Stone
-from drystone.planner.build import Build, Candidate, Proposal
+from drystone.planner.build import Build, Candidate, Proposal, Solves
 from drystone.planner.evaluate import Evaluator, Loaded
-from drystone.planner.laying_settings import LayingSettings
-from drystone.planner.settled import settled_in
-from drystone.planner.solves import Solves
+from drystone.planner.search_settings import LayingSettings
 from drystone.planner.views import SideView
 from drystone.poses import wrap_deg
 from drystone.search.courses import CoursePlan, PlannedStone
 from drystone.search.letting_go import Aim, Hand, Resting
 from drystone.search.yard import Yard
+from drystone.settle.placing import settled_in
 
 Status = Literal["as planned", "half turn", "elsewhere", "used", "no place", "no rest", "falls"]
 """What became of a planned stone.

@@ -13,7 +13,7 @@ from drystone.model.placement import Placement, Settled, Side, Wedge
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
 from drystone.model.wall import Group
-from drystone.planner.solves import Solves
+from drystone.planner.build import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.goal import Courses, FoundWall, WallFigures
 from drystone.search.yard import Yard

@@ -15,13 +15,12 @@ from drystone.metrics.shape import top_profile
 from drystone.model.plan import Plan, PlanMetrics
 from drystone.model.wall import Wall
 from drystone.planner.assemble import assemble_plan, plan_metrics
-from drystone.planner.build import Build
+from drystone.planner.build import Build, Solves
 from drystone.planner.deadline import NEVER, Deadline, TimeIsUp
 from drystone.planner.events import INTERRUPTED, Stopped
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.solves import Solves
 from drystone.search.goal import usable_area_px
 from drystone.shown import html_of
 from drystone.statics.flow.nonassociative import nonassociative_resistance

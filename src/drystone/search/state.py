@@ -6,7 +6,7 @@ find the walls again that a search would have found.
 
 from dataclasses import dataclass, field
 
-from drystone.planner.solves import Solves
+from drystone.planner.build import Solves
 from drystone.search.operators import Credits
 from drystone.search.packed import PackedWall, archived
 

@@ -14,9 +14,8 @@ from drystone.contacts.settled import PlacedPolygons
 from drystone.kernels.polygons import Points
 from drystone.model.placement import Wedge
 from drystone.model.wall import Group
-from drystone.planner.build import Build
+from drystone.planner.build import Build, Solves
 from drystone.planner.deadline import Deadline
-from drystone.planner.solves import Solves
 from drystone.search.wedge_draft import (
     MOST_UNDER_ONE,
     Motion,

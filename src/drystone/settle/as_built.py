@@ -17,10 +17,10 @@ import numpy as np
 from drystone.kernels.meetings import meetings
 from drystone.kernels.polygons import Polygons, no_polygons, place_on_grid, polygon_edges
 from drystone.kernels.raster import turn
-from drystone.kernels.settling import Status
+from drystone.kernels.settling import Status, settle
 from drystone.model.builder import Built
 from drystone.poses import wrap_deg
-from drystone.settle.putting import astray, let_go, moved, put_down, touching
+from drystone.settle.putting import astray, moved, put_down, settling_rules, touching
 from drystone.settle.settings import SettleSettings
 from drystone.settle.wedge import in_order
 
@@ -202,16 +202,16 @@ def _rolled(wall: BuiltWall, block: int, load: tuple[float, float]) -> BuiltWall
     rest = None
     corners = built.corners - load  # gravity acts there
     edges = polygon_edges(corners)
+    rules = settling_rules(built.size, wall.mu, wall.settle)
     for sticks in (True, False):
-        found = let_go(
-            corners, edges, load, built.size, around, wall.mu, wall.settle, sticks=sticks
-        )
+        way = rules._replace(sticks=sticks)
+        found = settle(corners, edges, (*load, 0.0), around, 0.0, way)
         if found.status is Status.RESTS:
             if (found.x, found.y, found.angle) == (*load, 0.0):
                 return wall
             turn_deg = math.degrees(found.angle)
-            ((way_x, way_y),) = turn(np.array([(built.x - x, built.y - y)]), turn_deg).tolist()
-            x, y = place_on_grid(way_x + found.x, way_y + found.y)
+            ((aside, up),) = turn(np.array([(built.x - x, built.y - y)]), turn_deg).tolist()
+            x, y = place_on_grid(aside + found.x, up + found.y)
             angle_deg = wrap_deg(built.angle_deg + turn_deg)
             rest = Built(built.outline, x, y, angle_deg, built.size)
             break

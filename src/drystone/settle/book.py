@@ -28,10 +28,10 @@ class OutlineBook:
     working px, both in source px.  Outlines not asked for for longest are made again.
     """
 
-    def __init__(self, tolerance_px: float, cell_px: float, budget_bytes: int = BOOK_BYTES) -> None:
+    def __init__(self, tolerance_px: float, cell_px: float) -> None:
         self.tolerance_px = tolerance_px
         self.cell_px = cell_px
-        self._hung = RecentlyUsed[tuple[Stone, float, Side], Hung](budget_bytes)
+        self._hung = RecentlyUsed[tuple[Stone, float, Side], Hung](BOOK_BYTES)
 
     def outline(self, stone: Stone) -> Points:
         """Return the outline of a stone, from its centroid, source px."""

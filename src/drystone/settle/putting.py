@@ -5,10 +5,10 @@
 
 import math
 
-from drystone.kernels import putting, settling
-from drystone.kernels.polygons import Points, Polygons, place_on_grid, polygon_edges
+from drystone.kernels import putting
+from drystone.kernels.polygons import Polygons, place_on_grid, polygon_edges
 from drystone.kernels.raster import turn
-from drystone.kernels.settling import Settling, SettlingRules
+from drystone.kernels.settling import SettlingRules
 from drystone.model.builder import Built
 from drystone.poses import wrap_deg
 from drystone.settle.rest import CORNER, GAIN
@@ -44,7 +44,7 @@ def put_down(
         polygon_edges(corners),
         (built.x, built.y),
         around,
-        _rules(size, mu, settle),
+        settling_rules(size, mu, settle),
         lifts=[lift * size for lift in LIFTS],
         most=ASIDE * size,
         gap=2.0 * settle.clearance_px,
@@ -61,23 +61,8 @@ def touching(size: float, settle: SettleSettings) -> float:
     return max(TOUCHING * size, 2.0 * settle.clearance_px)
 
 
-def let_go(
-    corners: Points,
-    edges: Points,
-    at: tuple[float, float],
-    size: float,
-    around: Polygons,
-    mu: float,
-    settle: SettleSettings,
-    *,
-    sticks: bool,
-) -> Settling:
-    """Let a block go of which the corners are given from the point where gravity acts."""
-    rules = _rules(size, mu, settle)._replace(sticks=sticks)
-    return settling.settle(corners, edges, (*at, 0.0), around, 0.0, rules)
-
-
-def _rules(size: float, mu: float, settle: SettleSettings) -> SettlingRules:
+def settling_rules(size: float, mu: float, settle: SettleSettings) -> SettlingRules:
+    """Return how a block of a size settles, on what it sticks to."""
     return SettlingRules(
         lean=0.0,
         stop=0.0,

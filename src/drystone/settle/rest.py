@@ -14,6 +14,7 @@ from drystone.kernels.polygons import (
 from drystone.kernels.raster import turn
 from drystone.kernels.settling import Settling, SettlingRules, Status, settle
 from drystone.model.placement import Settled, Side
+from drystone.poses import wrap_deg
 from drystone.settle.settings import SettleSettings
 
 NEAR, FAR = 0.04, 0.08
@@ -161,7 +162,7 @@ def touch_down(
 
     Whether it rests there, its margin says.
     """
-    rules = straight_down(stone, scene, settings, turns=False)._replace(stop=-1.0)
+    rules = ways(stone, scene, settings, turns=False)[-1]._replace(stop=-1.0)
     found = let_go(stone, scene, start, rules)
     if found.status not in (Status.RESTS, Status.FALLS):
         return None
@@ -175,7 +176,7 @@ def lay(
 
     What it overlaps a little there it is brought apart from.  None when it does not rest nearby.
     """
-    rules = straight_down(stone, scene, replace(settings, method="energy"))._replace(stop=0.0)
+    rules = ways(stone, scene, replace(settings, method="energy"))[-1]._replace(stop=0.0)
     found = let_go(stone, scene, start, rules)
     return repose(stone, scene, found) if found.status == Status.RESTS else None
 
@@ -188,17 +189,10 @@ def let_go(
     return found if rules.turns else found._replace(angle=0.0)
 
 
-def straight_down(
-    stone: Turned, scene: SettlingScene, settings: SettleSettings, *, turns: bool = True
-) -> SettlingRules:
-    """Return the way that is tried last: nothing pushes the stone to a side."""
-    return ways(stone, scene, settings, turns=turns)[-1]
-
-
 def ways(
     stone: Turned, scene: SettlingScene, settings: SettleSettings, *, turns: bool = True
 ) -> tuple[SettlingRules, ...]:
-    """Return the ways of settling that are tried, one after the other."""
+    """Return the ways of settling that are tried; in the last nothing pushes to a side."""
     size = stone.size_px
     plain = SettlingRules(
         lean=settings.lean,
@@ -230,8 +224,7 @@ def repose(stone: Turned, scene: SettlingScene, found: Settling) -> Repose:
     """Return where a settling ended, in the wall frame."""
     sign = 1.0 if scene.side == "left" else -1.0
     x = found.x if scene.side == "left" else scene.width_px - found.x
-    angle_deg = stone.angle_deg + sign * math.degrees(found.angle)
-    angle_deg = (angle_deg + 180.0) % 360.0 - 180.0
+    angle_deg = wrap_deg(stone.angle_deg + sign * math.degrees(found.angle))
     x, y = place_on_grid(x, found.y)
     corners = placed_outline(stone.outline, angle_deg, x, y)
     return Repose(Settled(x, y, corners), angle_deg, found.angle != 0.0, found.margin)
@@ -239,7 +232,4 @@ def repose(stone: Turned, scene: SettlingScene, found: Settling) -> Repose:
 
 def placed_outline(outline: Points, angle_deg: float, x_px: float, y_px: float) -> Points:
     """Return an outline turned by an angle, with its centroid at a place of the wall frame."""
-    corners = turn(outline, angle_deg)
-    corners[:, 0] += x_px
-    corners[:, 1] += y_px
-    return corners
+    return turn(outline, angle_deg) + np.array((x_px, y_px))

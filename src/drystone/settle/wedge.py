@@ -32,24 +32,14 @@ PLACES = 4
 class WedgeLimits(WedgeRule):
     """What a wedge may be, and how it must hold a stone; source px."""
 
-    # distance of the centre of mass from the end of the support, as a share of the stone's
-    # width
-    margin: float = 0.0
+    margin: float = 0.0  # see `StabiliseSettings`
     clearance_px: float = 0.01  # gap that is left above and below
     contact_px: float = 0.1  # gaps up to this one touch
     setback: float = 0.01  # see `SettleSettings`
-    # between a stone and the end of the wall, in which another one may come to stand beside
-    # its wedge
+    # between a stone and the end of the wall, in which another may come to stand beside its wedge
     room_px: float = 0.0
     rest: float = 0.0  # how far gravity may lean until the wedged stone moves, over mu, at least
     steep: float = -1.0  # see `SettleSettings`
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if not 0 <= self.margin < 0.5:
-            raise ValueError("margin must be in [0, 0.5)")
-        if not 0 < 2 * self.clearance_px <= self.contact_px:
-            raise ValueError("clearance must be above 0, contact_px at least twice as much")
 
 
 class CreviceSlabs(NamedTuple):
