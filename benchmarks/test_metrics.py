@@ -6,13 +6,8 @@ from tests.naive import metrics as naive
 from benchmarks.conftest import Row, Timer
 from benchmarks.scenes import Scene
 from drystone.metrics.frame import frame_wall
-from drystone.metrics.joints import joint_mask
 from drystone.metrics.measure import measure_labels
-from drystone.metrics.paths import (
-    horizontal_lengths,
-    horizontal_paths,
-    vertical_paths,
-)
+from drystone.metrics.paths import horizontal_lengths, horizontal_paths, joint_mask, vertical_paths
 
 PATHS = "joint paths, F_AV and F_AH"
 

@@ -10,12 +10,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.errors import UsageError
+from drystone.indices import shape_factor
 from drystone.kernels.raster import quantise, rotation
 from drystone.model.stone import Stone
 from drystone.poses import (
     PoseBook,
     RecentlyUsed,
-    bounding_box_shape_factor,
     initial_angle_deg,
     orientation_step_deg,
     pose_at,
@@ -32,9 +32,8 @@ SCALES = st.sampled_from([1.0, 0.5, 0.3, 0.2])
 @repeatable()
 @given(mask=masks(), angle=st.floats(-180, 180))
 def test_shape_factor_is_that_of_the_turned_polygon(mask, angle):
-    assert bounding_box_shape_factor(Stone(1, mask), angle) == pytest.approx(
-        indices.shape_factor(mask, angle)
-    )
+    posed = PoseBook().pose(Stone(1, mask), angle)
+    assert shape_factor(posed) == pytest.approx(indices.shape_factor(mask, angle))
 
 
 @repeatable(25)

@@ -6,10 +6,9 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.raster import Mask
+from drystone.kernels.raster import Mask, rotation, turned_boxes
 from drystone.model.landscape import Box, Landscape
 from drystone.model.pose import PosedStone
-from drystone.poses import bounding_box_shape_factor
 
 NO_JOINT = 0.5
 """IWR of a stone on the ground, or with nothing below."""
@@ -53,8 +52,13 @@ INDEX_NAMES = tuple(field.name for field in fields(Indices) if field.name != "bo
 
 
 def shape_factor(posed: PosedStone) -> float:
-    """Return SF of a posed stone, in (0, 1]; 1 for an upright rectangle (Eq. 3)."""
-    return bounding_box_shape_factor(posed.stone, posed.angle_deg)
+    """Return SF of a posed stone, in (0, 1]; 1 for an upright rectangle (Eq. 3).
+
+    Its area over that of the bounding box of its turned outline, without resampling.
+    """
+    turns = np.array([rotation(posed.angle_deg)])
+    left, bottom, right, top = turned_boxes(posed.stone.hull, turns)[0].tolist()
+    return float(posed.stone.area_px / ((right - left) * (top - bottom)))
 
 
 def local_filling_ratio_at(landscape: Landscape, posed: PosedStone, row: int, col: int) -> float:

@@ -26,16 +26,6 @@ _INITIAL_TURNS = np.array([rotation(float(angle)) for angle in INITIAL_DEG])
 _INITIAL_TURNS.flags.writeable = False
 
 
-def bounding_box_shape_factor(stone: Stone, angle_deg: float) -> float:
-    """Return SF (Eq. 3) of a stone turned by an angle: its area over that of its bounding box.
-
-    The box is that of the turned outline, without resampling.
-    """
-    turns = np.array([rotation(angle_deg)])
-    left, bottom, right, top = turned_boxes(stone.hull, turns)[0].tolist()
-    return float(stone.area_px / ((right - left) * (top - bottom)))
-
-
 def initial_angle_deg(stone: Stone) -> float:
     """Return the angle R0 that maximises SF over 1-degree steps in [-45, 45) (Eq. 12d).
 

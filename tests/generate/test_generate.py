@@ -265,7 +265,7 @@ def test_tiny_notched_polygons_are_drawn_again_until_whole():
 
 
 def test_draws_do_not_go_on_for_ever(monkeypatch):
-    monkeypatch.setattr("drystone.generate.polygon.ATTEMPTS", 0)
+    monkeypatch.setattr("drystone.generate.layout.ATTEMPTS", 0)
     with pytest.raises(UsageError, match="E130 generate polygon: no stone"):
         polygon_stones(PolygonSettings(count=1), np.random.default_rng(0))
 

@@ -7,8 +7,8 @@ from drystone.kernels import course_types
 from drystone.kernels.course_types import PIXEL_UNITS, STARTS, Arrangement, Ground, Rules, Weights
 from drystone.kernels.courses import evaluate, path_starts
 from drystone.kernels.raster import turn
-from drystone.metrics import joints as metric_joints
 from drystone.metrics import measure, paths
+from drystone.metrics import paths as metric_paths
 from drystone.search.course_task import poses_of
 
 RULES = Rules(Weights(*[1.0] * 16), 32, 0.0, 0, 0, 9, 1000.0)
@@ -80,8 +80,8 @@ def test_paths_also_run_along_the_ground_and_over_the_top():
 def test_the_definitions_are_those_of_the_metrics():
     assert course_types.FIRST_PX == paths.FIRST_PX
     assert course_types.STARTS == paths.STARTS
-    assert metric_joints.PAD_TOP + metric_joints.PAD_BOTTOM == course_types.PADDING_PX
-    assert metric_joints.PAD_LEFT + metric_joints.PAD_RIGHT == course_types.PADDING_PX
+    assert metric_paths.PAD_TOP + metric_paths.PAD_BOTTOM == course_types.PADDING_PX
+    assert metric_paths.PAD_LEFT + metric_paths.PAD_RIGHT == course_types.PADDING_PX
 
 
 def test_there_are_never_more_starts_than_room_for_them():

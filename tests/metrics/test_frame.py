@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from drystone.errors import LabelImageError
 from drystone.metrics.frame import frame_wall, reduce_labels
-from drystone.metrics.joints import joint_mask
+from drystone.metrics.paths import joint_mask
 from tests.metrics.walls import walls
 from tests.naive import metrics as naive
 from tests.strategies import repeatable

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.metrics import paths
-from drystone.metrics.joints import joint_mask
+from drystone.metrics.paths import joint_mask
 from tests.kernels.test_paths import noise
 from tests.metrics.walls import walls
 from tests.naive import metrics as naive

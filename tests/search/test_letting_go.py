@@ -11,7 +11,7 @@ from drystone.planner.search_settings import LayingSettings
 from drystone.planner.views import SideView
 from drystone.search.letting_go import Aim, Hand
 from drystone.settle.rest import Turned
-from drystone.settle.wedged import wedged
+from drystone.settle.wedge import wedged
 from tests.planner.scenes import RUBBLE_SITE, rubble
 from tests.search.yards import Plot
 

@@ -9,8 +9,7 @@ from drystone.kernels.polygons import GRID, area_and_centroid, mirrored_polygon,
 from drystone.kernels.settling import rest_margin
 from drystone.settle.rest import SettlingScene, Turned
 from drystone.settle.settings import SettleSettings
-from drystone.settle.wedge import WedgeLimits
-from drystone.settle.wedged import wedged
+from drystone.settle.wedge import WedgeLimits, wedged
 from tests.polygons import box, box_about
 
 WIDTH = 60.0

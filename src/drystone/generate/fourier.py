@@ -10,7 +10,8 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from drystone.generate.layout import Outline, check_room, check_setting, draw_stone, stones_of
+from drystone.generate.layout import accepted, check_room, check_setting, stones_of, whole_mask
+from drystone.kernels.polygons import Points
 from drystone.model.stone import StoneSet
 
 LARGEST_DESCRIPTOR = 2.0
@@ -65,11 +66,13 @@ class FourierSettings:
             (self.D3 > 0 and self.D8 > 0, "D3 and D8 must be positive"),
             (self.points >= 8, "a contour needs at least 8 points"),
             (3 <= self.harmonics < self.points / 2, "harmonics must be 3 ... points / 2 - 1"),
+            (
+                self.points * self.harmonics <= LARGEST_TABLE,
+                f"points times harmonics must be at most {LARGEST_TABLE // 1_000_000} million",
+            ),
         )
         for ok, what in ranges:
             check_setting(ok, what, "fourier")
-        table = f"points times harmonics must be at most {LARGEST_TABLE // 1_000_000} million"
-        check_setting(self.points * self.harmonics <= LARGEST_TABLE, table, "fourier")
         # By their logarithms, as the descriptors themselves may be too large for a number.
         largest_log2 = max(float(_log2_descriptors(self).max()), math.log2(max(self.D2, 1.0)))
         check_setting(
@@ -107,7 +110,7 @@ def _log2_descriptors(settings: FourierSettings) -> NDArray[np.float64]:
     return np.where(n < 8, low, high)
 
 
-def fourier_contour(radius_px: float, settings: FourierSettings, rng: Generator) -> Outline | None:
+def fourier_contour(radius_px: float, settings: FourierSettings, rng: Generator) -> Points | None:
     """Draw one contour (Eq. 30a-c): descriptors as given, phases at random in [-pi, pi).
 
     (points, 2) about its pole, counter-clockwise, the first point on the x axis; None when the
@@ -124,19 +127,9 @@ def fourier_contour(radius_px: float, settings: FourierSettings, rng: Generator)
 
 
 def fourier_stones(settings: FourierSettings, rng: Generator) -> StoneSet:
-    """Generate rounded stones (§5.3).
+    """Generate rounded stones (§5.3); equal states of `rng` give equal ones.
 
-    Parameters
-    ----------
-    settings : FourierSettings
-        How they look.
-    rng : Generator
-        Equal states give equal stones.
-
-    Raises
-    ------
-    UsageError
-        E130 when the descriptors leave no stone in one piece.
+    UsageError (E130): the descriptors leave no stone in one piece.
 
     Examples
     --------
@@ -146,9 +139,8 @@ def fourier_stones(settings: FourierSettings, rng: Generator) -> StoneSet:
     """
     # The radius stays when phases are rejected, or the sizes would no longer be uniform.
     smallest, largest = settings.smallest_radius_px, settings.largest_radius_px
-    radii = rng.uniform(smallest, largest, settings.count).tolist()
-    masks = [
-        draw_stone((fourier_contour(radius, settings, rng) for _ in count()), "fourier")
-        for radius in radii
-    ]
+    masks = []
+    for radius in rng.uniform(smallest, largest, settings.count).tolist():
+        drawn = (whole_mask(fourier_contour(radius, settings, rng)) for _ in count())
+        masks.append(accepted(drawn, "fourier"))
     return stones_of(masks)

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Sequence
 from itertools import islice
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,7 @@ from scipy import ndimage
 
 from drystone.errors import UsageError
 from drystone.kernels.outline import rasterise_polygon
+from drystone.kernels.polygons import Points
 from drystone.kernels.raster import Mask
 from drystone.model.stone import Source, Stone, StoneSet
 from drystone.model.wall import Labels
@@ -39,17 +41,8 @@ def lay_out(stones: StoneSet) -> Labels:
     """Draw stones in rows, in the order of their ids, without turning or touching any.
 
     Reading the image gives the same stones; those of a generator lie in it where their
-    `left_px` and `bottom_px` say.
-
-    Parameters
-    ----------
-    stones : StoneSet
-        Any stones; where they lay in their own source does not matter.
-
-    Returns
-    -------
-    labels : (h, w) uint32 array
-        0 where nothing is, otherwise the stones' ids; row 0 at the top.
+    `left_px` and `bottom_px` say; where others lay in their source does not matter.  The image,
+    (h, w) uint32, has 0 where nothing is, otherwise the stones' ids; row 0 is at the top.
 
     Examples
     --------
@@ -90,55 +83,40 @@ def _rows(shapes: Sequence[tuple[int, ...]]) -> tuple[list[tuple[int, int]], tup
     return corners, (below, right)
 
 
-Outline = NDArray[np.float64]
-"""Corners (n, 2) of a closed polygon, x right, y up, px; the last joins the first."""
-
-_WITH_CORNERS = np.ones((3, 3))
-
 ATTEMPTS = 1000
 """Draws after which a generator gives up on its settings."""
 
 
-def polygon_area(outline: Outline) -> float:
+def polygon_area(outline: Points) -> float:
     """Return the area of a simple polygon, px."""
     x, y = outline.T
     return abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1))) / 2
 
 
-def outline_mask(outline: Outline) -> Mask:
-    """Rasterise a polygon: the pixels whose centre is inside, by the even-odd rule.
-
-    Cropped to its pixels, row 0 at the top; of shape (0, 0) when no centre is inside.  A centre on
-    the outline is inside when the polygon lies to its right or above it, so polygons that share a
-    side share no pixel.
-    """
-    return rasterise_polygon(outline)[0]
-
-
 def is_whole(mask: Mask) -> bool:
     """Return True when a mask is one 8-connected piece without holes, so it reads as one stone."""
-    if ndimage.label(mask, _WITH_CORNERS)[1] != 1:
+    if ndimage.label(mask, np.ones((3, 3)))[1] != 1:
         return False
     # A hole is a piece of its own among what is not stone, with a rim around it.
     return int(ndimage.label(np.pad(~mask, 1, constant_values=True))[1]) == 1
 
 
-def draw_stone(draws: Iterable[Outline | None], what: str) -> Mask:
-    """Take outlines, None for those to be rejected, until one gives the mask of a whole stone.
-
-    E130 when a thousand draws in a row are rejected.
-    """
-    for outline in islice(draws, ATTEMPTS):
-        if outline is not None and is_whole(mask := outline_mask(outline)):
-            return mask
-    raise no_stone(what)
+def whole_mask(outline: Points | None) -> Mask | None:
+    """Return the pixels of a stone with an outline, px, y up; None when they are not whole."""
+    if outline is None:
+        return None
+    mask = rasterise_polygon(outline)[0]
+    return mask if is_whole(mask) else None
 
 
-def no_stone(what: str) -> UsageError:
-    """Return the error (E130) of a generator whose draws are all rejected."""
+def accepted(draws: Iterable[NDArray[Any] | None], where: str) -> NDArray[Any]:
+    """Return the first draw that is not None; UsageError (E130) when a thousand in a row are."""
+    for drawn in islice(draws, ATTEMPTS):
+        if drawn is not None:
+            return drawn
     why = f"no stone in {ATTEMPTS} draws is one piece: the settings allow none."
     cure = "Ask for larger stones or for less irregular ones."
-    return UsageError("E130", why, where=f"generate {what}", cure=cure)
+    raise UsageError("E130", why, where=f"generate {where}", cure=cure)
 
 
 def check_setting(ok: bool, what: str, where: str) -> None:

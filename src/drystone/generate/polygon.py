@@ -10,15 +10,14 @@ from numpy.random import Generator
 from scipy.spatial import ConvexHull
 
 from drystone.generate.layout import (
-    ATTEMPTS,
-    Outline,
+    accepted,
     check_room,
     check_setting,
-    draw_stone,
-    no_stone,
     polygon_area,
     stones_of,
+    whole_mask,
 )
+from drystone.kernels.polygons import Points
 from drystone.model.stone import StoneSet
 
 SMALLEST_SHARE = 0.1
@@ -58,7 +57,7 @@ class PolygonSettings:
         check_room(self.count, size_px, ("width_px", "height_px", "count"), "polygon")
 
 
-def noisy_polygon(settings: PolygonSettings, rng: Generator) -> Outline | None:
+def noisy_polygon(settings: PolygonSettings, rng: Generator) -> Points | None:
     """Draw one brick with moved corners.
 
     A brick of a running bond has six corners: its own four and, in the middle of each bed face,
@@ -82,19 +81,8 @@ def polygon_stones(settings: PolygonSettings, rng: Generator) -> StoneSet:
     """Generate noisy polygons, each of them simple and in one piece.
 
     The stones of a set have the area of the brick on average, whatever the noise: hulls of moved
-    corners grow with it, those of the published sets do not.
-
-    Parameters
-    ----------
-    settings : PolygonSettings
-        Size and noise.
-    rng : Generator
-        Equal states give equal stones.
-
-    Raises
-    ------
-    UsageError
-        E130 when the settings leave no stone in one piece.
+    corners grow with it, those of the published sets do not.  Equal states of `rng` give equal
+    stones.  UsageError (E130): the settings leave no stone in one piece.
 
     Examples
     --------
@@ -102,24 +90,16 @@ def polygon_stones(settings: PolygonSettings, rng: Generator) -> StoneSet:
     >>> [stone.area_px for stone in stones]
     [11700, 11700, 11700]
     """
-    outlines = [_accepted(settings, rng) for _ in range(settings.count)]
+
+    def drawn() -> Points:
+        return accepted((noisy_polygon(settings, rng) for _ in count()), "polygon")
+
+    outlines = [drawn() for _ in range(settings.count)]
     brick_area = settings.width_px * settings.height_px
     factor = math.sqrt(brick_area / np.mean([polygon_area(outline) for outline in outlines]))
-    masks = [
+    masks = []
+    for outline in outlines:
         # One that breaks into pieces of pixels when it is reduced is drawn again.
-        draw_stone(
-            chain([factor * outline], (factor * _accepted(settings, rng) for _ in count())),
-            "polygon",
-        )
-        for outline in outlines
-    ]
+        tried = chain([outline], (drawn() for _ in count()))
+        masks.append(accepted((whole_mask(factor * one) for one in tried), "polygon"))
     return stones_of(masks)
-
-
-def _accepted(settings: PolygonSettings, rng: Generator) -> Outline:
-    """Draw until a polygon is simple and no splinter; E130 after a thousand draws."""
-    for _ in range(ATTEMPTS):
-        outline = noisy_polygon(settings, rng)
-        if outline is not None:
-            return outline
-    raise no_stone("polygon")

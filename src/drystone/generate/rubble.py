@@ -8,14 +8,13 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from drystone.generate.layout import (
-    Outline,
     check_room,
     check_setting,
-    is_whole,
-    outline_mask,
     polygon_area,
     stones_of,
+    whole_mask,
 )
+from drystone.kernels.polygons import Points
 from drystone.kernels.raster import turn
 from drystone.model.stone import StoneSet
 
@@ -112,7 +111,7 @@ def course_sizes(settings: RubbleSettings, rng: Generator) -> NDArray[np.float64
 
 def rubble_outline(
     width_px: float, height_px: float, settings: RubbleSettings, rng: Generator
-) -> Outline:
+) -> Points:
     """Draw one stone about a box: four or five corners moved a little, then cut off twice.
 
     Counter-clockwise, convex or nearly so.
@@ -130,17 +129,8 @@ def rubble_outline(
 def rubble_stones(settings: RubbleSettings, rng: Generator) -> StoneSet:
     """Generate coursed rubble whose total area suits a wall, in random order.
 
-    Parameters
-    ----------
-    settings : RubbleSettings
-        The wall and how the stones look.
-    rng : Generator
-        Equal states give equal stones.
-
-    Raises
-    ------
-    UsageError
-        E130 when the stones are too small to be drawn in one piece.
+    Equal states of `rng` give equal stones.  UsageError (E130): the stones are too small to be
+    drawn in one piece.
 
     Examples
     --------
@@ -153,16 +143,14 @@ def rubble_stones(settings: RubbleSettings, rng: Generator) -> StoneSet:
     target = settings.area_ratio * settings.width_px * settings.height_px
     factor = math.sqrt(target / sum(polygon_area(outline) for outline in outlines))
     tilts = rng.uniform(-settings.tilt_deg, settings.tilt_deg, len(outlines)).tolist()
-    masks = [
-        outline_mask(turn(factor * outline, tilt))
-        for outline, tilt in zip(outlines, tilts, strict=True)
-    ]
-    whole = all(is_whole(mask) for mask in masks)
+    tilted = (turn(factor * outline, tilt) for outline, tilt in zip(outlines, tilts, strict=True))
+    masks = [mask for outline in tilted if (mask := whole_mask(outline)) is not None]
+    whole = len(masks) == len(outlines)
     check_setting(whole, "the stones must be large enough to be one piece of pixels", "rubble")
     return stones_of(masks)
 
 
-def _cut_corners(corners: Outline, share: float) -> Outline:
+def _cut_corners(corners: Points, share: float) -> Points:
     """Replace each corner by two points on its sides (Chaikin's corner cutting)."""
     following = np.roll(corners, -1, axis=0)
     near, far = corners + share * (following - corners), following + share * (corners - following)

@@ -8,8 +8,7 @@ import numpy as np
 
 from drystone.errors import LabelImageError, UsageError
 from drystone.metrics.frame import frame_wall
-from drystone.metrics.joints import joint_mask
-from drystone.metrics.paths import horizontal_arrangement, vertical_arrangement
+from drystone.metrics.paths import horizontal_arrangement, joint_mask, vertical_arrangement
 from drystone.metrics.shape import flush_deviation, level_deviation, stone_sizes
 from drystone.model.wall import Labels
 

@@ -1,4 +1,4 @@
-"""Shortest paths along the joints of a wall, and what they say of it (§5.2, Fig. 17)."""
+"""The joints of a wall, the shortest paths along them, and what these say (§5.2, Fig. 17)."""
 
 import math
 from collections.abc import Sequence
@@ -9,6 +9,10 @@ from numpy.typing import NDArray
 
 from drystone.kernels.paths import row_lengths, row_ways, step_counts
 from drystone.kernels.raster import Mask
+from drystone.model.wall import Labels
+
+PAD_TOP, PAD_BOTTOM, PAD_LEFT, PAD_RIGHT = 1, 2, 1, 2
+"""Open rows and columns around the wall, px: paths may run along its outside."""
 
 FIRST_PX = 10
 """Distance of the first start from the end of the joint image; no start is nearer to the other."""
@@ -18,6 +22,24 @@ STARTS = 10
 
 SHORTEST = 5
 """How many of the shortest paths are averaged."""
+
+
+def joint_mask(labels: Labels) -> Mask:
+    """Return where a path may run: everything that is not the inside of a stone.
+
+    Every stone is eroded once by a 3 x 3 square, so stones that touch have a joint of 2 px.  The
+    edge of the image erodes nothing.  The result, (h + 3, w + 3), is padded by :data:`PAD_TOP` and
+    the other three with open joint: pixel (row, col) of the wall is pixel (row + 1, col + 1) of it.
+    """
+    height, width = labels.shape
+    # Repeating the edge gives an outer pixel neighbours of its own stone.
+    around = np.pad(labels, 1, mode="edge")
+    inside = labels > 0
+    for row in range(3):
+        for col in range(3):
+            inside &= around[row : row + height, col : col + width] == labels
+    pad = ((PAD_TOP, PAD_BOTTOM), (PAD_LEFT, PAD_RIGHT))
+    return np.pad(~inside, pad, constant_values=True)
 
 
 def vertical_arrangement(joint: Mask) -> float | None:
@@ -70,7 +92,7 @@ def vertical_paths(joint: Mask) -> tuple[JointPath, ...]:
     """Find the shortest paths from the top row to the same column of the last row (Fig. 17b).
 
     Starts are at columns 10, 10 + floor(W / 10), ... < W - 10, with W the width of the joint
-    image (:func:`drystone.metrics.joints.joint_mask`), its padding included.  The shortest comes
+    image (:func:`joint_mask`), its padding included.  The shortest comes
     first, of equal ones the left one; starts without a path are left out.
     """
     return tuple(JointPath(path.pixels[:, ::-1]) for path in horizontal_paths(joint.T))

@@ -15,8 +15,15 @@ from numpy.typing import NDArray
 from drystone.kernels.paths import row_lengths, step_counts
 from drystone.kernels.raster import Mask
 from drystone.metrics.frame import frame_wall
-from drystone.metrics.joints import PAD_BOTTOM, PAD_LEFT, PAD_RIGHT, PAD_TOP, joint_mask
-from drystone.metrics.paths import length_px, mean_excess
+from drystone.metrics.paths import (
+    PAD_BOTTOM,
+    PAD_LEFT,
+    PAD_RIGHT,
+    PAD_TOP,
+    joint_mask,
+    length_px,
+    mean_excess,
+)
 from drystone.model.outlines import Outlined, Outlines
 from drystone.model.site import Site
 from drystone.model.wall import Labels
@@ -42,7 +49,7 @@ class SecondArrangement:
 def second_arrangement(labels: Labels) -> SecondArrangement:
     """Measure a wall by the second definition.
 
-    Stones are eroded and all else is joint, as in :func:`drystone.metrics.joints.joint_mask`, but
+    Stones are eroded and all else is joint, as in :func:`drystone.metrics.paths.joint_mask`, but
     there is open joint only along the sides where paths start and end, one px of it: paths cannot
     pass by the wall.  :data:`STARTS` paths start evenly spread on each of two sides that face each
     other, and end anywhere on the other one: 100 (v - s) / s, with v their length and s that of a

@@ -40,15 +40,12 @@ class Site:
     source_px: tuple[float, float] | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
+        wall = f"a wall of {self.width_px} x {self.height_px} working pixels"
         if self.width_px < 1 or self.height_px < 1:
-            what = f"a wall of {self.width_px} x {self.height_px} working pixels has no room."
             cure = "Give a larger wall or a larger --scale."
-            raise UsageError("E121", what, where="--wall", cure=cure)
+            raise UsageError("E121", f"{wall} has no room.", where="--wall", cure=cure)
         if self.width_px * self.height_px > MAX_SITE_PX:
-            what = (
-                f"a wall of {self.width_px} x {self.height_px} working pixels is too large; "
-                f"{MAX_SITE_PX} are the most."
-            )
+            what = f"{wall} is too large; {MAX_SITE_PX} are the most."
             raise UsageError("E121", what, where="--wall", cure="Give a smaller --scale.")
 
     @classmethod

@@ -49,10 +49,10 @@ def grouped(steps: Sequence[Step]) -> tuple[list[list[Step]], list[Problem]]:
         if groups:
             groups[-1].append(step)
     for group in groups:
-        early = [s.step for s in group[:-1] if (s.alpha_left, s.alpha_right) != (None, None)]
         faults += [
-            Problem("E214", at, "load multipliers are claimed before the stone's last wedge.")
-            for at in early
+            Problem("E214", s.step, "load multipliers are claimed before the stone's last wedge.")
+            for s in group[:-1]
+            if (s.alpha_left, s.alpha_right) != (None, None)
         ]
     return groups, faults
 

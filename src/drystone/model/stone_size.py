@@ -32,10 +32,8 @@ def sizes_of(labels: NDArray[np.uint16]) -> tuple[StoneSize, ...]:
             continue
         mask = labels[box] == number
         rows, cols = np.nonzero(mask)
-        middle = (cols.mean() + box[1].start + 0.5, rows.mean() + box[0].start + 0.5)
-        length, width = sides_px(mask)
-        x, y = (float(part) for part in middle)
-        sizes.append(StoneSize(number, (x, y), length, width, len(rows)))
+        x, y = float(cols.mean()) + box[1].start + 0.5, float(rows.mean()) + box[0].start + 0.5
+        sizes.append(StoneSize(number, (x, y), *sides_px(mask), len(rows)))
     return tuple(sizes)
 
 

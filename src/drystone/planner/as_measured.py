@@ -25,7 +25,7 @@ from drystone.planner.workshop import Workshop
 from drystone.poses import wrap_deg
 from drystone.settle.placing import settled_in, stands_out_px
 from drystone.settle.rest import Repose, SettlingScene, Turned, come_to_rest, lay, placed_outline
-from drystone.settle.wedged import wedged
+from drystone.settle.wedge import wedged
 from drystone.stabilise.stabilise import WedgeStock, stabilise
 
 FAR = 0.1

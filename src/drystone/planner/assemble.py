@@ -129,12 +129,8 @@ def assemble_plan(
         "width_px": source.width_px,
         "height_px": source.height_px,
     }
-    if source.files:
-        described["files"] = list(source.files)
-    if source.reading:
-        described["reading"] = dict(source.reading)
-    if source.photograph:
-        described["photograph"] = dict(source.photograph)
+    told = (("files", list), ("reading", dict), ("photograph", dict))
+    described |= {name: kind(said) for name, kind in told if (said := getattr(source, name))}
     placed = {action.stone_id for action in build.actions}
     site = build.wall.site
     width, height = _source_point(site, *site.extent_px)

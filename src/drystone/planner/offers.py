@@ -1,6 +1,6 @@
 """What a policy sees of the candidates of a step, and asks an engine (Table 1)."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from drystone.physics.building import stays
 from drystone.planner.build import Candidate
 from drystone.poses import wrap_deg
 from drystone.selection.policy import Offer, Point
-from drystone.statics.model import GROUND, Interface, RigidBlockModel
+from drystone.statics.model import GROUND, Interface
 
 UPWARD = 0.1
 """A contact bears a stone when its unit normal, into the stone, goes up by more than this: an
@@ -39,12 +39,13 @@ def offer(candidate: Candidate, site: Site, wedge_ids: frozenset[int] = frozense
     # The model of outlines is in source px.
     scale = 1.0 if settled is None else site.scale
     block = next(b for b in reversed(candidate.model.blocks) if b.id == candidate.stone_id)
-    pairs = [{i.block, i.other} for i in _new_interfaces(candidate.model)]
+    new = candidate.model.added or candidate.model
+    pairs = [{i.block, i.other} for i in new.interfaces]
     touched = set().union(*(pair for pair in pairs if candidate.stone_id in pair))
     return Offer(
         stone_id=candidate.stone_id,
         angle_deg=candidate.proposal.trial_angle_deg,
-        turned_deg=turned_deg(candidate.proposal.trial_angle_deg, posed.angle_deg),
+        turned_deg=abs(wrap_deg(posed.angle_deg - candidate.proposal.trial_angle_deg)),
         side=candidate.side,
         indices=candidate.indices,
         area_px=scale**2 * block.area,
@@ -53,7 +54,7 @@ def offer(candidate: Candidate, site: Site, wedge_ids: frozenset[int] = frozense
         right_px=right,
         top_px=top,
         centroid_px=placement.centroid(site.height_px),
-        support_px=support_px(candidate.model, candidate.stone_id, scale),
+        support_px=support_px(new.interfaces, candidate.stone_id, scale),
         touches=tuple(sorted(touched - {candidate.stone_id, GROUND} - wedge_ids)),
         wedges=len(candidate.stabilised.wedges),
         wall_width_px=site.width_px,
@@ -61,34 +62,23 @@ def offer(candidate: Candidate, site: Site, wedge_ids: frozenset[int] = frozense
     )
 
 
-def turned_deg(before_deg: float, after_deg: float) -> float:
-    """Return the angle between two poses, in [0, 180]."""
-    return abs(wrap_deg(after_deg - before_deg))
-
-
 def support_px(
-    model: RigidBlockModel, stone_id: int, scale: float = 1.0
+    interfaces: Iterable[Interface], stone_id: int, scale: float
 ) -> tuple[Point, Point] | None:
-    """Return the ends of the line on which the last stone of a model is borne, if anything does.
+    """Return the ends of the line on which a stone is borne, if anything bears it.
 
     The leftmost and the rightmost of the bearing points (x, y) of all its supports, wedges among
     them; of points above each other the lower one; working px.  `scale` is the working px in a
-    unit of the model.
+    unit of the interfaces.
     """
-    bearing: list[Points] = []
-    for interface in _new_interfaces(model):
-        up = interface.normal[1]
+    points: list[Point] = []
+    for interface in interfaces:
         into = (interface.block == stone_id) - (interface.other == stone_id)
-        if into * up > UPWARD:
-            bearing.append(interface.points)
-    points = [(scale * x, scale * y) for array in bearing for x, y in array.tolist()]
+        if into * interface.normal[1] > UPWARD:
+            points += [(scale * x, scale * y) for x, y in interface.points.tolist()]
     if not points:
         return None
     return min(points), min(points, key=lambda point: (-point[0], point[1]))
-
-
-def _new_interfaces(model: RigidBlockModel) -> Sequence[Interface]:
-    return model.interfaces if model.added is None else model.added.interfaces
 
 
 def holds(wall: Wall, group: Group, mu: float) -> bool:

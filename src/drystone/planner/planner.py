@@ -78,6 +78,7 @@ class Planner:
         rng = np.random.default_rng([seed, WEIGHT_DRAWS])
         spread = self.settings.vary
         self._weighted = varied(self.settings, spread, rng) if spread else self.settings
+        self._keep = self.settings.search.budget > 1  # a search goes back to states before
         self.build = self._empty()
         self.stopped: Stopped | None = None
         self.solves = Solves()
@@ -111,7 +112,7 @@ class Planner:
                 failures += 1  # lines 23-26: resample
                 continue
             self.solves += attempt.solves
-            self.build = self._added(self.build, action)  # lines 18-22
+            self.build = self.build.add(action, keep=self._keep)  # lines 18-22
             step = Step(len(self.build.actions), action, self.build, attempt.candidates)
             self.profile.end_step(step.number - 1, step.candidates)
             self.callbacks.on_step(step)
@@ -160,10 +161,6 @@ class Planner:
         exact, mean_area_px = self.settings.geometry == "exact", self.workshop.stock.mean_area_px
         return Build.empty(self.workshop.site, self.settings.mu, mean_area_px, exact=exact)
 
-    def _added(self, build: Build, action: Candidate) -> Build:
-        """Return the state after an action; a search goes back to those before."""
-        return build.add(action, keep=self.settings.search.budget > 1)
-
     def _why_stop(self, failures: int, aside: set[int]) -> Stopped | None:
         """Say why construction ends here; None when it goes on."""
         stop = self.settings.stop
@@ -192,7 +189,8 @@ class Planner:
         evaluator = Evaluator(self.settings, self.workshop.stock, self.profile)
         build = self._empty()
         for group in wall.groups:
-            build = self._added(build, judged(build, group, course_heights_px, evaluator))
+            action = judged(build, group, course_heights_px, evaluator)
+            build = build.add(action, keep=self._keep)
         self.build = build
         self.stopped = None  # that was of another wall
 

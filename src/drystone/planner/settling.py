@@ -19,8 +19,7 @@ from drystone.planner.proposing import Apply, Key, Proposer, StoneTrial, one_by_
 from drystone.planner.views import SideView
 from drystone.settle.placing import settled_in
 from drystone.settle.rest import Repose, come_to_rest
-from drystone.settle.wedge import WedgeLimits
-from drystone.settle.wedged import wedged
+from drystone.settle.wedge import WedgeLimits, wedged
 
 CHUNK = 256
 """So many trials of one side are dropped together."""

@@ -17,7 +17,7 @@ SideCounts = Counter[tuple[int, ...]]
 
 def sides_of(initial: Iterable[PosedStone]) -> SideCounts:
     """Count the sides of stones in their initial poses."""
-    return Counter(_sorted(posed.height_px, posed.width_px) for posed in initial)
+    return Counter(tuple(sorted((posed.height_px, posed.width_px))) for posed in initial)
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Stock:
             mean_area_px=sum(areas) / len(found),
             median_area_px=float(np.median(own)),
             largest_id=max(ids),
-            sides=Counter(map(_sorted, heights, widths)),
+            sides=Counter(tuple(sorted(sides)) for sides in zip(heights, widths, strict=True)),
         )
 
     @property
@@ -75,7 +75,3 @@ class Rest:
         for (shorter, _), count in sides.items():
             low[(shorter,)] += count
         return cls(unfillable(low, site.height_px), unfillable(sides, site.width_px))
-
-
-def _sorted(height: int, width: int) -> tuple[int, ...]:
-    return (height, width) if height < width else (width, height)

@@ -14,8 +14,7 @@ from drystone.planner.views import SideView
 from drystone.poses import wrap_deg
 from drystone.settle.rest import Repose, Turned, repose, rests, touch_down
 from drystone.settle.settings import SettleSettings
-from drystone.settle.wedge import WedgeLimits
-from drystone.settle.wedged import held
+from drystone.settle.wedge import WedgeLimits, held
 from drystone.stabilise.settings import Method
 
 Place = tuple[float, float]

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.random import Generator
 
 from drystone.metrics.frame import frame_wall
-from drystone.metrics.joints import joint_mask
-from drystone.metrics.paths import vertical_paths
+from drystone.metrics.paths import joint_mask, vertical_paths
 from drystone.model.builder import HAND, BuilderErrors
 from drystone.planner.build import Build
 from drystone.planner.search_settings import SearchSettings

@@ -16,10 +16,8 @@ def sample_stones(
 ) -> tuple[int, ...]:
     """Return the ids of the stones to try first in a step; these and those that are left ascend.
 
-    ``"variant"``: one at random from each cluster that is not empty, topped up at random to as many
-    as there were clusters at the start; ``"shrinking"``: the same, not topped up; ``"uniform"``:
-    as many at random; ``"twofold"``: as variant, then :func:`second_fold`; ``"full"``: all, and
-    nothing is drawn.  `clusters` has every stone of the set.
+    How, :class:`drystone.planner.settings.PlannerSettings` says; with ``"twofold"`` then follows
+    :func:`second_fold`, with ``"full"`` nothing is drawn.  `clusters` has every stone of the set.
     """
     if sampling == "full" or not remaining:
         return tuple(remaining)

@@ -11,8 +11,7 @@ from drystone.io.published import published_file
 from drystone.io.wall_image import read_wall_image
 from drystone.metrics import paths as joint_paths
 from drystone.metrics.frame import frame_wall, reduce_labels
-from drystone.metrics.joints import PAD_LEFT, PAD_TOP, joint_mask
-from drystone.metrics.paths import SHORTEST, JointPath, mean_excess
+from drystone.metrics.paths import PAD_LEFT, PAD_TOP, SHORTEST, JointPath, joint_mask, mean_excess
 from drystone.model.wall import Labels
 from drystone_lab.reproduce.cells import rounded
 from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows

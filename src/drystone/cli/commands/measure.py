@@ -111,15 +111,14 @@ def _reduced(size_px: tuple[float, float], factor: float) -> tuple[float, float]
 
 def _draw(labels: Labels, width_px: float | None, arguments: argparse.Namespace) -> None:
     from drystone.drawing import plot_joint_paths, save  # noqa: PLC0415 - slow import
-    from drystone.metrics.joints import joint_mask  # noqa: PLC0415
-    from drystone.metrics.paths import horizontal_paths, vertical_paths  # noqa: PLC0415
+    from drystone.metrics import paths as joints  # noqa: PLC0415
 
     pictures = [Path(arguments.output) / f"paths_{name}.png" for name in ("F_AV", "F_AH")]
     refuse_inputs(files_of_wall(Path(arguments.wall_path)), pictures)
     prepare_files(pictures, overwrite=arguments.overwrite)
     framed = frame_wall(labels, width_px).labels
-    joint = joint_mask(framed)
-    both = (vertical_paths(joint), horizontal_paths(joint))
+    joint = joints.joint_mask(framed)
+    both = (joints.vertical_paths(joint), joints.horizontal_paths(joint))
     for picture, found in zip(pictures, both, strict=True):
         # The joint image has one more row and column of joint around the wall.
         paths = [path.pixels - 1 for path in found[:5]]
