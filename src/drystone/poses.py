@@ -88,9 +88,6 @@ class RecentlyUsed(Generic[Key, Value]):
         self._entries: OrderedDict[Key, tuple[Value, int]] = OrderedDict()
         self._lock = Lock()
 
-    def __len__(self) -> int:
-        return len(self._entries)
-
     def get(self, key: Key) -> Value | None:
         """Return the value of a key; None when there is none, or no longer."""
         with self._lock:

@@ -73,7 +73,7 @@ def test_every_rule_keeps_the_clearance(rule):
         settings = PlacementSettings(rule=rule, reach="above", clearance_px=clearance, tries=999)
         got = best_spots(Landscape.of(wall), [posed], settings)
         wide = naive.positions_from_above(wall.occupied, posed.mask, clearance)
-        assert sorted(spot.at for spot in got) == wide
+        assert sorted((spot.row, spot.col) for spot in got) == wide
         narrow += wide != naive.positions_from_above(wall.occupied, posed.mask)
 
     check()

@@ -3,15 +3,19 @@
 import numpy as np
 import pytest
 
+from drystone.kernels.polygons import no_polygons
 from drystone.model.outlines import Outlines
 from drystone.model.placement import Settled
 from drystone.model.site import Site
 from drystone.model.stone import Stone
 from drystone.model.wall import Wall
-from drystone.settle.placing import settled_placement, settled_wedge
+from drystone.settle.placing import settled_in, settled_placement, settled_wedge
+from drystone.settle.rest import SettlingScene, Turned, come_to_rest
+from drystone.settle.settings import SettleSettings
 from tests.polygons import box
 
 STONE = Stone(5, np.ones((4, 6), bool))
+BRICK = Stone(1, np.ones((6, 10), bool))
 
 
 def placed(site, corners, outlines=None, moves=0):
@@ -99,3 +103,26 @@ def test_arms_thinner_than_a_pixel_are_not_seen_nor_what_is_beyond_them(top):
     made = placed(site, bell)
     assert (made.row, made.col, made.posed.mask.shape) == (6, 1, (6, 6))
     assert made.posed.mask.all()
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+@pytest.mark.parametrize("scale", [1.0, 0.5])
+@pytest.mark.parametrize(
+    ("more_px", "beyond_px"),
+    [(0.0, 0.5), (0.2, 0.6), (0.27, 0.45), (0.4, 0.5), (0.49, 1.0), (0.5, 0.5)],
+)
+def test_stones_are_taken_in_at_both_ends_however_wide_the_wall_is(side, scale, more_px, beyond_px):
+    """A brick is settled at the end of an empty wall from which it is placed."""
+    # Columns that are less than half in the wall have no pixels.
+    site = Site.from_source((40.0 + more_px) / scale, 30.0 / scale, scale)
+    settings = SettleSettings(beyond_px=beyond_px)
+    turned = Turned.of(BRICK.outline_within(0.35), 0.0, side, BRICK.area_px**0.5)
+    scene = SettlingScene.of(no_polygons(), site.extent_px[0], side, 0.58)
+    rested = come_to_rest(turned, scene, (5.0, 3.02), settings)
+    x = rested.settled.corners[:, 0]
+    assert 0.0 < max(-x.min(), x.max() - site.extent_px[0]) < beyond_px
+    found = settled_in(Wall.empty(site, exact=True), BRICK, side, rested, wedge_id=9)
+    placement = found.placement
+    assert placement.posed.mask.all()
+    end = placement.col if side == "left" else placement.col + placement.posed.width_px
+    assert end == (0 if side == "left" else site.width_px)

@@ -20,8 +20,7 @@ Outlined = tuple[int, Points]
 class Shares:
     """What exact outlines cover of the cells of a site, immutable; :meth:`added` gives the next."""
 
-    # (height_px, width_px): share of each cell that all blocks together cover, row 0 at the
-    # top
+    # (height_px, width_px): share of each cell that all blocks together cover, row 0 at the top
     total: Grid
     largest: Grid  # (height_px, width_px): the largest share that one block covers
     # (height_px, width_px): the id of that block, of equals the one placed first; 0 where

@@ -27,11 +27,6 @@ class Spot:
     row: int
     col: int
 
-    @property
-    def at(self) -> tuple[int, int]:
-        """Row and column."""
-        return self.row, self.col
-
 
 def best_spots(
     landscape: Landscape, poses: Sequence[PosedStone], settings: PlacementSettings

@@ -23,7 +23,7 @@ from drystone.planner.replay import judged, replayed
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
 from drystone.poses import wrap_deg
-from drystone.settle.placing import settled_in, stands_out_px
+from drystone.settle.placing import settled_in
 from drystone.settle.rest import Repose, SettlingScene, Turned, come_to_rest, lay, placed_outline
 from drystone.settle.wedge import wedged
 from drystone.stabilise.stabilise import WedgeStock, stabilise
@@ -238,7 +238,8 @@ def _on_outlines(
         """Give a stone with the pixels that it fills, unless it fills none or leaves the wall."""
         # Measured stones are not where they were planned: half a working px is allowed at least.
         allowed_px = max(settle.beyond_px, 0.5 / wall.site.scale)
-        if stands_out_px(repose.settled.corners, wall.site) < allowed_px:
+        (left, _), (right, top) = (end(repose.settled.corners, axis=0) for end in (np.min, np.max))
+        if max(-left, right - scene.width_px, top - wall.site.extent_px[1]) < allowed_px:
             number = workshop.next_wedge(build)
             found = settled_in(wall, one.stone, one.side, repose, wedge, wedge_id=number)
             if found is not None:

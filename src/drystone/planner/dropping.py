@@ -31,13 +31,12 @@ class Drop:
     trial: StoneTrial
     spot: int  # which place of the trial's pose
     start: tuple[float, float]  # of its centroid, in the view, source px
-    # estimated cost, and what tells it from the others of a step
-    rank: tuple[float, tuple[Key, int]]
+    cost: float  # estimated
 
     @property
     def key(self) -> tuple[Key, int]:
         """What tells it from the others of a step."""
-        return self.rank[1]
+        return self.trial.key, self.spot
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,9 +89,9 @@ def in_order(dropped: Sequence[Dropped], book: OutlineBook) -> Iterator[Drop]:
         trial, posed = owners[at]
         one = trial if len(trial.poses) == 1 else replace(trial, poses=(posed,))
         left = book.hung(posed.stone, posed.angle_deg, trial.landscape.side).profile.left
-        drop = Drop(one, spot_at, (x - left, y), (round(cost, 12), (one.key, spot_at)))
+        drop = Drop(one, spot_at, (x - left, y), round(cost, 12))
         # Rounding keeps the order of costs, except that it makes some equal.
-        if equal and equal[-1].rank[0] != drop.rank[0]:
+        if equal and equal[-1].cost != drop.cost:
             yield from sorted(equal, key=_rank)
             equal = []
         equal.append(drop)
@@ -101,7 +100,7 @@ def in_order(dropped: Sequence[Dropped], book: OutlineBook) -> Iterator[Drop]:
 
 def _rank(drop: Drop) -> tuple[object, ...]:
     """Return what sorts drops: the angle does not, for it depends on the photograph."""
-    return drop.rank[0], drop.key[0][::2], drop.spot
+    return drop.cost, drop.trial.key[::2], drop.spot
 
 
 def shortlist(drops: Iterable[Drop], settings: SettleSettings) -> list[Drop]:
@@ -112,7 +111,7 @@ def shortlist(drops: Iterable[Drop], settings: SettleSettings) -> list[Drop]:
     taken: list[Drop] = []
     counts: Counter[int] = Counter()
     for drop in drops:
-        stone_id = drop.key[0][0]
+        stone_id = drop.trial.key[0]
         if counts[stone_id] < settings.per_stone:
             counts[stone_id] += 1
             taken.append(drop)
@@ -131,7 +130,8 @@ def wedge_limits(settings: PlannerSettings, stock: Stock, site: Site) -> WedgeLi
         clearance_px=settle.clearance_px,
         contact_px=0.5 * settle.contact_px,
         setback=settle.setback,
-        room_px=stock.least_side_px / site.scale,
+        # Where there is less room than the shortest side of a stone, none comes.
+        room_px=min((shorter for shorter, _ in stock.sides), default=0) / site.scale,
         rest=settle.margin,
         steep=settle.steep,
     )

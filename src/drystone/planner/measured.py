@@ -175,13 +175,11 @@ def fitted(seen: Mask, outline: Points, scale: float, planned_deg: float | None)
 
     angles = np.arange(0.0, 360.0, COARSE_DEG).tolist()
     coarse = min(angles, key=lambda angle: misfit((x, y, angle)))
-    if planned_deg is None:
-        best = _refined(misfit, (x, y, coarse), reach)
-    else:
-        best = _refined(misfit, (x, y, planned_deg), reach)
-        if abs(wrap_deg(coarse - planned_deg)) > COARSE_DEG:
-            other = _refined(misfit, (x, y, coarse), reach)
-            best = other if other[0] < SHARPER * best[0] else best
+    first = coarse if planned_deg is None else planned_deg
+    best = _refined(misfit, (x, y, first), reach)
+    if abs(wrap_deg(coarse - first)) > COARSE_DEG:
+        other = _refined(misfit, (x, y, coarse), reach)
+        best = other if other[0] < SHARPER * best[0] else best
     _, (x, y, angle) = best
     return MeasuredPlace(x / scale, y / scale, wrap_deg(angle))
 

@@ -165,7 +165,7 @@ class RasterProposer(Proposer):
             stock, rest, score = self.workshop.stock, self.rest, settings.score
             costs = [
                 constants[spot.pose]
-                + place_cost(landscape, views[spot.pose], spot.at, stock, rest, score)
+                + place_cost(landscape, views[spot.pose], (spot.row, spot.col), stock, rest, score)
                 for spot in spots
             ]
         return Spotted(trial, tuple(spots), float(min(costs)))

@@ -21,9 +21,8 @@ class Replayed(NamedTuple):
     """Steps taken again."""
 
     build: Build  # after the steps that could be taken
-    # ids of the stones of the others: they overlap what is there, fill no pixel of the wall,
-    # have a wedge that nothing would be beside, or leave a wall that does not stand in both
-    # models
+    # ids of the stones of the others: they overlap what is there, fill no pixel of the wall, have a
+    # wedge that nothing would be beside, or leave a wall that does not stand in both models
     left_out: tuple[int, ...]
     solves: Solves  # what trouble the solver had; a step on which it gave up is left out
 

@@ -168,15 +168,8 @@ class PlannerSettings(Ranged):
     def updated(self, changes: Mapping[str, Any]) -> "PlannerSettings":
         """Return settings with some values replaced.
 
-        Parameters
-        ----------
-        changes : mapping
-            Nested like :meth:`as_dict`; missing keys stay as they are.
-
-        Raises
-        ------
-        UsageError
-            E123: an unknown name, or a value out of range.
+        `changes` are nested like :meth:`as_dict`; missing keys stay as they are.  UsageError
+        (E123): an unknown name, or a value out of range.
         """
         return updated(self, changes)
 

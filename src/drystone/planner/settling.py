@@ -74,7 +74,7 @@ class ExactProposer(Proposer):
             self._drop(trials, apply, needed)
             known = in_order([self._dropped[t.key] for t in trials], self.workshop.outlines)
             batch = shortlist((drop for drop in known if drop.key not in given), settings)
-            needed = batch[-1].rank[0] if len(batch) == settings.shortlist else math.inf
+            needed = batch[-1].cost if len(batch) == settings.shortlist else math.inf
             if any(self._dropped[trial.key].limit < needed for trial in trials):
                 continue  # cheaper ones than some of these may be missing
             if not batch:

@@ -52,11 +52,6 @@ class Stock:
             sides=Counter(tuple(sorted(sides)) for sides in zip(heights, widths, strict=True)),
         )
 
-    @property
-    def least_side_px(self) -> int:
-        """Shortest side of a stone: where there is less room, none comes."""
-        return min((shorter for shorter, _ in self.sides), default=0)
-
 
 @dataclass(frozen=True, eq=False)
 class Rest:

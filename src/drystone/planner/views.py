@@ -51,8 +51,10 @@ class Views:
 
     def of(self, built: Polygons, side: Side, mu: float) -> SideView:
         """Return the view of outlines from a side."""
-        before, view = self._last.get((side, mu), (None, None))
-        if before is None or view is None or not _begins_with(built, before):
+        before, view = self._last.get((side, mu), (no_polygons(), None))
+        # Bit by bit the same, and more after it.
+        first = built.leading(min(len(before), len(built)))
+        if view is None or _bits(first) != _bits(before):
             scene = SettlingScene(no_polygons(), self._site.extent_px[0], side, mu)
             view = SideView(scene, bare(self._site.width_px), 1.0 / self._site.scale)
         view = view.grown(built)
@@ -60,12 +62,5 @@ class Views:
         return view
 
 
-def _begins_with(polygons: Polygons, others: Polygons) -> bool:
-    """Say whether polygons are others, bit by bit, and more after them."""
-    if len(others) > len(polygons):
-        return False
-    first = polygons.leading(len(others))
-    return (
-        first.first.tobytes() == others.first.tobytes()
-        and first.corners.tobytes() == others.corners.tobytes()
-    )
+def _bits(polygons: Polygons) -> tuple[bytes, bytes]:
+    return polygons.first.tobytes(), polygons.corners.tobytes()

@@ -28,8 +28,7 @@ class Workshop:
     book: PoseBook  # turned stones
     clusters: dict[int, int]  # cluster of each stone (§3.4)
     orientations: str  # which poses of a stone are candidates (DESIGN 4.2)
-    # ids of the stones that fit into the wall in a candidate pose and are not banned,
-    # ascending
+    # ids of the stones that fit into the wall in a candidate pose and are not banned, ascending
     fitting: tuple[int, ...]
     stock: Stock  # sizes of the set
     sides: SideCounts  # of the stones that fit

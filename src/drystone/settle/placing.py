@@ -83,7 +83,7 @@ def settled_in(
 ) -> Group | None:
     """Return a stone and its wedge, (n, 2) corners in the wall frame, with what they fill.
 
-    None when the stone fills no pixel.  Whether it leaves the wall :func:`stands_out_px` says.
+    None when the stone fills no pixel.  Whether it leaves the wall is not asked.
     """
     at = repose.angle_deg, repose.settled, side, int(repose.turned)
     placement = settled_placement(wall.exact, wall.site, stone, *at)
@@ -109,13 +109,3 @@ def _with_wedges(
         new.append(settled_wedge(below, wall.site, number, placement.stone_id, corners))
         outlines.append((number, corners))
     return Group(placement, tuple(new))
-
-
-def stands_out_px(corners: Points, site: Site) -> float:
-    """Return how far an outline stands out over the ends or the top of a wall, source px.
-
-    Below 0 where it stays within them.
-    """
-    (left, _), (right, top) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
-    width, height = site.extent_px
-    return float(max(-left, right - width, top - height))

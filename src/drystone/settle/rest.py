@@ -232,4 +232,4 @@ def repose(stone: Turned, scene: SettlingScene, found: Settling) -> Repose:
 
 def placed_outline(outline: Points, angle_deg: float, x_px: float, y_px: float) -> Points:
     """Return an outline turned by an angle, with its centroid at a place of the wall frame."""
-    return turn(outline, angle_deg) + np.array((x_px, y_px))
+    return np.asarray(turn(outline, angle_deg) + (x_px, y_px))  # noqa: RUF005 - an array

@@ -62,8 +62,7 @@ class Rotation:
     # where it rests; None when it meets the landscape before it does, or a limit is reached
     pose: Pose | None
     pivots: int  # how many points it was turned about
-    # rows of the landscape, from the top, that were looked at: what is further down has no
-    # say
+    # rows of the landscape, from the top, that were looked at: what is further down has no say
     depth: int
 
 
