@@ -111,9 +111,7 @@ def test_a_stone_that_falls_is_named_and_drawn(plan_copy, run, monkeypatch):
 def test_a_claim_that_the_engine_contradicts_fails(standing, tmp_path, run, monkeypatch):
     """Also when all numbers of the plan are those of its limit analysis."""
     pytest.importorskip("pymunk", reason=NO_ENGINE)
-    weak = tuple(
-        TiltResult(side, (TiltTrial(side, 0.3, None, (), 0.0, 0.01),)) for side in ("left", "right")
-    )
+    weak = tuple(TiltResult(side, (TiltTrial(0.3, None, 0.0, 0.01),)) for side in ("left", "right"))
     monkeypatch.setattr(check_command, "tilt_of", lambda _: weak)
     standing = shutil.copytree(standing, tmp_path / "standing")
     assert run("check", standing).code == 0
@@ -238,8 +236,8 @@ def test_stones_with_other_bytes_are_named_as_such(plan_copy, run):
 
 def test_words_of_the_engine(plan_copy):
     """Where the plan has no overlap it is the engine's doing that stones were pushed apart."""
-    move = BlockMove(3, 1, 0.2, 0.01, 0.1, 0.46, fell=False)
-    built = BuildUp((move,), {}, {}, (0.0,), (1, 2), None, 0.58)
+    move = BlockMove(3, 0.2, 0.01, 0.1, 0.46, fell=False)
+    built = BuildUp((move,), {}, (0.0,), (1, 2), None, 0.58)
     rows = dict(PhysicsCard(read_plan(plan_copy), built, None, None, overlap_px=0.0).rows())
     assert rows["  pushed apart"].endswith("0.46 source px deep (stone 3): others had moved there")
     assert rows["  restless"].endswith("when the time of steps 1, 2 was up")

@@ -23,24 +23,18 @@ SLOW = ShakeSettings(period=40.0, cycles=1, limit=0.02, coarse=0.064, fine=0.008
     ],
 )
 def test_closed_forms(scene, expected):
-    trial = shake_once(scene, None, SLOW)
+    pga_g = shake_once(scene, None, SLOW)
     # Never earlier, but for a step; later by what it takes to get as far as the limit.
-    assert expected - SLOW.fine <= trial.pga_g <= 1.03 * expected + SLOW.fine
-    assert trial.moved == (1,)
-    assert trial.resolution_g <= SLOW.fine
+    assert expected - SLOW.fine <= pga_g <= 1.03 * expected + SLOW.fine
 
 
 def test_what_does_not_stand_has_no_amplitude():
-    trial = shake_once(scene_of((0, 0, 1, 1), (0.6, 1, 1, 1), mu=0.6))
-    assert trial.pga_g is None
-    assert trial.moved[0] == 2
+    assert shake_once(scene_of((0, 0, 1, 1), (0.6, 1, 1, 1), mu=0.6)) is None
 
 
 def test_what_never_moves_stands_all_amplitudes():
     settings = ShakeSettings(period=4.0, cycles=1, greatest=0.2)
-    trial = shake_once(scene_of((0, 0, 4, 1), mu=0.9), None, settings)
-    assert trial.pga_g == pytest.approx(0.2)
-    assert (trial.moved, trial.resolution_g) == ((), 0.0)
+    assert shake_once(scene_of((0, 0, 4, 1), mu=0.9), None, settings) == pytest.approx(0.2)
 
 
 def test_only_what_is_watched_counts():
@@ -49,9 +43,7 @@ def test_only_what_is_watched_counts():
     settings = ShakeSettings(period=8.0, cycles=1)
     all_of_them = shake_once(scene, None, settings)
     flat = shake_once(scene, None, settings, watched={1})
-    assert all_of_them.moved == (2,)
-    assert flat.moved == (1,)
-    assert flat.pga_g >= 0.5 - settings.fine > all_of_them.pga_g
+    assert flat >= 0.5 - settings.fine > all_of_them
 
 
 def test_the_ground_comes_back_to_rest():

@@ -26,15 +26,15 @@ def claiming(left, right, **without):
 
 
 def built(*fallen, first_fall=None):
-    moves = [BlockMove(i, n, 9.0, 0.3, 0.0, 0.0, i in fallen) for n, i in enumerate(IDS, 1)]
-    moves.insert(3, BlockMove(WEDGE, 3, 9.0, 0.3, 0.0, 0.0, WEDGE in fallen))
-    return BuildUp(tuple(moves), {}, {}, (0.0,) * len(IDS), (), first_fall, MU)
+    moves = [BlockMove(i, 9.0, 0.3, 0.0, 0.0, i in fallen) for i in IDS]
+    moves.insert(3, BlockMove(WEDGE, 9.0, 0.3, 0.0, 0.0, WEDGE in fallen))
+    return BuildUp(tuple(moves), {}, (0.0,) * len(IDS), (), first_fall, MU)
 
 
 def tilts(left, right, **trial):
     def result(direction, alpha):
         fields = {"resolution": 0.001, **trial}
-        return TiltResult(direction, (TiltTrial(direction, alpha, None, (), 0.0, **fields),))
+        return TiltResult(direction, (TiltTrial(alpha, None, 0.0, **fields),))
 
     return result("left", left), result("right", right)
 

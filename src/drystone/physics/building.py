@@ -1,13 +1,12 @@
 """A wall built up stone by stone in a rigid-body engine: what moves, and what falls."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 import shapely
 
 from drystone.kernels.polygons import Points
-from drystone.kernels.profiles import Floats
 from drystone.physics.scatter import TiltResult, Variation, tilt_test
 from drystone.physics.scene import EngineScene, EngineSettings
 from drystone.physics.table import TiltingTable
@@ -47,7 +46,6 @@ class BlockMove:
     """What became of one block."""
 
     id: int
-    group: int  # number of its group, from 1
     # Largest distance of any point of it from where it was planned, over its whole life.
     move_px: float
     share: float  # the same over the size (square root of the area) of the stone of its group
@@ -62,9 +60,8 @@ class BuildUp:
     """A wall as it stands, or lies, when its last stone has come to rest."""
 
     moves: tuple[BlockMove, ...]  # in the order of placement
-    # (n, 2), corners of every block where it was planned and where it ended, source px, wall
-    # frame, counter-clockwise, not closed.
-    planned: dict[int, Points]
+    # (n, 2), corners of every block where it ended, source px, wall frame, counter-clockwise,
+    # not closed.
     outlines: dict[int, Points]
     # By group: how far a block at most was from its planned place when the group came.
     found_moved_px: tuple[float, ...]
@@ -104,28 +101,26 @@ def build_up(
     """
     settings = settings or BuildSettings()
     if not any(groups):
-        return BuildUp((), {}, {}, (0.0,) * len(groups), (), None, mu)
+        return BuildUp((), {}, (0.0,) * len(groups), (), None, mu)
     scene = EngineScene({block: corners for group in groups for block, corners in group}, mu)
     table = TiltingTable(scene, settings.engine, placed=())
     table.tilt(0.0)
     watch = Watch(scene)
     found_moved, restless, first_fall = [], [], None
-    overlaps: dict[int, float] = {}
-    moves: list[BlockMove] = []
+    overlaps = dict.fromkeys(scene.shapes, 0.0)
     for number, group in enumerate(groups, 1):
         found_moved.append(watch.look(table))
         for block, _ in group:
             overlaps[block] = table.place(scene, block) * scene.length
         if not _rest(table, watch, settings):
             restless.append(number)
-        moves = _moves(groups[:number], watch, scene, overlaps, settings)
-        if first_fall is None and any(move.fell for move in moves):
-            first_fall = number
+        if first_fall is None:
+            moves = _moves(groups, watch, scene, overlaps, settings)
+            first_fall = number if any(move.fell for move in moves) else None
         if on_group is not None:
             on_group(number)
     return BuildUp(
-        moves=tuple(moves),
-        planned=watch.planned(),
+        moves=tuple(_moves(groups, watch, scene, overlaps, settings)),
         outlines=watch.outlines(table),
         found_moved_px=tuple(found_moved),
         restless=tuple(restless),
@@ -141,14 +136,14 @@ class Watch:
     """
 
     def __init__(self, scene: EngineScene) -> None:
-        self._scene = scene
+        self._length = scene.length
         self._arms: dict[int, Points] = {}
         self._centres: dict[int, Points] = {}
         for block, shape in scene.shapes.items():
             self._centres[block] = np.array(shape.centroid.coords[0])
             self._arms[block] = shapely.get_coordinates(shape)[:-1] - self._centres[block]
-        self._moves = dict.fromkeys(scene.shapes, 0.0)
-        self._turns = dict.fromkeys(scene.shapes, 0.0)
+        self.moves = dict.fromkeys(scene.shapes, 0.0)  # of any point, in the unit of the scene
+        self.turns_deg = dict.fromkeys(scene.shapes, 0.0)
 
     def look(self, table: TiltingTable) -> float:
         """Take note of where the blocks are; return how far any is from its place at most."""
@@ -157,8 +152,8 @@ class Watch:
             way = corners - self._arms[block] - self._centres[block]
             # Of all points of a rigid body a corner moves furthest.
             move = float(np.hypot(*way.T).max())
-            self._moves[block] = max(self._moves[block], move)
-            self._turns[block] = max(self._turns[block], float(abs(np.degrees(turn))))
+            self.moves[block] = max(self.moves[block], move)
+            self.turns_deg[block] = max(self.turns_deg[block], float(abs(np.degrees(turn))))
             furthest = max(furthest, move)
         return furthest
 
@@ -166,22 +161,11 @@ class Watch:
         """Return the corners of every block on the table where it is now."""
         return {block: corners for block, corners, _ in self._now(table)}
 
-    def planned(self) -> dict[int, Points]:
-        """Return the corners of every block where it was planned."""
-        return {block: self._arms[block] + centre for block, centre in self._centres.items()}
-
-    def largest(self, block: int) -> tuple[float, float]:
-        """Return the largest movement of any point (unit of the scene) and turn (degrees)."""
-        return self._moves[block], self._turns[block]
-
-    def _now(self, table: TiltingTable) -> list[tuple[int, Points, float]]:
-        found = []
-        poses: Floats = table.poses()
-        for block, (x, y, turn) in zip(table.ids, poses.tolist(), strict=True):
+    def _now(self, table: TiltingTable) -> Iterator[tuple[int, Points, float]]:
+        for block, (x, y, turn) in zip(table.ids, table.poses().tolist(), strict=True):
             cos, sin = np.cos(turn), np.sin(turn)
             turned = self._arms[block] @ np.array([[cos, sin], [-sin, cos]])
-            found.append((block, turned + np.array([x, y]) * self._scene.length, turn))
-        return found
+            yield block, turned + np.array([x, y]) * self._length, turn
 
 
 QUICK = Variation("quick", ROUNDED, TiltSettings(coarse=0.064, fine=0.004, longest_hold=20.0))
@@ -220,17 +204,17 @@ def _moves(
     groups: Sequence[Group],
     watch: Watch,
     scene: EngineScene,
-    overlaps: dict[int, float],
+    overlaps: Mapping[int, float],
     settings: BuildSettings,
 ) -> list[BlockMove]:
-    """Say what has become of the blocks that have been placed."""
+    """Say what has become of the blocks; those that have not been placed have not moved."""
     moves = []
-    for number, group in enumerate(groups, 1):
+    for group in groups:
         size = scene.shapes[group[0][0]].area ** 0.5
         for block, _ in group:
-            move, turn = watch.largest(block)
+            move, turn = watch.moves[block], watch.turns_deg[block]
             fell = move > settings.moved_share * size or turn > settings.turned_deg
-            moves.append(BlockMove(block, number, move, move / size, turn, overlaps[block], fell))
+            moves.append(BlockMove(block, move, move / size, turn, overlaps[block], fell))
     return moves
 
 
@@ -240,6 +224,7 @@ def stays(built: Group, group: Group, mu: float = 0.58) -> bool:
     settings = BuildSettings()
     table, watch = TiltingTable(scene, settings.engine), Watch(scene)
     table.tilt(0.0)
-    rests = _rest(table, watch, settings)
-    moved = _moves([group], watch, scene, dict.fromkeys(scene.shapes, 0.0), settings)
-    return rests and not any(move.fell for move in moved)
+    if not _rest(table, watch, settings):
+        return False
+    moves = _moves([group], watch, scene, dict.fromkeys(scene.shapes, 0.0), settings)
+    return not any(move.fell for move in moves)

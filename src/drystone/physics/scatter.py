@@ -11,7 +11,7 @@ import shapely
 from drystone.kernels.polygons import Points
 from drystone.physics.scene import EngineScene, EngineSettings
 from drystone.physics.tilt import TiltSettings, TiltTrial, tilt_once
-from drystone.statics.flow.nonassociative import nonassociative_load
+from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import Direction, RigidBlockModel
 
@@ -94,14 +94,13 @@ class TiltResult:
     @property
     def high(self) -> float | None:
         """Least tilt that brought the strongest one with an alpha down; None when none has one."""
-        return None if (found := self.interval("fall")) is None else found[1]
+        found = self.interval("fall")
+        return found[1] if found else None
 
     def interval(self, event: Event) -> tuple[float, float] | None:
         """Return the scatter of an event, resolution included; None when it never happened."""
-        alphas = self.alphas
-        if event == "first motion":
-            motions = (trial.first_motion for trial in self.trials)
-            alphas = tuple(alpha for alpha in motions if alpha is not None)
+        found = (one.alpha if event == "fall" else one.first_motion for one in self.trials)
+        alphas = [alpha for alpha in found if alpha is not None]
         if not alphas:
             return None
         resolution = max(trial.resolution for trial in self.trials)
@@ -156,15 +155,10 @@ def compare_with_tilt(
     model: RigidBlockModel,
     rng: np.random.Generator,
     variations: Sequence[Variation] | None = None,
-    directions: Sequence[Direction] = ("left", "right"),
 ) -> tuple[TiltComparison, ...]:
-    """Tilt a wall and predict its load multipliers, best by a model of the same outlines."""
-    predicted = lateral_resistance(model)
+    """Tilt a wall both ways and predict its load multipliers, best by a model of its outlines."""
+    expected, without = lateral_resistance(model), nonassociative_resistance(model)
     return tuple(
-        TiltComparison(
-            tilt_test(scene, direction, rng, variations),
-            (predicted.left if direction == "left" else predicted.right).alpha,
-            nonassociative_load(model, direction).alpha,
-        )
-        for direction in directions
+        TiltComparison(tilt_test(scene, one.direction, rng, variations), one.alpha, other.alpha)
+        for one, other in ((expected.left, without.left), (expected.right, without.right))
     )

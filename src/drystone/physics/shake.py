@@ -36,69 +36,51 @@ class ShakeSettings:
     level: TiltSettings = field(default_factory=lambda: TiltSettings(longest_hold=20.0))
 
 
-@dataclass(frozen=True)
-class ShakeTrial:
-    """Outcome of a test."""
-
-    # Peak acceleration of the ground, in g, that the blocks stood: the largest amplitude at
-    # which none moved by the limit.  None when they do not stand at rest.
-    pga_g: float | None
-    resolution_g: float  # at `pga_g` plus it, some did; 0 when none did up to the largest amplitude
-    moved: tuple[int, ...]  # blocks that moved by the limit then, those that moved most first
-    # Largest way of any point of a block while the wall settled, unit of the scene.
-    settled_shift: float
-
-
 def shake_once(
     scene: EngineScene,
     engine: EngineSettings | None = None,
     settings: ShakeSettings | None = None,
     *,
     watched: Collection[int] | None = None,
-) -> ShakeTrial:
+) -> float | None:
     """Shake the ground under a wall, step by step, each from the state before.
 
-    A rigid block on the ground slides when the acceleration exceeds mu g and rocks when it exceeds
-    b/h g, for its width b and height h.  By how much it must for a movement of the limit depends
-    on the period: the shorter, the more.  Only the blocks that are watched count; all unless given.
+    Returned is the peak acceleration of the ground, in g, that the blocks stood: the largest
+    amplitude at which none moved by the limit.  None when they do not stand at rest.  A rigid
+    block on the ground slides when the acceleration exceeds mu g and rocks when it exceeds b/h g,
+    for its width b and height h.  By how much it must for a movement of the limit depends on the
+    period: the shorter, the more.  Only the blocks that are watched count; all unless given.
     """
     settings, engine = settings or ShakeSettings(), engine or EngineSettings()
     table = TiltingTable(scene, engine)
-    given = table.poses()
-    stands = hold(table, 0.0, given, settings.level)
-    shifts = table.shifts(given)
-    settled_shift = float(shifts.max()) * scene.length
-    if not stands:
-        fallen = table.beyond(shifts, settings.level.fallen)
-        return ShakeTrial(None, 0.0, fallen, settled_shift)
+    if not hold(table, 0.0, table.poses(), settings.level):
+        return None
     counted = np.array([watched is None or block in watched for block in table.ids])
 
-    def moved(shaken: TiltingTable, amplitude_g: float) -> tuple[int, ...]:
-        """Shake at an amplitude; return the blocks that moved, once one did."""
+    def moves(shaken: TiltingTable, amplitude_g: float) -> bool:
+        """Shake at an amplitude until a block has moved by the limit; say whether one has."""
         signal = sinusoid(amplitude_g, settings, engine.time_step)
         still = [0.0] * round(settings.pause / engine.time_step)
         parts = np.array_split(signal, LOOKS * settings.cycles)
         for part in (*(part.tolist() for part in parts), still):
             shaken.ride(part)
-            shifts = np.where(counted, shaken.shifts(settled), 0.0)
-            if shifts.max() > settings.limit:
-                return shaken.beyond(shifts, settings.limit)
-        return ()
+            if np.where(counted, shaken.shifts(settled), 0.0).max() > settings.limit:
+                return True
+        return False
 
     settled, stood = table.poses(), table
     low, step, suspect = 0.0, settings.coarse, 0.0
     while low < settings.greatest:
         table = stood.copy()
-        found = moved(table, low + step)
-        if not found:
+        if not moves(table, low + step):
             low, stood = low + step, table
             # Smaller steps may have led past what a larger one set off.
             step = settings.coarse if low >= suspect else step
         elif step > settings.fine:
             suspect, step = low + step, step / 2
         else:
-            return ShakeTrial(low, step, found, settled_shift)
-    return ShakeTrial(low, 0.0, (), settled_shift)
+            break
+    return low
 
 
 def sinusoid(amplitude_g: float, settings: ShakeSettings, time_step: float) -> Floats:

@@ -75,15 +75,15 @@ class TiltingTable:
         )
 
     def _add_shape(self, body: Any, corners: Points, mu: float) -> None:
-        inner = shapely.Polygon(corners).buffer(-self._settings.corner_radius, join_style="mitre")
+        radius = self._settings.corner_radius
+        inner = shapely.Polygon(corners).buffer(-radius, join_style="mitre")
         # A part too thin to be rounded keeps its corners.
-        rounded = self._settings.corner_radius > 0 and isinstance(inner, shapely.Polygon)
-        rounded = rounded and not inner.is_empty
-        outline, radius = corners, 0.0
-        if rounded:
+        if radius > 0 and isinstance(inner, shapely.Polygon) and not inner.is_empty:
             ring = shapely.get_coordinates(shapely.orient_polygons(inner))[:-1]
-            outline, radius = without_straight_corners(ring), self._settings.corner_radius
-        shape = load_engine().Poly(body, outline.tolist(), radius=radius)
+            corners = without_straight_corners(ring)
+        else:
+            radius = 0.0
+        shape = load_engine().Poly(body, corners.tolist(), radius=radius)
         # The friction of a pair is the product of both.
         shape.friction = sqrt(mu)
         shape.elasticity = 0.0
@@ -121,21 +121,14 @@ class TiltingTable:
 
     def speeds(self) -> Floats:
         """Return the largest speed of any point of every free block, (n,)."""
-        rates = [(body.velocity.length, abs(body.angular_velocity)) for body in self._free()]
-        return np.array(
-            [speed + turn * r for (speed, turn), r in zip(rates, self._reaches, strict=True)]
-        )
+        reached = zip(self._free(), self._reaches, strict=True)
+        return np.array([b.velocity.length + abs(b.angular_velocity) * r for b, r in reached])
 
     def shifts(self, before: Floats) -> Floats:
         """Return how far any point of every free block has come since some poses, (n,)."""
         change = self.poses() - before
         turns = np.minimum(np.abs(change[:, 2]), np.pi)
         return np.asarray(np.hypot(change[:, 0], change[:, 1]) + turns * self._reaches)
-
-    def beyond(self, shifts: Floats, limit: float) -> tuple[int, ...]:
-        """Return which free blocks have come further than a limit, those that moved most first."""
-        order = np.argsort(-shifts, kind="stable")
-        return tuple(self.ids[i] for i in order.tolist() if shifts[i] > limit)
 
     def _free(self) -> list[Any]:
         dynamic = load_engine().Body.DYNAMIC

@@ -31,13 +31,10 @@ class TiltSettings:
 class TiltTrial:
     """Outcome of one tilt test."""
 
-    direction: Direction  # gravity turns there
     # Tangent of the angle at which blocks come down; None when they fell at rest or never.
     alpha: float | None
     # Alpha at which some block first moved noticeably, even if it came to rest again.
     first_motion: float | None
-    # Blocks that moved noticeably at the last tilt, those that moved most first.
-    moved: tuple[int, ...]
     # Largest way of any point of a block while the wall settled on the level table, in the unit
     # of the scene.
     settled_shift: float
@@ -61,11 +58,9 @@ def tilt_once(
     table = TiltingTable(scene, engine or EngineSettings())
     given = table.poses()
     stands = hold(table, 0.0, given, settings)
-    shifts = table.shifts(given)
-    settled_shift = float(shifts.max()) * scene.length
+    settled_shift = float(table.shifts(given).max()) * scene.length
     if not stands:
-        moved = table.beyond(shifts, settings.noticeable)
-        return TiltTrial(direction, None, None, moved, settled_shift, 0.0, fell_at_rest=True)
+        return TiltTrial(None, None, settled_shift, 0.0, fell_at_rest=True)
     level = stood = table
     settled = level.poses()
     sign = -1.0 if direction == "left" else 1.0
@@ -82,14 +77,11 @@ def tilt_once(
         if first:
             first_motion = low + step / 2
         if not stands:
-            moved = table.beyond(table.shifts(stood.poses()), settings.noticeable)
-            alpha = low + step / 2
-            return TiltTrial(direction, alpha, first_motion, moved, settled_shift, step / 2)
+            return TiltTrial(low + step / 2, first_motion, settled_shift, step / 2)
         low, stood = low + step, table
         # Smaller steps may have led past what a larger one set off.
         step = settings.coarse if first or low >= suspect else step
-    resolution = min(step, settings.fine) / 2
-    return TiltTrial(direction, None, first_motion, (), settled_shift, resolution)
+    return TiltTrial(None, first_motion, settled_shift, min(step, settings.fine) / 2)
 
 
 def hold(table: TiltingTable, alpha: float, settled: Floats, settings: TiltSettings) -> bool:

@@ -35,7 +35,7 @@ def pga_of(spec: RunSpec, outcome: RunOutcome, data: Path | None) -> float | Non
         outlines = outlines_of_labels(wall.labels)
     # Wedges may fall out: the score is about stones.
     stones = frozenset(placement.stone_id for placement in wall.placements)
-    return shake_once(EngineScene(outlines, spec.settings().mu), ROUNDED, watched=stones).pga_g
+    return shake_once(EngineScene(outlines, spec.settings().mu), ROUNDED, watched=stones)
 
 
 SEEDS, QUICK_SEEDS = 5, 2
