@@ -28,12 +28,7 @@ from drystone.kernels.cones import Figures, figures
 from drystone.kernels.simplex import Added, Answer, Optimum
 from drystone.statics.limit import MESSAGES, lateral_resistance, resistance_between
 from drystone.statics.local_update import PrimalDual, local_update
-from drystone.statics.lp.certificate import (
-    certified_fall,
-    fall_certificate,
-    no_alpha_of,
-    optimum_of,
-)
+from drystone.statics.lp.certificate import certified_fall, fall_certificate, optimum_of
 from drystone.statics.lp.cone_program import ConeProgram
 from drystone.statics.lp.extremes import Extreme, certified_extreme
 from drystone.statics.lp.highs import TOLERANCE, HighsSession, WarmBasis, WarmSession
@@ -242,10 +237,8 @@ class LocalAnalysis(ConeAnalysis):
             return replace(by_highs, result=result)
 
         def known(sign: int, extreme: Extreme) -> PrimalDual:
-            solution = extreme.solution
-            assert solution.columns is not None  # noqa: S101 - an optimal solution has both
-            assert solution.duals is not None  # noqa: S101
-            return PrimalDual(sign, extreme.alpha, solution.columns[1:], -solution.duals)
+            columns, duals = extreme.solution.optimum
+            return PrimalDual(sign, extreme.alpha, columns[1:], -duals)
 
         ends = known(1, greatest), known(-1, least)
         return cls(by_highs.model, result, program, by_highs, *ends)
@@ -465,7 +458,7 @@ def certified_bound(found: Figures, alpha: float, sign: int, solver: str) -> Bou
     With an alpha that is NaN they have to prove that no alpha holds the blocks up.
     """
     if isnan(alpha):
-        certificate = no_alpha_of(found)
+        certificate = certified_fall(found, found.live)
         return Bound(alpha, certificate, certificate, solver) if certificate.holds else None
     certificate = optimum_of(found, alpha, sign)
     if not certificate.holds:

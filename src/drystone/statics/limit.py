@@ -126,8 +126,7 @@ def _fall(program: EquilibriumProgram, least: Extreme, greatest: Extreme) -> Ext
         if answer.status is LimitStatus.UNSTABLE:
             return answer
         if answer.status is LimitStatus.OPTIMAL and sign * answer.alpha < -TOLERANCE:
-            assert answer.solution.duals is not None  # noqa: S101 - an optimal solution has them
-            return Extreme(answer.solution, fall_certificate(program, -answer.solution.duals))
+            return Extreme(answer.solution, fall_certificate(program, -answer.solution.optimum[1]))
     return None
 
 
@@ -165,8 +164,7 @@ def _result(
     elif wanted is not None and solution.duals is not None:
         mechanism = wanted.mechanism(-solution.duals)
     if status is LimitStatus.OPTIMAL and wanted is not None:
-        assert solution.columns is not None  # noqa: S101 - an optimal solution has them
-        forces = wanted.forces(solution.columns[1:].reshape(-1, 2))
+        forces = wanted.forces(solution.optimum[0][1:].reshape(-1, 2))
     return LimitResult(
         status,
         direction,

@@ -82,39 +82,24 @@ class Certificate:
 
 @dataclass(frozen=True, eq=False)
 class LimitResult:
-    """Outcome of one limit analysis.
-
-    Parameters
-    ----------
-    status : LimitStatus
-        How it ended.
-    direction : {"left", "right"}
-        "right" for a load along the live load (towards +x on the tilting table), "left" against.
-    alpha : float or None
-        Load multiplier; None unless the status is "optimal".
-    mechanism : Mechanism or None
-        How the blocks move at that load, or fall by themselves when the status is "unstable";
-        when it was asked for.
-    forces : (m, 2) float array or None
-        Normal and tangential force at every contact point, in the order of the interfaces and
-        their points, on the block that the normal points into; the tangent of a normal (x, y) is
-        (y, -x).  In weights of the model; when it was asked for.
-    certificate : Certificate or None
-        None when the solver gave up.
-    message : str
-        What the solver said, for people.
-    solver : str
-        Which one answered.
-    """
+    """Outcome of one limit analysis."""
 
     status: LimitStatus
     direction: Direction
+    """"right" for a load along the live load (towards +x on the tilting table), "left" against."""
     alpha: float | None = None
+    """Load multiplier; None unless the status is "optimal"."""
     mechanism: Mechanism | None = field(default=None, repr=False)
+    """How the blocks move at that load, or fall by themselves when the status is "unstable"; when
+    it was asked for."""
     forces: Floats | None = field(default=None, repr=False)
+    """(m, 2): normal and tangential force at every contact point, in the order of the interfaces
+    and their points, on the block that the normal points into; the tangent of a normal (x, y) is
+    (y, -x).  In weights of the model; when it was asked for."""
     certificate: Certificate | None = None
-    message: str = ""
-    solver: str = ""
+    """None when the solver gave up."""
+    message: str = ""  # what the solver said, for people
+    solver: str = ""  # which one answered
 
     @property
     def success(self) -> bool:
@@ -134,19 +119,11 @@ class LoadRange:
 
 @dataclass(frozen=True, eq=False)
 class LateralResistance:
-    """Both directions of the tilting table (Eq. 28).
+    """Both directions of the tilting table (Eq. 28)."""
 
-    Parameters
-    ----------
-    left, right : LimitResult
-        Live load towards -x and towards +x.
-    mu : float
-        Coefficient of friction.
-    """
-
-    left: LimitResult
+    left: LimitResult  # live load towards -x
     right: LimitResult
-    mu: float
+    mu: float  # coefficient of friction
 
     @property
     def value(self) -> float | None:

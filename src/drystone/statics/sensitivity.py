@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from drystone.statics.failing.mechanism import Floats, kinematics
+from drystone.statics.failing.mechanism import kinematics
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, tilting_table
 from drystone.statics.model import RigidBlockModel
@@ -14,31 +14,14 @@ USUAL = (0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8)
 """From smooth and wet to rough and dry stone."""
 
 
-@dataclass(frozen=True, eq=False)
-class FrictionSensitivity:
-    """Derivatives of a load multiplier by friction; never below 0 but by rounding."""
-
-    per_interface: Floats
-    """(k,): by the coefficient of each interface of the model alone, in its order."""
-
-    @property
-    def total(self) -> float:
-        """By all coefficients at once: d alpha / d mu, when all grow by the same amount."""
-        return float(self.per_interface.sum())
-
-    def of_model(self, model: RigidBlockModel) -> float:
-        """By the model's coefficient: that of all interfaces that have none of their own."""
-        common = [interface.mu is None for interface in model.interfaces]
-        return float(self.per_interface[common].sum())
-
-
 def friction_sensitivity(
     model: RigidBlockModel, result: LimitResult, loads: Loads | None = None
-) -> FrictionSensitivity:
+) -> float:
     """Find d alpha / d mu of an associative load multiplier, without another analysis.
 
-    The result is "optimal", with mechanism and forces, of the same loads, or else it is a
-    ValueError.  All is 0 for pure rocking; the total is 1 for all blocks sliding on the ground.
+    It is by the model's coefficient, that of all interfaces that have none of their own.  The
+    result is "optimal", with mechanism and forces, of the same loads, or else it is a ValueError.
+    Never below 0 but by rounding; 0 for pure rocking, 1 for all blocks sliding on the ground.
 
     Friction enters the program only in the edges of the cones, normal +- mu tangent.  By the
     envelope theorem the optimum changes by the work of the duals (the velocities of the blocks) on
@@ -61,7 +44,8 @@ def friction_sensitivity(
     live = (tilting_table(model) if loads is None else loads).live
     free = [not block.fixed for block in model.blocks]
     power = float((live * motion.velocity[:-1])[free].sum())
-    return FrictionSensitivity(per_interface / abs(power))
+    common = [interface.mu is None for interface in model.interfaces]
+    return float((per_interface / abs(power))[common].sum())
 
 
 @dataclass(frozen=True)

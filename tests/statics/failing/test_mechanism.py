@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
-from drystone.statics.failing.mechanism import Names, describe_mechanism
+from drystone.statics.failing.mechanism import Names, describe_mechanism, kinematics
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND
 from drystone.statics.result import LimitStatus, Mechanism
@@ -27,6 +27,12 @@ def moved(model, rows, **options):
     return describe_mechanism(model, mechanism, **options)
 
 
+def centre(group):
+    """Return the point about which a body turns."""
+    vx, vy, turning = group.velocity
+    return group.centroid[0] - vy / turning, group.centroid[1] + vx / turning
+
+
 @pytest.mark.parametrize(("direction", "toe_x"), [("left", 0.0), ("right", 20.0)])
 def test_a_tall_block_rocks_about_its_toe(direction, toe_x):
     failure = told(BLOCK, direction)
@@ -35,24 +41,18 @@ def test_a_tall_block_rocks_about_its_toe(direction, toe_x):
     assert (group.motion, group.blocks, group.against) == ("rocking", (1,), (GROUND,))
     assert group.toe.point == (toe_x, 0.0)
     assert (group.toe.block, group.toe.other, group.toe.side) == (1, GROUND, direction)
-    assert group.centre == pytest.approx((toe_x, 0.0), abs=1e-9)
+    assert centre(group) == pytest.approx((toe_x, 0.0), abs=1e-9)
     kinds = ("opening", "closed") if direction == "right" else ("closed", "opening")
     assert failure.contact_kinds == kinds
-    # At the heel, 20 from the toe: the centroid moves by 1 at a distance of hypot(10, 20).
-    opening = failure.contact_velocity[kinds.index("opening")]
-    assert opening == pytest.approx([20 / np.hypot(10, 20), 0.0], abs=1e-9)
 
 
-@pytest.mark.parametrize(("direction", "slip"), [("left", -1.0), ("right", 1.0)])
-def test_a_flat_block_slides_although_the_flow_rule_lifts_it(direction, slip):
+@pytest.mark.parametrize("direction", ["left", "right"])
+def test_a_flat_block_slides_although_the_flow_rule_lifts_it(direction):
     failure = told(boxes([0, 0, 40, 20]), direction, names=Names("stone"))
     assert failure.words == "Sliding of stone 1 on the ground."
     assert failure.contact_kinds == ("sliding", "sliding")
-    # The tangent of the upward normal points to the right.
-    expected = np.array([0.58, slip]) / np.hypot(1.0, 0.58)
-    assert failure.contact_velocity == pytest.approx(np.array([expected, expected]), abs=1e-9)
     (group,) = failure.groups
-    assert (group.motion, group.toe, group.centre, group.on_bed) == ("sliding", None, None, True)
+    assert (group.motion, group.toe, group.velocity[2], group.on_bed) == ("sliding", None, 0, True)
 
 
 SLIP = 1 - 0.02 * 20
@@ -212,7 +212,8 @@ def test_the_parts_of_a_description_fit_together(seed, tilted):
     for result in (both.left, both.right):
         failure = describe_mechanism(model, result.mechanism)
         expected = np.array(list(naive_contacts(model, result.mechanism)))
-        np.testing.assert_allclose(failure.contact_velocity, expected, atol=1e-12)
+        found = kinematics(model, result.mechanism, 0.0).relative
+        np.testing.assert_allclose(found, expected, atol=1e-12)
         grouped = [block for group in failure.groups for block in group.blocks]
         assert sorted(grouped) == sorted(failure.moving)
         assert len(set(grouped)) == len(grouped)
@@ -225,4 +226,4 @@ def test_the_parts_of_a_description_fit_together(seed, tilted):
                 rigid = (vx - turning * arm[1], vy + turning * arm[0])
                 assert velocity[block][:2] == pytest.approx(rigid, abs=1e-3)
             if group.toe is not None and group.toe.other not in grouped:
-                assert group.centre == pytest.approx(group.toe.point, abs=0.05)
+                assert centre(group) == pytest.approx(group.toe.point, abs=0.05)

@@ -11,12 +11,7 @@ from drystone.kernels.cones import Figures, figures
 from drystone.kernels.simplex import Added, Cones
 from drystone.statics.incremental import certified_bound
 from drystone.statics.limit import resistance_between
-from drystone.statics.lp.certificate import (
-    certified_fall,
-    certify,
-    no_alpha_of,
-    optimum_of,
-)
+from drystone.statics.lp.certificate import certified_fall, certify, optimum_of
 from drystone.statics.lp.extremes import Extreme, certified_extreme
 from drystone.statics.lp.highs import HighsSession
 from drystone.statics.lp.program import Solution, assemble
@@ -152,7 +147,7 @@ def test_no_load_is_called_without_limit_where_only_tension_carries_the_weight()
     ray[0], ray[wall] = 1.0, 0.25
     assert np.abs(program.matrix @ hung - program.rhs).max() < 1e-12
     growing = Solution(LimitStatus.UNBOUNDED, ray, None, "", "")
-    held = Solution(LimitStatus.OPTIMAL, hung, None, "", "")
+    held = Solution(LimitStatus.OPTIMAL, hung, np.zeros(3), "", "")
     assert certify(program, growing, 1.0).holds
     assert certified_extreme(program, Claims(growing, held), 1.0).status is LimitStatus.FAILED
     rough, *_ = hanging()
@@ -185,12 +180,12 @@ def test_figures_in_closed_form():
     assert (other_end.upper, other_end.slack, other_end.holds) == (None, None, False)
     falls = certified_fall(found)
     assert (falls.inadmissible, falls.fall_work) == (0.25, -0.5)
-    assert no_alpha_of(found).inadmissible == 2.0
-    assert no_alpha_of(found._replace(inadmissible=16.0)).inadmissible == 4.0
+    assert certified_fall(found, found.live).inadmissible == 2.0
+    assert certified_fall(found._replace(inadmissible=16.0), found.live).inadmissible == 4.0
 
 
 def test_nothing_that_moves_is_no_fall():
     still = figures(*one_stone(), 0.0, np.empty(0), np.zeros(3))
-    assert certified_fall(still).fall_work == no_alpha_of(still).fall_work == 0.0
+    assert certified_fall(still).fall_work == 0.0
     assert not certified_fall(still).holds
     assert certified_bound(still, np.nan, 1, "some solver") is None

@@ -321,7 +321,7 @@ def analysis_of(
         loose=wall.failures(loose),
         upright=held_by_upright_faces(model, loads, solver=solver) if resistance.stable else None,
         sensitivity={
-            side: friction_sensitivity(model, result, loads).of_model(model)
+            side: friction_sensitivity(model, result, loads)
             for side, result in both.items()
             if result.success
         },

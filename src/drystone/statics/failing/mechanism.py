@@ -58,7 +58,10 @@ class Kinematics:
 
     @cached_property
     def relative(self) -> Floats:
-        """Opening and sliding velocity at every contact point, sliding along (y, -x)."""
+        """Opening and sliding velocity at every contact point.
+
+        Sliding is that of the block that the normal (x, y) points into, along (y, -x).
+        """
         velocities = []
         for rows in self.blocks.T:
             arm = self.point - self.centroid[rows]
@@ -151,14 +154,6 @@ class MovingGroup:
     """Blocks outside of the body on which it moves as `motion` says, ascending; GROUND among them.
     """
     on_bed: bool  # whether it does so on joints that bear it; False for joints at its sides
-
-    @property
-    def centre(self) -> tuple[float, float] | None:
-        """Instantaneous centre of rotation in the wall frame; None for what does not turn."""
-        vx, vy, turning = self.velocity
-        if turning == 0.0:
-            return None
-        return self.centroid[0] - vy / turning, self.centroid[1] + vx / turning
 
     @property
     def momentum(self) -> float:
@@ -314,12 +309,9 @@ class Failure:
     """A mechanism, described."""
 
     moving: tuple[int, ...]
-    contact_velocity: Floats
-    """(m, 2): opening and sliding velocity at every contact point, in the order of the interfaces
-    and their points; sliding of the block that the normal (x, y) points into, along (y, -x)."""
     contact_kinds: tuple[ContactKind, ...]
-    """The same in words.  The associated flow rule opens a sliding contact by mu times its slip:
-    that is "sliding"."""
+    """What contact points do, in the order of the interfaces and their points.  The associated flow
+    rule opens a sliding contact by mu times its slip: that is "sliding"."""
     groups: tuple[MovingGroup, ...]  # by momentum (area times speed), largest first
     words: str
 
@@ -342,7 +334,6 @@ def describe_mechanism(
     moving = {block for group in groups for block in group.blocks}
     return Failure(
         moving=tuple(block for block in mechanism.block_ids if block in moving),
-        contact_velocity=kin.relative,
         contact_kinds=kin.kinds,
         groups=groups,
         words=in_words(groups, names or Names(), falls=falls),

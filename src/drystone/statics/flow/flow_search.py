@@ -188,12 +188,7 @@ class Search:
         self._look = look
         self._rates = ContactRates.of(program)
         self._forces = HighsSession(program)
-        self._motions = MotionsOfForces(program, self._rates, sign)
-
-    @property
-    def moves(self) -> bool:
-        """False when no motion that closes no contact goes along with the load."""
-        return self._motions.exist
+        self.motions = MotionsOfForces(program, self._rates, sign)
 
     def attempts(self) -> Iterator[tuple[str, int, FlowState | None]]:
         """Yield the name of each start, how many rounds it took, and to which state, if any."""
@@ -228,7 +223,7 @@ class Search:
             state = self._round(session, rates)
             if state is None:
                 return number, None
-            velocity = self._motions.find(state.edges)
+            velocity = self.motions.find(state.edges)
             if velocity is not None:
                 return number, FlowState(state.alpha, state.edges, velocity)
             way = np.abs(self._rates.slip.T @ state.velocity) - rates
@@ -283,7 +278,7 @@ class Search:
             state = better
             if not wanted.any():
                 return state
-            velocity = self._motions.find(state.edges, wanted, state.velocity)
+            velocity = self.motions.find(state.edges, wanted, state.velocity)
             if velocity is None:
                 return state
             state = FlowState(state.alpha, state.edges, velocity)

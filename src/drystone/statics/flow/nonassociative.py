@@ -44,14 +44,14 @@ dilatancy, and it is looked for.  That there is none is told where no motion at 
 with the load.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass, replace
 
 import numpy as np
 
 from drystone.statics.flow.flow_search import FlowState, NonassociativeSettings, Search
 from drystone.statics.flow.release import fall_of, with_inertia
-from drystone.statics.limit import lateral_resistance
+from drystone.statics.limit import DIRECTIONS, lateral_resistance
 from drystone.statics.loads import Loads, tilting_table
 from drystone.statics.lp.program import EquilibriumProgram, Floats, assemble
 from drystone.statics.model import FREEDOMS, GROUND, Direction, RigidBlockModel
@@ -77,11 +77,6 @@ class FlowCheck:
     dissipation: float
     """Sum of |t u_t + mu n |u_t||, over the power of the live load: contacts that slide without all
     their friction, or along with it."""
-
-    @property
-    def largest(self) -> float:
-        """The largest error."""
-        return float(max(astuple(self)))
 
     @property
     def holds(self) -> bool:
@@ -210,10 +205,7 @@ def nonassociative_load(
     start to fall, or a motion that needs less than no load.  "unbounded" when no motion goes along
     with the load.  "failed" when nothing was found.
     """
-    both = lateral_resistance(model, loads)
-    associative = both.left if direction == "left" else both.right
-    arguments = model, loads, associative, settings or NonassociativeSettings()
-    return _released(*arguments) or _nonassociative(*arguments)
+    return _results(model, (direction,), loads, settings)[0]
 
 
 def nonassociative_resistance(
@@ -237,69 +229,69 @@ def nonassociative_resistance(
     NonassociativeResistance
         Its `value` is to F_LR what the flow rule without dilatancy makes of it.
     """
-    both = lateral_resistance(model, loads)
-    chosen = settings or NonassociativeSettings()
-    falls = _released(model, loads, both.right, chosen, look)
-    if falls is not None:
-        return NonassociativeResistance(replace(falls, direction="left"), falls, model.mu)
-    left, right = (
-        _nonassociative(model, loads, end, chosen, look) for end in (both.left, both.right)
-    )
+    left, right = _results(model, DIRECTIONS, loads, settings, look)
     return NonassociativeResistance(left, right, model.mu)
+
+
+def _results(
+    model: RigidBlockModel,
+    directions: Sequence[Direction],
+    loads: Loads | None,
+    settings: NonassociativeSettings | None,
+    look: Callable[[], None] = lambda: None,
+) -> list[NonassociativeResult]:
+    both = lateral_resistance(model, loads)
+    ends = [both.left if direction == "left" else both.right for direction in directions]
+    if not both.stable or all(block.fixed for block in model.blocks):
+        return [NonassociativeResult(e.status, e.direction, message=e.message) for e in ends]
+    settings = settings or NonassociativeSettings()
+    loads = loads or tilting_table(model)
+    program = assemble(model, loads)
+    falls = _released(model, loads, program, settings.rounds, look) if settings.let_go else None
+    if falls is not None:
+        return [replace(falls, direction=direction) for direction in directions]
+    return [_searched(model, loads, program, end, settings, look) for end in ends]
 
 
 def _released(
     model: RigidBlockModel,
-    loads: Loads | None,
-    associative: LimitResult,
-    settings: NonassociativeSettings,
-    look: Callable[[], None] = lambda: None,
+    loads: Loads,
+    program: EquilibriumProgram,
+    rounds: int,
+    look: Callable[[], None],
 ) -> NonassociativeResult | None:
     """Tell how blocks start to fall that stand with associated flow; None when none was found."""
-    if not (settings.let_go and _is_known(model, associative)):
-        return None
-    program = assemble(model, loads)
-    fall = fall_of(model, program, settings.rounds, look)
+    fall = fall_of(model, program, rounds, look)
     if fall is None:
         return None
     state = FlowState(0.0, fall.edges, fall.acceleration)
-    falling = with_inertia(model, program, loads or tilting_table(model), fall)
+    falling = with_inertia(model, program, loads, fall)
     answer = _answer(model, falling, "right", program, state, "let go")
     if not (answer.check and answer.check.holds):
         return None
     return replace(
         answer,
         status=LimitStatus.UNSTABLE,
-        direction=associative.direction,
         alpha=None,
         message="There are forces with which the blocks, let go, start to fall under their dead"
         " load alone; others, squeezed in before, would hold them.",
     )
 
 
-def _is_known(model: RigidBlockModel, associative: LimitResult) -> bool:
-    """Whether there is a wall that stands with associated flow."""
-    stands = associative.status in (LimitStatus.OPTIMAL, LimitStatus.UNBOUNDED)
-    return stands and not all(block.fixed for block in model.blocks)
-
-
-def _nonassociative(
+def _searched(
     model: RigidBlockModel,
-    loads: Loads | None,
+    loads: Loads,
+    program: EquilibriumProgram,
     associative: LimitResult,
     settings: NonassociativeSettings,
-    look: Callable[[], None] = lambda: None,
+    look: Callable[[], None],
 ) -> NonassociativeResult:
     direction = associative.direction
-    if not _is_known(model, associative):
-        return NonassociativeResult(associative.status, direction, message=associative.message)
-    program = assemble(model, loads)
     rounds, answers = 0, []
     sign = -1.0 if direction == "left" else 1.0
     upright = np.array([abs(interface.normal[1]) for interface in model.interfaces], float)
-    upright = upright[model.contact_interfaces]
-    search = Search(program, sign, upright, settings, look)
-    if associative.alpha is None and not search.moves:
+    search = Search(program, sign, upright[model.contact_interfaces], settings, look)
+    if associative.alpha is None and not search.motions.exist:
         return NonassociativeResult(LimitStatus.UNBOUNDED, direction, message=IMMOVABLE)
     for method, needed, found in search.attempts():
         rounds += needed
@@ -314,7 +306,7 @@ def _nonassociative(
 
 def _answer(
     model: RigidBlockModel,
-    loads: Loads | None,
+    loads: Loads,
     direction: Direction,
     program: EquilibriumProgram,
     state: FlowState,

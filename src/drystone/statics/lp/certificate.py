@@ -20,12 +20,11 @@ def certify(program: EquilibriumProgram, solution: Solution, sign: float) -> Cer
     bounds alpha on the side to which v goes along with the live load.
     """
     if solution.status is LimitStatus.OPTIMAL:
-        assert solution.columns is not None  # noqa: S101 - an optimal solution has both
-        assert solution.duals is not None  # noqa: S101
-        found = _figures(program, solution.columns, -solution.duals)
-        return optimum_of(found, float(solution.columns[0]), sign)
+        columns, duals = solution.optimum
+        return optimum_of(_figures(program, columns, -duals), float(columns[0]), sign)
     if solution.status is LimitStatus.UNSTABLE and solution.duals is not None:
-        return no_alpha_of(_figures(program, None, -solution.duals))
+        found = _figures(program, None, -solution.duals)
+        return certified_fall(found, found.live)
     if solution.status is not LimitStatus.UNBOUNDED or solution.columns is None:
         return None
     # A state of self-stress that grows carries any live load.
@@ -39,10 +38,9 @@ def certify(program: EquilibriumProgram, solution: Solution, sign: float) -> Cer
 
 def in_equilibrium(program: EquilibriumProgram, solution: Solution) -> bool:
     """Say whether the forces of an optimal solution balance the loads within friction."""
-    assert solution.columns is not None  # noqa: S101 - an optimal solution has them
-    residual = _largest(np.abs(program.matrix @ solution.columns - program.rhs))
-    violation = _largest(-solution.columns[1:])
-    return residual <= CERTIFIED and violation <= CERTIFIED
+    columns, _ = solution.optimum
+    residual = _largest(np.abs(program.matrix @ columns - program.rhs))
+    return residual <= CERTIFIED and _largest(-columns[1:]) <= CERTIFIED
 
 
 def fall_certificate(program: EquilibriumProgram, velocity: Floats) -> Certificate:
@@ -73,11 +71,6 @@ def certified_fall(found: Figures, live: float = 0.0) -> Certificate:
         inadmissible=max(found.inadmissible, abs(live)) / found.largest,
         fall_work=-found.rhs / found.largest,
     )
-
-
-def no_alpha_of(found: Figures) -> Certificate:
-    """Certify that no alpha holds the blocks up."""
-    return certified_fall(found, found.live)
 
 
 def _figures(program: EquilibriumProgram, columns: Floats | None, velocity: Floats) -> Figures:

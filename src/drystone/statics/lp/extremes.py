@@ -54,8 +54,7 @@ class Extreme:
     @property
     def alpha(self) -> float:
         """Load multiplier of an optimal solution."""
-        assert self.solution.columns is not None  # noqa: S101 - asked for only when optimal
-        return float(self.solution.columns[0])
+        return float(self.solution.optimum[0][0])
 
 
 def extremes(

@@ -226,10 +226,8 @@ class WarmSession(HighsSession):
         solution = super().minimise(costs)
         if solution.status is not LimitStatus.OPTIMAL:
             return solution
-        assert solution.columns is not None  # noqa: S101 - an optimal solution has both
-        assert solution.duals is not None  # noqa: S101
         program = (costs, self._program.matrix, self._program.rhs)
-        columns, duals = corrected(self.highs, program, solution.columns, solution.duals)
+        columns, duals = corrected(self.highs, program, *solution.optimum)
         return replace(solution, columns=columns, duals=duals)
 
     def start_from(self, basis: WarmBasis) -> None:

@@ -108,6 +108,13 @@ class Solution:
     said: str  # status in the solver's words
     solver: str
 
+    @property
+    def optimum(self) -> tuple[Floats, Floats]:
+        """Unknowns and duals of an optimal solution."""
+        assert self.columns is not None  # noqa: S101 - it has both
+        assert self.duals is not None  # noqa: S101
+        return self.columns, self.duals
+
 
 _ARRAYS = ("rows", "start", "index", "value", "rhs", "friction")
 
