@@ -302,6 +302,9 @@ def test_real_outlines_that_overlap_are_reported_and_no_problem_is_made_of_them(
         assert report.ok
         assert report.overlap_depth_at == at
     assert report.overlap_depth == pytest.approx(0.25)
+    reduced = example(0.5)  # the depth is in source px
+    report = check_plan(moved(reduced.plan, SLAB, 0, -0.25), reduced.stones)
+    assert report.overlap_depth == pytest.approx(0.25)
 
 
 def test_stone_that_cannot_be_lowered_in_is_listed(either):

@@ -8,10 +8,7 @@ import shapely
 
 from drystone.errors import PlanError
 from drystone.kernels.raster import turn
-from drystone.model.placement import Placement
-from drystone.model.stone import Stone
-from drystone.poses import PoseBook
-from drystone.verify.outlines import common_areas, plan_polygons, real_outline
+from drystone.verify.outlines import common_areas, plan_polygons
 from tests.polygons import box_of
 from tests.verify.exact_examples import exact_example
 from tests.verify.examples import L_STONE, SLAB, WEDGE, example
@@ -79,9 +76,3 @@ def test_common_areas():
     # Two that are both asked for come once; those that touch have nothing in common.
     assert len(common_areas({1: blocks[1], 2: blocks[2]}, [2, 1])) == 1
     assert common_areas({1: blocks[1], 2: box_of(2, 0, 2, 2)}, [1, 2]) == ()
-
-
-def test_real_outlines_are_in_source_px():
-    posed = PoseBook(0.5).pose(Stone(4, np.ones((8, 16), bool)), 0.0)
-    outline = real_outline(Placement(posed, 6, 3), 10)  # row and column of a site of 10 working px
-    assert outline.bounds == (6.0, 0.0, 22.0, 8.0)

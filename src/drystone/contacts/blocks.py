@@ -7,7 +7,7 @@ import numpy as np
 from drystone.contacts.interfaces import PointContacts, find_interfaces, interfaces_in
 from drystone.errors import InputError, LabelImageError, Notice, counted
 from drystone.kernels.label_runs import label_runs, runs_in_pieces
-from drystone.kernels.patches import Part, painted_patch
+from drystone.kernels.patches import painted_patch
 from drystone.model.placement import Placement, Wedge
 from drystone.model.wall import Labels
 from drystone.statics.model import Block, RigidBlockModel
@@ -104,13 +104,15 @@ def model_with(
     parts = [(placement.stone_id, placement.row, placement.col, placement.posed.mask)]
     parts += [(wedge.id, wedge.row, wedge.col, wedge.mask) for wedge in wedges]
     patch, sums = painted_patch(labels, parts)
-    blocks = tuple(
-        _block(part, sums_of_part, labels.shape[0])
-        for part, sums_of_part in zip(parts, sums, strict=True)
-    )
+    blocks = []
+    for (block_id, row, col, mask), (area, cols, rows) in zip(parts, sums, strict=True):
+        x = (cols + 0.5 * area) / area
+        y = (area * mask.shape[0] - rows - 0.5 * area) / area
+        bottom = labels.shape[0] - row - mask.shape[0]
+        blocks.append(Block(block_id, float(area), (col + x, bottom + y)))
     if points is None or points.interfaces is not model.interfaces:
         points = PointContacts.of(model.interfaces)
-    return model.with_added(blocks, interfaces_in(patch), points.closed_in(patch))
+    return model.with_added(tuple(blocks), interfaces_in(patch), points.closed_in(patch))
 
 
 def check_mu(mu: float) -> None:
@@ -150,13 +152,3 @@ def notice_of_pieces(labels: Labels) -> tuple[Notice, ...]:
     verb, them = "lies" if one and apart[0][1] == 1 else "lie", "it" if one else "them"
     what = f"{', '.join(told)} {verb} apart from {them}; all pixels of an id are one rigid block."
     return (Notice("W304", what, "Give every piece an id of its own, or clean the picture."),)
-
-
-def _block(part: Part, sums: tuple[int, int, int], height_px: int) -> Block:
-    """Return the block of a part, from its area and the sums of its columns and rows."""
-    block_id, row, col, mask = part
-    area, cols, rows = sums
-    x = (cols + 0.5 * area) / area
-    y = (area * mask.shape[0] - rows - 0.5 * area) / area
-    bottom = height_px - row - mask.shape[0]
-    return Block(block_id, float(area), (col + x, bottom + y))

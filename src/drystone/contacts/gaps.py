@@ -115,10 +115,10 @@ def settle_gaps(
         moving = False
         bottoms = {block: int(np.flatnonzero((wall == block).any(axis=1))[-1]) for block in ids}
         for block in sorted(ids, key=lambda i: (-bottoms[i], i)):
-            down = _room(wall, block)
-            aside = 0
+            down, aside = _room(wall, block, 1, 0), 0
             if push is not None and not down:
-                aside = _room_aside(wall, block, push)
+                step = -1 if push == "left" else 1
+                aside = step * _room(wall, block, 0, step)
             if down or aside:
                 pixels = wall == block
                 wall[pixels] = 0
@@ -182,27 +182,21 @@ def _are_within(cells: NDArray[np.int64], one: int, other: int, reach_px: float)
     )
 
 
-def _room(wall: Labels, block: int) -> int:
-    """Return by how many px a stone can be lowered."""
-    rows, cols = np.nonzero(wall == block)
-    others = np.vstack([(wall > 0) & (wall != block), np.ones((1, wall.shape[1]), bool)])
-    down = 0
-    while not others[rows + down + 1, cols].any():
-        down += 1
-    return down
+def _room(wall: Labels, block: int, down: int, aside: int) -> int:
+    """Return by how many steps a stone can move until it touches another or the ground.
 
-
-def _room_aside(wall: Labels, block: int, push: Literal["left", "right"]) -> int:
-    """Return by how many px a stone can move to a side until it touches another; 0 if none is."""
-    step = -1 if push == "left" else 1
+    A step is one px; 0 when nothing is in the way.
+    """
     rows, cols = np.nonzero(wall == block)
-    others = (wall > 0) & (wall != block)
-    room = int(cols.min()) if step < 0 else wall.shape[1] - 1 - int(cols.max())
-    for way in range(room + 1):
-        ahead = cols + step * (way + 1)
-        inside = (ahead >= 0) & (ahead < wall.shape[1])
-        if others[rows[inside], ahead[inside]].any():
-            return step * way
+    width = wall.shape[1]
+    others = np.vstack([(wall > 0) & (wall != block), np.ones((1, width), bool)])
+    steps = 0
+    while cols.min() >= 0 and cols.max() < width:
+        rows, cols = rows + down, cols + aside
+        inside = (cols >= 0) & (cols < width)
+        if others[rows[inside], cols[inside]].any():
+            return steps
+        steps += 1
     return 0
 
 

@@ -369,10 +369,9 @@ def with_pair_friction(
     friction = {}
     for place, entry in enumerate(entries):
         pair = _between(entry, ids, f"friction, entry {place + 1}")
-        friction[pair] = read_mu(entry, "mu", 0.58)
-    known = {frozenset(pair): mu for pair, mu in friction.items()}
+        friction[frozenset(pair)] = read_mu(entry, "mu", 0.58)
     faces = (
-        replace(face, mu=known.get(frozenset((face.block, face.other)), face.mu))
+        replace(face, mu=friction.get(frozenset((face.block, face.other)), face.mu))
         for face in model.interfaces
     )
     return replace(model, interfaces=tuple(faces))

@@ -196,18 +196,16 @@ class Masonry:
         found: dict[int, dict[int, list[Joint]]] = {i: {} for i in self.stones}
         for bed in self.beds:
             found[bed.second].setdefault(bed.first, []).append(bed)
-        return {i: self._supports(i, beds) for i, beds in found.items()}
-
-    def _supports(
-        self, stone: int, beds: Mapping[int, list[Joint]]
-    ) -> tuple[tuple[int, float, float], ...]:
-        least = self.settings.bearing * (self.boxes[stone][2] - self.boxes[stone][0])
-        wide = [
-            (lower, min(bed.x0 for bed in pieces), max(bed.x1 for bed in pieces))
-            for lower, pieces in beds.items()
-            if sum(bed.length for bed in pieces) >= least * (1.0 - 1e-9)
-        ]
-        return tuple(sorted(wide, key=lambda one: one[1] + one[2]))
+        supports = {}
+        for stone, beds in found.items():
+            least = self.settings.bearing * (self.boxes[stone][2] - self.boxes[stone][0])
+            wide = [
+                (lower, min(bed.x0 for bed in pieces), max(bed.x1 for bed in pieces))
+                for lower, pieces in beds.items()
+                if sum(bed.length for bed in pieces) >= least * (1.0 - 1e-9)
+            ]
+            supports[stone] = tuple(sorted(wide, key=lambda one: one[1] + one[2]))
+        return supports
 
     @cached_property
     def on_ground(self) -> frozenset[int]:

@@ -121,10 +121,9 @@ def tilt_test(
     scene: EngineScene,
     direction: Direction,
     rng: np.random.Generator,
-    variations: Sequence[Variation] | None = None,
+    variations: Sequence[Variation],
 ) -> TiltResult:
     """Tilt a wall again and again, with variations that should not matter."""
-    variations = usual_variations() if variations is None else variations
     trials = tuple(
         tilt_once(variation.of(scene, rng), direction, variation.engine, variation.tilt)
         for variation in variations
@@ -154,7 +153,7 @@ def compare_with_tilt(
     scene: EngineScene,
     model: RigidBlockModel,
     rng: np.random.Generator,
-    variations: Sequence[Variation] | None = None,
+    variations: Sequence[Variation],
 ) -> tuple[TiltComparison, ...]:
     """Tilt a wall both ways and predict its load multipliers, best by a model of its outlines."""
     expected, without = lateral_resistance(model), nonassociative_resistance(model)

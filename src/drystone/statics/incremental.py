@@ -138,7 +138,9 @@ def incremental_analysis(
     if len(model.blocks) > most:
         return LocalAnalysis.of(model, units)
     # Block by block in the order of the model; what cannot be built in this order is for HiGHS.
-    analysis = SimplexAnalysis.of_nothing(model.mu, units, most)
+    empty, ends = RigidBlockModel((), (), model.mu), map(Optimum.of_nothing, (1, -1))
+    result = IncrementalResult(lateral_resistance(empty))
+    analysis = SimplexAnalysis(empty, result, ConeProgram.empty(units), *ends, most)
     place = {GROUND: -1, **{block.id: i for i, block in enumerate(model.blocks)}}
     last = np.array([max(place[i.block], place[i.other]) for i in model.interfaces], np.int32)
     for i, block in enumerate(model.blocks):
@@ -158,15 +160,7 @@ class SimplexAnalysis(ConeAnalysis):
 
     greatest: Optimum
     least: Optimum
-    most: int = MANY_BLOCKS
-
-    @classmethod
-    def of_nothing(cls, mu: float, units: Units, most: int = MANY_BLOCKS) -> "SimplexAnalysis":
-        """Return the analysis before the first stone."""
-        model = RigidBlockModel((), (), mu)
-        result = IncrementalResult(lateral_resistance(model))
-        greatest, least = Optimum.of_nothing(1), Optimum.of_nothing(-1)
-        return cls(model, result, ConeProgram.empty(units), greatest, least, most)
+    most: int
 
     def in_highs(self) -> "HighsAnalysis":
         """Begin anew: HiGHS has not followed this wall."""

@@ -12,14 +12,13 @@ for the caller to certify them; what was not found, or not proved, is for anothe
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-import highspy
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_array, hstack, vstack
 
 from drystone.kernels.simplex import OPTIMAL, UNSTABLE, Added, Cones, Optimum
 from drystone.statics.lp.cone_program import NONE_CLOSED, ConeProgram
-from drystone.statics.lp.highs import corrected, loaded, solved
+from drystone.statics.lp.highs import WarmBasis, corrected, loaded, solved
 from drystone.statics.lp.program import Floats
 
 REACH = 2.0
@@ -44,8 +43,6 @@ _HIGHS_OPTIONS: Mapping[str, Any] = {
     "simplex_initial_condition_check": False,
     "simplex_iteration_limit": 10_000,  # it may cycle; what it gives up on is asked of the whole
 }
-_BASIC = highspy.HighsBasisStatus.kBasic
-_AT_ZERO = highspy.HighsBasisStatus.kLower
 
 
 class PrimalDual(NamedTuple):
@@ -267,12 +264,7 @@ def least(
     """
     highs = loaded(_HIGHS_OPTIONS, matrix, (rhs, rhs), np.zeros(len(costs)), costs)
     if basic is not None:
-        basis = highspy.HighsBasis()
-        basis.col_status = [_BASIC if is_basic else _AT_ZERO for is_basic in basic.tolist()]
-        basis.row_status = [_AT_ZERO] * len(rhs)
-        basis.valid = True
-        basis.alien = True
-        highs.setBasis(basis)
+        WarmBasis(columns=()).carrying(basic, len(rhs)).given_to(highs)
     unknowns = solved(highs)
     if unknowns is None:
         return None

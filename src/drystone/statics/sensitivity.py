@@ -38,7 +38,7 @@ def friction_sensitivity(
     """
     if result.mechanism is None or result.forces is None:
         raise ValueError("the sensitivity needs an optimal result with mechanism and forces")
-    motion = kinematics(model, result.mechanism, tolerance=0.0)  # small ones add little
+    motion = kinematics(model, result.mechanism)
     lost = result.forces[:, 0] * np.abs(motion.relative[:, 1])
     per_interface = np.bincount(model.contact_interfaces, lost, len(model.interfaces))
     live = (tilting_table(model) if loads is None else loads).live

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import shapely
 
+from drystone.kernels.raster import turn
 from drystone.model.overlap import deepest_overlap, shape_of
 from drystone.model.placement import Placement, Wedge
 from drystone.model.plan import Plan, PlanMetrics, WedgeStep
@@ -16,7 +17,6 @@ from drystone.verify import claims, pieces
 from drystone.verify.blocks import check_blocks
 from drystone.verify.claims import Reference, Stability
 from drystone.verify.lengths import source_points
-from drystone.verify.outlines import real_outline
 from drystone.verify.replay import Replay, replay_plan
 from drystone.verify.report import CheckReport, Problem
 
@@ -152,7 +152,9 @@ def _outlines(replay: Replay) -> list[tuple[int, shapely.Geometry]]:
         if piece.corners is not None:
             found.append((piece.id, shape_of(piece.corners)))
         elif isinstance(piece.item, Placement):
-            found.append((piece.id, real_outline(piece.item, height)))
+            posed, centroid = piece.item.posed, np.array(piece.item.centroid(height))
+            corners = turn(posed.stone.outline, posed.angle_deg) + centroid / posed.scale
+            found.append((piece.id, shape_of(corners)))
     return found
 
 

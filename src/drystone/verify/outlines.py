@@ -7,9 +7,7 @@ import shapely
 
 from drystone.errors import PlanError
 from drystone.kernels.polygons import Points
-from drystone.kernels.raster import turn
 from drystone.model.overlap import common_parts, shape_of
-from drystone.model.placement import Placement
 from drystone.model.plan import Plan, WedgeStep
 from drystone.model.site import Site
 from drystone.model.steps import Step, grouped, piece_id
@@ -62,16 +60,6 @@ def common_areas(polygons: Mapping[int, Points], blocks: Sequence[int]) -> tuple
             if other != block and not (other in blocks and other < block):
                 areas += common_parts(shapes[block], shape)
     return tuple(map(_ring, areas))
-
-
-def real_outline(placement: Placement, site_height_px: int) -> shapely.Geometry:
-    """Return the outline of a placed stone in the wall frame, source px."""
-    if placement.settled is not None:
-        return shape_of(placement.settled.corners)
-    x, y = placement.centroid(site_height_px)
-    scale = placement.posed.scale
-    points = turn(placement.posed.stone.outline, placement.posed.angle_deg)
-    return shape_of(points + np.array([x, y]) / scale)
 
 
 def _corners(step: Step, stones: StoneSet, site: Site, outline_px: float) -> Points | None:

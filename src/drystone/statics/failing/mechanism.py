@@ -23,6 +23,10 @@ MotionKind = Literal["rocking", "sliding", "falling", "mixed"]
 
 _STILL = -1
 
+TOLERANCE = 1e-4
+"""Velocities below this share of the largest one count as none: an interior point method leaves
+blocks creeping that a vertex of the program holds still."""
+
 BED = 0.1
 """A joint bears what is above it when its normal points up by at least this much."""
 
@@ -43,7 +47,6 @@ class Kinematics:
     normal: Floats  # (m, 2)
     friction: Floats  # (m,): coefficient of friction
     length: float  # characteristic length: root of the mean area of a block
-    tolerance: float  # share of the largest velocity below which one counts as none
 
     @cached_property
     def speed(self) -> Floats:
@@ -54,7 +57,7 @@ class Kinematics:
     @cached_property
     def least(self) -> float:
         """Velocity from which on one counts."""
-        return self.tolerance * float(self.speed.max())
+        return TOLERANCE * float(self.speed.max())
 
     @cached_property
     def relative(self) -> Floats:
@@ -96,7 +99,7 @@ class Kinematics:
         return tuple(_KINDS[code] for code in codes.tolist())
 
 
-def kinematics(model: RigidBlockModel, mechanism: Mechanism, tolerance: float) -> Kinematics:
+def kinematics(model: RigidBlockModel, mechanism: Mechanism) -> Kinematics:
     """Lay a mechanism over the contacts of its model; ValueError for a block that it lacks."""
     place = {block.id: row for row, block in enumerate(model.blocks)} | {GROUND: len(model.blocks)}
     missing = sorted(set(mechanism.block_ids) - place.keys())
@@ -119,7 +122,6 @@ def kinematics(model: RigidBlockModel, mechanism: Mechanism, tolerance: float) -
         normal=normals[which],
         friction=friction[which],
         length=float(np.sqrt(area.mean())) if len(area) else 1.0,
-        tolerance=tolerance,
     )
 
 
@@ -195,90 +197,64 @@ def _group(kin: Kinematics, body: Ints, number: int) -> MovingGroup:
     velocity = area @ kin.velocity[rows] / area.sum()
     if kin.length * abs(velocity[2]) <= kin.least:
         velocity[2] = 0.0
-    border = _Border.of(kin, body, number)
-    motion, at = border.motion(down=velocity[1] < 0, turning=velocity[2] != 0.0)
-    toe = border.toe(at) if motion == "rocking" else None
-    vx, vy, turning = velocity.tolist()
+
+    # Its contact points with others: rows of their blocks, and how it turns against the other one.
+    first, second = body[kin.blocks.T]
+    contact = np.flatnonzero((first == number) != (second == number))
+    is_first = first[contact] == number
+    pairs = np.where(is_first[:, None], kin.blocks[contact], kin.blocks[contact, ::-1])
+    inside, outside = pairs.T
+    sign = np.where(is_first, 1.0, -1.0)
+    turning = sign * kin.turning[contact]
+    bears = sign * kin.normal[contact, 1] > BED  # it stands on these
+    opens, slips = kin.opens[contact], kin.slips[contact]
+    turns = np.abs(turning) > kin.least
+    pivots, slides, kept = ~opens & ~slips & turns, ~opens & slips & ~turns, ~opens & turns
+    other = body[outside]
+    still = other == _STILL
+
+    def on_one(pivots: Bools) -> Bools:
+        """Return the pivots when they are all on one other body, otherwise none."""
+        return pivots & (len(np.unique(other[pivots])) == 1)
+
+    # What stands still says more than what moves, and what is below more than what is beside.
+    ways: tuple[tuple[MotionKind, Bools], ...] = (
+        ("rocking", pivots & still & bears),
+        ("rocking", pivots & still),
+        ("sliding", slides & still & bears),
+        ("sliding", slides & bears),
+        ("rocking", on_one(pivots & bears)),
+        ("mixed", kept & bears),
+        ("sliding", slides),
+        ("rocking", on_one(pivots)),
+        ("mixed", kept),
+    )
+    motion: MotionKind = "falling" if velocity[1] < 0 else "mixed"
+    at, toe = np.empty(0, np.int64), None
+    for kind, those in ways:
+        # A body that does not turn itself does not rock, though what touches it may.
+        if those.any() and (velocity[2] != 0.0 or kind != "rocking"):
+            motion, at = kind, np.flatnonzero(those)
+            break
+    if motion == "rocking":  # about the lowest point
+        points = kin.point[contact[at]]
+        k = at[np.lexsort((points[:, 0], points[:, 1]))[0]]
+        x, y = kin.point[contact[k]].tolist()
+        side: Direction = "left" if turning[k] > 0 else "right"
+        block, neighbour = (int(kin.ids[row[k]]) for row in (inside, outside))
+        toe = Toe((x, y), block, neighbour, side if bears[k] else None)
+    vx, vy, turn = velocity.tolist()
     return MovingGroup(
         blocks=tuple(sorted(kin.ids[rows].tolist())),
         motion=motion,
-        velocity=(vx, vy, turning),
+        velocity=(vx, vy, turn),
         centroid=(float(centroid[0]), float(centroid[1])),
         area=float(area.sum()),
         speed=float(kin.speed[rows].max() / kin.speed.max()),
         toe=toe,
-        against=tuple(np.unique(kin.ids[border.outside[at]]).tolist()),
-        on_bed=bool(border.bears[at].any()),
+        against=tuple(np.unique(kin.ids[outside[at]]).tolist()),
+        on_bed=bool(bears[at].any()),
     )
-
-
-@dataclass(frozen=True, eq=False)
-class _Border:
-    """The contact points of a body with others."""
-
-    kin: Kinematics
-    contact: Ints  # (k,): which contact points
-    inside: Ints  # (k,): rows of their blocks
-    outside: Ints  # (k,)
-    other: Ints  # (k,): the other body, -1 for what stands still
-    turning: Floats  # (k,): of the body against the other one, times the characteristic length
-    bears: Bools  # (k,): whether the body stands on it
-
-    @classmethod
-    def of(cls, kin: Kinematics, body: Ints, number: int) -> "_Border":
-        first, second = body[kin.blocks.T]
-        contact = np.flatnonzero((first == number) != (second == number))
-        is_first = first[contact] == number
-        pairs = np.where(is_first[:, None], kin.blocks[contact], kin.blocks[contact, ::-1])
-        sign = np.where(is_first, 1.0, -1.0)
-        inside, outside = pairs.T
-        turning, bears = sign * kin.turning[contact], sign * kin.normal[contact, 1] > BED
-        return cls(kin, contact, inside, outside, body[outside], turning, bears)
-
-    def motion(self, *, down: bool, turning: bool) -> tuple[MotionKind, Ints]:
-        """Tell how the body moves, and at which of the contact points.
-
-        A body that does not turn itself does not rock, though what touches it may.
-        """
-        kin, still = self.kin, self.other == _STILL
-        opens, slips = kin.opens[self.contact], kin.slips[self.contact]
-        turns = np.abs(self.turning) > kin.least
-        pivots, slides, kept = ~opens & ~slips & turns, ~opens & slips & ~turns, ~opens & turns
-        # What stands still says more than what moves, and what is below more than what is beside.
-        for motion, at in (
-            ("rocking", pivots & still & self.bears),
-            ("rocking", pivots & still),
-            ("sliding", slides & still & self.bears),
-            ("sliding", slides & self.bears),
-            ("rocking", self._on_one(pivots & self.bears)),
-            ("mixed", kept & self.bears),
-            ("sliding", slides),
-            ("rocking", self._on_one(pivots)),
-            ("mixed", kept),
-        ):
-            if at.any() and (turning or motion != "rocking"):
-                return motion, np.flatnonzero(at)  # type: ignore[return-value]
-        return "falling" if down else "mixed", np.empty(0, np.int64)
-
-    def _on_one(self, pivots: Bools) -> Bools:
-        """Return the pivots when they are all on one other body, otherwise none."""
-        return pivots & (len(np.unique(self.other[pivots])) == 1)
-
-    def toe(self, at: Ints) -> Toe:
-        """Return the lowest of the contact points that a body rocks about."""
-        points = self.kin.point[self.contact[at]]
-        k = at[np.lexsort((points[:, 0], points[:, 1]))[0]]
-        x, y = self.kin.point[self.contact[k]].tolist()
-        side: Direction | None = None
-        if self.bears[k]:
-            side = "left" if self.turning[k] > 0 else "right"
-        block, other = (int(self.kin.ids[rows[k]]) for rows in (self.inside, self.outside))
-        return Toe((x, y), block, other, side)
-
-
-TOLERANCE = 1e-4
-"""Velocities below this share of the largest one count as none: an interior point method leaves
-blocks creeping that a vertex of the program holds still."""
 
 
 Noun = Literal["block", "stone"]
@@ -322,14 +298,12 @@ def describe_mechanism(
     *,
     falls: bool = False,
     names: "Names | None" = None,
-    tolerance: float = TOLERANCE,
 ) -> Failure:
     """Tell how a wall fails, or falls by itself, in words that call blocks by their names.
 
-    A mechanism of a block that the model does not have is a ValueError.  A velocity below
-    `tolerance`, a share of the largest, counts as none.
+    A mechanism of a block that the model does not have is a ValueError.
     """
-    kin = kinematics(model, mechanism, tolerance)
+    kin = kinematics(model, mechanism)
     groups = moving_groups(kin)
     moving = {block for group in groups for block in group.blocks}
     return Failure(

@@ -181,7 +181,7 @@ class Search:
         sign: float,
         upright: Floats,
         settings: NonassociativeSettings,
-        look: Callable[[], None] = lambda: None,
+        look: Callable[[], None],
     ) -> None:
         self._program, self._sign, self._upright = program, sign, upright
         self._settings = settings

@@ -120,7 +120,14 @@ class WarmBasis:
     rows: tuple[highspy.HighsBasisStatus, ...] = ()
     whole: bool = True  # False when unknowns that were basic are gone
 
-    def carrying(self, forces: Floats, rows: int) -> "WarmBasis":
+    def given_to(self, highs: highspy.Highs) -> highspy.HighsStatus:
+        """Let HiGHS start its next run from the basis; it fills its gaps."""
+        given = highspy.HighsBasis()
+        given.col_status, given.row_status = list(self.columns), list(self.rows)
+        given.valid, given.alien = True, not self.whole
+        return highs.setBasis(given)
+
+    def carrying(self, forces: Floats | NDArray[np.bool_], rows: int) -> "WarmBasis":
         """Return the basis with more equations and unknowns, those with a force basic."""
         columns = tuple(_BASIC if force > 0.0 else _AT_ZERO for force in forces.tolist())
         return WarmBasis(self.columns + columns, self.rows + (_AT_ZERO,) * rows, whole=False)
@@ -231,14 +238,9 @@ class WarmSession(HighsSession):
         return replace(solution, columns=columns, duals=duals)
 
     def start_from(self, basis: WarmBasis) -> None:
-        """Start the next call from a basis, and from nothing else; HiGHS fills its gaps."""
-        given = highspy.HighsBasis()
-        given.col_status = list(basis.columns)
-        given.row_status = list(basis.rows)
-        given.valid = True
-        given.alien = not basis.whole
+        """Start the next call from a basis, and from nothing else."""
         set_options(self.highs, _PRIMAL)
-        taken = self.highs.setBasis(given)
+        taken = basis.given_to(self.highs)
         assert taken == highspy.HighsStatus.kOk  # noqa: S101 - it would go on from its last basis
 
     def _find_ray(self) -> str:

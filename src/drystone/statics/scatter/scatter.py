@@ -151,11 +151,9 @@ def _nonsense(name: str, given: float, wanted: str) -> InputError:
 class Quantiles(NamedTuple):
     """Of a figure, over the walls that stand."""
 
-    low: float
-    """Of 5 %."""
+    low: float  # of 5 %
     median: float
-    high: float
-    """Of 95 %."""
+    high: float  # of 95 %
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,8 +222,7 @@ class Scatter:
     @property
     def value_quantiles(self) -> Quantiles | None:
         """Of `value`; None when there is none."""
-        value = self.value
-        return None if value is None else _quantiles(value)
+        return _quantiles(self.value)
 
 
 def scatter(
@@ -270,7 +267,7 @@ def _analysed(
     return next(worst), wall.mu, both.left.alpha, both.right.alpha
 
 
-def _quantiles(values: Floats) -> Quantiles | None:
-    if not len(values):
+def _quantiles(values: Floats | None) -> Quantiles | None:
+    if values is None or not len(values):
         return None
     return Quantiles(*np.quantile(values, (0.05, 0.5, 0.95)).tolist())
