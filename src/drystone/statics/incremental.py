@@ -138,9 +138,10 @@ def incremental_analysis(
     if len(model.blocks) > most:
         return LocalAnalysis.of(model, units)
     # Block by block in the order of the model; what cannot be built in this order is for HiGHS.
-    empty, ends = RigidBlockModel((), (), model.mu), map(Optimum.of_nothing, (1, -1))
+    empty, program = RigidBlockModel((), (), model.mu), ConeProgram.empty(units)
     result = IncrementalResult(lateral_resistance(empty))
-    analysis = SimplexAnalysis(empty, result, ConeProgram.empty(units), *ends, most)
+    ends = Optimum.of_nothing(1), Optimum.of_nothing(-1)
+    analysis = SimplexAnalysis(empty, result, program, *ends, most)
     place = {GROUND: -1, **{block.id: i for i, block in enumerate(model.blocks)}}
     last = np.array([max(place[i.block], place[i.other]) for i in model.interfaces], np.int32)
     for i, block in enumerate(model.blocks):

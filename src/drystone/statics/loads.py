@@ -10,12 +10,10 @@ from dataclasses import dataclass, replace
 from math import cos, isfinite, radians, sin
 
 import numpy as np
-from numpy.typing import NDArray
 
 from drystone.errors import InputError, UsageError
-from drystone.statics.model import Block, RigidBlockModel
-
-Floats = NDArray[np.float64]
+from drystone.statics.model import GROUND, Block, RigidBlockModel
+from drystone.statics.result import Floats
 
 LISTED = 8
 """So many blocks are named."""
@@ -110,15 +108,9 @@ def support_settlement(model: RigidBlockModel, block: int) -> tuple[RigidBlockMo
     usual = float(np.mean(carried)) if carried else found.area
     guided = replace(found, fixed=False, held=("x", "turn"), area=usual, density=1.0)
     blocks = (*model.blocks[:row], guided, *model.blocks[row + 1 :])
-    others = {other.id for other in model.blocks if other.fixed and other.id != block} | {0}
-    kept = tuple(
-        interface
-        for interface in model.interfaces
-        if not (
-            block in (interface.block, interface.other)
-            and others & {interface.block, interface.other}
-        )
-    )
+    others = (GROUND, *(other.id for other in model.blocks if other.fixed and other.id != block))
+    resting = [{block, other} for other in others]
+    kept = tuple(i for i in model.interfaces if {i.block, i.other} not in resting)
     released = RigidBlockModel(blocks, kept, model.mu)
     dead = weight(released)
     dead[row] = 0.0

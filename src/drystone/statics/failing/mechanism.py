@@ -11,9 +11,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from drystone.statics.model import GROUND, Direction, RigidBlockModel
-from drystone.statics.result import Mechanism
+from drystone.statics.result import Floats, Mechanism
 
-Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 

@@ -30,18 +30,13 @@ What is heuristic: nothing says that rounds find a solution (they run away towar
 the live load does no work), or that descent ends at the least one.  So there are several starts
 in a fixed order, the least of all solutions found is told, and every answer is checked from the
 blocks themselves.  Starts with fast slip ask for small normal forces, everywhere or in the head
-joints, and lead to the lower solutions.  On walls 1 to 5 of Ferris and Tin-Loi (2001) the answers
-are the least ones that a nonlinear solver found.
+joints, and lead to the lower solutions.
 
-**Jammed contacts.**  Blocks may be held only by friction in contacts that are pressed together by
-nothing but themselves.  So before any load is looked for, the blocks are let go under their dead
-load alone (:mod:`drystone.statics.flow.release`).  And the least alpha found may be negative.  In
-both cases the wall is called unstable here, with the motion that shows it: there are forces with
-which it falls, although there are others with which it stands.
+**Jammed contacts.**  Before any load is looked for, the blocks are let go under their dead load
+alone (:mod:`drystone.statics.flow.release`).  And the least alpha found may be negative.
 
 **No limit.**  Where no load is too great for associated flow there may still be one without
-dilatancy, and it is looked for.  That there is none is told where no motion at all goes along
-with the load.
+dilatancy, and it is looked for.
 """
 
 from collections.abc import Callable, Sequence
@@ -217,17 +212,8 @@ def nonassociative_resistance(
 ) -> NonassociativeResistance:
     """Find the loads in both directions; see :func:`nonassociative_load`.
 
-    Parameters
-    ----------
-    model, loads, settings
-        See there.
-    look : callable
-        Called before every round; what it raises ends the search.
-
-    Returns
-    -------
-    NonassociativeResistance
-        Its `value` is to F_LR what the flow rule without dilatancy makes of it.
+    The `value` is to F_LR what the flow rule without dilatancy makes of it.  `look` is called
+    before every round; what it raises ends the search.
     """
     left, right = _results(model, DIRECTIONS, loads, settings, look)
     return NonassociativeResistance(left, right, model.mu)

@@ -133,8 +133,10 @@ def assemble(
     free = [model.blocks[i] for i in places]
     units = units_of(model) if units is None else units
     unit = units.weight * np.array([1.0, 1.0, units.length])
-    rows = _rows(free)
-    moving = rows >= 0
+    moves = [[freedom not in block.held for freedom in FREEDOMS] for block in free]
+    moving = np.array(moves, bool).reshape(-1, 3)
+    rows = np.full(moving.shape, -1, np.int32)
+    rows[moving] = np.arange(np.count_nonzero(moving))
     each = np.array([model.friction(interface) for interface in model.interfaces], float)
     friction = each[model.contact_interfaces]
     force, arm, blocks = _cone_edges(model, free, friction)
@@ -162,16 +164,6 @@ def assemble(
         length=units.length,
         weight=units.weight,
     )
-
-
-def _rows(free: list[Block]) -> Ints:
-    """Give every freedom of the free blocks a row; -1 for what is held."""
-    if not any(block.held for block in free):
-        return np.arange(3 * len(free), dtype=np.int32).reshape(-1, 3)
-    moving = np.array([[freedom not in block.held for freedom in FREEDOMS] for block in free])
-    rows = np.full(moving.shape, -1, np.int32)
-    rows[moving] = np.arange(int(moving.sum()))
-    return rows
 
 
 def _cone_edges(
