@@ -47,7 +47,7 @@ def _row(name: str, one: TiltComparison) -> tuple[Cell, ...]:
     both_fall = one.associative is None and simulated.fell_at_rest
     why = "falls" if one.associative is None else "not certain to stand"
     return (
-        name, one.direction, one.associative,
+        name, simulated.direction, one.associative,
         why if one.associative is None or predicted is None else predicted,
         "falls at rest" if simulated.fell_at_rest else _interval(motion),
         BOTH_FALL if both_fall else "yes" if inside else "no",

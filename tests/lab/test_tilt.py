@@ -10,12 +10,11 @@ from drystone_lab.table import BenchSettings
 
 
 def compared(associative, nonassociative, motion, *, fell=False):
-    simulated = SimpleNamespace(fell_at_rest=fell, settled_shift=0.1, interval=lambda _: motion)
+    simulated = SimpleNamespace(
+        direction="left", fell_at_rest=fell, settled_shift=0.1, interval=lambda _: motion
+    )
     return SimpleNamespace(
-        direction="left",
-        simulated=simulated,
-        associative=associative,
-        nonassociative=nonassociative,
+        simulated=simulated, associative=associative, nonassociative=nonassociative
     )
 
 

@@ -1,6 +1,6 @@
 """What a rule is, and what it finds in a wall."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -38,6 +38,11 @@ class Case:
     # How many of the stones, the first ones, do not keep the rule; 0 when it is a joint between
     # them that does not.
     at_fault: int = 1
+
+
+def worst_first(cases: Iterable[Case]) -> tuple[Case, ...]:
+    """Sort cases by their values, the greatest first."""
+    return tuple(sorted(cases, key=lambda case: (-case.value, case.stones)))
 
 
 @dataclass(frozen=True, eq=False)

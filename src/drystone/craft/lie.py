@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 from scipy import ndimage
 
-from drystone.craft.finding import Case, Evidence, Line
+from drystone.craft.finding import Case, Evidence, Line, worst_first
 from drystone.craft.masonry import Masonry
 from drystone.model.overlap import common_parts
 
@@ -47,9 +47,8 @@ def on_end(masonry: Masonry) -> Evidence:
         if dy > dx * (1.0 + 1e-9):
             words = f"{elongation:.1f} times as high as long"
             cases.append(Case((stone,), round(elongation, 6), words, (axis,)))
-    cases.sort(key=lambda case: -case.value)
     number = len(cases) / len(masonry.stones)
-    return Evidence(number, tuple(cases), {"stones with a longer side": float(longer)})
+    return Evidence(number, worst_first(cases), {"stones with a longer side": float(longer)})
 
 
 def big_low(masonry: Masonry) -> Evidence:
@@ -144,12 +143,11 @@ def level_beds(masonry: Masonry) -> Evidence:
         angle, falls = abs(edge.angle_deg), "right" if edge.slope < 0 else "left"
         words = f"{edge.side} edge falls to the {falls} by {angle:.0f}°"
         cases.append(Case((edge.stone,), round(angle, 6), words, (edge.line,)))
-    cases.sort(key=lambda case: -case.value)
     figures = {
         "steepest": float(slopes.max()),
         "share of the edges that are too steep": len(steep) / len(found),
     }
-    return Evidence(round(float(slopes @ widths / widths.sum()), 9), tuple(cases), figures)
+    return Evidence(round(float(slopes @ widths / widths.sum()), 9), worst_first(cases), figures)
 
 
 def inward_edges(masonry: Masonry) -> Evidence:
@@ -172,13 +170,12 @@ def inward_edges(masonry: Masonry) -> Evidence:
         for edge in ends
         if inward[edge.stone] < -masonry.settings.outward - 1e-9
     ]
-    cases.sort(key=lambda case: -case.value)
     figures = {
         "mean inward slope": sum(inward.values()) / len(inward),
         "end stones": float(len(inward)),
     }
     least = round(min(inward.values()), 9) + 0.0  # never -0
-    return Evidence(least, tuple(cases), figures)
+    return Evidence(least, worst_first(cases), figures)
 
 
 def level_top(masonry: Masonry) -> Evidence:
@@ -204,8 +201,7 @@ def level_top(masonry: Masonry) -> Evidence:
             words = f"its top is {abs(off):.1f} mean stone heights {'high' if off > 0 else 'low'}"
             line = np.column_stack([columns.places[mine], tops[mine]])[[0, -1]]
             cases.append(Case((stone,), round(abs(off), 6), words, (line,)))
-    cases.sort(key=lambda case: -case.value)
-    return Evidence(round(float(np.abs(tops - tops.mean()).mean()) / height, 9), tuple(cases))
+    return Evidence(round(float(np.abs(tops - tops.mean()).mean()) / height, 9), worst_first(cases))
 
 
 def without_slots(profile: Line, widest: float) -> Line:
@@ -249,6 +245,5 @@ def flush_ends(masonry: Masonry) -> Evidence:
             words = f"{mean:.2f} mean stone widths short of the {end} end"
             line = np.array([[(x0, x1)[side], rows[0][0]], [(x0, x1)[side], rows[-1][0]]])
             cases.append(Case((stone,), round(mean, 6), words, (line,)))
-    cases.sort(key=lambda case: (-case.value, case.stones))
     gaps = [gap for rows in beside.values() for _, gap in rows]
-    return Evidence(round(float(np.mean(gaps)) / width, 9), tuple(cases))
+    return Evidence(round(float(np.mean(gaps)) / width, 9), worst_first(cases))

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.sparse import csr_array, hstack
 
-from drystone.craft.finding import Case, Evidence, Limit, Line
+from drystone.craft.finding import Case, Evidence, Limit, Line, worst_first
 from drystone.craft.masonry import Masonry
 from drystone.model.wedge_shape import WedgeRule, WedgeSettings, WedgeShape, open_sides
 from drystone.statics.joints import is_head_joint, loose_blocks
@@ -57,10 +57,11 @@ def pins(masonry: Masonry, limit: Limit) -> Evidence:
             words = f"the wedge carries at least {share:.2f} of the weight of the stone on it"
             stones = (wedge, *resting[wedge])
             carrying.append(Case(stones, round(share, 6), words, _frame(masonry, wedge)))
-    carrying.sort(key=lambda case: -case.value)
     figures["wedges that carry"] = float(len(carrying))
     figures["mean load"] = float(np.mean(shares))
-    return Evidence(round(max(shares), 9), (*bad, *carrying), figures, note, broken=bool(bad))
+    return Evidence(
+        round(max(shares), 9), (*bad, *worst_first(carrying)), figures, note, broken=bool(bad)
+    )
 
 
 def _loads(masonry: Masonry, wedges: frozenset[int]) -> tuple[Mapping[int, float] | None, str]:

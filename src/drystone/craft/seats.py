@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from drystone.craft.finding import Case, Evidence, Limit, Line
+from drystone.craft.finding import Case, Evidence, Limit, Line, worst_first
 from drystone.craft.masonry import Masonry
 from drystone.craft.pins import resting_on
 from drystone.kernels.profiles import Floats
@@ -89,8 +89,9 @@ def seats(masonry: Masonry) -> Evidence:
                 else f"its middle is {-margin:.2f} of its size beyond its seat"
             )
             cases.append(Case((stone,), round(settings.middle - margin, 6), words, (line,)))
-    cases.sort(key=lambda case: (-case.value, case.stones))
-    return Evidence(len(cases) / len(raised), tuple(cases), {"raised stones": float(len(raised))})
+    return Evidence(
+        len(cases) / len(raised), worst_first(cases), {"raised stones": float(len(raised))}
+    )
 
 
 def towers(masonry: Masonry) -> Evidence:
@@ -117,9 +118,8 @@ def towers(masonry: Masonry) -> Evidence:
             words = f"{len(stack)} small stones on each other"
             line = np.array([masonry.centroids[j] for j in stack])
             cases.append(Case(stack, float(len(stack)), words, (line,), at_fault=len(stack)))
-    cases.sort(key=lambda case: (-case.value, case.stones))
     highest = max(map(len, stacks.values()), default=0)
-    return Evidence(float(highest), tuple(cases), {"small stones": float(len(small))})
+    return Evidence(float(highest), worst_first(cases), {"small stones": float(len(small))})
 
 
 def voids(masonry: Masonry) -> Evidence:
@@ -139,9 +139,8 @@ def voids(masonry: Masonry) -> Evidence:
                 line: Line = np.column_stack([under.x[cells], under.low[cells]])[[0, -1]]
                 words = f"nothing under its {side} corner, {share:.2f} of its width"
                 cases.append(Case((stone,), round(share, 6), words, (line,)))
-    cases.sort(key=lambda case: (-case.value, case.stones))
     stones = {case.stones for case in cases}
-    return Evidence(len(stones) / len(sides), tuple(cases))
+    return Evidence(len(stones) / len(sides), worst_first(cases))
 
 
 def wedge_sizes(masonry: Masonry, limit: Limit) -> Evidence:
@@ -166,5 +165,4 @@ def wedge_sizes(masonry: Masonry, limit: Limit) -> Evidence:
             words = f"the wedge is {shares[-1]:.2f} of the stone on it{on}"
             line = np.array([lower[at], lower[at] + edges[at]])
             cases.append(Case((wedge, stone), round(shares[-1], 6), words, (line,)))
-    cases.sort(key=lambda case: (-case.value, case.stones))
-    return Evidence(round(max(shares), 9), tuple(cases), {"wedges": float(len(wedges))})
+    return Evidence(round(max(shares), 9), worst_first(cases), {"wedges": float(len(wedges))})

@@ -143,11 +143,6 @@ class TiltComparison:
     associative: float | None  # predicted load multipliers; None when there is none
     nonassociative: float | None
 
-    @property
-    def direction(self) -> Direction:
-        """Where gravity turns to."""
-        return self.simulated.direction
-
 
 def compare_with_tilt(
     scene: EngineScene,

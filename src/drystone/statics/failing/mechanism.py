@@ -91,12 +91,6 @@ class Kinematics:
         dilatancy = self.friction * np.abs(self.relative[:, 1])
         return np.asarray(self.relative[:, 0] - dilatancy > self.least)
 
-    @property
-    def kinds(self) -> tuple[ContactKind, ...]:
-        """Opening and slip in words."""
-        codes = self.opens.astype(int) + 2 * self.slips.astype(int)
-        return tuple(_KINDS[code] for code in codes.tolist())
-
 
 def kinematics(model: RigidBlockModel, mechanism: Mechanism) -> Kinematics:
     """Lay a mechanism over the contacts of its model; ValueError for a block that it lacks."""
@@ -137,7 +131,11 @@ class Toe:
 
 @dataclass(frozen=True)
 class MovingGroup:
-    """Blocks that move as one rigid body."""
+    """Blocks that move as one rigid body.
+
+    Two blocks are of one body when a contact point between them neither opens nor slides and they
+    do not turn against each other, and through other blocks.
+    """
 
     blocks: tuple[int, ...]  # ids, ascending
     motion: MotionKind
@@ -160,19 +158,6 @@ class MovingGroup:
     def momentum(self) -> float:
         """Area times speed of the centroid."""
         return self.area * float(np.hypot(*self.velocity[:2]))
-
-
-def moving_groups(kin: Kinematics) -> tuple[MovingGroup, ...]:
-    """Return the bodies of a mechanism by momentum, largest first.
-
-    Two blocks are of one body when a contact point between them neither opens nor slides and they
-    do not turn against each other, and through other blocks.
-    """
-    body = _bodies(kin)
-    groups = [_group(kin, body, number) for number in range(int(body.max(initial=_STILL)) + 1)]
-    # In shares of the largest and rounded, so that equal ones keep the order of their ids.
-    largest = max((group.momentum for group in groups), default=0.0) or 1.0
-    return tuple(sorted(groups, key=lambda g: (-round(g.momentum / largest, 9), g.blocks)))
 
 
 def _bodies(kin: Kinematics) -> Ints:
@@ -303,12 +288,16 @@ def describe_mechanism(
     A mechanism of a block that the model does not have is a ValueError.
     """
     kin = kinematics(model, mechanism)
-    groups = moving_groups(kin)
+    body = _bodies(kin)
+    groups = [_group(kin, body, number) for number in range(int(body.max(initial=_STILL)) + 1)]
+    # In shares of the largest and rounded, so that equal ones keep the order of their ids.
+    largest = max((group.momentum for group in groups), default=0.0) or 1.0
+    groups.sort(key=lambda group: (-round(group.momentum / largest, 9), group.blocks))
     moving = {block for group in groups for block in group.blocks}
     return Failure(
         moving=tuple(block for block in mechanism.block_ids if block in moving),
-        contact_kinds=kin.kinds,
-        groups=groups,
+        contact_kinds=tuple(_KINDS[code] for code in (kin.opens + 2 * kin.slips).tolist()),
+        groups=tuple(groups),
         words=in_words(groups, names or Names(), falls=falls),
     )
 
