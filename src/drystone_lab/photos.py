@@ -70,7 +70,7 @@ def _real_row(photo: RealPhoto, data: Path | None) -> tuple[Cell, ...]:
     except DrystoneError as error:
         count = None if full is None else int(whole_stones(full).max())
         return (*about, count, 0, None, None, None, error.code, int(error.exit_code))
-    doubtful = verdict_of(result.found, doubts_of(result.found)).doubtful
+    doubtful = verdict_of(result.found, doubts_of(result.found))
     said = "doubtful" if doubtful else "found"
     code = int(ExitCode.CHECK_FAILED if doubtful else ExitCode.DONE)
     height, width = result.found.labels.shape

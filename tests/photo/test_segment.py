@@ -41,8 +41,8 @@ def drawn(*stones, ground=(60, 110, 180), noise=2.0):
     return np.clip(picture, 0, 255).astype(np.uint8)
 
 
-def codes(found, settings=None):
-    return [notice.code for notice in notices_of(doubts_of(found, None, settings))]
+def codes(found):
+    return [notice.code for notice in notices_of(doubts_of(found))]
 
 
 @pytest.mark.parametrize(
@@ -115,7 +115,7 @@ def test_touching_stones_are_cut_where_they_touch():
     assert overlaps(truth.astype(np.uint16), found.labels).max(axis=1).min() > 0.93
     whole = segment(picture, settings=SegmentSettings(split=False))
     assert whole.count == 1
-    assert "W175" in codes(whole, SegmentSettings(split=False))
+    assert "W175" in codes(whole)
 
 
 def test_a_waist_is_doubted_with_its_place_and_width():

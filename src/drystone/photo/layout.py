@@ -72,19 +72,19 @@ def sheet_positions_m(page: str, size_m: float) -> NDArray[np.float64]:
     """
     width, height = page_mm(page)
     size = size_m * 1000.0
-    margin = margin_mm(size)
+
+    def fits(size_mm: float) -> bool:
+        # Two markers may not come nearer to each other than to the edge: that is their quiet zone.
+        both, margin = 2 * size_mm, margin_mm(size_mm)
+        return both + 3 * margin <= width and both + 4 * margin + MIDDLE_MM <= height
+
     if not size >= LEAST_SIZE_MM:
         raise _no_sheet(f"markers of {size:g} mm are too small", f"{LEAST_SIZE_MM:g} mm or more")
-    # Two markers may not come nearer to each other than to the edge: that is their quiet zone.
-    if 2 * size + 3 * margin > width or 2 * size + 4 * margin + MIDDLE_MM > height:
-        largest = max(
-            size_mm
-            for size_mm in range(int(LEAST_SIZE_MM), int(width))
-            if 2 * size_mm <= width - 3 * margin_mm(size_mm)
-            and 2 * size_mm <= height - 4 * margin_mm(size_mm) - MIDDLE_MM
-        )
+    if not fits(size):
+        largest = max(filter(fits, range(int(LEAST_SIZE_MM), int(width))))
         what = f"four markers of {size:g} mm do not fit on {page}"
         raise _no_sheet(what, f"{largest:g} mm or less")
+    margin = margin_mm(size)
     left, right = margin, width - margin - size
     top, bottom = margin, height - margin - size
     return np.array([[left, top], [right, top], [right, bottom], [left, bottom]]) / 1000.0

@@ -37,7 +37,6 @@ here and by another one there; what any of them reads without a wrong square is 
 FEW_SQUARES = 6
 """Squares along the edge of a marker, its black border too, of which a chance find is likely."""
 
-
 DICTIONARIES = ("aruco", "apriltag")
 """Families that are printed; they come first."""
 
@@ -260,6 +259,6 @@ def marker_modules(name: str, marker_id: int) -> NDArray[np.bool_]:
         what = f"the family {name!r} has no marker {marker_id}."
         cure = f"Its ids are 0 to {len(dictionary.bytesList) - 1}."
         raise UsageError("E174", what, where="--ids", cure=cure)
-    across = int(dictionary.markerSize) + 2
+    across = modules_across(name)
     picture = load_cv2().aruco.generateImageMarker(dictionary, marker_id, across)
-    return np.asarray(np.asarray(picture) < 128)
+    return np.asarray(picture < 128)

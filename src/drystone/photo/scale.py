@@ -125,10 +125,8 @@ def _usable(
     small = [one for one in known if one.side_px < LEAST_SIDE_PX]
     slanted = [one for one in known if one not in small and _slant(one) < LEAST_SLANT]
     used = tuple(one for one in known if one not in small and one not in slanted)
-    for poor, why in (
-        (small, f"smaller than {LEAST_SIDE_PX:g} px"),
-        (slanted, "seen at too flat an angle"),
-    ):
+    poorly = ((small, f"smaller than {LEAST_SIDE_PX:g} px"), (slanted, "seen at too flat an angle"))
+    for poor, why in poorly:
         if poor:
             said = ", ".join(f"{one.id} ({one.side_px:.0f} px)" for one in poor)
             notices.append(Notice("W171", f"Markers left out, {why}: {said}.", _NEARER))
@@ -156,8 +154,6 @@ def _other_family(found: Sequence[FoundMarker], layout: MarkerLayout) -> Notice:
 
 
 _NEARER = "Go nearer, photograph from above, or print larger markers."
-
-
 _PRINT = (
     "Print markers with `drystone markers`, lay them flat beside the stones with all of their "
     "white border, and photograph them sharp and without glare; or say the scale with --px-per-m "
@@ -265,12 +261,11 @@ def fit_plane(pieces: Sequence[Piece]) -> CommonPlane | None:
     found = [one for one in tried if one is not None]
     if not found:
         return None
-    best = min(found, key=lambda one: one.cost)
-    to_plane = np.diag([unit_m, unit_m, 1.0]) @ np.linalg.inv(best.to_seen) @ unit_px
+    best = min(found, key=lambda one: one[0])
+    to_plane = np.diag([unit_m, unit_m, 1.0]) @ np.linalg.inv(best[1]) @ unit_px
     to_plane = to_plane / depth(to_plane, every_px.mean(axis=0)[None])[0]
     sizes = np.ones(len(pieces))
-    sized, surer = _sizes(scaled, best)
-    sizes[order] = sized
+    sizes[order], surer = _sizes(scaled, *best)
     off_m = []
     for piece in pieces:
         on_plane = apply(to_plane, piece.seen_px)
@@ -279,17 +274,11 @@ def fit_plane(pieces: Sequence[Piece]) -> CommonPlane | None:
     return CommonPlane(to_plane, tuple(off_m), sizes, surer)
 
 
-@dataclass(frozen=True, eq=False)
-class _Fit:
-    """A homography from the plane to the photograph, poses (angle, x, y) and half the squares."""
+def _least(pieces: Sequence[Piece], to_seen: Points) -> tuple[float, Points, Points] | None:
+    """Return the least cost near to a homography: half the squares, homography and poses.
 
-    to_seen: Points
-    poses: Points
-    cost: float
-
-
-def _least(pieces: Sequence[Piece], to_seen: Points) -> _Fit | None:
-    """Return the homography and the poses of the least cost near to a homography."""
+    The homography leads from the plane to the photograph; a pose is an angle, x and y.
+    """
     poses = [np.zeros(3)]
     with np.errstate(all="ignore"):
         for piece in pieces[1:]:
@@ -306,23 +295,25 @@ def _least(pieces: Sequence[Piece], to_seen: Points) -> _Fit | None:
     back = np.linalg.inv(homography)
     if any((depth(back, piece.seen_px) <= 0).any() for piece in pieces):
         return None
-    return _Fit(homography, result.x[8:].reshape(-1, 3), float(result.cost))
+    return float(result.cost), homography, result.x[8:].reshape(-1, 3)
 
 
-def _sizes(pieces: Sequence[Piece], best: _Fit) -> tuple[Points, float]:
+def _sizes(
+    pieces: Sequence[Piece], cost: float, to_seen: Points, poses: Points
+) -> tuple[Points, float]:
     """Return the sizes, over those given, that would fit best, and how much better they fit."""
     more = len(pieces) - 1
     if not more:
         return np.ones(1), 0.0
-    free = np.column_stack([best.poses, np.zeros(more)])
-    start = np.concatenate([best.to_seen.ravel()[:8], free.ravel()])
+    free = np.column_stack([poses, np.zeros(more)])
+    start = np.concatenate([to_seen.ravel()[:8], free.ravel()])
     with np.errstate(all="ignore"):
         result = least_squares(_misses, start, args=(pieces, 4), method="lm", max_nfev=4000)
     sizes = np.exp(np.append(0.0, result.x[8:].reshape(-1, 4)[:, 3]))
     left = 2 * sum(len(piece.seen_px) for piece in pieces) - len(start)
     # Corners are never better than a few thousandths of a px, whatever a computed picture says.
     noise = max(float(result.cost), 1e-12) / left
-    return np.asarray(sizes), float(best.cost - result.cost) / more / noise
+    return np.asarray(sizes), float(cost - result.cost) / more / noise
 
 
 def _misses(variables: Points, pieces: Sequence[Piece], each: int) -> Points:

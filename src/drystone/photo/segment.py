@@ -1,17 +1,25 @@
 """Stones in a photograph of stones laid out on a ground of another colour."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
+from skimage.feature import peak_local_max
+from skimage.segmentation import watershed
 
 from drystone.errors import InputError
 from drystone.kernels.raster import Mask
-from drystone.photo.segment_ground import GroundModel, Planes, SegmentSettings, fit_ground
-from drystone.photo.segment_shadow import find_shadows
-from drystone.photo.segment_split import Labels, Neck, split_stones
+from drystone.photo.segment_ground import (
+    GroundModel,
+    Planes,
+    SegmentSettings,
+    find_shadows,
+    fit_ground,
+)
+
+Labels = NDArray[np.int32]
 
 WORKING_PX = 1_600_000
 """Size that a photograph is reduced to for this."""
@@ -19,13 +27,20 @@ WORKING_PX = 1_600_000
 _FLOOR_SHARE = 2e-4
 """Share of the picture of the smallest stone."""
 
-
 ROUGH = 6.0
 """What a ground varies in CIELAB, robust standard deviation, that is no cloth, wood or gravel."""
 
 _HORN = 0.12
 """Half the thickness of ends that are no stone, over that of the stone."""
 
+_SPLIT_BELOW = 0.6
+"""Necks narrower than this share of the thinner part are cut."""
+
+_OTHER_COLOUR_BELOW, _OTHER_COLOUR = 0.85, 14.0
+"""The same between parts of different rock, and their distance in CIELAB."""
+
+_DOUBT_BELOW = 0.8
+"""Necks that are not cut are reported below this share."""
 
 EDGE = "at the edge of the photograph or cut by it"
 PAPER = "beside a marker, which may be its paper"
@@ -58,6 +73,16 @@ BAND_PX = 4
 
 _WINDOW_PX = 11
 _LEAST_CONTRAST = 3.0
+
+
+@dataclass(frozen=True)
+class Neck:
+    """A narrow place between two thicker parts of a piece."""
+
+    at_px: tuple[float, float]  # its middle, column and row
+    width_px: float
+    share: float  # its width over the thickness of the thinner part
+    cut: bool  # whether the parts became two stones
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,22 +127,22 @@ def segment(
     pieces, count = ndimage.label(unlike)
     farthest = np.asarray(ndimage.maximum(ground.distance, pieces, np.arange(count + 1)))
     foreground = unlike & (farthest > 1.6 * low)[pieces]
-    shadows = find_shadows(ground, foreground, usable)
-    stone = _solid(foreground & ~shadows.mask, usable)
+    shadows, shadow_level, alike = find_shadows(ground, foreground, usable)
+    stone = _solid(foreground & ~shadows, usable)
     stone = refine_outlines(ground.lab, stone, usable)
     stone = _without_horns(_solid(stone, usable))
     pieces, _ = ndimage.label(stone, np.ones((3, 3)))
     beside = stone & np.isin(pieces, pieces[ndimage.binary_dilation(papers, iterations=5)])
-    labels, necks = split_stones(stone & ~beside, ground.lab, settings)
+    labels, necks = split_stones(stone & ~beside, ground.lab, split=settings.split)
     found, cut, small, least_px = _sorted_out(labels, usable | papers, settings)
     if not found.any():
         raise _no_stones(len(shapes(cut, EDGE)), ground)
-    causes = {SHADOW: shadows.mask, FAINT: unlike & ~foreground}
+    causes = {SHADOW: shadows, FAINT: unlike & ~foreground}
     known = stone | (labels > 0)
     # Stones of which a part, but not all, has the colour of shaded ground.
-    body = ndimage.binary_opening(shadows.alike & (found > 0), iterations=3)
-    alike = np.bincount(found[body], minlength=found.max() + 1) / np.bincount(found.ravel())
-    shaded = np.flatnonzero((alike > 0.15) & (alike < 0.85) & (np.arange(len(alike)) > 0))
+    body = ndimage.binary_opening(alike & (found > 0), iterations=3)
+    share = np.bincount(found[body], minlength=found.max() + 1) / np.bincount(found.ravel())
+    shaded = np.flatnonzero((share > 0.15) & (share < 0.85) & (np.arange(len(share)) > 0))
     left_out = (
         *shapes(cut, EDGE), *shapes(beside, PAPER), *lost(unlike, known, causes, least_px),
         *shapes(small, SMALL),
@@ -130,7 +155,7 @@ def segment(
         shaded=tuple(shaded.tolist()),
         left_out=left_out,
         ground=ground,
-        shadow_level=shadows.level,
+        shadow_level=shadow_level,
     )
 
 
@@ -310,3 +335,95 @@ def _near(values: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return the mean nearby; twice a box is nearly a Gaussian, and faster."""
     once = ndimage.uniform_filter(values, _WINDOW_PX)
     return np.asarray(ndimage.uniform_filter(once, _WINDOW_PX))
+
+
+def split_stones(stone: Mask, lab: Planes, *, split: bool) -> tuple[Labels, tuple[Neck, ...]]:
+    """Label stones, and cut pieces apart at narrow necks; without `split` only report those.
+
+    The watershed of the distance to the ground gives the parts of a piece; two neighbours stay
+    one stone unless the line between them is short beside the thickness of both.
+
+    Neighbours of different colours may have a wider neck between them.  The necks are those that
+    were cut, and those in doubt.
+    """
+    pieces, _ = ndimage.label(stone, np.ones((3, 3)))
+    labels = np.zeros(stone.shape, np.int32)
+    necks: list[Neck] = []
+    number = 0
+    for piece, box in enumerate(ndimage.find_objects(pieces), start=1):
+        parts, found = _parts(pieces[box] == piece, lab[box], split=split)
+        for neck in found:
+            column, row = neck.at_px
+            necks.append(replace(neck, at_px=(column + box[1].start, row + box[0].start)))
+        labels[box] += np.where(parts > 0, parts + number, 0).astype(np.int32)
+        number += int(parts.max())
+    return labels, tuple(necks)
+
+
+def _parts(piece: Mask, lab: Planes, *, split: bool) -> tuple[Labels, list[Neck]]:
+    """Return the stones of one piece, and its necks."""
+    depth = ndimage.distance_transform_edt(np.pad(piece, 1))[1:-1, 1:-1]
+    smooth = ndimage.gaussian_filter(depth, 1.0)
+    least = max(2.0, 0.2 * float(depth.max()))
+    peaks = peak_local_max(
+        smooth, min_distance=max(2, int(0.25 * depth.max())), threshold_abs=least,
+        labels=piece.astype(np.int32), exclude_border=False,
+    )  # fmt: skip
+    if len(peaks) < 2:
+        return piece.astype(np.int32), []
+    seeds = np.zeros(piece.shape, np.int32)
+    seeds[tuple(peaks.T)] = np.arange(1, len(peaks) + 1)
+    basins = watershed(-smooth, seeds, mask=piece).astype(np.int32)
+    return _joined(basins, depth, lab, split=split)
+
+
+def _joined(
+    basins: Labels, depth: NDArray[np.float64], lab: Planes, *, split: bool
+) -> tuple[Labels, list[Neck]]:
+    """Join basins across wide necks, the widest first; return stones and necks."""
+    necks: list[Neck] = []
+
+    def narrow(pair: tuple[int, int], neck: Neck) -> bool:
+        if not split or not _SPLIT_BELOW <= neck.share < _OTHER_COLOUR_BELOW:
+            return split and neck.share < _SPLIT_BELOW
+        one, other = (np.median(lab[(basins == k) & (depth > 2)], axis=0) for k in pair)
+        return float(np.hypot.reduce(one - other)) > _OTHER_COLOUR
+
+    while True:
+        thick = ndimage.maximum(depth, basins, np.arange(basins.max() + 1))
+        measured = {}
+        for pair, line in _lines(basins).items():
+            # The line of a watershed wanders; the ground is as near on both sides as the neck is
+            # wide.
+            width = max(1.0, 2 * float(depth[tuple(line.T)].max()))
+            row, column = line.mean(axis=0).tolist()
+            thickness = max(2 * float(min(thick[pair[0]], thick[pair[1]])), 1e-9)
+            measured[pair] = Neck((column, row), width, width / thickness, False)
+        kept = {pair: neck for pair, neck in measured.items() if narrow(pair, neck)}
+        joined = [pair for pair in measured if pair not in kept]
+        if not joined:
+            break
+        pair = max(joined, key=lambda key: measured[key].share)
+        if measured[pair].share < _DOUBT_BELOW:
+            necks.append(measured[pair])
+        basins[basins == pair[1]] = pair[0]
+    necks += [replace(neck, cut=True) for neck in kept.values()]
+    values = np.unique(basins)
+    renumbered = np.searchsorted(values, basins) + (0 if values[0] == 0 else 1)
+    return renumbered.astype(np.int32), necks
+
+
+def _lines(basins: Labels) -> dict[tuple[int, int], NDArray[np.intp]]:
+    """Return the px (n, 2) along the line between any two neighbours."""
+    found: dict[tuple[int, int], list[NDArray[np.intp]]] = {}
+    for axis in (0, 1):
+        one = np.moveaxis(basins, axis, 0)[:-1]
+        other = np.moveaxis(basins, axis, 0)[1:]
+        where = np.argwhere((one != other) & (one > 0) & (other > 0))
+        low = np.minimum(one[tuple(where.T)], other[tuple(where.T)])
+        high = np.maximum(one[tuple(where.T)], other[tuple(where.T)])
+        where = where[:, ::-1] if axis else where
+        for pair in np.unique(np.stack([low, high], axis=-1), axis=0):
+            at = where[(low == pair[0]) & (high == pair[1])]
+            found.setdefault((int(pair[0]), int(pair[1])), []).append(at)
+    return {pair: np.concatenate(parts) for pair, parts in found.items()}

@@ -1,6 +1,6 @@
 """What a person should look at before building with stones from a photograph."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,49 +10,36 @@ from skimage.measure import regionprops
 from drystone.errors import Notice
 from drystone.model.stone_size import sizes_of
 from drystone.photo.segment import EDGE, PAPER, FoundStones, stones_at
-from drystone.photo.segment_ground import SegmentSettings
 
-LOW_CONTRAST = 8.0
+_LOW_CONTRAST = 8.0
 """Distance in CIELAB from the ground below which an outline is not to be relied on."""
-
-SURELY_TWO = 0.45
+_SURELY_TWO = 0.45
 """Necks narrower than this share of the stone are cut without a word."""
-
-
-HOLLOW = 0.87
+_HOLLOW = 0.87
 """Share of its convex hull that a stone fills; less may be two stones with a broad contact."""
-
-
-RULED = 0.8
+_UNUSUAL = 6.0
+"""Stones so many times larger or smaller than the median are reported."""
+_RULED = 0.8
 """Share of the line of a ruler along which one stone lies that may be the ruler itself."""
-
-
 LISTED = 8
 """Shapes that were left out and that a notice names."""
 
-
-CLEAR = 5.0
+_CLEAR = 5.0
 """Contrast of the usual outline over what the ground itself varies: from here on it is plain.
 
 Photographs of river beds, walls and rooms have .8 to 4.7, stones on tarpaulin, cloth, wood, gravel
 and grass 6.2 and more."""
-
-LITTLE, VERY_LITTLE = 0.05, 0.01
+_LITTLE, _VERY_LITTLE = 0.05, 0.01
 """Shares of the photograph that are stone, least on varied ground and on any."""
-
-VARIED = 4.0
+_VARIED = 4.0
 """What a ground varies in CIELAB, robust standard deviation, that is more than cloth or wood."""
-
-UNEVEN = 0.85
+_UNEVEN = 0.85
 """How much darker the darkest place of the ground is lit: beyond, stones there get lost."""
-
-SHEET = 0.35
+_SHEET = 0.35
 """Share of the photograph from which on a stone may be the sheet that stones lie on."""
-
-LEFT_OUT, LEFT_OUT_SHARE = 2.0, 0.1
+_LEFT_OUT, _LEFT_OUT_SHARE = 2.0, 0.1
 """What was left out over what was found, and over the photograph, that is more than some stones."""
-
-FEW = 3
+_FEW = 3
 """So many stones are looked at one by one."""
 
 
@@ -75,25 +62,22 @@ class Doubt:
         return f"{said[0].upper()}{said[1:]}"
 
 
-def doubts_of(
-    found: FoundStones, px_per_m: float | None = None, settings: SegmentSettings | None = None
-) -> tuple[Doubt, ...]:
+def doubts_of(found: FoundStones, px_per_m: float | None = None) -> tuple[Doubt, ...]:
     """Return what is in doubt, stone by stone."""
     sizes = sizes_of(found.labels)
-    settings = settings or SegmentSettings()
     at = {size.id: size.at_px for size in sizes}
     doubts = _necks(found, px_per_m)
     known = {stone for doubt in doubts for stone in doubt.stones}
     for region in regionprops(found.labels):
         stone = int(region.label)
-        if stone not in known and float(region.solidity) < HOLLOW:
+        if stone not in known and float(region.solidity) < _HOLLOW:
             text = f"stone {stone} at {_place(at[stone])} has a hollow outline"
             doubts.append(Doubt("W175", (stone,), at[stone], f"{text}: it may be two stones"))
     doubts += [
         Doubt("W176" if one.why in (EDGE, PAPER) else "W182", (), one.at_px, one.text)
         for one in found.left_out
     ]
-    faint = [one for one, value in enumerate(found.contrast, start=1) if value < LOW_CONTRAST]
+    faint = [one for one, value in enumerate(found.contrast, start=1) if value < _LOW_CONTRAST]
     doubts += [
         Doubt(code, (stone,), at[stone], f"stone {stone} at {_place(at[stone])}")
         for code, stones in (("W177", found.shaded), ("W178", faint))
@@ -102,7 +86,7 @@ def doubts_of(
     usual = float(np.median([size.area_px for size in sizes]))
     for size in sizes:
         times = size.area_px / usual
-        if not 1 / settings.unusual < times < settings.unusual:
+        if not 1 / _UNUSUAL < times < _UNUSUAL:
             large = f"{times:.2g} times as large as usual"
             doubts.append(Doubt("W179", (size.id,), size.at_px, f"stone {size.id}: {large}"))
     return tuple(doubts)
@@ -133,7 +117,7 @@ def ruler_doubts(labels: NDArray[np.uint16], ends_px: ArrayLike) -> tuple[Doubt,
             f"stone {stone} lies along --ruler and may be the ruler",
         )
         for stone, hit in sorted(along.items())
-        if hit.mean() >= RULED
+        if hit.mean() >= _RULED
     )  # fmt: skip
 
 
@@ -176,7 +160,7 @@ def _necks(found: FoundStones, px_per_m: float | None) -> list[Doubt]:
         if px_per_m is not None:
             wide = f"{100 * neck.width_px / px_per_m:.1f} cm"
         where = f"at {_place(neck.at_px)}, {wide} wide"
-        if neck.cut and neck.share >= SURELY_TWO and len(stones) > 1:
+        if neck.cut and neck.share >= _SURELY_TWO and len(stones) > 1:
             names = " and ".join(str(stone) for stone in stones)
             text = f"stones {names} were cut apart {where}: they may be one stone"
         elif not neck.cut:
@@ -191,68 +175,55 @@ def _place(at_px: tuple[float, float]) -> str:
     return f"({at_px[0]:.0f}, {at_px[1]:.0f}) px"
 
 
-@dataclass(frozen=True)
-class Verdict:
-    """What speaks against all that was found; empty when nothing does."""
-
-    reasons: tuple[str, ...]
-
-    @property
-    def doubtful(self) -> bool:
-        """Whether a person must look before anything is built of it."""
-        return bool(self.reasons)
-
-    @property
-    def notices(self) -> tuple[Notice, ...]:
-        """The reasons as a notice."""
-        if not self.reasons:
-            return ()
-        return (Notice("W183", f"doubtful: {'; '.join(self.reasons)}.", _CURE),)
+def verdict_notices(reasons: Sequence[str]) -> tuple[Notice, ...]:
+    """Return what speaks against all that was found as a notice; none without a reason."""
+    cure = (
+        "Look at outlines.html. Lay the stones apart on a plain sheet of another colour and "
+        "photograph nothing else, or crop the photograph to it; masks of a river bed or a wall "
+        "come from other programs (docs/photographs.md)."
+    )
+    return (Notice("W183", f"doubtful: {'; '.join(reasons)}.", cure),) if reasons else ()
 
 
-_CURE = (
-    "Look at outlines.html. Lay the stones apart on a plain sheet of another colour and photograph "
-    "nothing else, or crop the photograph to it; masks of a river bed or a wall come from other "
-    "programs (docs/photographs.md)."
-)
+def verdict_of(found: FoundStones, doubts: Iterable[Doubt] = ()) -> tuple[str, ...]:
+    """Return what speaks against all that was found, by ground, shares, contrast and doubts.
 
-
-def verdict_of(found: FoundStones, doubts: Iterable[Doubt] = ()) -> Verdict:
-    """Judge what was found by the whole picture: ground, shares, contrast, and doubts."""
+    Where there is a reason, a person must look before anything is built of it.
+    """
     areas = np.bincount(found.labels.ravel(), minlength=2)[1:]
     shown = found.labels.size
     stone = float(areas.sum()) / shown
     varies = float(found.ground.spread.max())
     contrast = float(np.median(found.contrast))
     reasons = []
-    if contrast < CLEAR * varies:
+    if contrast < _CLEAR * varies:
         reasons.append(
             f"the ground is not plain (its colour varies by {varies:.0f}, and what was found "
             f"differs from it by {contrast:.0f}, in CIELAB)"
         )
-    if found.ground.uneven > UNEVEN:
+    if found.ground.uneven > _UNEVEN:
         percent = 100 * (1 - found.ground.uneven)
         reasons.append(
             f"the light is very uneven (the darkest ground has {percent:.0f} % of the brightest)"
         )
-    if areas.max() > SHEET * shown:
+    if areas.max() > _SHEET * shown:
         percent = 100 * float(areas.max()) / shown
         reasons.append(
             f"stone {int(areas.argmax()) + 1} takes up {percent:.0f} % of the photograph and may "
             "be the sheet that the stones lie on"
         )
-    if stone < (LITTLE if varies > VARIED else VERY_LITTLE):
+    if stone < (_LITTLE if varies > _VARIED else _VERY_LITTLE):
         reasons.append(
             f"only {100 * stone:.2g} % of the photograph was taken for stones, which may be paint, "
             "dirt or light"
         )
     left_out = sum(one.area_px for one in found.left_out) / shown
-    if left_out > max(LEFT_OUT * stone, LEFT_OUT_SHARE):
+    if left_out > max(_LEFT_OUT * stone, _LEFT_OUT_SHARE):
         reasons.append(
             f"{100 * left_out:.0f} % of the photograph differs from the ground and was left out, "
             f"{100 * stone:.0f} % was taken for stones"
         )
     doubted = {one for doubt in doubts for one in doubt.stones}
-    if found.count >= FEW and len(doubted) > found.count / 2:
+    if found.count >= _FEW and len(doubted) > found.count / 2:
         reasons.append(f"{len(doubted)} of {found.count} stones are in doubt")
-    return Verdict(tuple(reasons))
+    return tuple(reasons)

@@ -1,4 +1,4 @@
-"""The colour of the ground in a photograph, and the light on it."""
+"""The colour of the ground in a photograph, the light on it, and the shadows that stones cast."""
 
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -15,7 +15,6 @@ from drystone.kernels.raster import Mask
 Planes = NDArray[np.float32]
 """(h, w, 3)."""
 
-
 Ground = Literal["auto", "light", "dark"]
 
 
@@ -30,10 +29,6 @@ class SegmentSettings:
     # thousandth of the picture).
     min_area_px: float | None = None
     split: bool = True  # cut touching stones apart at narrow necks
-    split_below: float = 0.6  # necks narrower than this share of the thinner part are cut
-    other_colour_below: float = 0.85  # the same between parts of different colours
-    doubt_below: float = 0.8  # those that are not cut are reported below this share
-    unusual: float = 6.0  # stones so many times larger or smaller than the median are reported
 
 
 LEAST_SHARE = 0.2
@@ -62,8 +57,7 @@ class GroundModel:
     @property
     def distance(self) -> NDArray[np.float32]:
         """Distance of every px from the ground, (h, w), in standard deviations of the ground."""
-        away = (self.lab - self.colour) / self.spread
-        return np.asarray(np.sqrt((away**2).sum(axis=-1)), np.float32)
+        return _away((self.lab - self.colour) / self.spread).astype(np.float32)
 
 
 def fit_ground(image: NDArray[np.uint8], usable: Mask, ground: Ground) -> GroundModel:
@@ -134,10 +128,8 @@ def _fit_light(light: Planes, usable: Mask, ground: Ground) -> NDArray[np.float6
         # Few terms of one size: the normal equations are exact enough, and fast.
         square = known_basis.T @ known_basis + 1e-9 * len(known_basis) * np.eye(terms)
         field[:terms] = np.linalg.solve(square, known_basis.T @ log[near])
-        expected = lab_of(np.exp(basis @ field))
-        away = _away(lab - expected)
-        known = away[near]
-        limit = np.clip(3.5 * 1.48 * np.median(known), 6.0, 1.6 * _NEAR)
+        away = _away(lab - lab_of(np.exp(basis @ field)))
+        limit = np.clip(3.5 * 1.48 * np.median(away[near]), 6.0, 1.6 * _NEAR)
         near = usable & (away < limit)
         if near.sum() < max(20, 0.5 * LEAST_SHARE * usable.sum()):
             break
@@ -194,3 +186,139 @@ def _statistics(
         return colour, np.full(3, 0.8), 0.0
     spread = 1.48 * np.median(np.abs(near - colour), axis=0)
     return colour, np.maximum(spread, 0.8), len(near) / len(values)
+
+
+_DARKEST, _LIGHTEST = -2.0, -0.06
+"""Logarithm of the light in a shadow over that beside it."""
+
+_WINDOW_PX = 9
+"""Where the roughness of a surface is measured."""
+
+_SHADED_SHARE = 0.35
+"""Share of the stones that must have a shadow, unless few agree well."""
+
+_AGREEMENT, _FEW_AGREEMENT = 0.7, 0.9
+"""How well they must agree on its side, 0 to 1; and where few of three stones or more do."""
+
+
+def find_shadows(ground: GroundModel, foreground: Mask, usable: Mask) -> tuple[Mask, float, Mask]:
+    """Tell cast shadows from stones: ground with less light, all on one side of the stones.
+
+    Return where they are, the light in them over that beside them (1 when there are none), and
+    what has the colour of shaded ground, shadow or not.
+
+    A px may be in a shadow when it has the colour of the ground with less light.  Such px are
+    shadows when most of them have the same light, and lie on the same side of what cannot be
+    shadow: a grey stone on grey ground has its own light, all round.
+
+    `foreground` is what is not ground, `usable` what is ground, stone or shadow.
+    """
+    light = ground.log_light.mean(axis=-1)
+    # Faint shadows are not far from the colour of the ground, but tell where the light is.
+    noise = 1.48 * float(np.median(np.abs(light[~foreground & usable])))
+    foreground = foreground | (usable & (light < -(0.1 + 3 * noise)))
+    about = ~foreground & usable
+    # Ground with less light: its colours are as far apart as the ground's.
+    tint = np.abs(ground.log_light - light[..., None])
+    own = 1.48 * float(np.median(tint[about], axis=0).max())
+    tinted = foreground & (tint.max(axis=-1) < 0.05 + 0.12 * np.abs(light) + 2.5 * own)
+    tinted &= (light > _DARKEST) & (light < _LIGHTEST)
+    # Shaded ground is no rougher than lit.
+    square = ndimage.uniform_filter(light**2, _WINDOW_PX)
+    rough = np.sqrt(np.maximum(square - ndimage.uniform_filter(light, _WINDOW_PX) ** 2, 0))
+    alike = tinted & (rough < 0.03 + 2.5 * float(np.median(rough[about])))
+    none = np.zeros_like(foreground), 1.0, alike
+    if alike.sum() < 50:
+        return none
+    width = 0.08 + 2.5 * noise
+    counts, edges = np.histogram(light[alike], bins=80, range=(_DARKEST, 0.0))
+    best = int(ndimage.gaussian_filter1d(counts.astype(float), 1.5).argmax())
+    level = float(edges[best] + edges[best + 1]) / 2
+    near = np.abs(light - level)
+    body = ndimage.binary_opening(alike & (near < width), iterations=2)
+    # Uneven light is known about, so a shadow may be a little lighter or darker in places.
+    about_level = ndimage.binary_opening(alike & (near < width + 0.12), iterations=2)
+    body = ndimage.binary_propagation(body & about_level, mask=about_level)
+    around = _grown(body, _WINDOW_PX + 3) & tinted & (light > level - width)
+    sure = ndimage.binary_opening(foreground & ~around & ~body, iterations=3)
+    direction = _direction(body, sure)
+    if direction is None:
+        return none
+    # The soft edge of a shadow, on the side of the lit ground, has light of its own.
+    depth = ndimage.distance_transform_edt(foreground)
+    edge = around & ((depth <= _WINDOW_PX) | _grown(body, _WINDOW_PX // 2))
+    # A shadow may be as long as the largest stones are wide.
+    reach = max(10, int(3 * float(ndimage.distance_transform_edt(sure).max())))
+    zone = np.zeros_like(sure)  # behind stones, seen from the light
+    height, width = sure.shape
+    for far in range(0, reach, 2):
+        down, right = (round(float(part) * far) for part in direction)
+        to = (_overlap(down, height), _overlap(right, width))
+        zone[to] |= sure[_overlap(-down, height), _overlap(-right, width)]
+    zone = _grown(zone, _WINDOW_PX // 2)
+    body = _open_ended(body, sure, direction)
+    edge &= _grown(body, _WINDOW_PX + 3)
+    return (body | edge) & zone, float(np.exp(level)), alike
+
+
+def _grown(mask: Mask, by_px: int) -> Mask:
+    return np.asarray(ndimage.binary_dilation(mask, iterations=by_px))
+
+
+def _direction(core: Mask, sure: Mask) -> NDArray[np.float64] | None:
+    """Return where shadows fall from what casts them: rows and columns (2,), of length 1.
+
+    None when they fall anywhere.
+    """
+    labels, count = ndimage.label(sure)
+    if count == 0:
+        return None
+    numbers = np.arange(1, count + 1)
+    boxes = ndimage.find_objects(labels)
+    vectors, weights = [], []
+    for number, box in zip(numbers, boxes, strict=True):
+        pad = 3 * _WINDOW_PX
+        area = tuple(slice(max(side.start - pad, 0), side.stop + pad) for side in box)
+        stone = labels[area] == number
+        if stone.sum() < 60:
+            continue
+        near = core[area] & _grown(stone, 2 * _WINDOW_PX)
+        weights.append(np.sqrt(float(stone.sum())))
+        vectors.append(np.zeros(2))
+        if near.sum() < 0.02 * stone.sum():
+            continue
+        middle = [np.argwhere(part).mean(axis=0) for part in (stone, near)]
+        way = middle[1] - middle[0]
+        length = float(np.hypot(*way))
+        # Shaded all round points nowhere.
+        if length > 0.15 * weights[-1]:
+            vectors[-1] = way / length
+    if not weights:
+        return None
+    shaded = np.any(vectors, axis=1)
+    total = np.sum(np.multiply(vectors, np.array(weights)[:, None]), axis=0)
+    length, among = float(np.hypot(*total)), float(np.sum(weights, where=shaded))
+    many = among >= _SHADED_SHARE * sum(weights) and length >= _AGREEMENT * among
+    # Faint shadows are seen beside some stones only, but then on the very same side.
+    few = np.count_nonzero(shaded) >= 3 and length >= _FEW_AGREEMENT * among
+    if not (many or few):
+        return None
+    return np.asarray(total / length)
+
+
+def _open_ended(body: Mask, sure: Mask, direction: NDArray[np.float64]) -> Mask:
+    """Return the areas that have ground behind them: others are patches of a stone."""
+    areas, count = ndimage.label(body)
+    down, right = (round(float(part) * 1.5 * _WINDOW_PX) for part in direction)
+    behind = ndimage.shift(areas, (down, right), order=0, output=np.int32)
+    new = np.where(body, 0, behind)
+    total = np.bincount(new.ravel(), minlength=count + 1)
+    on_stone = np.bincount(new[sure], minlength=count + 1)
+    kept = on_stone < 0.5 * total
+    kept[0] = False
+    return np.asarray(kept[areas])
+
+
+def _overlap(by: int, size: int) -> slice:
+    """Return what of a row is still in the picture when it is moved."""
+    return slice(max(by, 0), size + min(by, 0))

@@ -21,10 +21,10 @@ from drystone.model.stone_size import StoneSize, median_sides, sizes_of
 from drystone.photo.layout import MarkerLayout, parse_layout, parse_size_m
 from drystone.photo.segment_doubts import (
     Doubt,
-    Verdict,
     doubts_of,
     notices_of,
     ruler_doubts,
+    verdict_notices,
     verdict_of,
 )
 from drystone.photo.segment_ground import SegmentSettings
@@ -85,13 +85,14 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     with busy(quiet=arguments.json) as told:
         told("finding stones")
         result = segment_photo(photo.values, scale, settings, min_area, max_px=max_px)
-    doubts = doubts_of(result.found, result.px_per_m, settings)
+    doubts = doubts_of(result.found, result.px_per_m)
     if isinstance(scale, Ruled):
         ends_px = apply(result.from_photo, np.array(scale.ends_px))
         doubts += ruler_doubts(result.found.labels, ends_px)
-    verdict = verdict_of(result.found, doubts)
-    notices = (*verdict.notices, *photo.notices, *result.notices, *notices_of(doubts))
-    details = _details(photo, result, doubts, verdict)
+    against = verdict_of(result.found, doubts)
+    said = (*photo.notices, *result.notices, *notices_of(doubts))
+    notices = (*verdict_notices(against), *said)
+    details = _details(photo, result, doubts, against)
     _write(folder, result, doubts, details)
     sizes = sizes_of(result.found.labels)
     if arguments.json:
@@ -116,12 +117,12 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             }
         )
     else:
-        if verdict.doubtful:
-            print(f"doubtful: {'; '.join(verdict.reasons)}")
+        if against:
+            print(f"doubtful: {'; '.join(against)}")
         _print(folder, result, sizes, notices)
     if result.px_per_m is None:
         note("No scale given, so sizes are in pixels. Add --aruco, --ruler or --px-per-m.")
-    return ExitCode.CHECK_FAILED if verdict.doubtful else ExitCode.DONE
+    return ExitCode.CHECK_FAILED if against else ExitCode.DONE
 
 
 def scale_from(arguments: argparse.Namespace) -> MarkerLayout | float | None:
@@ -177,11 +178,11 @@ def _save_image(values: np.ndarray[Any, Any], path: Path, kind: str, **settings:
 
 
 def _details(
-    photo: Photo, result: SegmentedPhoto, doubts: Sequence[Doubt], verdict: Verdict
+    photo: Photo, result: SegmentedPhoto, doubts: Sequence[Doubt], against: Sequence[str]
 ) -> dict[str, Any]:
     view, found = result.view, result.found
     return {
-        "doubtful": list(verdict.reasons),
+        "doubtful": list(against),
         "source": {"name": photo.name, "sha256": photo.sha256,
                    "width_px": photo.size_px[0], "height_px": photo.size_px[1]},
         "from_photo": np.asarray(result.from_photo).tolist(),
