@@ -9,9 +9,10 @@ from scipy import ndimage
 
 from drystone.errors import LabelImageError
 from drystone.io.images import Picture
-from drystone.io.labels import take_census, to_ids
+from drystone.io.labels import Census, to_ids
 from drystone.io.patches import cut, enclosed, neck_width_px
 from drystone.io.read_stones import ReadSettings, read_stones
+from drystone.kernels.ids import numbered
 from tests.io.pictures import areas, codes, discs, said
 from tests.naive import io as naive
 
@@ -20,7 +21,7 @@ shapes = array_shapes(min_dims=2, max_dims=2, max_side=12)
 
 @given(arrays(np.uint8, shapes, elements=st.integers(0, 4)))
 def test_cut_puts_every_pixel_where_it_was(labels):
-    census = take_census(labels)
+    census = Census(*numbered(labels))
     patches = cut(census.index, census.values)
     assert {patch.id: patch.area_px for patch in patches} == naive.areas(labels)
     for patch in patches:
@@ -76,7 +77,7 @@ def test_noise_is_no_picture_of_stones():
     | arrays(np.uint32, shapes)
 )
 def test_census(labels):
-    census = take_census(labels)
+    census = Census(*numbered(labels))
     index, values = naive.index_of(labels)
     np.testing.assert_array_equal(census.index, index)
     assert census.values.tolist() == values

@@ -13,7 +13,7 @@ import math
 import re
 import struct
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
 from functools import partial
@@ -188,14 +188,13 @@ def array_of(data: bytes, max_px: int) -> NDArray[Any]:
         shape, fortran, dtype = read(file)
     if dtype.hasobject:
         # The masks of cellpose lie in such.
-        cellpose = b"masks" in data and b"outlines" in data
-        what = "objects of cellpose (_seg.npy)" if cellpose else "Python objects"
-        cure = "Save the array of ids by itself, as whole numbers."
-        if cellpose:
+        what, cure = "Python objects", "Save the array of ids by itself, as whole numbers."
+        if b"masks" in data and b"outlines" in data:
+            what = "objects of cellpose (_seg.npy)"
             cure = (
                 "Export the masks: in the cellpose window 'File > Save masks as PNG', or in Python "
+                "`np.save('masks.npy', np.load(FILE, allow_pickle=True).item()['masks'])`."
             )
-            cure += "`np.save('masks.npy', np.load(FILE, allow_pickle=True).item()['masks'])`."
         raise unread(f"it holds {what}, and pickle is not read, as it may run programs.", cure)
     if min(shape, default=0) < 0 or not dtype.itemsize:
         raise damaged("a side is below 0, or its values have no bytes")
@@ -210,13 +209,13 @@ def array_of(data: bytes, max_px: int) -> NDArray[Any]:
         return values.reshape(shape, order="F" if fortran else "C")
 
 
-_FORMATS: tuple[tuple[str, tuple[bytes, ...], type[ImageFile.ImageFile]], ...] = (
-    ("PNG", (b"\x89PNG\r\n\x1a\n",), PngImagePlugin.PngImageFile),
-    ("TIFF", (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"), TiffImagePlugin.TiffImageFile),
-    ("GIF", (b"GIF87a", b"GIF89a"), GifImagePlugin.GifImageFile),
-    ("BMP", (b"BM",), BmpImagePlugin.BmpImageFile),
-    ("JPEG", (b"\xff\xd8\xff",), JpegImagePlugin.JpegImageFile),
-)
+_FORMATS: Mapping[str, tuple[tuple[bytes, ...], type[ImageFile.ImageFile]]] = {
+    "PNG": ((b"\x89PNG\r\n\x1a\n",), PngImagePlugin.PngImageFile),
+    "TIFF": ((b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"), TiffImagePlugin.TiffImageFile),
+    "GIF": ((b"GIF87a", b"GIF89a"), GifImagePlugin.GifImageFile),
+    "BMP": ((b"BM",), BmpImagePlugin.BmpImageFile),
+    "JPEG": ((b"\xff\xd8\xff",), JpegImagePlugin.JpegImageFile),
+}
 
 _JPEG_MARKER = re.compile(rb"\xff++([^\x00\xd0-\xd7])")
 _MOST_SCANS = 100
@@ -236,19 +235,15 @@ _CURE = (
 
 def format_of(data: bytes) -> str:
     """Return the format of a picture by its first bytes: PNG, TIFF, GIF, BMP, JPEG or nothing."""
-    return next((name for name, starts, _ in _FORMATS if data.startswith(starts)), "")
+    return next((name for name, (starts, _) in _FORMATS.items() if data.startswith(starts)), "")
 
 
 @contextmanager
 def opened(data: bytes, check: Callable[[int, int], None]) -> Iterator[Image.Image]:
     """Open a picture; what Pillow raises while it is decoded, inside, is a coded error too."""
     kind = format_of(data)
-    plugin = next((plugin for name, _, plugin in _FORMATS if name == kind), None)
-    if plugin is None:
-        raise InputError(
-            "E107", f"this is not a picture ({', '.join(name for name, _, _ in _FORMATS)}).",
-            cure="Export it as PNG.",
-        )  # fmt: skip
+    if not kind:
+        raise unread(f"this is not a picture ({', '.join(_FORMATS)}).", "Export it as PNG.")
     if kind == "JPEG" and _scans(data) > _MOST_SCANS:
         raise damaged(f"it has more than {_MOST_SCANS} scans")
     with ExitStack() as around:
@@ -256,7 +251,7 @@ def opened(data: bytes, check: Callable[[int, int], None]) -> Iterator[Image.Ima
         if kind == "TIFF":
             around.enter_context(silent_stderr())
         try:
-            image = plugin(io.BytesIO(data))
+            image = _FORMATS[kind][1](io.BytesIO(data))
             check(*image.size)
             if kind == "PNG" and not _holds_its_rows(data):
                 raise damaged("it does not hold all of its rows")
@@ -332,9 +327,6 @@ _TRANSPARENCY = {1, 2}
 ORIENTATION = 0x0112
 """Tag of EXIF and TIFF: how the camera was held."""
 
-_PLANES = 33629
-"""Tag of MetaMorph, of which the number of values is that of planes behind one page."""
-
 TURNS = {
     2: "mirrored left to right", 3: "turned by 180 degrees", 4: "mirrored top to bottom",
     5: "mirrored and turned", 6: "turned by 90 degrees clockwise", 7: "mirrored and turned",
@@ -345,8 +337,8 @@ TURNS = {
 TURNED_BACK = {6: 8, 8: 6}
 """Orientations that another one takes back; all others are their own opposite."""
 
-_NODATA = 42113
-"""Tag of GDAL: the number that stands for nothing."""
+_NODATA, _PLANES = 42113, 33629
+"""Tags of GDAL, the number that stands for nothing, and of MetaMorph: a value a plane."""
 
 _REVERSED = bytes(int(f"{byte:08b}"[::-1], 2) for byte in range(256))
 """Bytes with their bits in the other order."""
@@ -395,9 +387,8 @@ def inspect_tiff(data: bytes) -> TiffPage:
         compression, photometric = int(page.compression), int(page.photometric)
         orientation, nothing = page.tags.get(ORIENTATION), page.tags.get(_NODATA)
         nodata = None
-        if nothing is not None:
-            with suppress(ValueError):
-                nodata = float(str(nothing.value).strip("\0 "))
+        with suppress(ValueError):
+            nodata = None if nothing is None else float(str(nothing.value).strip("\0 "))
         missing, chunks = sum(count == 0 for count in page.databytecounts), math.prod(page.chunked)
         lossy = compression in _LOSSY
         found = TiffPage(
@@ -415,8 +406,7 @@ def inspect_tiff(data: bytes) -> TiffPage:
             page=page,
         )
     if planes > 1 or channels > 4:
-        said = f"{planes} planes" if planes > 1 else f"{channels} channels"
-        raise several_pages(said)
+        raise several_pages(f"{planes} planes" if planes > 1 else f"{channels} channels")
     return found
 
 
@@ -560,16 +550,13 @@ def _count_pages(data: bytes) -> int:
 
 def _planes(page: Any) -> int:
     """Return how many pictures lie behind one page, as programs for microscopes write them."""
-    said = page.description
-    stack = re.search(r"^images=(\d{1,9})\s*$", said, re.MULTILINE) if page.is_imagej else None
-    shape = re.search(r'"shape": \[([\d, ]{1,99})\]', said) if page.is_shaped else None
-    tag = page.tags.get(_PLANES) if page.is_stk else None
-    counts = [
-        int(page.imagedepth),
-        0 if stack is None else int(stack[1]),
-        0 if shape is None else math.prod(map(int, shape[1].split(","))) // math.prod(page.shape),
-        0 if tag is None else int(tag.count),
-    ]
+    said, counts = page.description, [int(page.imagedepth)]
+    if page.is_imagej and (stack := re.search(r"^images=(\d{1,9})\s*$", said, re.MULTILINE)):
+        counts.append(int(stack[1]))
+    if page.is_shaped and (shape := re.search(r'"shape": \[([\d, ]{1,99})\]', said)):
+        counts.append(math.prod(map(int, shape[1].split(","))) // math.prod(page.shape))
+    if page.is_stk and (tag := page.tags.get(_PLANES)) is not None:
+        counts.append(int(tag.count))
     return max(counts)
 
 
@@ -582,15 +569,10 @@ def _unreadable(page: Any) -> str:
     if dtype is None or not isinstance(bits, int) or dtype.itemsize * channels > _MOST_BYTES_A_PX:
         return f"{channels} channels of {bits} bits"
     whole = bits == 8 * dtype.itemsize
-    wrong = {
-        f"numbers of {bits} bits": not whole and (bits > 16 or dtype.kind not in "bu"),
-        f"{bits} bits a channel and compression {int(compression)}": (
-            int(compression) in _FAX and bits * channels != 1
-        ),
-        f"predictor {predictor} of {bits} bits": (
-            predictor not in (1, 2, 3)
-            or (predictor == 2 and (not whole or dtype.kind not in "iuf"))
-            or (predictor == 3 and dtype.kind != "f")
-        ),
-    }
-    return next((what for what, found in wrong.items() if found), "")
+    if not whole and (bits > 16 or dtype.kind not in "bu"):
+        return f"numbers of {bits} bits"
+    if int(compression) in _FAX and bits * channels != 1:
+        return f"{bits} bits a channel and compression {int(compression)}"
+    of_kinds = {1: dtype.kind, 2: "iuf" if whole else "", 3: "f"}
+    known = dtype.kind in of_kinds.get(predictor, "")
+    return "" if known else f"predictor {predictor} of {bits} bits"

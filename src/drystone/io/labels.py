@@ -17,7 +17,6 @@ MAX_ID = 2**32 - 1
 _GREY_TOLERANCE = 48
 """Colour fringe that an anti-aliased black-and-white picture may have, of 255."""
 
-
 _AT_ONCE_PX = 1_000_000
 
 _FEW_COLOURED = 0.001
@@ -55,11 +54,6 @@ class Census:
         return looked_up(np.concatenate((told[:1], told)), self.index, out)
 
 
-def take_census(ids: NDArray[Any]) -> Census:
-    """Count the values of an image of integers, none of them negative."""
-    return Census(*numbered(ids))
-
-
 @dataclass(frozen=True, eq=False)
 class IdImage:
     """An image of ids, and how bright it was."""
@@ -75,7 +69,7 @@ class IdImage:
     @cached_property
     def census(self) -> Census:
         """The different ids."""
-        return take_census(self.ids)
+        return Census(*numbered(self.ids))
 
     @property
     def said(self) -> tuple[Notice, ...]:
@@ -99,14 +93,14 @@ def to_ids(picture: Picture, background: int) -> IdImage:
     nothing is ground: alpha 0, NaN, the value of no data; and so is -1, which is no id.
     """
     values, notices = _as_picture(picture.values), picture.notices
-    transparent, mask, said = _transparent(values, picture.alpha, max(background, 0))
+    fill, channels = max(background, 0), 1 if values.ndim == 2 else values.shape[2]
+    transparent, mask, said = _transparent(values, picture.alpha, fill)
     if mask is not None:
         return IdImage(mask, 0, notices=(*notices, *said))
     no_ids = _no_numbers(values, picture.nodata, background)
     grounds = [there for _, there in no_ids]
     grounds += [] if transparent is None else [transparent]
     ground = np.logical_or.reduce(grounds) if grounds else None
-    fill, channels = max(background, 0), 1 if values.ndim == 2 else values.shape[2]
     if ground is not None:
         grey = fill <= 255 or channels < 3
         parts = [fill if grey else fill >> shift & 255 for shift in (0, 8, 16, 24)][:channels]
@@ -129,10 +123,6 @@ def to_ids(picture: Picture, background: int) -> IdImage:
     return replace(image, notices=(*notices, *said, *image.notices), has_edges=edges)
 
 
-_EDGES = "-1 (edges, as a watershed leaves them)"
-_OPAQUE = "Make them opaque if stones should be there."
-
-
 def _transparent(
     values: NDArray[Any], alpha: NDArray[Any] | None, background: int
 ) -> tuple[NDArray[np.bool_] | None, NDArray[Any] | None, tuple[Notice, ...]]:
@@ -148,14 +138,14 @@ def _transparent(
         if soft or (visible[0] == background).all() or (values == visible[0]).all():
             what = "all that is not transparent has one colour: alpha was read in place of it."
             cure = "Draw stones in ids of their own if they should keep them."
-            return None, alpha.view(np.uint8) if alpha.dtype == bool else alpha, (
-                Notice("W135", what, cure),
-            )  # fmt: skip
+            mask = alpha.view(np.uint8) if alpha.dtype == bool else alpha
+            return None, mask, (Notice("W135", what, cure),)
     changed = values != background
     changed = clear & (changed.any(axis=2) if changed.ndim == 3 else changed)
     if not changed.any():
         return clear, None, ()
-    return clear, None, (_ground_notice("transparent, whatever their colour", changed, _OPAQUE),)
+    cure = "Make them opaque if stones should be there."
+    return clear, None, (_ground_notice("transparent, whatever their colour", changed, cure),)
 
 
 def _no_numbers(
@@ -171,7 +161,8 @@ def _no_numbers(
     if nodata is not None and nodata != background:
         found.append((f"{nodata:g}, which the file says is no data", values == nodata))
     if kind != "u":
-        found.append((_EDGES if background != -1 else "", values == -1))
+        edges = "-1 (edges, as a watershed leaves them)"
+        found.append((edges if background != -1 else "", values == -1))
         if background < -1:
             found.append(("", values == background))
     return [(name, there) for name, there in found if there.any()]
@@ -221,19 +212,16 @@ def _ids_of_numbers(ids: NDArray[Any], background: int) -> IdImage:
 
 def _as_picture(values: NDArray[Any]) -> NDArray[Any]:
     """Drop planes of one; refuse stacks."""
-    found = np.asarray(values)
-    if found.size == 0:
-        what = f"there are no pixels: the shape is {found.shape}."
+    if values.size == 0:
+        what = f"there are no pixels: the shape is {values.shape}."
         raise LabelImageError("E104", what, cure="Give an image of at least one pixel.")
-    while found.ndim > 3 and found.shape[0] == 1:
-        found = found[0]
-    if found.ndim == 3 and found.shape[0] == 1 and found.shape[2] > 4:
-        found = found[0]
-    if found.ndim == 3 and found.shape[2] == 1:
-        found = found[:, :, 0]
-    if found.ndim == 2 or (found.ndim == 3 and found.shape[2] in (2, 3, 4)):
-        return found
-    raise several_pages(f"{found.ndim} dimensions of shape {found.shape}")
+    while values.ndim > 2 and values.shape[0] == 1 and (values.ndim > 3 or values.shape[2] > 4):
+        values = values[0]
+    if values.ndim == 3 and values.shape[2] == 1:
+        values = values[:, :, 0]
+    if values.ndim == 2 or (values.ndim == 3 and values.shape[2] in (2, 3, 4)):
+        return values
+    raise several_pages(f"{values.ndim} dimensions of shape {values.shape}")
 
 
 def _whole_numbers(values: NDArray[Any]) -> NDArray[Any]:
@@ -249,14 +237,13 @@ def _whole_numbers(values: NDArray[Any]) -> NDArray[Any]:
         # The largest id is beyond what 16 bits can be compared with.
         values = values.astype(np.float32)
     with np.errstate(invalid="ignore"):
-        found = (
+        for name, bad in (
             ("not finite", ~np.isfinite(values)),
             ("not whole numbers", values != np.floor(values)),
             ("not from 0 to 2^32-1", np.abs(values) > MAX_ID),
-        )
-    for name, bad in found:
-        if bad.any():
-            raise _not_ids(f"{int(bad.sum())} px are {name}", bad)
+        ):
+            if bad.any():
+                raise _not_ids(f"{int(bad.sum())} px are {name}", bad)
     return values.astype(np.int64)
 
 
@@ -298,7 +285,7 @@ def _ids_of_colours(colours: NDArray[Any], background: int) -> IdImage:
     for channel in (green, red):
         codes <<= 8
         codes |= channel.astype(np.uint8, copy=False)
-    census = take_census(codes)
+    census = Census(*numbered(codes))
     # What follows is asked of the colours, and not of every pixel.
     present = census.values
     parts = present[:, None] >> np.array([0, 8, 16]) & 255

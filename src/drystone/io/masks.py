@@ -14,12 +14,13 @@ from drystone.errors import InputError, LabelImageError, Notice
 from drystone.io.checks import blended
 from drystone.io.files import damaged, foreign, too_large, unfit, unusable
 from drystone.io.images import Picture, array_of
-from drystone.io.labels import Census, IdImage, take_census
+from drystone.io.labels import Census, IdImage
 from drystone.io.outlines_in.classes import Gathered
 from drystone.io.outlines_in.model import OutlineFile, trimmed
 from drystone.io.outlines_in.nested import not_stones, of_one_picture, said_of
 from drystone.io.patches import PlacedMask, StonePatch
 from drystone.io.read_settings import ReadSettings
+from drystone.kernels.ids import numbered
 from drystone.kernels.raster import Mask
 
 _USUAL_STONE_VALUES = (1, 255, 65535, 2**32 - 1)
@@ -56,7 +57,7 @@ def find_mask(image: IdImage, wanted: bool | None, *, lossy: bool = False) -> Bi
     if image.brightness is None:
         grey = ids
     elif wanted or image.nearly_grey:
-        grey = take_census(image.brightness)
+        grey = Census(*numbered(image.brightness))
     else:
         return None
     if len(grey.values) > 1 and wanted:
@@ -139,12 +140,10 @@ def without_others(
     A `doubtful` mask (E105) is refused as before, unless it is the ground of the others.
     """
     few = 0 < 2 * len(doubtful) <= len(patches)
-    if len(set(sizes)) > 1 or not (few or of_one_picture(patches)):
-        left: dict[int, str] = {}
-    else:
+    left: dict[int, str] = {}
+    if len(set(sizes)) == 1 and (few or of_one_picture(patches)):
         masks = {p.id: p for p in patches if p.area_px and p.id not in settings.skip}
-        size_px = (sizes[0][1], sizes[0][0])
-        left = not_stones(masks, size_px, settings.keep, by_program=True)
+        left = not_stones(masks, (sizes[0][1], sizes[0][0]), settings.keep, by_program=True)
     for number, error in doubtful.items():
         if number not in {*left, *settings.keep, *settings.skip}:
             raise error

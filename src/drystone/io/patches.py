@@ -34,7 +34,6 @@ _WHOLE = np.ones((3, 3), bool)
 MOST_PIECES = 100_000
 """Of all stones of a picture: more are no stones but noise, and fill the memory."""
 
-
 _WAIST = 1.6
 """Both parts must be this many times as thick as the neck between them."""
 
@@ -165,7 +164,7 @@ def stone_set(
     # One of several numbers stays until it is split.
     patches = [p for p in found if not {p.id, *numbers.get(p.id, ())} <= skip]
     # What is split must not depend on what is skipped.
-    limit_px = _smallest_stone_px(found if settings.pieces == "split" else patches, settings)
+    limit_px = smallest_stone_px(found if settings.pieces == "split" else patches, settings)
     patches, specks = _without_specks(patches, limit_px)
     patches, holes = _filled(patches, settings)
     patches, pieces = _in_one_piece(patches, settings, numbers)
@@ -183,24 +182,19 @@ def stone_set(
     return StoneSet(tuple(patch.to_stone() for patch in patches), source, tuple(noticed))
 
 
-def _smallest_stone_px(patches: Sequence[StonePatch], settings: ReadSettings) -> float:
-    """Return the area from which a patch is a stone: max(10 px, 0.1 % of the median area)."""
+def smallest_stone_px(
+    patches: Sequence[StonePatch], settings: ReadSettings, *, mask: bool = False
+) -> float:
+    """Return the area from which a patch is a stone: max(10 px, 0.1 % of the median area).
+
+    The components of a mask have no ids that somebody gave them: they are specks up to 1 % of the
+    median area, and no more than 50 px.
+    """
     if settings.min_area_px is not None:
         return settings.min_area_px
     areas = [patch.area_px for patch in patches if patch.area_px >= MIN_AREA_PX]
-    return max(MIN_AREA_PX, 0.001 * float(np.median(areas))) if areas else MIN_AREA_PX
-
-
-def smallest_of_mask_px(patches: Sequence[StonePatch], settings: ReadSettings) -> int:
-    """Return the same of the components of a mask, which have no ids that somebody gave them.
-
-    They are specks up to 1 % of the median area, and no more than 50 px.
-    """
-    least_px = _smallest_stone_px(patches, settings)
-    areas = [patch.area_px for patch in patches if patch.area_px >= MIN_AREA_PX]
-    if settings.min_area_px is None and areas:
-        least_px = max(least_px, min(_MOST_SPECK_PX, 0.01 * float(np.median(areas))))
-    return math.ceil(least_px)
+    median = float(np.median(areas)) if areas else 0.0
+    return max(MIN_AREA_PX, 0.001 * median, min(_MOST_SPECK_PX, 0.01 * median) if mask else 0.0)
 
 
 def _without_specks(
@@ -254,7 +248,7 @@ def piece_numbers(patches: Sequence[StonePatch], settings: ReadSettings) -> dict
     """
     if settings.pieces != "split" or not patches:
         return {}
-    stones, _ = _without_specks(patches, _smallest_stone_px(patches, settings))
+    stones, _ = _without_specks(patches, smallest_stone_px(patches, settings))
     whole, _ = _filled(stones, settings)
     used = {patch.id for patch in patches}
     numbers = chain(range(max(used) + 1, MAX_ID + 1), range(1, MAX_ID + 1))

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -30,7 +31,7 @@ from drystone.io.patches import (
     StonePatch,
     check_count,
     cut,
-    smallest_of_mask_px,
+    smallest_stone_px,
     stone_set,
 )
 from drystone.io.photo_beside import LABELS, PAGE, SCHEMA, read_sidecar, scale_beside
@@ -158,7 +159,8 @@ def _read_picture(picture: Picture, source: Source, settings: ReadSettings) -> S
         labels, count = masks.components(binary.mask)
         check_count(count)
         patches = cut(labels, np.arange(1, count + 1))
-        settings = replace(settings, min_area_px=smallest_of_mask_px(patches, settings))
+        least_px = math.ceil(smallest_stone_px(patches, settings, mask=True))
+        settings = replace(settings, min_area_px=least_px)
         between = ""
         if binary.between_px:
             between = f"; {binary.between_px} px of values between them went to the nearer one"
