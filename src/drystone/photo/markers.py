@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.errors import UsageError, extra
-
-Points = NDArray[np.float64]
+from drystone.kernels.polygons import Points
 
 _ALONG = np.linspace(0.1, 0.9, 81)
 """Places along an edge: not near the corners, which are rounded."""

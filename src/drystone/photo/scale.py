@@ -6,15 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from drystone.errors import InputError, Notice
+from drystone.kernels.polygons import Points
 from drystone.photo.layout import MarkerLayout
 from drystone.photo.markers import DICTIONARIES, FAMILIES, FoundMarker
 from drystone.photo.view import SQUARE, View, apply, depth, jacobian, refuse_horizon
-
-Points = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +83,7 @@ def scale_and_view(
     if percent > DOUBTFUL_PERCENT:
         said = f"The corners of the markers are {percent:.1f} % of a marker off on average."
         notices.append(Notice("W172", said, "Are they flat, sharp, and in the same plane?"))
-    refuse_horizon(View(plane.to_plane, 1.0, (used[0].id,)), size_px)
+    refuse_horizon(plane.to_plane, size_px)
     # The plane is turned and moved so that the picture stays upright and begins at 0, 0.
     middle = np.array(size_px) / 2.0
     local = jacobian(plane.to_plane, middle)

@@ -61,12 +61,6 @@ class LeftOut:
     area_px: int
     why: str
 
-    @property
-    def text(self) -> str:
-        """What a notice says of it."""
-        column, row = self.at_px
-        return f"{self.area_px} px at ({column:.0f}, {row:.0f}), {self.why}"
-
 
 BAND_PX = 4
 """How far an outline may be moved at a time."""
@@ -298,7 +292,7 @@ def refine_outlines(lab: Planes, stone: Mask, usable: Mask) -> Mask:
         band = (inner <= BAND_PX) & (outer <= BAND_PX) & usable
         here, there = _sides(lab, inner > BAND_PX, (outer > BAND_PX) & usable)
         way = here - there
-        contrast = np.sqrt((way**2).sum(axis=-1))
+        contrast = np.linalg.norm(way, axis=-1)
         share = ((lab - there) * way).sum(axis=-1) / np.maximum(contrast, 1e-6) ** 2
         moved = np.where(band & (contrast > _LEAST_CONTRAST), share > 0.5, stone)
         stone = ndimage.median_filter(moved.astype(np.uint8), 5).astype(bool)
@@ -311,7 +305,7 @@ def contrast_along(lab: Planes, labels: NDArray[np.int32]) -> NDArray[np.float64
     inner = ndimage.distance_transform_edt(stone)
     outer = ndimage.distance_transform_edt(~stone)
     here, there = _sides(lab, inner > 2, outer > 2)
-    contrast = np.sqrt(((here - there) ** 2).sum(axis=-1))
+    contrast = np.linalg.norm(here - there, axis=-1)
     rim = np.where(inner == 1, labels, 0)
     found = (contrast[rim == number] for number in range(1, int(labels.max()) + 1))
     # What other stones enclose has no rim.
@@ -322,19 +316,16 @@ def _sides(lab: Planes, inside: Mask, outside: Mask) -> tuple[Planes, Planes]:
     """Return the mean colours nearby of what is inside and of what is outside."""
     sides = []
     for part in (inside, outside):
-        weight = _near(part.astype(np.float32))
-        colour = [
-            _near(np.where(part, lab[..., k], np.float32(0))) / np.maximum(weight, 1e-4)
-            for k in range(3)
-        ]
-        sides.append(np.where((weight > 1e-3)[..., None], np.stack(colour, axis=-1), lab))
+        weight = _near(part[..., None].astype(np.float32))
+        colour = _near(np.where(part[..., None], lab, np.float32(0))) / np.maximum(weight, 1e-4)
+        sides.append(np.where(weight > 1e-3, colour, lab))
     return sides[0], sides[1]
 
 
 def _near(values: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return the mean nearby; twice a box is nearly a Gaussian, and faster."""
-    once = ndimage.uniform_filter(values, _WINDOW_PX)
-    return np.asarray(ndimage.uniform_filter(once, _WINDOW_PX))
+    once = ndimage.uniform_filter(values, _WINDOW_PX, axes=(0, 1))
+    return np.asarray(ndimage.uniform_filter(once, _WINDOW_PX, axes=(0, 1)))
 
 
 def split_stones(stone: Mask, lab: Planes, *, split: bool) -> tuple[Labels, tuple[Neck, ...]]:

@@ -73,10 +73,9 @@ def doubts_of(found: FoundStones, px_per_m: float | None = None) -> tuple[Doubt,
         if stone not in known and float(region.solidity) < _HOLLOW:
             text = f"stone {stone} at {_place(at[stone])} has a hollow outline"
             doubts.append(Doubt("W175", (stone,), at[stone], f"{text}: it may be two stones"))
-    doubts += [
-        Doubt("W176" if one.why in (EDGE, PAPER) else "W182", (), one.at_px, one.text)
-        for one in found.left_out
-    ]
+    for one in found.left_out:
+        text = f"{one.area_px} px at ({one.at_px[0]:.0f}, {one.at_px[1]:.0f}), {one.why}"
+        doubts.append(Doubt("W176" if one.why in (EDGE, PAPER) else "W182", (), one.at_px, text))
     faint = [one for one, value in enumerate(found.contrast, start=1) if value < _LOW_CONTRAST]
     doubts += [
         Doubt(code, (stone,), at[stone], f"stone {stone} at {_place(at[stone])}")

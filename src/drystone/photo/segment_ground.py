@@ -57,7 +57,8 @@ class GroundModel:
     @property
     def distance(self) -> NDArray[np.float32]:
         """Distance of every px from the ground, (h, w), in standard deviations of the ground."""
-        return _away((self.lab - self.colour) / self.spread).astype(np.float32)
+        away = (self.lab - self.colour) / self.spread
+        return np.asarray(np.linalg.norm(away, axis=-1), np.float32)
 
 
 def fit_ground(image: NDArray[np.uint8], usable: Mask, ground: Ground) -> GroundModel:
@@ -69,11 +70,9 @@ def fit_ground(image: NDArray[np.uint8], usable: Mask, ground: Ground) -> Ground
     value = np.arange(256) / 255  # of sRGB
     table = np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
     light = table.astype(np.float32)[image]
-    smooth = np.stack([ndimage.gaussian_filter(light[..., k], 1.0) for k in range(3)], axis=-1)
+    smooth = ndimage.gaussian_filter(light, 1.0, axes=(0, 1))
     step = max(1, round(np.sqrt(usable.size / 15_000)))
-    coarse = np.stack(
-        [ndimage.gaussian_filter(light[..., k], 2.0)[::step, ::step] for k in range(3)], axis=-1
-    )
+    coarse = ndimage.gaussian_filter(light, 2.0, axes=(0, 1))[::step, ::step]
     field = _fit_light(coarse, usable[::step, ::step], ground)
     # It is smooth, so it is evaluated on few places.
     planes = np.moveaxis(_basis((40, 40)) @ field, -1, 0)
@@ -116,7 +115,7 @@ def _fit_light(light: Planes, usable: Mask, ground: Ground) -> NDArray[np.float6
         raise _no_ground(0.0)
     lab = lab_of(light)
     log = np.log(np.maximum(light, 1e-3))
-    near = usable & (_away(lab - _frequent(lab, usable, ground)) < _NEAR)
+    near = usable & (np.linalg.norm(lab - _frequent(lab, usable, ground), axis=-1) < _NEAR)
     if not near.any():
         raise _no_ground(0.0)
     basis = _basis(usable.shape)
@@ -128,16 +127,12 @@ def _fit_light(light: Planes, usable: Mask, ground: Ground) -> NDArray[np.float6
         # Few terms of one size: the normal equations are exact enough, and fast.
         square = known_basis.T @ known_basis + 1e-9 * len(known_basis) * np.eye(terms)
         field[:terms] = np.linalg.solve(square, known_basis.T @ log[near])
-        away = _away(lab - lab_of(np.exp(basis @ field)))
+        away = np.linalg.norm(lab - lab_of(np.exp(basis @ field)), axis=-1)
         limit = np.clip(3.5 * 1.48 * np.median(away[near]), 6.0, 1.6 * _NEAR)
         near = usable & (away < limit)
         if near.sum() < max(20, 0.5 * LEAST_SHARE * usable.sum()):
             break
     return field
-
-
-def _away(difference: NDArray[Any]) -> NDArray[Any]:
-    return np.asarray(np.sqrt((difference**2).sum(axis=-1)))
 
 
 def _frequent(lab: Planes, usable: Mask, ground: Ground) -> NDArray[np.float64]:
@@ -157,7 +152,7 @@ def _frequent(lab: Planes, usable: Mask, ground: Ground) -> NDArray[np.float64]:
             counts = counts + np.histogramdd(lab[part], edges)[0] / part.sum()
     best = np.unravel_index(int(ndimage.gaussian_filter(counts, 0.8).argmax()), counts.shape)
     middle = np.array([edges[k][best[k]] + _BIN / 2 for k in range(3)])
-    near = lab[allowed][_away(lab[allowed] - middle) < 2 * _BIN]
+    near = lab[allowed][np.linalg.norm(lab[allowed] - middle, axis=-1) < 2 * _BIN]
     return np.asarray(np.median(near, axis=0) if len(near) else middle, np.float64)
 
 
@@ -176,12 +171,12 @@ def _statistics(
     values = lab[usable][:: max(1, int(usable.sum()) // 200_000)]
     limit = 1.6 * _NEAR
     for _ in range(3):
-        near = values[_away(values - colour) < limit]
+        near = values[np.linalg.norm(values - colour, axis=-1) < limit]
         if len(near) < 10:
             break
         colour = np.median(near, axis=0).astype(float)
-        limit = np.clip(4 * 1.48 * np.median(_away(near - colour)), 8.0, 30.0)
-    near = values[_away(values - colour) < limit]
+        limit = np.clip(4 * 1.48 * np.median(np.linalg.norm(near - colour, axis=-1)), 8.0, 30.0)
+    near = values[np.linalg.norm(values - colour, axis=-1) < limit]
     if len(near) < 10:
         return colour, np.full(3, 0.8), 0.0
     spread = 1.48 * np.median(np.abs(near - colour), axis=0)
@@ -270,13 +265,9 @@ def _direction(core: Mask, sure: Mask) -> NDArray[np.float64] | None:
 
     None when they fall anywhere.
     """
-    labels, count = ndimage.label(sure)
-    if count == 0:
-        return None
-    numbers = np.arange(1, count + 1)
-    boxes = ndimage.find_objects(labels)
+    labels, _ = ndimage.label(sure)
     vectors, weights = [], []
-    for number, box in zip(numbers, boxes, strict=True):
+    for number, box in enumerate(ndimage.find_objects(labels), start=1):
         pad = 3 * _WINDOW_PX
         area = tuple(slice(max(side.start - pad, 0), side.stop + pad) for side in box)
         stone = labels[area] == number

@@ -45,10 +45,10 @@ class SegmentedPhoto:
     found: FoundStones
     # (3, 3) homography from photo px to px of the picture (pixel centres at +0.5 in both).
     from_photo: NDArray[np.float64]
-    px_per_m: float | None = None  # px of the picture in a metre
-    view: View | None = None  # what the scale was taken from
-    markers: tuple[PlacedMarker, ...] = ()  # those of the view, in the frame of the picture
-    unasked: tuple[int, ...] = ()  # markers that nobody asked about: their papers are left out
+    px_per_m: float | None  # px of the picture in a metre
+    view: View | None  # what markers gave
+    markers: tuple[PlacedMarker, ...]  # those of the view, in the frame of the picture
+    unasked: tuple[int, ...]  # markers that nobody asked about: their papers are left out
 
     @property
     def notices(self) -> tuple[Notice, ...]:
@@ -79,14 +79,16 @@ def segment_photo(
     inside: Mask | None = None
     px_per_m: float | None = None
     markers: tuple[FoundMarker, ...] = ()
+    placed: tuple[PlacedMarker, ...] = ()
+    unasked: tuple[int, ...] = ()
+    height, width = image.shape[:2]
     if isinstance(scale, MarkerLayout):
         layout, markers = scale, find_markers(image)
-        view = scale_and_view(markers, layout, (image.shape[1], image.shape[0]))
-        above = rectify(image, view, max_px=max_px)
-        picture, inside, from_photo = above.values, above.inside, above.from_photo
-        px_per_m = above.px_per_m
+        view = scale_and_view(markers, layout, (width, height))
+        picture, px_per_m, inside, from_photo = rectify(image, view, max_px)
+        used = [marker for marker in markers if marker.id in view.ids]
+        placed = placed_markers(used, layout, from_photo, px_per_m, len(picture))
     else:
-        height, width = image.shape[:2]
         share = min(1.0, math.sqrt(max_px / (height * width)))
         size = (max(1, int(width * share)), max(1, int(height * share)))
         picture = image
@@ -95,9 +97,10 @@ def segment_photo(
         by = (size[0] / width, size[1] / height)
         from_photo = np.diag([*by, 1.0])
         if scale is not None:
-            view, px_per_m = View.flat(scale), scale * math.sqrt(by[0] * by[1])
+            px_per_m = scale * math.sqrt(by[0] * by[1])
         with suppress(UsageError):  # nobody asked for markers: none without OpenCV
             markers = find_markers(image)
+        unasked = tuple(dict.fromkeys(marker.id for marker in markers))
     if min_area is not None:
         value, unit = min_area
         if unit == "cm2":
@@ -106,14 +109,8 @@ def segment_photo(
             value *= 1e-4 * px_per_m**2
         settings = replace(settings or SegmentSettings(), min_area_px=value)
     papers = papers_of(markers, layout, from_photo, picture.shape[:2])
-    result = SegmentedPhoto(
-        picture, segment(picture, inside, settings, papers), from_photo, px_per_m, view
-    )
-    if view is None or layout is None:
-        return replace(result, unasked=tuple(dict.fromkeys(marker.id for marker in markers)))
-    used = [marker for marker in markers if marker.id in view.ids]
-    placed = placed_markers(used, layout, from_photo, above.px_per_m, len(picture))
-    return replace(result, markers=placed)
+    found = segment(picture, inside, settings, papers)
+    return SegmentedPhoto(picture, found, from_photo, px_per_m, view, placed, unasked)
 
 
 def papers_of(

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,17 +24,11 @@ class View:
     photo_to_ground: NDArray[np.float64]
     # In the middle of the photograph: what a rectified picture needs to be as fine as that.
     px_per_m: float
-    ids: tuple[int, ...] = ()  # markers that it was made from; empty for a scale that was given
-    # Root mean square distance, on the ground, of the marker corners from where they should be;
-    # None for a scale that was given.
-    residual_mm: float | None = None
-    residual_percent: float | None = None  # the same in percent of the side of a marker
-    notices: tuple[Notice, ...] = ()  # markers that were left out (W170, W171), doubts (W172)
-
-    @classmethod
-    def flat(cls, px_per_m: float) -> "View":
-        """Return the view from straight above: a scale, and nothing to be warped."""
-        return cls(np.diag([1.0 / px_per_m, 1.0 / px_per_m, 1.0]), float(px_per_m))
+    ids: tuple[int, ...]  # markers that it was made from
+    # Root mean square distance, on the ground, of the marker corners from where they should be.
+    residual_mm: float
+    residual_percent: float  # the same in percent of the side of a marker
+    notices: tuple[Notice, ...]  # markers that were left out (W170, W171), doubts (W172)
 
 
 def apply(
@@ -57,15 +51,11 @@ def jacobian(homography: NDArray[np.float64], point: NDArray[np.float64]) -> NDA
     return np.asarray((homography[:2, :2] - np.outer(moved, homography[2, :2])) / w)
 
 
-MAX_PX = 60_000_000
-"""Size that a rectified picture has at most."""
-
 MAX_STRETCH = 10.0
 """How many times coarser the farthest px of a photograph may be than the nearest."""
 
 
-@dataclass(frozen=True, eq=False)
-class Rectified:
+class Rectified(NamedTuple):
     """The ground as seen from straight above."""
 
     values: NDArray[np.uint8]  # (h, w, 3) RGB; black where the photograph shows nothing
@@ -75,14 +65,12 @@ class Rectified:
     from_photo: NDArray[np.float64]
 
 
-def rectify(image: NDArray[np.uint8], view: View, max_px: int = MAX_PX) -> Rectified:
+def rectify(image: NDArray[np.uint8], view: View, max_px: int) -> Rectified:
     """Turn a photograph into the picture that a camera far above would take; it shows all of it.
 
-    `px_per_m` of the result is that of the view, or less where `max_px` would be exceeded.  E173:
-    the horizon or what is near to it is in the photograph.
+    `px_per_m` of the result is that of the view, or less where `max_px` would be exceeded.
     """
     height, width = image.shape[:2]
-    refuse_horizon(view, (width, height))
     corners = apply(view.photo_to_ground, SQUARE * (width, height))
     low = corners.min(axis=0)
     extent = corners.max(axis=0) - low
@@ -94,9 +82,8 @@ def rectify(image: NDArray[np.uint8], view: View, max_px: int = MAX_PX) -> Recti
     # OpenCV puts 0 at the centre of the first pixel, here it is at its corner.
     half = np.array([[1.0, 0.0, 0.5], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0]])
     by = np.linalg.inv(half) @ from_photo @ half
-    shown = np.full(image.shape[:2], 255, dtype=np.uint8)
-    middle = np.array([image.shape[1] / 2.0, image.shape[0] / 2.0])
-    finer = float(np.abs(np.linalg.det(jacobian(from_photo, middle))))
+    shown = np.full((height, width), 255, dtype=np.uint8)
+    finer = float(np.abs(np.linalg.det(jacobian(from_photo, np.array([width, height]) / 2.0))))
     if finer < 0.5:
         # Px of the photograph between the samples would be skipped, and thin gaps with them.
         blur = 0.5 * math.sqrt(1.0 / finer - 1.0)
@@ -108,13 +95,12 @@ def rectify(image: NDArray[np.uint8], view: View, max_px: int = MAX_PX) -> Recti
     return Rectified(np.asarray(values, dtype=np.uint8), scale, inside, from_photo)
 
 
-def refuse_horizon(view: View, size_px: tuple[int, int]) -> None:
+def refuse_horizon(photo_to_ground: NDArray[np.float64], size_px: tuple[int, int]) -> None:
     """Refuse a view with the horizon, or almost, inside the photograph (E173)."""
     corners = SQUARE * size_px
-    w = depth(view.photo_to_ground, corners)
-    seen = bool((w > 0).all())
+    seen = bool((depth(photo_to_ground, corners) > 0).all())
     if seen:
-        areas = [abs(np.linalg.det(jacobian(view.photo_to_ground, corner))) for corner in corners]
+        areas = [abs(np.linalg.det(jacobian(photo_to_ground, corner))) for corner in corners]
         seen = max(areas) <= MAX_STRETCH**2 * min(areas)
     if not seen:
         raise InputError(

@@ -232,7 +232,7 @@ def _print(
         ("median stone", size(*middle)),
         *((name, f"{one.id}: {size(one.length_px, one.width_px)}") for name, one in ends),
     ]
-    if result.view is not None and result.view.ids:
+    if result.view is not None:
         said = f"{len(result.view.ids)}, residual {result.view.residual_mm:.2f} mm"
         rows.insert(2, ("markers", said))
     rows += [("notice", str(notice)) for notice in notices]
