@@ -261,7 +261,8 @@ def test_long_runs_come_back(height, width, data):
     run = data.draw(st.integers(1, size - first))
     counts = [first, run, size - first - run]
     packed = coco_mask.frPyObjects({"size": [height, width], "counts": counts}, height, width)
-    found = unpacked(packed["counts"].decode()).tolist()
+    packed["counts"] = packed["counts"].decode()
+    found = unpacked(packed["counts"]).tolist()
     assert found[:3] == counts[: len(found)]
     assert mask_of(packed, Room(10**8)).mask.sum() == run
 

@@ -17,7 +17,7 @@ from drystone.io.json_text import as_json, from_plain
 from drystone.planner.search_settings import SearchSettings
 from drystone.search.operators import OPERATORS
 from drystone.search.packed import PackedWall
-from drystone.search.state import Chains, SearchState
+from drystone.search.state import SearchState
 from drystone.whole_files import write_whole
 
 CHECKPOINT = "checkpoint.json"
@@ -104,7 +104,16 @@ def _check(state: SearchState, stone_ids: frozenset[int], search: SearchSettings
         raise ValueError("its rounds do not follow each other")
     if (chains is None) != bool(found) or len(found) > search.passes:
         raise ValueError("it has not the first walls of a round")
-    if chains is not None and not _possible(chains, search):
+    if chains is not None and not (
+        len(chains.links) == search.chains
+        and 0 <= chains.turn <= search.chains
+        and all(link.done >= 0 and link.number >= 0 for link in chains.links)
+        and all(
+            len(one.uses) == len(one.helped) == len(OPERATORS)
+            for link in chains.links
+            for one in (link.known, link.learnt)
+        )
+    ):
         raise ValueError("its chains are not those of the settings")
     for wall in _walls(state):
         ids = [group.stone_id for group in wall.groups]
@@ -113,17 +122,6 @@ def _check(state: SearchState, stone_ids: frozenset[int], search: SearchSettings
             raise ValueError("a wall is of other stones")
         if list(ends) != sorted(ends):
             raise ValueError("the courses of a wall are out of order")
-
-
-def _possible(chains: Chains, search: SearchSettings) -> bool:
-    """Say whether the settings lead to such chains."""
-    known = [one for link in chains.links for one in (link.known, link.learnt)]
-    return (
-        len(chains.links) == search.chains
-        and 0 <= chains.turn <= search.chains
-        and all(len(one.uses) == len(one.helped) == len(OPERATORS) for one in known)
-        and all(link.done >= 0 and link.number >= 0 for link in chains.links)
-    )
 
 
 def _walls(state: SearchState) -> Iterator[PackedWall]:

@@ -324,8 +324,8 @@ def without_blends(image: IdImage, least_px: int, *, wall: bool = False) -> IdIm
     )
     cure = (
         "Use --min-area 1 --pieces split (min_area_px=1, pieces='split' in Python) to keep their "
+        "values."
     )
-    cure += "values."
     if wall:
         cure = "Export the ids without anti-aliasing if they are right as they are."
     notices = (*image.notices, Notice("W136", what, cure))

@@ -54,7 +54,12 @@ def has_files(folder: Path) -> bool:
 def _taken(path: Path) -> BinaryIO:
     """Open and lock the file, again when it was removed in between."""
     while True:
-        file = _opened(path)
+        try:
+            file = path.open("ab")
+        except OSError as error:
+            what = f"no file can be written there ({error.strerror})."
+            cure = "Choose another folder with -o, one that has room and may be written to."
+            raise PlanError("E206", what, where=str(path.parent), cure=cure) from error
         try:
             _lock(file)
             if os.path.samestat(os.fstat(file.fileno()), path.stat()):
@@ -69,15 +74,6 @@ def _taken(path: Path) -> BinaryIO:
             cure = "Choose another with -o, or wait until that run has ended."
             raise UsageError("E149", what, where=str(path.parent), cure=cure) from error
         file.close()
-
-
-def _opened(path: Path) -> BinaryIO:
-    try:
-        return path.open("ab")
-    except OSError as error:
-        what = f"no file can be written there ({error.strerror})."
-        cure = "Choose another folder with -o, one that has room and may be written to."
-        raise PlanError("E206", what, where=str(path.parent), cure=cure) from error
 
 
 def _lock(file: BinaryIO) -> None:

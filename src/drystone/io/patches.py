@@ -220,21 +220,19 @@ def _filled(
     patches: list[StonePatch], settings: ReadSettings
 ) -> tuple[list[StonePatch], list[Notice]]:
     """Fill the holes of all patches (or only report them, ``holes="keep"``)."""
+    keep = settings.holes == "keep"
     result, found = [], []
     for patch in patches:
         holes = enclosed(patch.mask)
         count = int(holes.sum())
-        if not count:
-            result.append(patch)
-            continue
-        taken = 0 if patch.others is None else int((holes & patch.others).sum())
-        shared = f", {taken} px of them other stones'" if taken else ""
-        found.append(f"stone {patch}: {count} px{shared}")
-        keep = settings.holes == "keep"
-        result.append(patch if keep else replace(patch, mask=patch.mask | holes))
+        if count:
+            taken = 0 if patch.others is None else int((holes & patch.others).sum())
+            shared = f", {taken} px of them other stones'" if taken else ""
+            found.append(f"stone {patch}: {count} px{shared}")
+        result.append(replace(patch, mask=patch.mask | holes) if count and not keep else patch)
     if not found:
         return result, []
-    if settings.holes == "keep":
+    if keep:
         text = "holes kept open (areas and centroids without them; outlines as if filled)"
         return result, [Notice("W112", f"{text}: {listed(found, '; ', MANY)}.")]
     cure = "Use --holes keep (holes='keep' in Python) to leave them open."

@@ -146,20 +146,16 @@ def photo_of(stones: Path) -> Path | None:
     labels = stones / LABELS if (stones / LABELS).is_file() else stones
     sidecar = read_sidecar(labels)
     with suppress(OSError, ValueError):  # no file can have some names
-        name = _drawn_over(labels) if sidecar is None else sidecar.photo
+        name = "" if sidecar is None else sidecar.photo
+        if sidecar is None and labels.suffix.lower() == ".json":
+            content = json_in(labels)
+            if isinstance(content, dict) and "drystone" in content:  # our page drew over it
+                name = str(content.get("imagePath", ""))
         # A base name: what stands in the file leads nowhere else.
         photo = labels.with_name(Path(name).name)
         if photo.is_file() and _copy_of(photo, photo.parent).name in NAMES:
             return photo
     return None
-
-
-def _drawn_over(outlines: Path) -> str:
-    """Return the name of the picture that outlines of our page are drawn over; empty for none."""
-    content = json_in(outlines) if outlines.suffix.lower() == ".json" else None
-    if not isinstance(content, dict) or "drystone" not in content:
-        return ""
-    return str(content.get("imagePath", ""))
 
 
 def check_place(photo: Path | None, folder: Path) -> None:

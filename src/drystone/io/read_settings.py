@@ -13,8 +13,6 @@ Up = Literal["", "y", "z", "y-back", "z-back"]
 MOST_PX_PER_M = 1e9
 """A larger scale is none: a px would be less than a nanometre."""
 
-_MOST_MPX = 1e6
-
 
 @dataclass(frozen=True, kw_only=True)
 class ReadSettings:
@@ -98,7 +96,7 @@ class ReadSettings:
         }
         if self.min_area_px is not None and self.min_area_px < 1:
             wrong["min_area_px"] = "1 or more"
-        if not 0.0 < self.max_image_mpx <= _MOST_MPX:
+        if not 0.0 < self.max_image_mpx <= 1e6:
             wrong["max_image_mpx"] = "a number above 0, up to 1e6"
         if self.px_per_m is not None and not 0.0 < self.px_per_m <= MOST_PX_PER_M:
             wrong["px_per_m"] = "a number above 0, up to 1e9"

@@ -57,30 +57,30 @@ def write_labels(labels: Labels, path: str | Path) -> None:
 
 
 def read_wall_image(
-    path: str | Path, *, background: int = 0, max_image_mpx: float = 200.0, planned: bool = False
+    path: str | Path, *, background: int = 0, max_image_mpx: float = 200.0
 ) -> Labels:
     """Read any label image as a wall, (h, w): every pixel keeps its id, none is dropped or split.
 
     It is a PNG, TIFF, BMP, GIF or NPY: ids of 8, 16 or 32 bits, palette indices, or colours, where
     the id is the grey value for R = G = B, else R + 256 G + 65536 B (DESIGN 4.1).  Row 0 is at the
     top; the `background` becomes 0.  `max_image_mpx` is the largest picture that is decoded, in
-    millions of pixels.  One that was `planned` was written with a plan, which says what the ids
-    are: that they look like blended ones, as those of stones of a few px do, means nothing.
+    millions of pixels.
 
     E100, E106, E107, E109 or E110 when the file cannot be read, is damaged, of an unknown format, a
     stack, or too large.  E101 when values were blended (JPEG), E102 for a photo, E104 no stone,
     E105 another background, E108 values that cannot be ids (0 too, when the background is another).
     """
-    labels, _ = read_wall_picture(
-        Path(path), background=background, max_image_mpx=max_image_mpx, planned=planned
-    )
-    return labels
+    return read_wall_picture(Path(path), background=background, max_image_mpx=max_image_mpx)[0]
 
 
 def read_wall_picture(
     path: Path, *, background: int = 0, max_image_mpx: float = 200.0, planned: bool = False
 ) -> tuple[Labels, tuple[Notice, ...]]:
-    """Return the same, and what was made background, repaired or turned on the way."""
+    """Return the same, and what was made background, repaired or turned on the way.
+
+    One that was `planned` was written with a plan, which says what the ids are: that they look like
+    blended ones, as those of stones of a few px do, means nothing.
+    """
     with naming(path.name):
         picture = decode(given_bytes(path), int(max_image_mpx * 1e6))
         image = to_ids(picture, background)

@@ -25,7 +25,7 @@ from drystone.io.plan_folder import BLOCKS
 from drystone.io.plan_json import read_plan
 from drystone.io.read_settings import ReadSettings
 from drystone.io.read_stones import outline_reader, read_stones, stones_and_outlines
-from drystone.io.wall_image import painted, read_wall_image, read_wall_picture
+from drystone.io.wall_image import painted, read_wall_picture
 from drystone.kernels.label_runs import label_runs
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.model.plan import Plan
@@ -78,8 +78,8 @@ class GivenWall:
         return float(self.plan.settings.get("mu", 0.58)) if self.plan else 0.58
 
 
-MOST_MPX = 200.0
-"""Largest picture of a wall that is decoded, in millions of pixels."""
+MOST_PX = 200_000_000
+"""Of a picture of a wall."""
 
 PLAN = "plan.json"
 
@@ -235,7 +235,8 @@ def read_image_of(plan: Plan, folder: Path) -> Labels | None:
         return None
     # One that is far larger is not of the plan, and is not decoded to find that out.
     px = plan.width * plan.height * (plan.working_scale * (plan.px_per_m or 1.0)) ** 2
-    return read_wall_image(path, planned=True, max_image_mpx=min(max(1.0, 4e-6 * px), MOST_MPX))
+    most_mpx = min(max(1.0, 4e-6 * px), MOST_PX / 1e6)
+    return read_wall_picture(path, planned=True, max_image_mpx=most_mpx)[0]
 
 
 def read_blocks_of(plan: Plan, folder: Path) -> Any:
@@ -247,9 +248,6 @@ def read_blocks_of(plan: Plan, folder: Path) -> Any:
     return {} if content is None else content  # a null is there, and is no block model
 
 
-BEAR = "Only edges that meet bear on each other"
-
-
 def unsupported(model: RigidBlockModel, wall: GivenWall, *, swept: bool = False) -> Notice | None:
     """Name the blocks that no chain of contacts connects with the ground (W302).
 
@@ -258,35 +256,27 @@ def unsupported(model: RigidBlockModel, wall: GivenWall, *, swept: bool = False)
     loose = loose_blocks(model)
     if not loose:
         return None
-    said = f"{len(loose)} of {len(model.blocks)} blocks"
-    height = lowest(wall.blocks)
+    said = f"{len(loose)} of {len(model.blocks)}"
+    polygons = {} if wall.blocks is None else polygons_from_json(wall.blocks)
+    height = min((float(one[:, 1].min()) for one in polygons.values()), default=None)
     if height is not None and not on_ground(model):
         cure = "Move the wall down to y = 0, the ground, or give what carries it as fixed."
-        said = (
-            f"blocks in the air: {len(loose)} of {len(model.blocks)}, the lowest at y = {height:g}"
-        )
-        return Notice("W302", f"{said}.", cure)
-    said += f" touch neither the ground nor a block that is connected with it: {listed(loose)}."
-    cure = f"{BEAR}: --close-gaps auto of `drystone analyse` looks for the gaps to close."
+        return Notice("W302", f"blocks in the air: {said}, the lowest at y = {height:g}.", cure)
+    why = "touch neither the ground nor a block that is connected with it"
+    cure = "Only edges that meet bear on each other: "
     if wall.blocks is not None:
-        cure = f"{BEAR}: move blocks until they touch."
+        cure += "move blocks until they touch."
     elif swept:
         cure = "Trace what carries them, or leave them out with --skip."
-    return Notice("W302", said, cure)
+    else:
+        cure += "--close-gaps auto of `drystone analyse` looks for the gaps to close."
+    return Notice("W302", f"{said} blocks {why}: {listed(loose)}.", cure)
 
 
 def on_ground(model: RigidBlockModel) -> bool:
     """Tell whether anything stands on the ground, or is fixed like it."""
     fixed = any(block.fixed for block in model.blocks)
     return fixed or any(face.other == GROUND for face in model.interfaces)
-
-
-def lowest(blocks: Mapping[str, Any] | None) -> float | None:
-    """Return the height of the lowest point of a block model; None for what is no such model."""
-    if blocks is None:
-        return None
-    polygons = polygons_from_json(blocks).values()
-    return min((float(polygon[:, 1].min()) for polygon in polygons), default=None)
 
 
 def _blocks_of(plan: Plan, path: Path) -> dict[str, Any]:
@@ -368,10 +358,6 @@ def _read_json(
         raise refused(why) from error
     with foreign(lambda why: refused(f"is not valid JSON ({why}).")):
         return json_of(data.decode("utf-8-sig"))
-
-
-MOST_PX = 200_000_000
-"""Of a picture of a wall."""
 
 
 def wall_outlines(file: OutlineFile, stones: StoneSet) -> dict[int, Points] | None:

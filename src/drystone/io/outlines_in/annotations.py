@@ -25,6 +25,7 @@ from drystone.io.outlines_in.model import OutlinedStone, OutlineFile, Room, trim
 from drystone.io.patches import PlacedMask
 from drystone.io.photo_beside import photograph_in
 from drystone.io.read_settings import MOST_PX_PER_M, ReadSettings
+from drystone.kernels.polygons import Points
 
 _MARKED = {"proposed": "proposals that nobody accepted", "not_used": "marked as not to be used"}
 _BACK = "Open the file in outlines.html to change that."
@@ -239,7 +240,7 @@ def mask_of(value: Mapping[str, Any], room: Room) -> PlacedMask | None:
     width, height = _size_of(value)
     check_size(width, height, room.max_px)
     counts = value["counts"]
-    runs = unpacked(counts) if isinstance(counts, str | bytes) else _numbers(counts)
+    runs = unpacked(counts) if isinstance(counts, str) else _numbers(counts)
     if int(runs.sum()) != width * height:
         raise ValueError(f"counts add up to {int(runs.sum())}, not to {width} x {height} px")
     ends = np.cumsum(runs)
@@ -261,16 +262,15 @@ def mask_of(value: Mapping[str, Any], room: Room) -> PlacedMask | None:
     return PlacedMask(mask, top, first)
 
 
-def unpacked(text: str | bytes) -> NDArray[np.int64]:
+def unpacked(text: str) -> NDArray[np.int64]:
     """Return the counts of compressed run lengths.
 
     Five bits a character, least first, 32 for one more to come; from the fourth count on it is
     the difference to the one before the last.
     """
-    data = text.encode() if isinstance(text, str) else text
     counts: list[int] = []
     number, shift = 0, 0
-    for byte in data:
+    for byte in text.encode():
         bits = byte - 48
         if not 0 <= bits < 64 or shift > 30:
             raise ValueError(f"{chr(byte)!r} does not belong into packed counts")
@@ -433,8 +433,12 @@ def read_nesting(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
     if not settings.unit:
         text = "an instance says no unit: its numbers are taken as px, with y down."
         notices.append(Notice("W119", text, "Name the unit with --unit (unit in Python)."))
-    if _overlap(stones):
-        stones = list(_in_a_row(stones, whole=unit_m is None))
+    corners = [np.concatenate(stone.rings) for stone in stones]
+    low, high = (
+        np.reshape([of(one, axis=0) for one in corners], (-1, 2)) for of in (np.min, np.max)
+    )
+    if _overlap(low, high):
+        stones = list(_in_a_row(stones, low, high, whole=unit_m is None))
         notices.append(Notice("W119", "items lie over each other: they are laid in a row."))
     return OutlineFile(stones, unit_m, unit_m is not None, notices=notices, seen_by="none")
 
@@ -454,11 +458,10 @@ def _of_nesting(shape: Mapping[str, Any]) -> Iterator[list[Any]]:
         raise ValueError(f"a shape of the type {short(repr(shape.get('type')))}")
 
 
-def _overlap(stones: list[OutlinedStone]) -> bool:
-    """Tell whether the boxes of two stones share more than half of the smaller one."""
-    low, high = _boxes(stones)
+def _overlap(low: Points, high: Points) -> bool:
+    """Tell whether two boxes share more than half of the smaller one."""
     areas = (high - low).prod(axis=1)
-    for i in range(1, len(stones)):
+    for i in range(1, len(areas)):
         sides = np.minimum(high[:i], high[i]) - np.maximum(low[:i], low[i])
         shared = sides.clip(0.0).prod(axis=1)
         if (shared > 0.5 * np.minimum(areas[:i], areas[i])).any():
@@ -466,15 +469,10 @@ def _overlap(stones: list[OutlinedStone]) -> bool:
     return False
 
 
-def _boxes(stones: list[OutlinedStone]) -> tuple[Any, Any]:
-    corners = [np.concatenate(stone.rings) for stone in stones]
-    low = np.array([points.min(axis=0) for points in corners]).reshape(-1, 2)
-    return low, np.array([points.max(axis=0) for points in corners]).reshape(-1, 2)
-
-
-def _in_a_row(stones: list[OutlinedStone], *, whole: bool) -> Iterator[OutlinedStone]:
+def _in_a_row(
+    stones: list[OutlinedStone], low: Points, high: Points, *, whole: bool
+) -> Iterator[OutlinedStone]:
     """Move each behind the last one; by `whole` px, which changes no pixel of it."""
-    low, high = _boxes(stones)
     gap, x = _GAP * float((high - low).max()), 0.0
     for stone, start, end in zip(stones, low, high, strict=True):
         shift = np.array([x, 0.0]) - start

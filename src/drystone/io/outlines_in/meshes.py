@@ -4,8 +4,8 @@ import io
 import re
 from collections import Counter
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
 from itertools import islice
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from drystone.io.outlines_in import model
 from drystone.io.outlines_in.model import OutlinedStone, OutlineFile
 from drystone.io.outlines_in.silhouettes import asked, shadow
 from drystone.io.read_settings import ReadSettings
+from drystone.kernels.polygons import Points
 
 _OURS = (b"# drystone ", b"drystone, ")
 _HEAD = 400
@@ -40,15 +41,17 @@ _OF_AXIS = {
 }
 
 
-@dataclass(frozen=True, eq=False)
-class MeshBody:
+class MeshBody(NamedTuple):
     """A body of a mesh."""
 
     name: str  # empty when it has none
-    vertices: NDArray[np.float64]  # (n, 3), of the whole file
-    faces: Sequence[NDArray[np.int64]]  # positions in `vertices`, three or more a face
+    faces: Sequence[NDArray[np.int64]]  # positions in the vertices, three or more a face
     said: Collection[str] = ()
     """All that the file says of it after o or g, each once; only of an OBJ."""
+
+
+Mesh = tuple[Points, list[MeshBody]]
+"""Vertices, (n, 3), and bodies."""
 
 
 def mesh_kind(data: bytes, suffix: str) -> str | None:
@@ -73,12 +76,12 @@ def read_mesh(kind: str, data: bytes, settings: ReadSettings) -> OutlineFile:
     together is thinnest.  Along Y that needs to be told whether Z or Y is up, as one is the mirror
     image of the other.  Their unit is taken as the metre unless the settings name another.
     """
-    bodies = _BODIES[kind](data)
+    vertices, bodies = _MESHES[kind](data)
     used = np.unique(np.concatenate([np.concatenate(list(b.faces)) for b in bodies]))
     with foreign(lambda why: unusable(f"a vertex cannot be used ({why})")):
-        vertices = model.within_reach(bodies[0].vertices[used])
+        sides = np.ptp(model.within_reach(vertices[used]), axis=0)
     ours = data.startswith(_OURS)
-    axis = 1 if ours else int(np.argmin(np.ptp(vertices, axis=0)))
+    axis = 1 if ours else int(np.argmin(sides))
     if axis == 1 and not (ours or settings.up):
         raise InputError(
             "E116",
@@ -88,7 +91,7 @@ def read_mesh(kind: str, data: bytes, settings: ReadSettings) -> OutlineFile:
         )
     seen = asked(np.eye(3)[axis], settings.up)
     with foreign(lambda why: unusable(f"its faces cannot be united ({why})")):
-        flat = seen.of(bodies[0].vertices)
+        flat = seen.of(vertices)
         areas = [shadow([flat[face] for face in b.faces]) for b in bodies]
     both = [(body, area) for body, area in zip(bodies, areas, strict=True) if area]
     stones = [OutlinedStone(model.number_in(body.name), body.name, area) for body, area in both]
@@ -96,7 +99,7 @@ def read_mesh(kind: str, data: bytes, settings: ReadSettings) -> OutlineFile:
     why = "as drystone writes meshes" if ours else "in which the mesh is thinnest"
     text = f"{len(stones)} bodies, seen {seen.said} ({why})."
     notices = [Notice("W119", text, _OTHERWISE if ours or settings.up else _OF_AXIS[axis])]
-    if axis != 2 and _is_inside_out(bodies):
+    if axis != 2 and _is_inside_out(vertices, [face for body in bodies for face in body.faces]):
         text = "its faces look inwards: with axes of a left hand its stones are mirrored."
         notices.append(Notice("W119", text, "Say --up y-back or z-back if they are."))
     notices += model.left_aside(+edgewise, "Give every stone a closed surface.")
@@ -112,20 +115,19 @@ def read_mesh(kind: str, data: bytes, settings: ReadSettings) -> OutlineFile:
     return OutlineFile(stones, unit_m, True, notices=notices, in_space=True, seen_by="either")
 
 
-def _is_inside_out(bodies: Sequence[MeshBody]) -> bool:
+def _is_inside_out(vertices: Points, faces: Sequence[NDArray[np.int64]]) -> bool:
     """Tell whether bodies have a volume below 0, by the sense of rotation of their faces."""
-    faces = [face for body in bodies for face in body.faces]
     corners, sizes = np.concatenate(faces), np.array([len(face) for face in faces])
     ends = sizes.cumsum()
     after = np.roll(corners, -1)
     after[ends - 1] = corners[ends - sizes]
-    vertices = bodies[0].vertices - bodies[0].vertices[corners].mean(axis=0)
+    vertices = vertices - vertices[corners].mean(axis=0)
     first = vertices[np.repeat(corners[ends - sizes], sizes)]
     sixths = np.einsum("ij,ij->i", first, np.cross(vertices[corners], vertices[after]))
     return bool(sixths.sum() < -0.01 * np.abs(sixths).sum())
 
 
-def _stl_bodies(data: bytes) -> list[MeshBody]:
+def _stl(data: bytes) -> Mesh:
     """Read triangles, of a text or of binary data."""
     if data.lstrip().startswith(b"solid") and b"facet" in data[:_HEAD]:
         found = _STL_VERTEX.findall(data)
@@ -147,7 +149,7 @@ def _stl_bodies(data: bytes) -> list[MeshBody]:
     return _bodies(corners, list(np.arange(len(corners)).reshape(-1, 3)))
 
 
-def _ply_bodies(data: bytes) -> list[MeshBody]:
+def _ply(data: bytes) -> Mesh:
     trimesh = extra("trimesh", "reads PLY", "mesh", "mesh")
     with foreign(_cut):
         mesh = trimesh.load_mesh(io.BytesIO(data), file_type="ply", process=False)
@@ -164,7 +166,7 @@ def _cut(why: str) -> InputError:
     return damaged(why, what="mesh")
 
 
-def _obj_bodies(data: bytes) -> list[MeshBody]:
+def _obj(data: bytes) -> Mesh:
     """Read vertices, faces and object names of an OBJ; faces may have any number of corners.
 
     Where there are objects (o), groups (g) are their parts; otherwise they are the stones.
@@ -200,8 +202,8 @@ def _obj_bodies(data: bytes) -> list[MeshBody]:
         return _bodies(vertices, all_faces)
     vertices, all_faces = _welded(vertices, all_faces)
     rest = iter(all_faces)
-    return [
-        MeshBody(name, vertices, list(islice(rest, len(faces))), said)
+    return vertices, [
+        MeshBody(name, list(islice(rest, len(faces))), said)
         for (_, name), (faces, said) in parts.items()
     ]
 
@@ -222,8 +224,8 @@ def _name(kind: str, *words: str) -> str:
 
 
 def _welded(
-    vertices: NDArray[np.float64], faces: list[NDArray[np.int64]]
-) -> tuple[NDArray[np.float64], list[NDArray[np.int64]]]:
+    vertices: Points, faces: list[NDArray[np.int64]]
+) -> tuple[Points, list[NDArray[np.int64]]]:
     """Make corners in one place one vertex, whatever normals or textures they have.
 
     That place is as wide as what programs lose that turn and round each corner by itself.
@@ -250,7 +252,7 @@ def _welded(
     return places[first], np.split(label[corners], ends[:-1])
 
 
-def _bodies(vertices: NDArray[np.float64], faces: list[NDArray[np.int64]]) -> list[MeshBody]:
+def _bodies(vertices: Points, faces: list[NDArray[np.int64]]) -> Mesh:
     """Split faces into bodies that hang together, in the order of their first faces."""
     if not faces or not len(vertices):
         raise unusable("the mesh has no faces")
@@ -262,7 +264,7 @@ def _bodies(vertices: NDArray[np.float64], faces: list[NDArray[np.int64]]) -> li
     found: dict[int, list[NDArray[np.int64]]] = {}
     for label, face in zip(labels.tolist(), faces, strict=True):
         found.setdefault(label, []).append(face)
-    return [MeshBody("", vertices, part) for part in found.values()]
+    return vertices, [MeshBody("", part) for part in found.values()]
 
 
-_BODIES = {"obj": _obj_bodies, "ply": _ply_bodies, "stl": _stl_bodies}
+_MESHES = {"obj": _obj, "ply": _ply, "stl": _stl}

@@ -92,10 +92,10 @@ def not_stones(
     return shares.left | {i: f"a part of {whole}" for i, whole in wholes.items()}
 
 
-def said_of(left: Mapping[int, str], count: int, names: Mapping[int, str] | None = None) -> Notice:
+def said_of(left: Mapping[int, str], count: int, names: Mapping[int, str]) -> Notice:
     """List what is not a stone, and how to keep it."""
-    shown = {i: f"{i} {short((names or {}).get(i, ''))}".rstrip() for i in left}
-    why = listed((f"{shown[i]} ({left[i]})" for i in sorted(left)), most=MANY)
+    shown = (f"{f'{i} {short(names[i])}'.rstrip()} ({left[i]})" for i in sorted(left))
+    why = listed(shown, most=MANY)
     text = f"{len(left)} of {count} outlines or masks are not stones of their own, left out: {why}."
     return Notice("W119", text, "Use --keep ID (keep in Python) for each that is one.")
 

@@ -39,7 +39,12 @@ def in_px(file: OutlineFile, settings: ReadSettings) -> OutlineFile:
     They are told by the whole file: in px, no stone of it would have a pixel.  Its proportions are
     those of the picture; where the file does not say its size (E116), `image` names the picture.
     """
-    if not _are_shares(file):
+    rings = [ring for stone in file.stones for ring in stone.rings]
+    is_of_px = file.unit_m is None and file.seen_by != "none" and max(file.size_px or (3,)) >= 3
+    if not (rings and is_of_px) or any(stone.masks for stone in file.stones):
+        return file
+    points = np.concatenate(rings)
+    if not (points.min() >= -_BEYOND and points.max() <= 1.0 + _BEYOND):
         return file
     size = file.size_px or _size_of(settings.image)
     if size is None:
@@ -51,15 +56,6 @@ def in_px(file: OutlineFile, settings: ReadSettings) -> OutlineFile:
     stones = [stone.moved(lambda ring: np.asarray(ring * size)) for stone in file.stones]
     text = f"its coordinates are shares of the picture: taken times {size[0]} x {size[1]} px."
     return replace(file, stones=stones, size_px=size, notices=[*file.notices, Notice("W119", text)])
-
-
-def _are_shares(file: OutlineFile) -> bool:
-    rings = [ring for stone in file.stones for ring in stone.rings]
-    is_of_px = file.unit_m is None and file.seen_by != "none" and max(file.size_px or (3,)) >= 3
-    if not (rings and is_of_px) or any(stone.masks for stone in file.stones):
-        return False
-    points = np.concatenate(rings)
-    return bool(points.min() >= -_BEYOND and points.max() <= 1.0 + _BEYOND)
 
 
 def _size_of(image: str) -> tuple[int, int] | None:
@@ -110,18 +106,17 @@ def rastered(
         return patches, size_px, px_per_m, [said, *others]
     patches, lost, empty = [], [], []
     picture = PlacedMask(np.broadcast_to(np.True_, (height, width)), 0, 0)
-    for stone, placed in zip(stones, places, strict=True):
+    for stone, inside in zip(stones, places, strict=True):
         name = f"stone {stone.id} ({short(stone.name)})" if stone.name else f"stone {stone.id}"
-        inside = placed
-        within = None if placed is None else placed.shared(picture)[0]
-        if placed is not None and within is not None and within.shape != placed.mask.shape:
-            inside = model.trimmed(PlacedMask(within, max(0, placed.row), max(0, placed.col)))
-            if outside := int(placed.mask.sum()) - int(within.sum()):
+        placed = inside
+        if inside is not None and (within := inside.shared(picture)[0]).shape != inside.mask.shape:
+            placed = model.trimmed(PlacedMask(within, max(0, inside.row), max(0, inside.col)))
+            if outside := int(inside.mask.sum()) - int(within.sum()):
                 lost.append(f"{name}: {outside} px")
-        if inside is None:
+        if placed is None:
             empty.append(name)
             continue
-        place = inside.mask, inside.row, inside.col
+        place = placed.mask, placed.row, placed.col
         drawn = _drawn(stone, width, height)
         patches.append(StonePatch(*place, stone.id or 0, height, None, stone.name, drawn))
     if lost:

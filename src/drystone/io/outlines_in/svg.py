@@ -52,8 +52,6 @@ _NUMBER = re.compile(rf"\s*+(?:,\s*+)?({_DIGITS})")
 _FLAG = re.compile(r"\s*+(?:,\s*+)?([01])")
 _ARGUMENTS = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7, "Z": 0}
 
-Corner = NDArray[np.float64]
-
 
 class Subpath(NamedTuple):
     """A line of a path."""
@@ -113,9 +111,9 @@ class _Pen:
     done: list[Subpath] = field(default_factory=list)
     line: list[Points] = field(default_factory=list)
     corners: int = 0
-    at: Corner = field(default_factory=lambda: np.zeros(2))
-    begun: Corner = field(default_factory=lambda: np.zeros(2))
-    handle: Corner | None = None  # last control point, which smooth curves mirror
+    at: Points = field(default_factory=lambda: np.zeros(2))
+    begun: Points = field(default_factory=lambda: np.zeros(2))
+    handle: Points | None = None  # last control point, which smooth curves mirror
     last: str = ""  # command
 
     def draw(self, command: str, numbers: list[float]) -> None:
@@ -179,7 +177,7 @@ def bezier(points: Points) -> Points:
     return np.asarray(curve)
 
 
-def arc(start: Corner, shape: list[float], end: Corner) -> Points:
+def arc(start: Points, shape: list[float], end: Points) -> Points:
     """Return points on an elliptical arc, without its first (SVG 1.1, F.6).
 
     Its shape: both radii, turn of the x axis in degrees, large-arc flag, sweep flag.
@@ -209,7 +207,7 @@ def arc(start: Corner, shape: list[float], end: Corner) -> Points:
     return np.asarray(points)
 
 
-def lines_of(kind: str, attributes: Mapping[str, str], view: View | None = None) -> list[Subpath]:
+def lines_of(kind: str, attributes: Mapping[str, str], view: View | None) -> list[Subpath]:
     """Return the lines of a shape in its own coordinates; ValueError when it cannot be used."""
     if kind == "path":
         data = attributes.get("d", "")
@@ -233,7 +231,7 @@ def lines_of(kind: str, attributes: Mapping[str, str], view: View | None = None)
     return [Subpath(_rounded(low, high, radii), closed=True)]
 
 
-def _rounded(low: Corner, high: Corner, radii: Corner) -> Points:
+def _rounded(low: Points, high: Points, radii: Points) -> Points:
     """Return a rectangle whose corners are quarters of an ellipse."""
     if not radii.all():
         return model.rectangle(low, high)
@@ -333,7 +331,7 @@ class Page:
     unit_m: float | None  # metres in a unit of the page; None for px
     size: tuple[float, float] | None  # of the page, in its unit, if it is known
     view: View | None  # what per cents are of
-    notices: Sequence[Notice] = ()
+    notices: Sequence[Notice]
 
 
 def page_of(root: Mapping[str, str], settings: ReadSettings) -> Page:
@@ -370,7 +368,7 @@ def page_of(root: Mapping[str, str], settings: ReadSettings) -> Page:
     return Page(matrix, unit_m, (size[0], size[1]), view, notices)
 
 
-def _fitted(box: Sequence[float], size: Sequence[float], ratio: str = "") -> Matrix:
+def _fitted(box: Sequence[float], size: Sequence[float], ratio: str) -> Matrix:
     """Return the way from the units of a viewBox to a page with its origin at (0, 0).
 
     The drawing lies in the middle of the page, as it does unless a ratio says another thing.
@@ -520,9 +518,6 @@ _VISIBLE = {"visible": True, "hidden": False, "collapse": False}
 
 _UNPAINTED = {"none", "transparent"}
 
-Style = dict[str, str]
-"""Properties of an element."""
-
 
 @dataclass(frozen=True, eq=False)
 class _Place:
@@ -577,8 +572,7 @@ def read_svg(data: bytes, settings: ReadSettings) -> OutlineFile:
         if shape.kind == "rect" and page.size is not None and _covers(shape, page.size):
             walk.aside["rectangles over the whole page"] += 1
             continue
-        name = shape.place.name
-        label = layer(shape.place.group)
+        name, label = shape.place.name, layer(shape.place.group)
         stones.append(OutlinedStone(model.number_in(name), name, (shape.area,), label=label))
     px = page.size if page.unit_m is None else None
     size = None if px is None else (round(px[0]), round(px[1]))
@@ -652,7 +646,7 @@ class _Walk:
             else:
                 self.aside[kind] += 1
 
-    def _clip(self, style: Style, matrix: Matrix, place: _Place) -> Any:
+    def _clip(self, style: Mapping[str, str], matrix: Matrix, place: _Place) -> Any:
         """Return where an element is there: a planar shape, or None for everywhere.
 
         ValueError for masks, and for clips of other kinds than shapes.
@@ -696,8 +690,8 @@ class _Walk:
         with foreign(_no_clip):
             return shapely.union_all([region(area.rings, area.rule) for area in areas])
 
-    def _inside(self, name: str, area: Area, clip: Any) -> Area | None:
-        """Return what of a shape is there; of one without a name nothing is said."""
+    def _inside(self, name: str, area: Area, clip: Any) -> Area:
+        """Return what of a shape is there, perhaps no ring; without a name nothing is said."""
         corners = np.concatenate(area.rings)
         box = shapely.box(*corners.min(axis=0), *corners.max(axis=0))
         if shapely.covers(clip, box):
@@ -713,7 +707,7 @@ class _Walk:
             return area
         if share < 1.0 - _ALL:
             self.clipped[_OUTSIDE] |= {name: None} if name else {}
-            return None
+            return Area(())
         self.clipped[_CUT] |= {f"{name} ({100 * share:.2g} % is left)": None} if name else {}
         return Area(tuple(ring for part in inside for ring in part.rings))
 
@@ -723,7 +717,7 @@ class _Walk:
             release = f"{_RELEASE}, or export the outlines of stones only."
             raise too_large(what, release if what == _CLIPPED else _FEWER)
 
-    def _within(self, element: ET.Element, place: _Place, style: Style) -> _Place:
+    def _within(self, element: ET.Element, place: _Place, style: Mapping[str, str]) -> _Place:
         turn = transform(element.get("transform", ""))
         origin = style.get("transform-origin") or element.get("transform-origin", "")
         if origin and (turn[:2, :2] != np.eye(2)).any():
@@ -765,13 +759,13 @@ class _Walk:
         rings = tuple(model.within_reach(moved(place.matrix, points)) for points in closed)
         if not rings:
             return
-        area: Area | None = Area(rings, "evenodd" if place.rule == "evenodd" else "nonzero")
-        if area and place.clip is not None:
+        area = Area(rings, "evenodd" if place.rule == "evenodd" else "nonzero")
+        if place.clip is not None:
             name = "" if place.clipping else place.name or f"a {kind}"
             area = self._inside(name, area, place.clip)
-        if area and any(np.ptp(ring, axis=0).min() > 0.0 for ring in area.rings):
+        if any(np.ptp(ring, axis=0).min() > 0.0 for ring in area.rings):
             yield _Shape(area, place, kind)
-        elif area:
+        elif area.rings:
             self.aside[f"{kind} without an area"] += 1
 
 
@@ -785,7 +779,7 @@ def _covers(shape: _Shape, page: tuple[float, float]) -> bool:
     return bool((ring.min(axis=0) <= slack).all() and (ring.max(axis=0) >= page - slack).all())
 
 
-def _vanishes(style: Style) -> bool:
+def _vanishes(style: Mapping[str, str]) -> bool:
     """Tell what is hidden with all that is in it."""
     if style.get("display") == "none":
         return True
