@@ -16,7 +16,8 @@ from PIL import Image
 
 from drystone.io.read_settings import ReadSettings
 from tests.io import test_annotations
-from tests.io.pictures import png_of, two_stones
+from tests.io.pictures import npy, png_of, two_stones
+from tests.io.test_dxf import text_of
 
 EPS = b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 60 36\n%%EndComments\n(x) print\n%%EOF\n"
 STONE = '<rect width="9" height="9"/>'
@@ -52,7 +53,7 @@ def signalling():
     return values
 
 
-def npy(shape, descr="<u4"):
+def npy_of(shape, descr="<u4"):
     """The header of an array, and 4 bytes of it."""
     text = f"{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}".ljust(117) + "\n"
     return b"\x93NUMPY\x01\0" + struct.pack("<H", len(text)) + text.encode() + bytes(4)
@@ -63,11 +64,6 @@ def npz(members, compression=zipfile.ZIP_DEFLATED):
     with zipfile.ZipFile(buffer, "w", compression) as archive:
         for name, data in members.items():
             archive.writestr(name, data)
-    return buffer.getvalue()
-
-
-def saved(array):
-    np.save(buffer := io.BytesIO(), array)
     return buffer.getvalue()
 
 
@@ -119,10 +115,9 @@ def runs(side):
 
 
 def dxf(draw):
-    document, text = ezdxf.new(units=4), io.StringIO()
+    document = ezdxf.new(units=4)
     draw(document)
-    document.write(text)
-    return text.getvalue().encode()
+    return text_of(document)
 
 
 def polygon(*corners):
@@ -243,7 +238,7 @@ FILES = {
     "frame.gif": (lambda: gif(60_000, 60_000), "E110"),
     "strips.tif": (inflated, "E106 .*larger than the picture"),
     "packed.npz": (
-        lambda: npz({f"{i}.npy": saved(np.zeros((700, 700))) for i in range(2)}),
+        lambda: npz({f"{i}.npy": npy(np.zeros((700, 700))) for i in range(2)}),
         "E110",
     ),
     # tracebacks
@@ -255,10 +250,10 @@ FILES = {
     "wide.tif": (lambda: tiff_of({256: 2**32 - 1, 257: 2**32 - 1}), "E110"),
     "planes.tif": (lambda: tiff_of({32997: 9}), "E109 .*9 planes"),
     "entries.tif": (many_entries, "E106"),
-    "signalling.npy": (lambda: saved(signalling()), ""),
-    "shape.npy": (lambda: npy(f"({2**62}, {2**62})"), "E106"),
-    "sides.npy": (lambda: npy(f"({'9' * 400}, -1)"), "E106 .*below 0"),
-    "nothing.npy": (lambda: npy(f"({'9' * 400}, 9)", "|S0"), "E106 .*no bytes"),
+    "signalling.npy": (lambda: npy(signalling()), ""),
+    "shape.npy": (lambda: npy_of(f"({2**62}, {2**62})"), "E106"),
+    "sides.npy": (lambda: npy_of(f"({'9' * 400}, -1)"), "E106 .*below 0"),
+    "nothing.npy": (lambda: npy_of(f"({'9' * 400}, 9)", "|S0"), "E106 .*no bytes"),
     "alpha.tif": (lambda: tiff_of({338: 1}), "E101 "),
     "letters.tif": (
         lambda: tiff_of({259: 8}).replace(
@@ -266,9 +261,9 @@ FILES = {
         ),
         "E106 .*not a number",
     ),
-    "name.npy": (lambda: npy("(wide, 4)"), r"E106 .*<ast\.Name object>\)"),  # without address
-    "width.npy": (lambda: npy("(2160,)", "|S1000000000"), "E106"),
-    "lzma.npz": (lambda: npz({"a.npy": saved(two_stones())}, zipfile.ZIP_LZMA), "E106"),
+    "name.npy": (lambda: npy_of("(wide, 4)"), r"E106 .*<ast\.Name object>\)"),  # without address
+    "width.npy": (lambda: npy_of("(2160,)", "|S1000000000"), "E106"),
+    "lzma.npz": (lambda: npz({"a.npy": npy(two_stones())}, zipfile.ZIP_LZMA), "E106"),
     "infinite.dxf": (lambda: dxf(polygon((0, 0), (9, 0), (9, 9))).replace(b"9.0", b"1e999"), "E1"),
     "infinite.obj": (lambda: b"v 0 0 0\nv 1e999 0 0\nv 0 0 1\nf 1 2 3\n", "E114"),
     "faces.ply": (lambda: PLY % (b"9" * 5000) + b"3 0 1 2\n", "E1"),

@@ -1,9 +1,11 @@
 """Small pictures that the tests of the readers share."""
 
+import io
 import struct
 import zlib
 
 import numpy as np
+from PIL import Image
 
 
 def two_stones(first=300, second=70000, dtype=np.uint32):
@@ -44,6 +46,15 @@ def said(given):
 
 def areas(stones):
     return {stone.id: stone.area_px for stone in stones}
+
+
+def npy(values):
+    np.save(buffer := io.BytesIO(), values)
+    return buffer.getvalue()
+
+
+def save_mask(path, mask):
+    Image.fromarray(np.asarray(mask, np.uint8) * np.uint8(255)).save(path)
 
 
 def png_of(width, height, depth, colour_type, lines, palette=b""):

@@ -10,7 +10,7 @@ from scipy import ndimage
 from drystone.errors import DrystoneError, ExitCode, InputError, LabelImageError, UsageError
 from drystone.io.photo_beside import PhotoSidecar, write_sidecar
 from drystone.io.read_stones import ReadSettings, read_stones
-from tests.io.pictures import areas, codes, discs, many_stones, said, two_stones
+from tests.io.pictures import areas, codes, discs, many_stones, said, save_mask, two_stones
 
 LARGEST = ReadSettings(pieces="keep-largest")
 SPLIT = ReadSettings(pieces="split")
@@ -262,10 +262,6 @@ def test_a_stone_cropped_to_its_box_is_no_background():
 
 
 # -- folder of masks ---------------------------------------------------------------------------
-
-
-def save_mask(path, mask):
-    Image.fromarray(mask.astype(np.uint8) * 255).save(path)
 
 
 def test_folder_is_numbered_in_natural_order(tmp_path):

@@ -12,7 +12,7 @@ from drystone.io.files import listed, short
 from drystone.io.photo_file import read_photo
 from drystone.io.read_settings import ReadSettings
 from drystone.io.read_stones import read_stones
-from tests.io.pictures import codes, two_stones
+from tests.io.pictures import codes, save_mask, two_stones
 
 LONG = "x" * 100_000
 
@@ -74,10 +74,6 @@ def strange(folder, name):
     if sys.platform in {"win32", "darwin"}:
         pytest.skip("names of files are Unicode there")
     return folder / os.fsdecode(name)
-
-
-def save_mask(path, mask):
-    Image.fromarray(np.asarray(mask, np.uint8) * np.uint8(255)).save(path)
 
 
 def test_names_that_are_no_utf8_can_be_written_down(tmp_path):

@@ -15,7 +15,7 @@ from drystone.io.images import decode
 from drystone.io.read_stones import ReadSettings, read_stones
 from drystone.io.wall_image import read_wall_image
 from drystone.io.walls import read_wall
-from tests.io.pictures import areas, codes, png_of, two_stones
+from tests.io.pictures import areas, codes, npy, png_of, two_stones
 
 LIMIT = 10**6
 
@@ -45,11 +45,6 @@ def palette(values, kind):
     image = Image.fromarray(values.astype(np.uint8))
     image.putpalette([0, 0, 0, *[9] * 765])
     image.save(buffer := io.BytesIO(), kind)
-    return buffer.getvalue()
-
-
-def npy(values):
-    np.save(buffer := io.BytesIO(), values)
     return buffer.getvalue()
 
 

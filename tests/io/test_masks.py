@@ -1,4 +1,4 @@
-"""Which pictures are masks, and how their stones are numbered."""
+"""Which pictures and archives of arrays are masks, and how their stones are numbered."""
 
 import numpy as np
 import pytest
@@ -8,9 +8,10 @@ from hypothesis.extra.numpy import array_shapes, arrays
 from PIL import Image
 from scipy import ndimage
 
-from drystone.errors import LabelImageError, UsageError
+from drystone.errors import InputError, LabelImageError, UsageError
 from drystone.io.masks import components
 from drystone.io.read_stones import ReadSettings, read_stones
+from tests.io.known_stones import PIECES, compare, label_image, masks
 from tests.io.pictures import areas, codes, discs, many_stones, two_stones
 from tests.naive import io as naive
 
@@ -153,3 +154,51 @@ def test_forced_reading_never_crashes_and_loses_nothing(values, mask):
     stones = read_stones(np.pad(labels, 1), settings=settings)
     expected = (labels > 0).sum() if not mask else (2 * labels >= labels.max()).sum()
     assert stones.total_area_px == expected
+
+
+# -- archives of arrays -------------------------------------------------------------------------
+
+
+def saved(tmp_path, **arrays):
+    np.savez_compressed(tmp_path / "stones.npz", **arrays)
+    return tmp_path / "stones.npz"
+
+
+def test_an_array_of_labels_is_enough(tmp_path):
+    path = saved(tmp_path, image=np.zeros((40, 60, 3)), labels=label_image(), x=np.arange(3))
+    assert compare(read_stones(path, settings=PIECES)) == (1.0, 0.0, 0.0)
+
+
+def test_a_mask_a_stone(tmp_path):
+    given = {f"stone_{i}": mask.astype(np.uint8) * 255 for i, mask in masks().items()}
+    stones = read_stones(saved(tmp_path, **given), settings=PIECES)
+    assert compare(stones) == (1.0, 0.0, 0.0)
+    assert stones.by_id(300).name == "stone_300"
+    by_name = {f"m{i}": mask for i, mask in masks().items()}
+    assert {stone.id for stone in read_stones(saved(tmp_path, **by_name), settings=PIECES)} == {
+        *range(1, 8)
+    }
+
+
+@pytest.mark.parametrize(
+    ("arrays", "text"),
+    [
+        ({"a": np.zeros((4, 4)), "b": np.zeros((5, 4))}, "not masks of one picture"),
+        ({"a": np.zeros(4), "b": np.zeros(4)}, "not masks of one picture"),
+        ({"a": np.eye(4), "b": np.arange(16).reshape(4, 4)}, "'b' is not a mask"),
+    ],
+)
+def test_arrays_that_are_no_masks(tmp_path, arrays, text):
+    with pytest.raises(InputError, match=rf"E114.*{text}"):
+        read_stones(saved(tmp_path, **arrays))
+
+
+def test_damaged_archives(tmp_path):
+    path = saved(tmp_path, a=label_image())
+    data = path.read_bytes()
+    path.write_bytes(data[:-40])
+    with pytest.raises(InputError, match=r"E106"):
+        read_stones(path)
+    np.savez(path, a=np.array([{}], dtype=object), b=np.zeros(3))
+    with pytest.raises(InputError, match=r"E107.*pickle"):
+        read_stones(path)

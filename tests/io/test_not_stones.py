@@ -8,7 +8,7 @@ from drystone.errors import InputError, UsageError
 from drystone.io.outlines_in.classes import is_other
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.labelled import CLASSES, FORMS, HEIGHT, WIDTH, box, stones, written
-from tests.io.pictures import said
+from tests.io.pictures import said, save_mask
 
 
 def read(folder, form, shapes, **settings):
@@ -178,7 +178,7 @@ def _one(ring):
 
 def folder_of(path, masks):
     for i, mask in enumerate(masks):
-        Image.fromarray(mask.astype(np.uint8) * 255).save(path / f"{i}.png")
+        save_mask(path / f"{i}.png", mask)
     return path
 
 
