@@ -2,7 +2,6 @@
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from statistics import median
 from typing import Any, NamedTuple
 
@@ -24,10 +23,6 @@ LOOKS = (
 """Colour and marker of a group, so that neither alone must be told apart; then round again."""
 
 PANEL_IN = (3.6, 2.7)
-TWO_IN = (5.2, 3.8)
-COLUMNS = 4
-"""Panels in a row at most."""
-
 SPREAD = 0.28
 """Half the width of a strip; groups are 1 apart."""
 
@@ -122,17 +117,15 @@ def group_panels(
     claims: Mapping[str, Mapping[str, float]] | None = None,
 ) -> Figure:
     """Draw several figures of the same groups, a panel each."""
-    sheet, panels = panel_sheet(len(figures), COLUMNS, PANEL_IN, title)
+    sheet, panels = panel_sheet(len(figures), 4, PANEL_IN, title)
     for ax, (name, groups) in zip(panels, figures.items(), strict=True):
         plot_groups(groups, ax, figure=name, claims=(claims or {}).get(name))
     return sheet
 
 
-def plot_two_figures(
-    groups: Mapping[str, Pairs], ax: Axes | None = None, *, across: str, up: str
-) -> Axes:
+def plot_two_figures(groups: Mapping[str, Pairs], *, across: str, up: str) -> Axes:
     """Draw one figure over another, a point a wall; large ones are medians of groups."""
-    ax = Figure(figsize=TWO_IN).add_subplot() if ax is None else ax
+    ax = Figure(figsize=(5.2, 3.8)).add_subplot()
     for place, (name, pairs) in enumerate(groups.items()):
         colour, marker = LOOKS[place % len(LOOKS)]
         found = [(x, y) for x, y in pairs if x is not None and y is not None]
@@ -167,100 +160,81 @@ def _shifts(values: Sequence[float]) -> list[float]:
     return shifts
 
 
-FULL: dict[str, Any] = {"marker": "o", "color": CLUSTER_COLOURS[0]}
-POOR: dict[str, Any] = {"marker": "^", "color": CLUSTER_COLOURS[1]}
-"""Walls above and below the threshold of filling: blue points and yellow triangles."""
-
-REFERENCE: dict[str, Any] = {
-    "linestyle": (0, (5, 3)), "linewidth": 1.3, "marker": "s", "markersize": 3.5,
-    "color": CLUSTER_COLOURS[12],
+_POINTS: dict[str, Any] = {
+    "linestyle": "", "markersize": 4, "alpha": 0.8, "markeredgecolor": OUTLINE_COLOUR,
+    "markeredgewidth": 0.3,
 }  # fmt: skip
-BASELINE: dict[str, Any] = {
-    "linestyle": "dotted", "linewidth": 1.2, "marker": "x", "markersize": 4, "color": OUTLINE_COLOUR
-}  # fmt: skip
+NOISE_LOOKS: tuple[dict[str, Any], ...] = (
+    {**_POINTS, "marker": "o", "color": CLUSTER_COLOURS[0]},
+    {**_POINTS, "marker": "^", "color": CLUSTER_COLOURS[1]},
+    {
+        "linestyle": (0, (5, 3)), "linewidth": 1.3, "marker": "s", "markersize": 3.5,
+        "color": CLUSTER_COLOURS[12], "zorder": 3,
+    },
+    {
+        "linestyle": "dotted", "linewidth": 1.2, "marker": "x", "markersize": 4,
+        "color": OUTLINE_COLOUR, "zorder": 3,
+    },
+)  # fmt: skip
+"""Walls above and below the threshold of filling, as blue points and yellow triangles; lines of
+references and of a baseline."""
 
 SHIFTS = (0.0, 1.4, -1.4, 2.8, -2.8)
 """Walls of one level in turn, so that they do not hide each other; % of noise."""
 
-NoisePairs = Sequence[tuple[int, float]]
-
-
-@dataclass(frozen=True)
-class NoisePanel:
-    """One figure of many walls."""
-
-    figure: str  # Which, with its unit; written at the axis
-    # full, poor: Noise in % and value of the walls filled above and below the threshold
-    full: NoisePairs
-    poor: NoisePairs
-    reference: Mapping[int, float]
-    baseline: Mapping[int, float]
-
-
-NoiseNames = tuple[str, str, str, str]
-"""What the legend calls full and poor walls, the reference and the baseline."""
+NoiseSeries = Sequence[Sequence[tuple[int, float]]]
+"""Noise in % and value of what each of :data:`NOISE_LOOKS` shows."""
 
 
 def noise_panels(
-    panels: Sequence[NoisePanel], names: NoiseNames, ticks: Mapping[int, str]
+    panels: Mapping[str, NoiseSeries], names: Sequence[str], ticks: Mapping[int, str]
 ) -> Figure:
-    """Draw several figures of the same walls over the noise, with one legend above."""
+    """Draw several figures of the same walls over the noise, with one legend above.
+
+    Panels are by what is written at the axis; the legend has a name a series.
+    """
     sheet, axes = panel_sheet(len(panels), 2, (3.9, 2.8))
-    for ax, panel in zip(axes, panels, strict=True):
-        _plot_noise(ax, panel, names)
+    for ax, (figure, series) in zip(axes, panels.items(), strict=True):
+        for name, pairs, look in zip(names, series, NOISE_LOOKS, strict=True):
+            seen: Counter[int] = Counter()
+            x = []
+            for noise, _ in pairs:
+                x.append(noise + SHIFTS[seen[noise] % len(SHIFTS)])
+                seen[noise] += 1
+            ax.plot(x, [value for _, value in pairs], label=name, gid=name, **look)
+        name_axes(ax, "noise, %", figure)
+        ax.grid(axis="y", color=GREY, linewidth=0.3, alpha=0.5)
         ax.set_xticks(list(ticks), list(ticks.values()))
     handles, labels = axes[0].get_legend_handles_labels()
     sheet.legend(handles, labels, fontsize=7, frameon=False, loc="outside upper center", ncols=4)
     return sheet
 
 
-def _plot_noise(ax: Axes, panel: NoisePanel, names: NoiseNames) -> None:
-    full, poor, reference, baseline = names
-    for name, pairs, look in ((full, panel.full, FULL), (poor, panel.poor, POOR)):
-        seen: Counter[int] = Counter()
-        x = []
-        for noise, _ in pairs:
-            x.append(noise + SHIFTS[seen[noise] % len(SHIFTS)])
-            seen[noise] += 1
-        ax.plot(
-            x, [value for _, value in pairs], linestyle="", markersize=4, alpha=0.8,
-            markeredgecolor=OUTLINE_COLOUR, markeredgewidth=0.3, label=name, gid=name, **look,
-        )  # fmt: skip
-    for name, line, look in (
-        (reference, panel.reference, REFERENCE),
-        (baseline, panel.baseline, BASELINE),
-    ):
-        ax.plot(list(line), list(line.values()), label=name, gid=name, zorder=3, **look)
-    name_axes(ax, "noise, %", panel.figure)
-    ax.grid(axis="y", color=GREY, linewidth=0.3, alpha=0.5)
-
-
 VersionLines = Mapping[str, Sequence[float | None]]
 """By method: a value a version, None where there is none."""
-
-
-def plot_history(ax: Axes, versions: Sequence[str], lines: VersionLines, figure: str) -> None:
-    """Draw a figure over versions, a line a method; dashed where colours come round again."""
-    for number, (method, values) in enumerate(lines.items()):
-        turn, place = divmod(number, len(LOOKS))
-        colour, marker = LOOKS[place]
-        points = [(x, value) for x, value in enumerate(values) if value is not None]
-        ax.plot(
-            [x for x, _ in points], [value for _, value in points], color=colour, marker=marker,
-            markersize=4.5, linewidth=1, linestyle="--" if turn else "-", label=method,
-        )  # fmt: skip
-    ax.set_xticks(range(len(versions)), versions)
-    ax.set_xlim(-0.4, len(versions) - 0.6)
-    name_axes(ax, "version", figure)
 
 
 def history_panels(
     versions: Sequence[str], figures: Mapping[str, VersionLines], title: str
 ) -> Figure:
-    """Draw several figures over versions, with one legend."""
+    """Draw several figures over versions, a line a method, with one legend.
+
+    Lines are dashed where colours come round again.
+    """
     sheet, panels = panel_sheet(len(figures), 3, (3.4, 2.4), title)
-    for ax, (name, lines) in zip(panels, figures.items(), strict=True):
-        plot_history(ax, versions, lines, name)
+    for ax, (figure, lines) in zip(panels, figures.items(), strict=True):
+        for number, (method, values) in enumerate(lines.items()):
+            turn, place = divmod(number, len(LOOKS))
+            colour, marker = LOOKS[place]
+            points = [(x, value) for x, value in enumerate(values) if value is not None]
+            ax.plot(
+                [x for x, _ in points], [value for _, value in points], color=colour,
+                marker=marker, markersize=4.5, linewidth=1, linestyle="--" if turn else "-",
+                label=method,
+            )  # fmt: skip
+        ax.set_xticks(range(len(versions)), versions)
+        ax.set_xlim(-0.4, len(versions) - 0.6)
+        name_axes(ax, "version", figure)
     handles, labels = panels[0].get_legend_handles_labels()
     sheet.legend(
         handles, labels, fontsize=7, edgecolor="none", loc="outside lower center",
@@ -279,29 +253,26 @@ PART_COLOURS: Mapping[Part, str] = {
 """Blue, green and shades of orange, as in Fig. 28, where the last three are one: selection."""
 
 REST = "rest"
-STEPS_IN = (4.2, 3.2)
-
-
-def plot_step_times(ax: Axes, steps: Sequence[StepTime]) -> None:
-    """Draw the time of every step as a bar, its parts on top of each other (Fig. 28)."""
-    number = np.arange(1, len(steps) + 1)
-    foot = np.zeros(len(steps))
-    for part, colour in PART_COLOURS.items():
-        height = 1e3 * np.array([step.parts.get(part, 0.0) for step in steps])
-        ax.bar(number, height, 0.8, foot, color=colour, label=part)
-        foot += height
-    rest = np.maximum(0.0, 1e3 * np.array([step.seconds for step in steps]) - foot)
-    ax.bar(number, rest, 0.8, foot, color=GREY, label=REST)
-    ax.set_xlim(0.4, len(steps) + 0.6)
-    name_axes(ax, "step", "ms")
 
 
 def step_time_panels(runs: Mapping[str, Sequence[StepTime]]) -> Figure:
-    """Draw the steps of several walls side by side, with one legend."""
-    figure = Figure(figsize=(STEPS_IN[0] * len(runs), STEPS_IN[1]))
+    """Draw the time of every step as a bar, its parts on top of each other (Fig. 28).
+
+    Walls are side by side, with one legend.
+    """
+    figure = Figure(figsize=(4.2 * len(runs), 3.2))
     panels = figure.subplots(1, len(runs), squeeze=False)[0]
     for ax, (title, steps) in zip(panels, runs.items(), strict=True):
-        plot_step_times(ax, steps)
+        number = np.arange(1, len(steps) + 1)
+        foot = np.zeros(len(steps))
+        for part, colour in PART_COLOURS.items():
+            height = 1e3 * np.array([step.parts.get(part, 0.0) for step in steps])
+            ax.bar(number, height, 0.8, foot, color=colour, label=part)
+            foot += height
+        rest = np.maximum(0.0, 1e3 * np.array([step.seconds for step in steps]) - foot)
+        ax.bar(number, rest, 0.8, foot, color=GREY, label=REST)
+        ax.set_xlim(0.4, len(steps) + 0.6)
+        name_axes(ax, "step", "ms")
         ax.set_title(title, fontsize=8)
     handles, labels = panels[0].get_legend_handles_labels()
     figure.tight_layout()

@@ -16,19 +16,11 @@ from drystone.drawing.pictures.wall import plot_wall
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels, Wall
 
-FIGURE_IN = 11.0
-"""Width of the sheet where that leaves room for its panels."""
-
-NARROWEST_IN = 3.2
-"""Width of a panel at least."""
-
 LEFT_IN, BELOW_IN = 0.4, 0.38
 """Beside a panel and below it, for its ticks."""
 
 LINE_IN, ABOVE_IN = 0.16, 0.12
 """Above it: a line of its title, and some room."""
-
-TITLE_PT = 8
 
 
 class Panel(NamedTuple):
@@ -50,10 +42,9 @@ def sheet_of(panels: Sequence[Panel], columns: int) -> Figure:
     >>> [ax.get_title(loc="left") for ax in figure.axes]
     ['a']
     """
-    if not panels or columns < 1:
-        raise ValueError("there must be a panel and a column")
     columns = min(columns, len(panels))
-    across = max(NARROWEST_IN, FIGURE_IN / columns - LEFT_IN)
+    # The sheet is as wide as that where it leaves room for the panels.
+    across = max(3.2, 11.0 / columns - LEFT_IN)
     rows = [panels[first : first + columns] for first in range(0, len(panels), columns)]
     above = [ABOVE_IN + LINE_IN * max(len(p.title.splitlines()) for p in row) for row in rows]
     tall = [across * max(panel.aspect for panel in row) for row in rows]
@@ -75,7 +66,7 @@ def sheet_of(panels: Sequence[Panel], columns: int) -> Figure:
             if legend is not None:
                 legend.remove()
             ax.tick_params(labelsize=6)
-            ax.set_title(panel.title, fontsize=TITLE_PT, loc="left", pad=3)
+            ax.set_title(panel.title, fontsize=8, loc="left", pad=3)
         bottom -= BELOW_IN
     return figure
 
@@ -143,32 +134,24 @@ def plot_landscape(
     return ax
 
 
-def plot_masonry(
-    labels: Labels,
-    clusters: Mapping[int, int] | None = None,
-    ax: Axes | None = None,
-    units_per_px: float = 1.0,
-) -> Axes:
-    """Draw the stones of a wall, coloured by cluster, on the ground.
+def masonry_panel(
+    title: str, labels: Labels, clusters: Mapping[int, int], units_per_px: float
+) -> Panel:
+    """Return the stones of a wall on the ground as a panel, coloured by cluster.
 
     In source px, y up from the ground, which is below the last row of `labels` (row 0 at the top).
     """
     height, width = (units_per_px * size for size in labels.shape)
     margin, depth = MARGIN * width, GROUND * max(height, 0.2 * width)
-    ax = fit_axes(ax, (-margin, -depth, width + margin, height + margin))
-    draw_ground(ax, -margin, width + margin, depth)
-    for region in label_regions(labels):
-        cluster = (clusters or {}).get(region.id)
-        fill = PLAIN_COLOUR if cluster is None else cluster_colour(cluster)
-        loops = tuple(loop * units_per_px for loop in region.loops)
-        draw_block(ax, loops, f"stone-{region.id}", fill=fill, zorder=1)
-    ax.set_xlabel("px", fontsize=7, labelpad=1)
-    return ax
 
+    def draw(ax: Axes) -> None:
+        ax = fit_axes(ax, (-margin, -depth, width + margin, height + margin))
+        draw_ground(ax, -margin, width + margin, depth)
+        for region in label_regions(labels):
+            cluster = clusters.get(region.id)
+            fill = PLAIN_COLOUR if cluster is None else cluster_colour(cluster)
+            loops = tuple(loop * units_per_px for loop in region.loops)
+            draw_block(ax, loops, f"stone-{region.id}", fill=fill, zorder=1)
+        ax.set_xlabel("px", fontsize=7, labelpad=1)
 
-def masonry_panel(
-    title: str, labels: Labels, clusters: Mapping[int, int] | None, units_per_px: float
-) -> Panel:
-    """Return such a wall as a panel of a sheet; see :func:`plot_masonry`."""
-    aspect = wall_aspect(labels.shape[0] / labels.shape[1])
-    return Panel(title, aspect, lambda ax: plot_masonry(labels, clusters, ax, units_per_px))
+    return Panel(title, wall_aspect(labels.shape[0] / labels.shape[1]), draw)

@@ -24,8 +24,7 @@ from drystone_lab.pictures.charts import figure_of, group_panels
 from drystone_lab.pictures.walls import Panel, sheet_of, wall_aspect
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import rounded
-from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
-from drystone_lab.reproduce.items import ITEMS
+from drystone_lab.reproduce.item import Claimed, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials, sheet
 from drystone_lab.walls import IR, LIU_5, PR
 
@@ -48,9 +47,8 @@ class BaseCase(NamedTuple):
         return [a / self.model.mu for a in cells.figures_of(self.trials.outcomes, f"alpha_{side}")]
 
 
-def base_case(context: Context, study: Study) -> BaseCase:
-    """Build the walls, and look at the first one's mechanisms."""
-    found = study(context)
+def base_case(found: StudyWalls) -> BaseCase:
+    """Look at the mechanisms of the first wall."""
     (trials,) = found
     wall = found.wall(trials)
     model = model_from_labels(wall.labels, trials.specs[0].settings().mu).model
@@ -107,17 +105,10 @@ def _pictures(case: BaseCase) -> Iterator[ItemFigure]:
 
 
 BASE_CASE = PaperItem(
-    words=ITEMS["fig14-15"],
-    study=partial(base_case, study=Study(walls=(PR,), quick_seeds=5)),
+    study=Study(walls=(PR,), quick_seeds=5, then=base_case),
     tables={"fig14": _summary, "fig15": _rules},
     pictures=_pictures,
 )
-
-SHOWN = 3
-"""Wedges that are zoomed in on at most."""
-
-ZOOM = 0.25
-"""Width of what a zoom shows, over that of the wall."""
 
 ZOOM_ASPECT = 0.6
 
@@ -185,14 +176,14 @@ def _wedges_picture(trials: Trials, wall: Wall) -> ItemFigure:
 
 
 def shown(wall: Wall) -> list[Wedge]:
-    """Return the largest wedges, without those that are seen beside a larger one."""
+    """Return the three largest wedges, without those that are seen beside a larger one."""
     found: list[Wedge] = []
     for wedge in sorted(wall.wedges, key=lambda each: (-each.area_px, each.id)):
         x, y = _middle(wall, wedge)
         boxes = (_box(wall, other) for other in found)
         if not any(x0 <= x <= x1 and y0 <= y <= y1 for x0, y0, x1, y1 in boxes):
             found.append(wedge)
-    return found[:SHOWN]
+    return found[:3]
 
 
 def _middle(wall: Wall, wedge: Wedge) -> tuple[float, float]:
@@ -203,10 +194,10 @@ def _middle(wall: Wall, wedge: Wedge) -> tuple[float, float]:
 
 
 def _box(wall: Wall, wedge: Wedge) -> ZoomBox:
-    """Return what a zoom on a wedge shows."""
+    """Return what a zoom on a wedge shows: a quarter of the width of the wall."""
     x, y = _middle(wall, wedge)
     width = wall.site.width_px * wall.site.units_per_px
-    half = ZOOM * width / 2
+    half = 0.25 * width / 2
     # Little of the ground and nothing beyond the ends, which are of no interest.
     x = min(max(x, half), width - half)
     y0 = max(y - ZOOM_ASPECT * half, -0.1 * half)
@@ -214,7 +205,6 @@ def _box(wall: Wall, wedge: Wedge) -> ZoomBox:
 
 
 WEDGES = PaperItem(
-    words=ITEMS["fig19"],
     study=Study(walls=(IR, LIU_5), seeds=1, quick_seeds=1),
     claims=_wedges_claims,
     tables={"fig19": _wedges},

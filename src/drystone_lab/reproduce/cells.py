@@ -20,9 +20,6 @@ COLUMNS = (
 
 METRICS = ("F_SF", "F_AV", "F_AH", "F_LR")
 
-DIGITS = 4
-"""Decimals of a number in a table, which all machines agree on."""
-
 
 def summary(outcomes: Sequence[RunOutcome]) -> tuple[Cell, ...]:
     """Return the cells of :data:`COLUMNS` of walls of the same stones; None for what none has."""
@@ -51,8 +48,8 @@ def metric_cells(outcome: RunOutcome) -> tuple[Cell, ...]:
 
 
 def rounded(value: float | None) -> float | None:
-    """Return a number as tables hold it; an integer stays what it is."""
-    return None if value is None else round(value, DIGITS)
+    """Return a number to the decimals that all machines agree on; an integer stays what it is."""
+    return None if value is None else round(value, 4)
 
 
 def in_words(figures: Mapping[str, float | None]) -> str:
@@ -95,9 +92,6 @@ def wins(
 LEVEL = 0.05
 """A trend is one that equal chances would give less often than this."""
 
-FEWEST = 4
-"""Pairs without which there is no talk of a trend: three ranks fall in line by chance too often."""
-
 
 @dataclass(frozen=True)
 class Trend:
@@ -128,7 +122,8 @@ def trend(pairs: Sequence[tuple[float, float | None]]) -> Trend | None:
     Trend(rho=0.8, p=0.2, count=4)
     """
     known = [(x, y) for x, y in pairs if y is not None]
-    if len(known) < FEWEST or any(len({*column}) < 2 for column in zip(*known, strict=True)):
+    # Three ranks fall in line by chance too often.
+    if len(known) < 4 or any(len({*column}) < 2 for column in zip(*known, strict=True)):
         return None
     found = spearmanr(known)
     return Trend(round(float(found.statistic), 6), float(f"{found.pvalue:.3g}"), len(known))

@@ -16,7 +16,7 @@ from drystone.planner.workshop import Workshop
 from drystone.stabilise.stabilise import Pose
 from drystone.verify.replay import Stage, replay_plan
 from drystone_lab.reproduce.item import Context
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.walls import PR, Target
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,10 +72,10 @@ class Construction:
         return self.stages[-1].after
 
 
-def construction(context: Context, spec: RunSpec) -> Construction:
+def construction(context: Context, wall: Target = PR) -> Construction:
     """Do a run of pixels from the left, and take it apart."""
-    (outcome,) = context.run((spec,))
-    stones = spec.source.stones(context.data)
+    (outcome,) = context.run((wall.run(context.seed),))
+    stones = wall.source.stones(context.data)
     replay = replay_plan(outcome.as_plan, stones)
     workshop = Workshop.prepare(stones, replay.site, replay.settings)
     return Construction(replay.stages, workshop, replay.settings)

@@ -19,7 +19,7 @@ from drystone.io.folder_lock import has_files
 from drystone.io.published import SETS
 from drystone.kernels.backend import describe
 from drystone.whole_files import write_whole
-from drystone_lab.reproduce.item import Context, ItemPicture, Output, PaperItem
+from drystone_lab.reproduce.item import Context, ItemFigure, Output, PaperItem
 from drystone_lab.reproduce.items import ITEMS, item_named
 from drystone_lab.reproduce.page import PAGE, write_item_page, write_page
 from drystone_lab.runs.outcome import Runner, RunStore, RunWorker, absent_data, one_by_one
@@ -58,7 +58,7 @@ def is_met(request: Mapping[str, Any], made: Mapping[str, Any]) -> bool:
     return same and {*request["published"]} <= {*made["published"]}
 
 
-def write_picture(folder: Path, picture: ItemPicture) -> dict[str, Any]:
+def write_picture(folder: Path, picture: ItemFigure) -> dict[str, Any]:
     """Write a picture as PNG and SVG; return its names, size in px and caption for JSON."""
     png, svg = f"{picture.name}.png", f"{picture.name}.svg"
     for name in (png, svg):
@@ -67,7 +67,7 @@ def write_picture(folder: Path, picture: ItemPicture) -> dict[str, Any]:
         width, height = image.size
     return {
         "name": picture.name, "png": png, "svg": svg, "width_px": width, "height_px": height,
-        "caption": picture.caption,
+        "caption": picture.about,
     }  # fmt: skip
 
 
@@ -145,7 +145,7 @@ class ReportFolder:
             "title": item.words["title"],
             "section": item.words["section"],
             **about,
-            "paper": list(output.paper),
+            "paper": list(item.words["paper"]),
             "ours": list(output.ours),
             "tables": [_write_table(folder, name, table) for name, table in output.tables],
             "times": [_write_table(folder, f"{name}_times", table) for name, table in output.times],
@@ -156,17 +156,16 @@ class ReportFolder:
         write_item_page(self.page(name), record)
         text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
         write_whole(path, text.encode())
-        self.forget_miss(name)
+        self.miss(name, item, None)
         return record
 
-    def miss(self, name: str, item: PaperItem, error: DrystoneError) -> None:
-        """Note why an item cannot be made."""
-        text = {name: item.words[name] for name in ("title", "section")} | {"error": str(error)}
-        self._write_misses({**self.misses, name: text})
-
-    def forget_miss(self, name: str) -> None:
-        """Note no longer why an item was not made: it is there."""
-        self._write_misses({key: miss for key, miss in self.misses.items() if key != name})
+    def miss(self, name: str, item: PaperItem, error: DrystoneError | None) -> None:
+        """Note why an item cannot be made, or without an error that it is there."""
+        about = {key: item.words[key] for key in ("title", "section")} | {"error": str(error)}
+        misses = {**self.misses, name: about}
+        if error is None:
+            del misses[name]
+        self._write_misses(misses)
 
     def write_report(self, order: Iterable[str]) -> Path:
         """Write the page of everything that was made so far."""
@@ -189,8 +188,6 @@ def _read(path: Path, schema: str) -> dict[str, Any] | None:
         return None
     return data if isinstance(data, dict) and data.get("schema") == schema else None
 
-
-ItemStatus = Literal["made", "kept", "missing data", "failed"]
 
 EVERY_S = 2.0
 """Walls are told of no oftener than that."""
@@ -217,7 +214,8 @@ class MadeItem:
     """What became of an item."""
 
     name: str
-    status: ItemStatus  # "kept" when it was finished before
+    # "kept" when it was finished before
+    status: Literal["made", "kept", "missing data", "failed"]
     record: Mapping[str, Any] | None  # Contents of its JSON, None when there is none
     error: DrystoneError | None  # Why there is none
     page: Path  # Its page, if it was made
@@ -250,7 +248,7 @@ def _made(
     request = request_of(quick=options.quick, seed=options.seed, data=options.data)
     kept = None if options.again else report.record(name)
     if kept is not None and is_met(request, kept["request"]):
-        report.forget_miss(name)
+        report.miss(name, item, None)
         return MadeItem(name, "kept", kept, None, page)
     absent = [each for each in item.needs if not published(each).is_there(options.data)]
     if absent:

@@ -22,10 +22,8 @@ from drystone.model.wall import Labels, Wall
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from drystone_lab.pictures.walls import plot_landscape
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
-from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.walls import PR, Target
 
-CENTRE = "#0072b2"
 NORMAL_PX = 2.5
 """Length of the normal of a pixel edge."""
 
@@ -58,7 +56,6 @@ def plot_boundary_edges(
 
 
 MARGIN_PX = 2
-TILTED_DEG = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,20 +152,19 @@ def _picture(found: Blocks) -> ItemFigure:
     plot_contacts(labels, model, third)
     for block in model.blocks:
         gid = f"centre-{block.id}"
-        third.plot(*block.centroid, "^", color=CENTRE, markersize=7, gid=gid, zorder=5)
+        third.plot(*block.centroid, "^", color="#0072b2", markersize=7, gid=gid, zorder=5)
     third.set_title("(c) rigid blocks", fontsize=9, loc="left")
     return ItemFigure("fig12", figure)
 
 
 def _claims(found: Blocks) -> Iterator[Claimed]:
     angles = [_apart_deg(i) for i in found.whole.interfaces if len(i.points) == 2]
-    tilted = sum(angle > TILTED_DEG for angle in angles)
+    tilted = sum(angle > 1.0 for angle in angles)
     values = {"tilted": tilted, "count": len(angles), "most": max(angles)}
     yield Claimed("normal", None, values)
 
 
 PIC_TO_RI = PaperItem(
-    words=ITEMS["fig12"],
     study=blocks,
     claims=_claims,
     tables={

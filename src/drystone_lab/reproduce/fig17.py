@@ -7,15 +7,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from drystone.drawing.pictures.stones import plot_joint_paths
-from drystone.io.published import published_file
-from drystone.io.wall_image import read_wall_image
 from drystone.metrics import paths as joint_paths
 from drystone.metrics.frame import frame_wall, reduce_labels
 from drystone.metrics.paths import PAD_LEFT, PAD_TOP, SHORTEST, JointPath, joint_mask, mean_excess
 from drystone.model.wall import Labels
 from drystone_lab.reproduce.cells import rounded
 from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
-from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.walls import PR, Target
 
 ACROSS, UPRIGHT = 3, 7
@@ -50,7 +47,7 @@ def walls(context: Context, wall: Target = PR) -> tuple[Paths, ...]:
     built = context.wall(wall.run(context.seed))
     found = [Paths.of(f"planned {wall.name}", built.labels, built.site.width_px)]
     if context.data is not None and wall.source.kind == "published":
-        traced = read_wall_image(published_file(context.data, wall.source.name))
+        traced = wall.source.labels(context.data)
         found.append(Paths.of(f"the masons' {wall.name}", reduce_labels(traced, wall.scale)))
     return tuple(found)
 
@@ -86,7 +83,6 @@ def _picture(paths: Paths, number: int) -> ItemFigure:
 
 
 PATHS = PaperItem(
-    words=ITEMS["fig17"],
     study=walls,
     tables={"figures": _figures, "paths": _paths},
     pictures=lambda found: [_picture(paths, number) for number, paths in enumerate(found)],

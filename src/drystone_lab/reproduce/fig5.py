@@ -17,14 +17,10 @@ from drystone.poses import PoseBook
 from drystone_lab.pictures.charts import name_axes
 from drystone_lab.reproduce.cells import rounded
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
-from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.walls import MASONS, PR, Target
 
 MARKERS = ("o", "s", "D", "^", "v", "P", "X", "p")
 """By cluster, then round again: colour alone need not tell them apart."""
-
-LABEL_PT = 8.0
-"""How far from its point an id is written."""
 
 
 def plot_features(
@@ -46,7 +42,7 @@ def plot_features(
     # An id is written beside its point, where it is farthest from the other points and ids.
     points = ax.transData.transform(features)
     turns = np.arange(8) * np.pi / 4
-    ways = LABEL_PT * np.column_stack([1.2 * np.cos(turns), np.sin(turns)])
+    ways = 8.0 * np.column_stack([1.2 * np.cos(turns), np.sin(turns)])
     taken = points
     for number, stone_id in enumerate(stone_ids):
         places = points[number] + ways * ax.figure.dpi / 72
@@ -148,7 +144,6 @@ def _claims(sets: Clustered) -> Iterator[Claimed]:
 
 
 CLUSTERS = PaperItem(
-    words=ITEMS["fig5"],
     study=grouped,
     claims=_claims,
     tables={

@@ -26,7 +26,6 @@ from drystone_lab.reproduce import construction
 from drystone_lab.reproduce.cells import rounded
 from drystone_lab.reproduce.construction import Moment, RestingPlace, place_of
 from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
-from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.table import Cell
 from drystone_lab.walls import PR, Target
 
@@ -148,7 +147,6 @@ def _draw_line(
 
 
 def _name_stones(ax: Axes, action: ActionView) -> None:
-    """Write which stone is which, where several are coloured."""
     below1, below2 = action.below
     told = {"left neighbour": action.neighbour, "below1": below1, "below2": below2}
     boxes = {name: beside[1] for name, beside in told.items() if beside is not None}
@@ -302,8 +300,7 @@ class MomentPlaces:
 
 def places(context: Context, wall: Target = PR) -> MomentPlaces:
     """Find the places of all stones that are left at a moment of a run."""
-    run = construction.construction(context, wall.run(context.seed))
-    moment, place = construction.amid_course(run)
+    moment, place = construction.amid_course(construction.construction(context, wall))
     return MomentPlaces(wall, moment, place, resting_places(moment))
 
 
@@ -333,7 +330,6 @@ def _pictures(found: MomentPlaces) -> Iterator[ItemFigure]:
 
 
 INDICES = PaperItem(
-    words=ITEMS["fig6-7"],
     study=places,
     tables={
         "extremes": lambda found: [

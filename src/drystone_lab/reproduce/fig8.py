@@ -23,20 +23,19 @@ from drystone.model.wall import Labels
 from drystone_lab.pictures.walls import plot_landscape
 from drystone_lab.reproduce.construction import Moment, amid_course, construction
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
-from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.walls import PR, Target
 
 BUILT = "#dedad2"
 OPACITY = 0.85
-VALUES = "cividis"
-"""Colour map of values: even in lightness, the same for colour-blind readers."""
-
-Layers = Sequence[tuple[str, str, Mask]]
-"""Label, colour, and positions by row and column of the mask's top-left corner."""
 
 
-def plot_position_layers(ax: Axes, labels: Labels, posed: PosedStone, layers: Layers) -> None:
-    """Draw sets of positions of a stone as areas; a position is where its centroid is."""
+def plot_position_layers(
+    ax: Axes, labels: Labels, posed: PosedStone, layers: Sequence[tuple[str, str, Mask]]
+) -> None:
+    """Draw sets of positions of a stone as areas; a position is where its centroid is.
+
+    A layer is label, colour, and positions by row and column of the mask's top-left corner.
+    """
     plot_landscape(ax, labels, BUILT, edgecolor=OUTLINE_COLOUR, linewidth=0.3)
     ax.set_xlabel("working px", fontsize=7, labelpad=1)
     height = labels.shape[0]
@@ -77,7 +76,7 @@ def plot_position_values(
     draw_block(ax, region.loops, "chosen", fill="#ffffff", linewidth=1.4, zorder=2)
     x = positions[:, 1] + posed.anchor[0]
     y = height - positions[:, 0] - posed.height_px + posed.anchor[1]
-    drawn = ax.scatter(x, y, c=values, cmap=VALUES, s=4, marker="s", linewidths=0, zorder=3,
+    drawn = ax.scatter(x, y, c=values, cmap="cividis", s=4, marker="s", linewidths=0, zorder=3,
                        gid="values")  # fmt: skip
     at = (col + posed.anchor[0], height - row - posed.height_px + posed.anchor[1])
     ax.plot(*at, "x", color=FREE, markersize=7, markeredgewidth=2, zorder=4, gid="best")
@@ -157,7 +156,7 @@ class PositionTrial:
 
 def trial(context: Context, wall: Target = PR) -> PositionTrial:
     """Find the positions of a stone of the run on what was built before it."""
-    moment, place = amid_course(construction(context, wall.run(context.seed)))
+    moment, place = amid_course(construction(context, wall))
     found = moment.trial(place.posed.stone.id)
     if found is None:
         raise RuntimeError("a stone of the run fits nowhere where it was placed")
@@ -211,7 +210,6 @@ def _claims(found: PositionTrial) -> Iterator[Claimed]:
 
 
 POSITIONS = PaperItem(
-    words=ITEMS["fig8"],
     study=trial,
     claims=_claims,
     tables={"positions": _positions},

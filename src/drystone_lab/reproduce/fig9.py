@@ -25,7 +25,6 @@ from drystone.stabilise.stabilise import (
 )
 from drystone_lab.reproduce.construction import Construction, Moment, construction
 from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
-from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.walls import PR, Target
 
 BUILT, STONE, GHOST = "#e4e0d8", "#9ecae1", "#0072b2"
@@ -150,7 +149,6 @@ def _write(ax: Axes, text: str, at: PointXY, offset: PointXY) -> None:
 
 
 def _draw_turn(ax: Axes, standing: SupportedStone) -> None:
-    """Draw to which side the stone turns, above it."""
     points = np.concatenate(standing.loops)
     (left, _), (right, top) = points.min(axis=0), points.max(axis=0)
     middle, reach = (left + right) / 2, 0.25 * (right - left)
@@ -192,11 +190,6 @@ class Unstable:
     def sign_agrees(self) -> bool:
         """Whether AB x AC says to which side the centre of mass is beyond A."""
         return (self.trial.cross < 0) == (self.trial.falls > 0)
-
-    @property
-    def hangs(self) -> bool:
-        """Whether its centre of mass is below A."""
-        return self.trial.mass[1] < self.trial.ends[0][1]
 
 
 def unstable_trials(built: Construction) -> tuple[int, tuple[Unstable, ...]]:
@@ -268,7 +261,7 @@ class Falls:
 
 def falls(context: Context, wall: Target = PR) -> Falls:
     """Try all stones that are left before each step of a run, and treat those that fall."""
-    return Falls(wall, *unstable_trials(construction(context, wall.run(context.seed))))
+    return Falls(wall, *unstable_trials(construction(context, wall)))
 
 
 def _largest(cases: Sequence[Unstable], size: Callable[[Unstable], float]) -> Unstable | None:
@@ -296,7 +289,7 @@ def _counts(found: Falls) -> Rows:
     yield "turning fails, a wedge does", sum(one.wedged is not None for one in stuck)
     yield "neither", sum(one.wedged is None for one in stuck)
     yield "sign of AB x AC is wrong", len(wrong)
-    yield "of these, C is below A", sum(one.hangs for one in wrong)
+    yield "of these, C is below A", sum(one.trial.mass[1] < one.trial.ends[0][1] for one in wrong)
 
 
 def _cases(found: Falls) -> Rows:
@@ -340,7 +333,6 @@ def _picture(found: Falls) -> ItemFigure:
 
 
 STABILISING = PaperItem(
-    words=ITEMS["fig9"],
     study=falls,
     tables={"counts": _counts, "cases": _cases},
     pictures=lambda found: [_picture(found)] if found.shown else [],

@@ -1,6 +1,6 @@
 """A table or figure of the paper that can be made again."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -53,30 +53,29 @@ class Context:
         return outcome.wall(spec, self.data)
 
 
-@dataclass(frozen=True, eq=False)
-class ItemPicture:
-    """A figure of an item; written as NAME.png and NAME.svg."""
+class ItemFigure(NamedTuple):
+    """A picture; written as NAME.png and NAME.svg."""
 
     name: str
     figure: Figure
-    caption: str  # What is seen, in a sentence or two
+    # What its caption is formatted with, that of the longest key with which its name begins; None
+    # for what the study found.  Of a finished item the caption itself
+    about: Any = None
 
 
 @dataclass(frozen=True, eq=False)
 class Output:
     """What an item came to."""
 
-    # What the paper shows and reports there, its numbers among it; a paragraph each
-    paper: tuple[str, ...]
     # What we found, in sentences whose numbers are computed, and why it differs; a paragraph each
     ours: tuple[str, ...]
     # Name of the CSV file without ending, and the table.  Equal seeds give equal tables on every
     # machine: no times are in them
-    tables: tuple[tuple[str, Table], ...] = ()
+    tables: tuple[tuple[str, Table], ...]
     # Tables of measured times, which differ from machine to machine and run to run
-    times: tuple[tuple[str, Table], ...] = ()
-    pictures: tuple[ItemPicture, ...] = ()
-    runs: tuple[RunSpec, ...] = ()  # That the item is made of, for its JSON
+    times: tuple[tuple[str, Table], ...]
+    pictures: tuple[ItemFigure, ...]
+    runs: tuple[RunSpec, ...]  # That the item is made of, for its JSON
 
 
 Rows = Iterable[tuple[Cell, ...]]
@@ -90,19 +89,10 @@ class Claimed(NamedTuple):
     values: Mapping[str, object]  # What both are formatted with
 
 
-class ItemFigure(NamedTuple):
-    """A picture; its caption is that of the longest key with which its name begins."""
-
-    name: str
-    figure: Figure
-    about: Any = None  # What the caption is formatted with; None for what the study found
-
-
 @dataclass(frozen=True, kw_only=True)
 class PaperItem:
     """A table or figure of the paper: data, and what is read off it."""
 
-    words: Mapping[str, Any]  # Of ``paper.toml``
     # Does what the item is about: builds walls (:class:`~drystone_lab.reproduce.study.Study`) or
     # times them.  All others take what it returns
     study: Callable[[Context], Any]
@@ -111,9 +101,8 @@ class PaperItem:
     # tables, times: By the name of the CSV file; times differ from machine to machine
     tables: Mapping[str, Callable[[Any], Rows]] = field(default_factory=dict)
     times: Mapping[str, Callable[[Any], Rows]] = field(default_factory=dict)
-    # Where times are what is claimed: the table of claims is one of times, and no paragraph
-    timed_claims: bool = False
     pictures: Callable[[Any], Iterable[ItemFigure]] = lambda _: ()  # Draws
+    words: Mapping[str, Any] = field(default_factory=dict)  # Of ``paper.toml``
 
     @property
     def needs(self) -> tuple[str, ...]:
@@ -131,40 +120,36 @@ class PaperItem:
             ]
             for kind, of in (("tables", self.tables), ("times", self.times))
         )
-        checked = self.checked(found)
-        if self.timed_claims:
+        texts = self.words.get("claims", {})
+        checked = [
+            (*(text.format(**one.values) for text in texts[one.key]), one.holds)
+            for one in self.claims(found)
+        ]
+        said: Sequence[str] = ()
+        # Where times are what is claimed, the table of claims is one of times, and no paragraph.
+        if "claims" in self.words.get("times", {}):
             title = self.words["times"]["claims"]["title"]
-            times.insert(0, ("claims", claims_table(title, checked)))
+            times.insert(0, ("claims", Table(title, CLAIMS, tuple(checked))))
         elif checked:
-            tables.append(("claims", claims_table("The paper's claims", checked)))
-        said = () if self.timed_claims or not checked else sentences(checked)
+            tables.append(("claims", Table("The paper's claims", CLAIMS, tuple(checked))))
+            said = sentences(checked)
+        pictures = (one._replace(about=self._caption(one, found)) for one in self.pictures(found))
         return Output(
-            paper=tuple(self.words["paper"]),
             ours=(*self.words.get("notes", ()), *said),
             tables=tuple(tables),
             times=tuple(times),
-            pictures=tuple(self._pictures(found)),
+            pictures=tuple(pictures),
             runs=tuple(dict.fromkeys(context.asked)),
         )
 
-    def checked(self, found: Any) -> Sequence[tuple[str, str, bool | None]]:
-        """Return claim, finding and verdict of every claim, as rows of a table."""
-        words = self.words.get("claims", {})
-        return [
-            (*(text.format(**one.values) for text in words[one.key]), one.holds)
-            for one in self.claims(found)
-        ]
-
-    def _pictures(self, found: Any) -> Iterator[ItemPicture]:
-        for name, figure, about in self.pictures(found):
-            key = max((k for k in self.words["captions"] if name.startswith(k)), key=len)
-            caption = self.words["captions"][key].format(found if about is None else about)
-            yield ItemPicture(name, figure, caption)
+    def _caption(self, picture: ItemFigure, found: Any) -> str:
+        captions = self.words["captions"]
+        key = max((k for k in captions if picture.name.startswith(k)), key=len)
+        text: str = captions[key].format(found if picture.about is None else picture.about)
+        return text
 
 
-def claims_table(title: str, checked: Sequence[tuple[str, str, bool | None]]) -> Table:
-    """Return claims and findings as a table."""
-    return Table(title, ("the paper", "here", "agrees"), tuple(checked))
+CLAIMS = ("the paper", "here", "agrees")
 
 
 def sentences(checked: Sequence[tuple[str, str, bool | None]]) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 import tomllib
 from collections.abc import Mapping
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
@@ -47,4 +48,5 @@ def item_names(asked: str) -> tuple[str, ...]:
 def item_named(name: str) -> "PaperItem":
     """Return one of :data:`ITEMS`."""
     module, _, item = ITEMS[name]["made"].partition(".")
-    return cast("PaperItem", getattr(import_module(f"drystone_lab.reproduce.{module}"), item))
+    made = getattr(import_module(f"drystone_lab.reproduce.{module}"), item)
+    return replace(cast("PaperItem", made), words=ITEMS[name])

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from math import floor
 from pathlib import Path
 from typing import NamedTuple
@@ -24,7 +24,6 @@ from drystone_lab.pictures import walls as sheets
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, rounded
 from drystone_lab.reproduce.item import Context, ItemFigure, PaperItem, Rows
-from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.table import Cell
@@ -71,7 +70,6 @@ def dilated(labels: Labels) -> Labels:
 
 
 def _nearest(pixels: NDArray[np.intp], others: Labels) -> NDArray[np.intp]:
-    """Return where the pixels of a stone end."""
     middle = pixels.mean(axis=0)
     while True:
         here = _distance(middle, others)
@@ -91,9 +89,6 @@ def _distance(place: NDArray[np.floating], labels: Labels) -> float:
     """Return how far a row and column is from the bottom left corner."""
     return float(np.hypot(labels.shape[0] - 0.5 - place[0], place[1] + 0.5))
 
-
-REACHES_PX = (1, 2, 3, 4, 6, 8)
-"""Widest gap that is closed, working px."""
 
 Printed = tuple[float, float, float, float]
 """A half row of Table 2: F_SF (a share), F_AV and F_AH (percent), F_LR."""
@@ -161,7 +156,7 @@ def treatments(wall: TracedWall) -> tuple[Treatment, ...]:
         "as traced": model_from_labels(labels).model,
         **{
             f"gaps up to {reach} px closed": model_with_closed_gaps(labels, reach).model
-            for reach in REACHES_PX
+            for reach in (1, 2, 3, 4, 6, 8)
         },
         "stones lowered": model_from_labels(settle_gaps(labels)[0]).model,
         "lowered and pushed left": model_from_labels(settle_gaps(labels, "left")[0]).model,
@@ -214,7 +209,6 @@ def _gaps_picture(walls: TreatedWalls) -> ItemFigure:
 
 
 FIG13 = PaperItem(
-    words=ITEMS["fig13"],
     study=treated_walls,
     tables={
         "fig13": _metrics,
@@ -281,22 +275,16 @@ class FiveWall(NamedTuple):
         """Place of the best trial by the paper's rule."""
         return best_trial(self.trials.outcomes)
 
-    @property
-    def fullest(self) -> int:
-        """Place of the trial with the highest F_SF, the earlier one of equals."""
-        filled = [value or 0.0 for value in self.trials.values("F_SF")]
-        return filled.index(max(filled))
-
 
 Five = tuple[StudyWalls, Sequence[FiveWall]]
 
 
-def five_walls(context: Context, study: Study) -> Five:
-    """Build the walls, and read the masons'."""
-    found, walls = study(context), []
+def five_walls(found: StudyWalls) -> Five:
+    """Read the masons' walls."""
+    walls, data = [], found.context.data
     for each in found:
-        masons = None if each.wall.stand_in else masons_wall(each.wall, context.data)
-        walls.append(FiveWall(each, each.wall.source.stones(context.data), masons))
+        masons = None if each.wall.stand_in else masons_wall(each.wall, data)
+        walls.append(FiveWall(each, each.wall.source.stones(data), masons))
     return found, walls
 
 
@@ -328,7 +316,8 @@ def _ours(wall: FiveWall) -> Iterator[tuple[Cell, ...]]:
     yield *one(f"best of {seeds}", wall.best), *(NONE if stand_in else papers)
     if stand_in:
         yield wall.name[0], "the paper's", "best of 20", None, None, *NONE, *papers
-    yield *one(f"fullest of {seeds}", wall.fullest), *NONE
+    filled = [value or 0.0 for value in trials.values("F_SF")]
+    yield *one(f"fullest of {seeds}", filled.index(max(filled))), *NONE  # the earlier one of equals
     most = rounded(float(wall.stones.total_area_px) / (trials.wall.width * trials.wall.height))
     yield *wall.name, "all stones", count, count, most, None, None, None, *NONE
 
@@ -352,8 +341,7 @@ def _five_panels(built: StudyWalls, wall: FiveWall) -> list[sheets.Panel]:
 
 
 TABLE2 = PaperItem(
-    words=ITEMS["table2"],
-    study=partial(five_walls, study=Study(walls=FIVE, quick_seeds=2)),
+    study=Study(walls=FIVE, quick_seeds=2, then=five_walls),
     tables={
         # Rows of each wall, our figures and the paper's beside each other
         "table2": lambda found: [

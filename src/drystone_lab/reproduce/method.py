@@ -27,7 +27,6 @@ from drystone_lab.pictures.walls import plot_walls, sheet_of, stones_panel, wall
 from drystone_lab.reproduce.cells import rounded
 from drystone_lab.reproduce.construction import Construction, construction
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
-from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.walls import PR, Target
 
 ROWS: Mapping[str, tuple[str, int, tuple[str, ...]]] = {
@@ -52,15 +51,9 @@ def _table1(_: object) -> Rows:
 
 
 TABLE1 = PaperItem(
-    words=ITEMS["table1"],
     study=lambda _: SimpleNamespace(engine=" and ".join(ENGINE)),
     tables={"table1": _table1},
 )
-
-
-def followed(context: Context, wall: Target = PR) -> Construction:
-    """Do a run of Algorithm 1, and take it apart."""
-    return construction(context, wall.run(context.seed))
 
 
 def _steps(run: Construction) -> Rows:
@@ -91,9 +84,7 @@ def _workflow(run: Construction) -> Iterator[ItemFigure]:
     yield ItemFigure("fig4", sheet_of(panels, 2))
 
 
-WORKFLOW = PaperItem(
-    words=ITEMS["fig3-4"], study=followed, tables={"steps": _steps}, pictures=_workflow
-)
+WORKFLOW = PaperItem(study=construction, tables={"steps": _steps}, pictures=_workflow)
 
 FILTERS = ("LLC > 0", "LLC", "NHR", "IWR or IS", "GDS", "LFR")
 
@@ -157,7 +148,6 @@ def _selection_picture(step: Selection) -> ItemFigure:
 
 
 SELECTION = PaperItem(
-    words=ITEMS["fig10"],
     study=selection_step,
     tables={"candidates": _filters},
     pictures=lambda step: [_selection_picture(step)],
@@ -205,7 +195,6 @@ def _two_picture(found: TwoStones) -> ItemFigure:
 
 
 RIGID = PaperItem(
-    words=ITEMS["fig11"],
     study=two_stones,
     claims=_two_claims,
     tables={"forces": _contact_forces},

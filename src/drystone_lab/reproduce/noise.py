@@ -1,27 +1,23 @@
 """Figs. 22 to 24: polygons of eight noise levels; Fig. 25: orientations in steps (§5.3)."""
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
-from functools import partial
+from collections.abc import Iterator, Sequence
 from itertools import cycle
 from pathlib import Path
 from statistics import median
 from typing import NamedTuple
 
-from matplotlib.figure import Figure
 from scipy.stats import binomtest
 
 from drystone.contacts.gaps import model_with_closed_gaps
 from drystone.metrics.frame import reduce_labels
-from drystone.metrics.measure import measure_labels
+from drystone.metrics.measure import WallMetrics, measure_labels
 from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
 from drystone_lab.pictures import charts
 from drystone_lab.pictures.walls import plot_walls
-from drystone_lab.reproduce import cells
-from drystone_lab.reproduce.cells import LEVEL, Trend, figures_of, metric_cells, rounded, trend
-from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
-from drystone_lab.reproduce.items import ITEMS
+from drystone_lab.reproduce import cells, study
+from drystone_lab.reproduce.cells import LEVEL, figures_of, metric_cells, rounded, trend
+from drystone_lab.reproduce.item import Claimed, ItemFigure, PaperItem, Rows
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials, each_wall, medians
 from drystone_lab.runs.outcome import RunOutcome
 from drystone_lab.walls import NOISES, NOISY, TWO_SIDED, Target, coarser, generated_noise
@@ -29,25 +25,14 @@ from drystone_lab.walls import NOISES, NOISY, TWO_SIDED, Target, coarser, genera
 GAP_SOURCE_PX = 20 / 3
 """Widest gap of a published wall that counts as a contact: 2 px at the working scale."""
 
-GAP_RANGE = (0.5, 1.0, 1.5)
-"""The resistance is also told for gaps of as many times this width."""
 
+class ReferenceWall(NamedTuple):
+    """A published wall of Thangavelu et al. (2018), measured as an image that it fills."""
 
-@dataclass(frozen=True)
-class ReferenceWall:
-    """A published wall of Thangavelu et al. (2018), measured as a label image."""
-
-    stones: int
-    F_SF: float  # Of the whole image, which is also the wall that our method is to fill
-    F_AV: float | None
-    F_AH: float | None
-    # With no gap closed, then with those of :data:`GAP_RANGE`; None where it does not stand
+    metrics: WallMetrics
+    # F_LR with no gap closed, then with those of half of :data:`GAP_SOURCE_PX`, of that, which is
+    # the one of the metrics, and of one and a half; None where it does not stand
     resistances: tuple[float | None, ...]
-
-    @property
-    def F_LR(self) -> float | None:  # noqa: N802 - as its other figures
-        """With gaps of :data:`GAP_SOURCE_PX` closed."""
-        return self.resistances[1 + GAP_RANGE.index(1.0)]
 
 
 def reference_of(wall: Target, data: Path | None) -> ReferenceWall | None:
@@ -61,16 +46,17 @@ def measured(labels: Labels, scale: float) -> ReferenceWall:
     """Measure a label image as a wall that fills all of it, reduced by a scale."""
     reduced = reduce_labels(labels, scale)
     height, width = reduced.shape
-    # As in plans: stones have their area at the resolution of the source.
-    share = (labels > 0).mean()
-    metrics = measure_labels(
-        reduced, wall_px=(width, height), stone_area_px=float(share * width * height)
-    )
-    reaches = (0.0, *(factor * GAP_SOURCE_PX * scale for factor in GAP_RANGE))
+    reaches = (factor * GAP_SOURCE_PX * scale for factor in (0.0, 0.5, 1.0, 1.5))
     resistances = tuple(
         lateral_resistance(model_with_closed_gaps(reduced, reach).model).value for reach in reaches
     )
-    return ReferenceWall(metrics.stones, metrics.F_SF, metrics.F_AV, metrics.F_AH, resistances)
+    # As in plans: stones have their area at the resolution of the source.
+    share = (labels > 0).mean()
+    metrics = measure_labels(
+        reduced, wall_px=(width, height), stone_area_px=float(share * width * height),
+        lateral_resistance=resistances[2],
+    )  # fmt: skip
+    return ReferenceWall(metrics, resistances)
 
 
 RULES = {"paper": TWO_SIDED, "random": (*TWO_SIDED, ("selection_rule", "random"))}
@@ -78,11 +64,6 @@ RULES = {"paper": TWO_SIDED, "random": (*TWO_SIDED, ("selection_rule", "random")
 
 FILLED = 0.6
 """Filling above which walls are told apart (Fig. 24)."""
-
-OFFSETS_PT = ((9, 9), (9, -14), (-18, 9), (-18, -14))  # Of names: neighbours lie together
-
-MIXED = 60
-"""Noise in % below which the paper's walls are always filled above :data:`FILLED`."""
 
 
 class NoiseLevel(NamedTuple):
@@ -110,11 +91,11 @@ class NoiseLevel(NamedTuple):
 NoiseLevels = Sequence[NoiseLevel]
 
 
-def noise_levels(context: Context, study: Study) -> NoiseLevels:
-    """Build walls of every noise level, and measure the published ones."""
+def noise_levels(found: StudyWalls) -> NoiseLevels:
+    """Measure the published walls of every level."""
     return [
-        NoiseLevel(group, reference_of(group.all[0].wall, context.data))
-        for group in study(context).by_wall
+        NoiseLevel(group, reference_of(group.all[0].wall, found.context.data))
+        for group in found.by_wall
     ]
 
 
@@ -129,28 +110,9 @@ def is_full(outcome: RunOutcome) -> bool:
     return filling is not None and filling > FILLED
 
 
-def trends(levels: NoiseLevels, name: str) -> dict[str, Trend | None]:
-    """Correlate a figure with the noise: over walls; over sets, which alone are independent."""
-    walls = [(level.noise, value) for level in levels
-             for value in figures_of(level.ours.outcomes, name)]  # fmt: skip
-    sets = [(level.noise, level.ours.median(name)) for level in levels]
-    return {"walls": trend(walls), "sets": trend(sets)}
-
-
-def residuals(levels: NoiseLevels) -> dict[int, float]:
-    """Return by how much the median filling of each level is above that of its neighbours."""
-    filled = [level.least("F_SF") for level in levels]
-    found = {}
-    for place, level in enumerate(levels):
-        beside = filled[max(0, place - 1) : place] + filled[place + 1 : place + 2]
-        if beside:
-            found[level.noise] = filled[place] - median(beside)
-    return found
-
-
 def noise_findings(levels: NoiseLevels) -> Iterator[Claimed]:
     """Compare the levels with what §5.3 says of them."""
-    low = [level for level in levels if level.noise < MIXED]
+    low = [level for level in levels if level.noise < 60]
     walls = [outcome for level in low for outcome in level.ours.outcomes]
     full = sum(map(is_full, walls))
     against = {
@@ -158,7 +120,7 @@ def noise_findings(levels: NoiseLevels) -> Iterator[Claimed]:
         for name in ("F_SF", "F_LR")
     }
     told = ", ".join(f"{name} in {count}" for name, count in against.items())
-    reference = trend([(level.noise, wall.F_AV) for level, wall in published_of(levels)])
+    reference = trend([(level.noise, wall.metrics.F_AV) for level, wall in published_of(levels)])
     # Few walls are published: a correlation that is not clear is not yet against the claim.
     clear = reference is not None and (reference.clear or reference.rho <= 0)
     yield _trending("falls", levels, "F_SF", -1)
@@ -179,7 +141,12 @@ def noise_findings(levels: NoiseLevels) -> Iterator[Claimed]:
 
 def _trending(key: str, levels: NoiseLevels, name: str, sign: int) -> Claimed:
     """Compare a trend over the medians of the sets with a claimed one; 0 for none."""
-    each = trends(levels, name)
+    # Over walls; over sets, which alone are independent.
+    walls = [
+        (level.noise, value) for level in levels for value in figures_of(level.ours.outcomes, name)
+    ]
+    middles = [(level.noise, level.ours.median(name)) for level in levels]
+    each = {"walls": trend(walls), "sets": trend(middles)}
     words = [f"over {over}: {found.words()}" for over, found in each.items() if found is not None]
     values, sets = {"words": "; ".join(words) + "." if words else "too few levels."}, each["sets"]
     if sets is None:
@@ -206,16 +173,19 @@ def _between(levels: NoiseLevels) -> Iterator[Claimed]:
     hardest = all(level.noise == NOISES[-1] for level in worst.values())
     yield Claimed("hardest", hardest if there else None, {"words": words})
     # The first and the last have a neighbour on one side only: a mere trend sets them apart.
-    inner = [level.noise for level in levels[1:-1]]
-    if inner:
-        above = residuals(levels)
-        best = max(inner, key=lambda noise: above[noise])
+    filled = [level.least("F_SF") for level in levels]
+    above = {
+        level.noise: filled[place] - median((filled[place - 1], filled[place + 1]))
+        for place, level in enumerate(levels[1:-1], 1)
+    }
+    if above:
+        best = max(above, key=lambda noise: above[noise])
         yield Claimed("surprising", None, {"best": best, "above": above[best]})
 
 
 def _against_reference(key: str, levels: NoiseLevels, name: str) -> Claimed:
     pairs = [
-        (level.noise, level.least(name), getattr(wall, name) or 0.0)
+        (level.noise, level.least(name), getattr(wall.metrics, name) or 0.0)
         for level, wall in published_of(levels)
     ]
     # Sizes of walls are rounded to px, so that walls of all stones differ in later digits.
@@ -227,8 +197,8 @@ def _against_reference(key: str, levels: NoiseLevels, name: str) -> Claimed:
 
 def _references(levels: NoiseLevels) -> Rows:
     for level, wall in published_of(levels):
-        figures = map(rounded, (wall.F_SF, wall.F_AV, wall.F_AH, *wall.resistances))
-        yield level.noise, wall.stones, *figures
+        of = wall.metrics
+        yield level.noise, of.stones, *map(rounded, (of.F_SF, of.F_AV, of.F_AH, *wall.resistances))
 
 
 def _level_rows(levels: NoiseLevels) -> Rows:
@@ -260,7 +230,7 @@ def _noise_pictures(levels: NoiseLevels) -> Iterator[ItemFigure]:
              "random choice, median")  # fmt: skip
     ticks = {one.noise: f"{one.noise}{'*' * one.ours.wall.stand_in}" for one in levels}
     axes = {"F_SF": "F_SF", "F_LR": "F_LR", "F_AV": "F_AV, %", "F_AH": "F_AH, %"}
-    panels = [_panel(levels, name, words) for name, words in axes.items()]
+    panels = {words: _panel(levels, name) for name, words in axes.items()}
     yield ItemFigure("fig24", charts.noise_panels(panels, names, ticks))
 
 
@@ -271,10 +241,10 @@ def _scatter(levels: NoiseLevels) -> ItemFigure:
         )
         for level in levels
     }
-    figure = Figure(figsize=charts.TWO_IN)
-    ax = charts.plot_two_figures(groups, figure.add_subplot(), across="F_LR", up="F_SF")
+    ax = charts.plot_two_figures(groups, across="F_LR", up="F_SF")
     ax.margins(0.09)
-    for level, offset in zip(levels, cycle(OFFSETS_PT), strict=False):
+    offsets_pt = cycle(((9, 9), (9, -14), (-18, 9), (-18, -14)))  # neighbours lie together
+    for level, offset in zip(levels, offsets_pt, strict=False):
         drawn = level.ours.outcomes[level.ours.middle].figures
         resistance, filling = drawn["F_LR"], drawn["F_SF"]
         if resistance is not None and filling is not None:
@@ -283,44 +253,38 @@ def _scatter(levels: NoiseLevels) -> ItemFigure:
                 fontsize=6.5, arrowprops={"arrowstyle": "-|>", "linewidth": 0.7, "shrinkB": 1.5},
                 gid=f"example-{level.noise}",
             )  # fmt: skip
-    return ItemFigure("fig23", figure)
+    return ItemFigure("fig23", charts.figure_of(ax))
 
 
-def _panel(levels: NoiseLevels, name: str, words: str) -> charts.NoisePanel:
-    def pairs(full: bool) -> tuple[tuple[int, float], ...]:
-        return tuple(
-            (level.noise, value)
+def _panel(levels: NoiseLevels, name: str) -> charts.NoiseSeries:
+    full, poor = (
+        [
+            (level.noise, outcome.figures[name])
             for level in levels
-            for value in figures_of([o for o in level.ours.outcomes if is_full(o) is full], name)
-        )
-
-    def line(figure: Callable[[NoiseLevel], float | None]) -> dict[int, float]:
-        found = ((level.noise, figure(level)) for level in levels)
-        return {noise: value for noise, value in found if value is not None}
-
-    published = line(lambda level: getattr(level.reference, name, None))
-    random = line(lambda level: level.built.of("random")[0].median(name))
-    return charts.NoisePanel(words, pairs(True), pairs(False), published, random)
+            for outcome in level.ours.outcomes
+            if is_full(outcome) is which
+        ]
+        for which in (True, False)
+    )
+    published = [(level.noise, getattr(wall.metrics, name)) for level, wall in published_of(levels)]
+    random = [(level.noise, level.built.of("random")[0].median(name)) for level in levels]
+    return [
+        [(noise, value) for noise, value in series if value is not None]
+        for series in (full, poor, published, random)
+    ]
 
 
 NOISE = PaperItem(
-    words=ITEMS["fig22-24"],
-    study=partial(
-        noise_levels,
-        study=Study(
-            walls=NOISY,
-            ways=RULES,
-            seeds=10,
-            quick_seeds=1,
-            quick_walls=tuple(coarser(wall, 0.1) for wall in NOISY),
-        ),
+    study=Study(
+        walls=NOISY,
+        ways=RULES,
+        seeds=10,
+        quick_seeds=1,
+        quick_walls=tuple(coarser(wall, 0.1) for wall in NOISY),
+        then=noise_levels,
     ),
     claims=noise_findings,
-    tables={
-        "levels": _level_rows,
-        "reference": _references,
-        "walls": _wall_rows,
-    },
+    tables={"levels": _level_rows, "reference": _references, "walls": _wall_rows},
     pictures=_noise_pictures,
 )
 
@@ -353,24 +317,7 @@ def gain_of(key: str, gains: Sequence[float]) -> Claimed:
     return Claimed(key, median(gains) > 0 and p < LEVEL if enough else None, {"words": words})
 
 
-def _turned_pictures(found: StudyWalls) -> Iterator[ItemFigure]:
-    walls = [
-        found.titled(one, f"{one.wall.name}, orientations {one.way}, seed {found.seeds[0]}")
-        for one in found
-    ]
-    yield ItemFigure("fig25", plot_walls(walls, 2))
-    panels = {
-        figure: {
-            f"{one.wall.number} %{' gen.' * one.wall.stand_in}, {one.way}": one.values(figure)
-            for one in found
-        }
-        for figure in ("F_SF", "F_LR")
-    }
-    yield ItemFigure("fig25-figures", charts.group_panels(panels))
-
-
 TURNED = PaperItem(
-    words=ITEMS["fig25"],
     study=Study(
         walls=NOISY,
         ways={name: (*TWO_SIDED, ("orientations", name)) for name in ORIENTATIONS},
@@ -389,5 +336,14 @@ TURNED = PaperItem(
             )
         ),
     },
-    pictures=_turned_pictures,
+    pictures=lambda found: (
+        study.sheet(
+            found, "fig25", 2,
+            lambda one: f"{one.wall.name}, orientations {one.way}, seed {found.seeds[0]}",
+        ),
+        study.strips(
+            found, "fig25-figures", ("F_SF", "F_LR"),
+            lambda one: f"{one.wall.number} %{' gen.' * one.wall.stand_in}, {one.way}",
+        ),
+    ),
 )  # fmt: skip

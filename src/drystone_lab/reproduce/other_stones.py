@@ -6,15 +6,14 @@ from itertools import pairwise, product
 from statistics import median
 from typing import NamedTuple
 
-from matplotlib.figure import Figure
 from scipy.stats import mannwhitneyu
 
 from drystone.model.wall import Wall
-from drystone_lab.pictures.charts import TWO_IN, plot_two_figures
+from drystone_lab.pictures.charts import figure_of, plot_two_figures
 from drystone_lab.pictures.walls import plot_walls
+from drystone_lab.reproduce import study
 from drystone_lab.reproduce.cells import LEVEL, figures_of, metric_cells, placed_of
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
-from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials, built, each_wall, medians
 from drystone_lab.runs.spec import Changes, generated, published
 from drystone_lab.walls import TWO_SIDED, Target, coarser
@@ -75,14 +74,12 @@ def _rounded_pictures(found: StudyWalls) -> Iterator[ItemFigure]:
         one.wall.name: list(zip(one.values("F_SF"), one.values("F_AV"), strict=True))
         for one in found
     }
-    figure = Figure(figsize=TWO_IN)
-    ax = plot_two_figures(groups, figure.add_subplot(), across="F_SF", up="F_AV, %")
+    ax = plot_two_figures(groups, across="F_SF", up="F_AV, %")
     ax.legend(fontsize=7, frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
-    yield ItemFigure("fig27", figure)
+    yield ItemFigure("fig27", figure_of(ax))
 
 
 ROUNDED = PaperItem(
-    words=ITEMS["fig26-27"],
     study=Study(
         walls=KINDS,
         ways={"two sides": TWO_SIDED},
@@ -103,9 +100,6 @@ ROUNDED = PaperItem(
 )  # fmt: skip
 
 SIDES: Mapping[str, Changes] = {"one side": (), "two sides": TWO_SIDED}
-
-PAPER_PLACED = (90, 91)
-"""Of 91, in the left and in the right wall."""
 
 # Rubble as irregular as ours can be, of sizes that differ by a factor.  It has about as many
 # pixels a stone as the paper's PR has, and as much wall as its best walls fill.
@@ -138,22 +132,19 @@ def _irregular(found: StudyWalls) -> Rows:
             found.name, one.wall.said, one.wall.scale, one.way, *placed_of(outcome),
             len({*outcome.clusters.values()}), *metric_cells(outcome), outcome.figures["wedges"],
         )  # fmt: skip
-    for number, placed in enumerate(PAPER_PLACED, 1):
+    # In the left and in the right wall of the paper.
+    for number, placed in enumerate((90, 91), 1):
         yield "the paper's", "published", None, f"wall {number}", placed, 91, *[None] * 6
 
 
-def _irregular_picture(found: StudyWalls) -> ItemFigure:
-    walls = [
-        found.titled(one, f"{found.name} at {one.wall.scale:g}, from {one.way}") for one in found
-    ]
-    return ItemFigure("figB33", plot_walls(walls, 2))
-
-
 IRREGULAR = PaperItem(
-    words=ITEMS["figB33"],
     study=irregular_walls,
     tables={"walls": _irregular},
-    pictures=lambda found: [_irregular_picture(found)],
+    pictures=lambda found: [
+        study.sheet(
+            found, "figB33", 2, lambda one: f"{found.name} at {one.wall.scale:g}, from {one.way}"
+        )
+    ],
 )
 
 OVERLAP = 0.25
@@ -286,7 +277,6 @@ def _bricks_picture(found: Bricks) -> ItemFigure:
 
 
 BRICKS = PaperItem(
-    words=ITEMS["figB34"],
     study=brick_walls,
     tables={"walls": _bricks},
     pictures=lambda found: [_bricks_picture(found)],

@@ -93,8 +93,6 @@ def _different(values: Iterable[object]) -> str:
 
 
 PAGE = "index.html"
-TEMPLATE = "page.html"
-
 LONG = 30
 """Tables of more rows are folded up."""
 
@@ -155,6 +153,6 @@ def _write(path: Path, **content: object) -> Path:
         "heading": heading, "part": part, "counted": counted, "duration": duration,
         "written": written, "words": _words, "LONG": LONG, "SHOWN": SHOWN,
     }  # fmt: skip
-    text = environment.get_template(TEMPLATE).render(**content)
+    text = environment.get_template("page.html").render(**content)
     write_whole(path, text.encode("utf-8", "replace"))
     return path

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from drystone.model.wall import Wall
 from drystone_lab.paired import median_of
@@ -28,13 +29,15 @@ class Study:
     seeds: int = 20  # seeds, quick_seeds: How many, the same for all; in the quick version
     quick_seeds: int = 3
     quick_walls: tuple[Target, ...] = ()  # Of the quick version; empty for the same
+    then: Callable[["StudyWalls"], Any] = lambda found: found  # What is done with the walls
 
-    def __call__(self, context: Context) -> "StudyWalls":
-        """Build the walls."""
+    def __call__(self, context: Context) -> Any:
+        """Build the walls, and do with them what is to be done."""
         walls = (context.quick and self.quick_walls) or self.walls
         walls = tuple(wall.here(context.data) for wall in walls)
-        seeds = self.quick_seeds if context.quick else self.seeds
-        return built(context, walls, self.ways, range(context.seed, context.seed + seeds))
+        count = self.quick_seeds if context.quick else self.seeds
+        seeds = range(context.seed, context.seed + count)
+        return self.then(built(context, walls, self.ways, seeds))
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +73,6 @@ class StudyWalls:
     all: tuple[Trials, ...]
 
     def __iter__(self) -> Iterator[Trials]:
-        """Iterate over the trials."""
         return iter(self.all)
 
     @property

@@ -19,20 +19,16 @@ from drystone_lab.pictures.charts import plot_growth, step_time_panels
 from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import metric_cells, placed_of, trend
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem, Rows
-from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.reproduce.study import ONE_WAY, StudyWalls, built
 from drystone_lab.table import Cell
 from drystone_lab.timed_walls import SAMPLINGS, TimedWall, fitted, parts_ms, three_digits
 from drystone_lab.walls import PR, Target
 
-REPEATS = 5
-"""Of each wall; the median of every step counts."""
-
 
 def timed(context: Context, wall: Target, changes: Mapping[str, object]) -> TimedWall:
-    """Plan a wall by the paper's method, and time it."""
+    """Plan a wall by the paper's method, and time it; the median of five counts for every step."""
     settings = method_settings("paper").updated(changes)
-    repeats = 1 if context.quick else REPEATS
+    repeats = 1 if context.quick else 5
     return timed_walls.planned(wall, context.data, settings, seed=context.seed, repeats=repeats)
 
 
@@ -58,12 +54,6 @@ PROCEDURES: Mapping[str, tuple[Part, ...]] = {
     "selection": ("contacts", "limit analysis", "indices"),
 }
 """The paper's, by our parts."""
-
-NEGLIGIBLE = 0.05
-"""Share of the three procedures below which one is called negligible."""
-
-STABLE = 1.5
-"""A step takes about as long at the end when it takes less than so many times as long."""
 
 
 def by_sampling(context: Context, wall: Target = PR) -> StepWalls:
@@ -142,9 +132,10 @@ def step_findings(walls: BySampling) -> Iterator[Claimed]:
     most = all(o["placement"] > 0.5 and o["selection"] > o["stabilisation"] for o in each.values())
     yield Claimed("placement", most, {"told": told})
     stabilisation = max(one["stabilisation"] for one in each.values())
-    yield Claimed("stabilisation", stabilisation < NEGLIGIBLE, {"most": stabilisation})
+    yield Claimed("stabilisation", stabilisation < 0.05, {"most": stabilisation})
     stable = late_over_early([step.seconds for step in variant])
-    yield Claimed("stable", 1 / STABLE < stable < STABLE, {"stable": stable})
+    # About as long at the end as at the start.
+    yield Claimed("stable", 1 / 1.5 < stable < 1.5, {"stable": stable})
     selection = [procedure_seconds([step])["selection"] for step in variant]
     grows = late_over_early(selection) if min(selection) > 0 else None
     each_ms = [(s.stones, t / s.candidates) for s, t in zip(variant, selection, strict=True)]
@@ -161,9 +152,6 @@ def _trend_words(pairs: Sequence[tuple[float, float | None]]) -> str:
     return "" if found is None else f", {found.words()}"
 
 
-FIRST_STONES = 4
-"""Growth with the stones placed is fitted from so many on."""
-
 BIN = 8
 """Stones in a row of the table."""
 
@@ -177,7 +165,8 @@ def step_rows(walls: BySampling) -> Rows:
             parts = parts_ms(steps)
             stones = f"{first} to {first + len(steps) - 1}"
             yield three_digits((sampling, stones, candidates, *parts, parts[-1] / candidates))
-        late = [step for step in wall.steps if step.stones >= FIRST_STONES]
+        # Growth is fitted from the fourth stone on.
+        late = [step for step in wall.steps if step.stones >= 4]
         each = [[ms / step.candidates for ms in parts_ms([step])] for step in late]
         growth = timed_walls.exponents([float(step.stones) for step in late], each)
         yield three_digits((sampling, "exponent a candidate", None, *growth, None))
@@ -190,10 +179,8 @@ def _candidates(found: StepWalls) -> Rows:
 
 
 STEPS = PaperItem(
-    words=ITEMS["fig28"],
     study=by_sampling,
     claims=lambda found: step_findings(found.walls),
-    timed_claims=True,
     tables={"candidates": _candidates},
     times={
         "released": lambda found: released_rows(found.data, found.walls),
@@ -205,12 +192,6 @@ STEPS = PaperItem(
         )
     ],
 )
-
-SCALES = (0.5, 1.0, 1.5, 2.0)
-"""Of the paper's size, 280 x 80 px."""
-
-QUADRATIC, TOLERANCE = 2.0, 0.5
-"""Exponent over the scale that the paper finds, and how far another one is from it at most."""
 
 PUBLISHED = "PR"
 """Name of the stones of the paper."""
@@ -229,7 +210,9 @@ class ScaledWalls(NamedTuple):
     timed: Mapping[float, TimedWall]
 
 
-def by_scale(context: Context, wall: Target = PR, scales: Sequence[float] = SCALES) -> ScaledWalls:
+def by_scale(
+    context: Context, wall: Target = PR, scales: Sequence[float] = (0.5, 1.0, 1.5, 2.0)
+) -> ScaledWalls:
     """Plan a wall at several resolutions."""
     walls = {scale: replace(wall, scale=scale * wall.scale) for scale in scales}
     found = built(context, tuple(walls.values()), ONE_WAY, (context.seed,))
@@ -246,7 +229,8 @@ def scale_findings(walls: Mapping[float, TimedWall]) -> Iterator[Claimed]:
         if (law := fitted(list(seconds.items()))) is None:
             yield Claimed("few", None, {"what": what})
         else:
-            near = abs(law.exponent - QUADRATIC) <= TOLERANCE
+            # The paper finds an exponent of 2 over the scale.
+            near = abs(law.exponent - 2.0) <= 0.5
             yield Claimed("quadratic", near, {"what": what, "power": law.exponent})
     for scale, wall in walls.items():
         for what, seconds, papers in measures:
@@ -306,10 +290,8 @@ def _scales_pictures(found: ScaledWalls) -> Iterator[ItemFigure]:
 
 
 RESOLUTION = PaperItem(
-    words=ITEMS["fig29"],
     study=by_scale,
     claims=lambda found: scale_findings(found.timed),
-    timed_claims=True,
     tables={"walls": _scales},
     times={
         "released": lambda found: released_rows(
@@ -323,18 +305,10 @@ RESOLUTION = PaperItem(
 WALL_PX = (420, 120)
 """Of every wall; more stones are smaller ones, so that a candidate always has as many pixels."""
 
-LIMIT = 0.25
-"""How far an exponent may be from the paper's."""
 
-
-class Sizes(NamedTuple):
-    """Numbers of stones Q; and thresholds of the clusters K, with the largest Q."""
-
-    counts: tuple[int, ...] = (16, 32, 64, 128)
-    distances: tuple[float, ...] = (0.05, 0.1, 0.4, 1.0)
-
-
-QUICK = Sizes((8, 16, 32), (0.1, 0.4))
+SIZES = (16, 32, 64, 128), (0.05, 0.1, 0.4, 1.0)
+QUICK_SIZES = (8, 16, 32), (0.1, 0.4)
+"""Numbers of stones Q; and thresholds of the clusters K, with the largest Q."""
 
 
 class GrowthWall(NamedTuple):
@@ -347,17 +321,16 @@ class GrowthWall(NamedTuple):
     planned: TimedWall
 
 
-Grew = Sequence[GrowthWall]
-
-
-def by_stones(context: Context, sizes: Sizes | None = None) -> tuple[GrowthWall, ...]:
+def by_stones(
+    context: Context, sizes: tuple[Sequence[int], Sequence[float]] | None = None
+) -> tuple[GrowthWall, ...]:
     """Plan walls: variant and full over the stones, then variant over the clusters."""
-    sizes = sizes or (QUICK if context.quick else Sizes())
+    numbers, distances = sizes or (QUICK_SIZES if context.quick else SIZES)
     usual = method_settings("paper").clusters.distance
     asked: list[tuple[Sampling, float, int]] = [
-        (sampling, usual, count) for sampling in SAMPLINGS for count in sizes.counts
+        (sampling, usual, count) for sampling in SAMPLINGS for count in numbers
     ]
-    asked += [("variant", distance, sizes.counts[-1]) for distance in sizes.distances]
+    asked += [("variant", distance, numbers[-1]) for distance in distances]
     walls = []
     for sampling, distance, count in asked:
         wall = timed_walls.rubble(count, context.seed, WALL_PX)
@@ -369,7 +342,7 @@ def by_stones(context: Context, sizes: Sizes | None = None) -> tuple[GrowthWall,
     return tuple(walls)
 
 
-def counts(walls: Grew) -> Iterator[Claimed]:
+def counts(walls: Sequence[GrowthWall]) -> Iterator[Claimed]:
     """Compare numbers of candidates with §6.2."""
     points = {
         "variant": [(w.Q * w.K, w.planned.candidates) for w in walls if w.sampling == "variant"],
@@ -380,11 +353,10 @@ def counts(walls: Grew) -> Iterator[Claimed]:
         if law is None:
             raise ValueError("too few sizes")
         values = {"power": law.exponent, "count": len(each)}
-        yield Claimed(sampling, abs(law.exponent - expected) <= LIMIT, values)
+        yield Claimed(sampling, abs(law.exponent - expected) <= 0.25, values)
 
 
 GROWTH = PaperItem(
-    words=ITEMS["growth"],
     study=by_stones,
     claims=counts,
     tables={

@@ -9,7 +9,6 @@ from drystone_lab.pictures.charts import figure_of, group_panels, plot_two_figur
 from drystone_lab.reproduce import cells, study
 from drystone_lab.reproduce.cells import METRICS, rounded
 from drystone_lab.reproduce.item import Claimed, Context, ItemFigure, PaperItem
-from drystone_lab.reproduce.items import ITEMS
 from drystone_lab.reproduce.study import Study, StudyWalls, Trials, medians
 from drystone_lab.runs.spec import Changes
 from drystone_lab.walls import IR, LIU_5, MASONS, PR, TWO_SIDED, R, Target, coarser
@@ -37,7 +36,6 @@ def _beta_picture(found: StudyWalls) -> ItemFigure:
 
 
 BETA = PaperItem(
-    words=ITEMS["beta"],
     study=Study(
         walls=MASONS,
         ways={beta: (("placement.beta", float(beta)),) for beta in BETAS},
@@ -75,7 +73,6 @@ def _whole(trials: Trials) -> int:
 
 
 SAMPLING = PaperItem(
-    words=ITEMS["fig16"],
     study=Study(walls=(PR,), ways=SAMPLED),
     claims=_sampling_claims,
     tables={
@@ -91,7 +88,6 @@ STABILISED = ("both", "rotation", "wedge", "none")
 
 
 def _wedge_share(trials: Trials) -> tuple[float | None, ...]:
-    """Return the area of the wedges in percent of the wall."""
     whole = trials.wall.width * trials.wall.height
     return tuple(
         None if area is None else 100 * area / whole for area in trials.values("wedge_area")
@@ -116,7 +112,6 @@ def _wedges_picture(group: StudyWalls, number: int) -> ItemFigure:
 
 
 STABILISATION = PaperItem(
-    words=ITEMS["fig20"],
     study=Study(
         walls=(LIU_5, IR),
         ways={method: (("stabilise.method", method),) for method in STABILISED},
@@ -181,7 +176,6 @@ def named_variants(
 
 
 VARIANTS = PaperItem(
-    words=ITEMS["variants"],
     study=named_variants,
     tables={
         "variants": medians(
@@ -199,7 +193,6 @@ ONE, TWO = "one-sided", "two-sided"
 SIDES: dict[str, Changes] = {ONE: (), TWO: TWO_SIDED}
 
 BOTH_ENDS = PaperItem(
-    words=ITEMS["fig21"],
     study=Study(walls=MASONS, ways=SIDES, quick_walls=COARSE),
     tables={
         "fig21": medians(_named, lambda one: (rounded(one.median("E_FLUSH")),)),
@@ -226,7 +219,6 @@ def _methods_picture(group: StudyWalls) -> ItemFigure:
 
 
 ALL_METHODS = PaperItem(
-    words=ITEMS["figB30-32"],
     study=Study(
         walls=MASONS,
         ways={

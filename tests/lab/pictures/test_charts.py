@@ -13,8 +13,8 @@ from drystone_lab.pictures.charts import (
     MARKERS,
     Prediction,
     group_panels,
+    history_panels,
     plot_groups,
-    plot_history,
     plot_predictions,
     plot_two_figures,
 )
@@ -120,8 +120,7 @@ def test_points_bands_looks_and_legend():
 
 
 def test_versions_without_a_value_have_no_point():
-    ax = Figure().add_subplot()
-    plot_history(ax, ["1", "2", "3"], {"paper": [0.5, None, 0.7]}, "F_SF")
+    (ax,) = history_panels(["1", "2", "3"], {"F_SF": {"paper": [0.5, None, 0.7]}}, "").axes
     assert ax.lines[0].get_xydata().tolist() == [[0, 0.5], [2, 0.7]]
     assert [tick.get_text() for tick in ax.get_xticklabels()] == ["1", "2", "3"]
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("version", "F_SF")

@@ -1,10 +1,10 @@
 """Small generated walls on which the items about the method are made without published data."""
 
 from dataclasses import replace
-from functools import partial
 
 from drystone_lab.reproduce.construction import construction
 from drystone_lab.reproduce.item import Context
+from drystone_lab.reproduce.items import item_named
 from drystone_lab.runs.outcome import FIGURES, Runner, RunOutcome, RunStore
 from drystone_lab.runs.spec import generated
 from drystone_lab.walls import Target
@@ -24,21 +24,20 @@ def context(folder, data=None):
 
 def built(folder, wall):
     """The run that the items look at."""
-    return construction(context(folder), wall.run(1))
+    return construction(context(folder), wall)
 
 
-def on(item, *walls, seeds=2):
+def on(name, *walls, seeds=2):
     """An item that builds walls, of these and from so many seeds."""
-    study = item.study
-    inner = study.keywords["study"] if isinstance(study, partial) else study
-    inner = replace(inner, walls=walls, quick_walls=(), seeds=seeds, quick_seeds=seeds)
-    changed = partial(study.func, study=inner) if isinstance(study, partial) else inner
-    return replace(item, study=changed)
+    item = item_named(name)
+    changes = {"walls": walls, "quick_walls": (), "seeds": seeds, "quick_seeds": seeds}
+    return replace(item, study=replace(item.study, **changes))
 
 
-def of(item, *given, **named):
+def of(name, *given):
     """An item whose study takes these instead of what it usually takes."""
-    return replace(item, study=lambda context: item.study(context, *given, **named))
+    item = item_named(name)
+    return replace(item, study=lambda context: item.study(context, *given))
 
 
 def outcome(key="", **figures):

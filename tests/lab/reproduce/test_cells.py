@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from drystone_lab.reproduce.cells import COLUMNS, figures_of, summary, trend, wins
-from drystone_lab.reproduce.item import claims_table, sentences
+from drystone_lab.reproduce.item import sentences
 from tests.lab.reproduce.small_walls import outcome
 
 
@@ -61,5 +61,3 @@ def test_claims_that_cannot_be_told_do_not_count():
     told = sentences(found)
     assert told[0] == "Of 2 claims of the paper that can be told, 1 agree."
     assert [one.split(":")[0] for one in told[1:]] == ["Agrees", "Differs", "Cannot be told"]
-    records = claims_table("Claims", found).records()
-    assert [row["agrees"] for row in records] == [True, False, None]

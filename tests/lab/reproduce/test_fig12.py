@@ -6,7 +6,7 @@ from drystone.contacts.blocks import model_from_labels
 from drystone_lab.reproduce import fig12
 from tests.lab.reproduce.small_walls import RUBBLE, built, gids, of, rows
 
-MADE = of(fig12.PIC_TO_RI, RUBBLE)
+MADE = of("fig12", RUBBLE)
 
 
 @pytest.fixture(scope="module")

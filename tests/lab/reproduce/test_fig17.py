@@ -5,11 +5,10 @@ import pytest
 from drystone.io.wall_image import read_wall_image
 from drystone.metrics.frame import reduce_labels
 from drystone.metrics.measure import measure_labels
-from drystone_lab.reproduce import fig17
 from drystone_lab.walls import PR
 from tests.lab.reproduce.small_walls import RUBBLE, context, gids, of, rows
 
-MADE = of(fig17.PATHS, RUBBLE)
+MADE = of("fig17", RUBBLE)
 
 
 def test_factors_are_those_of_the_run_and_of_the_table(here, output):
@@ -31,7 +30,7 @@ def test_factors_are_those_of_the_run_and_of_the_table(here, output):
 
 
 def test_the_masons_wall_is_measured_beside_it(tmp_path, data_dir):
-    output = fig17.PATHS.make(context(tmp_path, data_dir))
+    output = of("fig17").make(context(tmp_path, data_dir))
     ours, masons = rows(output, "figures")
     assert (ours["wall"], masons["wall"]) == ("planned PR", "the masons' PR")
     labels = reduce_labels(read_wall_image(data_dir / PR.source.name), PR.scale)

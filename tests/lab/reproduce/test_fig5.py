@@ -12,7 +12,7 @@ from drystone.poses import PoseBook
 from drystone_lab.reproduce import fig5
 from tests.lab.reproduce.small_walls import RUBBLE, context, gids, of, rows
 
-MADE = of(fig5.CLUSTERS, RUBBLE, (RUBBLE,))
+MADE = of("fig5", RUBBLE, (RUBBLE,))
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +70,7 @@ def test_the_span_of_thresholds_has_the_paper_s_count(stones, features):
 
 
 def test_the_stones_pr_fall_into_the_paper_s_clusters(tmp_path, data_dir):
-    output = fig5.CLUSTERS.make(context(tmp_path, data_dir))
+    output = of("fig5").make(context(tmp_path, data_dir))
     assert len(rows(output, "clusters")) == fig5.PAPER_CLUSTERS
     assert [row["stones"] for row in rows(output, "thresholds")] == ["PR", "R", "IR"]
     assert [row["count"] for row in rows(output, "thresholds")] == [32, 34, 61]

@@ -13,7 +13,7 @@ from tests.naive.support import rests_stably
 
 EVERY = 4
 """Columns that are looked at slowly: each of so many."""
-MADE = of(fig6_7.INDICES, RUBBLE)
+MADE = of("fig6-7", RUBBLE)
 
 
 @pytest.fixture(scope="module")
@@ -85,7 +85,6 @@ LABELS[6:, 6:12] = 2
 LABELS[2:6, :5] = 3
 MASK = np.ones((3, 4), bool)
 POSED = PosedStone(Stone(9, MASK), 0.0, 1.0, MASK, (2.0, 1.5))
-SWEPT = np.zeros((10, 20), bool)
 SWEPT = np.zeros((10, 20), bool)
 SWEPT[3:6, :5] = SWEPT[6:, 5:9] = True
 ACTION = fig6_7.ActionView(

@@ -10,7 +10,7 @@ from tests.lab.reproduce.small_walls import RUBBLE, built, gids, of, rows
 from tests.naive import indices as naive
 from tests.naive.rays import local_filling_ratio
 
-MADE = of(fig8.POSITIONS, RUBBLE)
+MADE = of("fig8", RUBBLE)
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ from drystone_lab.reproduce.fig9 import unstable_trials
 from tests.lab.reproduce.small_walls import SHARP, built, gids, of, rows
 from tests.naive.support import rests_stably
 
-MADE = of(fig9.STABILISING, SHARP)
+MADE = of("fig9", SHARP)
 
 
 @pytest.fixture(scope="module")

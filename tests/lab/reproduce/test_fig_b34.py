@@ -1,6 +1,6 @@
 """Bricks in courses: laid by hand, and planned."""
 
-from drystone_lab.reproduce.other_stones import BRICKS, Brick, bricks_of, courses_of, head_joints
+from drystone_lab.reproduce.other_stones import Brick, bricks_of, courses_of, head_joints
 from tests.lab.reproduce.small_walls import context, of, rows
 
 
@@ -33,7 +33,7 @@ def test_a_hole_is_no_joint_and_the_last_course_needs_one_beside_it():
 
 
 def test_planned_bricks_are_read_off_their_wall(tmp_path):
-    output = of(BRICKS, (72, 2)).make(context(tmp_path))
+    output = of("figB34", (72, 2)).make(context(tmp_path))
     found = rows(output, "walls")
     assert [(row["aspect"], row["built from"]) for row in found] == [
         (2.0, "one side"), (3.0, "one side"), (2.0, "two sides"), (3.0, "two sides")

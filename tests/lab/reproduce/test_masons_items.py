@@ -9,10 +9,7 @@ from PIL import Image
 from drystone.contacts.blocks import model_from_labels
 from drystone.metrics.measure import measure_labels
 from drystone.statics.limit import lateral_resistance
-from drystone_lab.reproduce import base_case
 from drystone_lab.reproduce.masons import (
-    FIG13,
-    TABLE2,
     best_trial,
     dilated,
     drawn_together,
@@ -63,7 +60,7 @@ def test_gaps_are_closed_in_every_way(masons):
 
 
 def test_fig13(here, masons):
-    output = of(FIG13, (BLOCKS,)).make(here)
+    output = of("fig13", (BLOCKS,)).make(here)
     traced, closed, papers = rows(output, "fig13")
     measured = measure_labels(masons.labels)
     found = traced["F_SF"], traced["F_AV"]
@@ -76,7 +73,7 @@ def test_fig13(here, masons):
 
 
 def test_base_case(here):
-    output = on(base_case.BASE_CASE, RUBBLE).make(here)
+    output = on("fig14-15", RUBBLE).make(here)
     outcomes = here.run([RUBBLE.run(seed) for seed in SEEDS])
     (row,) = rows(output, "fig14")
     over = np.mean([outcome.figures["alpha_left"] for outcome in outcomes]) / 0.58
@@ -93,7 +90,7 @@ def test_base_case(here):
 
 def test_table2(here):
     stand_in = replace(RUBBLE, name="other", number=4, stand_in=True)
-    output = on(TABLE2, BLOCKS, stand_in).make(here)
+    output = on("table2", BLOCKS, stand_in).make(here)
     outcomes = here.run([BLOCKS.run(seed) for seed in SEEDS])
     filled = [one.figures["F_SF"] for one in outcomes]
     table = rows(output, "table2")

@@ -31,17 +31,17 @@ def two_piers(gap):
 
 def test_a_reference_is_measured_on_all_of_its_image():
     found = measured(two_piers(0), 0.5)
-    assert found.stones == 3
-    assert found.F_SF == pytest.approx((2 * 40 * 20 + 120 * 20) / (60 * 120))
-    assert found.F_LR is not None
-    assert found.resistances == pytest.approx([found.F_LR] * 4)
+    assert found.metrics.stones == 3
+    assert found.metrics.F_SF == pytest.approx((2 * 40 * 20 + 120 * 20) / (60 * 120))
+    assert found.metrics.F_LR is not None
+    assert found.resistances == pytest.approx([found.metrics.F_LR] * 4)
 
 
 def test_the_resistance_of_a_reference_needs_its_gaps_closed():
     # 8 px of the source are 4 of the image, and 20/3 px of the source 3.3 of it.
     found = measured(two_piers(8), 0.5)
     open_, _, twice, thrice = found.resistances
-    assert open_ is twice is found.F_LR is None
+    assert open_ is twice is found.metrics.F_LR is None
     assert thrice is not None
 
 
@@ -49,6 +49,6 @@ def test_only_published_walls_are_references(data_dir):
     wall = NOISY[1]
     assert reference_of(wall.here(None), data_dir) is None
     assert reference_of(wall, None) is None
-    found = reference_of(wall, data_dir)
+    found = reference_of(wall, data_dir).metrics
     assert found.stones == 23
     assert found.F_SF == pytest.approx(0.659, abs=5e-4)

@@ -26,17 +26,17 @@ SHARP = replace(RUBBLE, name="sharp", source=replace(RUBBLE.source, seed=8), num
 
 
 COMPARED = {
-    "beta": (ways.BETA, "beta", "0.7", ("placement.beta", 0.7), [4]),
-    "fig16": (ways.SAMPLING, "sampling", "full", ("sampling", "full"), [4, 6]),
-    "fig20": (ways.STABILISATION, "stabilise", "wedge", ("stabilise.method", "wedge"), [1]),
-    "fig21": (ways.BOTH_ENDS, "built", "two-sided", ("two_sided", True), [2, 5]),
+    "beta": ("beta", "0.7", ("placement.beta", 0.7), [4]),
+    "fig16": ("sampling", "full", ("sampling", "full"), [4, 6]),
+    "fig20": ("stabilise", "wedge", ("stabilise.method", "wedge"), [1]),
+    "fig21": ("built", "two-sided", ("two_sided", True), [2, 5]),
 }
-"""Items by table: column and name of a way, its setting, panels of pictures."""
+"""Of items, and of the table of that name: column and name of a way, its setting, panels."""
 
 
 @pytest.fixture(scope="module")
 def made(here):
-    return {name: on(item, RUBBLE).make(here) for name, (item, *_) in COMPARED.items()}
+    return {name: on(name, RUBBLE).make(here) for name in COMPARED}
 
 
 def _outcomes(here, *changes):
@@ -49,7 +49,7 @@ def _values(outcomes, figure="F_SF"):
 
 @pytest.mark.parametrize("name", COMPARED)
 def test_a_row_has_the_median_of_the_walls_of_its_way(made, here, name):
-    _, column, way, change, panels = COMPARED[name]
+    column, way, change, panels = COMPARED[name]
     (row,) = [row for row in rows(made[name], name) if row[column] == way]
     filled = median(_values(_outcomes(here, change)))
     assert row["F_SF median"] == pytest.approx(filled, abs=1e-4)
@@ -80,7 +80,7 @@ def test_sampling(made, here):
 
 
 def test_wedges(here):
-    output = on(base_case.WEDGES, RUBBLE, SHARP, seeds=1).make(replace(here, seed=2))
+    output = on("fig19", RUBBLE, SHARP, seeds=1).make(replace(here, seed=2))
     table = rows(output, "fig19")
     assert table
     for wall in (RUBBLE, SHARP):
@@ -124,7 +124,7 @@ def test_stabilisation(made, here):
 
 def test_all_methods(here):
     wall = replace(RUBBLE, name="PR", width=RUBBLE.width + 0.5)
-    output = on(ways.ALL_METHODS, wall, seeds=1).make(here)
+    output = on("figB30-32", wall, seeds=1).make(here)
     table = rows(output, "figB30_32")
     assert len(table) == 8
     for row in table:
@@ -140,7 +140,7 @@ def test_all_methods(here):
 
 def test_noise(here):
     walls = (replace(SHARP, number=number, stand_in=True) for number in (30, 80))
-    output = on(noise.NOISE, *walls).make(here)
+    output = on("fig22-24", *walls).make(here)
     levels = {(row["noise, %"], row["rule"]): row for row in rows(output, "levels")}
     assert list(levels) == list(product((30, 80), ("paper", "random")))
     walls = rows(output, "walls")
@@ -155,7 +155,7 @@ def test_noise(here):
 
 
 def test_orientations(here):
-    output = on(noise.TURNED, RUBBLE, seeds=1).make(here)
+    output = on("fig25", RUBBLE, seeds=1).make(here)
     few, many = rows(output, "walls")
     assert (few["orientations"], many["orientations"]) == ("quarter", "10deg")
     claim = rows(output, "claims")[0]
@@ -174,7 +174,7 @@ def test_rounded_stones(here):
     assert [len(wall.here(None).source.stones(None)) for wall in other_stones.KINDS] == [100] * 4
     kinds = [replace(RUBBLE, name=f"{kind} px") for kind in ("round, 1", "round, 1 to 2")]
     few = [replace(wall, name=wall.name.replace("round", "elliptic")) for wall in kinds]
-    output = on(other_stones.ROUNDED, *kinds, *few).make(here)
+    output = on("fig26-27", *kinds, *few).make(here)
     assert [row["kind"] for row in rows(output, "kinds")] == [w.name for w in (*kinds, *few)]
     assert [row["agrees"] for row in rows(output, "claims")] == [None] * 4  # too few walls
     assert [picture.name for picture in output.pictures] == ["fig26", "fig27"]
@@ -207,15 +207,14 @@ def test_variants(here):
 
 
 def test_resolutions(here):
-    output = of(times.RESOLUTION, RUBBLE, (0.5, 1.0)).make(replace(here, quick=True))
+    output = of("fig29", RUBBLE, (0.5, 1.0)).make(replace(here, quick=True))
     assert [row["wall, px"] for row in rows(output, "walls")] == ["50 x 20", "100 x 40"]
     assert [name for name, _ in output.times] == ["claims", "released", "pixels"]
     assert [picture.name for picture in output.pictures] == ["fig29", "fig29-time"]
 
 
 def test_stones_and_clusters(here):
-    sizes = times.Sizes((8, 12), (0.1,))
-    output = of(times.GROWTH, sizes).make(replace(here, quick=True))
+    output = of("growth", ((8, 12), (0.1,))).make(replace(here, quick=True))
     found = rows(output, "walls")
     assert [(row["sampling"], row["Q"]) for row in found] == [
         ("variant", 8), ("variant", 12), ("full", 8), ("full", 12), ("variant", 12)
