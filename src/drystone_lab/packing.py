@@ -41,8 +41,7 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
         for turns in TURNS.values():
             strip = packed_width_px(packer, stones, height, turns, seconds, settings.seed)
             strips += strip, stones.total_area_px / (strip * height)
-        (way,) = (way for way in WAYS if way.name == SEARCH)
-        (looked,) = looked_at_times(way, stones, target, (seconds,), settings.seed)
+        (looked,) = looked_at_times(WAYS[SEARCH], stones, target, (seconds,), settings.seed)
         placed, filled = 0, None
         if looked.found.figures is not None:
             placed, filled = looked.found.figures.stones, looked.found.figures.F_SF

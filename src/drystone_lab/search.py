@@ -4,12 +4,11 @@ import csv
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 from drystone.errors import UsageError
-from drystone.io.published import published_file
-from drystone.io.wall_image import read_wall_image
 from drystone.metrics import second
 from drystone.metrics.frame import reduce_labels
 from drystone.metrics.measure import measure_labels
@@ -27,14 +26,11 @@ from drystone.search.yard import Yard
 from drystone_lab.paired import median_difference, median_of
 from drystone_lab.planned_walls import SETS, missing_data
 from drystone_lab.runs.spec import Changes, nested, told
-from drystone_lab.runs.workers import crew
+from drystone_lab.runs.workers import Crew
 from drystone_lab.table import BENCH, BenchSettings, Cell, Table, read_rows, worded
 from drystone_lab.walls import BRICKS, SEARCHED, UNSEEN, Target, chosen
 
 Clock = Callable[[], float]
-
-ENDLESS = 10**9
-"""A budget that is never used up: the clock ends all ways."""
 
 BETWEEN_SEEDS = 10_000
 """Restarts of two seeds that are nearer to each other than this have no pass in common."""
@@ -47,13 +43,9 @@ class WayState(NamedTuple):
     best: Callable[[], FoundWall]  # Gives the best of them
 
 
-class SearchWay(NamedTuple):
-    """A way to look for a good wall."""
-
-    name: str
-    # Goes on from the planner of the first wall, which is built, for as long as it is asked, or
-    # until a time of a clock
-    states: Callable[[Planner, float, Clock], Iterator[WayState]]
+Way = Callable[[Planner, float, Clock], Iterator[WayState]]
+"""Looks for a good wall: goes on from the planner of the first one, which is built, for as long as
+it is asked, or until a time of a clock."""
 
 
 class WayResult(NamedTuple):
@@ -65,26 +57,17 @@ class WayResult(NamedTuple):
     seconds: float
 
 
-def _restarts(first: Planner, _end: float, _clock: Clock) -> Iterator[WayState]:
-    return _passes(first, lambda found, _: found)
-
-
-def _restarts_with_wedges(first: Planner, _end: float, _clock: Clock) -> Iterator[WayState]:
+def _restarts(
+    first: Planner, _end: float, _clock: Clock, *, wedges: bool = False
+) -> Iterator[WayState]:
+    """Build wall after wall from other seeds, and keep the best."""
     yard = Yard.of(first)
 
     def finished(found: FoundWall, best: FoundWall) -> FoundWall:
         # As a chain of the search does it: the others are not worth the time.
-        if found.merit <= best.merit - yard.settings.search.wedge_below:
-            return found
-        return wedged(found, yard)
+        near = wedges and found.merit > best.merit - yard.settings.search.wedge_below
+        return wedged(found, yard) if near else found
 
-    return _passes(first, finished)
-
-
-def _passes(
-    first: Planner, finished: Callable[[FoundWall, FoundWall], FoundWall]
-) -> Iterator[WayState]:
-    """Build wall after wall from other seeds, and keep the best."""
     start = FoundWall.of(first)
     best, walls = finished(start, start), 1
     while True:
@@ -102,20 +85,13 @@ def _passes(
         best, walls = max(best, found, key=lambda one: one.merit), walls + 1
 
 
-def _search(first: Planner, end: float, clock: Clock) -> Iterator[WayState]:
-    return _searched(first, first.settings, end, clock)
-
-
-def _without_courses(first: Planner, end: float, clock: Clock) -> Iterator[WayState]:
-    # Courses are planned in further first walls only, and chains of other walls never do.
-    settings = first.settings
-    alone = replace(settings, search=replace(settings.search, passes=1))
-    return _searched(first, alone, end, clock)
-
-
-def _searched(
-    first: Planner, settings: PlannerSettings, end: float, clock: Clock
+def _search(
+    first: Planner, end: float, clock: Clock, *, courses: bool = True
 ) -> Iterator[WayState]:
+    settings = first.settings
+    if not courses:
+        # They are planned in further first walls only, and chains of other walls never do.
+        settings = replace(settings, search=replace(settings.search, passes=1))
     yard = Yard(first.workshop, settings, Deadline(end, clock))
     for progress in searching(FoundWall.of(first), yard, first.seed):
         packed = progress.best
@@ -128,12 +104,12 @@ def _searched(
 RESTARTS, WEDGED = "restarts", "restarts with wedges"
 SEARCH, NO_COURSES = "search", "without courses"
 
-WAYS = (
-    SearchWay(RESTARTS, _restarts),
-    SearchWay(WEDGED, _restarts_with_wedges),
-    SearchWay(SEARCH, _search),
-    SearchWay(NO_COURSES, _without_courses),
-)
+WAYS: Mapping[str, Way] = {
+    RESTARTS: _restarts,
+    WEDGED: partial(_restarts, wedges=True),
+    SEARCH: _search,
+    NO_COURSES: partial(_search, courses=False),
+}
 
 
 def tries(budget: int) -> PlannerSettings:
@@ -143,7 +119,7 @@ def tries(budget: int) -> PlannerSettings:
 
 
 def looked_at_times(
-    way: SearchWay,
+    way: Way,
     stones: StoneSet,
     target: Target,
     times: Sequence[float],
@@ -159,8 +135,9 @@ def looked_at_times(
     """
     started = clock()
     end = started + times[-1]
-    # Another budget for every seed, so that nothing is left over from a search of another seed.
-    settings = tries(ENDLESS + seed).updated(nested(changes))
+    # A budget that is never used up, another one for every seed, so that nothing is left over from
+    # a search of another seed.
+    settings = tries(10**9 + seed).updated(nested(changes))
     width, height = target.size(stones)
     site = Site.from_source(width, height, target.scale)
     first = Planner(stones, site, seed=seed, settings=settings)
@@ -168,7 +145,7 @@ def looked_at_times(
         pass
     reached: list[tuple[WayState, float]] = []
     before: tuple[WayState, float] | None = None
-    for state in way.states(first, end, clock):
+    for state in way(first, end, clock):
         now = state, clock()
         while len(reached) < len(times) - 1 and now[1] > started + times[len(reached)]:
             reached.append(before or now)
@@ -185,7 +162,6 @@ def looked_at_times(
 FIGURES = (
     "placed", "F_SF", "F_AV", "F_AH", "F_LR", "2nd F_AV", "2nd F_AH", "T_LEVEL", "E_FLUSH", "merit",
 )  # fmt: skip
-"""What is compared."""
 
 SPENT = ("possible F_SF", "walls", "CPU s")
 """Area bound on F_SF, walls built, and time; every result has them."""
@@ -204,7 +180,6 @@ class SearchRun(NamedTuple):
 
 
 COLUMNS = ("wall", "method", "seed", "seconds", *FIGURES, *SPENT)
-"""Of the table."""
 
 
 def result_of(looked: WayResult) -> SearchResult:
@@ -275,22 +250,21 @@ def append_results(path: Path, results: Iterable[tuple[SearchRun, SearchResult]]
 class SearchTask:
     """What one process does: a method looks for a wall, and is asked at several times."""
 
-    wall: str  # name of the target
+    target: Target
     way: str
     seed: int
     times: tuple[float, ...]  # CPU times, s
     data: Path | None
-    quick: bool  # whether targets are those of the smaller version
     changes: Changes = ()
 
     @property
     def runs(self) -> list[SearchRun]:
         """What its results are called; runs with other settings are not taken for these."""
         method = method_name(self.way, self.changes)
-        return [SearchRun(self.wall, method, self.seed, seconds) for seconds in self.times]
+        return [SearchRun(self.target.name, method, self.seed, seconds) for seconds in self.times]
 
     def __str__(self) -> str:
-        return f"{self.wall}, {method_name(self.way, self.changes)}, seed {self.seed}"
+        return f"{self.target.name}, {method_name(self.way, self.changes)}, seed {self.seed}"
 
 
 def method_name(way: str, changes: Changes) -> str:
@@ -315,9 +289,7 @@ def searched(
     """
     known = {} if settings.runs is None else read_results(settings.runs)
     tasks = [
-        SearchTask(
-            target.name, way.name, seed, times, settings.data, settings.quick, settings.changes
-        )
+        SearchTask(target, way, seed, times, settings.data, settings.changes)
         for seed in seeds
         for target, _ in walls
         for way in chosen_ways(settings.policies)
@@ -343,17 +315,17 @@ def searched_walls(settings: BenchSettings) -> tuple[Target, ...]:
     return chosen((BRICKS,) if settings.quick else (*SEARCHED, *UNSEEN), settings.only)
 
 
-def chosen_ways(names: Sequence[str]) -> tuple[SearchWay, ...]:
-    """Return all ways, or those that are named; E138 for a name that none has."""
-    unknown = set(names) - {way.name for way in WAYS}
+def chosen_ways(names: Sequence[str]) -> tuple[str, ...]:
+    """Return the names of all ways, or those that are named; E138 for a name that none has."""
+    unknown = set(names) - {*WAYS}
     if unknown:
         raise UsageError(
             "E138",
             f"there is no way to search that is called {min(unknown)!r}.",
             where="--policy",
-            cure=f"There are {', '.join(repr(way.name) for way in WAYS)}.",
+            cure=f"There are {', '.join(map(repr, WAYS))}.",
         )
-    return tuple(way for way in WAYS if not names or way.name in names)
+    return tuple(way for way in WAYS if not names or way in names)
 
 
 def _done(
@@ -361,33 +333,20 @@ def _done(
 ) -> Iterator[tuple[SearchTask, list[SearchResult]]]:
     """Do tasks, and give their results as they come."""
     if jobs == 1:
-        yield from map(_with_results, tasks)
+        yield from map(do, tasks)
     else:
-        with crew(jobs, fresh=True) as processes:
-            yield from processes.work(_with_results, tasks)
+        with Crew(jobs, fresh=True) as processes:
+            yield from processes.work(do, tasks)
 
 
-def _with_results(task: SearchTask) -> tuple[SearchTask, list[SearchResult]]:
+def do(task: SearchTask) -> tuple[SearchTask, list[SearchResult]]:
     """Do a task, and say which it was."""
-    return task, do(task)
-
-
-def do(task: SearchTask) -> list[SearchResult]:
-    """Do a task."""
-    settings = BenchSettings(data=task.data, quick=task.quick)
-    (target,) = (one for one in searched_walls(settings) if one.name == task.wall)
-    (way,) = (one for one in WAYS if one.name == task.way)
-    stones = target.stones(task.data)
-    assert stones is not None  # noqa: S101 - who asks has seen them
-    looked = looked_at_times(way, stones, target, task.times, task.seed, changes=task.changes)
-    return [result_of(one) for one in looked]
-
-
-SECONDS, SEEDS = 20.0, 6
-QUICK_SECONDS, QUICK_SEEDS = 0.1, 2
-
-PAIRS = ((SEARCH, RESTARTS), (SEARCH, WEDGED), (SEARCH, NO_COURSES))
-"""Methods that are compared: what the first has more than the second."""
+    target = task.target
+    looked = looked_at_times(
+        WAYS[task.way], target.source.stones(task.data), target, task.times, task.seed,
+        changes=task.changes,
+    )  # fmt: skip
+    return task, [result_of(one) for one in looked]
 
 
 ByWay = Mapping[str, Sequence[SearchResult]]
@@ -422,9 +381,9 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
         for target, stones in walls:
             found = {}
             for way in chosen_ways(settings.policies):
-                method = method_name(way.name, settings.changes)
+                method = method_name(way, settings.changes)
                 runs = [SearchRun(target.name, method, seed, seconds) for seed in seeds]
-                found[way.name] = [results[run] for run in runs]
+                found[way] = [results[run] for run in runs]
             medians += _rows(target.name, len(stones), found)
             differences += _differences(target.name, found)
         tables.append(worded(of["medians"], medians, more=notes, seconds=seconds, seeds=len(seeds)))
@@ -435,17 +394,19 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
 
 def _effort(settings: BenchSettings) -> tuple[tuple[float, ...], range]:
     """Return after which times methods are asked, and the seeds."""
-    usual = (QUICK_SECONDS, QUICK_SEEDS) if settings.quick else (SECONDS, SEEDS)
-    times = tuple(sorted(set(settings.seconds))) or (usual[0],)
-    return times, range(settings.seed, settings.seed + (settings.seeds or usual[1]))
+    seconds, seeds = (0.1, 2) if settings.quick else (20.0, 6)
+    times = tuple(sorted(set(settings.seconds))) or (seconds,)
+    return times, range(settings.seed, settings.seed + (settings.seeds or seeds))
 
 
 def _rows(wall: str, stones: int, by_way: ByWay) -> list[tuple[Cell, ...]]:
     rows: list[tuple[Cell, ...]] = []
     for way, results in by_way.items():
-        placed = [count for count in _values(results, "placed") if count is not None]
-        medians = [median_of(_values(results, figure)) for figure in FIGURES]
-        spent = [median_of(_values(results, name)) for name in ("walls", "CPU s")]
+        placed = [one["placed"] for one in results if one["placed"] is not None]
+        medians, spent = (
+            [median_of(one[name] for one in results) for name in names]
+            for names in (FIGURES, ("walls", "CPU s"))
+        )
         words = f"{min(placed)}-{max(placed)} of {stones}"
         possible = results[0]["possible F_SF"]
         rows.append((wall, way, words, *medians[:2], possible, *medians[2:], *spent))
@@ -454,22 +415,18 @@ def _rows(wall: str, stones: int, by_way: ByWay) -> list[tuple[Cell, ...]]:
 
 def _differences(wall: str, by_way: ByWay) -> list[tuple[Cell, ...]]:
     rows: list[tuple[Cell, ...]] = []
-    for pair in PAIRS:
-        if not by_way.keys() >= set(pair):
+    for way in (RESTARTS, WEDGED, NO_COURSES):
+        if not by_way.keys() >= {SEARCH, way}:
             continue
-        first, second = (by_way[way] for way in pair)
-        merits = zip(_values(first, "merit"), _values(second, "merit"), strict=True)
+        values = {
+            figure: [[one[figure] for one in by_way[each]] for each in (SEARCH, way)]
+            for figure in FIGURES
+        }
+        merits = zip(*values["merit"], strict=True)
         better = [a is not None and b is not None and a > b for a, b in merits]
-        cells = [
-            median_difference(_values(first, figure), _values(second, figure)) for figure in FIGURES
-        ]
-        told = [None if cell is None else cell.text() for cell in cells]
-        rows.append((wall, pair[1], f"{sum(better)} of {len(better)}", *told))
+        cells = [median_difference(first, second) for first, second in values.values()]
+        rows.append((wall, way, f"{sum(better)} of {len(better)}", *cells))
     return rows
-
-
-def _values(results: Sequence[SearchResult], figure: str) -> list[float | None]:
-    return [result[figure] for result in results]
 
 
 def masons_walls(settings: BenchSettings) -> Table:
@@ -477,7 +434,7 @@ def masons_walls(settings: BenchSettings) -> Table:
     rows = []
     for wall in SETS:
         if settings.data is not None and wall.source.is_there(settings.data):
-            labels = read_wall_image(published_file(settings.data, wall.source.name))
+            labels = wall.source.labels(settings.data)
             rows.append(masons_row(wall.name, labels, wall.scale))
     return worded(BENCH["search"]["masons"], rows)
 

@@ -19,7 +19,6 @@ from drystone_lab.walls import BRICKS, Target
 
 STONES = brick_stones(BrickSettings(count=4), np.random.default_rng(1))
 WALL = Target("bricks", generated("brick", 1, count=4), 72, 24, 1.0)
-BY_NAME = {way.name: way for way in search_runs.WAYS}
 
 
 def ticking():
@@ -48,7 +47,7 @@ def clock_of(*times):
     ],
 )
 def test_what_is_begun_in_time_counts(name, seconds, walls):
-    looked = looked_for(BY_NAME[name], STONES, WALL, seconds, 1, ticking())
+    looked = looked_for(search_runs.WAYS[name], STONES, WALL, seconds, 1, ticking())
     assert walls[0] <= looked.walls <= walls[1]
     assert looked.possible == 1.0
     assert looked.found.figures.stones == 4
@@ -56,14 +55,14 @@ def test_what_is_begun_in_time_counts(name, seconds, walls):
 
 
 def test_the_search_is_that_of_a_plan_with_the_same_budget():
-    looked = looked_for(BY_NAME["search"], STONES, WALL, 50, 1, ticking())
+    looked = looked_for(search_runs.WAYS["search"], STONES, WALL, 50, 1, ticking())
     plan = plan_wall(STONES, 72, 24, seed=1, settings=search_runs.tries(looked.walls), scale=1.0)
     np.testing.assert_array_equal(looked.found.build.wall.labels, plan.wall.labels)
     assert looked.found.figures.F_LR == pytest.approx(plan.metrics.F_LR, abs=1e-12)
 
 
 def test_the_first_wall_counts_however_long_it_takes_and_without_courses_has_none():
-    looked = looked_for(BY_NAME["without courses"], STONES, WALL, 1, 1, clock_of(0, 100))
+    looked = looked_for(search_runs.WAYS["without courses"], STONES, WALL, 1, 1, clock_of(0, 100))
     assert (looked.walls, looked.found.courses) == (1, None)
 
 
@@ -105,17 +104,16 @@ def test_wedges_go_into_walls_that_are_nearly_the_best(worth, monkeypatch):
         return SimpleNamespace(merit=found.merit + 0.2)
 
     monkeypatch.setattr(search_runs, "wedged", wedged)
-    states = search_runs._restarts_with_wedges(worth(1.0, 0.9, 0.96, 1.1), 0.0, ticking())
+    states = search_runs._restarts(worth(1.0, 0.9, 0.96, 1.1), 0.0, ticking(), wedges=True)
     assert [next(states).best().merit for _ in range(4)] == pytest.approx([1.2, 1.2, 1.2, 1.3])
     assert tried == [1.0, 0.96, 1.1]
 
 
 def test_of_earlier_times_what_was_finished_by_then_counts():
     states = (search_runs.WayState(n, lambda n=n: n) for n in count(1))
-    way = search_runs.SearchWay("by hand", lambda *_: states)
     # Started at 10; the walls are finished at 14, 15, 17, 17.5 and 21.
     clock = clock_of(10, 14, 15, 17, 17.5, 21)
-    found = search_runs.looked_at_times(way, STONES, WALL, (2, 6, 7, 10), 1, clock)
+    found = search_runs.looked_at_times(lambda *_: states, STONES, WALL, (2, 6, 7, 10), 1, clock)
     # Nothing was there after 2 s, so it is the first wall, when it is finished.
     assert [(one.found, one.walls, one.seconds) for one in found] == [
         (1, 1, 4), (2, 2, 5), (3, 3, 7), (5, 5, 11)
@@ -125,8 +123,8 @@ def test_of_earlier_times_what_was_finished_by_then_counts():
 
 @pytest.mark.parametrize(("name", "times"), [("restarts", (2, 4, 9)), ("search", (40, 80, 150))])
 def test_what_is_asked_on_the_way_changes_nothing(name, times):
-    asked = search_runs.looked_at_times(BY_NAME[name], STONES, WALL, times, 1, ticking())
-    alone = looked_for(BY_NAME[name], STONES, WALL, times[-1], 1, ticking())
+    asked = search_runs.looked_at_times(search_runs.WAYS[name], STONES, WALL, times, 1, ticking())
+    alone = looked_for(search_runs.WAYS[name], STONES, WALL, times[-1], 1, ticking())
     assert [one.walls for one in asked] == sorted(one.walls for one in asked)
     assert (asked[-1].walls, asked[-1].seconds) == (alone.walls, alone.seconds)
     assert asked[-1].found.merit == alone.found.merit
@@ -145,7 +143,7 @@ def done(monkeypatch):
     def do(task):
         tasks.append(task)
         figures = dict.fromkeys((*search_runs.FIGURES, *search_runs.SPENT), 0.5)
-        return [figures | {"placed": task.seed, "CPU s": seconds} for seconds in task.times]
+        return task, [figures | {"placed": task.seed, "CPU s": each} for each in task.times]
 
     monkeypatch.setattr(search_runs, "do", do)
     return tasks
@@ -163,7 +161,7 @@ def test_what_the_table_holds_is_not_done_again(done, tmp_path):
     assert [(run.seed, one["placed"]) for run, one in again.items()] == [(2, 2), (1, 1)]
     # A time that is not there is looked for anew; what was there stays.
     search_runs.searched(WALLS, [1], (2.0, 3.0), kept)
-    assert done[2:] == [search_runs.SearchTask(BRICKS.name, "restarts", 1, (2.0, 3.0), None, True)]
+    assert done[2:] == [search_runs.SearchTask(BRICKS, "restarts", 1, (2.0, 3.0), None)]
     assert len(search_runs.read_results(tmp_path / "runs.csv")) == len(said) == 5
     assert said[-1].startswith("bricks, restarts, seed 1, 2 s: 1 of 9 stones, ")
 
@@ -184,9 +182,9 @@ def test_runs_with_other_settings_are_others(done, tmp_path):
 
 
 def test_settings_are_what_a_way_goes_by():
-    task = search_runs.SearchTask(BRICKS.name, "restarts", 1, (1e-6,), None, True)
-    (plain,) = search_runs.do(task)
-    (halved,) = search_runs.do(replace(task, changes=(("goal.filling", 0.0),)))
+    task = search_runs.SearchTask(BRICKS, "restarts", 1, (1e-6,), None)
+    _, (plain,) = search_runs.do(task)
+    _, (halved,) = search_runs.do(replace(task, changes=(("goal.filling", 0.0),)))
     lost = method_settings("best").goal.filling * plain["F_SF"] / plain["possible F_SF"]
     assert halved["merit"] == pytest.approx(plain["merit"] - lost)
 
@@ -203,8 +201,7 @@ class Deadly(str):
 def test_processes_do_what_one_does_and_what_ended_is_kept_when_one_dies(tmp_path, monkeypatch):
     times = (1e-6,)  # the first wall is always finished, and here none is begun after it
     one = search_runs.searched(WALLS, [1], times, ONE_WAY)
-    last = search_runs.SearchWay(Deadly("unknown"), search_runs.WAYS[0].states)
-    monkeypatch.setattr(search_runs, "chosen_ways", lambda _: (search_runs.WAYS[0], last))
+    monkeypatch.setattr(search_runs, "chosen_ways", lambda _: ("restarts", Deadly("unknown")))
     settings = replace(ONE_WAY, runs=tmp_path / "runs.csv", jobs=2)
     with pytest.raises(DrystoneError, match="E402") as caught:
         search_runs.searched(WALLS, [1], times, settings)

@@ -14,15 +14,12 @@ from drystone.errors import DrystoneError, UsageError
 from drystone_lab.runs.outcome import RunOutcome, RunWorker, died, execute
 from drystone_lab.runs.spec import RunSpec
 
-PATIENCE_S = 5.0
-"""Time that a cluster has to answer."""
-
 OPTION = "--dask"
 
 
 @contextmanager
-def cluster_at_work(address: str, *, patience_s: float = PATIENCE_S) -> Iterator[RunWorker]:
-    """Have runs done by a Dask cluster, as long as the block lasts.
+def cluster_at_work(address: str, *, patience_s: float = 5.0) -> Iterator[RunWorker]:
+    """Have runs done by a Dask cluster, as long as the block lasts; it has a time to answer.
 
     The runs of a worker that dies are done by others; one at which so many workers died that the
     scheduler gives it up (``distributed.scheduler.allowed-failures``, 3 unless it is set there)

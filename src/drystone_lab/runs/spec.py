@@ -79,7 +79,6 @@ class StoneSource:
     settings: tuple[tuple[str, Scalar], ...] = ()
 
     def __str__(self) -> str:
-        """Return a few words for messages."""
         return self.name or f"{self.kind} {self.seed}"
 
     def is_there(self, data: Path | None) -> bool:
@@ -184,7 +183,6 @@ class RunSpec:
         }  # fmt: skip
 
     def __str__(self) -> str:
-        """Return a line for messages."""
         size = f"{self.width:g} x {self.height:g} px" if self.width and self.height else "own size"
         method = ", ".join([self.method, told(self.changes)] if self.changes else [self.method])
         return f"{self.source}, {size} at {self.scale:g}, {method}, seed {self.seed}"

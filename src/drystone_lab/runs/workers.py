@@ -6,7 +6,7 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from functools import partial
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
 from drystone.errors import UsageError
 from drystone.search.processes import MUCH_MEMORY, process_pool
@@ -31,33 +31,31 @@ Process = Any
 
 @contextmanager
 def processes_at_work(jobs: int) -> Iterator[RunWorker]:
-    """Start processes that do runs; they end with the block, whatever they do then."""
+    """Start processes that do runs."""
     if jobs == 1:
         yield one_by_one
         return
-    with crew(jobs) as found:
-        yield lambda specs, data: found.work(partial(execute, data=data), specs)
-
-
-@contextmanager
-def crew(jobs: int, *, fresh: bool = False) -> Iterator["Crew"]:
-    """Start processes; they end with the block, whatever they do then.
-
-    With `fresh` each task has a new process: what one remembers takes no time from another.
-    """
-    found = Crew(jobs, fresh)
-    try:
-        yield found
-    finally:
-        found.end()
+    with Crew(jobs) as crew:
+        yield lambda specs, data: crew.work(partial(execute, data=data), specs)
 
 
 class Crew:
-    """Processes with one worker each, so that it is known at which task one died."""
+    """Processes with one worker each, so that it is known at which task one died.
 
-    def __init__(self, jobs: int, fresh: bool) -> None:
+    They end with the block, whatever they do then.  With `fresh` each task has a new process: what
+    one remembers takes no time from another.
+    """
+
+    def __init__(self, jobs: int, *, fresh: bool = False) -> None:
         self.free = [_process() for _ in range(jobs)]
         self.fresh = fresh
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for process in self.free:
+            process.shutdown(wait=True, kill_workers=True)
 
     def work(self, do: Callable[[Task], Done], tasks: Sequence[Task]) -> Iterator[Done]:
         """Do tasks, and give what comes of them in whatever order they end.
@@ -102,11 +100,6 @@ class Crew:
             return process
         process.shutdown(wait=True, kill_workers=True)
         return _process()
-
-    def end(self) -> None:
-        """End the processes."""
-        for process in self.free:
-            process.shutdown(wait=True, kill_workers=True)
 
 
 def _process() -> Process:

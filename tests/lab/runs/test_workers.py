@@ -11,7 +11,7 @@ import pytest
 from drystone.errors import DrystoneError, UsageError
 from drystone_lab.runs import workers
 from drystone_lab.runs.outcome import Runner, RunStore, one_by_one
-from drystone_lab.runs.workers import ONE_THREAD, crew, processes_at_work, work_of
+from drystone_lab.runs.workers import ONE_THREAD, Crew, processes_at_work, work_of
 from tests.lab.runs.bricks import NOT_SIX, deadly, endless, kept, run
 
 
@@ -73,7 +73,7 @@ def test_a_run_that_fails_does_not_stop_those_that_have_begun(tmp_path, monkeypa
 @pytest.mark.parametrize("fresh", [False, True])
 def test_processes_have_one_thread_and_are_used_again_or_not(monkeypatch, fresh):
     monkeypatch.setenv(ONE_THREAD[0], "2")
-    with crew(1, fresh=fresh) as processes:
+    with Crew(1, fresh=fresh) as processes:
         assert list(processes.work(os.getenv, ONE_THREAD[:1])) == ["1"]
         ids = set(processes.work(pid, range(2)))
     assert os.getpid() not in ids
