@@ -14,9 +14,6 @@ from drystone_lab.runs.outcome import execute
 from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 from drystone_lab.walls import BRICKS, JUDGED, Target
 
-SEEDS = 5
-"""Walls of each set."""
-
 BothSides = tuple[float | None, float | None]
 
 
@@ -36,7 +33,7 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
         _judged(target, stones, seed)
         for target in ((BRICKS,) if settings.quick else JUDGED)
         if (stones := target.stones(settings.data)) is not None
-        for seed in range(settings.seed, settings.seed + (1 if settings.quick else SEEDS))
+        for seed in range(settings.seed, settings.seed + (1 if settings.quick else 5))
     ]
     return (
         worded(BENCH["engine"]["walls"], map(_row, judged), more=missing_data(settings)),

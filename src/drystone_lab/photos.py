@@ -9,13 +9,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageOps, JpegImagePlugin
+from skimage.transform import matrix_transform
 
 from drystone.errors import DrystoneError, ExitCode
 from drystone.photo.segment_doubts import doubts_of, verdict_of
 from drystone.photo.segment_photo import SegmentedPhoto, segment_photo
 from drystone_lab.photographs.layout import LEVELS, PhotoLevel
 from drystone_lab.photographs.real import ALL, RealPhoto, pixels_of, there, truth_of
-from drystone_lab.photographs.scene import Photograph, inverse, layout_of, moved, photograph
+from drystone_lab.photographs.scene import Photograph, layout_of, photograph
 from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 
 MATCHED = 0.5
@@ -49,16 +50,8 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     rendered = worded(words["rendered"], said(map(_row, levels)))
     cases = ((name, "an error", _outcome(_small(level), way)) for name, level, way in _refused())
     refused = worded(words["refused"], said(cases))
-    return rendered, refused, _real(settings)
-
-
-def _real(settings: BenchSettings) -> Table:
-    """Find stones in the real photographs that are there."""
-    rows = []
-    for photo in there(settings.data):
-        rows.append(_real_row(photo, settings.data))
-        settings.say(", ".join(map(str, rows[-1])))
-    return worded(BENCH["photos"]["real"], rows, there=len(rows), all=len(ALL))
+    photos = [*said(_real_row(photo, settings.data) for photo in there(settings.data))]
+    return rendered, refused, worded(words["real"], photos, there=len(photos), all=len(ALL))
 
 
 def _real_row(photo: RealPhoto, data: Path | None) -> tuple[Cell, ...]:
@@ -106,7 +99,7 @@ def _whole(truth: NDArray[np.uint16]) -> NDArray[np.uint16]:
 def score(made: Photograph, result: SegmentedPhoto) -> Score:
     """Compare what was found with what is there."""
     labels = result.found.labels
-    truth = made.truth_in(inverse(result.from_photo), labels.shape)
+    truth = made.truth_in(np.linalg.inv(result.from_photo), labels.shape)
     frame = made.truth_in(np.eye(3), (made.level.height_px, made.level.width_px))
     whole = _whole(frame).astype(int)
     iou = overlaps(truth, labels)
@@ -145,8 +138,8 @@ def _scale_error(made: Photograph, result: SegmentedPhoto) -> float | None:
         *(np.array([0.15, 0.5, 0.85]) * side for side in (level.width_px, level.height_px))
     )
     seen = np.column_stack([x.ravel(), y.ravel()])
-    true = moved(inverse(made.homography), seen) / made.px_per_m
-    found = moved(result.from_photo, seen) / result.px_per_m
+    true = matrix_transform(seen, np.linalg.inv(made.homography)) / level.px_per_m
+    found = matrix_transform(seen, result.from_photo) / result.px_per_m
     far = [
         np.hypot(*(points[:, None] - points[None]).transpose(2, 0, 1)) for points in (true, found)
     ]
@@ -178,7 +171,6 @@ def _row(level: PhotoLevel) -> tuple[Cell, ...]:
 
 
 def _small(level: PhotoLevel) -> PhotoLevel:
-    """Return a level at less than half the size."""
     return replace(
         level, width_px=900, height_px=675, px_per_m=800.0, count=min(level.count, 10),
         gap_px=12, touching=min(level.touching, 2), cut=min(level.cut, 1),

@@ -25,15 +25,6 @@ from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 
 Points = NDArray[np.float64]
 
-BED_SLOPES_DEG = (4.0, 7.0, 11.0)
-"""Slopes of the pieces of a bed joint; their signs alternate."""
-
-HEAD_SLOPES_DEG = (7.0, 11.0, 17.0)
-"""How far a head joint leans from the vertical, to either side."""
-
-BATTER_DEG = (3.0, 5.0)
-"""How far the ends of the wall lean inwards."""
-
 STONE_LENGTH = 1.5
 """Mean length of a stone over the height of its course."""
 
@@ -94,7 +85,8 @@ def tilted_wall(rng: Generator, courses: int, length: float = 0.9) -> TiltedWall
 
 def _attempt(rng: Generator, courses: int, length: float) -> tuple[Points, ...]:
     """Draw course after course; give up, without stones, where joints come too close."""
-    left, right = np.tan(np.radians(rng.permutation(BATTER_DEG)))
+    # The ends of the wall lean inwards by as many degrees.
+    left, right = np.tan(np.radians(rng.permutation((3.0, 5.0))))
     outline = shapely.Polygon([(0, 0), (length, 0), (length - right, 1), (left, 1)])
     lower = np.array([[-1.0, 0.0], [length + 1.0, 0.0]])
     polygons: list[Points] = []
@@ -126,7 +118,8 @@ def _heads(rng: Generator, course: int, length: float, courses: int) -> list[Poi
     middle = (course + 0.5) / courses
     lines = []
     for place in places[: count - 1 + course % 2].tolist():
-        lean = math.tan(math.radians(float(rng.choice(HEAD_SLOPES_DEG) * rng.choice([-1, 1]))))
+        lean_deg = float(rng.choice((7.0, 11.0, 17.0)) * rng.choice([-1, 1]))
+        lean = math.tan(math.radians(lean_deg))
         lines.append(np.array([[place + lean * t, middle + t] for t in (-1.0, 1.0)]))
     return lines
 
@@ -141,7 +134,8 @@ def _bed(rng: Generator, course: int, length: float, courses: int) -> Points:
     x, y = [float(rng.uniform(-1.0, -0.5))], [0.0]
     sign = float(rng.choice([-1.0, 1.0]))
     while x[-1] < length + 0.5:
-        slope = sign * math.tan(math.radians(float(rng.choice(BED_SLOPES_DEG))))
+        slope_deg = float(rng.choice((4.0, 7.0, 11.0)))
+        slope = sign * math.tan(math.radians(slope_deg))
         run = float(rng.uniform(0.7, 1.3)) * STONE_LENGTH / courses
         x.append(x[-1] + run)
         y.append(y[-1] + slope * run)
@@ -228,16 +222,11 @@ def _alphas(model: RigidBlockModel) -> Points:
 BRICK_PX = 20
 """Height of a brick."""
 
-TOLERANCE = 0.01
-"""Of a load factor from pixels, relative."""
-
-SEEDS = 4
-"""The study of tilted joints is done for this many sets of walls."""
-
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
     """Return the published cases from pixels, and the study of tilted joints."""
-    heights, count = ((40, 80, 160), 1) if settings.quick else ((40, 80, 160, 320), SEEDS)
+    # How high pictures are, and how many sets of walls there are.
+    heights, count = ((40, 80, 160), 1) if settings.quick else ((40, 80, 160, 320), 4)
     few = {"walls": 3, "offsets": 1} if settings.quick else {}
     rows: list[tuple[Cell, ...]] = []
     for seed in range(settings.seed, settings.seed + count):
@@ -294,7 +283,7 @@ def _published(*, quick: bool) -> Table:
         pixels, outlines = (
             _compared(model_of(labels, mu), expected) for model_of in (from_pixels, from_outlines)
         )
-        hits = all(error is not None and error <= TOLERANCE for _, error in (pixels, outlines))
+        hits = all(error is not None and error <= 0.01 for _, error in (pixels, outlines))
         verdict = "pass" if hits else "miss"
         rows.append((name, mu, _both(*expected), *pixels, *outlines, verdict))
     return worded(BENCH["pixels"]["published"], rows)

@@ -77,9 +77,6 @@ def missing_data(settings: BenchSettings) -> tuple[str, ...]:
 
 SOLVERS: tuple[Solver, ...] = ("highs", "highs-ipm", "clarabel")
 
-AGREED = 1e-8
-"""Largest difference of load multipliers that counts as the same."""
-
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
     """Return how far solvers are apart, and how well answers are certified."""
@@ -101,7 +98,7 @@ def _row(wall: PlannedWall) -> tuple[Cell, ...]:
             differences.append(float(np.ptp(alphas)) if alphas else 0.0)
             gaps += [c.gap for c in certificates if c is not None and c.gap is not None]
             residuals += [c.residual for c in certificates if c is not None]
-    holds = answers == same == certified and max(differences) <= AGREED
+    holds = answers == same == certified and max(differences) <= 1e-8
     last, without = found[0], nonassociative_resistance(wall.models[-1])
     if without.left.alpha is None or without.right.alpha is None:
         least = " / ".join(str(end.status) for end in (without.left, without.right))

@@ -11,33 +11,10 @@ from drystone_lab import statics_cases
 from drystone_lab.statics_cases import WALLS, WITH_FRICTION, WITHOUT_SLIDING, closed_forms
 from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 
-CLOSED_FORM_TOLERANCE = 1e-6
-
 FERRIS_TOLERANCE = 5e-6
 """Half a unit of the fifth digit, to which they are published."""
 
-ARCH_TOLERANCE = 1e-5
-BISECTION = 1e-6
-"""Of t/R; a tenth of the tolerance."""
-
-ROUNDING = 1e-7
-"""By how much the factor without dilatancy may exceed the associative one."""
-
-ALIKE = 1e-6
-"""Factors of both directions that differ by less share a row."""
-
-QUICK_STEP = 3
-"""The quick version asks for the factors without dilatancy of every third closed form only."""
-
-QUICK_WALLS = (3,)
-"""And of these walls of Ferris."""
-
 QUICK_ARCHES = (*WITHOUT_SLIDING[:2], *WITH_FRICTION[2::2])
-
-COLUMNS = (
-    "case", "mu", "towards", "expected", "alpha", "difference", "certificate gap",
-    "without dilatancy, accepted", "without dilatancy", "verdict",
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -56,12 +33,12 @@ class Expected:
         if found.alpha is None:
             return self.may_not_converge
         checked = found.check is not None and found.check.holds
-        below = upper is not None and found.alpha <= upper + ROUNDING
+        below = upper is not None and found.alpha <= upper + 1e-7  # for rounding
         return checked and below and self.low <= found.alpha <= self.high
 
 
 class CaseRow(NamedTuple):
-    """A row of `COLUMNS`."""
+    """A row of a table."""
 
     case: str
     mu: float
@@ -80,26 +57,26 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     quick = settings.quick
     forms: list[CaseRow] = []
     for number, case in enumerate(closed_forms()):
-        near = CLOSED_FORM_TOLERANCE
         expected = [
-            Expected(alpha, near, alpha - near, alpha + near, "the same")
+            Expected(alpha, 1e-6, alpha - 1e-6, alpha + 1e-6, "the same")
             for alpha in (case.left, case.right)
         ]
-        both_rules = not quick or number % QUICK_STEP == 0
+        # The quick version asks for few factors without dilatancy.
+        both_rules = not quick or number % 3 == 0
         forms += _rows(case.name, case.model, expected, both_rules=both_rules)
     walls: list[CaseRow] = []
     for wall in WALLS:
         low, high = wall.nonassociative
         words = f"{low:g} to {high:g}" if low else f"at most {high:g}, or none"
         one = Expected(wall.associative, FERRIS_TOLERANCE, low, high, words, wall.may_not_converge)
-        both_rules = not quick or wall.number in QUICK_WALLS
+        both_rules = not quick or wall.number == 3
         name = f"example {wall.number}, {wall.blocks} blocks"
         walls += _rows(name, wall.model, [one, one], both_rules=both_rules)
     arches = QUICK_ARCHES if quick else (*WITHOUT_SLIDING, *WITH_FRICTION)
-    of, columns = BENCH["statics"], {"<case>": COLUMNS}
+    of = BENCH["statics"]
     return (
-        worded(of["closed_forms"], forms, columns=columns),
-        worded(of["ferris"], walls, columns=columns),
+        worded(of["closed_forms"], forms),
+        worded(of["ferris"], walls),
         worded(of["arches"], map(_arch_row, arches)),
     )
 
@@ -136,7 +113,7 @@ def _row(
 def _together(left: CaseRow, right: CaseRow) -> list[CaseRow]:
     """Make one row of two that agree: the larger difference, and the larger gap."""
     alike = all(
-        one is other if one is None or other is None else abs(one - other) <= ALIKE
+        one is other if one is None or other is None else abs(one - other) <= 1e-6
         for one, other in (
             (left.alpha, right.alpha),
             (left.without_dilatancy, right.without_dilatancy),
@@ -151,7 +128,8 @@ def _together(left: CaseRow, right: CaseRow) -> list[CaseRow]:
 
 def _arch_row(case: statics_cases.ArchCase) -> tuple[Cell, ...]:
     mu: Cell = "no sliding" if case.mu == statics_cases.NO_SLIDING else case.mu
-    least = statics_cases.least_thickness(case.count, case.mu, BISECTION)
+    # To a tenth of the tolerance.
+    least = statics_cases.least_thickness(case.count, case.mu, 1e-6)
     if least is None or case.least is None:
         words = [
             f"none up to {statics_cases.THICKEST:g}" if t is None else t
@@ -163,5 +141,5 @@ def _arch_row(case: statics_cases.ArchCase) -> tuple[Cell, ...]:
     ).right.certificate
     gap = None if certificate is None else certificate.gap
     difference = abs(least - case.least)
-    verdict = "pass" if difference <= ARCH_TOLERANCE else "miss"
+    verdict = "pass" if difference <= 1e-5 else "miss"
     return case.count, mu, case.least, least, difference, gap, verdict

@@ -6,7 +6,7 @@ are those of ``shear_tests.toml``; lengths in m, forces in kN.
 """
 
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
@@ -25,9 +25,6 @@ from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 
 GRAVITY = 9.81
 """m/s2."""
-
-COURSE_TOLERANCE = 1e-9
-"""m; by how much joints at the end of a wall may miss it."""
 
 
 @dataclass(frozen=True)
@@ -66,14 +63,15 @@ class ShearSeries:
         return round(self.height / self.block_height)
 
 
-def _series() -> Iterator[ShearSeries]:
-    text = Path(__file__).with_name("shear_tests.toml").read_text("utf-8")
-    for series in tomllib.loads(text)["series"]:
-        tests = (ShearTest(name, vertical, tuple(v)) for name, vertical, *v in series.pop("tests"))
-        yield ShearSeries(**series, tests=tuple(tests))
+_FILE = tomllib.loads(Path(__file__).with_name("shear_tests.toml").read_text("utf-8"))
 
-
-SERIES = tuple(_series())
+SERIES = tuple(
+    ShearSeries(
+        **series
+        | {"tests": tuple(ShearTest(name, load, tuple(v)) for name, load, *v in series["tests"])}
+    )
+    for series in _FILE["series"]
+)
 
 
 def shear_wall(
@@ -100,7 +98,7 @@ def shear_wall(
     for course in range(series.course_count):
         halves = (course % 2 == 0) == halves_first
         first = series.block_length / 2.0 if halves else series.block_length
-        inner = np.arange(first, series.length - COURSE_TOLERANCE, series.block_length)
+        inner = np.arange(first, series.length - 1e-9, series.block_length)
         bottom = course * series.block_height
         for left, right in pairwise([0.0, *inner.tolist(), series.length]):
             boxes.append((left, bottom, right, bottom + series.block_height))
@@ -127,15 +125,10 @@ FRICTION = 0.62
 """Of sawn stone on stone, and of the beam on it; assumed for both stones."""
 
 FRICTION_BAND = (0.55, 0.62, 0.70)
-DENSITIES_KG_M3 = (2000.0, 2800.0)
-"""20 kN/m3, as the database counts the weight of walls, and a heavy stone."""
-
 RESTRAINTS = {False: "beam turns", True: "beam level"}
 
 ShearModel = Callable[["ShearSeries", "Loading"], "ShearForces"]
 """The largest V that a wall carries."""
-
-PICTURE, DPI = "shear_tests.png", 170
 
 
 class ShearForces(NamedTuple):
@@ -186,7 +179,7 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     if settings.quick:
         return tables
     if settings.output is not None:
-        _draw(model, settings.output / PICTURE)
+        _draw(model, settings.output / "shear_tests.png")
     return (*tables, _friction(model), _details(model))
 
 
@@ -275,7 +268,8 @@ def _details(model: ShearModel) -> Table:
         variants = [("as above", series, False), ("half blocks in the lowest course", series, True)]
         variants += [
             (f"{density:g} kg/m3", replace(series, density_kg_m3=density), False)
-            for density in DENSITIES_KG_M3
+            # 20 kN/m3, as the database counts the weight of walls, and a heavy stone.
+            for density in (2000.0, 2800.0)
         ]
         for vertical in (loads[0], loads[-1]):
             for name, varied, halves in variants:
@@ -310,4 +304,4 @@ def _draw(model: ShearModel, path: Path) -> None:
                 if len(found) == len(band):
                     points.append(Prediction(series.name, restraint, test.measured_kn, *found))
     words = f"friction {FRICTION_BAND[0]:.2f} to {FRICTION_BAND[-1]:.2f}"
-    save(plot_predictions(points, words).figure, path, dpi=DPI)
+    save(plot_predictions(points, words).figure, path, dpi=170)

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import Any
 
 import numpy as np
@@ -182,25 +182,14 @@ def least_thickness(count: int, mu: float, tolerance: float) -> float | None:
 
 HEIGHT, MU = 1.75, 0.65
 
-Course = tuple[tuple[int, int], ...]
-"""Where blocks begin and end."""
+BRICKS = {"f": 4, "h": 2, "-": 4}
+"""Widths of a full brick, a half one and a gap."""
 
-A: Course = ((0, 2), (2, 6), (6, 10), (10, 14), (14, 18), (18, 20))
-B: Course = ((0, 4), (4, 8), (8, 12), (12, 16), (16, 20))
-P: Course = ((0, 4), (4, 8), (8, 12), (12, 16))
-Q: Course = ((0, 2), (2, 6), (6, 10), (10, 14), (14, 16))
-Q_OPEN: Course = ((0, 2), (2, 6), (10, 14), (14, 16))
-P_OPEN: Course = ((0, 4), (4, 6), (10, 12), (12, 16))
-A_OPEN: Course = ((0, 4), (8, 12), (16, 20))
-B_OPEN: Course = ((0, 2), (2, 4), (8, 10), (10, 12), (16, 18), (18, 20))
-C: Course = ((0, 2), (2, 6), (6, 10), (10, 12))
-D: Course = ((0, 4), (4, 8), (8, 12))
-C_OPEN: Course = ((0, 4), (8, 12))
-D_OPEN: Course = ((0, 2), (2, 4), (8, 10), (10, 12))
-E: Course = ((0, 2), (2, 6), (6, 10), (10, 14), (14, 18), (18, 22), (22, 26), (26, 28))
-F: Course = ((0, 4), (4, 8), (8, 12), (12, 16), (16, 20), (20, 24), (24, 28))
-E_OPEN: Course = ((0, 2), (2, 6), (10, 14), (14, 18), (22, 26), (26, 28))
-F_OPEN: Course = ((0, 4), (4, 6), (10, 12), (12, 16), (16, 18), (22, 24), (24, 28))
+A, B, A_OPEN, B_OPEN = "hffffh", "fffff", "f-f-f", "hh-hh-hh"
+P, Q, P_OPEN, Q_OPEN = "ffff", "hfffh", "fh-hf", "hf-fh"
+C, D, C_OPEN, D_OPEN = "hffh", "fff", "f-f", "hh-hh"
+E, F, E_OPEN, F_OPEN = "hffffffh", "fffffff", "hf-ff-fh", "fh-hfh-hf"
+"""Courses, and the same with openings."""
 
 
 @dataclass(frozen=True)
@@ -208,7 +197,7 @@ class FerrisWall:
     """One of the examples."""
 
     number: int  # 1 to 6, as published
-    courses: tuple[Course, ...]  # Bottom first
+    courses: tuple[str, ...]  # Bottom first
     blocks: int
     contacts: int
     associative: float  # Load factor, the same in both directions
@@ -217,13 +206,15 @@ class FerrisWall:
     may_not_converge: bool = False  # An answer without a factor is accepted too
 
     @property
-    def rectangles(self) -> tuple[tuple[float, float, float, float], ...]:
+    def rectangles(self) -> tuple[Rectangle, ...]:
         """Blocks as x, y, width, height, course by course and from left to right."""
-        return tuple(
-            (float(left), HEIGHT * course, float(right - left), HEIGHT)
-            for course, ranges in enumerate(self.courses)
-            for left, right in ranges
-        )
+        found = []
+        for row, course in enumerate(self.courses):
+            lefts = accumulate((BRICKS[brick] for brick in course), initial=0)
+            for brick, left in zip(course, lefts, strict=False):
+                if brick != "-":
+                    found.append((float(left), HEIGHT * row, float(BRICKS[brick]), HEIGHT))
+        return tuple(found)
 
     @property
     def model(self) -> RigidBlockModel:

@@ -8,16 +8,13 @@ from drystone.physics.scene import EngineScene
 from drystone_lab.planned_walls import PlannedWall, missing_data, planned_walls
 from drystone_lab.table import BENCH, BenchSettings, Cell, Table, worded
 
-SEEDS = 3
-"""Walls of each stone set."""
-
 BOTH_FALL = "both fall"
 """The outlines do not stand, by the analysis and in the engine."""
 
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
     """Return simulated and predicted load multipliers of the same outlines, a row a direction."""
-    walls = planned_walls(settings, methods=("paper",), seeds=SEEDS)
+    walls = planned_walls(settings, methods=("paper",), seeds=3)
     rows = [row for wall in walls for row in _rows(wall, settings)]
     agreeing = sum(row[5] in ("yes", BOTH_FALL) for row in rows)
     counted = f"{agreeing} of {len(rows)} directions: " if rows else ""

@@ -4,7 +4,7 @@ import numpy as np
 
 from drystone_lab import photos
 from drystone_lab.photographs.real import ALL, pixels_of, there, truth_of
-from drystone_lab.photos import _real, whole_stones
+from drystone_lab.photos import whole_stones
 from drystone_lab.table import BenchSettings
 
 
@@ -13,7 +13,9 @@ def test_photographs_that_are_installed_have_a_row(tmp_path, monkeypatch):
     assert list(installed) == ["coins, light from one side", "gravel", "brick wall", "lawn"]
     few = [installed["coins, light from one side"], installed["lawn"]]
     monkeypatch.setattr(photos, "there", lambda _: few)
-    table = _real(BenchSettings(data=tmp_path))
+    monkeypatch.setattr(photos, "LEVELS", ())
+    monkeypatch.setattr(photos, "_refused", tuple)
+    *_, table = photos.run(BenchSettings(data=tmp_path))
     coins, lawn = table.records()
     assert (coins["stones"], coins["verdict"], coins["exit code"]) == (24, "doubtful", 5)
     assert (coins["precision"], coins["recall"] > 0.9) == (1.0, True)

@@ -20,14 +20,10 @@ from drystone_lab.table import BenchSettings, Table
 
 # What draws or counts is loaded where it is run: --list and a misspelt suite do not wait for it.
 
-DEFAULT_METHODS = ("paper", "random")
-
 WHY = {
     PUBLIC: "it would do nothing here.",
     HISTORY: "a history shows all that a store holds, and runs nothing.",
 }
-
-DPI = 150
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
@@ -86,7 +82,7 @@ def _tables(arguments: argparse.Namespace, suite: str) -> Sequence[Table]:
     for folder in (arguments.output, arguments.store):
         if folder is not None:
             make_folder(Path(folder))
-    policies = arguments.policy or (DEFAULT_METHODS if public else ())
+    policies = arguments.policy or (("paper", "random") if public else ())
     output, runs, store = (
         None if given is None else Path(given)
         for given in (arguments.output, arguments.runs, arguments.store)
@@ -143,6 +139,6 @@ def _history(arguments: argparse.Namespace, suite: str | None) -> Sequence[Table
         make_folder(Path(arguments.output))
         for each in dict.fromkeys(one.suite for one in medians):
             path = Path(arguments.output) / f"history-{each.replace('/', '-')}.png"
-            save(history.drawn_history([one for one in medians if one.suite == each]), path, DPI)
+            save(history.drawn_history([one for one in medians if one.suite == each]), path, 150)
             say(f"wrote {path}")
     return (history.history_table(medians),)

@@ -16,15 +16,12 @@ if TYPE_CHECKING:  # loaded when something is made: --list does not wait for mat
     from drystone_lab.reproduce.driver import MadeItem
     from drystone_lab.reproduce.item import PaperItem
 
-LISTED = 12
-"""Columns for the names of the list."""
-
 
 def run(arguments: argparse.Namespace, items: "Mapping[str, PaperItem] | None" = None) -> ExitCode:
     """Make items, print their tables, and say where the report is."""
     if arguments.list:
         for name, words in ITEMS.items():
-            print(f"{name:<{LISTED}}{words['listed']}")
+            print(f"{name:<12}{words['listed']}")
         return ExitCode.DONE
     names = _names(arguments)
     folder = Path(arguments.output)
@@ -83,7 +80,6 @@ def _names(arguments: argparse.Namespace) -> tuple[str, ...]:
 
 
 def _print(record: "Mapping[str, Any]", page: Path) -> None:
-    """Print the tables of an item, and where its page is."""
     from drystone_lab.table import Table  # noqa: PLC0415
 
     print(f"{record['name']}: {record['title']} ({record['section']})\n")

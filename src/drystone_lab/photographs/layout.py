@@ -60,8 +60,6 @@ LEVELS = tuple(
 
 Labels = NDArray[np.uint16]
 TRIES = 400
-COVERED = 0.24
-"""Share of the photograph that stones cover, about."""
 
 
 def lay_stones(level: PhotoLevel, forbidden: Mask, seen: Mask, rng: Generator) -> Labels:
@@ -87,9 +85,9 @@ def lay_stones(level: PhotoLevel, forbidden: Mask, seen: Mask, rng: Generator) -
 
 
 def _shapes(level: PhotoLevel, rng: Generator) -> list[Mask]:
-    """Return masks of about the area that leaves room for all."""
+    """Return masks that cover about a quarter of the photograph, which leaves room for all."""
     angular = round(level.angular * level.count)
-    area = COVERED * level.width_px * level.height_px / level.count
+    area = 0.24 * level.width_px * level.height_px / level.count
     radius = float(np.sqrt(area / np.pi))
     masks: list[Mask] = []
     if level.count > angular:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy import ndimage
 from skimage.draw import polygon2mask
-from skimage.transform import warp
+from skimage.transform import matrix_transform, warp
 
 from drystone.kernels.raster import Mask
 from drystone.photo.layout import ON_A_SHEET, MarkerLayout, page_mm, parse_layout
@@ -25,20 +25,14 @@ Light = NDArray[np.float32]
 """(h, w, 3), linear, 0 to 1 for what a camera can record."""
 
 
-class _Face(NamedTuple):
-    colours: tuple[str, ...]
-    clouds: float
-    specks: float
-    veins: float
-
-
-_ROCKS: dict[Rock, _Face] = {
-    "granite": _Face(("#a3a09c", "#b3a79d", "#8f9092"), 0.10, 0.55, 0.0),
-    "sandstone": _Face(("#b98f63", "#a5714f", "#c7a77c"), 0.16, 0.08, 0.15),
-    "limestone": _Face(("#d6cdb9", "#c9c1ad", "#ded8cc"), 0.10, 0.05, 0.25),
-    "basalt": _Face(("#4a4b4e", "#565350", "#3d4044"), 0.15, 0.15, 0.0),
-    "schist": _Face(("#7b8076", "#6f7480", "#8a8272"), 0.16, 0.12, 0.35),
+_ROCKS: dict[Rock, tuple[tuple[str, ...], float, float, float]] = {
+    "granite": (("#a3a09c", "#b3a79d", "#8f9092"), 0.10, 0.55, 0.0),
+    "sandstone": (("#b98f63", "#a5714f", "#c7a77c"), 0.16, 0.08, 0.15),
+    "limestone": (("#d6cdb9", "#c9c1ad", "#ded8cc"), 0.10, 0.05, 0.25),
+    "basalt": (("#4a4b4e", "#565350", "#3d4044"), 0.15, 0.15, 0.0),
+    "schist": (("#7b8076", "#6f7480", "#8a8272"), 0.16, 0.12, 0.35),
 }
+"""Colours, and how strong clouds, specks and veins are."""
 
 
 def linear(colour: str) -> NDArray[np.float32]:
@@ -69,15 +63,15 @@ def clouds(
 
 def stone_face(rock: Rock, shape: tuple[int, int], rng: Generator) -> Light:
     """Return the surface of a stone, flat and evenly lit: clouds, specks and veins on a colour."""
-    face = _ROCKS[rock]
-    base = linear(face.colours[int(rng.integers(len(face.colours)))])
+    colours, cloudy, speckled, veined = _ROCKS[rock]
+    base = linear(colours[int(rng.integers(len(colours)))])
     base = base * np.float32(rng.uniform(0.85, 1.15))
     size = max(shape)
-    light = face.clouds * clouds(shape, [(size / k, size / k) for k in (2, 4, 9, 20)], rng, 0.7)
+    light = cloudy * clouds(shape, [(size / k, size / k) for k in (2, 4, 9, 20)], rng, 0.7)
     specks = clouds(shape, [(5, 5), (2.5, 2.5)], rng, 0.8)
-    light += face.specks * (0.5 * (specks > 1.1) - 0.8 * (specks < -1.2))
+    light += speckled * (0.5 * (specks > 1.1) - 0.8 * (specks < -1.2))
     ridge = 1 - np.abs(clouds(shape, [(size / 2, size / 5), (size / 6, size / 9)], rng, 0.4)) * 6
-    light += face.veins * np.clip(ridge, 0, 1)
+    light += veined * np.clip(ridge, 0, 1)
     tint = 0.03 * clouds(shape, [(size / 2, size / 2), (size / 6, size / 6)], rng)
     colour = base * (1 + light[..., None])
     colour[..., 0] *= 1 + tint
@@ -124,11 +118,8 @@ def ground_surface(ground: GroundKind, shape: tuple[int, int], rng: Generator) -
     return np.asarray(np.clip(colour, 0.005, 1.0), np.float32)
 
 
-Homography = NDArray[np.float64]
+Homography = NDArray[np.floating]
 """(3, 3); maps points (x, y, 1), y down, px."""
-
-FOCAL = 1.2
-"""Focal length over the width of the photograph: of a phone."""
 
 _TURNS = {
     2: Image.Transpose.FLIP_LEFT_RIGHT, 3: Image.Transpose.ROTATE_180,
@@ -138,17 +129,12 @@ _TURNS = {
 """How a picture is stored that a viewer turns back for its EXIF orientation."""
 
 
-def inverse(homography: Homography) -> Homography:
-    """Return the way back."""
-    return np.asarray(np.linalg.inv(homography), np.float64)
-
-
 def view_of(level: PhotoLevel) -> tuple[Homography, tuple[int, int]]:
     """Return the homography from the ground to the photograph, and the ground that is seen.
 
     The homography takes ground px to px of the photograph; the ground is (height, width) in px.
     """
-    focal = FOCAL * level.width_px
+    focal = 1.2 * level.width_px  # as that of a phone
     tilt, turn = math.radians(level.tilt_deg), math.radians(level.turn_deg)
     spin = np.array(
         [[math.cos(turn), -math.sin(turn), 0], [math.sin(turn), math.cos(turn), 0], [0, 0, 1]]
@@ -156,7 +142,7 @@ def view_of(level: PhotoLevel) -> tuple[Homography, tuple[int, int]]:
     look = np.array([[focal, 0, 0], [0, focal * math.cos(tilt), 0], [0, -math.sin(tilt), focal]])
     middle = np.array([[1, 0, level.width_px / 2], [0, 1, level.height_px / 2], [0, 0, 1]])
     centred = middle @ look @ spin
-    corners = moved(inverse(centred), frame_corners(level))
+    corners = matrix_transform(frame_corners(level), np.linalg.inv(centred))
     low, high = np.floor(corners.min(axis=0)), np.ceil(corners.max(axis=0))
     shift = np.array([[1, 0, low[0]], [0, 1, low[1]], [0, 0, 1]])
     width, height = (int(side) for side in high - low)
@@ -167,16 +153,6 @@ def frame_corners(level: PhotoLevel) -> NDArray[np.float64]:
     """Return the corners of the photograph, (4, 2), in turn."""
     width, height = level.width_px, level.height_px
     return np.array([[0, 0], [width, 0], [width, height], [0, height]], float)
-
-
-def moved(homography: Homography, points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Map points (n, 2).
-
-    >>> moved(np.diag([2.0, 2.0, 1.0]), np.array([[1.0, 3.0]])).tolist()
-    [[2.0, 6.0]]
-    """
-    mapped = np.column_stack([points, np.ones(len(points))]) @ homography.T
-    return np.asarray(mapped[:, :2] / mapped[:, 2:])
 
 
 def exposed(ground: Light, homography: Homography, level: PhotoLevel, rng: Generator) -> bytes:
@@ -206,10 +182,6 @@ def exposed(ground: Light, homography: Homography, level: PhotoLevel, rng: Gener
 PAPER, INK = 0.82, 0.03
 """Linear light of paper and ink."""
 
-_GAP = 0.3
-"""Border of a single marker over its side."""
-
-_TURN_DEG = 12.0
 _FINE = 3
 """Samples along a side of a px."""
 
@@ -232,7 +204,7 @@ def place_markers(level: PhotoLevel, surface: Light, seen: Mask) -> Mask:
         squares = tuple((layout.corners_m(k)[0], marker_modules("aruco", k)) for k in numbers)
         papers = [_Paper((width / 1000, height / 1000), squares, layout.size_m)]
     else:
-        border = _GAP * layout.size_m
+        border = 0.3 * layout.size_m  # of white paper
         side, corner = layout.size_m + 2 * border, np.array([border, border])
         singles = (((corner, marker_modules("aruco", k)),) for k in numbers)
         papers = [_Paper((side, side), square, layout.size_m) for square in singles]
@@ -261,7 +233,7 @@ def _draw(
     left, top = (int(part) - half for part in middle)
     fine = (np.arange(2 * half * _FINE) + 0.5) / _FINE
     x, y = np.meshgrid(fine + left - middle[0], fine + top - middle[1])
-    turn = math.radians(_TURN_DEG)
+    turn = math.radians(12.0)
     across = (x * math.cos(turn) + y * math.sin(turn)) / px_per_m + paper.size_m[0] / 2
     down = (y * math.cos(turn) - x * math.sin(turn)) / px_per_m + paper.size_m[1] / 2
     on = (across >= 0) & (down >= 0) & (across < paper.size_m[0]) & (down < paper.size_m[1])
@@ -288,13 +260,6 @@ def _coarse(values: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(values.reshape(side, _FINE, side, _FINE).mean(axis=(1, 3)))
 
 
-HEIGHT = 0.4
-"""Height of a stone over the square root of its area."""
-
-SKY = (0.92, 1.0, 1.12)
-"""Colour of the light in a shadow: it comes from the sky."""
-
-
 @dataclass(frozen=True, eq=False)
 class Photograph:
     """A rendered photograph and the truth."""
@@ -302,14 +267,13 @@ class Photograph:
     jpeg: bytes  # The file
     truth: Labels  # Stones 1 ... n in the frame of the ground
     homography: Homography  # Ground px to px of the photograph as it is seen
-    px_per_m: float  # Ground px in a metre
     level: PhotoLevel
 
     def truth_in(self, to_photo: Homography, shape: tuple[int, int]) -> Labels:
         """Return the true stones in another frame, such as that of a label image."""
         rows, cols = np.indices(shape)
         points = np.column_stack([cols.ravel() + 0.5, rows.ravel() + 0.5])
-        ground = moved(inverse(self.homography) @ to_photo, points)
+        ground = matrix_transform(points, np.linalg.inv(self.homography) @ to_photo)
         where = np.floor(ground).astype(int)
         inside = ((where >= 0) & (where < self.truth.shape[::-1])).all(axis=1)
         where[~inside] = 0
@@ -321,7 +285,7 @@ def photograph(level: PhotoLevel) -> Photograph:
     """Render a photograph."""
     rng = np.random.default_rng(level.seed)
     homography, shape = view_of(level)
-    corners = moved(inverse(homography), frame_corners(level))
+    corners = matrix_transform(frame_corners(level), np.linalg.inv(homography))
     seen = polygon2mask(shape, corners[:, ::-1])
     surface = ground_surface(level.ground, shape, rng)
     markers = place_markers(level, surface, seen)
@@ -335,7 +299,7 @@ def photograph(level: PhotoLevel) -> Photograph:
         lit[box][mask] = face[mask]
     lit *= _lamp(shape, level, rng)[..., None]
     jpeg = exposed(lit, homography, level, rng)
-    return Photograph(jpeg, labels, homography, level.px_per_m, level)
+    return Photograph(jpeg, labels, homography, level)
 
 
 def _light_on_ground(labels: Labels, level: PhotoLevel, rng: Generator) -> Light:
@@ -344,7 +308,8 @@ def _light_on_ground(labels: Labels, level: PhotoLevel, rng: Generator) -> Light
     azimuth = rng.uniform(0, 2 * math.pi)
     for number, box in enumerate(ndimage.find_objects(labels), start=1):
         mask = labels[box] == number
-        long = HEIGHT * math.sqrt(mask.sum()) / math.tan(math.radians(level.sun_deg))
+        # A stone is .4 times as high as the root of its area.
+        long = 0.4 * math.sqrt(mask.sum()) / math.tan(math.radians(level.sun_deg))
         pad = int(long) + 12
         here = np.zeros((mask.shape[0] + 2 * pad, mask.shape[1] + 2 * pad), bool)
         for step in np.arange(0, long, 1.0):
@@ -359,7 +324,8 @@ def _light_on_ground(labels: Labels, level: PhotoLevel, rng: Generator) -> Light
     shadow = ndimage.gaussian_filter(shadow, 2.5) * np.float32(level.shadow)
     near = ndimage.distance_transform_edt(labels == 0)
     rim = np.exp(-near / 3.0) * (0.25 if level.shadow else 0.08)
-    sky = np.array(SKY, np.float32)
+    # What light there is in a shadow comes from the sky.
+    sky = np.array((0.92, 1.0, 1.12), np.float32)
     dark = shadow[..., None]
     light = (1 - dark) + dark * (sky - 1) * (1 - level.shadow)
     return np.asarray(light * (1 - rim[..., None]), np.float32)

@@ -38,12 +38,6 @@ def pga_of(spec: RunSpec, outcome: RunOutcome, data: Path | None) -> float | Non
     return shake_once(EngineScene(outlines, spec.settings().mu), ROUNDED, watched=stones)
 
 
-SEEDS, QUICK_SEEDS = 5, 2
-"""How many unless it is said."""
-
-RUNS = "runs"
-"""Folder of the plans in a store."""
-
 YARDSTICK = (
     f"{STRIPS} is a yardstick, in no pairs and no ranking: all stones packed into a strip as "
     f"high as the wall, by quarter turns, {STRIP_SECONDS} s each, without gravity, order or "
@@ -68,7 +62,7 @@ def run_public(suite: str, settings: BenchSettings, stamp: Stamp) -> tuple[Table
         raise absent_data(tuple(absent), known=settings.data is not None)
     for wall in walls:
         wall.source.check(settings.data)  # before an hour of planning, and before a run is kept
-    count = settings.seeds or (QUICK_SEEDS if settings.quick else SEEDS)
+    count = settings.seeds or (2 if settings.quick else 5)
     # Methods take turns, so that all have the same day.
     tasks = [
         (wall, method.name, method.run(wall, seed))
@@ -103,7 +97,7 @@ def _done(
         TemporaryDirectory(prefix="drystone-bench-") if store is None else nullcontext(store) as at,
         work_of(settings.jobs, settings.dask) as work,
     ):
-        plans = RunStore(Path(at) / RUNS)
+        plans = RunStore(Path(at) / "runs")
         runner = Runner(plans, settings.data, work, settings.say, again=settings.again)
         outcomes = runner.run([spec for *_, spec in tasks])
     runs = [

@@ -19,7 +19,6 @@ from drystone_lab.walls import Target
 CSV = "runs.csv"
 
 NOT_SHAKEN = "no"
-"""Value of `shaken`."""
 
 PLACED, SHAKE = "placed", "PGA"
 """Figures that are no column: the share of the stones that is placed, and the amplitude, g."""
@@ -91,8 +90,6 @@ class KeptRun:
 
 
 COLUMNS = tuple(field.name for field in fields(KeptRun))
-ORDER = ("suite", "suite_version", "wall", "method", "settings", "seed", "version")
-"""Of the rows."""
 
 
 def kept_runs(folder: Path) -> tuple[KeptRun, ...]:
@@ -111,7 +108,9 @@ def keep(folder: Path, runs: Iterable[KeptRun]) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     with locked(folder):
         found = {run.run_key: run for run in (*kept_runs(folder), *runs)}
-        order = attrgetter(*ORDER)
+        order = attrgetter(
+            "suite", "suite_version", "wall", "method", "settings", "seed", "version"
+        )
         rows = tuple(astuple(run) for run in sorted(found.values(), key=order))
         write_whole(folder / CSV, Table("", COLUMNS, rows).csv().encode())
 

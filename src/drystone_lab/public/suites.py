@@ -26,25 +26,20 @@ from drystone_lab.walls import (
 )
 
 SUITE_VERSION = 1
-"""Of all suites together."""
-
-
-_MASONS = tuple(
-    replace(wall, name=wall.name.removesuffix(" framed"), suite="masons")
-    for wall in (PR_560, PR_600, R_FRAMED, IR_FRAMED)
-)
-_NOISE = tuple(replace(wall, suite="noise") for wall in NOISY)
-
-
-_GENERATED = {
-    suite: tuple(replace(wall, suite=suite) for wall in walls)
-    for suite, walls in made_walls(Path(__file__).with_name("suites.toml")).items()
-}
 
 ALL = "all"
 
 _WALLS: Mapping[str, tuple[Target, ...]] = MappingProxyType(
-    {"masons": _MASONS, **_GENERATED, "noise": _NOISE}
+    {
+        suite: tuple(
+            replace(wall, name=wall.name.removesuffix(" framed"), suite=suite) for wall in walls
+        )
+        for suite, walls in {
+            "masons": (PR_560, PR_600, R_FRAMED, IR_FRAMED),
+            **made_walls(Path(__file__).with_name("suites.toml")),
+            "noise": NOISY,
+        }.items()
+    }
 )
 
 PUBLIC_SUITES: Mapping[str, str] = MappingProxyType(

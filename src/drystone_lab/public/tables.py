@@ -240,7 +240,10 @@ def _pairs_table(figure: str, known: Mapping[PairKey, MethodPair], *, copies: bo
         rows.append((first, second, pair.pairs, *cells, _rounded(pair.p, 2), shown))
     less = sum(pair.left_out for pair in pairs.values())
     more = [f"{less} pairs lack a value of one or both and are left out."] if less else []
-    more += [_COPIES] if copies else []
+    if copies:
+        more.append(
+            "Walls on which two methods do not depend on the seed count once for these two."
+        )
     # No p of so few pairs may reach the level of significance.
     most = max((pair.pairs for pair in pairs.values()), default=0)
     least = min(1.0, len(known) * 2.0 ** (1 - most)) if most else 1.0
@@ -249,9 +252,6 @@ def _pairs_table(figure: str, known: Mapping[PairKey, MethodPair], *, copies: bo
         tests = f"With {most} pairs and {len(known)} tests"
         more.append(f"{tests} no p can be below {least:.2g}: use more {cure}.")
     return worded(BENCH["public"]["pairs"], rows, more=more, figure=figure, tests=len(known))
-
-
-_COPIES = "Walls on which two methods do not depend on the seed count once for these two."
 
 
 def _ranking(results: BenchResults, known: Mapping[PairKey, MethodPair]) -> Table:

@@ -18,6 +18,5 @@ except ImportError as error:
     ) from error
 
 ENVIRONMENT = "drystone/Wall-v0"
-"""Name of the environment."""
 
 gymnasium.register(ENVIRONMENT, entry_point="drystone_lab.rl.env:WallEnv")

@@ -11,7 +11,6 @@ from drystone.model.site import Site
 from drystone.model.stone import Stone, StoneSet
 
 KINDS = ("fourier", "polygon", "brick", "rubble")
-"""Generators of stones."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,7 +61,6 @@ def in_order(stones: StoneSet, rng: Generator) -> StoneSet:
 
 
 def _numbers(kind: str, settings: DrawSettings, rng: Generator) -> dict[str, float]:
-    """Return the settings of the generator of a kind."""
     size, count = settings.size_px, settings.stones
     if kind == "fourier":  # round to elongated, the largest almost twice as large as the smallest
         radius = size / np.pi**0.5

@@ -63,14 +63,9 @@ def observation(episode: Episode, offers: int, columns: int) -> WallObservation:
     return {name: values.astype(np.float32) for name, values in seen.items()}
 
 
-SIZE_IN = (8.0, 4.0)
-DPI = 100
-"""Size of a picture: always the same, as a film wants it."""
-
-
 def wall_picture(episode: Episode) -> NDArray[np.uint8]:
-    """Draw what is built, with what it carries above, (400, 800, 3) RGB."""
-    figure = Figure(figsize=SIZE_IN, dpi=DPI)
+    """Draw what is built, with what it carries above: always (400, 800, 3) RGB."""
+    figure = Figure(figsize=(8.0, 4.0), dpi=100)
     canvas: Any = FigureCanvasAgg(figure)
     ax = figure.add_axes((0.05, 0.14, 0.9, 0.76))
     wall, actions = episode.build.wall, episode.build.actions
@@ -191,7 +186,7 @@ class WallEnv(gymnasium.Env[WallObservation, np.int64]):
         E151: there is no such action, the episode is over, or with ``illegal="error"`` the place is
         not offered.
         """
-        episode = self._running()
+        episode = self.episode
         if self._ended:
             raise _no_action("the wall is finished", "Call `reset`.")
         if not self.action_space.contains(action):
@@ -218,7 +213,7 @@ class WallEnv(gymnasium.Env[WallObservation, np.int64]):
 
         The name is the one that MaskablePPO of sb3-contrib asks for.
         """
-        return np.arange(self._offers) < len(self._running().offers)
+        return np.arange(self._offers) < len(self.episode.offers)
 
     def render(self) -> NDArray[np.uint8] | None:
         """Draw the wall, (height, width, 3); None without a render mode."""
@@ -227,10 +222,9 @@ class WallEnv(gymnasium.Env[WallObservation, np.int64]):
                 "The wall is drawn with render_mode='rgb_array', which was not asked for."
             )
             return None
-        return wall_picture(self._running())
+        return wall_picture(self.episode)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> "WallEnv":
-        """Return an environment in the same state."""
         other = copy(self)
         # The workshop of an episode has compiled parts that nothing can copy; it may be shared.
         other._episode = None if self._episode is None else self._episode.copy()  # noqa: SLF001
@@ -242,7 +236,9 @@ class WallEnv(gymnasium.Env[WallObservation, np.int64]):
     @property
     def episode(self) -> Episode:
         """The wall, and what is offered: for policies that see offers and not arrays."""
-        return self._running()
+        if self._episode is None:
+            raise _no_action("no wall was begun", "Call `reset` first.")
+        return self._episode
 
     def _given(self, options: Mapping[str, Any]) -> tuple[StoneSet, Site, list[int] | None]:
         """Return stones, site and order: those given, or drawn."""
@@ -265,14 +261,9 @@ class WallEnv(gymnasium.Env[WallObservation, np.int64]):
             raise _refused("no stone arrives" if not ids else "a stone arrives twice")
         return stones, site, ids
 
-    def _running(self) -> Episode:
-        if self._episode is None:
-            raise _no_action("no wall was begun", "Call `reset` first.")
-        return self._episode
-
     def _told(self, *, illegal: bool) -> tuple[WallObservation, dict[str, Any]]:
         """Return what is seen, and what is said beside; all figures when the wall is finished."""
-        episode = self._running()
+        episode = self.episode
         actions = episode.build.actions
         info: dict[str, Any] = {
             "stone": episode.stone_id or 0,

@@ -26,7 +26,6 @@ from drystone_lab.rl.train import HELD_OUT
 from drystone_lab.table import markdown_rows
 
 FIGURES = ("merit", "F_SF", "F_AV", "F_AH", "F_LR")
-"""What is compared."""
 
 POLICIES = ("learned", "random", "lowest", "scalarised", "filter", "towers", "paper")
 """Policies that are compared, by their names; the first with each other."""
@@ -95,11 +94,6 @@ def figures_by(
     return found
 
 
-def differences(first: PolicyFigures, second: PolicyFigures) -> dict[str, Interval]:
-    """Return what the walls of one policy have more than those of another, wall by wall."""
-    return {name: Interval.of(np.subtract(first[name], second[name]).tolist()) for name in FIGURES}
-
-
 def report(found: Mapping[str, PolicyFigures], title: str) -> str:
     """Return the means of each policy, and what the first has more than each of the others."""
     first, *others = found
@@ -107,10 +101,10 @@ def report(found: Mapping[str, PolicyFigures], title: str) -> str:
         [name, *(f"{np.mean(walls[figure]):.3f}" for figure in FIGURES)]
         for name, walls in found.items()
     ]
-    paired = [
-        [other, *(one.text for one in differences(found[first], found[other]).values())]
-        for other in others
-    ]
+    paired = []
+    for other in others:
+        more = (np.subtract(found[first][name], found[other][name]) for name in FIGURES)
+        paired.append([other, *(Interval.of(each.tolist()).text for each in more)])
     return "\n\n".join(
         [
             f"{title}: means",

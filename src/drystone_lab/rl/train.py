@@ -2,8 +2,7 @@
 
 Monte-Carlo policy iteration: walls are built up to a random stone and finished from each of its
 places by the policy so far, which at first takes the lowest; the value of a place is fitted to the
-merits of all these walls; the place of the largest value is what the next policy takes
-(:mod:`drystone_lab.rl.train`).
+merits of all these walls; the place of the largest value is what the next policy takes.
 """
 
 import argparse
@@ -33,14 +32,6 @@ Floats = NDArray[np.float64]
 Choose = Callable[[Sequence[Offer], Generator], int]
 """Chooses among offers."""
 
-EXPLORED = 0.3
-"""Share of the stones before a branching that are placed at random: later states than those of
-the policy itself are seen so."""
-
-BRANCHED = 2 / 3
-"""Branchings are among this share of the stones that arrive first; the last of them mostly find no
-place."""
-
 
 def at_random(offers: Sequence[Offer], rng: Generator) -> int:
     """Choose any of some offers, all with the same chance."""
@@ -69,17 +60,19 @@ def finished(episode: Episode, choose: Choose, rng: Generator) -> float:
 def branching(workshop: Workshop, choose: Choose, seed: Sequence[int]) -> Branching | None:
     """Build a wall up to a random stone, and finish it from each of the places of that stone.
 
-    The walls that are finished have the same random numbers for all places.  None when no stone has
-    a choice of places.
+    It is among the first two thirds that arrive: the last mostly find no place.  Of the stones
+    before it three in ten are placed at random: later states than those of the policy itself are
+    seen so.  The walls that are finished have the same random numbers for all places.  None when no
+    stone has a choice of places.
     """
     rng = np.random.default_rng([*seed, 0])
     episode = Episode(workshop)
-    step = int(rng.integers(max(1, int(BRANCHED * len(workshop.fitting)))))
+    step = int(rng.integers(max(1, int(2 / 3 * len(workshop.fitting)))))
     found: Episode | None = None
     while not episode.over and step >= 0:
         if len(episode.offers) > 1:
             found = episode.copy()
-        explores = rng.random() < EXPLORED
+        explores = rng.random() < 0.3
         episode.take((at_random if explores else choose)(episode.offers, rng))
         step -= 1
     if found is None:
@@ -119,9 +112,6 @@ TRAINED_ON = ("brick", "fourier", "polygon")
 
 HELD_OUT = 10**7
 """Seed of the walls that trained policies are compared on: nothing is trained with it."""
-
-VALIDATION = 10**6
-"""Added to the seed of walls that compare the result with its start; training has fewer walls."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -176,7 +166,8 @@ def train(
             f"round {done} of {settings.rounds}: {walls} walls finished, the last "
             f"of merit {merit:.3f}; {time.monotonic() - start:.0f} s"
         )
-    others = [_workshop(settings, VALIDATION + k) for k in range(settings.validation)]
+    # Training has fewer walls than that.
+    others = [_workshop(settings, 10**6 + k) for k in range(settings.validation)]
     by_random, by_lowest, by_value = (
         mean_merit(choose, others) for choose in (at_random, LOWEST.choose, learned(model).choose)
     )
@@ -204,7 +195,6 @@ def mean_merit(choose: Choose, workshops: Sequence[Workshop]) -> float:
 
 
 def _workshop(settings: TrainSettings, number: int) -> Workshop:
-    """Return the wall of a number."""
     kinds = settings.draw.kinds
     draw = replace(settings.draw, kinds=(kinds[number % len(kinds)],))
     rng = np.random.default_rng([settings.seed, 2, number])
