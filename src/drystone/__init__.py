@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from drystone.contacts.blocks import model_from_labels as model_from_labels
     from drystone.contacts.given import model_from_json as model_from_json
     from drystone.drawing.assembly.read import read_assembly as read_assembly
-    from drystone.drawing.report.notebook import view as view
+    from drystone.drawing.report.html import view as view
     from drystone.errors import DrystoneError as DrystoneError
     from drystone.io.plan_folder import write_plan_folder as write_plan_folder
     from drystone.io.plan_json import read_plan as read_plan
@@ -60,7 +60,7 @@ _HOMES = {
     "Site": "drystone.model.site",
     "Stone": "drystone.model.stone",
     "StoneSet": "drystone.model.stone",
-    "view": "drystone.drawing.report.notebook",
+    "view": "drystone.drawing.report.html",
     "PlanResult": "drystone.search.plan_result",
     "result_of": "drystone.search.plan_result",
     "plan_wall": "drystone.search.plan_wall",
@@ -80,7 +80,7 @@ __all__ = ["generate", *_HOMES]  # noqa: PLE0604 - the keys are strings
 
 
 def _plan_as_html(result: Any) -> str:
-    return str(import_module("drystone.drawing.report.notebook").view(result)._repr_html_())
+    return str(import_module("drystone.drawing.report.html").view(result)._repr_html_())
 
 
 show_by("plan", _plan_as_html)

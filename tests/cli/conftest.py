@@ -12,7 +12,7 @@ from PIL import Image
 
 from drystone.cli import main
 from drystone.cli.commands import craft
-from drystone.drawing.files import save, write_pictures
+from drystone.drawing.files import save
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,6 @@ Run = Callable[..., Ran]
 def coarse(dpi=80):
     """Draw pictures with a sixth of the px: what is in them, and where it goes, is the same."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(write_pictures.__kwdefaults__, "dpi", dpi)
         patch.setattr(save, "__defaults__", (dpi,))
         patch.setattr(craft, "SINGLE_DPI", dpi)
         yield

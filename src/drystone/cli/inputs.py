@@ -18,9 +18,9 @@ def files_of(stones: Path) -> tuple[Path, ...]:
     return tuple(entry for entry in stones.iterdir() if entry.suffix.lower() in SUFFIXES)
 
 
-def files_of_plan(plan: Path) -> tuple[Path, ...]:
-    """Return the file that a plan is read from."""
-    return (plan / "plan.json" if plan.is_dir() else plan,)
+def plan_file(plan: Path) -> Path:
+    """Return the file that a plan is read from, which its folder may stand for."""
+    return plan / "plan.json" if plan.is_dir() else plan
 
 
 def files_of_wall(wall: Path) -> tuple[Path, ...]:
@@ -30,8 +30,8 @@ def files_of_wall(wall: Path) -> tuple[Path, ...]:
     """
     if not wall.is_dir() and wall.suffix.lower() != ".json":
         return (wall,)
-    folder = wall if wall.is_dir() else wall.parent
-    return (*files_of_plan(wall), *(folder / name for name in WRITTEN))
+    file = plan_file(wall)
+    return (file, *(file.parent / name for name in WRITTEN))
 
 
 def refuse_inputs(read: Iterable[Path], written: Iterable[Path]) -> None:
@@ -56,7 +56,7 @@ def _first_of(kept: Iterable[Path], written: Iterable[Path]) -> Path | None:
 
 def refuse_plans_own(wall: Path, written: Iterable[Path]) -> None:
     """Refuse to write over what `plan` drew of a wall, when it is in that plan's folder (E129)."""
-    folder = wall if wall.is_dir() else wall.parent
+    folder = plan_file(wall).parent
     if not (folder / "plan.json").is_file():
         return
     path = _first_of([folder / name for name in DRAWN], written)

@@ -103,8 +103,3 @@ def note(*said: object) -> None:
     for one in said:
         if one is not None:
             print(f"drystone: {one}", file=sys.stderr)
-
-
-def say(text: str) -> None:
-    """Print a result as it comes, where it does not get in the way of the tables."""
-    print(text, file=sys.stderr, flush=True)

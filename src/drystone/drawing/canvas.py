@@ -24,7 +24,6 @@ from drystone.drawing.drawing import (
     Lines,
     Surface,
     Words,
-    ground,
     letters_pt,
 )
 from drystone.drawing.lettering import drawable, fitted
@@ -172,17 +171,10 @@ def block_path(loops: Iterable[Loop]) -> Path:
 
 def draw_block(
     ax: Axes, loops: Iterable[Loop], gid: str, *, fill: str = "none", **style: Any
-) -> PathPatch:
+) -> None:
     """Add a block to the axes; `gid` names it (in SVG files too)."""
     drawn = {"linewidth": 0.6, "edgecolor": OUTLINE_COLOUR, "joinstyle": "round", **style}
-    patch = PathPatch(block_path(loops), facecolor=fill, gid=gid, **drawn)
-    ax.add_patch(patch)
-    return patch
-
-
-def draw_ground(ax: Axes, x0: float, x1: float, depth: float) -> None:
-    """Draw the ground: a line at y = 0 and hatching below."""
-    add(ax, ground((x0, -depth, x1, 0.0)))
+    ax.add_patch(PathPatch(block_path(loops), facecolor=fill, gid=gid, **drawn))
 
 
 def draw_legend(ax: Axes, entries: Legend, size: float = 7.0) -> None:

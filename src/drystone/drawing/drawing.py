@@ -206,24 +206,19 @@ def wall_drawing(
 
 
 def drawing_of_wall(
-    wall: Wall,
-    clusters: Mapping[int, int] | None = None,
-    outlines: Mapping[int, Loop] | None = None,
-    title: str = "",
+    wall: Wall, clusters: Mapping[int, int] | None = None, title: str = ""
 ) -> Drawing:
     """Describe a wall: stones coloured by cluster and numbered in order of placement, wedges red.
 
     Parameters as for :func:`drystone.drawing.plot_wall`.
     """
     site, units = wall.site, wall.site.units_per_px
-    if outlines is None and wall.outlines is not None:
-        outlines = wall_outlines(wall)
     loops: dict[int, tuple[Loop, ...]]
-    if outlines is None:
+    if wall.outlines is None:
         regions = label_regions(wall.labels)
         loops = {one.id: tuple(loop * units for loop in one.loops) for one in regions}
     else:
-        loops = {block: (np.asarray(points, float),) for block, points in outlines.items()}
+        loops = {block: (loop,) for block, loop in wall_outlines(wall).items()}
     items: list[Drawable] = []
     steps = step_by_id(wall)
     for group in wall.groups:

@@ -68,17 +68,14 @@ def write_pictures(
     clusters: Mapping[int, int] | None = None,
     *,
     resistance: LateralResistance | None = None,
-    dpi: float = DPI,
-) -> tuple[Path, ...]:
+) -> None:
     """Write picture.png, and mechanism_left.png and mechanism_right.png where they exist (§2).
 
     A picture of a mechanism that an earlier run left in the folder is removed when this wall has
     none: it would belong to another wall.
     """
     folder = Path(folder)
-    picture = folder / PICTURE
-    save(plot_wall(wall, clusters).figure, picture, dpi)
-    written = [picture]
+    save(plot_wall(wall, clusters).figure, folder / PICTURE)
     for direction, name in MECHANISMS.items():
         path = folder / name
         result = None if resistance is None else getattr(resistance, direction)
@@ -88,6 +85,4 @@ def write_pictures(
         side = None if result.status is LimitStatus.UNSTABLE else result.direction
         shown = wall.labels if wall.outlines is None else dict(wall.outlines.blocks)
         ax = plot_mechanism(shown, result.mechanism, side, result.alpha, numbers=step_by_id(wall))
-        save(ax.figure, path, dpi)
-        written.append(path)
-    return tuple(written)
+        save(ax.figure, path)

@@ -9,11 +9,12 @@ from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
 
-from drystone.cli.output import make_folder, print_json, say
+from drystone.cli.output import make_folder, print_json
 from drystone.cli.progress import busy
 from drystone.cli.settings import read_toml
 from drystone.errors import ExitCode, UsageError
 from drystone.io.published import published_folder
+from drystone_lab.commands.options import say
 from drystone_lab.public.suites import PUBLIC_SUITES, flat_changes, known_methods
 from drystone_lab.suites import GOES_BY, HISTORY, PUBLIC, SUITES, run_suite
 from drystone_lab.table import BenchSettings, Table

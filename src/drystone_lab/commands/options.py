@@ -1,6 +1,7 @@
 """Options of the commands of the lab."""
 
 import argparse
+import sys
 
 from drystone.cli.numbers import positive, whole_from
 from drystone.cli.parser import Renamed
@@ -100,3 +101,8 @@ def add_reproduce(command: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     command.add_argument("--json", action="store_true", help="print as JSON")
     command.add_argument("--quiet", action="store_true", help="no progress")
+
+
+def say(text: str) -> None:
+    """Print a result as it comes, where it does not get in the way of the tables."""
+    print(text, file=sys.stderr, flush=True)

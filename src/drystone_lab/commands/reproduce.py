@@ -6,10 +6,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from drystone.cli.output import make_folder, print_json, say
+from drystone.cli.output import make_folder, print_json
 from drystone.errors import ExitCode, UsageError
 from drystone.io.folder_lock import locked
 from drystone.io.published import published_folder
+from drystone_lab.commands.options import say
 from drystone_lab.reproduce.items import ALL, ITEMS, item_names
 
 if TYPE_CHECKING:  # loaded when something is made: --list does not wait for matplotlib

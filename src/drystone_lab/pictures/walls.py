@@ -8,7 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from drystone.drawing.canvas import draw_block, draw_ground, fit_axes
+from drystone.drawing.canvas import add, draw_block, fit_axes
+from drystone.drawing.drawing import ground as ground_below
 from drystone.drawing.outlines import label_regions
 from drystone.drawing.palette import GREY, PLAIN_COLOUR, cluster_colour
 from drystone.drawing.pictures.stones import plot_stones
@@ -124,7 +125,7 @@ def plot_landscape(
     height, width = labels.shape
     depth = ground * max(height, 0.2 * width)
     ax = fit_axes(ax, (-2.0, -depth, width + 2.0, height + 2.0))
-    draw_ground(ax, -2.0, width + 2.0, depth)
+    add(ax, ground_below((-2.0, -depth, width + 2.0, 0.0)))
     if framed:
         ax.add_patch(Rectangle((0, 0), width, height, fill=False, edgecolor=GREY, linewidth=0.6,
                                linestyle=(0, (5, 4)), gid="frame"))  # fmt: skip
@@ -146,7 +147,7 @@ def masonry_panel(
 
     def draw(ax: Axes) -> None:
         ax = fit_axes(ax, (-margin, -depth, width + margin, height + margin))
-        draw_ground(ax, -margin, width + margin, depth)
+        add(ax, ground_below((-margin, -depth, width + margin, 0.0)))
         for region in label_regions(labels):
             cluster = clusters.get(region.id)
             fill = PLAIN_COLOUR if cluster is None else cluster_colour(cluster)

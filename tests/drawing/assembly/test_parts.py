@@ -7,7 +7,7 @@ import pytest
 import shapely
 from shapely import affinity
 
-from drystone.drawing.assembly import handling
+from drystone.drawing.export import robots
 from tests.drawing.export.robot_plans import METRIC, PX_PER_M, THICKNESS_M, assembly, source_stones
 from tests.polygons import box_of
 
@@ -57,7 +57,7 @@ def test_stones_begin_above_everything_that_stands():
     wall = assembly("exact")
     top = 0.0
     for part in wall.parts:
-        way = handling.place_approach(wall, part)
+        way = robots.place_approach(wall, part)
         pose = wall.place_pose(part)
         lift = np.array([*way["start"].values()]) - [pose.x_m, pose.y_m, pose.z_m]
         assert lift == pytest.approx(-way["stand_off_m"] * np.array([*way["direction"].values()]))
@@ -79,13 +79,13 @@ def test_what_is_in_the_way_down_is_what_small_steps_down_run_into(name):
         outline = shapely.Polygon(part.corners)
         earlier = (p for p in wall.parts if p.step < part.step)
         there = shapely.union_all([shapely.Polygon(p.corners) for p in earlier])
-        lift_m = handling.place_approach(wall, part)["stand_off_m"]
+        lift_m = robots.place_approach(wall, part)["stand_off_m"]
         widest = 0.0
         for lift in np.linspace(1e-6, lift_m, 60):
             for piece in shapely.get_parts(affinity.translate(outline, 0, lift) & there):
                 left, _, right, _ = piece.bounds
                 widest = max(widest, right - left)
-        blocked = handling.blocked_m(wall, part)
+        blocked = robots.blocked_m(wall, part)
         assert blocked >= widest - 1e-12
         found.append(blocked * PX_PER_M)
         if blocked * PX_PER_M > 0.01:
@@ -106,5 +106,5 @@ def test_what_a_stone_rests_on_is_not_in_its_way(overlap_m):
     ):
         corners, centroid = box_of(left, low, 0.3, 0.1), (left + 0.15, low + 0.05)
         part = replace(second, corners=corners, centroid=centroid)
-        found = handling.blocked_m(replace(wall, parts=(below, part)), part)
+        found = robots.blocked_m(replace(wall, parts=(below, part)), part)
         assert found == pytest.approx(blocked, abs=1e-11)

@@ -11,7 +11,6 @@ from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.drawing import plot_contacts, plot_forces
 from drystone.drawing.palette import FIXED_COLOUR, PALE
 from drystone.drawing.pictures.forces import (
-    KIND_COLOURS,
     LONGEST_SHARE,
     NORMAL_SHARE,
     WIDEST_PT,
@@ -59,17 +58,10 @@ def test_interfaces_lie_where_the_blocks_touch(empty_rows):
     np.testing.assert_allclose(ends, [[0, 0], [20, 0], [5, 10], [20, 10]])
 
 
-def test_contacts_at_a_point_and_kinds_of_a_mechanism_are_dots_of_their_own():
-    model = model_from_labels(CORNERED).model
-    ax = plot_contacts(CORNERED, model)
+def test_contacts_at_a_point_are_dots_of_their_own():
+    ax = plot_contacts(CORNERED, model_from_labels(CORNERED).model)
     np.testing.assert_allclose(dots(ax, "contact at a point"), [[4, 4]])
     np.testing.assert_allclose(dots(ax, "end of an interface"), [[0, 0], [4, 0]])
-    ax = plot_contacts(CORNERED, model, kinds=("closed", "sliding", "opening"))
-    np.testing.assert_allclose(dots(ax, "sliding"), [[4, 0]])
-    np.testing.assert_allclose(dots(ax, "opening"), [[4, 4]])
-    assert [text.get_text() for text in ax.get_legend().get_texts()][2:] == list(KIND_COLOURS)
-    with pytest.raises(ValueError, match="2 kinds for 3 contact points"):
-        plot_contacts(CORNERED, model, kinds=("closed", "closed"))
 
 
 def test_fixed_blocks_have_a_colour_and_next_to_nothing_can_be_drawn():

@@ -16,8 +16,7 @@ import drystone as ds
 from drystone.contacts.blocks import model_from_labels
 from drystone.drawing import view_of_result, write_pictures, write_report
 from drystone.drawing.export.formats import FORMATS, ExportSettings
-from drystone.drawing.report.html import viewer_frame, viewer_page, viewer_script, viewer_style
-from drystone.drawing.report.notebook import Shown
+from drystone.drawing.report.html import Shown, viewer_page, viewer_script, viewer_style
 from drystone.drawing.words.content import INDICES, assumptions, cards, number
 from drystone.errors import InputError, Notice
 from drystone.generate import BrickSettings, brick_stones, lay_out
@@ -96,9 +95,7 @@ def example_view(plan=None, wall=None):
 @pytest.fixture(scope="module")
 def pictures(tmp_path_factory):
     folder = tmp_path_factory.mktemp("pictures")
-    write_pictures(
-        folder, examples.wall(), examples.CLUSTERS, resistance=examples.resistance(), dpi=40
-    )
+    write_pictures(folder, examples.wall(), examples.CLUSTERS, resistance=examples.resistance())
     return folder
 
 
@@ -237,7 +234,7 @@ def test_the_viewer_alone_is_a_page_or_a_frame():
     shown = view_of_result(result("paper"))
     page = Page(viewer_page(shown, {"chart": False}))
     assert page.data == json.loads(json.dumps(shown))
-    (frame,) = Page(viewer_frame(shown)).all("iframe")
+    (frame,) = Page(Shown(shown)._repr_html_()).all("iframe")
     assert frame["srcdoc"] == viewer_page(shown)
     frame = result("paper")._repr_html_()
     assert frame.startswith('<iframe title="Dry-stone wall from ')

@@ -43,15 +43,15 @@ def judged(blocks, names=None, **more):
      "does not stand: stone 2 rocks and slides on 1 (step 7)"),
 ])  # fmt: skip
 def test_a_wall_is_judged_in_words(blocks, more, stands, words):
-    found = judged(blocks, **more)
-    assert found.stands is stands
-    assert found.words.startswith(f"1 of 2 stones, {words}")
+    found, said = judged(blocks, **more)
+    assert found is stands
+    assert said.startswith(f"1 of 2 stones, {words}")
 
 
 def test_what_no_solver_could_answer_is_not_judged():
     model = model_from_json({"blocks_xywh": TALL})
     failed = LimitResult(LimitStatus.FAILED, "left")
-    found = judge_wall("1 stone", ModelledWall(model, np.ones((1, 1)), Names()),
-                       LateralResistance(failed, failed, 0.6))  # fmt: skip
-    assert found.stands is None
-    assert "no answer could be certified" in found.words
+    wall = ModelledWall(model, np.ones((1, 1)), Names())
+    stands, said = judge_wall("1 stone", wall, LateralResistance(failed, failed, 0.6))
+    assert stands is None
+    assert "no answer could be certified" in said

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from drystone.cli import numbers
-from drystone.cli.inputs import files_of_plan, files_of_wall, refuse_inputs, refuse_plans_own
+from drystone.cli.inputs import files_of_wall, plan_file, refuse_inputs, refuse_plans_own
 from drystone.cli.output import note, prepare_files, print_json, print_table
 from drystone.cli.progress import busy, counting_bar
 from drystone.cli.reading import add_wall, reading_from
@@ -109,7 +109,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         prepare_files(written, overwrite=arguments.overwrite)
     model, loads = load_case(case, wall.model)
     wall, solver = replace(wall, model=model), arguments.solver
-    sha256 = hashlib.sha256(files_of_plan(path)[0].read_bytes()).hexdigest()
+    sha256 = hashlib.sha256(plan_file(path).read_bytes()).hexdigest()
     counts = counted(len(model.blocks), "block")
     card: analysis.RangeCard
     if case.is_range:

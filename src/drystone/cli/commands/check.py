@@ -6,7 +6,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from drystone.cli.inputs import files_of, files_of_wall, refuse_among_masks, refuse_inputs
+from drystone.cli import inputs
 from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.cli.progress import busy, counting_bar
 from drystone.cli.reading import reading_of
@@ -45,15 +45,14 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         prepare_picture(asked_picture, overwrite=arguments.overwrite)
     if arguments.physics:
         load_engine()
-    path = Path(arguments.plan)
-    if path.is_dir():
-        path /= "plan.json"
+    path = inputs.plan_file(Path(arguments.plan))
     folder, plan = path.parent, read_plan(path)
     source = Path(arguments.stones) if arguments.stones else _find_stones(plan, folder)
     # Without a place of its own, what may be drawn, here or by another check before.
-    refuse_inputs((*files_of(source), *files_of_wall(path)), [asked_picture or folder / PICTURE])
+    read = (*inputs.files_of(source), *inputs.files_of_wall(path))
+    inputs.refuse_inputs(read, [asked_picture or folder / PICTURE])
     if asked_picture is not None:
-        refuse_among_masks(source, [asked_picture])
+        inputs.refuse_among_masks(source, [asked_picture])
     # The image of a plan without stones is no picture of stones.
     labels = read_image_of(plan, folder) if plan.steps else None
     try:

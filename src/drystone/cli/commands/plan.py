@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from drystone.cli.choice import files_of_choice
-from drystone.cli.inputs import files_of, files_of_plan, refuse_among_masks, refuse_inputs
+from drystone.cli.inputs import files_of, plan_file, refuse_among_masks, refuse_inputs
 from drystone.cli.keeping import WRITTEN
 from drystone.cli.numbers import add_scale, parse_wall, scale_with, whole_from
 from drystone.cli.output import note
@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     """Plan a wall and write it."""
     parse_wall(arguments.wall, 1.0)  # what is no size is refused before anything is read
     source, folder = Path(arguments.stones), Path(arguments.output)
-    begin = () if arguments.begin is None else files_of_plan(Path(arguments.begin))
+    begin = () if arguments.begin is None else (plan_file(Path(arguments.begin)),)
     own = () if arguments.settings is None else (Path(arguments.settings),)
     read, written = (*files_of(source), *own), [folder / name for name in WRITTEN]
     refuse_inputs(read, written)

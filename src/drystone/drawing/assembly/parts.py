@@ -197,6 +197,19 @@ class Assembly:
                 found |= set(pair) - {part_id}
         return tuple(sorted(found))
 
+    def before(self, part: Part) -> tuple[Part, ...]:
+        """Return the parts that stand before this one is placed, in order."""
+        return tuple(other for other in self.parts if other.step < part.step)
+
+    def touched_when_placed(self, part: Part) -> tuple[int, ...]:
+        """Return the ids that a part meets when it is placed, ascending; 0 is the ground."""
+        there = {0} | {other.id for other in self.before(part)}
+        return tuple(found for found in self.neighbours(part.id) if found in there)
+
+    def wedges_after(self, part: Part) -> tuple[Part, ...]:
+        """Return the wedges that are pushed in under a stone right after it, in order."""
+        return tuple(wedge for wedge in self.wedges if wedge.under == part.id)
+
     def source_corners(self, part: Part) -> Points:
         """Return the outline of a stone where it lies in the source image, px, y up."""
         step = part.plan_step

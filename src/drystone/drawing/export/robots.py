@@ -13,12 +13,15 @@ from dataclasses import asdict
 from typing import Any
 from xml.etree import ElementTree as ET
 
-from drystone.drawing.assembly import handling
+import numpy as np
+import shapely
+
 from drystone.drawing.assembly.parts import Assembly, Part
 from drystone.drawing.export.formats import ExportSettings, Files
 from drystone.drawing.export.solids import Solid, inertia, material, solid_of_part, stl_bytes
 from drystone.io.json_text import json_text, number
-from drystone.model.frames3d import Pose3d
+from drystone.model.frames3d import DOWN, Matrix, Pose3d, Vector
+from drystone.model.overlap import common_parts
 
 FRAMES = {
     "convention": "Right-handed, metres. A matrix is 4x4, rows first, and maps points of the part "
@@ -54,6 +57,10 @@ FRAMES = {
     "right; null when wedges of the stone are still to come.",
 }
 
+CLEARANCE_M = 0.05  # how far above everything else a part is when it begins to be lowered
+_APART_M = 1e-9  # what a part rests on is not in its way
+INWARD: Vector = (0.0, 1.0, 0.0)  # how a wedge is pushed in, in W
+
 BASE = "wall"  # name of the frame W, which in ROS a static transform places
 AT_THE_ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 
@@ -77,7 +84,7 @@ def poses(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG00
         "wall": {"width_m": width_m, "height_m": height_m},
         "thickness_m": assembly.thickness,
         "density_kg_m3": assembly.density_kg_m3,
-        "clearance_m": handling.CLEARANCE_M,
+        "clearance_m": CLEARANCE_M,
         "parts": [_handled(assembly, part) for part in assembly.parts],
         "unused": list(plan.unused),
     }
@@ -86,22 +93,42 @@ def poses(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG00
 
 def _handled(assembly: Assembly, part: Part) -> dict[str, Any]:
     width_m, height_m = part.size
-    pick, down = assembly.pick_pose(part), handling.pick_approach(assembly, part)
-    blocked_m = handling.blocked_m(assembly, part) if part.kind == "stone" else 0.0
-    approach = {**handling.place_approach(assembly, part), "blocked_m": blocked_m}
+    place, pick = assembly.place_pose(part), assembly.pick_pose(part)
+    # A unit vector across the jaws, in S.
+    jaws_m, across_deg = part.grip
+    across = math.radians(across_deg)
+    own = np.array([math.cos(across), 0.0, math.sin(across)])
+    picked = to_wall = own_in_photo = None
+    if pick is not None:
+        # From above all others.
+        down = _approach(pick, DOWN, assembly.thickness + CLEARANCE_M)
+        picked = {**_posed(pick), "approach": down}
+        back = np.eye(4)
+        back[:3, :3] = pick.rotation.T
+        back[:3, 3] = -pick.rotation.T @ pick.matrix[:3, 3]
+        to_wall = place.matrix @ back + 0.0
+        own_in_photo = _xyz(pick.rotation @ own)
+    blocked = blocked_m(assembly, part) if part.kind == "stone" else 0.0
+    approach = {**place_approach(assembly, part), "blocked_m": blocked}
     return {
         **_names(part),
         "under": part.under,
         "angle_deg": part.angle_deg,
         "flipped": False,
-        "place": {**_posed(assembly.place_pose(part)), "approach": approach},
-        "pick": pick and down and {**_posed(pick), "approach": down},
-        "pick_to_place": handling.pick_to_place(assembly, part),
-        "grasp": {**handling.grasp(assembly, part), "thickness_m": assembly.thickness},
+        "place": {**_posed(place), "approach": approach},
+        "pick": picked,
+        "pick_to_place": to_wall,
+        "grasp": {
+            "width_m": jaws_m,
+            "direction_part": _xyz(own),
+            "direction_wall": _xyz(place.rotation @ own),
+            "direction_photo": own_in_photo,
+            "thickness_m": assembly.thickness,
+        },
         "mass_kg": assembly.mass_kg(part),
         "size_m": {"x": width_m, "y": assembly.thickness, "z": height_m},
-        "neighbours": handling.touched_when_placed(assembly, part),
-        "wedges_after": [wedge.name for wedge in handling.wedges_after(assembly, part)],
+        "neighbours": assembly.touched_when_placed(part),
+        "wedges_after": [wedge.name for wedge in assembly.wedges_after(part)],
         "alpha": {"left": part.plan_step.alpha_left, "right": part.plan_step.alpha_right},
     }
 
@@ -113,6 +140,48 @@ def _names(part: Part) -> dict[str, Any]:
 def _posed(pose: Pose3d) -> dict[str, Any]:
     point = {"x": pose.x_m, "y": pose.y_m, "z": pose.z_m}
     return {"point": point, "quaternion": asdict(pose.quaternion), "matrix": pose.matrix}
+
+
+def place_approach(assembly: Assembly, part: Part) -> dict[str, Any]:
+    """Return how a part comes to its place.
+
+    A stone comes from above: it is lowered from where its lowest point is CLEARANCE_M above the
+    highest point of what was built before.  A wedge goes in from the front.
+    """
+    pose = assembly.place_pose(part)
+    if part.kind == "wedge":
+        return _approach(pose, INWARD, assembly.thickness + CLEARANCE_M)
+    top = max((float(other.corners[:, 1].max()) for other in assembly.before(part)), default=0.0)
+    lowest = float(part.corners[:, 1].min())
+    return _approach(pose, DOWN, max(top - lowest, 0.0) + CLEARANCE_M)
+
+
+def blocked_m(assembly: Assembly, part: Part) -> float:
+    """Return the longest horizontal piece of a stone's way down that stands already, 0.0 if free.
+
+    With ``reach = "above"`` stones were lowered along this way and then settled, which moves them
+    by a fraction of a px; with ``reach = "any"`` they may have come from the side.
+    """
+    lift = place_approach(assembly, part)["stand_off_m"]
+    low = part.corners + np.array([0.0, _APART_M])
+    high = low + np.array([0.0, lift])
+    following = np.roll(np.arange(len(low)), -1)
+    sides = np.stack([low, low[following], high[following], high], axis=1)
+    whole = [shapely.Polygon(low), shapely.Polygon(high), *shapely.polygons(sides)]
+    way = shapely.union_all([shape for shape in whole if shape.area > 0.0])
+    others = [shapely.Polygon(other.corners) for other in assembly.before(part)]
+    boxes = [piece.bounds for other in others for piece in common_parts(way, other)]
+    return max((right - left for left, _, right, _ in boxes), default=0.0)
+
+
+def _approach(pose: Pose3d, direction: Vector, length_m: float) -> dict[str, Any]:
+    """Return a straight move to a pose, from `start` in the frame of it; the part does not turn."""
+    start = np.array([pose.x_m, pose.y_m, pose.z_m]) - length_m * np.array(direction)
+    return {"direction": _xyz(direction), "stand_off_m": length_m, "start": _xyz(start)}
+
+
+def _xyz(values: Matrix | Vector) -> dict[str, float]:
+    return {name: float(value) + 0.0 for name, value in zip("xyz", values, strict=True)}
 
 
 def compas(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
@@ -133,7 +202,7 @@ def compas(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG0
                 "pick": compas_frame(assembly.pick_pose(part)),
                 "mesh": compas_mesh(solid_of_part(assembly, part), part.name),
                 "mass_kg": assembly.mass_kg(part),
-                "neighbours": handling.touched_when_placed(assembly, part),
+                "neighbours": assembly.touched_when_placed(part),
             }
             for part in assembly.parts
         ],

@@ -2,11 +2,10 @@
 
 import csv as csv_writer
 import io
-from typing import Any, NamedTuple
+from typing import Any
 
 import shapely
 
-from drystone.drawing.assembly import handling
 from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.export.formats import ExportSettings, Files, load_extra
 from drystone.drawing.sheet.words import step_words
@@ -14,46 +13,37 @@ from drystone.io.json_text import json_text
 from drystone.model.plan import StoneStep
 
 
-class Column(NamedTuple):
-    """A value a step; `type` is that of values apart from None, `list` one of ids."""
-
-    name: str
-    type: type
-    values: list[Any]
-
-
-def columns(assembly: Assembly) -> tuple[Column, ...]:
-    """Return the build list by columns.
+def columns(assembly: Assembly) -> list[tuple[str, type, list[Any]]]:
+    """Return the build list by columns: name, type of values apart from None, a value a step.
 
     x and y are the plan's: x along the wall, y up. Width and height are those of the bounding
-    box as a stone lies in the source image.
+    box as a stone lies in the source image.  Lists are of ids.
     """
     unit, parts = assembly.unit, assembly.parts
     stones = [part.plan_step if isinstance(part.plan_step, StoneStep) else None for part in parts]
     metric = unit == "m"
-
-    return (
-        Column("step", int, [part.step for part in parts]),
-        Column("kind", str, [part.kind for part in parts]),
-        Column("id", int, [part.id for part in parts]),
-        Column("name", str, [part.name for part in parts]),
-        Column("under", int, [part.under for part in parts]),
-        Column("side", str, [stone and stone.side for stone in stones]),
-        Column("cluster", int, [part.cluster for part in parts]),
-        Column("angle_deg", float, [part.angle_deg for part in parts]),
-        Column(f"x_{unit}", float, [part.centroid[0] for part in parts]),
-        Column(f"y_{unit}", float, [part.centroid[1] for part in parts]),
-        Column("source_x_px", float, [stone and stone.source_centroid[0] for stone in stones]),
-        Column("source_y_px", float, [stone and stone.source_centroid[1] for stone in stones]),
-        Column(f"width_{unit}", float, [part.size[0] for part in parts]),
-        Column(f"height_{unit}", float, [part.size[1] for part in parts]),
-        Column(f"area_{unit}2", float, [part.area for part in parts]),
-        Column("mass_kg", float, [assembly.mass_kg(part) if metric else None for part in parts]),
-        Column("neighbours", list, [handling.touched_when_placed(assembly, p) for p in parts]),
-        Column("alpha_left", float, [part.plan_step.alpha_left for part in parts]),
-        Column("alpha_right", float, [part.plan_step.alpha_right for part in parts]),
-        Column("instruction", str, [step_words(assembly, part) for part in parts]),
-    )
+    return [
+        ("step", int, [part.step for part in parts]),
+        ("kind", str, [part.kind for part in parts]),
+        ("id", int, [part.id for part in parts]),
+        ("name", str, [part.name for part in parts]),
+        ("under", int, [part.under for part in parts]),
+        ("side", str, [stone and stone.side for stone in stones]),
+        ("cluster", int, [part.cluster for part in parts]),
+        ("angle_deg", float, [part.angle_deg for part in parts]),
+        (f"x_{unit}", float, [part.centroid[0] for part in parts]),
+        (f"y_{unit}", float, [part.centroid[1] for part in parts]),
+        ("source_x_px", float, [stone and stone.source_centroid[0] for stone in stones]),
+        ("source_y_px", float, [stone and stone.source_centroid[1] for stone in stones]),
+        (f"width_{unit}", float, [part.size[0] for part in parts]),
+        (f"height_{unit}", float, [part.size[1] for part in parts]),
+        (f"area_{unit}2", float, [part.area for part in parts]),
+        ("mass_kg", float, [assembly.mass_kg(part) if metric else None for part in parts]),
+        ("neighbours", list, [assembly.touched_when_placed(part) for part in parts]),
+        ("alpha_left", float, [part.plan_step.alpha_left for part in parts]),
+        ("alpha_right", float, [part.plan_step.alpha_right for part in parts]),
+        ("instruction", str, [step_words(assembly, part) for part in parts]),
+    ]
 
 
 def csv(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
@@ -66,8 +56,8 @@ def csv(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
 
     table, text = columns(assembly), io.StringIO()
     writer = csv_writer.writer(text, lineterminator="\n")
-    writer.writerow([column.name for column in table])
-    writer.writerows(zip(*(map(cell, column.values) for column in table), strict=True))
+    writer.writerow([name for name, _, _ in table])
+    writer.writerows(zip(*(map(cell, values) for _, _, values in table), strict=True))
     return {"steps.csv": text.getvalue()}
 
 
@@ -88,9 +78,8 @@ def parquet(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG
     types = {int: arrow.int64(), float: arrow.float64(), str: arrow.string(),
              list: arrow.list_(arrow.int64())}  # fmt: skip
     table, data = columns(assembly), io.BytesIO()
-    fields = [(column.name, types[column.type]) for column in table]
-    arrays = [arrow.array(column.values, types[column.type]) for column in table]
-    schema = arrow.schema(fields, metadata=about)
+    arrays = [arrow.array(values, types[kind]) for _, kind, values in table]
+    schema = arrow.schema([(name, types[kind]) for name, kind, _ in table], metadata=about)
     writer.write_table(arrow.Table.from_arrays(arrays, schema=schema), data)
     return {"steps.parquet": data.getvalue()}
 
@@ -101,9 +90,7 @@ def geojson(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG
     Rings are closed and counter-clockwise, as RFC 7946 wants them.  Its coordinates are those of
     the earth; these are lengths in the wall, which foreign members say.
     """
-    table = columns(assembly)
-    rows = zip(*(column.values for column in table), strict=True)
-    names = [column.name for column in table]
+    names, _, values = zip(*columns(assembly), strict=True)
     width, height = assembly.size
     made = {
         "type": "FeatureCollection",
@@ -119,7 +106,7 @@ def geojson(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG
                 "properties": dict(zip(names, row, strict=True)),
                 "geometry": shapely.geometry.mapping(shapely.Polygon(part.corners)),
             }
-            for part, row in zip(assembly.parts, rows, strict=True)
+            for part, *row in zip(assembly.parts, *values, strict=True)
         ],
     }
     return {"wall.geojson": json_text(made) + "\n"}

@@ -229,7 +229,7 @@ SURE, UNSURE, ALWAYS = "#d5e8d4", "#f0c050", "#b03030"
 """Stones that never fall, fall in half of the runs, and in all."""
 
 
-def plot_risk(card: Rehearsed, ax: Axes | None = None) -> Axes:
+def plot_risk(card: Rehearsed) -> Axes:
     """Draw a plan, in source px; numbers are in how many of 100 runs a stone falls."""
     planned = {block: corners for group in card.groups for block, corners in group}
     regions = polygon_regions(planned)
@@ -251,7 +251,7 @@ def plot_risk(card: Rehearsed, ax: Axes | None = None) -> Axes:
         "always": Surface("", (), ALWAYS),
     }
     title = f"Stones that fall, of 100 rehearsals; {card.verdict}"
-    return draw(Drawing(tuple(items), box, title=title, legend=legend), ax)
+    return draw(Drawing(tuple(items), box, title=title, legend=legend))
 
 
 def risk_colour(risk: float) -> str:

@@ -1,6 +1,6 @@
 """The contacts of a rigid block model (Pic-to-Ri), and the thrust that carries a wall."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import floor, log10
 
@@ -13,18 +13,9 @@ from drystone.drawing.drawing import Dots, Drawing, Lines, Surface, pale_wall, s
 from drystone.drawing.outlines import Loop, wall_regions
 from drystone.kernels.raster import Floats
 from drystone.model.wall import Labels
-from drystone.statics.failing.mechanism import ContactKind
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 
 JOINT, NORMAL, POINT = "#0072b2", "#d55e00", "#8b0000"
-
-KIND_COLOURS: dict[ContactKind, str] = {
-    "closed": JOINT,
-    "opening": "#e69f00",
-    "sliding": "#cc79a7",
-    "opening and sliding": "#000000",
-}
-"""Okabe and Ito's colours, apart for colour-blind readers."""
 
 NORMAL_SHARE = 0.03
 """Length of a normal over the height of the wall, at most; that of a short interface is half as
@@ -32,21 +23,14 @@ long as the interface, but no less than a third of this."""
 
 
 def plot_contacts(
-    wall: Labels | Mapping[int, Loop],
-    model: RigidBlockModel,
-    ax: Axes | None = None,
-    *,
-    kinds: Sequence[ContactKind] | None = None,
+    wall: Labels | Mapping[int, Loop], model: RigidBlockModel, ax: Axes | None = None
 ) -> Axes:
     """Draw where blocks touch: interfaces as lines with their end points and normals.
 
     The wall is a label image, row 0 at the top, or polygons by id, and the model is of it; the axes
-    are in px of the image or the unit of the polygons, y up from the ground.  `kinds` are what a
-    mechanism does at every contact point, and colour the points.  ValueError when the model has a
-    block that the wall does not have, or the kinds are not its.
+    are in px of the image or the unit of the polygons, y up from the ground.  ValueError when the
+    model has a block that the wall does not have.
     """
-    if kinds is not None and len(kinds) != model.contact_count:
-        raise ValueError(f"{len(kinds)} kinds for {model.contact_count} contact points")
     regions = wall_regions(wall)
     pale = pale_wall(regions, model)
     lines = [interface.points for interface in model.interfaces if len(interface.points) > 1]
@@ -57,14 +41,10 @@ def plot_contacts(
     points = np.concatenate([np.empty((0, 2)), *(i.points for i in model.interfaces)])
     counts = np.array([len(interface.points) for interface in model.interfaces], np.int64)
     alone = np.repeat(counts == 1, counts)
-    if kinds is None:
-        dots = [
-            Dots("end of an interface", points[~alone], JOINT, 2.4),
-            Dots("contact at a point", points[alone], POINT, 4.0),
-        ]
-    else:
-        told = np.array(kinds, str)
-        dots = [Dots(kind, points[told == kind], c, 3.6) for kind, c in KIND_COLOURS.items()]
+    dots = [
+        Dots("end of an interface", points[~alone], JOINT, 2.4),
+        Dots("contact at a point", points[alone], POINT, 4.0),
+    ]
     faces, inward = Lines("interfaces", lines, JOINT, 1.3), Lines("normals", normals, NORMAL, 0.8)
     legend: dict[str, Surface | Lines | Dots]
     legend = {"interface": faces, "normal": inward, **{one.name: one for one in dots}}

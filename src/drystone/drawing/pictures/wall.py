@@ -7,7 +7,6 @@ from matplotlib.figure import Figure
 
 from drystone.drawing.canvas import add, draw, fit_axes
 from drystone.drawing.drawing import Surface, drawing_of_wall
-from drystone.drawing.outlines import Loop
 from drystone.drawing.palette import CLUSTER_COLOURS
 from drystone.model.wall import Wall
 
@@ -24,18 +23,15 @@ def plot_wall(
     clusters: Mapping[int, int] | None = None,
     ax: Axes | None = None,
     *,
-    outlines: Mapping[int, Loop] | None = None,
     title: str = "",
 ) -> Axes:
     """Draw a wall: stones coloured by cluster and numbered in order of placement, wedges red.
 
     The number of a stone is its step in the plan, where each wedge is a step too.  `clusters` are
-    those of stones by id, from 1; None draws all in one colour.  `outlines` are polygons, (n, 2),
-    to draw instead of the pixels, by id, wall frame, plan's units, for example from
-    :func:`drystone.drawing.wall_outlines`; of a wall of outlines these are drawn anyway.  The axes
-    are in the plan's units: source px, or metres when the site has a scale.
+    those of stones by id, from 1; None draws all in one colour.  The axes are in the plan's units:
+    source px, or metres when the site has a scale.
     """
-    return draw(drawing_of_wall(wall, clusters, outlines, title), ax)
+    return draw(drawing_of_wall(wall, clusters, title), ax)
 
 
 def plot_choice(walls: Sequence[Wall], figures: Sequence[WallFigures]) -> Figure:

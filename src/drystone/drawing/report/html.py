@@ -1,10 +1,14 @@
-"""A wall as HTML: the report, and the viewer alone; each is one file that needs nothing else."""
+"""A wall as HTML: the report, and the viewer alone or in a notebook.
+
+Each is one file that needs nothing else.
+"""
 
 import base64
 import html
 import json
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -12,9 +16,11 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from drystone.drawing.assembly.read import read_assembly
 from drystone.drawing.files import MECHANISMS, PICTURE
-from drystone.drawing.report.viewer_data import ViewerData
+from drystone.drawing.report.viewer_data import ViewerData, view_of_assembly, view_of_result
 from drystone.drawing.words import content
+from drystone.search.plan_result import PlanResult
 from drystone.whole_files import write_whole
 
 HERE = Path(__file__).parent
@@ -67,17 +73,6 @@ def viewer_page(view: ViewerData, options: Mapping[str, Any] | None = None) -> s
     return rendered("viewer_page.html", view, title=view["title"], options=chosen)
 
 
-def viewer_frame(view: ViewerData) -> str:
-    """Return an element, in one line, that shows the viewer in a page of others: a notebook.
-
-    The page in the frame has its own styles, and is as high as it needs to be.
-    """
-    page = html.escape(viewer_page(view)).replace("\n", "&#10;")
-    title = html.escape(str(view["title"]))
-    look = "width:100%;height:640px;border:0;color-scheme:normal"
-    return f'<iframe title="{title}" style="{look}" srcdoc="{page}"></iframe>'
-
-
 def rendered(template: str, data: Any, **more: Any) -> str:
     """Return a page, whose script and style are those of the viewer when no others are given."""
     loader = FileSystemLoader([HERE, HERE.parent / "tracing"])
@@ -119,3 +114,48 @@ def json_in_html(data: Any) -> Markup:
     """Write JSON for a script element: nothing in it can end the element."""
     text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
     return Markup(text.replace("<", "\\u003c"))  # noqa: S704
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A wall that shows itself at the end of a notebook's cell.
+
+    Parameters
+    ----------
+    data : dict
+        Plain JSON of the schema "drystone-view/1".
+    """
+
+    data: ViewerData = field(repr=False)
+
+    def _repr_html_(self) -> str:
+        # An element in one line; the page in the frame has its own styles, and is as high as it
+        # needs to be.
+        page = html.escape(viewer_page(self.data)).replace("\n", "&#10;")
+        title = html.escape(str(self.data["title"]))
+        look = "width:100%;height:640px;border:0;color-scheme:normal"
+        return f'<iframe title="{title}" style="{look}" srcdoc="{page}"></iframe>'
+
+    def write(self, path: str | Path) -> Path:
+        """Write the viewer as one HTML file that needs no network and no other file."""
+        path = Path(path)
+        write_whole(path, viewer_page(self.data).encode("utf-8", "replace"))
+        return path
+
+
+def view(wall: PlanResult | str | Path) -> Shown:
+    """Show a plan: a result of planning, or the files of an earlier one.
+
+    Parameters
+    ----------
+    wall : PlanResult, str or Path
+        From :func:`drystone.plan_wall`, or a plan.json or its folder.
+
+    Raises
+    ------
+    InputError
+        E132, E133 for files that are no plan or do not belong together.
+    """
+    if isinstance(wall, PlanResult):
+        return Shown(view_of_result(wall))
+    return Shown(view_of_assembly(read_assembly(wall)))

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.drawing.assembly.handling import wedges_after
 from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.assembly.read import assembly_of_result
 from drystone.drawing.outlines import regions_box, wall_regions
@@ -23,7 +22,7 @@ from drystone.drawing.photo import read_photo
 from drystone.drawing.pictures.mechanism import motion_of
 from drystone.drawing.sheet.words import beside_words, step_words, turn_words
 from drystone.drawing.words import content
-from drystone.drawing.words.analysis import STONES, ModelledWall, WallVerdict, judge_wall
+from drystone.drawing.words.analysis import STONES, ModelledWall, judge_wall
 from drystone.errors import Notice, counted
 from drystone.io.plan_json import plan_digest
 from drystone.kernels.polygons import Points
@@ -83,16 +82,16 @@ def view_of_assembly(
     names = Names("stone", frozenset(part.id for part in assembly.wedges), plan.step_by_id)
     wall = ModelledWall(assembly.model, shapes, names, tuple(notices))
     placed, metrics = len(plan.stone_steps), plan.metrics
-    verdict = judge_wall(
+    stands, summary = judge_wall(
         f"{placed} of {placed + len(plan.unused)} stones", wall, assembly.resistance,
         without_dilatancy={"left": metrics.alpha_left_coulomb, "right": metrics.alpha_right_coulomb}
         if metrics.F_LR_coulomb != 0.0 else {"left": 0.0, "right": 0.0},
     )  # fmt: skip
-    cards = content.cards(plan, stands=verdict.stands)
+    cards = content.cards(plan, stands=stands)
     # The wall as ordered, and all that sticks out of it.
     corners = np.concatenate([[(0.0, 0.0), assembly.size], *shapes.values()])
     return _view(
-        wall, assembly.resistance, verdict, digits, cards,
+        wall, assembly.resistance, digits, cards,
         {part.id: part.centroid for part in assembly.parts}, plan=plan,
         title=f"Dry-stone wall from {content.source_name(plan) or 'stones'}", unit=assembly.unit,
         size=rounded(assembly.size, digits),
@@ -100,7 +99,7 @@ def view_of_assembly(
         parts=_planned_parts(assembly, digits), inputs=[list(one) for one in content.inputs(plan)],
         timings=[[name, round(seconds, 3)] for name, seconds in (timings or {}).items()],
         settings=[list(pair) for pair in content.flat_settings(plan.settings)],
-        assumptions=content.assumptions(plan),
+        assumptions=content.assumptions(plan), summary=f"{summary}.", stands=stands,
     )  # fmt: skip
 
 
@@ -133,9 +132,11 @@ def view_of_wall(
     digits = part_digits(size)
     shown = ModelledWall(model, wall, names)
     count = sum(region.id not in names.wedges for region in regions)
-    verdict = judge_wall(counted(count, names.noun), shown, resistance, load_case=load_case,
-                         without_dilatancy=without_dilatancy)  # fmt: skip
-    results = () if verdict.stands is False else (
+    stands, summary = judge_wall(
+        counted(count, names.noun), shown, resistance, load_case=load_case,
+        without_dilatancy=without_dilatancy,
+    )  # fmt: skip
+    results = () if stands is False else (
         *content.strength_cards(resistance.value, resistance.left.alpha, resistance.right.alpha,
                                 load_case=load_case),
         *cards,
@@ -154,18 +155,18 @@ def view_of_wall(
         for region in regions
     ]  # fmt: skip
     return _view(
-        shown, resistance, verdict, digits, results,
+        shown, resistance, digits, results,
         {region.id: region.centroid for region in regions}, load_case, title=title, unit=unit,
         size=rounded(size, digits), box=rounded((x0, min(y0, 0.0), x1, y1), digits), parts=parts,
         inputs=[], timings=[], settings=[],
         assumptions=(*content.wall_assumptions(load_case), *content.model_assumptions(model)),
+        summary=f"{summary}.", stands=stands,
     )  # fmt: skip
 
 
 def _view(
     wall: ModelledWall,
     resistance: LateralResistance,
-    verdict: WallVerdict,
     digits: int,
     cards: Iterable[content.ResultCard],
     centroids: Mapping[int, Point],
@@ -179,8 +180,6 @@ def _view(
     sha256 = None if plan is None else plan.source.get("sha256")
     return {
         **said,
-        "summary": f"{verdict.words}.",
-        "stands": verdict.stands,
         "version": version("drystone") if plan is None else plan.version,
         "method": plan and plan.method,
         "seed": None if plan is None else plan.seed,
@@ -233,7 +232,7 @@ def _planned_parts(assembly: Assembly, digits: int) -> list[ViewerData]:
             step=part.step, number=part.step if part.kind == "stone" else None,
             angle_deg=round(part.angle_deg, 3) + 0.0, size=rounded(part.size, digits),
             neighbours=list(assembly.neighbours(part.id)), under=part.under,
-            wedges=[wedge.id for wedge in wedges_after(assembly, part)],
+            wedges=[wedge.id for wedge in assembly.wedges_after(part)],
             words=step_words(assembly, part), crop=crops.get(part.id),
             alpha_left=_short(step.alpha_left), alpha_right=_short(step.alpha_right),
         )  # fmt: skip

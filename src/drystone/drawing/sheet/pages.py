@@ -16,7 +16,6 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch
 from numpy.typing import ArrayLike
 
-from drystone.drawing.assembly.handling import wedges_after
 from drystone.drawing.assembly.parts import Assembly, Part
 from drystone.drawing.canvas import add
 from drystone.drawing.drawing import (
@@ -127,10 +126,6 @@ class SheetPage:
             x, y, text, SMALL_PT, ha="center", va="center", rotation=90 if upright else 0,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.2}, zorder=5,
         )  # fmt: skip
-
-    def tick_box(self, x: float, y: float, size: float = 4.5) -> None:
-        """Draw an empty box for a tick."""
-        self.box(x, y, size, size, width_pt=0.7)
 
     def foot(self, left: str, right: str) -> None:
         """Write what the page belongs to, and its number."""
@@ -325,7 +320,7 @@ class BuildSheet:
 
     def _row_page(self, stones: Sequence[Part], scale: float, high: float) -> SheetPage:
         page = SheetPage()
-        last = [stones[-1], *wedges_after(self.assembly, stones[-1])][-1]
+        last = [stones[-1], *self.assembly.wedges_after(stones[-1])][-1]
         head = f"Steps {stones[0].step} to {last.step}"
         page.write(EDGE_MM, page.top - 4.5, head, 13.0, weight="bold")
         said = "seen from the front; a mark on top of the stone as it lies shows how it turns"
@@ -343,7 +338,7 @@ class BuildSheet:
             page.line([(EDGE_MM, y + high), (page.right, y + high)], colour=GREY)
             page.write(NUMBER, y + high - 9.5, str(part.step), 19.0, weight="bold")
             page.write(NUMBER, y + high - 14.0, f"stone {part.id}", SMALL_PT, color=FAINT)
-            page.tick_box(NUMBER, y + 4.0)
+            page.box(NUMBER, y + 4.0, 4.5, 4.5, width_pt=0.7)
             self._picture(page, part, y + high / 2)
             self._turn(page, part, y + high / 2, scale)
             self._words(page, part, y + high - 5.0, high)
@@ -405,7 +400,7 @@ class BuildSheet:
             said = f"\N{RIGHTWARDS ARROW} {across.split()[0]}   \N{UPWARDS ARROW} {up}"
             page.write(WHERE, at - 4.2, said, PLAIN_PT)
         told = [(line, "black") for line in wrap(words.beside_words(self.assembly, part), WORDS)]
-        for wedge in wedges_after(self.assembly, part):
+        for wedge in self.assembly.wedges_after(part):
             lines = wrap(words.wedge_words(self.assembly, wedge), WORDS)
             told += [(line, WEDGE_COLOUR) for line in lines]
         # Lines come closer where there are many, such as three wedges.
@@ -509,7 +504,7 @@ class BuildSheet:
             base = y - (row + 1) * LINE_MM
             across, up = _place(part)
             down = (height - up) / assembly.px_per_unit
-            page.tick_box(x + 1.0, base - 0.8, 3.6)
+            page.box(x + 1.0, base - 0.8, 3.6, 3.6, width_pt=0.7)
             # Length and least width, which do not depend on how it lies.
             width, across_deg = part.grip
             along = np.radians(across_deg + 90.0)
@@ -548,7 +543,7 @@ class BuildSheet:
         place = words.wedge_place(assembly, wedge)
         said = f"under {stone.step}, {place}"
         page.write(x + 13.0, y + CARD_MM[1] - 5.6, said, SMALL_PT)
-        page.tick_box(x + CARD_MM[0] - 7.0, y + CARD_MM[1] - 7.0)
+        page.box(x + CARD_MM[0] - 7.0, y + CARD_MM[1] - 7.0, 4.5, 4.5, width_pt=0.7)
         factor = drawn_factor(assembly, wedge)
         per_unit = factor * (1000.0 if assembly.unit == "m" else 1.0)
         shown = [side * per_unit for side in size]

@@ -444,17 +444,6 @@ def noise_unit(wall: GivenWall) -> tuple[str, float]:
     return "px", 1.0 / (px_per_m or 1.0)
 
 
-@dataclass(frozen=True)
-class WallVerdict:
-    """What is said first: whether a wall stands, and what brings it down.
-
-    `stands` is None when no answer could be certified.
-    """
-
-    stands: bool | None
-    words: str
-
-
 def judge_wall(
     subject: str,
     wall: ModelledWall,
@@ -462,29 +451,29 @@ def judge_wall(
     *,
     load_case: str = TILTING,
     without_dilatancy: Mapping[str, float | None] = MappingProxyType({}),
-) -> WallVerdict:
-    """Judge a wall of which `subject` says how large it is, such as "28 of 30 stones".
+) -> tuple[bool | None, str]:
+    """Say whether a wall stands, and in words what brings it down; not known is None.
 
+    `subject` says how large it is, such as "28 of 30 stones".
     `without_dilatancy` are load multipliers by Coulomb's law, by direction, where they are known:
     the least of all is what the wall is told to carry.
     """
     if resistance.failed:
-        words = f"{subject}; not known whether it stands: no answer could be certified"
-        return WallVerdict(None, words)
+        return None, f"{subject}; not known whether it stands: no answer could be certified"
     failures = wall.failures((resistance.left, resistance.right))
     if not resistance.stable:
         why = wall.why_it_falls(failures).removeprefix("Falls by itself: ").rstrip(".")
-        return WallVerdict(False, f"{subject}, {FALLS}: {why[:1].lower()}{why[1:]}")
+        return False, f"{subject}, {FALLS}: {why[:1].lower()}{why[1:]}"
     both = [(end.alpha, str(end.direction)) for end in (resistance.left, resistance.right)]
     both += [(alpha, direction) for direction, alpha in without_dilatancy.items()]
     known = [(alpha, direction) for alpha, direction in both if alpha is not None]
     if not known:
-        return WallVerdict(True, f"{subject}, stands; no load of this kind brings it down")
+        return True, f"{subject}, stands; no load of this kind brings it down"
     alpha, direction = min(known)
     words = f"{subject}, stands; {_load(alpha, load_case)}"
     if direction in failures:
         words += f"; weakest place: {_weakest_place(wall, failures[direction])}"
-    return WallVerdict(True, words)
+    return True, words
 
 
 def _load(alpha: float, load_case: str) -> str:
