@@ -91,6 +91,16 @@ def area(text: str) -> tuple[float, str]:
     return float(found[1]), found[2] or "px"
 
 
+def refuse_cm2(
+    area: tuple[float, str] | None, scale: object, of: str, options: str = "--px-per-m or --ruler"
+) -> None:
+    """Refuse an area in cm2 where no option gives the scale of a picture (E131)."""
+    if scale is None and area is not None and area[1] == "cm2":
+        what = f"an area in cm2 needs the scale of the {of}."
+        cure = f"Give it with {options}, or give the area in px."
+        raise UsageError("E131", what, where="--min-area", cure=cure)
+
+
 def friction(text: str) -> tuple[float, float]:
     """Read one coefficient of friction, or LOW:HIGH."""
     parts = [_number(part) for part in text.split(":")]

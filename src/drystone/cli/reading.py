@@ -2,22 +2,16 @@
 
 import argparse
 from collections.abc import Mapping
+from dataclasses import fields
 from typing import Any, get_args
 
-from drystone.cli.numbers import area
+from drystone.cli.numbers import area, refuse_cm2
 from drystone.cli.parser import list_only
-from drystone.errors import UsageError
 from drystone.io.read_settings import ReadSettings, Unit, Up
 from drystone.model.settings import updated
 
-_NAMES = (
-    "background", "pieces", "holes", "mask", "skip", "keep", "label", "unit", "up",
-    "image", "px_per_m",
-)  # fmt: skip
-
 STONES = "label image, mask or NPY; folder of masks, or of `drystone segment`; labelme, COCO, SAM \
 or GeoJSON; DXF, SVG, OBJ, PLY, STL"
-
 
 READING = "How stones are read (--skip, --min-area, --unit ...): drystone stones --help."
 
@@ -77,17 +71,12 @@ def reading_from(arguments: argparse.Namespace) -> ReadSettings:
     ``--px-per-m`` is the resolution of drawings and meshes; pictures keep their own px, and for
     them it is only the scale.
     """
-    given = {name: getattr(arguments, name, None) for name in _NAMES}
+    given = {field.name: getattr(arguments, field.name, None) for field in fields(ReadSettings)}
+    refuse_cm2(arguments.min_area, given["px_per_m"], "picture")
     if arguments.min_area is not None:
         value, unit = arguments.min_area
-        if unit == "cm2":
-            per_m = given["px_per_m"]
-            if per_m is None:
-                what = "an area in cm2 needs the scale of the picture."
-                cure = "Give it with --px-per-m or --ruler, or give the area in px."
-                raise UsageError("E131", what, where="--min-area", cure=cure)
-            value *= 1e-4 * per_m**2
-        given["min_area_px"] = max(1, round(value))
+        per_px = 1e-4 * given["px_per_m"] ** 2 if unit == "cm2" else 1.0
+        given["min_area_px"] = max(1, round(value * per_px))
     return reading_of({"reading": {k: value for k, value in given.items() if value is not None}})
 
 

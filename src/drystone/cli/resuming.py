@@ -96,18 +96,15 @@ def earlier_run(request: PlanRequest) -> Earlier:
 
 
 def _differences(plan: Plan, asked: Mapping[str, Any], asked_method: str) -> list[str]:
-    """Name what a plan was made of that is not what is asked for."""
-    equal = {
-        "stones": plan.source["sha256"] == asked["stones"],
-        "reading": plan.source.get("reading", {}) == asked["reading"],
-        "--wall": _same_wall(_wall_px(plan, asked["--px-per-m"]), asked["--wall"]),
-        "--px-per-m": plan.px_per_m == asked["--px-per-m"],
-        "--scale": plan.working_scale == asked["--scale"],
-        "--seed": plan.seed == asked["--seed"],
-        "--method": plan.method in (asked["--method"], asked_method),
-        "settings": _without_budget(plan.settings) == asked["settings"],
-    }
-    return [name for name, same in equal.items() if not same]
+    """Name what a plan was made of that is not what is asked for, as :func:`made_of` has it."""
+    wall, method, settings = asked["--wall"], plan.method, _without_budget(plan.settings)
+    same_wall = _same_wall(_wall_px(plan, asked["--px-per-m"]), wall)
+    own = (
+        plan.source["sha256"], plan.source.get("reading", {}), wall if same_wall else None,
+        plan.px_per_m, plan.working_scale, plan.seed,
+        asked["--method"] if method == asked_method else method, settings,
+    )  # fmt: skip
+    return [name for name, value in zip(asked, own, strict=True) if value != asked[name]]
 
 
 def _wall_px(plan: Plan, px_per_m: float | None) -> tuple[float, float]:

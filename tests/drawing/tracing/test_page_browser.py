@@ -13,7 +13,7 @@ import pytest
 import shapely
 from PIL import Image, ImageDraw
 
-from drystone.drawing.tracing.page import OutlinePage, write_outline_page
+from drystone.drawing.tracing.page import write_outline_page
 from drystone.photo.segment_doubts import Doubt
 from tests.cli import test_pages as pages
 from tests.cli.conftest import run  # noqa: F401 - a fixture
@@ -65,10 +65,8 @@ def visit(browser, tmp_path):  # noqa: F811
     """Open the page; in the end nothing was complained about and no host was asked."""
     path = tmp_path / "outlines.html"
     doubt = Doubt("W175", (1,), (186.0, 100.0), "stone 1 may be two")
-    write_outline_page(
-        path,
-        OutlinePage("Stones", "pile.jpg", photograph(), "stones", found_rings(), doubts=(doubt,)),
-    )
+    about = {"title": "Stones", "name": "pile.jpg", "kind": "stones"}
+    write_outline_page(path, photograph(), found_rings(), **about, doubts=(doubt,))
     contexts, heard = [], Heard()
 
     def opened(**context):

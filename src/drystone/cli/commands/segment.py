@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
+from drystone.cli import numbers
 from drystone.cli.inputs import refuse_inputs
-from drystone.cli.numbers import Ruled, add_scale, area, positive, refuse_outside, whole_from
 from drystone.cli.output import note, prepare_folder, print_json, print_table
 from drystone.cli.progress import busy
 from drystone.errors import ExitCode, Notice, UsageError, counted
@@ -46,23 +46,23 @@ def add(command: argparse.ArgumentParser) -> None:
     option("photo", metavar="PHOTO", help="JPEG, PNG or TIFF of stones laid out")
     option("-o", "--output", required=True, metavar="DIR", help="folder to write to")
     option("--overwrite", action="store_true", help="write into a folder with files")
-    add_scale(command)
+    numbers.add_scale(command)
     group = command.add_argument_group("markers (they correct the perspective too)")
     option = group.add_argument
     option("--aruco", metavar="MARKERS",
            help="A4 or A4:50mm: the sheet of `drystone markers`; 120mm: single markers")
-    option("--marker-ids", nargs="+", type=whole_from(0), metavar="ID",
+    option("--marker-ids", nargs="+", type=numbers.whole_from(0), metavar="ID",
            help="ids of the markers to use (default: 0 to 3 of a sheet, all single ones)")
     option("--check-line", metavar="LENGTH",
            help="measured length of the 100 mm line on the printed sheet, such as 97mm")
     option = command.add_argument_group("stones").add_argument
     option("--ground", choices=["auto", "light", "dark"], default="auto",
            help="what the stones lie on (default: found by its colour)")
-    option("--min-area", type=area, metavar="AREA",
+    option("--min-area", type=numbers.area, metavar="AREA",
            help="leave out smaller stones: px, or 12cm2 where the scale is given (default: a "
            "fiftieth of a usual one)")
     option("--no-split", action="store_false", dest="split", help="leave touching stones together")
-    option("--mpx", type=positive, default=1.6, metavar="N",
+    option("--mpx", type=numbers.positive, default=1.6, metavar="N",
            help="largest size of the result, million px (default 1.6)")
     command.add_argument("--json", action="store_true", help="print as JSON")
 
@@ -74,19 +74,15 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     path, folder = Path(arguments.photo), Path(arguments.output)
     refuse_inputs([path], [folder / name for name in WRITTEN])
     photo = read_photo(path)
-    refuse_outside(arguments.px_per_m, photo.size_px)
+    numbers.refuse_outside(arguments.px_per_m, photo.size_px)
     min_area = arguments.min_area
-    if scale is None and min_area is not None and min_area[1] == "cm2":
-        what = "an area in cm2 needs the scale of the photograph."
-        cure = "Give it with --aruco, --px-per-m or --ruler, or give the area in px."
-        raise UsageError("E131", what, where="--min-area", cure=cure)
+    numbers.refuse_cm2(min_area, scale, "photograph", "--aruco, --px-per-m or --ruler")
     prepare_folder(folder, WRITTEN, overwrite=arguments.overwrite)
     max_px = round(arguments.mpx * 1e6)
-    with busy(quiet=arguments.json) as told:
-        told("finding stones")
+    with busy("finding stones", quiet=arguments.json):
         result = segment_photo(photo.values, scale, settings, min_area, max_px=max_px)
     doubts = doubts_of(result.found, result.px_per_m)
-    if isinstance(scale, Ruled):
+    if isinstance(scale, numbers.Ruled):
         ends_px = apply(result.from_photo, np.array(scale.ends_px))
         doubts += ruler_doubts(result.found.labels, ends_px)
     against = verdict_of(result.found, doubts)
@@ -150,7 +146,7 @@ def _write(
     """Write stones.png, photo.jpg, stones.json, preview.png and outlines.html."""
     from drystone.drawing.files import save  # noqa: PLC0415 - matplotlib is slow
     from drystone.drawing.pictures.stones import plot_photo  # noqa: PLC0415
-    from drystone.drawing.tracing.page import OutlinePage, rings_of, write_outline_page  # noqa: PLC0415
+    from drystone.drawing.tracing.page import rings_of, write_outline_page  # noqa: PLC0415
 
     labels, px_per_m = result.found.labels, result.px_per_m
     _save_image(labels, folder / LABELS, "PNG")
@@ -163,12 +159,11 @@ def _write(
     save(axes.figure, folder / PREVIEW, dpi=150)
     found = cut(labels.astype(np.int32), np.arange(1, result.found.count + 1))
     rings = rings_of([patch.to_stone() for patch in found], height)
-    kept = {name: details[name] for name in KEPT}
-    title = f"Stones of {details['source']['name']}"
     write_outline_page(
-        folder / PAGE,
-        OutlinePage(title, PHOTO, result.picture, "stones", rings, False, px_per_m, doubts, kept),
-    )
+        folder / PAGE, result.picture, rings, title=f"Stones of {details['source']['name']}",
+        name=PHOTO, kind="stones", px_per_m=px_per_m, doubts=doubts,
+        details={name: details[name] for name in KEPT},
+    )  # fmt: skip
 
 
 def _save_image(values: np.ndarray[Any, Any], path: Path, kind: str, **settings: Any) -> None:

@@ -7,7 +7,7 @@ import re
 import textwrap
 from collections.abc import Iterator
 from itertools import groupby
-from typing import Any, NamedTuple
+from typing import Any
 
 from drystone.cli.output import print_json
 from drystone.errors import ExitCode, UsageError, meant
@@ -17,13 +17,6 @@ from drystone.selection.scored import Craft
 
 PLANNER = "planner"
 """Name of the table of settings that stand at the top."""
-
-
-class Entry(NamedTuple):
-    """What a docstring says of one parameter."""
-
-    kind: str
-    text: str
 
 
 def add(command: argparse.ArgumentParser) -> None:
@@ -86,24 +79,24 @@ def explained_rows(table: str, described: type[Any]) -> Iterator[tuple[tuple[str
     known = entries(described)
     if table == "score":  # its weights are those of the costs, which are explained at the costs
         known |= entries(Craft)
-    for entry, together in groupby(plain_fields(described), key=lambda field: known[field]):
-        choices = re.findall(r'"[^"]+"', entry.kind) if entry.kind.startswith("{") else []
+    for (kind, text), together in groupby(plain_fields(described), key=known.__getitem__):
+        choices = re.findall(r'"[^"]+"', kind) if kind.startswith("{") else []
         # What values there are, unless the text says so, then what they do.
-        told = all(choice in entry.text for choice in choices)
+        told = all(choice in text for choice in choices)
         values = "" if told else f"{', '.join(f'`{choice}`' for choice in choices)}. "
-        yield tuple(together), values + entry.text
+        yield tuple(together), values + text
 
 
-def entries(described: type[Any]) -> dict[str, Entry]:
-    """Read the Parameters section of a numpydoc docstring."""
+def entries(described: type[Any]) -> dict[str, tuple[str, str]]:
+    """Read the Parameters section of a numpydoc docstring: types and texts by names."""
     text = textwrap.dedent((described.__doc__ or "").expandtabs())
     text = re.split(r"^ *Parameters\n *-+\n", text, flags=re.MULTILINE)[1]
     text = re.split(r"\n *\w+\n *-{3,}\n", text)[0]
-    found: dict[str, Entry] = {}
+    found: dict[str, tuple[str, str]] = {}
     parts = re.split(r"^(?:    )?(\w[\w, ]*?)(?: : (.*))?\n(?=        |    \S)", text, flags=re.M)
     for names, kind, body in zip(parts[1::3], parts[2::3], parts[3::3], strict=True):
         for name in names.split(", "):
-            found[name] = Entry(_plain(kind or ""), _plain(" ".join(body.split())))
+            found[name] = _plain(kind or ""), _plain(" ".join(body.split()))
     return found
 
 

@@ -40,14 +40,12 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     picture = None if arguments.output is None else Path(arguments.output)
     path = Path(arguments.stones)
     to = None if arguments.labels is None else Path(arguments.labels)
-    if to is not None:
-        files = written_as(to)
-        refuse_inputs(files_of(path), files)
-        refuse_among_masks(path, files)
-        prepare_files(files, overwrite=arguments.overwrite)
+    files = () if to is None else written_as(to)
+    written = files if picture is None else (*files, picture)
+    refuse_inputs(files_of(path), written)
+    refuse_among_masks(path, written)
+    prepare_files(files, overwrite=arguments.overwrite)
     if picture is not None:
-        refuse_inputs(files_of(path), [picture])
-        refuse_among_masks(path, [picture])
         prepare_picture(picture, overwrite=arguments.overwrite)
     stones = read_stones(path, settings=reading_from(arguments))
     source = stones.source

@@ -27,7 +27,7 @@ def add(command: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Write the page, and say what to do with it."""
-    from drystone.drawing.tracing.page import OutlinePage, rings_of, write_outline_page  # noqa: PLC0415 - slow import
+    from drystone.drawing.tracing.page import rings_of, write_outline_page  # noqa: PLC0415 - slow import
 
     path, folder = Path(arguments.photo), Path(arguments.output)
     asked = [path] if arguments.proposals is None else [path, Path(arguments.proposals)]
@@ -50,18 +50,18 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         rings = rings_of(stones, height)
         notices += stones.notices
     prepare_folder(folder, (PAGE,), overwrite=arguments.overwrite)
-    page = OutlinePage(
-        f"Wall of {photo.name}", photo.name, photo.values, "wall", rings,
+    page = folder / PAGE
+    write_outline_page(
+        page, photo.values, rings, title=f"Wall of {photo.name}", name=photo.name, kind="wall",
         proposed=True, px_per_m=arguments.px_per_m,
     )  # fmt: skip
-    size = write_outline_page(folder / PAGE, page).stat().st_size
     rows = [
         ("photograph", f"{width} x {height} px"),
         ("proposals", str(len(rings))),
-        ("page", f"{size / 1e6:.1f} MB, needs no network"),
+        ("page", f"{page.stat().st_size / 1e6:.1f} MB, needs no network"),
         *(("notice", str(notice)) for notice in notices),
         ("next", "open it in a browser, draw the stones, the ground and a scale, and save"),
         ("then", "drystone analyse outlines.json"),
     ]
-    print_table(str(folder / PAGE), rows)
+    print_table(str(page), rows)
     return ExitCode.DONE

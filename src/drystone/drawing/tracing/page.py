@@ -4,8 +4,8 @@ import base64
 import hashlib
 import io
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Literal
 
 import numpy as np
@@ -25,26 +25,6 @@ _MOST_BYTES = 5_500_000
 """Of the embedded picture: the page, which holds it in base64, stays below 8 MB."""
 
 
-@dataclass(frozen=True, eq=False)
-class OutlinePage:
-    """What the page begins with.
-
-    Outlines are rings in px of the picture, x to the right, y DOWN; a ring is `proposed` while
-    no person has accepted it.
-    """
-
-    title: str
-    name: str  # of the picture's file
-    picture: NDArray[np.uint8]  # (h, w, 3)
-    kind: Literal["stones", "wall"]
-    rings: Mapping[int, Sequence[tuple[float, float]]] = field(default_factory=dict)
-    proposed: bool = False
-    px_per_m: float | None = None
-    doubts: Sequence[Doubt] = ()
-    details: Mapping[str, Any] = field(default_factory=dict)
-    """What else is saved with the outlines."""
-
-
 def rings_of(stones: Iterable[Stone], height_px: int) -> dict[int, list[tuple[float, float]]]:
     """Return the outlines of stones in px of their picture, y down, as the page has them."""
     rings = {}
@@ -54,35 +34,51 @@ def rings_of(stones: Iterable[Stone], height_px: int) -> dict[int, list[tuple[fl
     return rings
 
 
-def write_outline_page(path: Path, page: OutlinePage) -> Path:
-    """Write the page; the picture in it is reduced when it would be too large."""
-    height, width = page.picture.shape[:2]
-    shown = _embedded(page.picture)
+def write_outline_page(
+    path: Path,
+    picture: NDArray[np.uint8],
+    rings: Mapping[int, Sequence[tuple[float, float]]],
+    *,
+    title: str,
+    name: str,
+    kind: Literal["stones", "wall"],
+    proposed: bool = False,
+    px_per_m: float | None = None,
+    doubts: Sequence[Doubt] = (),
+    details: Mapping[str, Any] = MappingProxyType({}),
+) -> None:
+    """Write the page of an (h, w, 3) picture, which is reduced when it would be too large.
+
+    Outlines are rings in px of the picture, x to the right, y DOWN; they are `proposed` while no
+    person has accepted them.  `name` is that of the picture's file, `details` are saved with the
+    outlines.
+    """
+    height, width = picture.shape[:2]
+    shown = _embedded(picture)
     shapes = [
         {"label": str(number), "points": [list(point) for point in ring], "shape_type": "polygon"}
-        for number, ring in page.rings.items()
+        for number, ring in rings.items()
     ]
-    own = {"px_per_m": page.px_per_m, "proposed": list(page.rings) if page.proposed else []}
+    own = {"px_per_m": px_per_m, "proposed": list(rings) if proposed else []}
     file = {"shapes": shapes, "drystone": own}
     # A browser keeps what a person did under this key: not for other outlines of the photograph.
     key = hashlib.sha256(shown + json_in_html(file).encode()).hexdigest()[:16]
     data = {
-        "title": page.title,
+        "title": title,
         "photo": {
-            "name": page.name, "width": width, "height": height, "kind": page.kind,
-            "details": dict(page.details), "key": key,
+            "name": name, "width": width, "height": height, "kind": kind,
+            "details": dict(details), "key": key,
             "shown": f"data:image/jpeg;base64,{base64.b64encode(shown).decode('ascii')}",
         },
         "file": file,
         "doubts": [
             {"stones": list(doubt.stones), "at": list(doubt.at_px), "text": doubt.sentence}
-            for doubt in page.doubts
+            for doubt in doubts
         ],
     }  # fmt: skip
     script, style = joined([DOM, *(HERE / name for name in _MODULES)]), joined([HERE / "page.css"])
-    text = rendered("page.html", data, title=page.title, script=script, style=style)
+    text = rendered("page.html", data, title=title, script=script, style=style)
     write_whole(path, text.encode("utf-8"))
-    return path
 
 
 def _embedded(picture: NDArray[np.uint8]) -> bytes:
