@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from drystone import generate as generate
     from drystone.contacts.blocks import model_from_labels as model_from_labels
     from drystone.contacts.given import model_from_json as model_from_json
-    from drystone.drawing.assembly.read import read_assembly as read_assembly
+    from drystone.drawing.assembly import read_assembly as read_assembly
     from drystone.drawing.report.html import view as view
     from drystone.errors import DrystoneError as DrystoneError
     from drystone.io.plan_folder import write_plan_folder as write_plan_folder
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
 # Names are loaded on first use: `drystone --help` must not wait for NumPy and SciPy.
 _HOMES = {
-    "read_assembly": "drystone.drawing.assembly.read",
+    "read_assembly": "drystone.drawing.assembly",
     "DrystoneError": "drystone.errors",
     "read_plan": "drystone.io.plan_json",
     "write_plan": "drystone.io.plan_json",

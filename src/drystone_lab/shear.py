@@ -291,7 +291,7 @@ def _rounded(value: float | None, digits: int) -> float | None:
 
 def _draw(model: ShearModel, path: Path) -> None:
     """Draw predicted against measured, associative, with the band of friction."""
-    from drystone.drawing.files import save  # noqa: PLC0415 - Matplotlib takes long to import
+    from drystone.drawing.canvas import save  # noqa: PLC0415 - Matplotlib takes long to import
     from drystone_lab.pictures.charts import Prediction, plot_predictions  # noqa: PLC0415
 
     points = []

@@ -12,7 +12,7 @@ from PIL import Image
 
 from drystone.cli import main
 from drystone.cli.commands import craft
-from drystone.drawing.files import save
+from drystone.drawing.canvas import save
 
 
 @dataclass(frozen=True)

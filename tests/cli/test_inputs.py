@@ -153,14 +153,6 @@ def test_a_choice_that_is_read_is_kept(command, rubble, plan_copy, run):
     assert Path(stones).read_bytes() == rubble.read_bytes()
 
 
-def test_analyse_keeps_what_plan_drew(plan_copy, run):
-    before = contents(plan_copy)
-    for name in ("", "plan.json", "wall.png"):
-        ran = run("analyse", plan_copy / name, "-o", plan_copy, "--overwrite", "--load", "gravity")
-        ran.refused("E129", "belongs to the plan")
-        assert contents(plan_copy) == before
-
-
 def test_nothing_is_drawn_among_masks(tmp_path, run):
     masks = masks_in(tmp_path / "masks")
     before = contents(masks)

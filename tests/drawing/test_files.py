@@ -11,7 +11,6 @@ from PIL import Image
 
 from drystone.contacts.settled import model_of_outlines
 from drystone.drawing import (
-    files,
     plot_mechanism,
     plot_wall,
     save,
@@ -20,6 +19,7 @@ from drystone.drawing import (
     write_report,
 )
 from drystone.drawing.photo import CROP_PX, StonePhoto, read_photo
+from drystone.drawing.pictures import wall as files
 from drystone.drawing.pictures.marker_sheet import MarkerSheets, write_marker_sheets
 from drystone.drawing.report.html import Shown
 from drystone.errors import PlanError

@@ -1,22 +1,34 @@
-"""What is kept of a plan while it is made, so that a run that is killed loses little."""
+"""What is kept of a plan while it is made, and the plans that a search begins with.
 
+So a run that is killed loses little: `--resume` goes on from the folder, `--from` from any plan.
+"""
+
+import json
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from drystone.cli.choice import clear_choice
-from drystone.cli.output import note
-from drystone.errors import DrystoneError, Notice
-from drystone.io.checkpoint import CHECKPOINT, Checkpoint, write_checkpoint
+from drystone.cli.output import note, print_json
+from drystone.cli.settings import PlanRequest
+from drystone.drawing.words.planned import summary_of_plan
+from drystone.errors import DrystoneError, Notice, PlanError, UsageError
+from drystone.io.checkpoint import CHECKPOINT, Checkpoint, read_checkpoint, write_checkpoint
 from drystone.io.photo_beside import place_photo
 from drystone.io.plan_folder import WRITTEN as WITH_PLAN
 from drystone.io.plan_folder import write_plan_folder
-from drystone.planner.events import UNFINISHED
-from drystone.search.plan_result import PlanResult
+from drystone.io.plan_json import read_plan
+from drystone.model.plan import Plan
+from drystone.planner.events import UNFINISHED, Stopped
+from drystone.planner.planner import Planner
+from drystone.search.plan_result import PlanResult, result_of
 from drystone.search.plan_wall import SoFar
 from drystone.search.state import SearchState
+from drystone.verify.replay import rebuild_wall
 
 WRITTEN = (
     "plan.json", "report.html", "wall.png", "wall.tif", "picture.png", "mechanism_left.png",
@@ -123,3 +135,155 @@ class _Pace:
     def __exit__(self, *_: object) -> None:
         now = self._clock()
         self._next = max(self._next, now + max(EVERY_S, (now - self._begun) / SHARE))
+
+
+@dataclass(frozen=True, eq=False)
+class Earlier:
+    """What an earlier run of the same command has left."""
+
+    plan: Plan | None = None  # partial, to be gone on with; or finished
+    state: SearchState | None = None  # where its search stands, which goes on whatever the plan is
+    begun: bool = False  # whether there is anything of it
+
+    @property
+    def finished(self) -> bool:
+        """Whether there is nothing to go on with."""
+        return self.plan is not None and self.plan.stopped not in UNFINISHED
+
+    def tell(self) -> None:
+        """Say what is gone on with."""
+        if self.state is not None:
+            note(f"going on after {self.state.walls} walls")
+        elif self.plan is not None:
+            note(f"going on after {len(self.plan.stone_steps)} stones")
+        elif self.begun:
+            note("nothing to go on with yet, planning begins anew")
+
+
+def made_of(request: PlanRequest) -> dict[str, Any]:
+    """Return all that shapes the plan of a command, by what the user gives, as JSON has it."""
+    source = request.stones.source
+    shaped = {
+        "stones": source.sha256,
+        "reading": dict(source.reading),
+        "--wall": request.wall,
+        "--px-per-m": request.px_per_m,
+        "--scale": request.scale,
+        "--seed": request.options.seed,
+        "--method": request.method,
+        "settings": _without_budget(request.settings.as_dict()),
+    }
+    return dict(json.loads(json.dumps(shaped)))
+
+
+def _without_budget(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Leave out how many walls a search builds: an interrupted plan says how many it had built."""
+    search = dict(settings.get("search", {}))
+    search.pop("budget", None)
+    return {**settings, "search": search}
+
+
+def earlier_run(request: PlanRequest) -> Earlier:
+    """Return what to go on from, if that is asked for; refuse what is of something else (E136)."""
+    if not request.options.resume:
+        return Earlier()
+    folder, asked = request.folder, made_of(request)
+    path = folder / "plan.json"
+    plan = read_plan(path) if path.exists() else None
+    different = [] if plan is None else _differences(plan, asked, request.options.method)
+    ids = [stone.id for stone in request.stones]
+    try:
+        kept = read_checkpoint(folder, ids, request.settings.search)
+    except PlanError as error:
+        cure = "The partial plan is gone on from." if plan is not None else "Planning begins anew."
+        note(Notice("W129", f"{error.where}: {error.what}", cure))
+        kept = None
+    if kept is None:
+        if plan is not None:
+            _refuse(different, path)
+        return Earlier(plan, begun=(folder / CHECKPOINT).exists() or plan is not None)
+    _refuse([n for n in asked if kept.made_of.get(n) != asked[n]], folder / CHECKPOINT)
+    if kept.state is not None:
+        return Earlier(state=kept.state, begun=True)
+    # Beside a checkpoint a finished plan is an earlier one, or was not written to the end.
+    partial = plan is not None and not different and plan.stopped in UNFINISHED
+    return Earlier(plan if partial else None, begun=True)
+
+
+def _differences(plan: Plan, asked: Mapping[str, Any], asked_method: str) -> list[str]:
+    """Name what a plan was made of that is not what is asked for, as :func:`made_of` has it."""
+    wall, method, settings = asked["--wall"], plan.method, _without_budget(plan.settings)
+    same_wall = _same_wall(_wall_px(plan, asked["--px-per-m"]), wall)
+    own = (
+        plan.source["sha256"], plan.source.get("reading", {}), wall if same_wall else None,
+        plan.px_per_m, plan.working_scale, plan.seed,
+        asked["--method"] if method == asked_method else method, settings,
+    )  # fmt: skip
+    return [name for name, value in zip(asked, own, strict=True) if value != asked[name]]
+
+
+def _wall_px(plan: Plan, px_per_m: float | None) -> tuple[float, float]:
+    return plan.width * (px_per_m or 1.0), plan.height * (px_per_m or 1.0)
+
+
+def _same_wall(one: tuple[float, float], other: tuple[float, float]) -> bool:
+    return bool(np.allclose(one, other, rtol=0, atol=1e-6))
+
+
+def _refuse(different: list[str], path: Path) -> None:
+    if different:
+        what = f"the partial plan was made with other {', '.join(different)}."
+        cure = "Give the same command again with --resume added, or plan into another folder."
+        raise UsageError("E136", what, where=str(path), cure=cure)
+
+
+def tell_finished(plan: Plan, request: PlanRequest) -> str:
+    """Say that there is nothing to go on with; return the status that the wall ended with."""
+    note("this plan is finished, there is nothing to go on with; --from begins a search with it")
+    wall = rebuild_wall(plan, request.stones)
+    planner = Planner(request.stones, wall.site, seed=plan.seed, settings=request.settings)
+    planner.restore(wall, plan.course_heights_px)
+    # A plan keeps why it ended in words only, and the words are all that is asked for.
+    planner.stopped = Stopped("search", plan.stopped)
+    result = result_of(planner)
+    if result.shortfall:
+        note(f"{result.status}: {result.shortfall}")
+    if request.options.json:
+        print_json(summary_of_plan(plan, request.folder) | {"status": "finished"})
+    return result.status
+
+
+def plan_to_begin_with(request: PlanRequest) -> Plan | None:
+    """Return the plan of `--from`; None when there is none.
+
+    E144: it is of other stones, for another wall, made at another resolution or geometry, or in
+    poses or from a side that the settings do not allow.
+    """
+    begin = request.options.begin
+    if begin is None:
+        return None
+    plan = read_plan(Path(begin))
+    source, wall, settings = request.stones.source, request.wall, request.settings
+    size, of_plan = _wall_px(plan, plan.px_per_m), plan.settings
+    geometry = str(of_plan.get("geometry", "raster"))
+    orientations = of_plan.get("orientations", settings.orientations)
+    alike = plan.source.get("reading", {}) == dict(source.reading)
+    turned, scale = orientations == settings.orientations, f"--scale {plan.working_scale:g}"
+    sized = f"another wall ({size[0]:g}x{size[1]:g} px, not {wall[0]:g}x{wall[1]:g})"
+    checks = [  # whether it is the same, what it is else, and the option that makes it the same
+        (plan.source["sha256"] == source.sha256, "other stones", ""),
+        (alike, "stones that were read otherwise", ""),
+        (_same_wall(size, wall), sized, ""),
+        (plan.working_scale == request.scale, "another resolution", scale),
+        (geometry == settings.geometry, "another geometry", f"--geometry {geometry}"),
+        (turned, "other orientations", f"--orientations {orientations}"),
+        (settings.two_sided or not of_plan.get("two_sided", False), "both sides", "--two-sided"),
+    ]
+    different = {name: option for same, name, option in checks if not same}
+    if different:
+        cure = "Give the stones and the wall that the plan was made for, or leave --from out."
+        if all(different.values()):
+            cure = f"Add {' '.join(different.values())}."
+        what = f"the plan is of {', '.join(different)}."
+        raise UsageError("E144", what, where=str(Path(begin)), cure=cure)
+    return plan

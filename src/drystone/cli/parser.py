@@ -131,7 +131,6 @@ def build_parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
 
 
 def _table(texts: Mapping[str, str]) -> str:
-    """Return the commands and what they do, by tasks."""
     rest = {"other": [name for name in texts if name not in chain(*_TASKS.values())]}
     lines = []
     for task, names in (_TASKS | rest).items():

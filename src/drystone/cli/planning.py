@@ -6,12 +6,10 @@ from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 
-from drystone.cli import choice
-from drystone.cli.keeping import WRITTEN, Keeper
+from drystone.cli import choice, keeping
 from drystone.cli.numbers import picture_size_px, refuse_outside, scale_notice
 from drystone.cli.output import note, print_json, print_table, working_in
 from drystone.cli.progress import step_bar
-from drystone.cli.resuming import earlier_run, made_of, plan_to_begin_with, tell_finished
 from drystone.cli.settings import PlanRequest
 from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.drawing.words.planned import ending, profile_rows, profile_summary, rows, summary
@@ -53,14 +51,14 @@ def add_writing(command: argparse.ArgumentParser) -> None:
 def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:
     """Plan a wall, write all files, print the summary; `prepared` when the folder is locked."""
     stones, folder, photo = request.stones, request.folder, request.photo
-    earlier = earlier_run(request)
+    earlier = keeping.earlier_run(request)
     if earlier.plan is not None and earlier.finished:
         # A run that was killed at its very end has left its lock, which goes with this one.
         left = (folder / LOCK).exists() and not prepared
         with locked(folder, choice.PLACES) if left else nullcontext():
-            return _EXIT[tell_finished(earlier.plan, request)]
+            return _EXIT[keeping.tell_finished(earlier.plan, request)]
     earlier.tell()
-    begin = plan_to_begin_with(request)
+    begin = keeping.plan_to_begin_with(request)
     begun = earlier.plan or begin
     # What cannot be meant is refused before a folder is made: E138 of a ruler, E126.
     refuse_outside(request.px_per_m, picture_size_px(stones.source))
@@ -79,9 +77,11 @@ def plan_and_write(request: PlanRequest, *, prepared: bool = False) -> ExitCode:
     if request.options.pareto:
         choice.prepare_choice(folder)
     overwrite = request.options.overwrite or earlier.begun
-    ready = working_in(folder, (*WRITTEN, CHECKPOINT), overwrite=overwrite, within=choice.PLACES)
+    ready = working_in(
+        folder, (*keeping.WRITTEN, CHECKPOINT), overwrite=overwrite, within=choice.PLACES
+    )
     with nullcontext() if prepared else ready:
-        keeper = Keeper(folder, made_of(request), photo)
+        keeper = keeping.Keeper(folder, keeping.made_of(request), photo)
         keeper.begin(earlier.state)
         _announce(request)
         seconds = None if request.first_whole else request.seconds
@@ -163,7 +163,7 @@ def _size(width: float, height: float, px_per_m: float | None) -> str:
     return f"{width:.2f} x {height:.2f} m"
 
 
-def _written_and_told(result: PlanResult, request: PlanRequest, keeper: Keeper) -> ExitCode:
+def _written_and_told(result: PlanResult, request: PlanRequest, keeper: keeping.Keeper) -> ExitCode:
     """Write all files and print the summary; also that of a wall that cannot be written."""
     folder = request.folder
     note(*result.notices)
@@ -189,7 +189,7 @@ def _written_and_told(result: PlanResult, request: PlanRequest, keeper: Keeper) 
     if failed is not None:
         raise failed
     if not request.quiet:
-        written = (name for name in WRITTEN if (folder / name).exists())
+        written = (name for name in keeping.WRITTEN if (folder / name).exists())
         note(f"wrote to {folder}: {' '.join(written)}")
     return _EXIT[result.status]
 
@@ -218,7 +218,7 @@ def _write(result: PlanResult, request: PlanRequest) -> PlanResult:
         choice.write_choice(result, folder)
     else:
         choice.clear_choice(folder)
-    names = (name for one in FORMATS.values() for name in one.writes if name not in WRITTEN)
+    names = (name for one in FORMATS.values() for name in one.writes if name not in keeping.WRITTEN)
     earlier = [name for name in names if (folder / name).exists()]
     if earlier:
         what = f"of an earlier plan: {', '.join(earlier)}, in {folder}."
@@ -232,6 +232,6 @@ def write_film(result: PlanResult, folder: Path) -> None:
         (folder / "build.gif").unlink(missing_ok=True)
         return
     # What draws is loaded when it draws.
-    from drystone.drawing.assembly.read import read_assembly  # noqa: PLC0415
+    from drystone.drawing.assembly import read_assembly  # noqa: PLC0415
 
     FORMATS["gif"].write(read_assembly(folder), folder, ExportSettings())

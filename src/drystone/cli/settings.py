@@ -96,7 +96,6 @@ def _together(changes: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
 
 
 def _aim(text: str) -> tuple[str, float]:
-    """Read what a figure of merit shall reach."""
     name, equals, value = text.partition("=")
     if name not in AIMS or not equals:
         message = f"{text!r} is not one of {', '.join(f'{known}=VALUE' for known in AIMS)}"

@@ -9,13 +9,13 @@ from typing import Any
 # Names are loaded on first use: the command line knows the formats, and must not wait for
 # Matplotlib.
 _NAMES = {
-    "files": ("save", "write_pictures"),
+    "canvas": ("save",),
     "outlines": ("wall_outlines",),
     "pictures.curves": ("plot_scatter",),
     "pictures.forces": ("plot_contacts", "plot_forces"),
     "pictures.mechanism": ("mechanism_frames", "plot_mechanism", "save_mechanism_animation"),
     "pictures.stones": ("plot_joint_paths", "plot_labels", "plot_stones"),
-    "pictures.wall": ("plot_choice", "plot_wall"),
+    "pictures.wall": ("plot_choice", "plot_wall", "write_pictures"),
     "report.html": ("write_report",),
     "report.viewer_data": ("view_of_assembly", "view_of_result", "view_of_wall"),
 }

@@ -1,15 +1,19 @@
-"""Drawings by Matplotlib: axes that fit the thing, and what is on them.
+"""Drawings by Matplotlib: axes that fit the thing, what is on them, and their files.
 
 Figures are made without pyplot, so nothing global changes and no window opens.
 """
 
 from collections.abc import Iterable
+from io import BytesIO
+from pathlib import Path as FilePath
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.collections import LineCollection
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
@@ -29,6 +33,7 @@ from drystone.drawing.drawing import (
 from drystone.drawing.lettering import drawable, fitted
 from drystone.drawing.outlines import Bounds, Loop
 from drystone.drawing.palette import OUTLINE_COLOUR, text_colour
+from drystone.whole_files import write_whole
 
 WIDTH_IN = 9.0
 """Width of the drawing area; a picture with margins then fits the text width of a page."""
@@ -206,3 +211,45 @@ def legend_handles(entries: Legend) -> list[Patch | Line2D]:
         else:
             handles.append(Line2D([], [], linestyle="none", label=label, **_marker(item)))
     return handles
+
+
+DPI = 200
+
+_UNDATED: dict[str, dict[str, None]] = {
+    ".png": {"Software": None},
+    ".pdf": {"CreationDate": None, "Producer": None, "Creator": None},
+    ".svg": {"Date": None, "Creator": None},
+}
+
+
+def save(figure: Figure | SubFigure, path: str | FilePath, dpi: float = DPI) -> None:
+    """Write a figure as PNG, PDF or SVG by the ending, without dates or versions in the file.
+
+    The file is whole or as it was at any time; E206 when it cannot be written.  A subfigure is
+    written with the figure that it belongs to.
+    """
+    suffix = FilePath(path).suffix.lower()
+    if suffix not in _UNDATED:
+        raise ValueError(f"{path}: pictures end in {', '.join(_UNDATED)}")
+    write_whole(FilePath(path), figure_bytes(figure, suffix, dpi))
+
+
+def figure_bytes(figure: Figure | SubFigure, suffix: str, dpi: float = DPI) -> bytes:
+    """Return a figure as the file of an ending; see :func:`save`."""
+    whole = figure.get_figure(root=True)
+    # SVG files name their parts by a hash with a random salt unless one is given.
+    with mpl.rc_context({"svg.hashsalt": "drystone"}), BytesIO() as file:
+        whole.savefig(file, format=suffix[1:], dpi=dpi, bbox_inches="tight", pad_inches=0.08,
+                      facecolor="white", metadata=_UNDATED[suffix])  # fmt: skip
+        return file.getvalue()
+
+
+def pdf_bytes(figures: Iterable[Figure]) -> bytes:
+    """Return a PDF with a page a figure, each as large as it is."""
+    # Letters are kept as letters, for this file alone: they can be searched for and copied.
+    letters: dict[Any, int] = {"pdf.fonttype": 42, "pdf.compression": 6}
+    with mpl.rc_context(letters), BytesIO() as file:
+        with PdfPages(file, metadata=_UNDATED[".pdf"]) as pages:
+            for figure in figures:
+                pages.savefig(figure)
+        return file.getvalue()

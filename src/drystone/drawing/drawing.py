@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from drystone.drawing.assembly.parts import Assembly
+from drystone.drawing.assembly import Assembly
 from drystone.drawing.outlines import (
     Bounds,
     Loop,

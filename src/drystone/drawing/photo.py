@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from drystone.drawing.assembly.parts import Assembly
+from drystone.drawing.assembly import Assembly
 from drystone.io.photo_file import read_photo_picture
 from drystone.kernels.polygons import Points
 

@@ -135,7 +135,7 @@ def _history(arguments: argparse.Namespace, suite: str | None) -> Sequence[Table
         raise _useless(what, arguments.store, cure)
     medians = history.medians_of(runs)
     if arguments.output is not None:
-        from drystone.drawing.files import save  # noqa: PLC0415 - see above
+        from drystone.drawing.canvas import save  # noqa: PLC0415 - see above
 
         make_folder(Path(arguments.output))
         for each in dict.fromkeys(one.suite for one in medians):

@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 from PIL import PngImagePlugin
 
-from drystone.drawing.files import save
+from drystone.drawing.canvas import save
 from drystone.errors import DrystoneError, UsageError
 from drystone.io.folder_lock import has_files
 from drystone.io.published import SETS

@@ -11,7 +11,7 @@ import shapely
 from PIL import Image, ImageDraw
 
 from drystone.contacts.given import model_from_json
-from drystone.drawing.assembly.parts import Assembly, Part
+from drystone.drawing.assembly import Assembly, Part
 from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
 from drystone.statics.limit import lateral_resistance
 

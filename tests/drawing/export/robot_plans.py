@@ -11,7 +11,7 @@ import pytest
 import shapely
 
 import drystone as ds
-from drystone.drawing.assembly.read import read_assembly
+from drystone.drawing.assembly import read_assembly
 from drystone.generate import RubbleSettings, rubble_stones
 from drystone.io.plan_folder import BLOCKS, blocks_to_json
 from drystone.io.wall_image import write_wall_image

@@ -1,15 +1,19 @@
 """poses.json, read back with the JSON of the standard library and SciPy's rotations."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import shapely
 from scipy.spatial.transform import Rotation
+from shapely import affinity
 
+from drystone.drawing.export import robots
 from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.model.plan import StoneStep
 from tests.drawing.export.robot_plans import METRIC, PX_PER_M, THICKNESS_M, assembly
+from tests.polygons import box_of
 
 SETTINGS = ExportSettings()
 
@@ -102,3 +106,60 @@ def test_frames_units_and_provenance_are_said(tmp_path):
     assert read["source"] == {"path": plan.source["path"], "sha256": plan.source["sha256"]}
     assert read["wall"]["width_m"] == pytest.approx(110 / PX_PER_M)
     assert read["unused"] == list(plan.unused)
+
+
+def test_stones_begin_above_everything_that_stands():
+    wall = assembly("exact")
+    top = 0.0
+    for part in wall.parts:
+        way = robots.place_approach(wall, part)
+        pose = wall.place_pose(part)
+        lift = np.array([*way["start"].values()]) - [pose.x_m, pose.y_m, pose.z_m]
+        assert lift == pytest.approx(-way["stand_off_m"] * np.array([*way["direction"].values()]))
+        if part.kind == "stone":
+            assert tuple(way["direction"].values()) == (0.0, 0.0, -1.0)
+            lowest = part.corners[:, 1].min() + lift[2]
+            assert lowest == pytest.approx(max(top, part.corners[:, 1].min()) + 0.05)
+        else:
+            assert tuple(way["direction"].values()) == (0.0, 1.0, 0.0)
+            assert way["start"]["y"] + THICKNESS_M / 2 == pytest.approx(-0.05)
+        top = max(top, part.corners[:, 1].max())
+
+
+@pytest.mark.parametrize("name", METRIC)
+def test_what_is_in_the_way_down_is_what_small_steps_down_run_into(name):
+    wall = assembly(name)
+    found = []
+    for part in wall.stones:
+        outline = shapely.Polygon(part.corners)
+        earlier = (p for p in wall.parts if p.step < part.step)
+        there = shapely.union_all([shapely.Polygon(p.corners) for p in earlier])
+        lift_m = robots.place_approach(wall, part)["stand_off_m"]
+        widest = 0.0
+        for lift in np.linspace(1e-6, lift_m, 60):
+            for piece in shapely.get_parts(affinity.translate(outline, 0, lift) & there):
+                left, _, right, _ = piece.bounds
+                widest = max(widest, right - left)
+        blocked = robots.blocked_m(wall, part)
+        assert blocked >= widest - 1e-12
+        found.append(blocked * PX_PER_M)
+        if blocked * PX_PER_M > 0.01:
+            assert widest > 0.0
+    # Methods that lower stones from above leave no more than settling moves them by.
+    assert max(found) < (1.0 if name == "exact" else 2.1)
+
+
+@pytest.mark.parametrize("overlap_m", [0.0, 1e-12, -1e-12])
+def test_what_a_stone_rests_on_is_not_in_its_way(overlap_m):
+    wall = assembly("exact")
+    first, second, *_ = wall.parts
+    below = replace(first, corners=box_of(0.0, 0.0, 0.3, 0.1), centroid=(0.15, 0.05))
+    for left, low, blocked in (
+        (0.0, 0.1 - overlap_m, 0.0),
+        (0.3 - overlap_m, 0.0, 0.0),
+        (-0.2, -0.1, 0.1),
+    ):
+        corners, centroid = box_of(left, low, 0.3, 0.1), (left + 0.15, low + 0.05)
+        part = replace(second, corners=corners, centroid=centroid)
+        found = robots.blocked_m(replace(wall, parts=(below, part)), part)
+        assert found == pytest.approx(blocked, abs=1e-11)

@@ -65,7 +65,7 @@ def test_the_sheet_has_a_panel_for_every_rule(tmp_path):
 
 PLANNED_BLOCKS = {3: box_of(0, 0, 20), 5: box_of(20, 0, 20), 8: box_of(10, 20, 20)}
 FALLEN = {3: box_of(0, -0.05, 20), 5: box_of(21, 0, 20), 8: box_of(55, 0, 20)}
-VIEW = check.FailureView("8 falls", PLANNED_BLOCKS, (8,), FALLEN, size=(60.0, 50.0))
+VIEW = check.FailureView("8 falls", PLANNED_BLOCKS, (60.0, 50.0), (8,), FALLEN)
 
 
 def test_blocks_are_drawn_where_they_ended_with_dashes_where_they_were_planned():
@@ -91,7 +91,8 @@ def test_blocks_are_drawn_where_they_ended_with_dashes_where_they_were_planned()
 
 def test_areas_claimed_by_two_are_shown_and_only_what_is_there_is_explained():
     area = np.array([[5, 5], [9, 5], [9, 9]], float)
-    ax = check.plot_failure(check.FailureView("", PLANNED_BLOCKS, (3,), common=[area, area + 20]))
+    view = check.FailureView("", PLANNED_BLOCKS, (60.0, 50.0), (3,), common=[area, area + 20])
+    ax = check.plot_failure(view)
     drawn = patches(ax)
     assert to_hex(drawn["common-0"].get_facecolor()) == check.COMMON
     np.testing.assert_allclose(drawn["common-1"].get_path().vertices[:3], area + 20)
@@ -99,7 +100,7 @@ def test_areas_claimed_by_two_are_shown_and_only_what_is_there_is_explained():
     # Those without an end are where they were planned.
     np.testing.assert_allclose(drawn["block-8"].get_path().vertices[:4], PLANNED_BLOCKS[8])
     explained = [text.get_text() for text in ax.get_legend().get_texts()]
-    assert explained == ["fails", "claimed by two"]
+    assert explained == ["fails", "claimed by two", "wall that was to be built"]
     asked = ["fails", "where it was planned", "wall that was to be built"]
     legend = check.plot_failure(VIEW).get_legend()
     assert [text.get_text() for text in legend.get_texts()] == asked

@@ -96,10 +96,11 @@ def test_low_walls_move_by_a_share_of_their_length():
 def test_a_motion_keeps_every_block_rigid_and_starts_with_its_velocity(twist, amplitude):
     motion = motion_of(labels(), slide(twist))
     place = [region.id for region in motion.regions].index(12)
-    before, after = motion.regions[place].loops[0], motion.at(amplitude)[place][0]
+    before, moved = motion.regions[place].loops[0], motion.at(amplitude)[place]
+    (after,) = moved.loops
     spans = [np.hypot(*(loop[:, None] - loop[None]).transpose(2, 0, 1)) for loop in (before, after)]
     np.testing.assert_allclose(*spans, atol=1e-9)
-    early = (motion.at(1e-6)[place][0] - before) / 1e-6
+    early = (motion.at(1e-6)[place].loops[0] - before) / 1e-6
     x, y, angle = motion.displacement[place]
     # The displacement has the direction of the velocity.
     np.testing.assert_allclose(np.cross((x, y, angle), twist), 0.0, atol=1e-9)
@@ -110,9 +111,8 @@ def test_a_motion_keeps_every_block_rigid_and_starts_with_its_velocity(twist, am
     # The wall is 16 px high.  A small block that turns alone does not spin.
     reach = np.hypot(*linear.T).max() / (16 * LARGEST_SHARE)
     assert max(reach, abs(angle) / LARGEST_TURN) == pytest.approx(float(any(twist)))
-    np.testing.assert_allclose(motion.at(0.0)[place][0], before)
-    mean = np.array(motion.centroids(amplitude)[place])
-    gap = np.hypot(*(after - mean).T) - np.hypot(*arms.T)
+    np.testing.assert_allclose(motion.at(0.0)[place].loops[0], before)
+    gap = np.hypot(*(after - moved.centroid).T) - np.hypot(*arms.T)
     np.testing.assert_allclose(gap, 0, atol=1e-9)
 
 

@@ -12,7 +12,7 @@ from PIL import Image
 
 from drystone.contacts.given import model_from_json
 from drystone.drawing import view_of_assembly, view_of_result, view_of_wall, write_report
-from drystone.drawing.assembly.read import read_assembly, scaled_resistance
+from drystone.drawing.assembly import read_assembly, scaled_resistance
 from drystone.drawing.palette import cluster_colour
 from drystone.drawing.photo import VIEWER_PX, StonePhoto
 from drystone.drawing.report.viewer_data import PATTERNS

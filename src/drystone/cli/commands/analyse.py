@@ -73,7 +73,6 @@ def add(command: argparse.ArgumentParser) -> None:
 
 
 def _precision(text: str) -> float:
-    """Read a share of the mean stone size, such as 1.5%."""
     if not text.endswith("%"):
         raise argparse.ArgumentTypeError(f"{text!r} is not a precision such as 1.5%")
     return numbers.not_negative(text[:-1]) / 100

@@ -35,7 +35,6 @@ def add(command: argparse.ArgumentParser) -> None:
 
 
 def _limit(text: str) -> tuple[str, Limit]:
-    """Read a rule and its two limits."""
     name, equals, values = text.partition("=")
     good, colon, fair = values.partition(":")
     if not (equals and colon):
@@ -61,7 +60,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         pictures = [Path(arguments.output) / f"{name}.png" for name in names]
         refuse_inputs(files_of_wall(path), pictures)
         prepare_files(pictures, overwrite=arguments.overwrite)
-        from drystone.drawing.files import save  # noqa: PLC0415 - slow, as the next
+        from drystone.drawing.canvas import save  # noqa: PLC0415 - slow, as the next
         from drystone.drawing.pictures.craft import plot_craft, plot_finding  # noqa: PLC0415
 
         save(plot_craft(report), pictures[0], dpi=SHEET_DPI)

@@ -10,7 +10,7 @@ from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.numbers import add_scale, picture_size_px, positive, refuse_outside, scale_notice
 from drystone.cli.output import make_folder, note, prepare_files, print_json
 from drystone.cli.progress import busy
-from drystone.drawing.assembly.read import read_assembly
+from drystone.drawing.assembly import read_assembly
 from drystone.drawing.export.formats import FORMATS, ExportSettings, write_files
 from drystone.errors import ExitCode, Notice, UsageError
 from drystone.whole_files import refuse_existing
@@ -98,7 +98,6 @@ def run(arguments: argparse.Namespace) -> ExitCode:
 
 
 def _settings_from(arguments: argparse.Namespace) -> ExportSettings:
-    """Return what the options say; E138 for a projector that is none."""
     found = _PROJECTOR.fullmatch(arguments.projector)
     if found is None or not (int(found[1]) and int(found[2]) and float(found[3])):
         what = f"{arguments.projector!r} is not a projector."

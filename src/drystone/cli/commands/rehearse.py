@@ -53,7 +53,6 @@ def add(command: argparse.ArgumentParser) -> None:
 
 
 def _parts(text: str) -> dict[str, float]:
-    """Read lengths, an angle or a share with their units, such as 5mm,1deg."""
     found = [_PART.fullmatch(part.strip()) for part in text.split(",")]
     parts = {one[2]: float(one[1]) for one in found if one}
     if len(parts) < len(found):
@@ -88,7 +87,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     engine = arguments.physics and not closed
     card = Rehearsed(plan, groups, errors, tuple(found), planned, engine=engine)
     if arguments.output:
-        from drystone.drawing.files import save  # noqa: PLC0415 - slow import
+        from drystone.drawing.canvas import save  # noqa: PLC0415 - slow import
         from drystone.drawing.pictures.check import plot_risk  # noqa: PLC0415
 
         save(plot_risk(card).figure, Path(arguments.output))

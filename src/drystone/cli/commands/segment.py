@@ -144,7 +144,7 @@ def _write(
     folder: Path, result: SegmentedPhoto, doubts: Sequence[Doubt], details: dict[str, Any]
 ) -> None:
     """Write stones.png, photo.jpg, stones.json, preview.png and outlines.html."""
-    from drystone.drawing.files import save  # noqa: PLC0415 - matplotlib is slow
+    from drystone.drawing.canvas import save  # noqa: PLC0415 - matplotlib is slow
     from drystone.drawing.pictures.stones import plot_photo  # noqa: PLC0415
     from drystone.drawing.tracing.page import rings_of, write_outline_page  # noqa: PLC0415
 

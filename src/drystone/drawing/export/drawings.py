@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 from drystone.drawing import vector
-from drystone.drawing.assembly.parts import Assembly
-from drystone.drawing.canvas import draw
+from drystone.drawing.assembly import Assembly
+from drystone.drawing.canvas import draw, figure_bytes, pdf_bytes
 from drystone.drawing.drawing import (
     Dots,
     Drawable,
@@ -22,7 +22,6 @@ from drystone.drawing.drawing import (
     placed,
 )
 from drystone.drawing.export.formats import ExportSettings, Files, load_extra
-from drystone.drawing.files import figure_bytes, pdf_bytes
 from drystone.drawing.lettering import one_line
 from drystone.drawing.photo import read_photo
 from drystone.drawing.pictures.forces import JOINT, LONGEST_SHARE, RESULTANT, resultants
@@ -82,7 +81,12 @@ def with_statics(assembly: Assembly) -> Drawing:
     drawing = drawing_of_assembly(assembly)
     items, notes = contacts(assembly), dict[str, str]()
     for result in (assembly.resistance.left, assembly.resistance.right):
-        side, says = result.direction.upper(), _says(result)
+        side, says = result.direction.upper(), f"to the {result.direction}: {result.status.value}"
+        if result.alpha is not None:
+            says = (
+                f"to the {result.direction}: at a lateral load of alpha = {result.alpha:.4f} times "
+                "the weight (adequacy factor)"
+            )
         arrows, length = forces(assembly, result)
         if arrows is not None:
             items.append(arrows)
@@ -139,20 +143,11 @@ def failed(assembly: Assembly, result: LimitResult) -> list[Surface]:
         return []
     motion = motion_of({part.id: part.corners for part in assembly.parts}, result.mechanism)
     return [
-        Surface(assembly.part(region.id).name, loops, line=MOVED_COLOUR,
+        Surface(assembly.part(region.id).name, moved.loops, line=MOVED_COLOUR,
              layer=f"MECHANISM-{result.direction.upper()}")
-        for region, loops in zip(motion.regions, motion.at(1.0), strict=True)
-        if np.abs(loops[0] - region.loops[0]).max() > STILL * assembly.size[0]
+        for region, moved in zip(motion.regions, motion.at(1.0), strict=True)
+        if np.abs(moved.loops[0] - region.loops[0]).max() > STILL * assembly.size[0]
     ]  # fmt: skip
-
-
-def _says(result: LimitResult) -> str:
-    if result.alpha is None:
-        return f"to the {result.direction}: {result.status.value}"
-    return (
-        f"to the {result.direction}: at a lateral load of alpha = {result.alpha:.4f} times the "
-        "weight (adequacy factor)"
-    )
 
 
 def _name(assembly: Assembly, settings: ExportSettings) -> str:

@@ -10,7 +10,7 @@ from drystone.errors import UsageError
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from drystone.drawing.assembly.parts import Assembly
+    from drystone.drawing.assembly import Assembly
 
 Files = Mapping[str, str | bytes]
 """What is to be written by name, relative to a folder, ``/`` between folders.
@@ -34,22 +34,15 @@ class ExportSettings:
         Width and height of a projector.
     projector_px_per_m : float
         Px of the projector in a metre on the wall.
-    projector_offset_px : (int, int) or None
-        Where the wall's lower left corner is in the projector's picture, from its lower left
-        corner; None for a wall in the middle, a strip for words above the lower edge.
     seconds_per_step : float
         Of films.
-    film_px : int
-        Width of films, about; that of walls higher than wide is less.
     """
 
     paper_scale: float | None = None
     title: str = ""
     projector_px: tuple[int, int] = (1920, 1080)
     projector_px_per_m: float = 1000.0
-    projector_offset_px: tuple[int, int] | None = None
     seconds_per_step: float = 0.6
-    film_px: int = 960
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from io import BytesIO
 import numpy as np
 from PIL import Image, ImageDraw
 
-from drystone.drawing.assembly.parts import Assembly
+from drystone.drawing.assembly import Assembly
 from drystone.drawing.drawing import Drawable, Lines, Surface, drawing_of_assembly
 from drystone.drawing.export.formats import ExportSettings, Files, load_extra
 from drystone.drawing.lettering import font
@@ -39,14 +39,14 @@ def gif(assembly: Assembly, settings: ExportSettings) -> Files:
         what = f"a step of {settings.seconds_per_step:g} s is too long for build.gif."
         cure = f"Give {LONGEST_S:g} s at most (seconds_per_step in Python), or export an mp4."
         raise UsageError("E138", what, where="--seconds-per-step", cure=cure)
-    frames = Film(assembly, settings.film_px).frames()
+    frames = Film(assembly).frames()
     return {"build.gif": gif_bytes(frames, palette(), durations_ms(assembly, settings))}
 
 
 def mp4(assembly: Assembly, settings: ExportSettings) -> Files:
     """Return build.mp4; E186 when PyAV is not installed."""
     av = load_extra("av", "film", "E186", "build.mp4")
-    film = Film(assembly, settings.film_px)
+    film = Film(assembly)
     with BytesIO() as file:
         # Nothing in it tells when and by what it was made: equal walls give equal bytes.
         with av.open(file, "w", format="mp4", options={"fflags": "+bitexact"}) as out:
@@ -160,9 +160,9 @@ def _view(assembly: Assembly, settings: ExportSettings) -> PixelView:
     (wide, high), per_m = settings.projector_px, settings.projector_px_per_m
     width_m, height_m = assembly.size
     width, height = width_m * per_m, height_m * per_m
-    left, bottom = settings.projector_offset_px or (round((wide - width) / 2), STRIP_PX)
-    if min(left, wide - left - width, bottom, high - bottom - height) >= EDGE_PX:
-        return PixelView(left, high - bottom, per_m)
+    left = round((wide - width) / 2)
+    if min(left, wide - left - width, high - STRIP_PX - height) >= EDGE_PX:
+        return PixelView(left, high - STRIP_PX, per_m)
     fits = min((wide - 2 * EDGE_PX) / width_m, (high - STRIP_PX - EDGE_PX) / height_m)
     raise UsageError(
         "E187",

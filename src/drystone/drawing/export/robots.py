@@ -16,7 +16,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import shapely
 
-from drystone.drawing.assembly.parts import Assembly, Part
+from drystone.drawing.assembly import Assembly, Part
 from drystone.drawing.export.formats import ExportSettings, Files
 from drystone.drawing.export.solids import Solid, inertia, material, solid_of_part, stl_bytes
 from drystone.io.json_text import json_text, number

@@ -11,7 +11,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from drystone.drawing.assembly.parts import Assembly, Part
+from drystone.drawing.assembly import Assembly, Part
 from drystone.drawing.export.formats import ExportSettings, Files, load_extra
 from drystone.drawing.palette import PLAIN_COLOUR, WEDGE_COLOUR, Rgb, cluster_colour, linear, rgb
 from drystone.errors import InputError

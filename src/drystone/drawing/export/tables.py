@@ -6,7 +6,7 @@ from typing import Any
 
 import shapely
 
-from drystone.drawing.assembly.parts import Assembly
+from drystone.drawing.assembly import Assembly
 from drystone.drawing.export.formats import ExportSettings, Files, load_extra
 from drystone.drawing.sheet.words import step_words
 from drystone.io.json_text import json_text

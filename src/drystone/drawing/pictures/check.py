@@ -8,14 +8,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from drystone.drawing.canvas import MARGIN_IN, WIDTH_IN, draw
-from drystone.drawing.drawing import Drawable, Drawing, Lines, Surface, Words, ground
-from drystone.drawing.files import save
+from drystone.drawing.canvas import MARGIN_IN, WIDTH_IN, draw, save
+from drystone.drawing.drawing import Drawable, Drawing, Lines, Surface, Words, ground, step_by_id
 from drystone.drawing.outlines import Bounds, Loop, polygon_regions, rectangle, regions_box
 from drystone.drawing.palette import GREY, OUTLINE_COLOUR, PALE, rgb
 from drystone.drawing.pictures.mechanism import motion_of
 from drystone.drawing.words.checked import PICTURE, Checked, Rehearsed
 from drystone.errors import PlanError
+from drystone.model.plan import Point
 from drystone.model.steps import piece_id
 from drystone.statics.limit import lateral_resistance
 from drystone.verify.claims import wall_model
@@ -52,17 +52,16 @@ class FailureView:
 
     title: str
     planned: Mapping[int, Loop]
+    size: Point
     concerned: Sequence[int] = ()
     ended: Mapping[int, Loop] = field(default_factory=dict)
     common: Sequence[Loop] = ()
-    size: tuple[float, float] | None = None
 
     @property
     def box(self) -> Bounds:
         """What is to be seen."""
-        frame = [np.array([(0.0, 0.0), self.size])] if self.size else []
-        loops = [[loop] for loop in (*self.planned.values(), *self.ended.values(), *frame)]
-        x0, y0, x1, y1 = regions_box(loops)
+        frame = np.array([(0.0, 0.0), self.size])
+        x0, y0, x1, y1 = regions_box([[*self.planned.values(), *self.ended.values(), frame]])
         pad = 0.03 * max(y1 - y0, 0.2 * (x1 - x0))
         return x0 - pad, min(y0, 0.0) - 2 * pad, x1 + pad, y1 + pad
 
@@ -103,7 +102,7 @@ def views_of(checked: Checked) -> list[FailureView]:
         ids = _ids(checked, {problem.step for problem in lying})
         common = common_areas(planned, _ids(checked, {p.step for p in lying if p.code == OVERLAPS}))
         title = f"{_short(lying[0])}{more}"
-        views.append(FailureView(title, planned, ids, common=common, size=checked.size))
+        views.append(FailureView(title, planned, checked.size, ids, common=common))
     falling = next((p for p in problems if p.code in (FALLS, NOT_STURDY)), None)
     if falling is not None:
         views.append(_unstable(checked, falling))
@@ -116,32 +115,31 @@ def _whole_wall(checked: Checked) -> list[FailureView]:
     if not planned:
         return []
     if physics is None:
-        return [FailureView(f"The plan {checked.verdict}", planned, size=checked.size)]
+        return [FailureView(f"The plan {checked.verdict}", planned, checked.size)]
     name, outcome = physics.rows()[0]
     title = f"{name[0].upper()}{name[1:]}: {outcome}"
     built = physics.built
-    return [FailureView(title, planned, built.fallen, built.outlines, size=checked.size)]
+    return [FailureView(title, planned, checked.size, built.fallen, built.outlines)]
 
 
 def _unstable(checked: Checked, problem: Problem) -> FailureView:
     """Return the first wall on the way that does not stand, and how it begins to fall."""
     replay = replay_plan(checked.plan, checked.stones)
     stage = next(stage for stage in replay.stages if stage.last.step == problem.step)
-    groups, title = stage.after.groups, _short(problem)
-    there = {group.placement.stone_id for group in groups}
-    there |= {wedge.id for group in groups for wedge in group.wedges}
+    there, title = step_by_id(stage.after), _short(problem)
     planned = {block: loop for block, loop in checked.planned.items() if block in there}
     # With all its friction a wall that is not sturdy does not begin to fall.
     model = wall_model(stage.after, replay.settings) if problem.code == FALLS else None
     mechanism = None if model is None else lateral_resistance(model, mechanism=True).left.mechanism
     if mechanism is None:
-        return FailureView(title, planned, _ids(checked, {stage.stone.step}), size=checked.size)
+        return FailureView(title, planned, checked.size, _ids(checked, {stage.stone.step}))
     motion = motion_of(planned, mechanism)
-    blocks = list(zip(motion.regions, motion.at(1.0), motion.share.tolist(), strict=True))
-    moving = [region.id for region, _, share in blocks if share > NOTABLE]
-    ended = {region.id: loops[0] for region, loops, _ in blocks}
+    regions = motion.at(1.0)
+    shares = zip(regions, motion.share.tolist(), strict=True)
+    moving = [region.id for region, share in shares if share > NOTABLE]
+    ended = {region.id: region.loops[0] for region in regions}
     title = f"{title} How it begins to fall, enlarged"
-    return FailureView(title, planned, moving, ended, size=checked.size)
+    return FailureView(title, planned, checked.size, moving, ended)
 
 
 def _ids(checked: Checked, steps: set[int | None]) -> list[int]:
@@ -204,10 +202,9 @@ def plot_failure(view: FailureView, ax: Axes | None = None) -> Axes:
     if common:
         legend["claimed by two"] = common[0]
     items += [*moved, *common]
-    if view.size:
-        site = rectangle(0.0, 0.0, *view.size)
-        items.append(Surface("site", (site,), line=GREY, width_pt=1.0, dashes=DOTS))
-        legend["wall that was to be built"] = Lines("", [], GREY, 1.5, DOTS)
+    site = rectangle(0.0, 0.0, *view.size)
+    items.append(Surface("site", (site,), line=GREY, width_pt=1.0, dashes=DOTS))
+    legend["wall that was to be built"] = Lines("", [], GREY, 1.5, DOTS)
     return draw(Drawing(tuple(items), view.box, title=view.title, legend=legend), ax)
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from drystone.drawing.canvas import pdf_bytes
 from drystone.drawing.drawing import Surface
-from drystone.drawing.files import pdf_bytes
 from drystone.drawing.outlines import pixel_loops
 from drystone.drawing.sheet.pages import SheetPage
 from drystone.photo import layout

@@ -1,6 +1,6 @@
 """The failure mechanism of a wall (Fig. 15), and in motion as a GIF that loops."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -50,24 +50,18 @@ class MechanismMotion:
         length = np.hypot(self.displacement[:, 0], self.displacement[:, 1])
         return np.asarray(length / length.max()) if length.any() else length
 
-    def at(self, amplitude: float) -> tuple[tuple[Loop, ...], ...]:
-        """Return the loops of all blocks after a share of the motion, 0 (rest) to 1.
+    def at(self, amplitude: float) -> tuple[Region, ...]:
+        """Return all blocks after a share of the motion, 0 (rest) to 1.
 
         Each block turns about its centre of rotation by its angle, so it keeps its size, blocks
         that move as one stay together, and a toe stays where it is.
         """
-        return tuple(
-            tuple(_moved(loop, region, twist) for loop in region.loops)
-            for region, twist in zip(self.regions, amplitude * self.displacement, strict=True)
-        )
-
-    def centroids(self, amplitude: float) -> tuple[tuple[float, float], ...]:
-        """Return the centroids of all blocks after a share of the motion."""
-        moved = (
-            _moved(np.array([region.centroid]), region, twist)[0]
-            for region, twist in zip(self.regions, amplitude * self.displacement, strict=True)
-        )
-        return tuple((float(x), float(y)) for x, y in moved)
+        moved = []
+        for region, twist in zip(self.regions, amplitude * self.displacement, strict=True):
+            loops = tuple(_moved(loop, region, twist) for loop in region.loops)
+            x, y = _moved(np.array([region.centroid]), region, twist)[0].tolist()
+            moved.append(Region(region.id, loops, (x, y)))
+        return tuple(moved)
 
 
 def motion_of(wall: Labels | Mapping[int, Loop], mechanism: Mechanism) -> MechanismMotion:
@@ -124,7 +118,7 @@ def plot_mechanism(
     """
     motion = motion_of(wall, mechanism)
     moved = motion.at(1.0)
-    x0, y0, x1, y1 = regions_box((region.loops for region in motion.regions), moved)
+    x0, y0, x1, y1 = regions_box(region.loops for region in (*motion.regions, *moved))
     pad = 0.02 * (x1 - x0)
     depth = 0.035 * max(y1 - y0, 0.2 * (x1 - x0))
     box = (x0 - pad, y0 - depth, x1 + pad, y1 + 3.5 * depth)
@@ -156,19 +150,20 @@ def plot_mechanism(
 
 
 def _blocks(
-    motion: MechanismMotion, moved: tuple[tuple[Loop, ...], ...], numbers: bool | Mapping[int, int]
+    motion: MechanismMotion, moved: Sequence[Region], numbers: bool | Mapping[int, int]
 ) -> list[Drawable]:
-    share, centroids = motion.share, motion.centroids(1.0)
+    share = motion.share
     items: list[Drawable] = []
     # The blocks that move most are drawn last: dilatancy opens joints, rounding may close some.
     for index in np.argsort(share, kind="stable"):
-        fill, number = to_hex(COLOURS(float(share[index]))), motion.regions[index].id
-        area = Surface(f"moved-{number}", moved[index], fill)
+        fill, region = to_hex(COLOURS(float(share[index]))), moved[index]
+        area = Surface(f"moved-{region.id}", region.loops, fill)
         items.append(area)
         if numbers:
-            at = centroids[index]
-            written = numbers.get(number, number) if isinstance(numbers, Mapping) else number
-            items.append(Words(f"number-{number}", str(written), at, area.room, fill))
+            named = numbers if isinstance(numbers, Mapping) else {}
+            written = str(named.get(region.id, region.id))
+            name = f"number-{region.id}"
+            items.append(Words(name, written, region.centroid, area.room, fill))
     items += [
         Surface(f"before-{region.id}", region.loops, line=GREY, width_pt=0.5, z=2.0)
         for region in motion.regions
@@ -252,9 +247,7 @@ def _move(ax: Axes, motion: MechanismMotion, amplitude: float) -> None:
     """Put the blocks and their numbers where they are after a share of the motion."""
     blocks = {patch.get_gid(): patch for patch in ax.patches if isinstance(patch, PathPatch)}
     numbers = {text.get_gid(): text for text in ax.texts}
-    moved, centroids = motion.at(amplitude), motion.centroids(amplitude)
-    for region, loops, centroid in zip(motion.regions, moved, centroids, strict=True):
-        blocks[f"moved-{region.id}"].set_path(block_path(loops))
-        number = numbers.get(f"number-{region.id}")
-        if number is not None:
-            number.set_position(centroid)
+    for region in motion.at(amplitude):
+        blocks[f"moved-{region.id}"].set_path(block_path(region.loops))
+        if (number := numbers.get(f"number-{region.id}")) is not None:
+            number.set_position(region.centroid)

@@ -120,7 +120,6 @@ def plot_photo(
     labels: NDArray[np.uint16],
     doubtful: tuple[Sequence[int], Iterable[tuple[float, float]]] = ((), ()),
     px_per_m: float | None = None,
-    ax: Axes | None = None,
 ) -> Axes:
     """Draw outlines and numbers of stones over a photograph in the frame of their labels.
 
@@ -128,7 +127,7 @@ def plot_photo(
     row) that get a circle: necks.  `px_per_m` is for the scale bar.
     """
     height, width = labels.shape
-    ax = fit_axes(ax, (0, 0, width, height))
+    ax = fit_axes(None, (0, 0, width, height))
     ax.set_axis_off()
     ax.imshow(picture, extent=(0, width, 0, height), interpolation="antialiased", zorder=0)
     stones, places = doubtful[0], np.array(list(doubtful[1]), float).reshape(-1, 2)

@@ -1,19 +1,26 @@
-"""The wall as planned: clusters, order of placement, wedges; and walls to choose from."""
+"""The wall as planned: clusters, order of placement, wedges, how it falls; walls to choose from."""
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from drystone.drawing.canvas import add, draw, fit_axes
-from drystone.drawing.drawing import Surface, drawing_of_wall
+from drystone.drawing.canvas import add, draw, fit_axes, save
+from drystone.drawing.drawing import Surface, drawing_of_wall, step_by_id
 from drystone.drawing.palette import CLUSTER_COLOURS
+from drystone.drawing.pictures.mechanism import plot_mechanism
 from drystone.model.wall import Wall
+from drystone.statics.model import Direction
+from drystone.statics.result import LateralResistance, LimitStatus
 
 COLUMNS = 3
 PANEL_IN = 3.2  # width of the picture of a wall to choose
 AXES = (("F_SF", "F_LR"), ("F_AV", "F_AH"))  # what is drawn against what
 DIGITS = {"F_SF": 3, "F_AV": 1, "F_AH": 2, "F_LR": 2}
+
+PICTURE = "picture.png"
+MECHANISMS: dict[Direction, str] = {"left": "mechanism_left.png", "right": "mechanism_right.png"}
 
 WallFigures = Mapping[str, float | None]
 
@@ -60,17 +67,39 @@ def plot_choice(walls: Sequence[Wall], figures: Sequence[WallFigures]) -> Figure
     for ax in panels[len(walls) :]:
         ax.remove()
     for ax, (across, up) in zip(below.subplots(1, len(AXES)), AXES, strict=True):
-        _draw_figures(ax, figures, across, up)
+        for number, values in enumerate(figures, 1):
+            x, y = values[across], values[up]
+            if x is not None and y is not None:
+                ax.plot([x], [y], "o", color=CLUSTER_COLOURS[0], markersize=4)
+                ax.annotate(f"{number:02}", (x, y), xytext=(3, 3), textcoords="offset points",
+                            fontsize=7)  # fmt: skip
+        ax.set_xlabel(across, fontsize=8)
+        ax.set_ylabel(up, fontsize=8)
+        ax.tick_params(labelsize=7)
     return figure
 
 
-def _draw_figures(ax: Axes, figures: Sequence[WallFigures], across: str, up: str) -> None:
-    for number, values in enumerate(figures, 1):
-        x, y = values[across], values[up]
-        if x is None or y is None:
+def write_pictures(
+    folder: str | Path,
+    wall: Wall,
+    clusters: Mapping[int, int] | None = None,
+    *,
+    resistance: LateralResistance | None = None,
+) -> None:
+    """Write picture.png, and mechanism_left.png and mechanism_right.png where they exist (§2).
+
+    A picture of a mechanism that an earlier run left in the folder is removed when this wall has
+    none: it would belong to another wall.
+    """
+    folder = Path(folder)
+    save(plot_wall(wall, clusters).figure, folder / PICTURE)
+    for direction, name in MECHANISMS.items():
+        path = folder / name
+        result = None if resistance is None else getattr(resistance, direction)
+        if result is None or result.mechanism is None:
+            path.unlink(missing_ok=True)
             continue
-        ax.plot([x], [y], "o", color=CLUSTER_COLOURS[0], markersize=4)
-        ax.annotate(f"{number:02}", (x, y), xytext=(3, 3), textcoords="offset points", fontsize=7)
-    ax.set_xlabel(across, fontsize=8)
-    ax.set_ylabel(up, fontsize=8)
-    ax.tick_params(labelsize=7)
+        side = None if result.status is LimitStatus.UNSTABLE else result.direction
+        shown = wall.labels if wall.outlines is None else dict(wall.outlines.blocks)
+        ax = plot_mechanism(shown, result.mechanism, side, result.alpha, numbers=step_by_id(wall))
+        save(ax.figure, path)

@@ -8,8 +8,8 @@ from io import StringIO
 from pathlib import Path
 from typing import Literal
 
-from drystone.drawing.assembly.read import scaled, scaled_resistance
-from drystone.drawing.files import save
+from drystone.drawing.assembly import scaled, scaled_resistance
+from drystone.drawing.canvas import save
 from drystone.drawing.outlines import Loop, wall_regions
 from drystone.drawing.pictures.curves import plot_friction
 from drystone.drawing.pictures.forces import plot_contacts, plot_forces

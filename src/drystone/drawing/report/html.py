@@ -16,8 +16,8 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from drystone.drawing.assembly.read import read_assembly
-from drystone.drawing.files import MECHANISMS, PICTURE
+from drystone.drawing.assembly import read_assembly
+from drystone.drawing.pictures.wall import MECHANISMS, PICTURE
 from drystone.drawing.report.viewer_data import ViewerData, view_of_assembly, view_of_result
 from drystone.drawing.words import content
 from drystone.search.plan_result import PlanResult
@@ -85,7 +85,6 @@ def rendered(template: str, data: Any, **more: Any) -> str:
 
 
 def _embedded(folder: Path | None, name: str) -> str | None:
-    """Return a PNG as a data URL, or None when there is no such file."""
     if folder is None or not (folder / name).is_file():
         return None
     data = base64.b64encode((folder / name).read_bytes()).decode("ascii")

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.drawing.assembly.parts import Assembly
-from drystone.drawing.assembly.read import assembly_of_result
+from drystone.drawing.assembly import Assembly, assembly_of_result
 from drystone.drawing.outlines import regions_box, wall_regions
 from drystone.drawing.palette import PLAIN_COLOUR, WEDGE_COLOUR, cluster_colour, text_colour
 from drystone.drawing.photo import read_photo
@@ -219,7 +218,6 @@ def part_digits(size: tuple[float, float]) -> int:
 
 
 def _planned_parts(assembly: Assembly, digits: int) -> list[ViewerData]:
-    """Return the parts of a plan in the order of its steps."""
     source = assembly.plan.source
     photo = read_photo(assembly) if source.get("width_px") and source.get("height_px") else None
     lying = {part.id: assembly.source_corners(part) for part in assembly.stones}

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch
 from numpy.typing import ArrayLike
 
-from drystone.drawing.assembly.parts import Assembly, Part
+from drystone.drawing.assembly import Assembly, Part
 from drystone.drawing.canvas import add
 from drystone.drawing.drawing import (
     FRAME_DASHES,

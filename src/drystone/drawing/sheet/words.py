@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from drystone.drawing.assembly.parts import Assembly, Part
+from drystone.drawing.assembly import Assembly, Part
 from drystone.kernels.polygons import Points
 from drystone.model.plan import Point
 from drystone.statics.model import GROUND

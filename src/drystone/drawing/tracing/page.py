@@ -82,7 +82,6 @@ def write_outline_page(
 
 
 def _embedded(picture: NDArray[np.uint8]) -> bytes:
-    """Return the picture as JPEG, halved until it is small enough."""
     image = Image.fromarray(picture)
     while True:
         file = io.BytesIO()

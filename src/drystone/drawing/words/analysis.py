@@ -68,13 +68,6 @@ class ModelledWall:
     joints: Literal["known", "drawn", "outlines", "swept"] = "known"
     sweep: GapSweep | None = None
 
-    @property
-    def lowest(self) -> float:
-        """Height of the lowest point of the blocks."""
-        if not isinstance(self.shapes, Mapping):
-            return 0.0
-        return min(float(shape[:, 1].min()) for shape in self.shapes.values())
-
     def failures(self, results: Iterable[LimitResult | NonassociativeResult]) -> dict[str, Failure]:
         """Describe the mechanisms that are known, by direction."""
         found: dict[str, Failure] = {}
@@ -88,8 +81,9 @@ class ModelledWall:
     def why_it_falls(self, failures: Mapping[str, Failure]) -> str:
         """Say in a sentence why a wall does not stand."""
         if not on_ground(self.model):
-            lowest = f"the lowest {self.names.noun} is at y = {self.lowest:g}"
-            return f"Nothing touches y = 0: {lowest}."
+            shapes = self.shapes.values() if isinstance(self.shapes, Mapping) else ()
+            lowest = min((float(shape[:, 1].min()) for shape in shapes), default=0.0)
+            return f"Nothing touches y = 0: the lowest {self.names.noun} is at y = {lowest:g}."
         if loose := loose_blocks(self.model):
             have = "has" if len(loose) == 1 else "have"
             said = self.names.listed(loose)

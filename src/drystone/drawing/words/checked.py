@@ -43,11 +43,6 @@ class PhysicsCard:
     overlap_px: float = 0.0
 
     @property
-    def problems(self) -> list[Problem]:
-        """What contradicts the plan."""
-        return check_engine(self.plan, self.built, self.tilts)
-
-    @property
     def first_fall(self) -> int | None:
         """Number of the step after which the first block had fallen, its wedges placed."""
         return None if self.built.first_fall is None else self._step(self.built.first_fall)
@@ -55,7 +50,12 @@ class PhysicsCard:
     def rows(self) -> list[tuple[str, str]]:
         """Return names and values, one a line."""
         rows = [("in the engine", self._outcome())]
-        rows += [("  falls", self._words(move)) for move in self.built.moves if move.fell]
+        for move in self.built.moves:
+            if move.fell:
+                name, turned = self._name(move.id), f"turned {move.turn_deg:.1f} degrees"
+                size = "its stone's size" if name.startswith("wedge") else "its size"
+                moved = f"moved {move.move_px:.1f} source px, {move.share:.0%} of {size}"
+                rows.append(("  falls", f"{name}: {moved}, {turned}"))
         deepest = max(self.built.moves, key=lambda move: move.overlap_px, default=None)
         if deepest is not None and deepest.overlap_px >= NOTEWORTHY_PX:
             said = f"up to {deepest.overlap_px:.2f} source px deep ({self._name(deepest.id)})"
@@ -66,9 +66,9 @@ class PhysicsCard:
             steps = ", ".join(str(self._step(group)) for group in self.built.restless)
             of = f"step{'s' if len(self.built.restless) > 1 else ''} {steps}"
             rows.append(("  restless", f"blocks still moved when the time of {of} was up"))
-        for name in ("left", "right"):
-            rows.append((f"  tilted to the {name}", self._tilted(name)))
-        return rows
+        return rows + [
+            (f"  tilted to the {name}", self._tilted(name)) for name in ("left", "right")
+        ]
 
     def report(self) -> dict[str, Any]:
         """Return the same as JSON."""
@@ -120,12 +120,6 @@ class PhysicsCard:
     def _alpha(self, name: str) -> float | None:
         return None if self.tilts is None else self.tilts[name == "right"].alpha
 
-    def _words(self, move: BlockMove) -> str:
-        name = self._name(move.id)
-        size = "its stone's size" if name.startswith("wedge") else "its size"
-        moved = f"moved {move.move_px:.1f} source px, {move.share:.0%} of {size}"
-        return f"{name}: {moved}, turned {move.turn_deg:.1f} degrees"
-
     def _name(self, block: int) -> str:
         wedge = block in {step.id for step in self.plan.wedge_steps}
         return f"{'wedge' if wedge else 'stone'} {block}"
@@ -170,7 +164,9 @@ class Checked:
     @property
     def problems(self) -> list[Problem]:
         """What does not hold by the plan, then what the engine contradicts."""
-        engine = [] if self.physics is None else self.physics.problems
+        found, engine = self.physics, list[Problem]()
+        if found is not None:
+            engine = check_engine(self.plan, found.built, found.tilts)
         return [*self.report.problems, *engine]
 
     @property
@@ -257,12 +253,6 @@ class Rehearsed:
         fallen = Counter(end.stone for run in self.runs for end in run.stones if end.fallen)
         return {group[0][0]: fallen[group[0][0]] / len(self.runs) for group in self.groups}
 
-    @cached_property
-    def first(self) -> list[tuple[int, int]]:
-        """Stones at which falls begin, and in how many runs: the most frequent first."""
-        found = Counter(run.begins for run in self.runs if run.begins is not None)
-        return sorted(found.items(), key=lambda one: (-one[1], one[0]))
-
     def _quantiles(self, values: Sequence[float]) -> dict[str, float] | None:
         if not values:
             return None
@@ -275,6 +265,8 @@ class Rehearsed:
         steps = {step.stone: step.step for step in self.plan.stone_steps}
         away = [end.share or 0.0 for end in stayed]
         turns = [abs(end.turn_deg or 0) for end in stayed]
+        begun = Counter(run.begins for run in self.runs if run.begins is not None)
+        first = sorted(begun.items(), key=lambda one: (-one[1], one[0]))  # the most frequent first
         return {
             "judge": "engine" if self.engine else "settling",
             "loop": "open" if self.again is None else "closed",
@@ -285,7 +277,7 @@ class Rehearsed:
             "falls_as_planned": self.planned.first_fall,
             "fallen_share": sum(self.risk.values()) / len(self.risk),
             "first_falls": [
-                {"stone": stone, "step": steps[stone], "runs": count} for stone, count in self.first
+                {"stone": stone, "step": steps[stone], "runs": count} for stone, count in first
             ],
             "stones": [
                 {"stone": stone, "step": steps[stone], "risk": risk}

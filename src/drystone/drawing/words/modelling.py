@@ -8,7 +8,6 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from scipy import ndimage
 
 from drystone.contacts.blocks import ImageModel, model_from_labels
 from drystone.contacts.gaps import (
@@ -25,7 +24,7 @@ from drystone.drawing.words.analysis import STONES, ModelledWall, Shapes
 from drystone.errors import InputError, Notice, UsageError
 from drystone.io.files import listed
 from drystone.io.walls import GivenWall
-from drystone.model.stone_size import median_sides, sides_px
+from drystone.model.stone_size import median_sides, sizes_of
 from drystone.model.wall import Labels
 from drystone.statics.failing.mechanism import Names, Noun
 from drystone.statics.joints import with_head_friction
@@ -184,18 +183,12 @@ def _with_swept_gaps(
         made[width] = _made(wall, labels, model_with_closed_gaps(labels, width, mu))
         return _resistance(asked, made[width].model)
 
-    _, usual_px = median_sides(_sides_px(labels))
+    # Ranks instead of ids, which may be large: stones are 1 and on.
+    ranks = np.unique(labels, return_inverse=True)[1].reshape(labels.shape) + (labels.min() > 0)
+    _, usual_px = median_sides((one.length_px, one.width_px) for one in sizes_of(ranks))
     sweep = gap_sweep(at, usual_px)
     remarks = dict(sweep_rows(sweep, usual_px, wall.px_per_m))
     return replace(made[sweep.chosen_px], remarks=remarks, joints="swept", sweep=sweep)
-
-
-def _sides_px(labels: Labels) -> Iterator[tuple[float, float]]:
-    ids, place = np.unique(labels, return_inverse=True)
-    place = place.reshape(labels.shape)
-    for index, window in enumerate(ndimage.find_objects(place + 1)):
-        if ids[index] and window is not None:
-            yield sides_px(place[window] == index)
 
 
 def sweep_rows(sweep: GapSweep, usual_px: float, per_m: float | None) -> Iterator[tuple[str, str]]:

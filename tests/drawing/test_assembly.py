@@ -1,4 +1,4 @@
-"""Plans read with the files beside them."""
+"""Plans read with the files beside them; parts against their pixels and the plan."""
 
 import json
 
@@ -6,10 +6,57 @@ import numpy as np
 import pytest
 import shapely
 
-from drystone.drawing.assembly.read import outer_loop, read_assembly
+from drystone.drawing.assembly import outer_loop, read_assembly
 from drystone.drawing.outlines import label_regions
 from drystone.errors import DrystoneError
-from tests.drawing.export.robot_plans import METRIC, PX_PER_M, assembly, write_plan_folder
+from tests.drawing.export.robot_plans import (
+    METRIC,
+    PX_PER_M,
+    assembly,
+    source_stones,
+    write_plan_folder,
+)
+
+
+@pytest.mark.parametrize("name", METRIC)
+def test_pixels_of_a_stone_land_inside_its_outline(name):
+    wall, stones = assembly(name), source_stones()
+    # The outline of a plan on pixels is that of pixels of 2 source px.
+    near_m = (0.7 if name.startswith("exact") else 2.5) / PX_PER_M
+    for part in wall.stones:
+        stone = stones.by_id(part.id)
+        pick = wall.pick_pose(part)
+        rows, cols = np.nonzero(stone.mask)
+        x = stone.left_px + cols + 0.5
+        y = stone.bottom_px + stone.mask.shape[0] - rows - 0.5
+        photo = np.column_stack([x / PX_PER_M, y / PX_PER_M, 0 * x, 0 * x + 1])
+        moved = wall.place_pose(part).matrix @ np.linalg.inv(pick.matrix) @ photo.T
+        outline = shapely.Polygon(part.corners)
+        points = shapely.points(moved[0], moved[2])
+        assert shapely.distance(outline, points).max() < near_m
+        assert outline.area * PX_PER_M**2 == pytest.approx(len(x), rel=0.06)
+
+
+def test_the_grip_is_the_least_width_of_any_direction():
+    for part in assembly("exact").parts:
+        width, angle_deg = part.grip
+        angles = np.radians(np.append(np.arange(0.0, 180.0, 0.25), angle_deg))
+        across = np.stack([np.cos(angles), np.sin(angles)])
+        widths = np.ptp(part.own_corners @ across, axis=0)
+        assert widths[-1] == pytest.approx(width)
+        assert widths.min() >= width - 1e-12
+        assert 0.0 <= angle_deg < 180.0
+
+
+def test_wedges_are_in_no_photo():
+    wall = assembly("exact")
+    (wedge,) = wall.wedges
+    assert (wedge.kind, wedge.name, wedge.angle_deg) == ("wedge", "wedge_010", 0.0)
+    assert wedge.under == 8
+    with pytest.raises(TypeError, match="wedge_010 is in no image"):
+        wall.source_corners(wedge)
+    with pytest.raises(ValueError, match="read-only"):
+        wedge.corners[0, 0] = 1.0
 
 
 def test_folder_and_file_are_the_same_plan(tmp_path):

@@ -1,1 +1,0 @@
-"""A planned wall as things to be put together: solids, frames in metres, contacts, forces."""
