@@ -71,7 +71,8 @@ def reading_from(arguments: argparse.Namespace) -> ReadSettings:
     ``--px-per-m`` is the resolution of drawings and meshes; pictures keep their own px, and for
     them it is only the scale.
     """
-    given = {field.name: getattr(arguments, field.name, None) for field in fields(ReadSettings)}
+    names = [field.name for field in fields(ReadSettings)]
+    given: dict[str, Any] = {name: getattr(arguments, name, None) for name in names}
     refuse_cm2(arguments.min_area, given["px_per_m"], "picture")
     if arguments.min_area is not None:
         value, unit = arguments.min_area

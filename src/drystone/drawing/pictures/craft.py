@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 from textwrap import fill
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -13,6 +12,7 @@ from drystone.craft.look import UNSEEN, CraftReport
 from drystone.craft.masonry import Masonry
 from drystone.drawing.canvas import add, draw_legend, fit_axes, legend_handles
 from drystone.drawing.drawing import Drawable, Lines, Surface, Words, ground
+from drystone.drawing.outlines import Bounds, regions_box
 from drystone.drawing.palette import GREY, OUTLINE_COLOUR, PALE, WEDGE_COLOUR
 
 FAULT = Surface("", (), "#f0a848", "#8a5a10", hatch="////")
@@ -77,12 +77,11 @@ def plot_craft(report: CraftReport) -> Figure:
     return figure
 
 
-def _view(masonry: Masonry) -> tuple[float, float, float, float]:
+def _view(masonry: Masonry) -> Bounds:
     """Return what a picture shows: the wall and a strip of ground."""
     if not masonry.loops:
         return -0.1, -0.1, 1.1, 1.1
-    points = np.concatenate(list(masonry.loops.values()))
-    (x0, y0), (x1, y1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    x0, y0, x1, y1 = regions_box([masonry.loops.values()])
     pad = 0.02 * (x1 - x0)
     return x0 - pad, y0 - pad, x1 + pad, y1 + pad
 
