@@ -51,7 +51,12 @@ class BrickSettings:
 def brick_stones(settings: BrickSettings, rng: Generator) -> StoneSet:
     """Generate bricks lying on their bed faces, halves among them in random order.
 
-    `rng` decides which ids are halves; equal states give equal stones.
+    Parameters
+    ----------
+    settings : BrickSettings
+        Size and numbers.
+    rng : Generator
+        Decides which ids are halves; equal states give equal stones.
 
     Examples
     --------

@@ -127,9 +127,19 @@ def fourier_contour(radius_px: float, settings: FourierSettings, rng: Generator)
 
 
 def fourier_stones(settings: FourierSettings, rng: Generator) -> StoneSet:
-    """Generate rounded stones (§5.3); equal states of `rng` give equal ones.
+    """Generate rounded stones (§5.3).
 
-    UsageError (E130): the descriptors leave no stone in one piece.
+    Parameters
+    ----------
+    settings : FourierSettings
+        How they look.
+    rng : Generator
+        Equal states give equal stones.
+
+    Raises
+    ------
+    UsageError
+        E130 when the descriptors leave no stone in one piece.
 
     Examples
     --------

@@ -41,8 +41,17 @@ def lay_out(stones: StoneSet) -> Labels:
     """Draw stones in rows, in the order of their ids, without turning or touching any.
 
     Reading the image gives the same stones; those of a generator lie in it where their
-    `left_px` and `bottom_px` say; where others lay in their source does not matter.  The image,
-    (h, w) uint32, has 0 where nothing is, otherwise the stones' ids; row 0 is at the top.
+    `left_px` and `bottom_px` say.
+
+    Parameters
+    ----------
+    stones : StoneSet
+        Any stones; where they lay in their own source does not matter.
+
+    Returns
+    -------
+    labels : (h, w) uint32 array
+        0 where nothing is, otherwise the stones' ids; row 0 at the top.
 
     Examples
     --------

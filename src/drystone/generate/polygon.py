@@ -81,8 +81,19 @@ def polygon_stones(settings: PolygonSettings, rng: Generator) -> StoneSet:
     """Generate noisy polygons, each of them simple and in one piece.
 
     The stones of a set have the area of the brick on average, whatever the noise: hulls of moved
-    corners grow with it, those of the published sets do not.  Equal states of `rng` give equal
-    stones.  UsageError (E130): the settings leave no stone in one piece.
+    corners grow with it, those of the published sets do not.
+
+    Parameters
+    ----------
+    settings : PolygonSettings
+        Size and noise.
+    rng : Generator
+        Equal states give equal stones.
+
+    Raises
+    ------
+    UsageError
+        E130 when the settings leave no stone in one piece.
 
     Examples
     --------

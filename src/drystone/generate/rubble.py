@@ -129,8 +129,17 @@ def rubble_outline(
 def rubble_stones(settings: RubbleSettings, rng: Generator) -> StoneSet:
     """Generate coursed rubble whose total area suits a wall, in random order.
 
-    Equal states of `rng` give equal stones.  UsageError (E130): the stones are too small to be
-    drawn in one piece.
+    Parameters
+    ----------
+    settings : RubbleSettings
+        The wall and how the stones look.
+    rng : Generator
+        Equal states give equal stones.
+
+    Raises
+    ------
+    UsageError
+        E130 when the stones are too small to be drawn in one piece.
 
     Examples
     --------

@@ -79,8 +79,12 @@ def measure_labels(
         F_LR of the wall (:attr:`drystone.statics.model.LateralResistance.value`); statics of a
         plan comes from outlines, which are not in the image.
 
-    LabelImageError: E104: there is no stone in the image; E301: the array is no picture of ids.
-    UsageError (E121): the wall's width or height is not positive and finite, or fills the memory.
+    Raises
+    ------
+    LabelImageError
+        E104 when there is no stone in the image; E301 when the array is no picture of ids.
+    UsageError
+        E121 when the wall's width or height is not positive and finite, or fills the memory.
 
     Examples
     --------

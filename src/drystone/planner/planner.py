@@ -89,8 +89,17 @@ class Planner:
 
         After the last step :attr:`stopped` says why construction ended.  Leaving the loop early
         keeps what is built; calling `steps` again goes on from there.  Between two steps the wall
-        may be measured (:meth:`observe`).  `until` is looked at for every candidate; TimeIsUp where
-        it has struck: as after leaving the loop, what is built is kept.
+        may be measured (:meth:`observe`).
+
+        Parameters
+        ----------
+        until : Deadline
+            Looked at for every candidate.
+
+        Raises
+        ------
+        TimeIsUp
+            It has struck; as after leaving the loop, what is built is kept.
         """
         self.stopped = None
         attempt = self._attempt(until)
@@ -196,16 +205,27 @@ class Planner:
         where it was planned stays as it is if the wall stands so; when all are, nothing changes,
         otherwise :attr:`stopped` is None again.
 
-        `measured`, a mapping of ids to MeasuredPose or a picture of ids, (h, w) integers, says
-        where every stone in the wall is (``drystone.planner.measured``): stones that are missing
-        are free again, others than planned are taken over.  `lost` cannot be used any more:
-        broken, or out of reach.  The observation says how far the wall is from the plan, and
-        whether it stands; W124, W127.
+        Parameters
+        ----------
+        measured : mapping of int to MeasuredPose, or (h, w) integer array
+            Where every stone in the wall is (``drystone.planner.measured``): stones that are
+            missing are free again, others than planned are taken over.
+        lost : iterable of int
+            Stones that cannot be used any more: broken, or out of reach.
 
-        InputError: E195: there is no such stone; E196: the picture is none of the wall; E197: a
-        pose is not in the wall, or a stone is seen in part only; E198: a stone overlaps others and
-        has no room nearby.  UsageError (E199): a stone is lost and in the wall.  Nothing has
-        changed then.
+        Returns
+        -------
+        observation : Observation
+            How far the wall is from the plan, and whether it stands; W124, W127.
+
+        Raises
+        ------
+        InputError
+            E195: there is no such stone; E196: the picture is none of the wall; E197: a pose is
+            not in the wall, or a stone is seen in part only; E198: a stone overlaps others and
+            has no room nearby.  Nothing has changed then.
+        UsageError
+            E199: a stone is lost and in the wall.
 
         Examples
         --------

@@ -168,8 +168,15 @@ class PlannerSettings(Ranged):
     def updated(self, changes: Mapping[str, Any]) -> "PlannerSettings":
         """Return settings with some values replaced.
 
-        `changes` are nested like :meth:`as_dict`; missing keys stay as they are.  UsageError
-        (E123): an unknown name, or a value out of range.
+        Parameters
+        ----------
+        changes : mapping
+            Nested like :meth:`as_dict`; missing keys stay as they are.
+
+        Raises
+        ------
+        UsageError
+            E123: an unknown name, or a value out of range.
         """
         return updated(self, changes)
 

@@ -97,9 +97,15 @@ class Policy(Protocol):
     def choose(self, candidates: Sequence[Offer], rng: np.random.Generator) -> int | None:
         """Return the position of the action to take; None to take none of them.
 
-        The choice may depend on the arguments only, or a plan does not repeat.  There is at least
-        one candidate, those of both sides when the wall is built from both ends; always in the
-        same order.  `rng` is of this attempt at this step, from the plan's seed.
+        The choice may depend on the arguments only, or a plan does not repeat.
+
+        Parameters
+        ----------
+        candidates : sequence of Offer
+            At least one, those of both sides when the wall is built from both ends; always in
+            the same order.
+        rng : numpy.random.Generator
+            Of this attempt at this step, from the plan's seed.
         """
         ...
 

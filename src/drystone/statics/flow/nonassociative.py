@@ -212,8 +212,17 @@ def nonassociative_resistance(
 ) -> NonassociativeResistance:
     """Find the loads in both directions; see :func:`nonassociative_load`.
 
-    The `value` is to F_LR what the flow rule without dilatancy makes of it.  `look` is called
-    before every round; what it raises ends the search.
+    Parameters
+    ----------
+    model, loads, settings
+        See there.
+    look : callable
+        Called before every round; what it raises ends the search.
+
+    Returns
+    -------
+    NonassociativeResistance
+        Its `value` is to F_LR what the flow rule without dilatancy makes of it.
     """
     left, right = _results(model, DIRECTIONS, loads, settings, look)
     return NonassociativeResistance(left, right, model.mu)
