@@ -185,7 +185,7 @@ def test_the_commands_are_those_of_the_parser():
 def test_every_setting_is_explained(described):
     explained = entries(described)
     assert list(explained) == [field.name for field in dataclasses.fields(described)]
-    assert all(explained[name].text for name in plain_fields(described))
+    assert all(explained[name][1] for name in plain_fields(described))
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -72,7 +72,7 @@ def test_walls_that_differ_far_below_are_told_apart_where_it_matters(
             assert told(memory.stabilise(wall, trial, "left", 50)) == told(expected)
 
     check()
-    assert len(memory._outcomes) > 10
+    assert memory._outcomes.held_bytes > 0  # it did remember
 
 
 def worked_out(monkeypatch):
