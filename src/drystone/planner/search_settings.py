@@ -88,7 +88,7 @@ class SearchSettings(Ranged):
     """
 
     budget: int = ranged(1, least=1)
-    passes: int = ranged(12, least=1)
+    passes: int = ranged(16, least=1)
     chains: int = ranged(4, least=1)
     share_every: int = ranged(8, least=1)
     largest: float = ranged(0.3, above=0, most=1)
