@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from drystone.kernels.meetings import meetings
@@ -84,6 +84,8 @@ def test_a_contact_is_where_the_gap_is(pair):
 def test_contacts_move_with_the_polygons(pair, angle, first):
     corners, other = pair
     up = np.array([7.0, 900.0])  # clear of the ground however they turn
+    gap = shapely.LinearRing(corners).distance(shapely.Polygon(other))
+    assume(abs(gap - TOLERANCE) > 1e-9)  # else rounding decides whether they touch
     turned = [turn(np.roll(c, first, axis=0), angle) + up for c in pair]
     before = meetings(corners, no_polygons().added([other]), TOLERANCE)
     after = meetings(turned[0], no_polygons().added([turned[1]]), TOLERANCE)

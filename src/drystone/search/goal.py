@@ -174,7 +174,9 @@ class FoundWall:
 
     build: Build
     figures: WallFigures | None  # None when it is empty
-    merit: float  # no less than that of the same wall once it is `judged`
+    # No less than that of the same wall once it is `judged` for the first time; in other
+    # rehearsals less of it may fall.
+    merit: float
     solves: Solves = field(default_factory=Solves)  # trouble with it
     courses: Courses | None = None  # None for a wall that was not planned before
     falls: RehearsalFalls | None = None  # in its rehearsals, once it was judged
