@@ -4,6 +4,12 @@ import cv2
 import numpy as np
 
 from drystone.photo.view import apply
+from drystone_lab.photographs.layout import PhotoLevel
+
+SMALL = PhotoLevel(
+    name="small", count=8, width_px=600, height_px=450, px_per_m=400.0, gap_px=10, markers="none"
+)
+"""Some stones on a ground."""
 
 BITS = {
     "aruco": (cv2.aruco.DICT_4X4_50, 6),

@@ -11,17 +11,12 @@ from drystone.photo.layout import parse_layout
 from drystone.photo.markers import FoundMarker
 from drystone.photo.segment import SMALL as TOO_SMALL
 from drystone.photo.segment import segment
-from drystone.photo.segment_doubts import doubts_of, notices_of, ruler_doubts
+from drystone.photo.segment_doubts import doubts_of, notices_of, ruler_doubts, verdict_of
 from drystone.photo.segment_ground import SegmentSettings
 from drystone.photo.segment_photo import placed_markers, segment_photo
-from drystone_lab.photographs.layout import PhotoLevel
 from drystone_lab.photographs.scene import photograph
 from drystone_lab.photos import overlaps, pixels, score
-
-SMALL = PhotoLevel(
-    name="small", count=8, width_px=600, height_px=450, px_per_m=400.0, gap_px=10, markers="none"
-)
-
+from tests.photo.scenes import SMALL
 
 ROWS, COLS = np.indices((300, 400))
 
@@ -57,10 +52,12 @@ def codes(found):
 )
 def test_easy_photographs_are_found_with_tight_outlines(changes):
     made = photograph(replace(SMALL, **changes))
-    got = score(made, segment_photo(pixels(made)))
+    result = segment_photo(pixels(made))
+    got = score(made, result)
     assert (got.recall, got.precision) == (1.0, 1.0)
     assert np.median(got.ious) > 0.95
     assert min(got.ious) > 0.9
+    assert verdict_of(result.found, doubts_of(result.found)) == ()
 
 
 def test_photographs_repeat_and_their_truth_is_in_their_frame():
@@ -95,6 +92,7 @@ def test_cast_shadows_are_not_added_to_stones():
     assert np.median(got.ious) > 0.96
     assert min(got.ious) > 0.85
     assert result.found.shadow_level == pytest.approx(0.5, abs=0.06)
+    assert verdict_of(result.found, doubts_of(result.found)) == ()
 
 
 def test_dark_stones_of_the_grounds_hue_are_not_shadows():
@@ -230,9 +228,9 @@ def test_large_photographs_are_reduced_and_areas_may_be_in_square_centimetres():
 
 
 def test_markers_are_no_stones_when_the_scale_is_given():
-    level = replace(SMALL, markers="sheet", width_px=900, height_px=675, px_per_m=800.0, count=7)
+    level = replace(SMALL, markers="sheet", width_px=640, height_px=480, px_per_m=570.0, count=7)
     made = photograph(level)
-    result = segment_photo(pixels(made), 800.0)
+    result = segment_photo(pixels(made), 570.0)
     assert result.unasked == (0, 1, 2, 3)
     (notice,) = result.notices
     assert (notice.code, "--aruco" in notice.cure) == ("W170", True)

@@ -1,5 +1,6 @@
 """Whole photographs: found, or in doubt with a reason, never stones that are none and no word."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +13,9 @@ from scipy.spatial import cKDTree
 from drystone.errors import InputError
 from drystone.photo.segment import EDGE, FAINT, segment
 from drystone.photo.segment_doubts import LISTED, doubts_of, notices_of, verdict_notices, verdict_of
-from drystone_lab.photographs.layout import LEVELS
-from drystone_lab.photographs.scene import layout_of, photograph
-from drystone_lab.photos import _small, pixels, segment_photo
+from drystone_lab.photographs.scene import photograph
+from drystone_lab.photos import pixels
+from tests.photo.scenes import SMALL
 
 SHAPE = (420, 560)
 
@@ -89,17 +90,22 @@ def in_doubt_or_refused(picture):
     return bool(against)
 
 
-@pytest.mark.parametrize("seed", [1, 2])
 @pytest.mark.parametrize("kind", [pebbles, paint, sand, room, sheet])
-def test_what_is_no_photograph_of_stones_laid_out_is_in_doubt_or_refused(kind, seed):
-    assert in_doubt_or_refused(kind(np.random.default_rng(seed)))
+def test_what_is_no_photograph_of_stones_laid_out_is_in_doubt_or_refused(kind):
+    assert in_doubt_or_refused(kind(np.random.default_rng(1)))
 
 
-@pytest.mark.parametrize("number", [1, 3, 6, 7, 8])
-def test_photographs_that_are_found_rightly_are_not_in_doubt(number):
-    """A dark ground, shadows, stones that touch, gravel, grass."""
-    level = _small(LEVELS[number])
-    found = segment_photo(pixels(photograph(level)), layout_of(level)).found
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"ground": "gravel", "rocks": ("granite", "schist")},
+        {"ground": "grass", "touching": 2, "shadow": 0.45},
+    ],
+)
+def test_ground_that_varies_is_not_in_doubt(changes):
+    """Plainer photographs are not in doubt either: test_segment.py."""
+    found = segment(pixels(photograph(replace(SMALL, **changes))))
+    assert found.ground.spread.max() > 4.0
     assert verdict_of(found, doubts_of(found)) == ()
 
 
@@ -131,12 +137,7 @@ def test_light_from_one_side_is_said_and_what_it_hides():
 @pytest.mark.parametrize("name", ["brick", "gravel", "grass"])
 def test_parts_of_walls_and_beds_are_never_stones(name):
     whole = installed(name)
-    rng = np.random.default_rng(5)
-    for _ in range(3):
-        side = int(rng.integers(120, 400))
-        row, col = rng.integers(0, 512 - side, 2)
-        part = np.ascontiguousarray(whole[row : row + side, col : col + side])
-        assert in_doubt_or_refused(part), (side, row, col)
+    assert in_doubt_or_refused(np.ascontiguousarray(whole[61:357, 211:507]))
 
 
 def test_ground_that_is_not_plain_is_said_where_nothing_was_found():

@@ -74,8 +74,9 @@ def test_a_run_that_fails_does_not_stop_those_that_have_begun(tmp_path, monkeypa
 def test_processes_have_one_thread_and_are_used_again_or_not(monkeypatch, fresh):
     monkeypatch.setenv(ONE_THREAD[0], "2")
     with Crew(1, fresh=fresh) as processes:
-        assert list(processes.work(os.getenv, ONE_THREAD[:1])) == ["1"]
-        ids = set(processes.work(pid, range(2)))
+        ids, threads = zip(*processes.work(pid_and, 2 * ONE_THREAD[:1]), strict=True)
+    assert threads == ("1", "1")
+    ids = set(ids)
     assert os.getpid() not in ids
     assert len(ids) == (2 if fresh else 1)
     for one in ids:
@@ -83,6 +84,6 @@ def test_processes_have_one_thread_and_are_used_again_or_not(monkeypatch, fresh)
             os.kill(one, 0)
 
 
-def pid(_):
-    """Return the number of this process."""
-    return os.getpid()
+def pid_and(name):
+    """Return the number of this process and a variable of its environment."""
+    return os.getpid(), os.environ[name]
