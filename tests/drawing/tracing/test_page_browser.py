@@ -36,7 +36,7 @@ def stone(x, y, wide, high, seed, corners=11):
 
 
 LEFT, RIGHT = stone(120, 100, 130, 120, 1), stone(244, 100, 112, 120, 2)
-MISSED = stone(620, 110, 150, 110, 3)
+MISSED = stone(620, 110, 150, 110, 3, corners=7)
 OTHERS = [stone(130 + 180 * i, 350, 140, 120, 4 + i) for i in range(4)]
 TRUTH = [LEFT, RIGHT, MISSED, *OTHERS]
 SHADOW = stone(430, 180, 60, 50, 9)
@@ -170,7 +170,7 @@ GAP = [(187, 20), (187, 180)]
 OUTLINE = [*MISSED.exterior.coords]
 
 
-def test_corrected_with_the_mouse_and_planned(visit, run, tmp_path):  # noqa: F811
+def test_corrected_with_the_mouse_and_read(visit, run, tmp_path):  # noqa: F811
     page = visit(viewport={"width": 1280, "height": 800})
     says(page, "7 stones")
     view = View(page)
@@ -201,14 +201,6 @@ def test_corrected_with_the_mouse_and_planned(visit, run, tmp_path):  # noqa: F8
     read = run("stones", tmp_path / "outlines.json", "--json").json()
     assert (read["stones"], read["px_per_m"]) == (len(TRUTH), pytest.approx(800, rel=0.02))
     assert read["total_area_px"] == pytest.approx(sum(one.area for one in TRUTH), rel=0.03)
-    asked = ("--wall", "50x30cm", "--method", "paper", "--scale", "0.15", "--quiet")
-    planned = run("plan", tmp_path / "outlines.json", *asked, "-o", tmp_path / "wall")
-    assert planned.code in (0, 4), planned.err
-    plan = json.loads((tmp_path / "wall" / "plan.json").read_text())
-    assert (plan["units"]["length"], plan["source"]["stones"]) == ("m", len(TRUTH))
-    assert {s["stone"] for s in plan["steps"] if s["kind"] == "stone"} <= {
-        int(shape["label"]) for shape in file["shapes"]
-    }
 
 
 def test_corrected_with_fingers(visit):
@@ -266,7 +258,7 @@ def test_corrected_with_keys_alone(visit):
 
 def test_what_is_shown_is_what_there_is(visit):
     """Photograph and stones are painted anew when they change, and the line over them always."""
-    page = visit(viewport={"width": 1280, "height": 800})
+    page = visit(viewport={"width": 720, "height": 480})
     view, canvas = View(page), page.locator("canvas")
     page.keyboard.press("d")
 
@@ -358,15 +350,16 @@ def test_a_wall_is_traced_and_analysed(browser, run, tmp_path):  # noqa: F811
     heard.check()
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_axe_has_no_serious_finding(visit, scheme):
-    page = visit(viewport={"width": 1280, "height": 800}, color_scheme=scheme)
+def test_axe_has_no_serious_finding(visit):
+    page = visit(viewport={"width": 1280, "height": 800})
     axe = pytest.importorskip(
         "axe_playwright_python.sync_playwright", reason="axe-playwright-python is not installed"
     ).Axe()
     page.keyboard.press("n")
-    found = axe.run(page).response["violations"]
-    assert [one["id"] for one in found if one["impact"] in ("serious", "critical")] == []
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme)
+        found = axe.run(page).response["violations"]
+        assert [one["id"] for one in found if one["impact"] in ("serious", "critical")] == []
 
 
 def test_the_modules_alone():
