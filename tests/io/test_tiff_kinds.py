@@ -146,13 +146,10 @@ def test_fax_codes(compression):
 
 
 @pytest.mark.parametrize("compression", [NONE, LZW, DEFLATE, PACKBITS])
-@pytest.mark.parametrize("bits", [8, 16, 32])
-@pytest.mark.parametrize("channels", [1, 3])
+@pytest.mark.parametrize(("bits", "channels"), [(8, 1), (16, 1), (32, 1), (8, 3), (16, 3)])
 def test_differences(bits, compression, channels):
     values = np.dstack([labels(bits), labels(bits) // 2, labels(bits) // 3])[..., :channels]
     for layout, order, planar in product(LAYOUTS, "<>", (False, True)):
-        if bits * channels > 64:
-            continue
         options = {**layout, "order": order, "planar": planar, "predictor": 2}
         found = decode(tiff(values, bits, compression, **options), LIMIT).values
         np.testing.assert_array_equal(found, values.squeeze(), err_msg=str(options))

@@ -148,7 +148,7 @@ def test_walls_that_fall_at_rest_have_no_alpha():
 def test_a_published_wall_falls_without_dilatancy():
     """Example 3 of Ferris and Tin-Loi: .3558 without dilatancy, .4037 with."""
     wall = WALLS[2]
-    quick = Variation("few iterations", EngineSettings(iterations=50), TiltSettings(coarse=0.064))
+    quick = Variation("few iterations", EngineSettings(iterations=20), TiltSettings(coarse=0.064))
     scene, rng = scene_of(*wall.rectangles, mu=MU), np.random.default_rng(0)
     _, found = compare_with_tilt(scene, wall.model, rng, (quick,))
     assert found.simulated.direction == "right"
