@@ -20,7 +20,7 @@ from drystone.model.site import Site
 from drystone.model.wall import Wall
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND
-from tests.planner.scenes import RUBBLE_SITE, greedy, rubble
+from tests.planner.scenes import bricks, greedy, rubble
 from tests.verify.exact_examples import SETTINGS, exact_example
 from tests.verify.examples import example
 
@@ -56,7 +56,7 @@ def test_no_file_of_another_wall_is_left(tmp_path):
 
 
 def test_a_planner_becomes_a_plan_at_any_step():
-    planner = ds.Planner(rubble(), RUBBLE_SITE, seed=1, settings=greedy({}))
+    planner = ds.Planner(bricks(4), Site(40, 20), seed=1, settings=greedy({}))
     for step in planner.steps():
         if step.number == 2:
             break
@@ -68,9 +68,7 @@ def test_a_planner_becomes_a_plan_at_any_step():
         pass
     whole = ds.result_of(planner)
     assert whole.message == planner.stopped.text
-    again = ds.plan_wall(
-        rubble(), *RUBBLE_SITE.extent_px, scale=1.0, seed=1, settings=greedy({}), budget=1
-    )
+    again = ds.plan_wall(bricks(4), 40, 20, scale=1.0, seed=1, settings=greedy({}), budget=1)
     assert whole.plan.steps == again.plan.steps
     assert np.array_equal(whole.wall.labels, again.wall.labels)
     assert whole.plan.settings["search"]["budget"] == 1
@@ -97,15 +95,15 @@ def test_stones_of_a_few_px_are_not_taken_for_blended_ids(tmp_path):
 
 def test_what_the_stones_were_read_from_is_never_replaced(tmp_path):
     settings = greedy({"geometry": "raster"})
-    labels = ds.generate.lay_out(rubble())
+    labels = ds.generate.lay_out(bricks(4))
     masks = tmp_path / "masks"
     masks.mkdir()
-    for name, stone in zip(("wall.png", "other.png"), rubble(), strict=False):
+    for name, stone in zip(("wall.png", "other.png"), bricks(4), strict=False):
         Image.fromarray(np.pad(stone.mask, 2)).save(masks / name)
     for source in (tmp_path / "wall.tif", tmp_path / "wall.png", masks):
         if not source.is_dir():
             write_labels(labels, source)
-        result = ds.plan_wall(ds.read_stones(source), 100, 36, settings=settings, budget=1)
+        result = ds.plan_wall(ds.read_stones(source), 40, 20, settings=settings, budget=1)
         place = source if source.is_dir() else source.parent
         before = {path.name: path.read_bytes() for path in place.iterdir() if path.is_file()}
         with pytest.raises(ds.DrystoneError, match=r"E129 .*wall\.(tif|png)"):
@@ -139,9 +137,9 @@ def test_the_photograph_of_an_earlier_plan_goes(tmp_path):
 
 
 def test_stones_of_a_program_can_be_checked_with_a_file_of_them(tmp_path, capsys):
-    labels = ds.generate.lay_out(rubble())
+    labels = ds.generate.lay_out(bricks(4))
     settings = greedy({"geometry": "raster"})
-    result = ds.plan_wall(ds.read_stones(labels), 100, 36, settings=settings, budget=1)
+    result = ds.plan_wall(ds.read_stones(labels), 40, 20, settings=settings, budget=1)
     ds.write_plan_folder(result, tmp_path / "out")
     assert main(["check", str(tmp_path / "out")]) == 3
     assert "E202" in (said := capsys.readouterr().err)
