@@ -99,7 +99,7 @@ def test_pixels_are_those_of_the_header(kind):
 SEED, EXECUTIONS = 20261125, 2_290
 """Always the same files, by number and not by time; `make fuzz` draws others.
 
-A third of a round: without the guards of readers, every guard is missed within so many.
+A third of a round: of the guards of readers that were removed, a whole round missed no more.
 """
 
 
