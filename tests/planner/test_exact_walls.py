@@ -108,7 +108,7 @@ def check(result, stones, settings, site):
         assert high <= height + beyond
 
 
-@repeatable(10)
+@repeatable(16)
 @given(case=cases(), seed=st.integers(0, 1000))
 def test_every_plan_is_true(case, seed):
     stones, (width, height), scale, settings = case
@@ -121,7 +121,7 @@ def test_every_plan_is_true(case, seed):
         assert result.wall.wedges == ()
 
 
-WEDGES = greedy({**WITH_WEDGES, "search": {"budget": 2}})
+WEDGES = greedy({**WITH_WEDGES, "search": {"budget": 4}})
 WALL_PX = (84.0, 34.0)
 SITE = Site.from_source(*WALL_PX, 0.5)
 
