@@ -113,7 +113,7 @@ def test_candidates_that_were_solved_again_are_counted_and_change_nothing(monkey
     for found in (plain, again):
         for budget in (1, 2):
             settings = greedy({"search": {"budget": budget}})
-            found.append(plan_wall(rubble(seed=1), 100, 36, scale=1.0, seed=1, settings=settings))
+            found.append(plan_wall(rubble(1, 7), 100, 36, scale=1.0, seed=1, settings=settings))
         monkeypatch.setattr(
             IncrementalAnalysis,
             "resistance_with",

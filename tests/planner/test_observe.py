@@ -127,9 +127,9 @@ def found_wrong(one):
 
 @BOTH
 def test_a_wall_that_is_built_off_its_plan_goes_on_from_where_it_is(settings):
-    one, robot = planner(settings, 14), Robot(1.0, np.random.default_rng(5))
+    one, robot = planner(settings, 9), Robot(1.0, np.random.default_rng(5))
     seen = list(live(one, robot, None))
-    assert len(seen) == len(robot.built) == len(one.build.actions) >= 10
+    assert len(seen) == len(robot.built) == len(one.build.actions) >= 6
     assert all(observation.stands for observation in seen)
     assert 1.0 < max(observation.largest_px for observation in seen) < 5.0
     check_wall(one)
@@ -156,27 +156,27 @@ def test_pictures_do_as_well(settings, scale):
         assert turns(pose.angle_deg, angle) < 2.0
 
 
-@pytest.mark.parametrize(
-    ("settings", "scale"), [(EXACT, None), (EXACT, SCALE), (RASTER, 1.0), (RASTER, None)]
-)
-def test_a_wall_that_is_built_as_planned_changes_nothing(settings, scale):
+@BOTH
+def test_a_wall_that_is_built_as_planned_changes_nothing(settings):
     one = planner(settings)
     for _ in one.steps():
         before, there = one.build, planned(one)
-        pictures = {SCALE: before.wall.labels, 1.0: picture(there, one.workshop.stones, 1.0)}
-        found = one.observe(in_metres(there) if scale is None else pictures[scale])
-        assert one.build is before
-        off_px = max(found.largest_px, found.largest_moved_px)
-        assert off_px <= (1e-9 if scale is None else 0.0)
-        assert (found.largest_deg, found.stands) == (0, True)
-        assert (found.free, found.lost, found.added, found.notices) == ((), (), (), ())
+        seen = before.wall.labels
+        if settings is RASTER:
+            seen = picture(there, one.workshop.stones, 1.0)
+        for measured, least_px in ((in_metres(there), 1e-9), (seen, 0.0)):
+            found = one.observe(measured)
+            assert one.build is before
+            assert max(found.largest_px, found.largest_moved_px) <= least_px
+            assert (found.largest_deg, found.stands) == (0, True)
+            assert (found.free, found.lost, found.added, found.notices) == ((), (), (), ())
     assert same(one, finish(planner(settings)))
 
 
 @PICTURES
 def test_a_stone_alone_is_measured_to_a_third_of_a_pixel_and_a_degree(scale):
     rng, stones = np.random.default_rng(3), rubble()
-    for stone in [*stones] * 2:
+    for stone in stones:
         true = (125.0 + rng.uniform(-3, 3), 47.0 + rng.uniform(-3, 3), rng.uniform(-180, 180))
         labels = picture({stone.id: true}, stones, scale)
         place = fitted(labels == stone.id, stone.outline, scale, true[2] + rng.normal(0, 5))

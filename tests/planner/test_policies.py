@@ -19,6 +19,7 @@ from tests.planner.scenes import RUBBLE_SITE, finish, greedy, proven, rubble
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "for-researchers.md"
 RASTER = {"geometry": "raster"}
+STONES = rubble(1, 6)
 
 
 def by(name, changes=None):
@@ -28,8 +29,8 @@ def by(name, changes=None):
 
 def planned(settings, **options):
     """A wall of rubble, the plan of which is true."""
-    result = plan_wall(rubble(1), 100, 36, scale=1.0, settings=settings, **options)
-    proven(result, rubble(1))
+    result = plan_wall(STONES, 100, 36, scale=1.0, settings=settings, **options)
+    proven(result, STONES)
     assert len(result.plan.stone_steps) >= 4
     return result
 
@@ -149,6 +150,6 @@ def test_the_policy_of_the_document_builds_a_wall_that_is_checked_without_it(
     installed(made=names["Largest"])
     result = planned(by("mine", RASTER), seed=2)
     first = result.plan.stone_steps[0].stone
-    assert first in [stone.id for stone in sorted(rubble(1), key=lambda s: -s.area_px)[:3]]
+    assert first in [stone.id for stone in sorted(STONES, key=lambda s: -s.area_px)[:3]]
     monkeypatch.setattr(registry, "entry_points", lambda **_: EntryPoints())
-    proven(result, rubble(1))
+    proven(result, STONES)

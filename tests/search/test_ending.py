@@ -33,22 +33,29 @@ from tests.planner.scenes import ids
 FEW = {"search": {"budget": 4, "passes": 4, "chains": 2, "share_every": 2}}
 
 
+STONES = scenes.rubble(count=5)
+
+
 def small_search():
-    return plan_wall(
-        scenes.rubble(), 100, 36, scale=1.0, seed=2, settings=scenes.greedy(FEW), choice=True
-    )
+    return plan_wall(STONES, 100, 36, scale=1.0, seed=2, settings=scenes.greedy(FEW), choice=True)
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def planner():
-    """One that has built a whole wall."""
-    settings = scenes.greedy({"search": {"budget": 2}, "goal": {"fallen": 0.0}})
-    return scenes.finish(Planner(scenes.rubble(), scenes.RUBBLE_SITE, seed=1, settings=settings))
+    """One that has built a whole wall, than which its search finds a better one."""
+    settings = scenes.greedy({"search": {"budget": 3}, "goal": {"fallen": 0.0}})
+    return scenes.finish(Planner(STONES, scenes.RUBBLE_SITE, seed=3, settings=settings))
+
+
+@pytest.fixture(scope="module")
+def found(planner):
+    """The end of its search."""
+    return run_to_end(planner)
 
 
 def half_of(planner):
     """A wall on which there is room."""
-    half = Planner(scenes.rubble(), scenes.RUBBLE_SITE, settings=planner.settings)
+    half = Planner(STONES, scenes.RUBBLE_SITE, settings=planner.settings)
     half.build = planner.build.states()[len(planner.build.actions) // 2]
     return PackedWall.of(FoundWall.of(half))
 
@@ -68,13 +75,13 @@ def test_stones_that_find_a_place_stay_where_that_is_better(planner):
 
 def test_stones_that_fall_in_rehearsals_are_taken_out_or_laid_elsewhere():
     careless = scenes.greedy({"search": {"budget": 2}, "settle": {"trials": 0}})
-    site = Site.from_source(220, 100, 0.5)
+    site = Site.from_source(160, 100, 0.5)
     planner = scenes.finish(Planner(scenes.ROUNDED, site, seed=2, settings=careless))
     yard = Yard.of(planner)
     wall = FoundWall.of(planner).judged(yard, THOROUGH)
     assert wall.falls.first
-    better = repaired(planner, wall)
-    often = Rehearsals(yard, 40, 99)
+    better = repaired(planner, wall, turns=1)
+    often = Rehearsals(yard, 20, 99)
     share = often.falls(wall.build).share
     assert often.falls(better.build).share < 0.7 * share
     nothing = FoundWall.of(Planner(scenes.bricks(), Site(60, 20), settings=careless))
@@ -101,13 +108,12 @@ def test_a_wall_to_choose_is_as_it_was_found(planner):
     assert ids(found) == [group.stone_id for group in half.groups]
     assert why.reason == "search"
     filled = planner.settings.updated({"stop": {"filling": 0.1}})
-    full = Planner(scenes.rubble(), scenes.RUBBLE_SITE, settings=filled)
+    full = Planner(STONES, scenes.RUBBLE_SITE, settings=filled)
     assert as_found(full, half)[1] == Stopped("filled", "filling above 0.1")
 
 
 @pytest.mark.parametrize("place", ["surest", "repaired", "with_the_rest"])
-def test_an_interrupt_at_the_end_keeps_the_best_as_it_was_found(place, planner, monkeypatch):
-    found = run_to_end(planner)
+def test_an_interrupt_at_the_end_keeps_the_best_as_it_was_found(place, planner, found, monkeypatch):
 
     def interrupt(*_):
         raise KeyboardInterrupt
@@ -119,8 +125,8 @@ def test_an_interrupt_at_the_end_keeps_the_best_as_it_was_found(place, planner, 
     assert ids(cut.planner) == [group.stone_id for group in best.groups]
 
 
-def test_a_repair_that_time_cuts_off_is_said(planner, monkeypatch):
-    assert not run_to_end(planner).cut
+def test_a_repair_that_time_cuts_off_is_said(planner, found, monkeypatch):
+    assert not found.cut
 
     def up(*_):
         raise TimeIsUp
