@@ -1,6 +1,5 @@
 """The package as a whole: its names, its examples, its list of errors."""
 
-import ast
 import doctest
 import importlib
 import pkgutil
@@ -40,18 +39,20 @@ def test_every_public_name_is_there():
         drystone.wonder  # noqa: B018
 
 
-@pytest.mark.parametrize("name", ["drystone", *MODULES])
-def test_the_examples_of_the_docstrings_run(name):
-    failed, _ = doctest.testmod(importlib.import_module(name))
-    assert failed == 0
+@pytest.mark.parametrize("package", ["drystone", "drystone_lab"])
+def test_the_examples_of_the_docstrings_run(package):
+    names = [package, *(name for name in MODULES if name.startswith(f"{package}."))]
+    found = {name: doctest.testmod(importlib.import_module(name)) for name in names}
+    assert [name for name, one in found.items() if one.failed] == []
+    assert sum(one.attempted for one in found.values()) > 9
 
 
 def test_no_two_classes_have_one_name():
     places = {}
     for path in sorted((ROOT / "src").rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.ClassDef):
-                places.setdefault(node.name, []).append(str(path.relative_to(ROOT)))
+        for name in re.findall(r"^ *class (\w+)[:(]", path.read_text("utf-8"), re.MULTILINE):
+            places.setdefault(name, []).append(str(path.relative_to(ROOT)))
+    assert len(places) > 99
     assert {name: found for name, found in places.items() if len(found) > 1} == {}
 
 

@@ -7,7 +7,7 @@ import pytest
 from drystone.io.plan_json import read_plan
 from tests.cli.conftest import EXACT, UNTRIED, WALL
 
-SEARCH = ("--wall", "100x36", "--scale", "1", "--budget", "5", "--seed", "4", *UNTRIED)
+SEARCH = ("--wall", "70x30", "--scale", "1", "--budget", "3", "--seed", "1", *UNTRIED)
 
 
 def test_walls_to_choose_from(rubble, tmp_path, run):
@@ -48,7 +48,7 @@ def test_walls_to_choose_from(rubble, tmp_path, run):
 
 @pytest.mark.parametrize(
     ("wall", "text"),
-    [("100x36", "(the maximum for these stones is {:.3f})"), ("60x20", "(1 is a full wall)")],
+    [("70x30", "(the maximum for these stones is {:.3f})"), ("60x20", "(1 is a full wall)")],
 )
 def test_the_bound_is_printed(wall, text, rubble, tmp_path, run):
     options = ["--wall", wall, "--scale", "1", "--method", "paper", "--skip-too-large"]

@@ -31,11 +31,11 @@ ANALYSED = {"contacts.png", "blocks.csv", "contacts.csv", "friction.png", "repor
 def test_stones(rubble, tmp_path, run):
     ran = run("stones", rubble)
     assert ran.code == 0
-    assert ran.out.startswith("rubble.png: 8 stones\n")
+    assert ran.out.startswith("rubble.png: 6 stones\n")
     summary = run("stones", rubble, "--json", "-o", tmp_path / "new" / "stones.png").json()
-    assert summary["stones"] == 8
+    assert summary["stones"] == 6
     assert len(summary["sha256"]) == 64
-    assert set(summary["clusters"]) == {str(stone_id) for stone_id in range(1, 9)}
+    assert set(summary["clusters"]) == {str(stone_id) for stone_id in range(1, 7)}
     assert summary["notices"] == []
     assert "W123" in run("stones", rubble, "--px-per-m", 20_000).out
     with Image.open(tmp_path / "new" / "stones.png") as picture:
@@ -70,12 +70,12 @@ def test_analyse_and_measure_a_plan(plan_copy, run):
         report = run("analyse", given, "--json").json()
         assert report["F_LR"] == pytest.approx(plan.metrics.F_LR)
         measured = run("measure", given, "--json").json()
-        assert (measured["width"], measured["height"]) == (100.0, 36.0)
+        assert (measured["width"], measured["height"]) == (70.0, 30.0)
         assert measured["stones"] == len(plan.stone_steps)
         for name in ("F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH"):
             assert measured[name] == pytest.approx(getattr(plan.metrics, name))
         assert measured["F_SF"] == pytest.approx(plan.metrics.F_SF, rel=0.02)
-    wider = run("measure", plan_copy, "--json", "--wall", "200x36").json()
+    wider = run("measure", plan_copy, "--json", "--wall", "140x30").json()
     assert wider["F_SF"] == pytest.approx(measured["F_SF"] / 2)
     rewrite(plan_copy / "plan.json", lambda plan: plan["settings"].pop("mu"))
     assert run("analyse", plan_copy, "--json").json()["mu"] == 0.58
@@ -175,17 +175,17 @@ def test_measure(finished, tmp_path, run):
 
 
 def test_a_ruler_of_a_plan_lies_in_the_picture_of_its_stones(finished, run):
-    asked = ("measure", finished, "--wall", "1mx.36m", "--json")
+    asked = ("measure", finished, "--wall", ".7mx.3m", "--json")
     source = read_plan(finished).source
     width, height = source["width_px"], source["height_px"]
-    assert (width, height) != (100, 36)
+    assert (width, height) != (70, 30)
     assert run(*asked, "--ruler", f"0,0,{width},{height}=1m").code == 0
     said = f"E138 --ruler: the point {width + 1},0 is outside", f"which is {width} x {height} px"
     run(*asked, "--ruler", f"0,0,{width + 1},0=1m").refused(*said)
 
 
 def test_another_scale_than_that_of_a_plan(metric, run):
-    asked = ("--wall", ".5mx.18m")
+    asked = ("--wall", ".35mx.15m")
     for option, value in (("--ruler", "0,0,50,0=5cm"), ("--px-per-m", "1000")):
         for command in (("measure", metric, *asked), ("analyse", metric)):
             said = f"E131 {option}: the plan says 200 px a metre, the option 1000."

@@ -85,4 +85,4 @@ def test_pictures_are_drawn(tmp_path, run):
     names = {f"{name}.png" for name in RULES} | {"craft.png"}
     assert {path.name for path in folder.iterdir()} == names
     with Image.open(folder / "craft.png") as sheet:
-        assert sheet.width > 1500
+        assert sheet.width > 900

@@ -18,7 +18,7 @@ from drystone.search.state import Progress, SearchState
 from tests.cli.conftest import UNTRIED, WALL
 from tests.planner.scenes import greedy, rubble
 
-SEARCH = ("--wall", "100x36", "--scale", "1", "--seed", "1", "--budget", "4", *UNTRIED)
+SEARCH = ("--wall", "70x30", "--scale", "1", "--seed", "1", "--budget", "3", *UNTRIED)
 
 
 class Clock:
@@ -104,7 +104,7 @@ def test_a_full_disk_ends_no_search_and_is_told_once(rubble, tmp_path, run, monk
     monkeypatch.setattr(keeping, "SHARE", 1.0)
     monkeypatch.setattr(Keeper, "_keep_plan", full)
     ran = run("plan", rubble, *SEARCH, "-o", tmp_path / "full")
-    assert len(calls) > 2
+    assert len(calls) > 1
     assert ran.code == whole.code
     assert (ran.err.count("W130"), "No space left" in ran.err) == (1, True)
     plans = [(tmp_path / name / "plan.json").read_bytes() for name in ("full", "whole")]

@@ -38,7 +38,10 @@ def as_a_camera_sees(picture):
 )  # fmt: skip
 def test_a_printed_sheet_measures_what_it_says(run, tmp_path, options, layout, page_mm):
     path = tmp_path / "sheet.pdf"
-    assert run("markers", "-o", path, *options).code == 0
+    told = run("markers", "-o", path, *options)
+    assert told.code == 0
+    last = f"Print at 100 %. Then: drystone segment PHOTO --aruco {layout} -o DIR"
+    assert told.out.splitlines()[-1] == last
     picture, size, text = rendered(path, dpi=300)
     assert np.array(size) / 72 * 25.4 == pytest.approx(page_mm, abs=0.01)
     known = parse_layout(layout)
@@ -102,9 +105,7 @@ def test_single_markers_have_a_page_each(run, tmp_path):
 )
 def test_the_options_that_are_said_find_the_markers(run, tmp_path, options, said):
     path = tmp_path / "sheet.pdf"
-    ran = run("markers", "-o", path, *options)
-    assert ran.out.splitlines()[-1] == f"Print at 100 %. Then: drystone segment PHOTO {said} -o DIR"
-    told = run("markers", "-o", path, "--overwrite", "--json", *options).json()
+    told = run("markers", "-o", path, "--json", *options).json()
     assert told["options"] == said.split()
     named = build_parser().parse_args(["segment", "photo.jpg", "-o", "out", *told["options"]])
     layout = scale_from(named)

@@ -36,7 +36,7 @@ def test_an_option_is_a_setting(options, path, value):
 
 def parsed(*options):
     """A command line of `plan` with some options."""
-    words = ["plan", "stones.png", "--wall", "100x36", "-o", "out", *map(str, options)]
+    words = ["plan", "stones.png", "--wall", "70x30", "-o", "out", *map(str, options)]
     return build_parser().parse_args(words)
 
 
@@ -91,7 +91,7 @@ def test_a_whole_file_of_the_other_method_is_neither(tmp_path):
 
 
 def test_a_plan_by_a_whole_file_of_another_method_says_so(finished, rubble, tmp_path, run):
-    asked = ("--wall", "100x36", "--scale", "1", "--settings", finished / "settings.toml")
+    asked = ("--wall", "70x30", "--scale", "1", "--settings", finished / "settings.toml")
     ran = run("plan", rubble, *asked, "--method", "best", "-o", tmp_path / "out")
     assert ran.code in (0, 4)
     assert "so that nothing of --method best is left; the plan names the method custom" in ran.err

@@ -10,9 +10,9 @@ from PIL import Image
 from drystone.io.wall_image import write_labels
 from tests.craft.walls import painted, stack_bond
 
-PLAN = "plan {rubble} --wall 100x36 --scale 1 --method paper -o {out}"
-EXACT = "plan {rubble} --wall 100x36 --scale 1 --budget 1 -o {out}"
-RASTER = "plan {rubble} --wall 100x36 --scale 1 --geometry raster -o {out}"
+PLAN = "plan {rubble} --wall 70x30 --scale 1 --method paper -o {out}"
+EXACT = "plan {rubble} --wall 70x30 --scale 1 --budget 1 -o {out}"
+RASTER = "plan {rubble} --wall 70x30 --scale 1 --geometry raster -o {out}"
 FROM = f"{EXACT} --from {{settled}}"
 SMALL = "plan {bricks} --method paper -o {out}"
 BRICKS = "generate brick -o {out}/x.png"
@@ -103,7 +103,7 @@ CASES = [
     (f"{PLAN} --ban 99", 2, "E145", ""),
     (f"{PLAN} --ban 2 3 --pin 3", 2, "E123", "--ban and --pin: ban and pin name the same stones"),
     # Plans that a search cannot begin with.
-    (f"{FROM} --wall 110x36", 2, "E144", "of another wall (100x36 px, not 110x36)."),
+    (f"{FROM} --wall 80x30", 2, "E144", "of another wall (70x30 px, not 80x30)."),
     (f"{FROM} --scale .5", 2, "E144", "of another resolution. Add --scale 1."),
     (f"{FROM} --geometry raster --scale .5", 2, "E144", "Add --scale 1 --geometry exact."),
     (f"{FROM} --orientations sf", 2, "E144", "other orientations. Add --orientations quarter."),
@@ -204,7 +204,7 @@ def test_settings_that_cannot_be_are_blamed_on_their_file(text, code, said, rubb
     toml, out = tmp_path / "mine.toml", tmp_path / "out"
     if text is not None:
         toml.write_text(text, encoding="utf-8")
-    wall = ("--wall", "100x36", "--scale", "1", "--geometry", "raster")
+    wall = ("--wall", "70x30", "--scale", "1", "--geometry", "raster")
     ran = run("plan", rubble, *wall, "--settings", toml, "-o", out)
     assert (ran.code, ran.err.count("\n")) == (3 if code == "E128" else 2, 1)
     assert ran.err.startswith(f"drystone: {code} ")

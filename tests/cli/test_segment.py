@@ -13,11 +13,18 @@ from drystone_lab.photographs.scene import photograph
 from drystone_lab.photos import overlaps
 
 SHEET = PhotoLevel(
-    name="sheet", count=7, width_px=900, height_px=675, px_per_m=800.0, gap_px=10, tilt_deg=12.0,
+    name="sheet", count=5, width_px=720, height_px=540, px_per_m=800.0, gap_px=10, tilt_deg=12.0,
     shadow=0.35, ground="plywood", rocks=("granite", "basalt"), turn_deg=5.0,
 )  # fmt: skip
 BARE = replace(
-    SHEET, markers="none", width_px=600, height_px=450, tilt_deg=0.0, turn_deg=0.0, shadow=0.0
+    SHEET,
+    markers="none",
+    count=4,
+    width_px=420,
+    height_px=320,
+    tilt_deg=0.0,
+    turn_deg=0.0,
+    shadow=0.0,
 )
 
 
@@ -99,8 +106,7 @@ def test_a_plan_knows_its_copy_and_refuses_before_it_replaces_another(run, tmp_p
     wall, mine = tmp_path / "wall", tmp_path / "mine"
     for _ in range(2):
         assert quickly_planned(run, found, wall, "--overwrite").code in (0, 4)
-        source = json.loads((wall / "plan.json").read_text())["source"]
-        assert source["photo"]["name"] == "photo.jpg"
+    assert json.loads((wall / "plan.json").read_text())["source"]["photo"]["name"] == "photo.jpg"
     mine.mkdir()
     (mine / "photo.jpg").write_bytes(b"mine")
     quickly_planned(run, found, mine, "--overwrite").refused("E129")

@@ -45,7 +45,8 @@ log, pause = open(sys.argv[1], "a", buffering=1), sys.argv[2]
 def wait_at(place):
     if place == pause:
         open(sys.argv[1] + ".paused", "w").close()
-        time.sleep(1000.0)
+        while True:  # a signal just before a long sleep would be seen after it only
+            time.sleep(0.05)
 
 def on_walls(_, found):
     log.write(f"{time.time()} {found.merit!r}\\n")

@@ -10,18 +10,20 @@ from tests.kills.harness import Case, called, killed, lost, made_stones, plan_by
 pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="no such signals here")
 
 
-SMALL = "[search]\npasses = 3\nchains = 2\nshare_every = 2\n"
-"""A search that soon comes to its chains."""
+SMALL = (
+    "[search]\npasses = 3\nchains = 2\nshare_every = 2\n[settle]\ntrials = 0\n[goal]\nfallen = 0\n"
+)
+"""A search that soon comes to its chains, and does not rehearse."""
 
 
-WALL = "plan {stones} --wall 100x36 --scale 1 -o {folder} "
+WALL = "plan {stones} --wall 70x30 --scale 1 -o {folder} "
 
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
     """A folder with stones and settings, in which whole walls stay."""
     place = tmp_path_factory.mktemp("kills")
-    made_stones(place / "few.png", 8, 100, 36, 2)
+    made_stones(place / "few.png", 6, 70, 30, 2)
     (place / "small.toml").write_text(SMALL)
     return place
 
@@ -30,8 +32,8 @@ def place(tmp_path_factory):
     ("way", "jobs", "sent", "pause", "group"),
     [
         ("--method paper", "", "INT", "stone 3", True),
-        ("--settings {small} --budget 9", "", "TERM", "wall 2", False),
-        ("--settings {small} --budget 9", " --jobs 2", "KILL", "wall 5", False),
+        ("--settings {small} --budget 6", "", "TERM", "wall 2", False),
+        ("--settings {small} --budget 6", " --jobs 2", "KILL", "wall 5", False),
     ],
 )
 def test_nothing_runs_on_and_nothing_is_lost(way, jobs, sent, pause, group, place):
