@@ -1,7 +1,7 @@
 # Everything from a clean clone, with nothing but Python 3.11 or newer.
 PYTHON ?= python3
 BIN := .venv/bin
-PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
 # What an installation is made from; the kernels are compiled when there is a compiler.
 KERNELS := $(shell grep -rl --include=*.py "import cython" src/drystone/kernels; find src/drystone/kernels -name "*.p[yx][xd]")
 SOURCES := pyproject.toml setup.py $(KERNELS)
@@ -12,7 +12,7 @@ demo: .venv/demo.stamp          ## plan a generated stone set and say where the 
 	$(BIN)/drystone demo -o demo --overwrite
 
 test: .venv/dev.stamp lint      ## lint, types, layers, tests
-	$(BIN)/pytest -n 2
+	$(BIN)/pytest -n 2 --dist worksteal
 
 # Of src/drystone/ROOM/... and tests/ROOM/... the tests of the room, of the lab those of the lab.
 ROOMS := 's,^(src/drystone|tests)/([a-z_]+)/.*,tests/\2,p; s,^src/drystone_lab/.*,tests/lab,p; \
