@@ -12,8 +12,8 @@ ALONG = np.array((1.0, 0.0))
 
 
 def put_down(outline, edges, at, around, rules, lifts, most, gap):
-    """Return how it rests, or None, and by how much others are pushed."""
-    others = [around.polygon(i) for i in range(len(around))]
+    """Return how it rests, or None, and by how much others are pushed; None without room."""
+    room, others = False, [around.polygon(i) for i in range(len(around))]
     for sticks in (True, False):
         for lift in lifts:
             x, y = at[0], at[1] + lift
@@ -22,7 +22,8 @@ def put_down(outline, edges, at, around, rules, lifts, most, gap):
             found = settle(outline, edges, pose, heap, 0.0, rules._replace(sticks=sticks))
             if found.status is Status.RESTS:
                 return found, pushed
-    return None, {}
+            room = room or found.status is not Status.OVERLAPS
+    return None, {} if room else None
 
 
 def squeezed_in(corners, others, most, gap):

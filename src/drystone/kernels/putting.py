@@ -24,6 +24,7 @@ if not cython.compiled:
     from drystone.kernels.settling import Way, let_go, settling_of, way_of
 
 RESTS = cython.declare(cython.int, 0)
+OVERLAPS = cython.declare(cython.int, 2)
 
 # Two polygons lie beside each other when they share so much of the height of the lower one.
 BESIDE = cython.declare(cython.double, 0.3)
@@ -41,12 +42,13 @@ def put_down(
     lifts: Sequence[float],
     most: float,
     gap: float,
-) -> tuple[Settling | None, dict[int, float]]:
+) -> tuple[Settling | None, dict[int, float] | None]:
     """Return where a block comes to rest, and by how much which others are pushed along x.
 
     Corners of the outline are relative to the centroid, which is put at a place, and lifted by the
     least of some ways with which it rests; None where it does with none.  It is moved and pushed by
-    no more than `most`, and what overlapped it keeps a gap.
+    no more than `most`, and what overlapped it keeps a gap.  Nor are there pushes where it has no
+    room: it overlaps with all lifts.
     """
     way: Way = way_of(outline, edges, rules)
     corners, first, boxes, sides = around
@@ -56,6 +58,7 @@ def put_down(
     x: cython.double = at[0]
     pressed: dict = {}
     now: dict = {}
+    room: cython.bint = False
     for sticks in (True, False):
         way.sticks = sticks
         steps, least = 0, 0.0
@@ -73,13 +76,14 @@ def put_down(
             status: cython.int = let_go(way, press.heap, x + shift, y, 0.0)
             if status == RESTS:
                 return settling_of(way, status), now
+            room = room or status != OVERLAPS
             steps += way.made
             if not way.made:
                 # A lift takes off no more than itself; that it gives other room aside is rare.
                 least = lift - way.here.least - way.overlap
         if not steps:
             break  # it overlaps wherever it is let go
-    return None, {}
+    return None, {} if room else None
 
 
 @cython.cclass

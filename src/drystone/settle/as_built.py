@@ -130,7 +130,7 @@ class BuiltWall:
                 beneath |= wall.beds[one].below
         loads = _loads(wall, beneath)
         for one in [one for one in wall.laid if one in beneath and one != block]:
-            if one in wall.laid:  # it may have fallen with another
+            if one in wall.laid and not _stays(wall, one, loads):  # it may have fallen with another
                 after = _rolled(wall, one, loads[one])
                 if after is not wall:
                     wall, loads = after, _loads(after, beneath)
@@ -161,8 +161,16 @@ def _with_beds(wall: BuiltWall) -> BuiltWall:
     return replace(wall, beds=beds)
 
 
-def _loads(wall: BuiltWall, blocks: Iterable[int]) -> dict[int, tuple[float, float]]:
-    """Return where the weight of blocks, and of what lies on them, acts; of each with its own."""
+class Load(NamedTuple):
+    """The weight of a block, with what lies on it, and where it acts."""
+
+    weight: float
+    x: float
+    y: float
+
+
+def _loads(wall: BuiltWall, blocks: Iterable[int]) -> dict[int, Load]:
+    """Return the loads of blocks, and of all that lies on them."""
     burden = wall.with_burden(blocks)
     sums, loads = {}, {}
     for block in [one for one in wall.laid if one in burden]:
@@ -171,14 +179,12 @@ def _loads(wall: BuiltWall, blocks: Iterable[int]) -> dict[int, tuple[float, flo
         sums[block] = [weight, weight * built.x, weight * built.y]
     for one in reversed(list(sums)):
         weight, x, y = sums[one]
-        x, y = loads[one] = x / weight, y / weight
+        load = loads[one] = Load(weight, x / weight, y / weight)
         on = wall.beds[one].points
         if not on:
             continue
-        # What acts beside all that it bears on hangs on the last point.
-        i = bisect(on, (x,))
-        left, right = on[max(i - 1, 0)], on[min(i, len(on) - 1)]
-        share = (x - left.x) / (right.x - left.x) if right.x > left.x else 0.0
+        left, right = _carrying(on, load.x)
+        share = (load.x - left.x) / (right.x - left.x) if right.x > left.x else 0.0
         for bearing, part in ((left, weight * (1.0 - share)), (right, weight * share)):
             below = sums.get(bearing.below)
             if below is not None:
@@ -188,26 +194,71 @@ def _loads(wall: BuiltWall, blocks: Iterable[int]) -> dict[int, tuple[float, flo
     return loads
 
 
-def _rolled(wall: BuiltWall, block: int, load: tuple[float, float]) -> BuiltWall:
-    """Let a block go under its load, and put down again what lies on it, if it does not stay."""
-    built, on = wall.laid[block], wall.beds[block].points
-    x, y = load
-    if on and on[0].x <= x <= on[-1].x:
-        return wall
+def _carrying(on: Sequence[Bearing], x: float) -> tuple[Bearing, Bearing]:
+    """Return the points left and right of a load; one beside all hangs on the last, twice."""
+    i = bisect(on, (x,))
+    return on[max(i - 1, 0)], on[min(i, len(on) - 1)]
+
+
+def _stays(wall: BuiltWall, block: int, loads: Mapping[int, Load]) -> bool:
+    """Say whether a block bears its load.
+
+    What bears on it and on another block bears on it further in, and with less, once it begins to
+    roll; and friction there holds it back, as far as the other block holds against that.
+    """
+    on, built = wall.beds[block].points, wall.laid[block]
+    if not on:
+        return False
+    near = touching(built.size, wall.settle)
+    weight, x, _ = loads[block]
+    left = x < on[0].x
+    edge = on[0] if left else on[-1]
+    beside = edge.x - x if left else x - edge.x
+    if beside <= near:
+        return True
+    moment = weight * beside  # about the edge, that rolls it
+    for other, bed in wall.beds.items():
+        if block not in bed.below or not bed.points:
+            continue
+        part, at, _ = loads[other]
+        two = _carrying(bed.points, at)
+        outer, held = two if two[0].below == block else two[::-1]
+        if outer.below != block or held.below == block or outer.x == held.x:
+            continue
+        # Of all points of both the last one on the way to the middle of the block.
+        inner = max(
+            (p for p in bed.points if p.below == block and (p.x - held.x) * (outer.x - held.x) > 0),
+            key=lambda p: abs(p.x - held.x),
+        )
+        inner = inner if (held.x < outer.x) == left else outer
+        was, share = (part * (at - held.x) / (end.x - held.x) for end in (outer, inner))
+        sign = 1.0 if left else -1.0
+        moment += sign * (share * (edge.x - inner.x) - was * (edge.x - outer.x))
+        moment -= wall.mu * min(share, part - share) * (inner.y - edge.y)
+    return moment <= near * weight
+
+
+def _rolled(wall: BuiltWall, block: int, load: Load) -> BuiltWall:
+    """Let a block go under its load, and put down again what lies on it.
+
+    It stays where it is held: what lies on it has no room to follow.
+    """
+    built = wall.laid[block]
+    _, x, y = load
     out = wall.with_burden([block])
     # Nothing touches what has no box.
     boxes = wall.polygons.boxes.copy()
     boxes[[place for place, one in enumerate(wall.laid) if one in out]] = NOWHERE
     around = Polygons(wall.polygons.corners, wall.polygons.first, boxes, wall.polygons.edges)
     rest = None
-    corners = built.corners - load  # gravity acts there
+    corners = built.corners - (x, y)  # gravity acts there
     edges = polygon_edges(corners)
     rules = settling_rules(built.size, wall.mu, wall.settle)
     for sticks in (True, False):
         way = rules._replace(sticks=sticks)
-        found = settle(corners, edges, (*load, 0.0), around, 0.0, way)
+        found = settle(corners, edges, (x, y, 0.0), around, 0.0, way)
         if found.status is Status.RESTS:
-            if (found.x, found.y, found.angle) == (*load, 0.0):
+            if (found.x, found.y, found.angle) == (x, y, 0.0):
                 return wall
             turn_deg = math.degrees(found.angle)
             ((aside, up),) = turn(np.array([(built.x - x, built.y - y)]), turn_deg).tolist()
@@ -219,5 +270,11 @@ def _rolled(wall: BuiltWall, block: int, load: tuple[float, float]) -> BuiltWall
     if rest is not None:
         polygons = below.polygons.added([rest.corners])
         below = replace(below, laid={**below.laid, block: rest}, polygons=polygons)
-    again = [(i, one) for i, one in wall.laid.items() if i in out and i != block]
-    return _with_beds(below.put(again))
+    again = {i: one for i, one in wall.laid.items() if i in out and i != block}
+    after = below.put(again.items())
+    lost = [one for i, one in again.items() if i not in after.laid]
+    if rest is not None and any(
+        put_down(one, after.polygons, wall.mu, wall.settle)[1] is None for one in lost
+    ):
+        return wall
+    return _with_beds(after)

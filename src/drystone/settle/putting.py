@@ -33,10 +33,10 @@ STEPS = 60
 
 def put_down(
     built: Built, around: Polygons, mu: float, settle: SettleSettings
-) -> tuple[Built | None, dict[int, float]]:
+) -> tuple[Built | None, dict[int, float] | None]:
     """Return where a block comes to rest, and by how much which others are pushed along x.
 
-    None, and the others stay, where it rests nowhere near.
+    None, and the others stay, where it rests nowhere near; nor are there pushes without room.
     """
     size, corners = built.size, turn(built.outline, built.angle_deg)
     found, pushed = putting.put_down(
@@ -50,7 +50,7 @@ def put_down(
         gap=2.0 * settle.clearance_px,
     )
     if found is None:
-        return None, {}
+        return None, pushed
     x, y = place_on_grid(found.x, found.y)
     angle_deg = wrap_deg(built.angle_deg + math.degrees(found.angle))
     return Built(built.outline, x, y, angle_deg, size), pushed
