@@ -32,6 +32,29 @@ def test_a_plank_tips_where_it_and_what_lies_on_it_act_beside_its_post(once, lef
     assert {end.stone for end in run.stones if end.fallen} == ({2, 3} if falls else set())
 
 
+@pytest.mark.parametrize(("end", "falls"), [(31.0, False), (45.0, True)])
+@BOTH
+def test_a_stone_on_a_post_is_held_by_a_beam_that_another_bears_too(once, end, falls):
+    """The beam acts beside the post; a beam on the stone alone would tip it."""
+    post, stone = [(1, box(40.0, 0.0, 10.0, 10.0))], [(2, box(30.0, 10.0, 30.0, 10.0))]
+    beam = [(3, box(-25.0, 20.0, end + 25.0, 10.0))]
+    other = [] if falls else [[(4, box(-30.0, 0.0, 20.0, 20.0))]]
+    run = once([*other, post, stone, beam], NONE, np.random.default_rng(0))
+    assert any(one.fallen for one in run.stones) == falls
+
+
+def test_a_plank_does_not_rock_under_a_stone_that_cannot_rise():
+    post, plank = [(1, box(40.0, 0.0, 20.0, 5.0))], [(2, box(0.0, 5.0, 100.0, 15.0))]
+    before = built([post, plank, [(3, box(10.0, 20.0, 20.0, 30.0))]])
+    brick = as_planned(box(70.0, 20.0, 30.0, 70.0))
+    free = before.put([(6, brick)]).loaded(6)
+    assert free.laid[2].angle_deg < -5.0
+    assert free.laid[3].y > before.laid[3].y + 2.0  # it rides on the plank
+    held = before.held({4: as_planned(box(0.0, 50.1, 40.0))})
+    after = held.put([(6, brick)]).loaded(6)
+    assert (after.laid[2], after.laid[3]) == (before.laid[2], before.laid[3])
+
+
 def test_a_stone_far_above_tips_what_carries_all():
     """Each brick has its centroid on the one below; three together hang over the lowest."""
     stairs = [[(k, box(15.0 * k, 20.0 * k))] for k in range(4)]
@@ -94,7 +117,7 @@ def test_loads_act_where_they_do_block_by_block(precision):
     wall = built(BOND, BuilderErrors.of_precision(precision, mean_size(BOND)))
     loads = as_built._loads(wall, wall.laid)
     assert len(loads) == len(BOND)
-    for block, place in loads.items():
-        assert place == pytest.approx(naive.load(block, wall.laid, wall.beds)[1:])
+    for block, load in loads.items():
+        assert load == pytest.approx(naive.load(block, wall.laid, wall.beds))
     # A brick in bond bears on two others.
     assert wall.beds[20].below == {10, 11}

@@ -272,9 +272,19 @@ def _rolled(wall: BuiltWall, block: int, load: Load) -> BuiltWall:
         below = replace(below, laid={**below.laid, block: rest}, polygons=polygons)
     again = {i: one for i, one in wall.laid.items() if i in out and i != block}
     after = below.put(again.items())
-    lost = [one for i, one in again.items() if i not in after.laid]
-    if rest is not None and any(
-        put_down(one, after.polygons, wall.mu, wall.settle)[1] is None for one in lost
-    ):
-        return wall
+    if rest is not None and not again.keys() <= after.laid.keys():
+        # What finds no place where it was goes with the block.
+        again |= {i: _along(one, built, rest) for i, one in again.items() if i not in after.laid}
+        after = below.put(again.items())
+        lost = (one for i, one in again.items() if i not in after.laid)
+        if any(put_down(one, after.polygons, wall.mu, wall.settle)[1] is None for one in lost):
+            return wall
     return _with_beds(after)
+
+
+def _along(one: Built, before: Built, after: Built) -> Built:
+    """Return a block that moves with another one."""
+    turn_deg = after.angle_deg - before.angle_deg
+    ((x, y),) = turn(np.array([(one.x - before.x, one.y - before.y)]), turn_deg).tolist()
+    angle_deg = wrap_deg(one.angle_deg + turn_deg)
+    return Built(one.outline, after.x + x, after.y + y, angle_deg, one.size)
