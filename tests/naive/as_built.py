@@ -19,3 +19,39 @@ def load(block, laid, beds):
         parts += [(weight * part, b.x, b.y) for b, part in shares if b.below == block]
     whole = sum(weight for weight, _, _ in parts)
     return whole, sum(w * x for w, x, _ in parts) / whole, sum(w * y for w, _, y in parts) / whole
+
+
+def stays(block, laid, beds, mu, near):
+    """Say whether a block bears its load, by what would hold it were it to roll about its edge."""
+    on = beds[block].points
+    if not on:
+        return False
+    whole, x, _ = load(block, laid, beds)
+    if on[0].x - near <= x <= on[-1].x + near:
+        return True
+    edge, way = (on[0], 1.0) if x < on[0].x else (on[-1], -1.0)
+    torque = way * (edge.x - laid[block].x) * laid[block].size ** 2
+    for points, _ in beds.values():
+        here = [one for one in points if one.below == block]
+        if not here:
+            continue
+        other = next(i for i, bed in beds.items() if bed.points is points)
+        weight, at, _ = load(other, laid, beds)
+        left = max((b for b in points if b.x <= at), key=lambda b: b.x, default=points[0])
+        right = min((b for b in points if b.x > at), key=lambda b: b.x, default=points[-1])
+        for bears, held in ((left, right), (right, left)):
+            if bears.below != block:
+                continue
+            point = bears
+            share = (at - held.x) / (bears.x - held.x) if bears.x != held.x else 0.5
+            share = share if left.x <= at <= right.x else 0.5
+            if held.below != block and bears.x != held.x:
+                # Of all points on its side those that help: the ones towards the block's middle.
+                side = [b for b in here if (b.x - held.x) * (bears.x - held.x) > 0]
+                last = max(side, key=lambda b: way * b.x)
+                if abs(last.x - held.x) > abs(bears.x - held.x):
+                    point, share = last, (at - held.x) / (last.x - held.x)
+                lesser = min(share, 1.0 - share)
+                torque -= mu * weight * lesser * (point.y - edge.y)
+            torque += way * (edge.x - point.x) * weight * share
+    return torque <= near * whole

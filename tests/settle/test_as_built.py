@@ -7,6 +7,7 @@ from drystone.model.builder import HAND, BuilderErrors, as_planned, stratified
 from drystone.search.rehearsal import mean_size, rehearse
 from drystone.settle import as_built
 from drystone.settle.as_built import BuiltWall
+from drystone.settle.putting import touching
 from tests.naive import as_built as naive
 from tests.polygons import box_of as box
 from tests.search.test_rehearsal import BOND, BOTH, NONE
@@ -50,6 +51,7 @@ def test_a_plank_does_not_rock_under_a_stone_that_cannot_rise():
     free = before.put([(6, brick)]).loaded(6)
     assert free.laid[2].angle_deg < -5.0
     assert free.laid[3].y > before.laid[3].y + 2.0  # it rides on the plank
+    assert free.laid[3].angle_deg == pytest.approx(free.laid[2].angle_deg, abs=0.1)
     held = before.held({4: as_planned(box(0.0, 50.1, 40.0))})
     after = held.put([(6, brick)]).loaded(6)
     assert (after.laid[2], after.laid[3]) == (before.laid[2], before.laid[3])
@@ -121,3 +123,38 @@ def test_loads_act_where_they_do_block_by_block(precision):
         assert load == pytest.approx(naive.load(block, wall.laid, wall.beds))
     # A brick in bond bears on two others.
     assert wall.beds[20].below == {10, 11}
+
+
+def test_blocks_bear_their_loads_as_by_the_twin():
+    """Bricks of many widths, so badly laid that some would roll and some are held."""
+    told = set()
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        places = [(row, k) for row in range(4) for k in range(4 - row)]
+        left, width = rng.uniform(-9.0, 9.0, 10), rng.uniform(22.0, 40.0, 10)
+        bricks = [
+            box(40.0 * k + 20.0 * row + x, 20.0 * row, across)
+            for (row, k), x, across in zip(places, left, width, strict=True)
+        ]
+        wall = BuiltWall(0.58, SETTLE)
+        errors = BuilderErrors.of_precision(2.0 * HAND, 25.0)
+        for block, corners in enumerate(bricks):
+            put = errors.all_built(corners, stratified(rng, 1, 1)[0])
+            wall = as_built._with_beds(wall.put([(block, *put)]))
+        loads = as_built._loads(wall, wall.laid)
+        for block, built in wall.laid.items():
+            near, on = touching(built.size, SETTLE), wall.beds[block].points
+            stays = as_built._stays(wall, block, loads)
+            assert stays == naive.stays(block, wall.laid, wall.beds, 0.58, near)
+            told.add((stays, bool(on) and on[0].x <= loads[block].x <= on[-1].x))
+    assert told == {(True, True), (True, False), (False, False)}
+
+
+def test_a_load_at_the_very_edge_does_not_roll_a_block():
+    brick = as_planned(
+        box(20.06, 30.0, 20.0, 30.0)
+    )  # the plank's load acts 0.03 px beside its post
+    wall = built([POST, PLANK]).put([(3, brick)])
+    assert wall.loaded(3).laid[2] is wall.laid[2]
+    farther = built([POST, PLANK]).put([(3, as_planned(box(21.0, 30.0, 20.0, 30.0)))])
+    assert 2 not in farther.loaded(3).laid
