@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 from drystone.errors import UsageError
-from drystone.metrics import second
 from drystone.metrics.frame import reduce_labels
 from drystone.metrics.measure import measure_labels
 from drystone.model.site import Site
@@ -23,6 +22,7 @@ from drystone.search.chain import wedged
 from drystone.search.goal import FoundWall, possible_filling
 from drystone.search.packed import found_again
 from drystone.search.yard import Yard
+from drystone_lab import second_arrangement as second
 from drystone_lab.paired import median_difference, median_of
 from drystone_lab.planned_walls import SETS, missing_data
 from drystone_lab.runs.spec import Changes, nested, told

@@ -19,6 +19,7 @@ from tests.cli.conftest import WALL
     (["--method", "paper", "--placement", "lowest"], "placement.rule", "lowest"),
     (["--method", "paper", "--reach", "above"], "placement.reach", "above"),
     (["--stabilise", "rotation"], "stabilise.method", "rotation"),
+    (["--settle", "pivot"], "settle.method", "pivot"),
     (["--budget", "2", "--aim", "F_LR=.5", "F_AH=2"], "goal.F_LR", 0.5),
     (["--budget", "2", "--aim", "F_LR=.5", "F_AH=2"], "goal.F_AH", 2.0),
     (["--orientations", "45deg"], "orientations", "45deg"),

@@ -9,7 +9,6 @@ from importlib.metadata import EntryPoint, EntryPoints, version
 import pytest
 
 from drystone.cli.parser import GROUP, STUDIES, build_parser, found_commands
-from drystone.cli.settings import settings_from
 from drystone.kernels.backend import describe
 
 HIDDEN = argparse.SUPPRESS
@@ -62,16 +61,6 @@ def test_help_lists_what_most_people_need():
     reading = {"--skip", "--min-area", "--unit"}
     assert reading < {*listed("stones")}
     assert not reading & {*listed("plan"), *listed("analyse"), *listed("measure"), *listed("craft")}
-
-
-def test_options_by_their_old_names_work_and_say_the_new_one(rubble, tmp_path, run):
-    told = run("stones", rubble, "--to", tmp_path / "old.png")
-    assert told.code == 0
-    assert "--to is called --labels now" in told.err
-    assert run("stones", rubble, "--labels", tmp_path / "new.png").err == ""
-    assert (tmp_path / "old.png").read_bytes() == (tmp_path / "new.png").read_bytes()
-    words = ["plan", "s.png", "--wall", "9x9", "-o", "out", "--settle", "pivot"]
-    assert settings_from(build_parser().parse_args(words)).settle.method == "pivot"
 
 
 def test_an_area_is_read_in_the_same_way_everywhere(rubble, run):

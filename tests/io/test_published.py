@@ -115,7 +115,7 @@ def test_without_pooch_files_that_are_there_are_still_checked(tmp_path, monkeypa
     (tmp_path / "toy" / "IR.png").unlink()
     with pytest.raises(InputError, match=r"E162 .*drystone\[fetch\].*By hand: save"):
         fetch_set(toy_set(), tmp_path)
-    with pytest.raises(InputError, match=r"E162 .*--to DIR"):
+    with pytest.raises(InputError, match=r"E162 .*-o DIR"):
         destination(None)
     assert published_folder(None) is None
 
@@ -146,7 +146,7 @@ def test_a_published_file_is_opened_only_with_its_contents(toys):
     with pytest.raises(InputError) as caught:
         published_file(toys, "toy/R.png")
     assert (caught.value.code, caught.value.where) == ("E160", str(toys / "toy" / "R.png"))
-    assert f"drystone fetch toy --to {toys}" in caught.value.cure
+    assert f"drystone fetch toy -o {toys}" in caught.value.cure
     assert toy_set().files[0].address in caught.value.cure
     assert published_file(toys, "toy/IR.png").exists()
 

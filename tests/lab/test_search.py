@@ -7,7 +7,6 @@ import pytest
 
 from drystone.errors import UsageError
 from drystone.metrics.measure import measure_labels
-from drystone.metrics.second import finer_labels, second_arrangement
 from drystone.model.site import Site
 from drystone.model.wall import Wall
 from drystone_lab import search
@@ -22,6 +21,7 @@ from drystone_lab.search import (
     searched_walls,
     second_of,
 )
+from drystone_lab.second_arrangement import finer_labels, second_arrangement
 from drystone_lab.table import BenchSettings
 from drystone_lab.walls import UNSEEN, chosen
 from tests.metrics.walls import bricks

@@ -2,7 +2,6 @@
 
 import argparse
 import re
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from itertools import chain
@@ -147,17 +146,6 @@ def list_only(command: argparse.ArgumentParser, *names: str) -> None:
     for action in command._actions:  # noqa: SLF001 - argparse has no other way
         if action.option_strings and not {"-h", *names} & {*action.option_strings}:
             action.help = argparse.SUPPRESS
-
-
-class Renamed(argparse.Action):
-    """An option by its old name: it works for one more version, and says the new one (`const`)."""
-
-    def __call__(  # noqa: D102
-        self, _: object, namespace: argparse.Namespace, values: Any, name: str | None = None
-    ) -> None:
-        new = str(self.const).format(values)
-        print(f"drystone: {name} is called {new} now; the old name will go", file=sys.stderr)
-        setattr(namespace, self.dest, values)
 
 
 def _print_help(parser: argparse.ArgumentParser) -> int:

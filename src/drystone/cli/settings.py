@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from drystone.cli.numbers import positive, share, whole_from
-from drystone.cli.parser import Renamed
 from drystone.errors import InputError, UsageError
 from drystone.io.files import file_bytes, foreign
 from drystone.model.stone import StoneSet
@@ -59,7 +58,7 @@ def add_settings(command: argparse.ArgumentParser) -> None:
     option("--stabilise", choices=["both", "rotation", "wedge", "none"])
     option("--mu", type=float, help="coefficient of friction (default 0.58)")
     option("--geometry", choices=["exact", "raster"])
-    option("--settle", choices=["energy", "pivot"], action=Renamed, const="--set settle.method={}")
+    option("--settle", choices=["energy", "pivot"])
     option("--budget", type=whole_from(1), metavar="N",
            help="number of walls to build; 1 is a single pass (best: 32 up to 40 stones)")
     option("--time", type=positive, metavar="SECONDS",

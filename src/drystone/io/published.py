@@ -86,7 +86,7 @@ def destination(given: str | None) -> Path:
     if named := given or os.environ.get(VARIABLE):
         return Path(named)
     if (cache := _cache()) is None:
-        raise _extra_missing("fetch", f"Or name a folder: `--to DIR`, or {VARIABLE}.")
+        raise _extra_missing("fetch", f"Or name a folder: `-o DIR`, or {VARIABLE}.")
     return cache
 
 
@@ -104,7 +104,7 @@ def published_file(folder: Path, name: str) -> Path:
             with suppress(OSError):
                 found = path.stat()
                 if _hash_of(path, found.st_size, found.st_mtime_ns) != file.sha256:
-                    to = "" if folder == _cache() else f" --to {shlex.quote(str(folder))}"
+                    to = "" if folder == _cache() else f" -o {shlex.quote(str(folder))}"
                     cure = f"Move it away and fetch it again (`drystone fetch {known}{to}`), or"
                     raise _other_contents(path, cure, f"{RAW}/{file.address}")
     return folder / name

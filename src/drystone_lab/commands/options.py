@@ -4,7 +4,6 @@ import argparse
 import sys
 
 from drystone.cli.numbers import positive, whole_from
-from drystone.cli.parser import Renamed
 
 
 def add_bench(command: argparse.ArgumentParser) -> None:
@@ -77,7 +76,6 @@ def add_fetch(command: argparse.ArgumentParser) -> None:
         "-o", "--output", metavar="DIR",
         help="folder to write to (default: $DRYSTONE_DATA, else a cache of your account)",
     )  # fmt: skip
-    command.add_argument("--to", dest="output", action=Renamed, const="-o", help=argparse.SUPPRESS)
     command.add_argument("--json", action="store_true", help="print as JSON")
 
 

@@ -7,7 +7,6 @@ from pathlib import Path
 from drystone.cli import numbers
 from drystone.cli.inputs import files_of, refuse_among_masks, refuse_inputs
 from drystone.cli.output import prepare_files, prepare_picture, print_json, print_table
-from drystone.cli.parser import Renamed
 from drystone.cli.reading import STONES, add_reading, reading_from
 from drystone.clusters import cluster_stones
 from drystone.errors import ExitCode, counted
@@ -26,9 +25,6 @@ def add(command: argparse.ArgumentParser) -> None:
         help="write what was read: as a label image (.png, .tif, .npy; its scale goes into "
         "stones.json beside it), or as outlines for labelme (.json)",
     )  # fmt: skip
-    command.add_argument(
-        "--to", dest="labels", action=Renamed, const="--labels", help=argparse.SUPPRESS
-    )
     command.add_argument("--overwrite", action="store_true", help="replace what is written")
     add_reading(command)
     numbers.add_scale(command)

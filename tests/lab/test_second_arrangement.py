@@ -6,8 +6,8 @@ from hypothesis import example, given
 
 from drystone.io.wall_image import read_wall_image
 from drystone.metrics.frame import reduce_labels
-from drystone.metrics.second import finer_labels, outlined_labels, second_arrangement
 from drystone.model.site import Site
+from drystone_lab.second_arrangement import finer_labels, outlined_labels, second_arrangement
 from tests.metrics.walls import bricks, walls
 from tests.naive import metrics as naive
 from tests.strategies import repeatable
