@@ -56,7 +56,7 @@ def test_a_local_copy_wins(run, tmp_path, monkeypatch):
 @pytest.mark.usefixtures("_toys")
 def test_no_network_ends_with_a_cure(run, tmp_path, monkeypatch):
     monkeypatch.setattr(fetch, "RAW", nobody())
-    ran = run("fetch", "toy", "--to", tmp_path)
+    ran = run("fetch", "toy", "-o", tmp_path)
     ran.refused("drystone: E161", "By hand: save http", exit_code=3)
 
 
