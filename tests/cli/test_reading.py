@@ -137,19 +137,21 @@ def test_options_of_reading_are_those_of_stones(command, tmp_path, run):
 )
 def test_stones_are_converted_with_their_ids_and_scale(form, ending, tmp_path, run):
     path, to = drawn(form, tmp_path), tmp_path / "to" / f"labels{ending}"
-    first = run("stones", path, "--to", to, "--json").json()
+    first = run("stones", path, "--labels", to, "--json").json()
     again = run("stones", to, "--json").json()
     for name in ("stones", "total_area_px", "width_px", "height_px", "clusters", "px_per_m"):
         assert again[name] == first[name]
-    assert run("stones", path, "--to", to).code == 2  # never over a file unasked
-    assert run("stones", path, "--to", to, "--overwrite").code == 0
+    assert run("stones", path, "--labels", to).code == 2  # never over a file unasked
+    assert run("stones", path, "--labels", to, "--overwrite").code == 0
     if first["px_per_m"] is not None:
         assert "m high" in run("analyse", to, "--close-gaps", "1", "--associative-only").out
 
 
 def test_what_cannot_be_converted_is_refused_before_anything_is_written(tmp_path, run):
     for name in ("labels.bmp", "stones.json", "labels"):
-        run("stones", drawn("labelme", tmp_path), "--to", tmp_path / "to" / name).refused("E139")
+        run("stones", drawn("labelme", tmp_path), "--labels", tmp_path / "to" / name).refused(
+            "E139"
+        )
     assert not (tmp_path / "to").exists()
     masks = tmp_path / "masks"
     masks.mkdir()
@@ -157,7 +159,7 @@ def test_what_cannot_be_converted_is_refused_before_anything_is_written(tmp_path
         mask = np.zeros((30, 40), np.uint8)
         mask[5:20, 10 * number : 10 * number + 12] = 255
         Image.fromarray(mask).save(masks / f"{number}.png")
-    told = run("stones", masks, "--to", tmp_path / "all.png")
+    told = run("stones", masks, "--labels", tmp_path / "all.png")
     assert "in common went to the smaller one, from: 1 (30 px)" in told.out
     assert np.unique(read_wall_image(tmp_path / "all.png")).tolist() == [0, 1, 2]
 
