@@ -111,15 +111,13 @@ def test_the_photograph_becomes_a_wall_that_holds(tmp_path, monkeypatch, run):
     segment, plan, check, *others = (shlex.split(line)[1:] for line in lines)
     assert [segment[0], plan[0], check[0]] == ["segment", "plan", "check"]
     assert [words[0] for words in others] == ["analyse", "craft", "export"]  # of what plan wrote
-    plan += [
-        "--budget",
-        "1",
-        *UNTRIED,
-    ]  # one wall shows that the way leads on; it may be a little low
+    # One wall shows that the way leads on; it may be a little low.
+    plan += ["--budget", "1", *UNTRIED]
     told = [run(*words) for words in (segment, plan, check)]
     assert [told[0].code, told[1].code in (0, 4), told[2].code] == [0, True, 0]
     text = printed(page, "text")
-    found = text[: next(k for k, line in enumerate(text) if line.startswith("complete"))]
+    ends = ("complete: ", "incomplete: ")
+    found = text[: next(k for k, line in enumerate(text) if line.startswith(ends))]
     assert len(found) > 4
     assert set(found) <= set(told[0].out.splitlines())
     assert told[2].out.startswith("OK: wall/plan.json is valid")
