@@ -2,8 +2,8 @@
 
 A block comes to rest on others that do not move (:mod:`drystone.settle.putting`).  Then its weight
 goes down through the wall: from each block by the lever to the two points it bears on left and
-right of where its load acts.  A block whose load acts beside all that it bears on does not stay: it
-is let go again under that load, and what lies on it is put down again.
+right of where its load acts.  A block whose load acts beside all that it bears on is let go again
+under that load, unless it is held, and what lies on it is put down again.
 """
 
 import math
