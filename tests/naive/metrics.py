@@ -74,7 +74,7 @@ def vertical_arrangement(joint):
 
 
 def second_definition(labels):
-    """F_AV and F_AH as drystone.metrics.second words them."""
+    """F_AV and F_AH as drystone_lab.second_arrangement words them."""
     rows = [row for row in range(labels.shape[0]) if labels[row].any()]
     cols = [col for col in range(labels.shape[1]) if labels[:, col].any()]
     stones = labels[rows[0] : rows[-1] + 1, cols[0] : cols[-1] + 1]

@@ -203,8 +203,8 @@ def _carrying(on: Sequence[Bearing], x: float) -> tuple[Bearing, Bearing]:
 def _stays(wall: BuiltWall, block: int, loads: Mapping[int, Load]) -> bool:
     """Say whether a block bears its load.
 
-    What bears on it and on another block bears on it further in, and with less, once it begins to
-    roll; and friction there holds it back, as far as the other block holds against that.
+    A stone on it that another block bears too comes to bear further in, and with less, once the
+    block begins to roll.  Friction with that stone holds it back, as far as the other one holds it.
     """
     on, built = wall.beds[block].points, wall.laid[block]
     if not on:
