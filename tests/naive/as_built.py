@@ -5,7 +5,7 @@ def load(block, laid, beds):
     """Return the weight of a block with its share of all that lies on it, and where that acts."""
     size = laid[block].size
     parts = [(size**2, laid[block].x, laid[block].y)]
-    for one, (on, _) in beds.items():
+    for one, (on, *_) in beds.items():
         if all(bearing.below != block for bearing in on):
             continue
         weight, x, _ = load(one, laid, beds)
@@ -31,7 +31,7 @@ def stays(block, laid, beds, mu, near):
         return True
     edge, way = (on[0], 1.0) if x < on[0].x else (on[-1], -1.0)
     torque = way * (edge.x - laid[block].x) * laid[block].size ** 2
-    for points, _ in beds.values():
+    for points, *_ in beds.values():
         here = [one for one in points if one.below == block]
         if not here:
             continue

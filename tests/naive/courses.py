@@ -25,7 +25,7 @@ def all_terms(poses, plan, ground, rules):
         stones = plan.order[at : at + size].tolist()
         at += size
         posed = [4 * stone + int(plan.turns[stone]) for stone in stones]
-        terms = [0.0] * 16
+        terms = [0.0] * 17
         xs, room = positions(poses, posed, int(plan.gaps[course]), ground.width, rules)
         terms[4] = float(-min(0, room))
         new_level, peaks = list(level), []
@@ -47,6 +47,7 @@ def all_terms(poses, plan, ground, rules):
             free = sum(max(0, mean - level[c]) for c in range(left // UNITS, right // UNITS))
             terms[5] += (right - left) * free
         terms[12] = edges[0][1] - edges[0][0] + edges[-1][1] - edges[-1][0]
+        terms[13] = sum(max(0.0, poses.height[pose] / poses.width[pose] - 1.0) for pose in posed)
         terms[12] += int(poses.faces[posed[0]][0]) + int(poses.faces[posed[-1]][1])
         new_ways = {}
         for (j, edge), (s, start) in itertools.product(enumerate(edges), enumerate(starts)):
@@ -57,7 +58,7 @@ def all_terms(poses, plan, ground, rules):
         beds.append((peaks[0], peaks[-1], int(terms[0])))
         rows.append(terms)
     rows.append(of_the_whole(poses, plan.order[at:].tolist(), level, joints, ways, beds, ground))
-    rows[-1][15] = max(0.0, rules.target - rows[-1][15]) if starts else 0.0
+    rows[-1][16] = max(0.0, rules.target - rows[-1][16]) if starts else 0.0
     return places, level, joints, rows
 
 
@@ -71,8 +72,8 @@ def open_ends(poses, posed, xs, width):
 
 def of_the_whole(poses, left_out, level, joints, ways, beds, ground):
     top = max(level)
-    terms = [0.0] * 16
-    terms[13] = sum(int(poses.area[stone]) for stone in left_out)
+    terms = [0.0] * 17
+    terms[14] = sum(int(poses.area[stone]) for stone in left_out)
     half = PX // 2
     lengths = [
         min(
@@ -81,12 +82,12 @@ def of_the_whole(poses, left_out, level, joints, ways, beds, ground):
         )
         for start in path_starts(top)
     ]
-    terms[14] = percent(lengths, ground.width + 2 * PX)
+    terms[15] = percent(lengths, ground.width + 2 * PX)
     lengths = [
         min(ways[j, s] + between(joint, (start, start)) for j, joint in enumerate(joints))
         for s, start in enumerate(path_starts(ground.width))
     ]
-    terms[15] = percent(lengths, top + 2 * PX)
+    terms[16] = percent(lengths, top + 2 * PX)
     return terms
 
 
@@ -209,11 +210,11 @@ def courses_of(plan):
 def sums(poses, plan, ground, rules):
     """What an arrangement costs up to each course, with what is left out; and in all."""
     *rows, whole = evaluate(poses, plan, ground, rules).terms.tolist()
-    costs = [0.0, whole[13] * rules.weights[13]]
+    costs = [0.0, whole[14] * rules.weights[14]]
     for row in rows:
         costs[0] = 0.0
         for term, weight in zip(row, rules.weights, strict=True):
             costs[0] += term * weight
         costs.append(costs[-1] + costs[0])
-    paths = whole[14] * rules.weights[14] + whole[15] * rules.weights[15]
+    paths = whole[15] * rules.weights[15] + whole[16] * rules.weights[16]
     return [*costs[2:], costs[-1] + paths]

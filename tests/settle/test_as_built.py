@@ -1,5 +1,7 @@
 """What a block that is put down does to those that carry it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -55,6 +57,33 @@ def test_a_plank_does_not_rock_under_a_stone_that_cannot_rise():
     held = before.held({4: as_planned(box(0.0, 50.1, 40.0))})
     after = held.put([(6, brick)]).loaded(6)
     assert (after.laid[2], after.laid[3]) == (before.laid[2], before.laid[3])
+
+
+def test_an_upright_face_carries_a_part_of_what_leans_on_it():
+    """The brick's own weight acts beside the post's foot; half of it hangs on the face."""
+    pier = [(1, box(0.0, 0.0, 40.0, 80.0))]
+    post = [(2, np.array([(65.0, 0.0), (79.0, 0.0), (86.0, 40.0), (58.0, 40.0)]))]
+    brick = as_planned(box(40.0, 40.0, 22.0, 50.0))
+    before = built([pier, post])
+    after = before.put([(3, brick)]).loaded(3)
+    assert after.laid[3].y == pytest.approx(65.0, abs=0.5)
+    bed = after.beds[3]
+    assert {point.below for point in bed.points} == {2}
+    assert {point.below for point in bed.faced} == {1, 2}
+    assert after.laid[2] is before.laid[2]
+
+
+def test_what_was_pushed_into_another_is_put_down_again():
+    """As when domes are pushed: it sinks into what it lies on, where nothing bears it."""
+    plank, step = [(1, box(0.0, 0.0, 60.0, 20.0))], [(2, box(0.0, 20.0, 20.0, 8.0))]
+    wall = built([plank, step])
+    stone = as_planned(box(16.0, 19.4))
+    pushed = replace(
+        wall, laid={**wall.laid, 3: stone}, polygons=wall.polygons.added([stone.corners])
+    )
+    after = pushed.put([(4, as_planned(box(30.0, 40.0, 20.0, 30.0)))]).loaded(4)
+    assert (after.laid[3].x, after.laid[3].y) == pytest.approx((40.0, 30.0), abs=0.1)
+    assert after.laid[4].y == pytest.approx(55.0, abs=0.1)
 
 
 def test_a_stone_far_above_tips_what_carries_all():

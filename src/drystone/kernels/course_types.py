@@ -33,7 +33,7 @@ INSET: Final = (2, 5)
 """A course that keeps away from the ends does so by this share of its room: an end stone that is
 as wide as the room, in the course above, still has its centroid on it."""
 
-TERMS: Final = 16
+TERMS: Final = 17
 """Terms of the cost, in the order of :class:`Weights`."""
 
 FIRST_PX: Final = 10
@@ -66,6 +66,7 @@ class Weights(NamedTuple):
     overhead: float  # a unit by which a stone is above the wall's height
     high: float  # a stone that is above it
     flush: float  # a unit between the end of the wall and the mean face of the stone there
+    upright: float  # by how much a stone is higher than wide, over its width
     left_out: float  # the unit of area, a column times a unit, of stones left out
     across: float  # a percent of F_AH, as far as bed joints and starts tell
     down: float  # a percent by which F_AV is short of the target, as far as head joints tell

@@ -10,7 +10,7 @@ cdef class Scene:
     cdef list room
     # Poses, wall and rules.
     cdef p_long first, first_row, area
-    cdef p_int bottoms, tips, lefts, rights, width, middle, peaks, part_at, faces, given
+    cdef p_int bottoms, tips, lefts, rights, width, height, middle, peaks, part_at, faces, given
     cdef p_double weights
     cdef double margin, target
     cdef int wall_width, wall_height, reach, steepest, joint, start_count, given_count

@@ -99,7 +99,7 @@ def evaluate(poses: Poses, plan: Arrangement, ground: Ground, rules: Rules) -> L
     last: cython.Py_ssize_t = s.columns * courses
     end: cython.Py_ssize_t = s.most_joints * courses
     outside = plan.order[sum(plan.sizes.tolist()) :]
-    whole = [0.0] * 13 + [float(poses.area[outside].sum()), s.across, s.down]
+    whole = [0.0] * 14 + [float(poses.area[outside].sum()), s.across, s.down]
     return Layout(
         np.array([s.x[i] for i in stones], np.int32),
         np.array([s.y[i] for i in stones], np.int32),
@@ -252,7 +252,8 @@ def furnish(s, poses, rules):
     s.first, s.first_row, s.area = longs(poses.first), longs(poses.first_row), longs(poses.area)
     s.bottoms, s.tips = ints(poses.bottoms), ints(poses.tops)
     s.lefts, s.rights = ints(poses.lefts), ints(poses.rights)
-    s.width, s.middle, s.peaks = ints(poses.width), ints(poses.middle), ints(poses.peaks)
+    s.width, s.height, s.middle = ints(poses.width), ints(poses.height), ints(poses.middle)
+    s.peaks = ints(poses.peaks)
     s.part_at, s.faces, s.weights = ints(poses.part_at), ints(poses.faces), doubles(weights)
     s.reach, s.margin, s.steepest = rules.reach, rules.margin, rules.steepest
     s.joint, s.target = rules.joint, rules.target
@@ -347,7 +348,7 @@ def left_out(s, draft):
     area: cython.longlong = 0
     for i in range(start_of(draft, draft.courses), draft.stones):
         area += s.area[draft.order[i]]
-    return area * s.weights[13]
+    return area * s.weights[14]
 
 
 def with_paths(s, now, trial, lowest, cost, bound):
@@ -357,14 +358,14 @@ def with_paths(s, now, trial, lowest, cost, bound):
     last = trial.slots[courses] if courses > lowest else below
     top = top_of(s, last)
     s.across = across(s, courses, top)
-    if cost + s.across * s.weights[14] > bound:
+    if cost + s.across * s.weights[15] > bound:
         return INFINITY
     for course in range(lowest + 1, courses + 1):
         slot = trial.slots[course]
         go_up(s, below, slot)
         below = slot
     s.down = down(s, last, top)
-    return cost + (s.across * s.weights[14] + s.down * s.weights[15])
+    return cost + (s.across * s.weights[15] + s.down * s.weights[16])
 
 
 def stood(s, now, trial, lowest, highest):
@@ -426,6 +427,11 @@ def stand(s, draft, start, course, old, out):
         s.joints[here + 1] + s.faces[2 * left]
         + s.joints[end + 1] - s.joints[end] + s.faces[2 * right + 1]
     )  # fmt: skip
+    s.terms[TERMS * out + 13] = 0.0
+    for i in range(s.most * out, s.most * out + count):
+        high = s.height[s.pose[i]] - s.width[s.pose[i]]
+        if high > 0:
+            s.terms[TERMS * out + 13] += 1.0 * high / s.width[s.pose[i]]
     return False
 
 
@@ -445,6 +451,7 @@ def meet(s, below, old, out):
     s.terms[t + 3] = crossing(s, out, below) if old < 0 else s.terms[TERMS * old + 3]
     s.sure[out] = s.terms[t + 3] * s.weights[3]
     s.sure[out] += s.terms[t + 4] * s.weights[4] + s.terms[t + 12] * s.weights[12]
+    s.sure[out] += s.terms[t + 13] * s.weights[13]
 
 
 def side_by_side(s, out):
@@ -710,7 +717,7 @@ def count_up(s, below, last, out):
     cost: cython.double = 0.0
     s.beds[3 * out] = before
     for i in range(TERMS):
-        if i not in (3, 4, 12):
+        if i not in (3, 4, 12, 13):
             terms[t + i] = 0.0
     for stone in range(here, end):
         steep = abs(s.slope[stone])

@@ -149,6 +149,8 @@ class CourseSettings(Ranged):
         Of a stone that does at all.
     flush : float
         Of the distance between the faces of end stones and the ends of the wall.
+    upright : float
+        Of how much higher than wide a stone stands, over its width.
     left_out : float
         Of a stone of mean area that is left out.
     across : float
@@ -189,6 +191,7 @@ class CourseSettings(Ranged):
     overhead: float = ranged(20.0, least=0)
     high: float = ranged(6.0, least=0)
     flush: float = ranged(1.0, least=0)
+    upright: float = ranged(2.0, least=0)
     left_out: float = ranged(8.0, least=0)
     across: float = ranged(0.08, least=0)
     down: float = ranged(0.012, least=0)

@@ -148,6 +148,7 @@ def _rules_of(settings: CourseSettings, poses: Poses, height: int) -> Rules:
         overhead=settings.overhead / size,
         high=settings.high,
         flush=settings.flush / size,
+        upright=settings.upright,
         left_out=settings.left_out * COLUMN_UNITS / area,
         across=settings.across * stones,
         down=settings.down * stones,

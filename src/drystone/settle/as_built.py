@@ -41,9 +41,13 @@ class Bed(NamedTuple):
 
     points: Sequence[Bearing]  # from left to right
     below: frozenset[int]  # the blocks whose they are; without points, those that hold it
+    # The same, and where its own weight acts beside them also those of upright faces at it.
+    faced: Sequence[Bearing]
 
 
-HELD = Bed((Bearing(-math.inf, 0.0, -1), Bearing(math.inf, 0.0, -1)), frozenset())
+_ENDS = Bearing(-math.inf, 0.0, -1), Bearing(math.inf, 0.0, -1)
+
+HELD = Bed(_ENDS, frozenset(), _ENDS)
 """The bed of a block that stays, whatever comes onto it."""
 
 NOWHERE = (math.inf, math.inf, -math.inf, -math.inf)
@@ -130,10 +134,16 @@ class BuiltWall:
                 beneath |= wall.beds[one].below
         loads = _loads(wall, beneath)
         for one in [one for one in wall.laid if one in beneath and one != block]:
-            if one in wall.laid and not _stays(wall, one, loads):  # it may have fallen with another
-                after = _rolled(wall, one, loads[one])
-                if after is not wall:
-                    wall, loads = after, _loads(after, beneath)
+            if one not in wall.laid or _stays(wall, one, loads):  # it may have fallen with another
+                continue
+            # Upright faces may carry a part of what lies on it.
+            beds = {i: bed._replace(points=bed.faced) for i, bed in wall.beds.items()}
+            faced = replace(wall, beds={**beds, one: wall.beds[one]})
+            if _stays(faced, one, _loads(faced, [one])):
+                continue
+            after = _rolled(wall, one, loads[one])
+            if after is not wall:
+                wall, loads = after, _loads(after, beneath)
         return wall
 
 
@@ -149,15 +159,18 @@ def _with_beds(wall: BuiltWall) -> BuiltWall:
         told = zip(
             *(part.tolist() for part in (found.counts, found.points, found.normals)), strict=True
         )
-        points = sorted(
-            Bearing(x, y, other)
+        touched = sorted(
+            (Bearing(x, y, other), up)
             for other, (count, points, (_, up)) in zip(others, told, strict=True)
-            if up >= UPWARD
             for x, y in points[:count]
         )
+        points = faced = [point for point, up in touched if up >= UPWARD]
+        if not points or not points[0].x <= built.x <= points[-1].x:
+            # Friction on these holds it, as it came to rest there.
+            faced = [point for point, up in touched if up > -UPWARD]
         # What bears on nothing is held between upright faces.
         below = {p.below for p in points} or set(others)
-        beds[block] = Bed(points, frozenset(below - {-1}))
+        beds[block] = Bed(points, frozenset(below - {-1}), faced)
     return replace(wall, beds=beds)
 
 
@@ -270,7 +283,9 @@ def _rolled(wall: BuiltWall, block: int, load: Load) -> BuiltWall:
     if rest is not None:
         polygons = below.polygons.added([rest.corners])
         below = replace(below, laid={**below.laid, block: rest}, polygons=polygons)
-    again = {i: one for i, one in wall.laid.items() if i in out and i != block}
+    # What was pushed into another is put down again, too.
+    pushed = rest is None and found.status is Status.OVERLAPS
+    again = {i: one for i, one in wall.laid.items() if i in out and (pushed or i != block)}
     after = below.put(again.items())
     if rest is not None and not again.keys() <= after.laid.keys():
         # What finds no place where it was goes with the block.
